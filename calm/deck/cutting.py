@@ -40,7 +40,7 @@ class Cut:
 
     Attributes
     ----------
-    hung : which
+    item : which
     length, load : as it is measured: the length [m] under that load [N]
     unstretched : its length without load [m]
     marks : of the clamps, down the cable, measured under the same load
@@ -51,7 +51,7 @@ class Cut:
     over, onto : its number over the side, and onto the drum, which is the other way round
     """
 
-    hung: DeckItem
+    item: DeckItem
     length: float
     load: float
     unstretched: float
@@ -90,7 +90,7 @@ def _cut(result: Result, one: DeckItem, over: int, count: int) -> Cut:
     longer = 1.0 + strain_under(piece.component, piece.measured_load)
     length = one.cut_length * longer
     return Cut(
-        hung=one,
+        item=one,
         length=length,
         load=piece.measured_load,
         unstretched=one.cut_length,

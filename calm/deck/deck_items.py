@@ -15,12 +15,9 @@ from calm.files import Flexible
 if TYPE_CHECKING:
     from calm.case import Result
     from calm.case.result_tables import ClampRow, ComponentRow
-    from calm.files import Clamp, Piece
-    from calm.files.logbook import DeployedItem
-
-    pass
     from calm.checks.recovery import Recovery
-    from calm.files import Place
+    from calm.files import Clamp, Piece, Place
+    from calm.files.logbook import DeployedItem
 
 
 @dataclass(frozen=True)
@@ -76,15 +73,15 @@ class DeckItem:
         return self.part.component.role
 
 
-def hung_of(result: Result) -> tuple[DeckItem, ...]:
+def deck_items_of(result: Result) -> tuple[DeckItem, ...]:
     """Down the line to the anchor, the clamps of a piece after it, down that piece."""
     deployed = result.file.deployed
     items = {item.label: item for item in deployed.items} if deployed else {}
     bottom = result.mooring.water.depth
     found: list[DeckItem] = []
     for row, clamps in rows_down(result):
-        found.append(_hung(row.part, row, row, items, bottom))
-        found += (_hung(clamp.part, row, clamp, items, bottom) for clamp in clamps)
+        found.append(_deck_item(row.part, row, row, items, bottom))
+        found += (_deck_item(clamp.part, row, clamp, items, bottom) for clamp in clamps)
     return tuple(found)
 
 
@@ -93,7 +90,7 @@ def depth_of(row: ComponentRow | ClampRow) -> float:
     return row.depth if isinstance(row, ClampRow) else row.depth_top
 
 
-def _hung(
+def _deck_item(
     part: Piece | Clamp,
     piece: ComponentRow,
     row: ComponentRow | ClampRow,
@@ -129,25 +126,27 @@ class Extreme:
 
 
 @dataclass(frozen=True)
-class Posted:
+class DeckInstrument:
     """An instrument or a release.
 
     Attributes
     ----------
-    hung : where it hangs in the environment of the sheets
+    item : where it hangs in the environment of the sheets
     still : depth in still water [m]; None where that has no unique shape
     shallowest, deepest : over all environments
     greatest_tilt : over all environments [degrees]
     """
 
-    hung: DeckItem
+    item: DeckItem
     still: float | None
     shallowest: Extreme
     deepest: Extreme
     greatest_tilt: float
 
 
-def posted(parts: Sequence[DeckItem], results: Sequence[tuple[str, Result]]) -> tuple[Posted, ...]:
+def instruments_of(
+    parts: Sequence[DeckItem], results: Sequence[tuple[str, Result]]
+) -> tuple[DeckInstrument, ...]:
     """The instruments and releases, down the line.
 
     Parameters
@@ -164,7 +163,7 @@ def posted(parts: Sequence[DeckItem], results: Sequence[tuple[str, Result]]) -> 
         knockdown = there[0][1].knockdown
         still = None if knockdown != knockdown else one.depth - knockdown
         found.append(
-            Posted(
+            DeckInstrument(
                 one,
                 still,
                 min(depths, key=lambda each: each.depth),
@@ -193,13 +192,13 @@ class Surfacing:
 
     Attributes
     ----------
-    hung : which
+    item : which
     time : after the release [s]; None of what does not come up by itself
     hangs_at : depth of its upper end when all is up that comes up [m]; None where not known
     by_itself : whether it is buoyant enough to come up without what is above it
     """
 
-    hung: DeckItem
+    item: DeckItem
     time: float | None
     hangs_at: float | None
     by_itself: bool

@@ -12,17 +12,17 @@ from calm.checks.inventory import inventory_of
 from calm.checks.recovery import recovery_of
 from calm.deck.cutting import Cut, cuts_of
 from calm.deck.deck_items import (
+    DeckInstrument,
     DeckItem,
     Order,
-    Posted,
     Surfacing,
-    hung_of,
+    deck_items_of,
+    instruments_of,
     over_the_side,
-    posted,
     surfacing,
 )
 from calm.deck.hardware import Stock, hardware_of
-from calm.deck.shipping import Freight, Lifts, freight_of, lifts_of
+from calm.deck.shipping import Lifts, ShippedComponent, lifts_of, shipped_of
 from calm.drop import DropPlan, drop_plan
 from calm.drop.launch import SHIP_SPEED
 from calm.errors import NoEquilibrium
@@ -50,7 +50,7 @@ class Deck:
     parts : every piece and clamp, down the line
     deployment, recovery : in the order over the side, and in that of surfacing
     rise : of the line without its anchor; None where it could not be solved
-    cuts, hardware, freight, lifts, instruments : what the sheets of these names say
+    cuts, hardware, shipped, lifts, instruments : what the sheets of these names say
     plan : of the anchor drop, or why it could not be solved; None where the anchor goes first
     notes : what is not known, and why
     """
@@ -64,9 +64,9 @@ class Deck:
     rise: Recovery | None
     cuts: tuple[Cut, ...]
     hardware: tuple[Stock, ...]
-    freight: tuple[Freight, ...]
+    shipped: tuple[ShippedComponent, ...]
     lifts: Lifts
-    instruments: tuple[Posted, ...]
+    instruments: tuple[DeckInstrument, ...]
     environments: tuple[str, ...]
     notes: tuple[str, ...]
     plan: DropPlan | NoEquilibrium | None = None
@@ -110,7 +110,7 @@ def deck_of(
             notes.append(f"The mooring does not stand in {_name(other)}: {failure}")
             continue
         results.append((_name(other), there))
-    parts = hung_of(result)
+    parts = deck_items_of(result)
     inventory = inventory_of(first)
     rise: Recovery | None = None
     try:
@@ -136,9 +136,9 @@ def deck_of(
         rise=rise,
         cuts=cuts_of(result, parts, order),
         hardware=hardware_of(parts),
-        freight=freight_of(first.file, inventory),
+        shipped=shipped_of(first.file, inventory),
         lifts=lifts_of(inventory, released, order),
-        instruments=posted(parts, results),
+        instruments=instruments_of(parts, results),
         environments=tuple(name for name, _ in results),
         notes=tuple(notes),
         plan=plan,

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Freight:
+class ShippedComponent:
     """All of one component.
 
     Attributes
@@ -39,26 +39,28 @@ class Freight:
     missing_volumes: int
 
 
-def freight_of(file: MooringFile, inventory: Sequence[InventoryItem]) -> tuple[Freight, ...]:
+def shipped_of(
+    file: MooringFile, inventory: Sequence[InventoryItem]
+) -> tuple[ShippedComponent, ...]:
     """A row for each component, in the order of the line."""
     components = _components(file)
     groups: dict[str, list[InventoryItem]] = {}
     for item in inventory:
         groups.setdefault(item.use, []).append(item)
-    return tuple(_freight(use, group, components) for use, group in groups.items())
+    return tuple(_shipped_component(use, group, components) for use, group in groups.items())
 
 
-def total_of(freight: Sequence[Freight]) -> Freight:
+def total_of(shipped: Sequence[ShippedComponent]) -> ShippedComponent:
     """All of it."""
-    return Freight(
+    return ShippedComponent(
         use="",
         name="Total",
-        count=sum(one.count for one in freight),
+        count=sum(one.count for one in shipped),
         length=None,
-        mass=sum(one.mass for one in freight),
-        volume=sum(one.volume for one in freight),
-        missing_masses=sum(one.missing_masses for one in freight),
-        missing_volumes=sum(one.missing_volumes for one in freight),
+        mass=sum(one.mass for one in shipped),
+        volume=sum(one.volume for one in shipped),
+        missing_masses=sum(one.missing_masses for one in shipped),
+        missing_volumes=sum(one.missing_volumes for one in shipped),
     )
 
 
@@ -87,13 +89,13 @@ def _components(file: MooringFile) -> dict[tuple[int, str], Component]:
     return found
 
 
-def _freight(
+def _shipped_component(
     use: str, group: Sequence[InventoryItem], components: dict[tuple[int, str], Component]
-) -> Freight:
+) -> ShippedComponent:
     volumes = [volume_of(components[one.index, one.label], one.cut_length) for one in group]
     masses = [one.dry_mass for one in group]
     lengths = [one.cut_length for one in group if one.kind in FLEXIBLE_KINDS]
-    return Freight(
+    return ShippedComponent(
         use=use,
         name=group[0].name or use,
         count=len(group),

@@ -42,7 +42,7 @@ from calm.report.blocks import (
 )
 from calm.report.check_summary import limits_table as limits_used_table
 from calm.report.html import page
-from calm.report.provenance import UNSEEN, date, versions
+from calm.report.provenance import NOT_JUDGED, date, versions
 from calm.report.result_json import to_json
 from calm.report.sheet import figure_cell, quantity_column
 from calm.whole_file import put
@@ -84,7 +84,7 @@ def summary_report(summary: Summary) -> Report:
             ),
         ),
         ReportPart("Distributions", (*_left_out(summary), *statistics_tables(summary))),
-        ReportPart("What is not judged", (Prose(UNSEEN, State.UNKNOWN),)),
+        NOT_JUDGED,
         ReportPart("Inputs", tuple(_inputs(summary))),
     )
     section = Section(summary.name, parts)

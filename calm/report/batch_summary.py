@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from calm.batch.statistics.extremes import Fit, LevelsRefused
 from calm.batch.statistics.summary import PERCENTILES, Summary
 from calm.report.check_documents import limit_document
+from calm.report.result_json import members
 
 if TYPE_CHECKING:
     from calm.batch.statistics.limits import Exceedance, RuleShare
@@ -65,12 +66,8 @@ def summary_document(summary: Summary) -> dict[str, Any]:
 
 
 def _part(part: PartDistributions) -> dict[str, Any]:
-    return {
-        "label": part.label,
-        "knockdown": _distribution(part.knockdown),
-        "tilt": _distribution(part.tilt),
-        "tension": _distribution(part.tension),
-    }
+    quantities = members(part, "knockdown", "tilt", "tension")
+    return {"label": part.label, **{name: _distribution(one) for name, one in quantities.items()}}
 
 
 def _distribution(one: Distribution | None) -> dict[str, Any] | None:
@@ -106,27 +103,20 @@ def _fit(fit: Fit | LevelsRefused) -> dict[str, Any]:
 def _rule(rule: RuleShare) -> dict[str, Any]:
     return {
         "rule": rule.name,
-        "judged": rule.judged,
-        "fails": rule.fails,
-        "fails_at_most": rule.fails_at_most,
-        "warns": rule.warns,
+        **members(rule, "judged", "fails", "fails_at_most", "warns"),
         "limits": len(rule.exceedances),
         "unknown": rule.unknown,
     }
 
 
 def _limit(rule: RuleShare, one: Exceedance) -> dict[str, Any]:
-    limit = one.limit
     return {
         "rule": rule.name,
-        "component": limit.component,
-        "quantity": limit.quantity,
-        "limit": limit.limit,
-        "bound": "at least" if limit.least else "at most",
-        "beyond": limit.beyond.value,
+        **members(one.limit, "component", "quantity", "limit"),
+        "bound": "at least" if one.limit.least else "at most",
+        "beyond": one.limit.beyond.value,
         "judged": one.count,
-        "share": one.share,
-        "worst": one.worst,
+        **members(one, "share", "worst"),
         "time": _time(one.time),
     }
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +11,7 @@ from calm.checks.inventory import total_of
 from calm.checks.rules import RULES
 from calm.quantities import QUANTITIES
 from calm.records.csv_writer import table_csv
+from calm.report.result_json import members
 
 if TYPE_CHECKING:
     from calm.checks.assessment import Assessment, Situation
@@ -76,13 +77,7 @@ def check_document(assessments: Sequence[Assessment]) -> dict[str, Any]:
 
 def limit_document(key: LimitKey) -> dict[str, Any]:
     """The JSON object of a limit as used."""
-    return {
-        "name": key.name,
-        "value": key.value,
-        "default": key.default,
-        "source": key.source,
-        "departs": key.departs,
-    }
+    return members(key, "name", "value", "default", "source", "departs")
 
 
 def _finding(assessment: Assessment, finding: Finding) -> dict[str, Any]:
@@ -92,16 +87,10 @@ def _finding(assessment: Assessment, finding: Finding) -> dict[str, Any]:
 
 
 def _accepted(mooring: str, finding: Finding) -> dict[str, Any]:
-    accept = finding.accept
-    assert accept is not None
     return {
         "mooring": mooring,
-        "rule": finding.rule,
-        "component": finding.component,
-        "reason": accept.reason,
-        "by": accept.by,
-        "date": accept.date,
-        "until": accept.until,
+        **members(finding, "rule", "component"),
+        **members(finding.accept, "reason", "by", "date", "until"),
     }
 
 
@@ -117,16 +106,16 @@ def _situation(situation: Situation) -> dict[str, Any]:
         return said | situation.failure.to_dict()
     result = situation.result
     assert result is not None
-    return said | {
-        "status": result.status,
-        "type": result.type,
+    return {
+        **said,
+        **members(result, "status", "type"),
         "top_depth": result.top.depth,
         "knockdown": result.top.knockdown,
         "anchor_vertical": result.anchor.vertical,
         "anchor_horizontal": result.anchor.horizontal,
         "required_weight": result.anchor.required_weight,
         "accuracy": asdict(result.accuracy),
-        "warnings": list(result.warnings),
+        "warnings": result.warnings,
     }
 
 
@@ -134,61 +123,35 @@ def _launch(assessment: Assessment) -> dict[str, Any] | None:
     launch = assessment.launch
     if launch is None:
         return None
-    return {
-        "fall_speed": launch.fall_speed,
-        "fall_speed_band": list(launch.fall_speed_band),
-        "anchor_tension": launch.anchor_tension,
-        "anchor_drag_known": launch.anchor_drag_known,
-        "greatest_speed": launch.greatest_speed,
-        "drift": list(launch.drift),
-        "components": launch.components(),
-    }
+    names = (
+        "fall_speed", "fall_speed_band", "anchor_tension", "anchor_drag_known", "greatest_speed",
+        "drift",
+    )  # fmt: skip
+    return members(launch, *names) | {"components": launch.components()}
 
 
 def _recovery(assessment: Assessment) -> dict[str, Any] | None:
     recovery = assessment.recovery
     if recovery is None:
         return None
-    return {
-        "released": recovery.released,
-        "rise_speed": recovery.rise_speed,
-        "time_to_surface": recovery.time_to_surface,
-        "net_buoyancy": recovery.net_buoyancy,
-        "order": list(recovery.order),
-        "components": recovery.components(),
-    }
+    names = ("released", "rise_speed", "time_to_surface", "net_buoyancy", "order")
+    return members(recovery, *names) | {"components": recovery.components()}
 
 
+_OF_FINDING = ("mooring", "environment", "situation", "rule", "component")
+_TEXTS = ("message", "remedy", "source")
 CHECKS_HEADER = (
-    "mooring",
-    "environment",
-    "situation",
-    "rule",
-    "component",
-    "state",
-    "value",
-    "limit",
-    "margin",
-    "unit",
-    "message",
-    "remedy",
-    "source",
-    "reason",
-    "probability",
-)
+    *_OF_FINDING, "state", "value", "limit", "margin", "unit", *_TEXTS, "reason", "probability",
+)  # fmt: skip
 """First row of `checks_csv`; value, limit and margin are in the unit of their row."""
 
+_OF_ITEM = (
+    "index", "label", "use", "name", "role", "kind", "clamped_on", "cut_length", "dry_mass",
+    "wet_weight", "lift_mass", "at",
+)  # fmt: skip
 INVENTORY_HEADER = (
     "mooring",
-    "index",
-    "label",
-    "use",
-    "name",
-    "role",
-    "kind",
-    "clamped_on",
-    QUANTITIES["cut_length"].header,
-    *(QUANTITIES[name].header for name in ("dry_mass", "wet_weight", "lift_mass", "at")),
+    *(QUANTITIES[name].header if name in QUANTITIES else name for name in _OF_ITEM),
 )
 """First row of `inventory_csv`; weights in water are positive downward."""
 
@@ -201,44 +164,22 @@ def checks_csv(assessments: Sequence[Assessment]) -> str:
 
 def inventory_csv(assessments: Sequence[Assessment]) -> str:
     """A row for every piece and clamp, from the top of each mooring to its anchor."""
-    return table_csv(INVENTORY_HEADER, (row for each in assessments for row in _items(each)))
+    rows = (
+        [each.name, *members(item, *_OF_ITEM).values()]
+        for each in assessments
+        for item in each.inventory
+    )
+    return table_csv(INVENTORY_HEADER, rows)
 
 
 def _finding_row(finding: Finding) -> Sequence[object]:
     quantity = QUANTITIES.get(RULES[finding.rule].quantity)
     return (
-        finding.mooring,
-        finding.environment,
-        finding.situation,
-        finding.rule,
-        finding.component,
+        *members(finding, *_OF_FINDING).values(),
         finding.state.value,
-        finding.value,
-        finding.limit,
-        finding.margin,
+        *members(finding, "value", "limit", "margin").values(),
         quantity.unit if quantity else None,
-        finding.message,
-        finding.remedy,
-        finding.source,
+        *members(finding, *_TEXTS).values(),
         None if finding.accept is None else finding.accept.reason,
         finding.probability,
     )
-
-
-def _items(assessment: Assessment) -> Iterator[Sequence[object]]:
-    for item in assessment.inventory:
-        yield (
-            assessment.name,
-            item.index,
-            item.label,
-            item.use,
-            item.name,
-            item.role,
-            item.kind,
-            item.clamped_on,
-            item.cut_length,
-            item.dry_mass,
-            item.wet_weight,
-            item.lift_mass,
-            item.at,
-        )

@@ -41,13 +41,10 @@ from calm.report.check_tables import (
 )
 from calm.report.differences import comparison_part
 from calm.report.provenance import (
-    UNSEEN,
-    current_listing,
+    NOT_JUDGED,
     date,
     document_part,
-    environments_table,
-    file_listing,
-    origin,
+    inputs_part,
 )
 from calm.report.sheet import sheet
 
@@ -61,7 +58,8 @@ def mooring_section(assessment: Assessment, against: Comparison | None = None) -
 
     `against` is the mooring compared with the design that it came from.
     """
-    columns = (*(stand.environment for stand in assessment.stands), ON_THE_WAY)
+    stands = assessment.stands
+    columns = (*(stand.environment for stand in stands), ON_THE_WAY)
     worst = worst_by_rule(assessment)
     compared = () if against is None else (comparison_part(against),)
     parts = (
@@ -76,7 +74,11 @@ def mooring_section(assessment: Assessment, against: Comparison | None = None) -
             "Inventory",
             (inventory_table(assessment.inventory), deck_table(assessment.inventory)),
         ),
-        ReportPart("Inputs", tuple(_inputs(assessment))),
+        inputs_part(
+            [stand.mooring.file for stand in stands],
+            [stand.environment for stand in stands],
+            [stand.mooring.water for stand in stands],
+        ),
     )
     return Section(
         assessment.name,
@@ -101,7 +103,7 @@ def check_report(sections: Sequence[Section]) -> Report:
         front=(
             ReportPart("Summary", tuple(_summary(sections))),
             ReportPart("Limits", (limits_table([(each.name, each.limits) for each in sections]),)),
-            ReportPart("What is not judged", (Prose(UNSEEN, State.UNKNOWN),)),
+            NOT_JUDGED,
             ReportPart("Signatures", (Signatures(("Designed by", "Checked by", "Approved by")),)),
         ),
         sections=tuple(sections),
@@ -169,16 +171,6 @@ def _on_the_way(assessment: Assessment) -> Iterator[Block]:
         yield Prose(("Neither the launch nor the recovery could be solved.",), State.UNKNOWN)
     if assessment.backup:
         yield breaks_table(assessment.backup)
-
-
-def _inputs(assessment: Assessment) -> Iterator[Block]:
-    names = [stand.environment for stand in assessment.stands]
-    waters = [stand.mooring.water for stand in assessment.stands]
-    yield environments_table(names, waters)
-    yield file_listing(assessment.mooring.file)
-    for name, water in zip(names, waters, strict=True):
-        yield current_listing(name, water)
-    yield origin([stand.mooring.file for stand in assessment.stands])
 
 
 _FIGURE_NOTE = (

@@ -63,10 +63,10 @@ _RECOVERY = (
 
 def _recovery(deck: Deck) -> Rows:
     for number, one in enumerate(deck.recovery, 1):
-        hung = one.hung
+        item = one.item
         yield (
-            number, hung.index, hung.label, hung.part.use, hung.name, hung.deployed_serial, hung.on,
-            one.time, one.hangs_at, None, None, None, hung.remark,
+            number, item.index, item.label, item.part.use, item.name, item.deployed_serial, item.on,
+            one.time, one.hangs_at, None, None, None, item.remark,
         )  # fmt: skip
 
 
@@ -81,7 +81,7 @@ def _cutting(deck: Deck) -> Rows:
     for cut in deck.cuts:
         marks = ";".join(f"{mark.label.replace(';', ',')}@{mark.at:.3f}" for mark in cut.marks)
         yield (
-            cut.hung.label, cut.hung.part.use, cut.length, cut.load, marks, cut.unstretched,
+            cut.item.label, cut.item.part.use, cut.length, cut.load, marks, cut.unstretched,
             cut.tolerance, cut.effect, cut.termination, cut.over, cut.onto,
         )  # fmt: skip
 
@@ -103,7 +103,7 @@ _SHIPPING = (
 
 
 def _shipping(deck: Deck) -> Rows:
-    for one in deck.freight:
+    for one in deck.shipped:
         unknown = one.missing_masses == one.count, one.missing_volumes == one.count
         yield (
             one.use, one.name, one.count, one.length, None if unknown[0] else one.mass,
@@ -132,10 +132,10 @@ _INSTRUMENTS = (
 
 def _instruments(deck: Deck) -> Rows:
     for one in deck.instruments:
-        hung, component = one.hung, one.hung.part.component
-        equipment = hung.part.equipment
+        item, component = one.item, one.item.part.component
+        equipment = item.part.equipment
         yield (
-            hung.label, hung.part.use, hung.name, hung.serial, hung.on, hung.depth, one.still,
+            item.label, item.part.use, item.name, item.serial, item.on, item.depth, one.still,
             one.shallowest.depth, one.shallowest.environment, one.deepest.depth,
             one.deepest.environment, one.greatest_tilt, component.warn_tilt, component.max_tilt,
             equipment.sampling, equipment.battery_until, equipment.calibrated,

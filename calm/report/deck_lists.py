@@ -13,7 +13,7 @@ from calm.report.sheet import figure_cell
 
 if TYPE_CHECKING:
     from calm.deck import Deck
-    from calm.deck.deck_items import Extreme, Posted
+    from calm.deck.deck_items import DeckInstrument, Extreme
     from calm.deck.shipping import Lift
 
 _SHARE = f"{LENGTH_ERROR:.1%}".replace("%", " %")
@@ -37,7 +37,7 @@ def cutting_part(deck: Deck) -> ReportPart:
         effect = "-" if cut.effect is None else f"{cut.effect:+.2f}"
         rows.append(
             (
-                Cell(cut.hung.label, cut.hung.name),
+                Cell(cut.item.label, cut.item.name),
                 Cell(f"{cut.length:.2f}", load),
                 Cell(f"± {cut.tolerance:.2f}"),
                 Cell(effect),
@@ -114,7 +114,7 @@ def shipping_part(deck: Deck) -> ReportPart:
     """All that is shipped, and what the sums lack."""
     table = table_of(
         "Shipped",
-        deck.freight,
+        deck.shipped,
         (Column("component", share=1.6), lambda one: one.name),
         (Column("id"), lambda one: one.use),
         (Column("pieces", numeric=True), lambda one: str(one.count)),
@@ -134,7 +134,7 @@ def shipping_part(deck: Deck) -> ReportPart:
         note="Volume: of the things themselves, without packing: of a sphere, a cylinder and a "
         "cable by its size, else what it displaces. ≥: a lower bound, since figures are missing. "
         "Spares are not in it.",
-        sums=[total_of(deck.freight)],
+        sums=[total_of(deck.shipped)],
     )
     return ReportPart("Shipping list", (table,))
 
@@ -209,7 +209,7 @@ def _stages(title: str, lifts: Iterable[Lift]) -> Table:
 def instruments_part(deck: Deck) -> ReportPart:
     """Every instrument and release: where it hangs, and what the file says of it."""
     several = len(deck.environments) > 1
-    rows = tuple(_posted(one, several) for one in deck.instruments)
+    rows = tuple(_instrument_row(one, several) for one in deck.instruments)
     columns = (
         Column("instrument", share=1.4),
         Column("serial number", share=0.8),
@@ -236,16 +236,16 @@ def instruments_part(deck: Deck) -> ReportPart:
     return ReportPart("Instrument sheet", (table,))
 
 
-def _posted(one: Posted, several: bool) -> tuple[Cell, ...]:
-    component, equipment = one.hung.part.component, one.hung.part.equipment
+def _instrument_row(one: DeckInstrument, several: bool) -> tuple[Cell, ...]:
+    component, equipment = one.item.part.component, one.item.part.equipment
     limits = [
         "-" if limit is None else QUANTITIES["tilt"].format(limit)
         for limit in (component.warn_tilt, component.max_tilt)
     ]
     return (
-        Cell(one.hung.label, one.hung.name, indented=one.hung.on is not None),
-        Cell(one.hung.serial or ""),
-        figure_cell("depth", one.hung.depth),
+        Cell(one.item.label, one.item.name, indented=one.item.on is not None),
+        Cell(one.item.serial or ""),
+        figure_cell("depth", one.item.depth),
         figure_cell("depth", one.still),
         *((_extreme(one.shallowest), _extreme(one.deepest)) if several else ()),
         figure_cell("tilt", one.greatest_tilt),

@@ -184,7 +184,7 @@ def _events(events: tuple[str, ...]) -> Table:
 def _surfacing(deck: Deck) -> Table:
     rows = []
     for number, one in enumerate(deck.recovery, 1):
-        hung = one.hung
+        item = one.item
         if one.time is not None:
             expected = f"{one.time / 60.0:.1f} min"
         elif one.hangs_at is not None:
@@ -194,13 +194,13 @@ def _surfacing(deck: Deck) -> Table:
         rows.append(
             (
                 Cell(str(number)),
-                Cell(hung.label, hung.name, indented=hung.on is not None),
-                Cell(hung.deployed_serial or ""),
+                Cell(item.label, item.name, indented=item.on is not None),
+                Cell(item.deployed_serial or ""),
                 Cell(expected, "by itself" if one.by_itself else ""),
                 Cell(),
                 Cell(),
                 *[_BOX] * 3,
-                Cell(hung.remark or ""),
+                Cell(item.remark or ""),
             )
         )
     columns = (

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from calm.checks.finding import State
 from calm.report.blocks import Block, Column, Heading, Prose, ReportPart, Table, table_of
+from calm.report.result_json import members
 
 if TYPE_CHECKING:
     from calm.motion.agreement import Agreement
@@ -141,9 +142,7 @@ def held_out_document(held_out: Sequence[HeldOut]) -> list[dict[str, Any]]:
         {
             "label": one.label,
             "n": one.count,
-            "bias": one.bias,
-            "rms": one.rms,
-            "linear_rms": one.linear_rms,
+            **members(one, "bias", "rms", "linear_rms"),
             "coverage_95": one.coverage,
         }
         for one in held_out

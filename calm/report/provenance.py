@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from pydantic import BaseModel
 
+from calm.checks.finding import State
 from calm.errors import InputError, UsageError
 from calm.files import MooringFile
 from calm.quantities import QUANTITIES, bearing_of, say
@@ -105,6 +106,9 @@ UNSEEN = (
     "weather, and no factor on a static tension replaces looking at them.",
 )
 """What is printed in every report."""
+
+NOT_JUDGED = ReportPart("What is not judged", (Prose(UNSEEN, State.UNKNOWN),))
+"""The part of every report that says so."""
 
 _MOST_LEVELS = 40
 
@@ -220,3 +224,18 @@ def degrees_text(degrees: float, sides: str, digits: int) -> str:
     """Degrees, of so many digits at least, and minutes to a thousandth; `sides` are + and -."""
     whole, minutes = divmod(round(abs(degrees) * 60_000), 60_000)
     return f"{whole:0{digits}d}° {minutes / 1000:06.3f}′ {sides[degrees < 0.0]}"
+
+
+def inputs_part(
+    files: Sequence[MooringFile], names: Sequence[str], waters: Sequence[Water]
+) -> ReportPart:
+    """Return the environments, the mooring file, the currents, the hash and the versions.
+
+    Parameters
+    ----------
+    files : one mooring or tow as read in each of its environments
+    names, waters : of these environments
+    """
+    table = environments_table(names, waters)
+    currents = map(current_listing, names, waters)
+    return ReportPart("Inputs", (table, file_listing(files[0]), *currents, origin(files)))

@@ -71,3 +71,8 @@ def _finite(value: Any) -> Any:
 
 
 _NESTED = (dict, list, tuple)
+
+
+def members(value: object, *names: str) -> dict[str, Any]:
+    """Return what a document tells of an object: some of its attributes by their names."""
+    return {name: getattr(value, name) for name in names}

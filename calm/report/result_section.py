@@ -7,20 +7,16 @@ from typing import TYPE_CHECKING
 
 from calm.case import TowResult
 from calm.checks.criterion import limits_used
-from calm.checks.finding import State
 from calm.checks.posture import reaches_the_surface
 from calm.report.blocks import Figure, Prose, Report, ReportPart, Section
 from calm.report.check_summary import limits_table
 from calm.report.picture import figure_svg
 from calm.report.plot import draw
 from calm.report.provenance import (
-    UNSEEN,
-    current_listing,
+    NOT_JUDGED,
     date,
     document_part,
-    environments_table,
-    file_listing,
-    origin,
+    inputs_part,
 )
 from calm.report.sheet import sheet
 from calm.report.uncertainty import uncertainty_part
@@ -47,16 +43,8 @@ def result_report(result: Result | TowResult, uncertain: Uncertain | None = None
         ReportPart("Shape", (Figure("Elevation, current and plan", drawing),)),
         *(() if uncertain is None else (uncertainty_part(uncertain),)),
         *_limits(result),
-        ReportPart("What is not judged", (Prose(UNSEEN, State.UNKNOWN),)),
-        ReportPart(
-            "Inputs",
-            (
-                environments_table([environment], [water]),
-                file_listing(file),
-                current_listing(environment, water),
-                origin([file]),
-            ),
-        ),
+        NOT_JUDGED,
+        inputs_part([file], [environment], [water]),
     )  # fmt: skip
     subtitle = said.title.removeprefix(f"{result.name}: ")
     return Report(result.name, subtitle, (), (Section(result.name, parts),), date())

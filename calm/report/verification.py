@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from calm.checks.finding import State
 from calm.report.blocks import Block, Cell, Column, Heading, Line, Prose, ReportPart, Span, Table
+from calm.report.result_json import members
 
 if TYPE_CHECKING:
     from calm.verification import Case, CaseOutcome, Kind, Source
@@ -101,11 +102,8 @@ def _case(source: Source, outcome: CaseOutcome) -> dict[str, Any]:
         "name": case.name,
         "kind": case.kind.value,
         "expected": case.expected,
-        "got": outcome.got,
-        "difference": outcome.difference,
-        "tolerance": case.tolerance,
-        "unit": case.unit,
-        "why": case.why,
+        **members(outcome, "got", "difference"),
+        **members(case, "tolerance", "unit", "why"),
         "within": outcome.within,
         "reason": outcome.reason or None,
     }

@@ -137,15 +137,15 @@ def test_unlike_metals_have_isolators_and_anodes(tmp_path):
 
 
 def test_the_shipping_list_adds_up_and_says_what_it_lacks(deck):
-    freight = {one.use: one for one in deck.freight}
-    assert freight["pack"].mass == pytest.approx(60.0)
-    assert freight["ball"].volume == pytest.approx(math.pi / 6.0)
-    assert freight["wire"].mass == pytest.approx(21.0, rel=2e-3)
-    assert freight["wire"].volume == pytest.approx(math.pi * 0.004**2 * 99.9, rel=1e-3)
-    assert (freight["rope"].mass, freight["rope"].missing_masses) == (0.0, 1)
-    total = total_of(deck.freight)
+    shipped = {one.use: one for one in deck.shipped}
+    assert shipped["pack"].mass == pytest.approx(60.0)
+    assert shipped["ball"].volume == pytest.approx(math.pi / 6.0)
+    assert shipped["wire"].mass == pytest.approx(21.0, rel=2e-3)
+    assert shipped["wire"].volume == pytest.approx(math.pi * 0.004**2 * 99.9, rel=1e-3)
+    assert (shipped["rope"].mass, shipped["rope"].missing_masses) == (0.0, 1)
+    total = total_of(deck.shipped)
     assert total.count == len(deck.parts)
-    assert total.mass == pytest.approx(sum(one.mass for one in deck.freight))
+    assert total.mass == pytest.approx(sum(one.mass for one in deck.shipped))
     assert total.missing_masses == 1
 
 
@@ -170,27 +170,27 @@ def test_surfacing_is_in_order_of_time(deck):
     assert times == sorted(times)
     assert deck.rise is not None
     assert times[0] == deck.rise.time_to_surface
-    first = deck.recovery[0].hung
+    first = deck.recovery[0].item
     assert (first.label, first.deployed_serial, first.remark) == (
         "top float",
         "T2",
         "newly painted",
     )
-    assert "rope" not in [one.hung.label for one in deck.recovery]
+    assert "rope" not in [one.item.label for one in deck.recovery]
 
 
 def test_instruments_in_all_environments(moorings, deck):
     results = {
         name: one.solve() for name, one in zip(("own", "calm", "storm"), moorings, strict=True)
     }
-    high = next(one for one in deck.instruments if one.hung.label == "high")
+    high = next(one for one in deck.instruments if one.item.label == "high")
     depths = {
         name: next(row.depth for row in result.clamps if row.label == "high")
         for name, result in results.items()
     }
     assert (high.shallowest.depth, high.shallowest.environment) == (depths["calm"], "calm")
     assert (high.deepest.depth, high.deepest.environment) == (depths["storm"], "storm")
-    assert high.hung.depth == depths["own"]
+    assert high.item.depth == depths["own"]
     tilts = [row.tilt for one in results.values() for row in one.clamps if row.label == "high"]
     assert high.greatest_tilt == max(tilts)
     still = deck.result.mooring.water.still()
@@ -199,4 +199,4 @@ def test_instruments_in_all_environments(moorings, deck):
     # still water leaves the line upright: the clamp is as far below the top as its lengths say
     above = 1.0 + sum(one.stretched for one in deck.parts[1:4]) + 20.0
     assert high.still == pytest.approx(top + above, abs=0.1)
-    assert [one.hung.label for one in deck.instruments] == ["high", "low", "release"]
+    assert [one.item.label for one in deck.instruments] == ["high", "low", "release"]
