@@ -113,10 +113,7 @@ def without_statistics(
     rate = count / (time.perf_counter() - start)
     assert outcome.done
     unsolved = count - outcome.endings[Ending.SOLVED]
-    print(
-        f"{'':12}{unsolved} without equilibrium, {outcome.alone} solved one by one, "
-        f"{output.stat().st_size / 1e6:.0f} MB"
-    )
+    print(f"{'':12}{unsolved} without equilibrium, {output.stat().st_size / 1e6:.0f} MB")
     return rate, output.stat().st_size / count
 
 

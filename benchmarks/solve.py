@@ -4,12 +4,12 @@
 
 Every shipped mooring and tow at its own settings, against the same line at an angle step of 0.05°
 (its error is 400 times smaller); then S1000 against scipy alone, both against scipy at 1e-12.
-`plain` is the march as it stands, `compiled` by numba, which prints `-` where the package has but
-one. `--smoke` does a little of everything in seconds. `--package` measures the CALM of another
-folder, such as a checkout of an earlier version, with the same script.
+`plain` is the solver as it stands, `compiled` by numba. `--smoke` does a little of everything in
+seconds. `--package` measures the CALM of another folder with the same script.
 """
 
 import argparse
+import os
 import sys
 import time
 from collections.abc import Callable
@@ -48,17 +48,14 @@ def departure(solution: Any, reference: Any, span: float) -> tuple[float, float]
     return float(position / span), float(tension.max())
 
 
-def at_either_speed(job: Callable[[], Any], repetitions: int) -> tuple[float, float | None]:
-    """Milliseconds as the march stands, and compiled; None where there is no such thing."""
+def at_either_speed(job: Callable[[], Any], repetitions: int) -> tuple[float, float]:
+    """Milliseconds as the solver stands, and compiled."""
+    os.environ["CALM_COMPILED"] = "never"
     plain, _ = fastest(job, repetitions)
-    try:
-        from calm.physics import pace
-    except ImportError:
-        return plain, None
-    pace.march_fast(True)
+    os.environ["CALM_COMPILED"] = "always"
     job()  # fetches or compiles
     compiled, _ = fastest(job, repetitions)
-    pace.march_fast(False)
+    os.environ["CALM_COMPILED"] = "never"
     return plain, compiled
 
 
@@ -91,7 +88,7 @@ def shipped_lines(lines: list[Path], repetitions: int) -> None:
         plain, compiled = at_either_speed(partial(solve, settings), repetitions)
         whole, _ = fastest(line.solve, repetitions)
         depth_error, tension_error = departure(solution, reference, span)
-        fast = f"{'-':>10}" if compiled is None else f"{compiled:7.2f} ms"
+        fast = f"{compiled:7.2f} ms"
         print(
             f"{path.stem:30}{solution.segments:9d}{solution.marches:9d}{plain:7.1f} ms{fast}"
             f"{whole:7.1f} ms{solution.depth_error / span:12.1e}{depth_error:10.1e}"
@@ -132,10 +129,9 @@ def against_scipy(repetitions: int) -> None:
     for step in (1.0, 0.5, 0.1):
         job = by_calm(step)
         plain, compiled = at_either_speed(job, repetitions)
-        times[step] = plain if compiled is None else compiled
+        times[step] = compiled
         row(f"CALM, {step}°", plain, job())
-        if compiled is not None:
-            row(f"CALM, {step}°, compiled", compiled, job())
+        row(f"CALM, {step}°, compiled", compiled, job())
     for tolerance in (1e-4, 1e-6, 1e-8):
         spent, answer = fastest(partial(s1000_by_hand.solve, tolerance), repetitions)
         times[tolerance] = spent

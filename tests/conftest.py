@@ -1,12 +1,9 @@
 """Every run of the tests tries the same examples and sees no catalogue but the shipped one."""
 
 import os
-from collections.abc import Iterator
 
 import pytest
 from hypothesis import settings
-
-from calm.physics import pace
 
 settings.register_profile("ci", derandomize=True, deadline=None, database=None)
 settings.register_profile("explore", deadline=None, max_examples=2000)
@@ -20,23 +17,15 @@ def without_the_users_catalogue(tmp_path_factory: pytest.TempPathFactory) -> Non
 
 
 @pytest.fixture(scope="session", autouse=True)
-def march_compiled() -> None:
-    """The march compiled, where numba is there: the same digits, sooner.
+def solve_compiled() -> None:
+    """The solver compiled, where numba is there: the same digits, sooner.
 
-    `CALM_COMPILED=never` has the tests march as the laws stand.
+    `CALM_COMPILED=never` has the tests solve as the laws stand.
     """
-    pace.expect(pace.COLD)
-
-
-@pytest.fixture(autouse=True)
-def march_as_before() -> Iterator[None]:
-    """A test that marches otherwise leaves the march as it was."""
-    fast = pace.is_fast()
-    yield
-    pace.march_fast(fast)
+    os.environ.setdefault("CALM_COMPILED", "always")
 
 
 @pytest.fixture
-def march_as_it_stands() -> None:
-    """The march of `calm run`."""
-    pace.march_fast(False)
+def march_as_it_stands(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The solver of `calm run`."""
+    monkeypatch.setenv("CALM_COMPILED", "never")

@@ -1,1 +1,1 @@
-"""Many cases of one mooring: every profile of a record, solved in lanes."""
+"""Many cases of one mooring: every profile of a record."""

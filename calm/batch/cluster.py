@@ -9,7 +9,7 @@ from threading import Event
 from time import monotonic
 from typing import TYPE_CHECKING, Any
 
-from calm.batch.compiling import compile_kernel
+from calm.batch.compiling import compile_solver
 from calm.batch.profiles import Batch, Profiles
 from calm.case import Mooring
 from calm.errors import UsageError
@@ -153,5 +153,5 @@ def _ready(mooring: Mooring) -> Batch:
     from distributed import get_worker
 
     worker, batch = get_worker(), Batch(mooring)
-    compile_kernel(batch, lambda text: worker.log_event(COMPILING, f"{worker.address}: {text}"))
+    compile_solver(batch, lambda text: worker.log_event(COMPILING, f"{worker.address}: {text}"))
     return batch

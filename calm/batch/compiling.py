@@ -1,4 +1,4 @@
-"""The kernel made ready before the first block, and what is reported meanwhile."""
+"""The solver made ready before the first block, and what is reported meanwhile."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numba.core import event
 
-from calm.batch.kernel.compiled import cache_folder
 from calm.batch.profiles import Batch
+from calm.physics.compiled import cache_folder
 
 
 class _Notice(event.Listener):
@@ -35,8 +35,8 @@ class _Notice(event.Listener):
         pass
 
 
-def compile_kernel(batch: Batch, report: Callable[[str], None]) -> None:
-    """Let the kernel be compiled, or fetched, and report when it has to be compiled."""
+def compile_solver(batch: Batch, report: Callable[[str], None]) -> None:
+    """Let the solver be compiled, or fetched, and report when it has to be compiled."""
     notice, started = _Notice(report), perf_counter()
     with event.install_listener("numba:compile", notice):
         batch.solve(np.zeros((0, 1)), np.zeros((0, 1)), np.zeros(1), workers=1)

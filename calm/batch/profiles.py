@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import prod
 from typing import Any
@@ -11,20 +11,36 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from calm.batch.kernel.endings import HEAP, LEVELS_COINCIDE, NO_DATA, NOT_TRIED, SOLVED
-from calm.batch.kernel.layout import Results
-from calm.batch.kernel.outcome import OF_CLAMP, OF_ENDS, OF_PIECE
-from calm.batch.kernel.plan import Plan, plan_of
-from calm.batch.kernel.solve import Kernel
-from calm.batch.kernel.stragglers import solve_one, water_of
+from calm.assemble import assemble_water
+from calm.batch.solving import (
+    HEAPED,
+    LACKS_ROOM,
+    LEVELS_COINCIDE,
+    NO_CURRENT,
+    OF_CLAMP,
+    OF_ENDS,
+    OF_PIECE,
+    Paper,
+    Results,
+    solve_rows,
+)
 from calm.batch.statuses import STATUSES, implausible
 from calm.batch.threads import processors
 from calm.case import Mooring
 from calm.case.measure import clamps_of, components_of
 from calm.case.parts import clamps_down
-from calm.errors import NoEquilibrium
-from calm.physics.line import Floats
-from calm.solve import Status, expect_many
+from calm.files import CurrentTable
+from calm.physics.compiled import by_address, entry, record_type
+from calm.physics.line import Floats, Integers, Water
+from calm.physics.profile import Interval
+from calm.solve import Status
+from calm.solve.audit import referee_of
+from calm.solve.endings import FOUND
+from calm.solve.finish import STATUS_OF
+from calm.solve.mooring import MORE_ROOM, search_of
+from calm.solve.problem import MANY_ROOM, problem_of
+from calm.solve.search import Asked, find_asked
+from calm.solve.starts import fill_starts
 
 BLOCK = 1024
 """Profiles that a worker takes at a time."""
@@ -33,6 +49,7 @@ _NO_CURRENT, _LEVELS_COINCIDE, _IMPLAUSIBLE = map(
     STATUSES.index, ("no-current", "levels-coincide", "implausible-current")
 )
 _ANCHOR_LIFTS = STATUSES.index(Status.ANCHOR_LIFTS.label)
+_STILL = CurrentTable((0.0,), (0.0,), (0.0,), (0.0,))
 
 
 @dataclass(frozen=True)
@@ -50,7 +67,6 @@ class Profiles:
     clamp_depth, clamp_x, clamp_y, clamp_tension, clamp_tilt, clamp_knockdown : (n, m)
     top_depth, anchor_vertical, anchor_horizontal, used_buoyancy : (n,)
     status : (n,) index in `STATUSES`
-    alone : (n,) whether the profile was solved by itself, as the lanes could not
     """
 
     component_label: tuple[str, ...]
@@ -73,7 +89,6 @@ class Profiles:
     anchor_horizontal: Floats
     used_buoyancy: Floats
     status: NDArray[np.int8]
-    alone: NDArray[np.bool_]
 
 
 def solve_profiles(
@@ -116,16 +131,12 @@ class Batch:
     """A mooring made ready for many profiles, which may come in several goes."""
 
     mooring: Mooring
+    _starts: Floats | None = field(default=None, init=False, repr=False, compare=False)
 
     @cached_property
-    def plan(self) -> Plan:
-        """The mooring as the lanes take it."""
-        return plan_of(self.mooring)
-
-    @cached_property
-    def kernel(self) -> Kernel:
-        """The lanes, compiled."""
-        return Kernel(self.plan)
+    def water(self) -> Water:
+        """The water of the mooring with no current but what the wind drives."""
+        return assemble_water(replace(self.mooring.file.environment, current=_STILL))
 
     def solve(
         self,
@@ -150,56 +161,90 @@ class Batch:
             np.full((count, len(OF_ENDS)), np.nan),
         )
         status = np.zeros(count, np.int8)
-        alone = np.zeros(count, np.bool_)
 
         def solve(block: slice) -> None:
             depth, *others = current
             levels = depth if len(depth) == 1 else depth[block]
             mine = levels, *(array[block] for array in others)
             columns = Results(*(array[block] for array in rows))
-            self._solve_block(mine, columns, status[block], alone[block])
+            self._solve_block(mine, columns, status[block])
 
         solve(slice(0, 0))  # compiles where need be
         with ThreadPoolExecutor(workers or processors()) as pool:
             for _ in pool.map(solve, [slice(at, at + BLOCK) for at in range(0, count, BLOCK)]):
                 pass
-        measured = _measured(self.mooring, rows, status, alone)
+        measured = _measured(self.mooring, rows, status)
         return measured if shape == (count,) else _shaped(measured, shape)
 
     def _solve_block(
-        self,
-        current: tuple[Floats, ...],
-        rows: Results,
-        status: NDArray[np.int8],
-        alone: NDArray[np.bool_],
+        self, current: tuple[Floats, ...], rows: Results, status: NDArray[np.int8]
     ) -> None:
-        ended = np.full(len(status), NOT_TRIED)
-        # always copies: what is read-only would be compiled for once more
+        # always copies: what is read-only is of another type
         depth, u, v, w = (np.array(array, np.float64, order="C") for array in current)
         false = implausible(depth, u, v, w, self.mooring.file.environment.maximum_speed).any(axis=1)
         if false.any():
             u[false] = np.nan
-        current = depth, u, v, w
-        self.kernel.solve(depth, u, v, w, rows, ended)
-        status[ended == NO_DATA] = _NO_CURRENT
-        status[ended == LEVELS_COINCIDE] = _LEVELS_COINCIDE
-        status[ended == HEAP] = STATUSES.index(self.mooring.heaped("a piece").status)
-        lifts = (ended == SOLVED) & (rows.ends[:, 1] > self.mooring.anchor_weight)
+        endings = np.zeros(len(status), np.int64)
+        self._solve_rows((depth, u, v, w), rows, endings, MANY_ROOM)
+        for ending in np.unique(endings).tolist():
+            status[endings == ending] = self._status_of(ending)
+        lifts = (endings == FOUND) & (rows.ends[:, 1] > self.mooring.anchor_weight)
         status[lifts] = _ANCHOR_LIFTS
-        alone[:] = (ended != SOLVED) & (status == 0)
-        expect_many(int(np.count_nonzero(alone)))
-        for case in np.flatnonzero(alone):
-            profile = [
-                np.asarray(array[0 if len(array) == 1 else case], np.float64) for array in current
-            ]
-            own = Results(*(array[case] for array in rows))
-            try:
-                solve_one(self.mooring, water_of(self.plan.water, *profile), own)
-            except NoEquilibrium as refusal:
-                status[case] = STATUSES.index(refusal.status)
         status[false] = _IMPLAUSIBLE
         for array in rows:
             array[status != 0] = np.nan
+
+    def _status_of(self, ending: int) -> int:
+        """The index in `STATUSES` of how a profile ends."""
+        own = {NO_CURRENT: _NO_CURRENT, LEVELS_COINCIDE: _LEVELS_COINCIDE}
+        if ending == HEAPED:
+            return STATUSES.index(self.mooring.heaped("a piece").status)
+        return own[ending] if ending in own else STATUSES.index(STATUS_OF[ending].label)
+
+    def _solve_rows(
+        self, current: tuple[Floats, ...], rows: Results, endings: Integers, room: int
+    ) -> None:
+        """Solve profiles, with room for so many segments; with more where that is too little."""
+        mooring, line, water = self.mooring, self.mooring.line, self.water
+        depth, *parts = current
+        levels = depth.shape[1] + len(water.level)
+        problem = problem_of(
+            line, water, mooring.settings, compiled=True, rough=True, room=room,
+            intervals=levels + 2,
+        )  # fmt: skip
+        # a profile that is without current is told apart from the others
+        problem = problem._replace(limits=problem.limits._replace(at_rest=False))
+        search, referee = search_of(problem, True), referee_of(line, water, 0.0, True)
+        if self._starts is None:
+            entry(fill_starts, search)(search)
+            vars(self).update(_starts=problem.starts)
+        known: Any = problem.starts
+        known[:] = self._starts
+        intervals: Any = np.zeros(levels + 2, record_type(Interval))
+        pieces = len(line.length)
+        chain = [piece.component.kind == "chain" for piece in mooring.file.pieces[:-1]]
+        paper = Paper(
+            read=np.zeros((levels, 4)),
+            joined=np.zeros((levels, 5)),
+            levels=np.zeros(levels + 2),
+            intervals=intervals,
+            fixed=np.column_stack([water.level, water.u, water.v, water.density]),
+            first=np.zeros(pieces, np.int64),
+            last=np.zeros(pieces, np.int64),
+            may_lie=np.array(chain, np.int64),
+        )
+        find = by_address(find_asked, Asked(search, referee))
+        given = (find, search, referee, paper, depth, *parts, rows, endings)
+        entry(solve_rows, *given)(*given)
+        again = np.flatnonzero(endings == LACKS_ROOM)
+        if again.size:
+            mine = depth if len(depth) == 1 else depth[again]
+            found, ends = Results(*(array[again] for array in rows)), endings[again]
+            few = (mine, *(np.ascontiguousarray(part[again]) for part in parts))
+            self._solve_rows(few, found, ends, MORE_ROOM * room)
+            endings[again] = ends
+            for array, solved in zip(rows, found, strict=True):
+                array[again] = solved
 
 
 def _checked(
@@ -243,9 +288,7 @@ def _shaped(profiles: Profiles, shape: tuple[int, ...]) -> Profiles:
     return replace(profiles, **columns)
 
 
-def _measured(
-    mooring: Mooring, rows: Results, status: NDArray[np.int8], alone: NDArray[np.bool_]
-) -> Profiles:
+def _measured(mooring: Mooring, rows: Results, status: NDArray[np.int8]) -> Profiles:
     """The results with the anchor, and with the knockdown from the shape in still water."""
     pieces, clamps, ends = rows
     above = mooring.file.pieces[:-1]
@@ -283,6 +326,5 @@ def _measured(
         knockdown=np.hstack([columns["depth_top"][:, :-1] - depth_top, nothing]),
         clamp_knockdown=np.hstack([clamps[:, OF_CLAMP.index("depth")] - clamp_depth, standing]),
         status=status,
-        alone=alone,
         **columns,
     )

@@ -5,12 +5,12 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from threading import Event, Timer
 from typing import TYPE_CHECKING, TypeVar
 
-from calm.batch.compiling import compile_kernel
+from calm.batch.compiling import compile_solver
 from calm.batch.dataset import layout_of
 from calm.batch.profiles import Batch
 from calm.batch.shape import nodes_of
@@ -58,13 +58,11 @@ class BatchOutcome:
         is not done
     done : whether the result is there; if not, running the same again finishes it
     reason : why it is not
-    alone : profiles of this run that the lanes could not solve
     """
 
     counts: Mapping[str, int]
     done: bool
     reason: str = ""
-    alone: int = field(default=0, compare=False)
 
     @property
     def endings(self) -> dict[Ending, int]:
@@ -129,7 +127,7 @@ def run_batch(
     def solve(work: Work) -> None:
         if scheduler is None:
             if work.missing:
-                compile_kernel(batch, say)
+                compile_solver(batch, say)
             work.here(workers or processors())
             return
         try:
@@ -189,8 +187,8 @@ def run_kept(
         if work is None:
             return BatchOutcome({}, False, _reason(error))
         if not is_finished(output, identity):
-            return BatchOutcome(work.counts, False, _reason(error), work.alone)
-    return BatchOutcome(work.counts, True, alone=work.alone)
+            return BatchOutcome(work.counts, False, _reason(error))
+    return BatchOutcome(work.counts, True)
 
 
 def _complete(

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from calm.records.record import Levels, Record
 
 FIRST, FEWEST = 256, 8
-"""Profiles solved before progress is reported or a stop heeded: at first, and at least, where
-each is solved by itself. `SLICE` sets how many."""
+"""Profiles solved before progress is reported or a stop heeded: at first, and at least. `SLICE`
+sets how many."""
 
 SLICE = 0.5
 """Seconds that the next slice should take."""
@@ -39,14 +39,12 @@ class Progress:
     done, total : those solved, and all
     found : those that were there already when it began
     endings : how those done ended
-    alone : those of this run that the lanes could not solve, each far slower than the others
     """
 
     done: int
     total: int
     found: int
     endings: Mapping[Ending, int]
-    alone: int
 
 
 class Work:
@@ -63,7 +61,6 @@ class Work:
     ) -> None:
         self.batch, self.record, self.store, self.shape = batch, record, store, shape
         self.progress, self.stop = progress, stop
-        self.alone = 0
         self._reading, self._counting = Lock(), Lock()
         self._length = FIRST
         found = ((number, store.statuses(number)) for number in range(store.count))
@@ -111,13 +108,12 @@ class Work:
         """Of how far it is."""
         if self.progress is not None:
             done, ended = int(self._solved.sum()), endings(_named(self._solved))
-            self.progress(Progress(done, self.record.count, self._found, ended, self.alone))
+            self.progress(Progress(done, self.record.count, self._found, ended))
 
     def count(self, profiles: Profiles) -> None:
         """These are solved."""
         with self._counting:
             self._solved = self._solved + _counted(profiles.status)
-            self.alone += int(np.count_nonzero(profiles.alone))
 
     def _solve(self, number: int) -> None:
         depth, u, v, w = self._levels(number)

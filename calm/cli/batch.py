@@ -186,11 +186,6 @@ def ended(outcome: BatchOutcome, output: Path, total: int) -> ExitCode:
             f"{output}: {grouped(done - solved)} of {grouped(done)} profiles are NaN: "
             f"{', '.join(_kinds(outcome))}"
         )
-    if outcome.alone:
-        narrate(
-            f"{output}: {grouped(outcome.alone)} profiles were solved one by one, as `calm run` "
-            "does, each 500 to 3000 times as long as the others"
-        )
     return ExitCode.DONE if solved else ExitCode.NO_EQUILIBRIUM
 
 
@@ -312,10 +307,7 @@ def bar(progress: Progress) -> str:
 
 
 def state(progress: Progress, seconds: float) -> str:
-    """How many are done, the rate, the time that the rest takes at it, and the failures so far.
-
-    Those solved one by one are reported as well, since they hold the others up.
-    """
+    """How many are done, the rate, the time that the rest takes at it, and the failures so far."""
     from calm.batch.statuses import Ending
 
     text = f"{grouped(progress.done)} of {grouped(progress.total)} profiles"
@@ -327,8 +319,6 @@ def state(progress: Progress, seconds: float) -> str:
     for ending, count in progress.endings.items():
         if count and ending is not Ending.SOLVED:
             text += f", {grouped(count)} {ending.value}"
-    if progress.alone:
-        text += f", {grouped(progress.alone)} one by one"
     return text
 
 

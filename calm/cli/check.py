@@ -236,8 +236,7 @@ def _ready(stands: int, drawn: bool) -> None:
     import calm.checks.assess
     import calm.checks.backup
     from calm.checks.situations import SOLVES
-    from calm.physics.pace import COLD
-    from calm.solve import expect_many
+    from calm.solve.speed import COLD, expect_many
 
     expect_many(min(SOLVES * stands, COLD - 1))
     if drawn:

@@ -111,7 +111,7 @@ def motion(
     """
     import numpy as np
 
-    from calm.batch.compiling import compile_kernel
+    from calm.batch.compiling import compile_solver
     from calm.batch.profiles import Batch
     from calm.batch.stored_result import open_result, readable
     from calm.motion.correction import run_motion
@@ -159,7 +159,7 @@ def motion(
     if cross_validate:
         several(measured, hidden)
     with stopped_by_a_signal() as stop:
-        compile_kernel(Batch(mooring), teller.note)
+        compile_solver(Batch(mooring), teller.note)
         task = prepare(mooring, measured, names, hidden)
         record = MeasuredRecord(measured, source, notes)
         options: dict[str, Any] = {"fit": sorted(names), "hold_out": sorted(hidden)}

@@ -25,7 +25,7 @@ its standard deviation."""
 ROBUST = 4.0
 """Degrees of freedom of Student's law for the misfit of a time."""
 SOLVES = 500
-"""Moorings whose solving takes as long as laying out for the lanes all that are tried here."""
+"""Moorings whose solving takes as long as laying out all that are tried here."""
 FURTHEST = 1.0
 """Of the logarithm of a factor, at most."""
 SCALES = (0.5, 2.5)

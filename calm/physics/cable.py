@@ -5,18 +5,23 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import inf, sqrt
 
-from calm.physics.element import Vector, axis_along, drag_force, drag_share
+from calm.physics.compiled import within
+from calm.physics.element import Vector, axis_along, drag_force, drag_share, few_steps_share
 from calm.physics.friction import BERTEAUX, HOERNER, friction_force, turning_friction
 from calm.physics.profile import Sea, distance_to_level, water_at
 from calm.physics.reference import REFERENCE_DENSITY
-from calm.physics.state import MarchError, State
+from calm.physics.state import NO_BALANCE, State
 from calm.physics.stretch import Knot, curve_strain, mean_curve_strain
 from calm.physics.strumming import Vibration, amplified_share, strummed
 from calm.physics.track import Cable
 
 PASSES = 200
+LITTLE_TURN = 1e-6
+"""How much the last of a few steps may turn a segment, squared [rad²], and be good enough where it
+need not settle to the last digits."""
 
 
+@within
 def strain_at(cable: Cable, knots: Sequence[Knot], tension: float) -> float:
     """Strain of a cable at a tension [N]: by its compliance, or by its curve if it has one."""
     if cable.first_knot == cable.end_knot:
@@ -24,11 +29,13 @@ def strain_at(cable: Cable, knots: Sequence[Knot], tension: float) -> float:
     return curve_strain(knots, cable.first_knot, cable.end_knot, tension)
 
 
+@within
 def segment_lift(cable: Cable, cut: float, density: float, gravity: float) -> float:
     """Net force in water of a segment of an unstretched length [m], + up [N]."""
     return cut * (cable.buoyancy + (density - REFERENCE_DENSITY) * gravity * cable.volume)
 
 
+@within
 def segment_area(cable: Cable, cut: float, density: float, strain: float) -> float:
     """Metres of cable unstretched and in reference water that are dragged as a segment is [m].
 
@@ -40,6 +47,7 @@ def segment_area(cable: Cable, cut: float, density: float, strain: float) -> flo
     return area
 
 
+@within
 def segment_drag(
     friction: int,
     kn: float,
@@ -59,6 +67,7 @@ def segment_drag(
     return qx + px, qy + py, qz + pz
 
 
+@within
 def pass_segment(
     cable: Cable,
     knots: Sequence[Knot],
@@ -66,7 +75,8 @@ def pass_segment(
     sea: Sea,
     state: State,
     cut: float,
-    passes: int = PASSES,
+    near: float,
+    expected: Vector,
 ) -> tuple[State, float]:
     """The state below one segment of an unstretched length [m], and its strain.
 
@@ -75,12 +85,13 @@ def pass_segment(
 
     Parameters
     ----------
-    passes : at most; where there are fewer than `PASSES` it need not settle in them
+    near : how far its middle may be from where the water is looked up [m]; 0 lets it settle to the
+        last digits
+    expected : load of a metre, where the passes begin, by the segment above [N/m]
 
-    Raises
-    ------
-    MarchError
-        Where it does not settle.
+    Returns
+    -------
+    The state, and the strain: `NO_BALANCE` where there is none.
     """
     x, y, z, fx, fy, fz, tz, level = state
     kn, kt, friction, beat = cable.normal_drag, cable.tangential_drag, cable.friction, cable.beat
@@ -89,11 +100,17 @@ def pass_segment(
     half = 0.5 * cut
     tension = sqrt(fx * fx + fy * fy + fz * fz)
     strain = strain_at(cable, knots, tension)
+    ex, ey, ez = expected
+    tx, ty, tz_expected = -fx - half * ex, -fy - half * ey, -fz - half * ez
     rise = tz * (1.0 + strain)
-    tx, ty, tz = -fx, -fy, -fz
+    size = sqrt(tx * tx + ty * ty + tz_expected * tz_expected)
+    if size > 0.0:
+        rise = tz_expected / size * (1.0 + strain)
+    tz = tz_expected
+    settled = max(near / half, 1e-12) if half > 0.0 else inf
     qx = qy = qz = 0.0
     earlier = inf
-    for _ in range(passes):
+    for _ in range(PASSES):
         u, v, w, density, level = water_at(sea, -z - half * rise, level)
         area = segment_area(cable, cut, density, strain)
         lift = segment_lift(cable, cut, density, gravity)
@@ -103,7 +120,11 @@ def pass_segment(
             ax, ay, az = ax + pull * u, ay + pull * v, az + pull * w
         factor = 1.0
         if beat == 0.0:
-            c = drag_share(ax, ay, az, 0.5 * kn * area, u, v, w)
+            c, doubt = 0.0, 1.0
+            if near > 0.0 and size > 0.0:
+                c, doubt = few_steps_share(ax, ay, az, 0.5 * kn * area, size, u, v, w, 1)
+            if not doubt < LITTLE_TURN:
+                c = drag_share(ax, ay, az, 0.5 * kn * area, u, v, w)
         else:
             c, factor = vibrating_share(
                 vibration, beat, ax, ay, az, 0.5 * kn * area, u, v, w, tx, ty, tz
@@ -122,12 +143,11 @@ def pass_segment(
             strain = mean_curve_strain(knots, first_knot, end_knot, middle, 0.5 * growth)
         change = abs(tz * (1.0 + strain) - rise)
         rise = tz * (1.0 + strain)
-        if change < 1e-12 or change * change < 1e-12 * earlier < inf:
+        if change < settled or change * change < 1e-12 * earlier < inf:
             break
         earlier = change
     else:
-        if passes == PASSES:
-            raise MarchError("a segment finds no balance")
+        strain = NO_BALANCE
     long = cut * (1.0 + strain)
     return (
         (x + long * tx, y + long * ty, z + long * tz, fx + qx, fy + qy, fz + qz, tz, level),
@@ -172,13 +192,25 @@ def vibrating_share(
 
 
 def touchdown(
-    cable: Cable, knots: Sequence[Knot], vibration: Vibration, sea: Sea, state: State, cut: float
+    cable: Cable,
+    knots: Sequence[Knot],
+    vibration: Vibration,
+    sea: Sea,
+    state: State,
+    cut: float,
+    near: float,
+    expected: Vector,
 ) -> float:
-    """How much of a segment hangs before its end has nothing left to carry [m]; at most `cut`."""
+    """How much of a segment hangs before its end has nothing left to carry [m]; at most `cut`.
+
+    `near` and `expected` are as in `pass_segment`.
+    """
     low, high, hanging = 0.0, cut, cut
     _, _, _, _, _, carried, _, _ = state
     for _ in range(PASSES):
-        (_, _, _, _, _, fz, _, _), _ = pass_segment(cable, knots, vibration, sea, state, hanging)
+        (_, _, _, _, _, fz, _, _), _ = pass_segment(
+            cable, knots, vibration, sea, state, hanging, near, expected
+        )
         if hanging == cut and fz > 0.0:
             return cut
         if abs(fz) <= 1e-12 * carried:
@@ -192,6 +224,7 @@ def touchdown(
     return hanging
 
 
+@within
 def segment_length(
     cable: Cable,
     knots: Sequence[Knot],
@@ -225,6 +258,7 @@ def segment_length(
     return min(distance_to_level(sea.levels, -z, sinking, level, 0.01 * length), length)
 
 
+@within
 def rate_of_turn(
     cable: Cable,
     kn: float,

@@ -16,11 +16,35 @@ from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from types import FunctionType
-from typing import Any, get_args, get_type_hints
+from typing import Any, TypeVar, get_args, get_type_hints
 
 import numpy as np
 
 Law = Callable[..., Any]
+
+SOURCES = ("physics", "solve", "batch")
+"""Packages that have functions to be compiled."""
+
+OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "_nrt": False}
+"""Nothing is allocated by a compiled law, so that arrays need not be counted when they are passed
+on: that takes as long as a segment. No law divides by zero, and none raises."""
+
+
+Fn = TypeVar("Fn", bound=Law)
+
+
+def within(law: Fn) -> Fn:
+    """Mark a short law that is compiled within those that call it, as if it were written there."""
+    _within.add(law)
+    return law
+
+
+_within: set[Law] = set()
+
+
+def set_row(rows: Any, i: int, row: Any) -> None:
+    """Put a named tuple in its place among others: a list, or compiled an array of records."""
+    rows[i] = row
 
 
 @cache
@@ -28,7 +52,46 @@ def compiled(law: Law) -> Any:
     """A law and all that it calls, compiled when first called, and kept for the next process."""
     import numba
 
-    return kept(numba.njit, clone(law, called), cache_folder(), nogil=True, error_model="python")
+    return kept(numba.njit, clone(law), cache_folder(), **OPTIONS)
+
+
+_entries: dict[Law, Any] = {}
+
+
+def entry(law: Law, *arguments: Any) -> Any:
+    """A law compiled for the types of some arguments, whose types it does not look at again.
+
+    All that it is ever given has these types: that saves what a short solve takes.
+    """
+    found = _entries.get(law)
+    if found is None:
+        numba: Any = __import__("numba")
+        dispatcher = compiled(law)
+        types = tuple(numba.typeof(argument) for argument in arguments)
+        dispatcher.compile(types)
+        found = _entries[law] = dispatcher.overloads[types].entry_point
+    return found
+
+
+def by_address(law: Law, *arguments: Any) -> Any:
+    """A law compiled for the types of some arguments, and called by its address.
+
+    Its last argument, besides these, and what it returns are floats. Those that call it are not
+    compiled anew with it, which would take as long for each. As with `entry`, it is only ever given
+    arguments of these types.
+    """
+    found = _entries.get(law)
+    if found is None:
+        numba: Any = __import__("numba")
+        types = tuple(numba.typeof(argument) for argument in arguments)
+        signature = numba.float64(*types, numba.float64)
+        options = {name: OPTIONS[name] for name in ("error_model", "_nrt")}
+
+        def compiler(law: Law, **options: Any) -> Any:
+            return numba.cfunc(signature, **options)(law)
+
+        found = _entries[law] = kept(compiler, clone(law), cache_folder(), **options)
+    return found
 
 
 @cache
@@ -36,25 +99,50 @@ def called(law: Law) -> Any:
     """A law compiled into those that call it."""
     import numba
 
+    if law is set_row:
+        return _record_setter()
     njit: Any = numba.njit
-    return njit(
-        clone(law, called),
-        nogil=True,
-        error_model="python",
-        no_cpython_wrapper=True,
-        no_cfunc_wrapper=True,
-    )
+    dispatcher = njit(
+        clone(law), no_cpython_wrapper=True, no_cfunc_wrapper=True, forceinline=law in _within,
+        **OPTIONS,
+    )  # fmt: skip
+    resolve, plain = dispatcher.get_call_template, numba.types.unliteral
+
+    def once_for_all_numbers(types: Any, named: Any) -> Any:
+        """Not anew for every constant that it is given."""
+        return resolve(tuple(map(plain, types)), named)
+
+    dispatcher.get_call_template = once_for_all_numbers
+    return dispatcher
 
 
-def clone(law: Law, called: Callable[[Law], Any]) -> Law:
-    """The function, with what it calls as `called` has it, and arrays of its tables."""
+@cache
+def _record_setter() -> Law:
+    """`set_row` as compiled laws know it: field by field."""
+    from numba.extending import overload
+
+    def set_record(rows, i, row):  # type: ignore[no-untyped-def]
+        raise NotImplementedError
+
+    @overload(set_record)
+    def for_types(rows, i, row):  # type: ignore[no-untyped-def]
+        names: dict[str, Any] = {}
+        fields = "\n".join(f"    rows[i].{name} = row.{name}" for name in rows.dtype.fields)
+        exec(f"def by_field(rows, i, row):\n{fields}", names)
+        return names["by_field"]
+
+    return set_record
+
+
+def clone(law: Law) -> Law:
+    """The function, with what it calls compiled, and arrays of its tables."""
     assert isinstance(law, FunctionType)
     names = {**law.__globals__}
     for name in law.__code__.co_names:
         value = names.get(name)
         if isinstance(value, FunctionType) and value.__module__.startswith("calm."):
             names[name] = called(value)
-        elif isinstance(value, tuple) and value and all(type(x) is float for x in value):
+        elif type(value) is tuple and value and all(type(x) is float for x in value):
             names[name] = np.array(value)
     clone = FunctionType(law.__code__, names, law.__name__, law.__defaults__, law.__closure__)
     clone.__module__, clone.__qualname__ = law.__module__, law.__qualname__
@@ -94,7 +182,7 @@ def _packer(kind: Any) -> Callable[[Any], Any]:
         return number
     if not get_args(kind):
         return packed
-    (item,) = get_args(kind)
+    item = get_args(kind)[0]
     of = np.dtype(np.float64) if item is float else record_type(item)
     return lambda part: np.array(part if isinstance(part, np.ndarray) else list(part), of)
 
@@ -111,19 +199,14 @@ def record_type(named: type) -> np.dtype[Any]:
 
 
 @cache
-def cache_folder(name: str = "laws", *rooms: Path) -> Path | None:
+def cache_folder() -> Path | None:
     """Where compiled code is kept; None where no such folder can be written.
 
     `NUMBA_CACHE_DIR`, or else CALM's folder in the user's cache. What is compiled from other
     sources has another folder, as numba itself looks at one file alone.
-
-    Parameters
-    ----------
-    name : of what is compiled
-    rooms : folders of the sources, besides those of the laws
     """
     given = os.environ.get("NUMBA_CACHE_DIR")
-    folder = (Path(given) if given else _user_cache() / "calm") / f"{name}-{fingerprint(*rooms)}"
+    folder = (Path(given) if given else _user_cache() / "calm") / f"solver-{fingerprint()}"
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
@@ -146,10 +229,11 @@ def _user_cache() -> Path:
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
 
 
-def fingerprint(*rooms: Path) -> str:
-    """Of the sources of everything that may be compiled: the laws, and those in more folders."""
+def fingerprint() -> str:
+    """Of the sources of everything that may be compiled: the laws, and the search."""
     digest = hashlib.sha256()
-    for room in (Path(__file__).parent, *rooms):
-        for source in sorted(room.glob("*.py")):
+    package = Path(__file__).parents[1]
+    for folder in SOURCES:
+        for source in sorted((package / folder).glob("*.py")):
             digest.update(source.read_bytes())
     return digest.hexdigest()[:16]

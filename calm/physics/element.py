@@ -14,6 +14,8 @@ from __future__ import annotations
 
 from math import inf, sqrt
 
+from calm.physics.compiled import within
+
 Vector = tuple[float, float, float]
 
 
@@ -72,6 +74,7 @@ def drag_share(ax: float, ay: float, az: float, k: float, vx: float, vy: float, 
     return c
 
 
+@within
 def share_step(aa: float, av: float, vv: float, target: float, c: float) -> Vector:
     """How far c |A + c V| is above a target; |A + c V|; and their slope by c times that.
 
@@ -82,6 +85,7 @@ def share_step(aa: float, av: float, vv: float, target: float, c: float) -> Vect
     return c * root - target, root, square + c * (av + c * vv)
 
 
+@within
 def few_steps_share(
     ax: float,
     ay: float,
@@ -117,6 +121,7 @@ def few_steps_share(
     return c, (c - before) * (c - before) * vv / aa
 
 
+@within
 def axis_along(
     ax: float, ay: float, az: float, c: float, vx: float, vy: float, vz: float
 ) -> Vector:
@@ -132,12 +137,14 @@ def axis_along(
     return axis_against(x, y, z)
 
 
+@within
 def axis_against(x: float, y: float, z: float) -> Vector:
     """Unit axis against a force that does not vanish."""
     size = sqrt(x * x + y * y + z * z)
     return -x / size, -y / size, -z / size
 
 
+@within
 def drag_force(
     kn: float,
     kt: float,

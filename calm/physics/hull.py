@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from bisect import bisect_right
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from math import acos, asin, hypot, nan, pi, sin, sqrt
+from math import acos, asin, isnan, nan, pi, sin, sqrt
+from typing import NamedTuple
 
 AIR_DENSITY = 1.225
 """Of the air above the water [kg/m³]: the standard atmosphere at sea level."""
@@ -15,9 +15,16 @@ AWASH = 0.02
 """Share of the buoyancy in reserve below which a float goes awash: what stands out of it goes under
 with the rest, so that nothing jumps when the line pulls it under."""
 
-Curve = Callable[[float], tuple[float, float]]
-"""From the share of a hull's volume that is immersed, 0 to 1, to its draft and its immersed area
-seen from the side, as shares of the whole."""
+SPHERE, SPAR, TABULATED = range(3)
+"""The forms of a hull."""
+
+
+class Waterline(NamedTuple):
+    """A row of a hull's table: draft [m], displaced volume [m³] and immersed area [m²]."""
+
+    draft: float
+    volume: float
+    area: float
 
 
 @dataclass(frozen=True)
@@ -28,28 +35,28 @@ class Hull:
     ----------
     height : keel to top [m]
     area : of all of it, seen from the side [m²]
-    curve : see `Curve`
+    form : SPHERE, SPAR or TABULATED
+    rows : of a tabulated one
     """
 
     height: float
     area: float
-    curve: Curve
+    form: int
+    rows: tuple[Waterline, ...] = ()
+
+    def curve(self, share: float) -> tuple[float, float]:
+        """Draft and immersed area, as shares of the whole, by the share of the volume immersed."""
+        return immersed_shares(self.form, self.rows, share)
 
 
 def spherical_hull(diameter: float) -> Hull:
     """A sphere of a diameter [m]: a draft of x diameters immerses x² (3 - 2x) of its volume."""
-
-    def curve(share: float) -> tuple[float, float]:
-        x = 0.5 - sin(asin(1.0 - 2.0 * share) / 3.0)
-        cosine = 1.0 - 2.0 * x
-        return x, (acos(cosine) - 2.0 * cosine * sqrt(max(x * (1.0 - x), 0.0))) / pi
-
-    return Hull(diameter, pi * diameter**2 / 4, curve)
+    return Hull(diameter, pi * diameter**2 / 4, SPHERE)
 
 
 def cylindrical_hull(diameter: float, length: float) -> Hull:
     """An upright cylinder, a spar, of a diameter and length [m]."""
-    return Hull(length, diameter * length, lambda share: (share, share))
+    return Hull(length, diameter * length, SPAR)
 
 
 def tabulated_hull(rows: Sequence[tuple[float, float, float]]) -> Hull:
@@ -65,26 +72,42 @@ def tabulated_hull(rows: Sequence[tuple[float, float, float]]) -> Hull:
     if not rows:
         raise ValueError("the table of a hull has no rows")
     keel = () if rows[0][0] == 0.0 else ((0.0, 0.0, 0.0),)
-    drafts, volumes, areas = (list(column) for column in zip(*keel, *rows, strict=True))
-    for name, column in (("draft", drafts), ("volume", volumes)):
-        if any(b <= a for a, b in pairwise(column)):
+    table = tuple(Waterline(*map(float, row)) for row in (*keel, *rows))
+    for name in ("draft", "volume"):
+        if any(getattr(b, name) <= getattr(a, name) for a, b in pairwise(table)):
             raise ValueError(f"the {name} must grow from row to row")
-    if any(b < a for a, b in pairwise(areas)) or len(drafts) < 2:
+    if any(b.area < a.area for a, b in pairwise(table)) or len(table) < 2:
         raise ValueError("the area must not fall from row to row, and one row is not enough")
-
-    def curve(share: float) -> tuple[float, float]:
-        volume = volumes[0] + share * (volumes[-1] - volumes[0])
-        i = min(bisect_right(volumes, volume), len(volumes) - 1)
-        way = (volume - volumes[i - 1]) / (volumes[i] - volumes[i - 1])
-        draft = drafts[i - 1] + way * (drafts[i] - drafts[i - 1])
-        area = areas[i - 1] + way * (areas[i] - areas[i - 1])
-        return draft / drafts[-1], area / areas[-1] if areas[-1] > 0.0 else share
-
-    return Hull(drafts[-1], areas[-1], curve)
+    return Hull(table[-1].draft, table[-1].area, TABULATED, table)
 
 
-@dataclass(frozen=True)
-class Riding:
+def immersed_shares(form: int, rows: Sequence[Waterline], share: float) -> tuple[float, float]:
+    """Draft and immersed area of a hull, as shares of the whole.
+
+    Parameters
+    ----------
+    form, rows : as in `Hull`
+    share : of the hull's volume that is immersed, 0 to 1
+    """
+    if form == SPHERE:
+        x = 0.5 - sin(asin(1.0 - 2.0 * share) / 3.0)
+        cosine = 1.0 - 2.0 * x
+        return x, (acos(cosine) - 2.0 * cosine * sqrt(max(x * (1.0 - x), 0.0))) / pi
+    if form == SPAR:
+        return share, share
+    last = len(rows) - 1
+    volume = rows[0].volume + share * (rows[last].volume - rows[0].volume)
+    i = 1
+    while i < last and rows[i].volume <= volume:
+        i += 1
+    way = (volume - rows[i - 1].volume) / (rows[i].volume - rows[i - 1].volume)
+    draft = rows[i - 1].draft + way * (rows[i].draft - rows[i - 1].draft)
+    area = rows[i - 1].area + way * (rows[i].area - rows[i - 1].area)
+    whole = rows[last].area
+    return draft / rows[last].draft, area / whole if whole > 0.0 else share
+
+
+class Riding(NamedTuple):
     """How a float rides at the surface.
 
     Attributes
@@ -93,7 +116,7 @@ class Riding:
     standing : share of the float's length out of the water
     above : share of what is rigid with the float above it that is out of the water
     drag : there over that below the surface
-    push : of the wind to the east and north [N]
+    push_east, push_north : of the wind [N]
     """
 
     draft: float
@@ -101,7 +124,13 @@ class Riding:
     standing: float
     above: float
     drag: float
-    push: tuple[float, float]
+    push_east: float
+    push_north: float
+
+    @property
+    def push(self) -> tuple[float, float]:
+        """Both parts of the push of the wind [N]."""
+        return self.push_east, self.push_north
 
 
 @dataclass(frozen=True)
@@ -133,28 +162,75 @@ class Floating:
         return self.wind != (0.0, 0.0)
 
     def riding(self, used: float) -> Riding:
-        """How it rides with a share of its net buoyancy in use, 0 to 1.
+        """How it rides with a share of its net buoyancy in use, 0 to 1."""
+        return riding_of(self.as_numbers, self.hull.rows if self.hull else (), used)
 
-        The displaced water carries the weight and what the line pulls, so the share of the volume
-        immersed is (weight + used lift)/(weight + lift).
-        """
-        above = min((1.0 - used) / AWASH, 1.0)
-        draft, seen, height, area = 1.0, 1.0, nan, 0.0
+    @property
+    def as_numbers(self) -> SurfaceFloat:
+        """The same as the solver takes it."""
+        form, height, area = UNKNOWN_HULL, nan, 0.0
         if self.hull is not None:
-            immersed = (self.weight + used * self.lift) / (self.weight + self.lift)
-            draft, seen = self.hull.curve(min(max(immersed, 0.0), 1.0))
-            height, area = self.hull.height, self.hull.area * (1.0 - seen)
-        if self.surface_drag is not None:
-            seen = 1.0 + (self.surface_drag - 1.0) * above
-        if self.wind_area is not None:
-            area = self.wind_area * above
-        east, north = self.wind
-        pressure = 0.5 * AIR_DENSITY * self.wind_cd * area * hypot(east, north)
-        return Riding(
-            draft=draft * height,
-            freeboard=(1.0 - draft) * height,
-            standing=1.0 - draft,
-            above=above,
-            drag=seen,
-            push=(pressure * east, pressure * north),
+            form, height, area = self.hull.form, self.hull.height, self.hull.area
+        return SurfaceFloat(
+            form=form,
+            height=height,
+            area=area,
+            weight=self.weight,
+            lift=self.lift,
+            surface_drag=nan if self.surface_drag is None else self.surface_drag,
+            wind_east=self.wind[0],
+            wind_north=self.wind[1],
+            wind_area=nan if self.wind_area is None else self.wind_area,
+            wind_cd=self.wind_cd,
         )
+
+
+UNKNOWN_HULL = -1
+
+
+class SurfaceFloat(NamedTuple):
+    """A `Floating` as numbers: `form` is that of its hull, and what is not given is NaN."""
+
+    form: int
+    height: float
+    area: float
+    weight: float
+    lift: float
+    surface_drag: float
+    wind_east: float
+    wind_north: float
+    wind_area: float
+    wind_cd: float
+
+
+NEVER_AFLOAT = SurfaceFloat(UNKNOWN_HULL, nan, 0.0, 0.0, 1.0, nan, 0.0, 0.0, nan, 1.0)
+"""In place of a float of which nothing is known."""
+
+
+def riding_of(floats: SurfaceFloat, rows: Sequence[Waterline], used: float) -> Riding:
+    """How a float rides with a share of its net buoyancy in use, 0 to 1.
+
+    The displaced water carries the weight and what the line pulls, so the share of the volume
+    immersed is (weight + used lift)/(weight + lift). `rows` are those of its hull.
+    """
+    above = min((1.0 - used) / AWASH, 1.0)
+    draft, seen, height, area = 1.0, 1.0, nan, 0.0
+    if floats.form != UNKNOWN_HULL:
+        immersed = (floats.weight + used * floats.lift) / (floats.weight + floats.lift)
+        draft, seen = immersed_shares(floats.form, rows, min(max(immersed, 0.0), 1.0))
+        height, area = floats.height, floats.area * (1.0 - seen)
+    if not isnan(floats.surface_drag):
+        seen = 1.0 + (floats.surface_drag - 1.0) * above
+    if not isnan(floats.wind_area):
+        area = floats.wind_area * above
+    east, north = floats.wind_east, floats.wind_north
+    pressure = 0.5 * AIR_DENSITY * floats.wind_cd * area * sqrt(east * east + north * north)
+    return Riding(
+        draft * height,
+        (1.0 - draft) * height,
+        1.0 - draft,
+        above,
+        seen,
+        pressure * east,
+        pressure * north,
+    )

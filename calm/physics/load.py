@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import sqrt
 
+from calm.physics.compiled import within
 from calm.physics.element import Vector, drag_force
 from calm.physics.profile import Sea, viscosity_at, water_at
 from calm.physics.reference import REFERENCE_DENSITY
@@ -11,12 +12,14 @@ from calm.physics.reynolds import Smooth, drag_variation
 from calm.physics.track import Load
 
 
+@within
 def load_lift(load: Load, squared: float, density: float, gravity: float) -> float:
     """Buoyancy of a rigid piece or clamp and its lift in a current of a squared speed [N]."""
     lift = load.buoyancy + (density - REFERENCE_DENSITY) * gravity * load.volume
     return lift + density / REFERENCE_DENSITY * load.lift * squared
 
 
+@within
 def load_force(
     load: Load,
     varied: float,
@@ -58,6 +61,7 @@ def load_variation(
     return drag_variation(Smooth(load.diameter / viscosity, load.lengthening), speed)
 
 
+@within
 def force_at(
     load: Load, sea: Sea, depth: float, level: int, tx: float, ty: float, tz: float
 ) -> Vector:

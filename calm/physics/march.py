@@ -1,31 +1,31 @@
-"""The top-down march: from the free end to the anchor, one element after another.
-
-The march knows where the free end is and that nothing pulls it from above; it returns where the
-other end comes out and with what force. What is unknown, and how the end is brought to the
-anchor, is the business of `calm.solve`.
-
-A cable or chain is marched in straight segments. Where no cuts are given the march chooses them:
-each turns by about the angle step and is short against the water depth, and none straddles a
-level of the profile. Given cuts are taken as they are, which makes the end of the line a smooth
-function of its start.
-"""
+"""One march down a line from Python: see `calm.physics.passing`."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from calm.physics.compiled import entry
 from calm.physics.element import Vector
 from calm.physics.line import Floats, Integers
-from calm.physics.pace import is_fast, paced
-from calm.physics.passing import pass_line
+from calm.physics.passing import (
+    FAILURE,
+    FX,
+    FY,
+    FZ,
+    LEFT,
+    NODES,
+    USED,
+    How,
+    Z,
+    pass_line,
+)
 from calm.physics.profile import Profile
-from calm.physics.state import COLUMNS, Record, Trace
-from calm.physics.track import Load, Track
+from calm.physics.state import COLUMNS, FAILURES, GOES_ON, NO_ROOM, MarchError, Record, Trace
+from calm.physics.track import Track
 
 ROOM = 1024
 """Segments that a march may choose at first; if it needs more, it is done again with more room."""
@@ -67,22 +67,14 @@ class End:
     ----------
     z, force : height [m], force above [N]
     cuts : the segments used
-    stage, hanging : as in `Marched`
     record, nodes : what was recorded, and how many nodes of it
     """
 
     z: float
     force: Vector
     cuts: Cuts
-    stage: int
-    hanging: float
     record: Record = field(repr=False)
     nodes: int
-
-    @property
-    def landed(self) -> bool:
-        """Whether it stopped short of the line's end, having no more weight to give."""
-        return self.stage >= 0
 
     @cached_property
     def trace(self) -> Trace:
@@ -99,9 +91,7 @@ def march(
     reach: float,
     cuts: Cuts | None = None,
     record: bool = False,
-    lands: bool = False,
-    out: float = 0.0,
-    afloat: Mapping[int, Load] | None = None,
+    compiled: bool = False,
 ) -> End:
     """March down the line from a free end at `depth`.
 
@@ -112,72 +102,43 @@ def march(
     reach : the longest a segment may be [m]
     cuts : the segments to use; None lets the march choose them
     record : whether to keep every node and element
-    lands : stop at the touchdown: below the last buoyant piece, where the vertical force vanishes
-    out : length of the head above the surface [m], from which its depth follows; 0 where it is
-        `depth`
-    afloat : loads that are not as in the track, by their place among its loads
+    compiled : whether the march is compiled, or interpreted as it stands
 
     Raises
     ------
     MarchError
         An element finds no balance or a cable would need more than 50 000 segments.
     """
-    if record and cuts is None:
-        chosen = march(
-            track, profile, depth, angle_step=angle_step, reach=reach, lands=lands, out=out,
-            afloat=afloat,
-        )  # fmt: skip
-        cuts = chosen.cuts
-    room = ROOM
+    course, sea = (track.packed, profile.packed) if compiled else (track.course, profile.sea)
+    how = How(angle_step, reach, 0.0, len(course.stages), False, cuts is not None, record)
+    room = ROOM if cuts is None else len(cuts.lengths)
     while True:
-        end = _marched(
-            track, profile, depth, out, angle_step, reach, lands, cuts, room, record, afloat or {}
-        )
-        if end is not None:
-            return end
+        most = room + 3 * len(course.loads) + 2 * len(course.stages) + 1 if record else 1
+        lengths, counts, columns, left = _paper(course, cuts, room, most, compiled)
+        given = (course, sea, how, depth, 0.0, lengths, counts, columns, left)
+        (entry(pass_line, *given) if compiled else pass_line)(*given)
+        if left[FAILURE] != NO_ROOM:
+            break
         room *= 8
-
-
-def _marched(
-    track: Track,
-    profile: Profile,
-    depth: float,
-    out: float,
-    angle_step: float,
-    reach: float,
-    lands: bool,
-    cuts: Cuts | None,
-    room: int,
-    recording: bool,
-    afloat: Mapping[int, Load],
-) -> End | None:
-    """`march` with room for so many segments; None where it needs more."""
-    fast = is_fast()
-    course, sea = (track.packed, profile.packed) if fast else (track.course, profile.sea)
-    if afloat:
-        loads: Any = np.array(course.loads) if fast else list(course.loads)
-        for place, load in afloat.items():
-            loads[place] = load
-        course = course._replace(loads=loads)
-    given = cuts is not None
-    lengths: Any
-    counts: Any
-    if cuts is not None:
-        room = len(cuts.lengths)
-    most = room + 3 * len(course.loads) + 2 * len(course.stages) + 1 if recording else 0
-    if fast:
-        lengths, counts = cuts or (np.empty(room), np.zeros(len(course.cables), np.int64))
-        record: Record = np.empty((COLUMNS, most))
-    else:
-        lengths = [0.0] * room if cuts is None else cuts.lengths.tolist()
-        counts = [0] * len(course.cables) if cuts is None else cuts.counts.tolist()
-        record = [[0.0] * most for _ in range(COLUMNS)]
-    end = paced(pass_line)(
-        course, sea, depth, out, angle_step, reach, lands, given, lengths, counts, record, recording
-    )
-    if end.segments > len(lengths):
-        return None
+    if left[FAILURE] != GOES_ON:
+        raise MarchError(FAILURES[int(left[FAILURE])])
     if cuts is None:
-        cuts = Cuts(np.array(lengths[: end.segments]), np.array(counts, np.int64))
-    force = (end.fx, end.fy, end.fz)
-    return End(end.z, force, cuts, end.stage, end.hanging, record, end.nodes)
+        used = np.array(lengths[: int(left[USED])])
+        cuts = Cuts(used, np.array(counts, np.int64))
+    force = float(left[FX]), float(left[FY]), float(left[FZ])
+    return End(float(left[Z]), force, cuts, columns, int(left[NODES]))
+
+
+def _paper(
+    course: Any, cuts: Cuts | None, room: int, nodes: int, compiled: bool
+) -> tuple[Any, ...]:
+    """Cuts and their counts, the record and what is left, for a march to write on."""
+    cables = len(course.cables)
+    if compiled:
+        lengths, counts = cuts or (np.empty(room), np.zeros(cables, np.int64))
+        return lengths.copy(), counts.copy(), np.empty((COLUMNS, nodes)), np.zeros(LEFT)
+    if cuts is None:
+        given: tuple[list[float], list[int]] = ([0.0] * room, [0] * cables)
+    else:
+        given = (cuts.lengths.tolist(), cuts.counts.tolist())
+    return *given, [[0.0] * nodes for _ in range(COLUMNS)], [0.0] * LEFT

@@ -1,139 +1,174 @@
 """A line passed from its free end down, stage by stage: laws alone.
 
-What is asked of them and handed back is the business of `calm.physics.march`.
+The march knows where the free end is and that nothing pulls it from above; it finds where the other
+end comes out and with what force. What is unknown, and how the end is brought to the anchor, is the
+business of `calm.solve`.
+
+A cable or chain is passed in straight segments. Where no cuts are given the march chooses them:
+each turns by about the angle step and is short against the water depth, and none straddles a level
+of the profile. Given cuts are taken as they are, which makes the end of the line a smooth function
+of its start.
 """
 
 from __future__ import annotations
 
+from collections.abc import MutableSequence
+from math import isfinite
 from typing import NamedTuple
 
 from calm.physics.cable import pass_segment, segment_length, touchdown
 from calm.physics.profile import Sea, interval_at
 from calm.physics.rod import floating_depth, pass_clamp, pass_rod
-from calm.physics.state import MarchError, Record, State, write_element, write_node
+from calm.physics.state import (
+    ENDLESS,
+    GOES_ON,
+    NO_BALANCE,
+    NO_ROOM,
+    ROD_UNBALANCED,
+    RUNS_OFF,
+    SEGMENT_UNBALANCED,
+    Record,
+    State,
+    write_element,
+    write_node,
+)
 from calm.physics.track import CABLE, ROD, Course
 
 MOST_SEGMENTS = 50_000
 
+Z, FX, FY, FZ, USED, NODES, LANDED, HANGING, FAILURE = range(9)
+"""Where it stands in what a march leaves: height [m] and force above [N] of the end; how many
+segments were used, and nodes passed; the stage where the line came down on the seabed, -1 where it
+did not, and the unstretched length of that stage above the seabed [m]: of a rod or clamp inf, it
+stands there, or 0, it lies there; why the march stopped, see `calm.physics.state`."""
+LEFT = 9
 
-class Marched(NamedTuple):
-    """How a march ended.
+SHORT = 1e-6
+"""Length of a segment, as a share of the longest, that says nothing of the load of the next."""
+
+
+class How(NamedTuple):
+    """How a line is to be marched.
 
     Attributes
     ----------
-    z, fx, fy, fz : height [m] and force above [N]
-    segments, nodes : how many of them were used, more than there was room for where that was too
-        little, and passed
-    stage : where the line came down on the seabed; -1 where it did not
-    hanging : unstretched length of that stage above the seabed [m]; of a rod or clamp inf, it
-        stands there, or 0, it lies there
+    angle_step : how much a segment may turn [rad]
+    reach : the longest a segment may be [m]
+    near : how far from a load the water may be looked up [m]; 0 where all is to settle to the last
+        digits
+    stages : how many stages of the line are marched
+    lands : whether it stops at the touchdown: below the last buoyant piece, where the vertical
+        force vanishes
+    given : whether the segments are given, else chosen
+    recording : whether every node and element is recorded
     """
 
-    z: float
-    fx: float
-    fy: float
-    fz: float
-    segments: int
-    nodes: int
-    stage: int
-    hanging: float
+    angle_step: float
+    reach: float
+    near: float
+    stages: int
+    lands: bool
+    given: bool
+    recording: bool
 
 
 def pass_line(
     course: Course,
     sea: Sea,
+    how: How,
     depth: float,
     out: float,
-    angle_step: float,
-    reach: float,
-    lands: bool,
-    given: bool,
-    cuts: list[float],
-    counts: list[int],
+    cuts: MutableSequence[float],
+    counts: MutableSequence[int],
     record: Record,
-    recording: bool,
-) -> Marched:
-    """March down a line: see `calm.physics.march`.
+    left: MutableSequence[float],
+) -> None:
+    """March down a line from a free end at a depth [m].
 
     Parameters
     ----------
     out : length of the head that is to be above the surface [m], which sets the depth; 0 without
-    cuts, counts : the segments and how many each cable has, read where they are `given`, else
+    cuts, counts : the segments and how many each cable has, read where they are given, else
         written
-    record : where nodes and elements are written if `recording`
+    record : where nodes and elements are written, if they are
+    left : filled with how it ended
     """
     if out > 0.0:
-        depth = floating_depth(course.stages[0], course.loads, sea, out)
+        depth = floating_depth(course.stages[0], course.loads, sea, out, how.near)
     level = interval_at(sea.levels, depth, 0)
     state: State = (0.0, 0.0, -depth, 0.0, 0.0, 0.0, -1.0, level)
-    if recording:
+    if how.recording:
         write_node(record, 0, state)
-    used, nodes = 0, 1
+    used, nodes, failure = 0, 1, GOES_ON
     landed, hanging = -1, -1.0
-    for i in range(len(course.stages)):
+    for i in range(how.stages):
         stage = course.stages[i]
-        may_land = lands and i >= course.landing
+        may_land = how.lands and i >= course.landing
         if stage.kind == CABLE:
-            state, hanging, used, nodes = pass_cable(
-                course, stage.first, sea, state, angle_step, reach, may_land,
-                given, cuts, counts, used, record, recording, nodes,
-            )  # fmt: skip
-            if used > len(cuts):
-                break
+            state, hanging, used, nodes, failure = pass_cable(
+                course, stage.first, sea, how, state, may_land, cuts, counts, used, record, nodes
+            )
         elif stage.kind == ROD:
             state, hanging, nodes = pass_rod(
-                stage, course.loads, sea, state, may_land, record, recording, nodes
+                stage, course.loads, sea, state, may_land, how.near, record, how.recording, nodes
             )
+            failure = ROD_UNBALANCED if state[6] == NO_BALANCE else GOES_ON
         else:
             state, hanging, nodes = pass_clamp(
-                course.loads[stage.first], sea, state, may_land, record, recording, nodes
+                course.loads[stage.first], sea, state, may_land, record, how.recording, nodes
             )
+        x, y, z, fx, fy, fz, _, _ = state
+        if failure == GOES_ON and not isfinite(x + y + z + fx + fy + fz):
+            failure = RUNS_OFF
+        if failure != GOES_ON:
+            break
         if hanging >= 0.0:
             landed = i
             break
-    if landed >= 0 and not given:
-        for i in range(landed + 1, len(course.stages)):
+    if landed >= 0 and not how.given:
+        for i in range(landed + 1, how.stages):
             stage = course.stages[i]
             if stage.kind == CABLE:
                 counts[stage.first] = 0
-                used = cut_evenly(cuts, counts, stage.first, used, stage.length, reach)
+                used = cut_evenly(cuts, counts, stage.first, used, stage.length, how.reach)
+    if used > len(cuts):
+        failure = NO_ROOM
     _, _, z, fx, fy, fz, _, _ = state
-    return Marched(z, fx, fy, fz, used, nodes, landed, hanging)
+    left[Z], left[FX], left[FY], left[FZ] = z, fx, fy, fz
+    left[USED], left[NODES], left[LANDED], left[HANGING] = used, nodes, landed, hanging
+    left[FAILURE] = failure
 
 
 def pass_cable(
     course: Course,
     place: int,
     sea: Sea,
+    how: How,
     state: State,
-    angle_step: float,
-    reach: float,
     lands: bool,
-    given: bool,
-    cuts: list[float],
-    counts: list[int],
+    cuts: MutableSequence[float],
+    counts: MutableSequence[int],
     used: int,
     record: Record,
-    recording: bool,
     nodes: int,
-) -> tuple[State, float, int, int]:
+) -> tuple[State, float, int, int, int]:
     """Take the state down a stretch of cable, `place` among the cables.
 
     Returns
     -------
     The state; the unstretched length above its touchdown [m], -1 where it has none; how many
-    segments have been used and nodes passed so far. Where there is no room for another segment
-    more are used than there is room for.
+    segments have been used and nodes passed so far; whether the march can go on.
     """
     cable, knots, vibration = course.cables[place], course.knots, course.vibration
     first, done, hanging = used, 0.0, -1.0
-    while used - first < counts[place] if given else done < cable.length or used == first:
+    near, expected = how.near, (0.0, 0.0, 0.0)
+    while used - first < counts[place] if how.given else done < cable.length or used == first:
         if used == len(cuts):
-            return state, hanging, used + 1, nodes
+            return state, hanging, used, nodes, NO_ROOM
         cut = cuts[used]
-        if not given:
+        if not how.given:
             left = cable.length - done
-            cut = segment_length(cable, knots, vibration, sea, state, angle_step, reach)
+            cut = segment_length(cable, knots, vibration, sea, state, how.angle_step, how.reach)
             cut = min(left, cut)
             if left - cut < 0.01 * cut:
                 cut = left
@@ -141,13 +176,20 @@ def pass_cable(
         used += 1
         hung = cut
         if lands and state[5] > 0.0:
-            hung = touchdown(cable, knots, vibration, sea, state, cut)
-        state, strain = pass_segment(cable, knots, vibration, sea, state, hung)
+            hung = touchdown(cable, knots, vibration, sea, state, cut, near, expected)
+        _, _, _, ax, ay, az, _, _ = state
+        state, strain = pass_segment(cable, knots, vibration, sea, state, hung, near, expected)
+        x, y, z, fx, fy, fz, tz, level = state
+        if strain == NO_BALANCE:
+            return state, hanging, used, nodes, SEGMENT_UNBALANCED
+        if not isfinite(x + y + z + fx + fy + fz):
+            return state, hanging, used, nodes, RUNS_OFF
+        if hung > SHORT * how.reach:
+            expected = (fx - ax) / hung, (fy - ay) / hung, (fz - az) / hung
         if hung < cut:
-            x, y, z, fx, fy, _, tz, level = state
             state = x, y, z, fx, fy, 0.0, tz, level
             hanging = done + hung
-        if recording:
+        if how.recording:
             write_element(record, nodes, cable.piece, -1, hung, strain)
             write_node(record, nodes, state)
         nodes += 1
@@ -155,16 +197,21 @@ def pass_cable(
         if hanging >= 0.0:
             break
         if used - first > MOST_SEGMENTS:
-            raise MarchError("the line would need more than 50000 segments")
-    if not given:
+            return state, hanging, used, nodes, ENDLESS
+    if not how.given:
         counts[place] = used - first
         if hanging >= 0.0:
-            used = cut_evenly(cuts, counts, place, used, cable.length - done, reach)
-    return state, hanging, used, nodes
+            used = cut_evenly(cuts, counts, place, used, cable.length - done, how.reach)
+    return state, hanging, used, nodes, GOES_ON
 
 
 def cut_evenly(
-    cuts: list[float], counts: list[int], cable: int, used: int, length: float, reach: float
+    cuts: MutableSequence[float],
+    counts: MutableSequence[int],
+    cable: int,
+    used: int,
+    length: float,
+    reach: float,
 ) -> int:
     """Segments of one length for a cable that is not marched; returns how many are used in all.
 

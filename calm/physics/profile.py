@@ -7,9 +7,9 @@ from functools import cached_property
 from math import inf, isfinite
 from typing import NamedTuple
 
-from calm.physics.compiled import packed
+from calm.physics.compiled import packed, within
 from calm.physics.line import Floats, Water
-from calm.physics.state import MarchError
+from calm.physics.reference import REFERENCE_DENSITY
 
 
 class Interval(NamedTuple):
@@ -56,9 +56,12 @@ class Sea(NamedTuple):
 
 
 def interval_at(levels: Sequence[float], depth: float, i: int) -> int:
-    """Index of the interval that holds `depth` [m], searched from interval `i`."""
+    """Index of the interval that holds `depth` [m], searched from interval `i`.
+
+    Where a line has run off to infinity, that one.
+    """
     if not isfinite(depth):
-        raise MarchError("the line runs off to infinity")
+        return i
     while depth >= levels[i + 1]:
         i += 1
     while depth < levels[i]:
@@ -66,6 +69,7 @@ def interval_at(levels: Sequence[float], depth: float, i: int) -> int:
     return i
 
 
+@within
 def water_at(sea: Sea, depth: float, i: int) -> tuple[float, float, float, float, int]:
     """Current u, v, w [m/s], density [kg/m³] and interval at a depth [m], searched from one."""
     levels = sea.levels
@@ -99,7 +103,7 @@ def distance_to_level(
     Searched from interval `i`. A level no farther than `least` is as good as reached: the one
     behind it counts.
     """
-    if sinking == 0.0:
+    if sinking == 0.0 or not isfinite(sinking):
         return inf
     i = interval_at(levels, depth, i)
     ahead = -1
@@ -144,6 +148,11 @@ class Profile:
         """The same as compiled laws take it."""
         sea: Sea = packed(self.sea)
         return sea
+
+    def excess_at(self, depth: float) -> float:
+        """What a displaced cubic metre lifts more at a depth than in reference water [N/m³]."""
+        *_, density, _ = water_at(self.sea, depth, 0)
+        return (density - REFERENCE_DENSITY) * self.sea.gravity
 
 
 def _values_and_slopes(depths: list[float], column: Floats) -> tuple[list[float], list[float]]:

@@ -6,8 +6,9 @@ from the laws of the march; only measured curves (of stretch, of drag, of strumm
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import MutableSequence, Sequence
 from math import atan2, pow, sqrt
+from sys import float_info
 from typing import NamedTuple
 
 from calm.physics.drag import interpolated
@@ -15,8 +16,12 @@ from calm.physics.element import Vector
 from calm.physics.friction import BERTEAUX, CONSTANT
 from calm.physics.reference import REFERENCE_DENSITY
 from calm.physics.reynolds import Smooth, drag_variation
+from calm.physics.state import Record
 from calm.physics.stretch import Knot, mean_curve_strain
 from calm.physics.strumming import Vibration, strummed
+
+ROUNDING = 32.0 * float_info.epsilon
+"""Of a coordinate, or a force, as a share of the greatest."""
 
 
 class Body(NamedTuple):
@@ -73,52 +78,63 @@ class Moored(NamedTuple):
 
 
 class Shape(NamedTuple):
-    """Elements between nodes, free end first, as in `Solution`; `first` and `last` node of every
-    piece."""
+    """A shape, free end first.
 
-    x: Sequence[float]
-    y: Sequence[float]
-    z: Sequence[float]
-    fx: Sequence[float]
-    fy: Sequence[float]
-    fz: Sequence[float]
-    piece: Sequence[int]
-    clamp: Sequence[int]
-    cut: Sequence[float]
-    first: Sequence[int]
-    last: Sequence[int]
+    Attributes
+    ----------
+    record : its nodes, and at each the element that ends there: see `calm.physics.state`
+    nodes, hanging : how many nodes there are, and elements above the touchdown
+    first, last : node of every piece
+    """
+
+    record: Record
+    nodes: int
+    hanging: int
+    first: MutableSequence[int]
+    last: MutableSequence[int]
 
 
-def element_loads(moored: Moored, shape: Shape, loads: Sequence[list[float]]) -> None:
+def find_ends(shape: Shape) -> None:
+    """Find the first and the last node of every piece."""
+    pieces, node = len(shape.first), 0
+    for piece in range(pieces):
+        shape.first[piece] = node
+        while node + 1 < shape.nodes and int(shape.record[6][node + 1]) <= piece:
+            node += 1
+        shape.last[piece] = node
+
+
+def element_loads(moored: Moored, shape: Shape, loads: Sequence[MutableSequence[float]]) -> None:
     """Write buoyancy and drag of every element to the columns of `loads` [N].
 
     A rigid piece's are those at its own middle, spread over its elements by length.
     """
     east, north, up = loads[0], loads[1], loads[2]
-    for i in range(len(shape.piece)):
-        piece, clamp = shape.piece[i], shape.clamp[i]
+    for i in range(shape.nodes - 1):
+        piece, clamp = int(shape.record[6][i + 1]), int(shape.record[7][i + 1])
+        cut = shape.record[8][i + 1]
         body = moored.bodies[piece if clamp < 0 else moored.pieces + clamp]
         top, bottom = i, i + 1
         amount = 1.0
         if clamp < 0 and body.flexible:
-            amount = shape.cut[i]
+            amount = cut
         elif clamp < 0:
             top, bottom = shape.first[piece], shape.last[piece]
+            # of those without length the last has it
+            amount = 1.0 if bottom == i + 1 else 0.0
             if body.length > 0.0:
-                amount = shape.cut[i] / body.length
-            else:  # of those without length the last has it
-                amount = 1.0 if bottom == i + 1 else 0.0
+                amount = cut / body.length
         dx, dy, dz = chord(shape, top, bottom)
         size = sqrt(dx * dx + dy * dy + dz * dz)
         grown = 1.0
-        if body.flexible and shape.cut[i] > 0.0:
-            grown = pow(size / shape.cut[i], body.thinning)
+        if body.flexible and cut > 0.0:
+            grown = pow(size / cut, body.thinning)
         if clamp < 0 and not body.flexible:
             dx, dy, dz = rigid_axis(moored, shape, piece)
             size = sqrt(dx * dx + dy * dy + dz * dz)
         if size > 0.0:
             dx, dy, dz = dx / size, dy / size, dz / size
-        depth = -0.5 * (shape.z[top] + shape.z[bottom])
+        depth = -0.5 * (shape.record[2][top] + shape.record[2][bottom])
         u, v, w, density = flow_at(moored, depth)
         qx, qy, qz = drag_on(moored, body, depth, u, v, w, dx, dy, dz)
         scale = amount * grown * density / REFERENCE_DENSITY
@@ -132,7 +148,7 @@ def element_loads(moored: Moored, shape: Shape, loads: Sequence[list[float]]) ->
 
 def chord(shape: Shape, top: int, bottom: int) -> Vector:
     """From one node to another [m]."""
-    x, y, z = shape.x, shape.y, shape.z
+    x, y, z = shape.record[0], shape.record[1], shape.record[2]
     return x[bottom] - x[top], y[bottom] - y[top], z[bottom] - z[top]
 
 
@@ -141,7 +157,7 @@ def rigid_axis(moored: Moored, shape: Shape, piece: int) -> Vector:
     top, bottom = rod_nodes(moored, shape, piece)
     x, y, z = chord(shape, top, bottom)
     if x == 0.0 and y == 0.0 and z == 0.0:
-        fx, fy, fz = shape.fx, shape.fy, shape.fz
+        fx, fy, fz = shape.record[3], shape.record[4], shape.record[5]
         return -fx[top] - fx[bottom], -fy[top] - fy[bottom], -fz[top] - fz[bottom]
     return x, y, z
 
@@ -242,26 +258,27 @@ def strumming(
     return strummed(here, min(across / speed, 1.0))
 
 
-def worst_moment(
-    moored: Moored, shape: Shape, loads: Sequence[list[float]], hanging: int, rounding: float,
-    least: float,
-) -> float:  # fmt: skip
+def worst_moment(moored: Moored, shape: Shape, loads: Sequence[MutableSequence[float]]) -> float:
     """Largest angle between an element's axis and the mean of the forces at its ends [rad].
 
-    Or, where that is larger, departure of a cable's strain from what these forces ask for. Both
-    beyond the `rounding` of the coordinates [m]; of the first `hanging` elements. A force across a
-    segment that is no more than `least` [N] turns it out of nothing.
+    The forces follow from the loads. Or, where that is larger, departure of a cable's strain from
+    what these forces ask for. Both beyond the rounding of the coordinates; of what hangs. Towards a
+    limp end the tension vanishes, and with it what sets the direction: there counts what the force
+    across the line is beyond the rounding of the greatest tension.
     """
+    rounding = ROUNDING * greatest_size(shape, 0)
+    least = max(ROUNDING * greatest_size(shape, 3), 1e-300)
+    hanging = shape.hanging
     east, north, up = loads[0], loads[1], loads[2]
     worst = 0.0
     fx = fy = fz = 0.0
     for i in range(hanging):
-        piece = shape.piece[i]
-        body, cut = moored.bodies[piece], shape.cut[i]
+        piece, clamp = int(shape.record[6][i + 1]), int(shape.record[7][i + 1])
+        body, cut = moored.bodies[piece], shape.record[8][i + 1]
         dx, dy, dz = chord(shape, i, i + 1)
         hx, hy, hz = fx + 0.5 * east[i], fy + 0.5 * north[i], fz + 0.5 * up[i]
         bx, by, bz = fx + east[i], fy + north[i], fz + up[i]
-        cable = body.flexible and shape.clamp[i] < 0
+        cable = body.flexible and clamp < 0
         alone = cable
         if not body.flexible:
             top, bottom = rod_nodes(moored, shape, piece)
@@ -283,6 +300,83 @@ def worst_moment(
     return worst
 
 
+def greatest_size(shape: Shape, first: int) -> float:
+    """Of places, the greatest of any coordinate [m]; of forces, from column 3, of any size [N]."""
+    greatest = 0.0
+    for n in range(shape.nodes):
+        x, y, z = shape.record[first][n], shape.record[first + 1][n], shape.record[first + 2][n]
+        if first == 0:
+            greatest = max(greatest, abs(x), abs(y), abs(z))
+        else:
+            greatest = max(greatest, sqrt(x * x + y * y + z * z))
+    return greatest
+
+
+def closure(
+    moored: Moored,
+    shape: Shape,
+    loads: Sequence[MutableSequence[float]],
+    landed: bool,
+    friction: float,
+    excess: float,
+) -> float:
+    """Relative departure of the sum of the loads from the force at the line's end.
+
+    Where the line lies on the seabed, the loads above its touchdown must leave no vertical force
+    there: but a downward one where a rigid piece or clamp stands, and an upward one that the weight
+    of a rigid piece lying there holds down. Friction on what lies takes its share of the horizontal
+    force.
+
+    Parameters
+    ----------
+    loads : of every element, as by `element_loads`
+    landed : whether the line lies on the seabed
+    friction : there [-]
+    excess : what a displaced cubic metre lifts more there than in reference water [N/m³]
+    """
+    record, end = shape.record, shape.nodes - 1
+    x = y = z = whole = 0.0
+    for i in range(shape.hanging):
+        x, y, z = x + loads[0][i], y + loads[1][i], z + loads[2][i]
+        whole += abs(loads[0][i]) + abs(loads[1][i]) + abs(loads[2][i])
+    fx, fy, fz = record[3][end], record[4][end], record[5][end]
+    scale = max(sqrt(fx * fx + fy * fy + fz * fz), 1e-3 * whole, 1e-300)
+    if landed:
+        if bears_at_a_point(moored, shape, shape.hanging - 1):
+            z = max(z, 0.0)
+        if bears_at_a_point(moored, shape, shape.hanging):
+            z = min(z, 0.0)
+        tension = sqrt(x * x + y * y)
+        held = min(friction * weight_on_seabed(moored, shape, excess), tension)
+        left = 1.0 - held / tension if tension > 0.0 else 0.0
+        x, y = left * x, left * y
+    x, y, z = x - fx, y - fy, z - fz
+    return sqrt(x * x + y * y + z * z) / scale
+
+
+def bears_at_a_point(moored: Moored, shape: Shape, element: int) -> bool:
+    """Whether the seabed can bear on an element at a point: a rigid piece or a clamp."""
+    if element >= shape.nodes - 1:
+        return False
+    piece = int(shape.record[6][element + 1])
+    return moored.bodies[piece].flexible == 0 or shape.record[7][element + 1] >= 0
+
+
+def weight_on_seabed(moored: Moored, shape: Shape, excess: float) -> float:
+    """Weight in water of what lies on the seabed [N]."""
+    weight = 0.0
+    for i in range(shape.hanging, shape.nodes - 1):
+        piece, clamp = int(shape.record[6][i + 1]), int(shape.record[7][i + 1])
+        body = moored.bodies[piece if clamp < 0 else moored.pieces + clamp]
+        amount = 1.0
+        if clamp < 0 and body.flexible:
+            amount = shape.record[8][i + 1]
+        elif clamp < 0 and body.length > 0.0:
+            amount = shape.record[8][i + 1] / body.length
+        weight -= amount * (body.buoyancy + excess * body.volume)
+    return weight
+
+
 def expected_strain(moored: Moored, body: Body, middle: float, half: float) -> float:
     """Strain of a segment whose tension goes evenly from `middle` - `half` to their sum [N]."""
     if body.first_knot == body.end_knot:
@@ -292,7 +386,7 @@ def expected_strain(moored: Moored, body: Body, middle: float, half: float) -> f
 
 def rod_moment(
     shape: Shape,
-    loads: Sequence[list[float]],
+    loads: Sequence[MutableSequence[float]],
     top: int,
     bottom: int,
     fx: float,
@@ -309,8 +403,9 @@ def rod_moment(
         return 0.0
     for i in range(top, bottom):
         x, y, z = chord(shape, top, i)
-        if shape.clamp[i] < 0:  # a piece's load is at its own middle
-            first, last = shape.first[shape.piece[i]], shape.last[shape.piece[i]]
+        if shape.record[7][i + 1] < 0:  # a piece's load is at its own middle
+            piece = int(shape.record[6][i + 1])
+            first, last = shape.first[piece], shape.last[piece]
             x, y, z = chord(shape, top, first)
             px, py, pz = chord(shape, first, last)
             x, y, z = x + 0.5 * px, y + 0.5 * py, z + 0.5 * pz

@@ -8,7 +8,7 @@ from math import inf
 from calm.physics.load import force_at
 from calm.physics.profile import Sea, interval_at
 from calm.physics.rod_axis import rod_axis
-from calm.physics.state import Record, State, write_element, write_node
+from calm.physics.state import NO_BALANCE, Record, State, write_element, write_node
 from calm.physics.track import Load, Stage
 
 _LEANINGS = 50
@@ -42,6 +42,7 @@ def pass_rod(
     sea: Sea,
     state: State,
     lands: bool,
+    near: float,
     record: Record,
     recording: bool,
     nodes: int,
@@ -52,15 +53,18 @@ def pass_rod(
     ----------
     lands : whether the seabed carries what the line cannot: at the rod's lower end, or all along
         it where it would tip over
+    near : as in `rod_axis`
     record, recording, nodes : where to write it, if at all, and how many nodes are there
 
     Returns
     -------
-    The state; 0 where the rod lies on the seabed, inf where it stands on it, -1 where it does
-    neither; and how many nodes there are.
+    The state, its rise `NO_BALANCE` where the rod has none; 0 where the rod lies on the seabed, inf
+    where it stands on it, -1 where it does neither; and how many nodes there are.
     """
     x, y, z, fx, fy, fz, before, level = state
-    tx, ty, tz = rod_axis(rod, loads, sea, state)
+    tx, ty, tz = rod_axis(rod, loads, sea, state, near)
+    if tz == NO_BALANCE:
+        return (x, y, z, fx, fy, fz, tz, level), -1.0, nodes
     sx, sy, sz = fx, fy, fz
     for i in range(rod.first, rod.first + rod.size):
         qx, qy, qz = force_at(loads[i], sea, -z - loads[i].at * tz, level, tx, ty, tz)
@@ -79,18 +83,19 @@ def pass_rod(
     return below, inf if landed else -1.0, nodes
 
 
-def floating_depth(rod: Stage, loads: Sequence[Load], sea: Sea, out: float) -> float:
+def floating_depth(rod: Stage, loads: Sequence[Load], sea: Sea, out: float, near: float) -> float:
     """Depth of the free end that has a length `out` of the head above the surface [m].
 
-    The head of the line leans as its loads have it, and they depend a little on its depth.
+    The head of the line leans as its loads have it, and they depend a little on its depth. Where it
+    finds no balance it is upright.
     """
     depth = -out
     for _ in range(_LEANINGS):
         level = interval_at(sea.levels, depth, 0)
         state = (0.0, 0.0, -depth, 0.0, 0.0, 0.0, -1.0, level)
-        _, _, tz = rod_axis(rod, loads, sea, state)
-        following = min(out * tz, 0.0)
-        if abs(following - depth) <= 1e-14 * out:
+        _, _, tz = rod_axis(rod, loads, sea, state, near)
+        following = min(out * max(tz, -1.0), 0.0)
+        if abs(following - depth) <= max(1e-14 * out, near):
             break
         depth = following
     return depth

@@ -10,15 +10,15 @@ from calm.physics.load import force_at, load_lift, load_variation, speed_across
 from calm.physics.profile import Sea, viscosity_at, water_at
 from calm.physics.reference import REFERENCE_DENSITY
 from calm.physics.reynolds import Smooth, varying_share
-from calm.physics.state import MarchError, State
+from calm.physics.state import NO_BALANCE, State
 from calm.physics.track import Load, Stage
 
-_PASSES = 200
+_PASSES, _FEW = 200, 6
 _HALVINGS = 60
 _NOTHING = 1e-12
 
 
-def rod_axis(rod: Stage, loads: Sequence[Load], sea: Sea, state: State) -> Vector:
+def rod_axis(rod: Stage, loads: Sequence[Load], sea: Sea, state: State, near: float) -> Vector:
     """Axis for which the moments about the rod's middle vanish.
 
     With several loads q_i at distances a_i from the top the rule of one load becomes
@@ -27,30 +27,70 @@ def rod_axis(rod: Stage, loads: Sequence[Load], sea: Sea, state: State) -> Vecto
     its drag curve included, and only shear along the rod is left to the passes; where several
     drags follow curves, these are, too.
 
-    Raises
-    ------
-    MarchError
-        Where the passes do not settle.
+    Parameters
+    ----------
+    near : how far a load may be from where the water is looked up [m]; 0 lets the axis settle to
+        the last digits
+
+    Returns
+    -------
+    The axis; its rise is `NO_BALANCE` where there is none.
     """
-    _, _, _, _, _, _, rise, _ = state
+    _, _, _, fx, fy, fz, rise, _ = state
     tx, ty, tz = 0.0, 0.0, rise
-    pace, earlier = 1.0, inf
+    damping, earlier, settled = 1.0, inf, 1e-12
+    if near > 0.0:
+        pull = sqrt(fx * fx + fy * fy + fz * fz)
+        if pull > 0.0:
+            tx, ty, tz = -fx / pull, -fy / pull, -fz / pull
+        settled = min(near / rod.length, 1e-4) if rod.length > 0.0 else 1e-4
+        if rod.size == 1 and loads[rod.first].diameter == 0.0:
+            x, y, z = lone_axis(loads[rod.first], sea, state, tx, ty, tz, settled)
+            if z != NO_BALANCE:
+                return x, y, z
     for _ in range(_PASSES):
-        x, y, z = next_axis(rod, loads, sea, state, tx, ty, tz)
+        x, y, z = _following_axis(rod, loads, sea, state, tz, tx, ty, tz)
         change = abs(x - tx) + abs(y - ty) + abs(z - tz)
-        if change < 1e-12:
+        if change < settled:
             return x, y, z
         if change > 0.7 * earlier:
-            pace *= 0.5
+            damping *= 0.5
         earlier = change
-        if pace < 1.0:
-            x, y, z = tx + pace * (x - tx), ty + pace * (y - ty), tz + pace * (z - tz)
+        if damping < 1.0:
+            x, y, z = tx + damping * (x - tx), ty + damping * (y - ty), tz + damping * (z - tz)
             size = sqrt(x * x + y * y + z * z)
             if size == 0.0:
                 break
             x, y, z = x / size, y / size, z / size
         tx, ty, tz = x, y, z
     return bracketed_axis(rod, loads, sea, state)
+
+
+def lone_axis(
+    load: Load, sea: Sea, state: State, tx: float, ty: float, tz: float, settled: float
+) -> Vector:
+    """The axis of a rod of one load of constant drag, from another one, in few passes.
+
+    Its rise is `NO_BALANCE` where they do not settle.
+    """
+    _, _, z, fx, fy, fz, _, level = state
+    for _ in range(_FEW):
+        depth = -z - load.at * tz
+        u, v, w, density, level = water_at(sea, depth, level)
+        squared = u * u + v * v + w * w
+        ax, ay = fx + load.lever * load.push_east, fy + load.lever * load.push_north
+        az = fz + load.lever * load_lift(load, squared, density, sea.gravity)
+        k = load.lever * density / REFERENCE_DENSITY * load.normal_drag
+        c = drag_share(ax, ay, az, k, u, v, w) if load.directional else k * sqrt(squared)
+        x, y, rise = axis_along(ax, ay, az, c, u, v, w)
+        change = abs(rise - tz)
+        tx, ty, tz = x, y, rise
+        if change < settled:
+            # pulled, and not pushed
+            if (ax + c * u) * x + (ay + c * v) * y + (az + c * w) * rise < 0.0 or fz <= 0.0:
+                return x, y, rise
+            break
+    return tx, ty, NO_BALANCE
 
 
 def bracketed_axis(rod: Stage, loads: Sequence[Load], sea: Sea, state: State) -> Vector:
@@ -61,10 +101,7 @@ def bracketed_axis(rod: Stage, loads: Sequence[Load], sea: Sea, state: State) ->
     falls through zero in between, which is bisected. Where r jumps there, as it does for a float
     that lends nothing of its buoyancy where the current begins, no force turns it.
 
-    Raises
-    ------
-    MarchError
-        Where a force does.
+    Where a force does, its rise is `NO_BALANCE`.
     """
     low, high = -1.0, 1.0
     tx, ty, tz = 0.0, 0.0, -1.0
@@ -81,7 +118,7 @@ def bracketed_axis(rod: Stage, loads: Sequence[Load], sea: Sea, state: State) ->
     across = sqrt(max(1.0 - low * low, 0.0))
     tx, ty, tz = across * east, across * north, low
     if _turning(rod, loads, sea, state, tx, ty, tz) > _NOTHING:
-        raise MarchError("a rigid piece finds no balance")
+        return tx, ty, NO_BALANCE
     return tx, ty, tz
 
 
@@ -96,16 +133,16 @@ def _axis_in_water_at(
     tz: float,
 ) -> Vector:
     """The axis that balances in the water of the depths that the loads have at a rise."""
-    pace, earlier = 1.0, inf
+    damping, earlier = 1.0, inf
     for _ in range(_PASSES):
         x, y, z = _following_axis(rod, loads, sea, state, rise, tx, ty, tz)
         change = abs(x - tx) + abs(y - ty) + abs(z - tz)
         if change < 1e-15:
             return x, y, z
         if change > 0.7 * earlier:
-            pace *= 0.7
+            damping *= 0.7
         earlier = change
-        x, y, z = tx + pace * (x - tx), ty + pace * (y - ty), tz + pace * (z - tz)
+        x, y, z = tx + damping * (x - tx), ty + damping * (y - ty), tz + damping * (z - tz)
         size = sqrt(x * x + y * y + z * z)
         if size == 0.0:
             return tx, ty, tz
@@ -127,19 +164,6 @@ def _turning(
     return speed_across(fx, fy, fz, tx, ty, tz) / own if own > 0.0 else 0.0
 
 
-def next_axis(
-    rod: Stage,
-    loads: Sequence[Load],
-    sea: Sea,
-    state: State,
-    tx: float,
-    ty: float,
-    tz: float,
-) -> Vector:
-    """The axis of a rod whose loads are looked up, and gathered, at another one: see `rod_axis`."""
-    return _following_axis(rod, loads, sea, state, tz, tx, ty, tz)
-
-
 def _following_axis(
     rod: Stage,
     loads: Sequence[Load],
@@ -150,7 +174,10 @@ def _following_axis(
     ty: float,
     tz: float,
 ) -> Vector:
-    """`next_axis` with the loads looked up where they are at a rise."""
+    """The axis of a rod whose drags are gathered at another one, t: see `rod_axis`.
+
+    The water is looked up where the loads are at a `rise`.
+    """
     _, _, z, fx, fy, fz, _, level = state
     ax, ay, az = fx, fy, fz
     normals = 0

@@ -3,54 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from math import sqrt
 
 from calm.physics.cable import strain_at
-from calm.physics.march import End
-from calm.physics.pace import is_fast, paced
-from calm.physics.profile import Profile, water_at
-from calm.physics.reference import REFERENCE_DENSITY
 from calm.physics.state import Record, write_element, write_node
 from calm.physics.stretch import Knot, mean_curve_strain
-from calm.physics.track import CABLE, Cable, Course, Track
-
-
-def lie_down(
-    track: Track, profile: Profile, end: End, seabed: float, friction: float
-) -> tuple[End, float]:
-    """Continue a recorded march from its touchdown to the anchor.
-
-    The line lies along the horizontal force at touchdown. Its tension falls by friction times the
-    weight of what lies, down to nothing; there is no drag. What the vertical force could not carry
-    at the touchdown itself, a rigid piece or a clamp, rests there at a point.
-
-    Parameters
-    ----------
-    end : of a march that landed
-    seabed : height [m], + up from the surface
-    friction : of the line on the seabed [-]
-
-    Returns
-    -------
-    The march with the nodes and elements on the seabed, and the unstretched length there [m].
-    """
-    *_, density, _ = water_at(profile.sea, -seabed, 0)
-    excess = (density - REFERENCE_DENSITY) * profile.sea.gravity
-    fx, fy, _ = end.force
-    nodes, grounded = paced(lay_line)(
-        track.packed if is_fast() else track.course,
-        end.record,
-        end.nodes,
-        end.stage,
-        end.hanging,
-        fx,
-        fy,
-        seabed,
-        excess,
-        friction,
-    )
-    return replace(end, nodes=nodes), grounded
+from calm.physics.track import CABLE, Cable, Course
 
 
 def lay_line(
@@ -65,12 +23,18 @@ def lay_line(
     excess: float,
     friction: float,
 ) -> tuple[int, float]:
-    """Lay down what is below a touchdown: see `lie_down`; returns the nodes and the length [m].
+    """Continue a record from a touchdown to the anchor; returns the nodes and the length [m].
+
+    The line lies along the horizontal force at touchdown. Its tension falls by friction times the
+    weight of what lies, down to nothing; there is no drag. What the vertical force could not carry
+    at the touchdown itself, a rigid piece or a clamp, rests there at a point.
 
     Parameters
     ----------
     stage, hanging : where the line came down
     fx, fy : horizontal force above the touchdown [N]
+    seabed : height [m], + up from the surface
+    friction : of the line on the seabed [-]
     excess : what a displaced cubic metre lifts more there than in reference water [N/m³]
     """
     tension = sqrt(fx * fx + fy * fy)

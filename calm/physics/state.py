@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from calm.physics.compiled import within
 from calm.physics.line import Floats, Integers
 
 
@@ -19,12 +20,27 @@ State = tuple[float, float, float, float, float, float, float, int]
 last axis's rise, the interval of the water. A bare tuple: in CPython a named one costs as much as
 half of a segment's balance."""
 
+GOES_ON, RUNS_OFF, SEGMENT_UNBALANCED, ROD_UNBALANCED, ENDLESS, NO_ROOM = range(6)
+"""Whether a march can go on, or why it cannot."""
+FAILURES = (
+    "",
+    "the line runs off to infinity",
+    "a segment finds no balance",
+    "a rigid piece finds no balance",
+    "the line would need more than 50000 segments",
+    "there is no room for so many segments",
+)
+"""The same in words."""
+NO_BALANCE = -2.0
+"""In place of the strain of a segment, or of the rise of a rod, that finds no balance."""
+
 
 Record = Any
 """Columns of numbers, as written by `write_node`: lists, or the rows of an array."""
 COLUMNS = 10
 
 
+@within
 def write_node(record: Record, n: int, state: State) -> None:
     """Write node n: the place [m] and the force above it [N] of a state."""
     x, y, z, fx, fy, fz, _, _ = state
@@ -36,6 +52,7 @@ def write_node(record: Record, n: int, state: State) -> None:
     record[5][n] = fz
 
 
+@within
 def write_element(
     record: Record, n: int, piece: int, clamp: int, cut: float, strain: float
 ) -> None:

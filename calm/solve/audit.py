@@ -12,18 +12,23 @@ from typing import Any
 
 import numpy as np
 
-from calm.physics.compiled import packed, record_type
-from calm.physics.line import Floats, Integers, Line
-from calm.physics.pace import is_fast, paced
-from calm.physics.referee import Body, Moored, Shape, element_loads, strumming, worst_moment
+from calm.physics.compiled import record_type
+from calm.physics.line import Floats, Line, Water
+from calm.physics.referee import (
+    Body,
+    Moored,
+    Shape,
+    closure,
+    element_loads,
+    strumming,
+    worst_moment,
+)
 from calm.physics.reference import REFERENCE_DENSITY
 from calm.physics.stretch import Knot
 from calm.physics.strumming import AT_REST
 from calm.physics.track import head_count
+from calm.solve.search import Referee
 from calm.solve.solution import Solution, sizes
-
-LARGEST_CLOSURE = 1e-6
-LARGEST_MOMENT = 1e-8
 
 
 class Audit:
@@ -36,80 +41,69 @@ class Audit:
 
     def __init__(self, solution: Solution) -> None:
         self._solution = solution
-        self._moored, self._shape = _moored(solution), _shape(solution)
-        written = _taken(np.zeros((3, len(solution.cut))))
-        paced(element_loads)(self._moored, self._shape, written)
-        self._written = written
-        self.loads: Floats = np.array(written).T
+        self._moored = moored_of(solution.carried, solution.water, solution.frequency, False)
+        self._shape = _shape(solution)
+        self._written: list[list[float]] = [[0.0] * len(solution.cut) for _ in range(3)]
+        element_loads(self._moored, self._shape, self._written)
+        self.loads: Floats = np.array(self._written).T
 
     def closure(self) -> float:
-        """Relative departure of the sum of the loads from the force at the line's end.
-
-        Where the line lies on the seabed, the loads above its touchdown must leave no vertical
-        force there: but a downward one where a rigid piece or clamp stands, and an upward one that
-        the weight of a rigid piece lying there holds down. Friction on what lies takes its share
-        of the horizontal force.
-        """
+        """Relative departure of the sum of the loads from the force at the line's end."""
         solution = self._solution
-        hanging = solution.hanging
-        load = self.loads[:hanging]
-        total = load.sum(axis=0)
-        scale = max(float(solution.tension[-1]), 1e-3 * float(np.abs(load).sum()), 1e-300)
+        excess = 0.0
         if solution.landed:
-            if _points(solution, hanging - 1):
-                total[2] = max(total[2], 0.0)
-            if _points(solution, hanging):
-                total[2] = min(total[2], 0.0)
-            tension = float(np.hypot(total[0], total[1]))
-            held = min(solution.settings.seabed_friction * _weight_on_seabed(solution), tension)
-            total[:2] *= 1.0 - held / tension if tension > 0.0 else 0.0
-        return float(np.linalg.norm(total - solution.force[-1])) / scale
+            _, density = solution.water.at(np.array(solution.water.depth))
+            excess = (float(density) - REFERENCE_DENSITY) * solution.water.gravity
+        return closure(
+            self._moored, self._shape, self._written, solution.landed,
+            solution.settings.seabed_friction, excess,
+        )  # fmt: skip
 
     def moment_residual(self) -> float:
-        """Largest angle between an element's axis and the mean of the forces at its ends [rad].
-
-        The forces follow from the loads. Or, where that is larger, departure of a cable's strain
-        from what these forces ask for. Both beyond the rounding of the coordinates. Towards a limp
-        end the tension vanishes, and with it what sets the direction: there counts what the force
-        across the line is beyond the rounding of the greatest tension.
-        """
-        solution = self._solution
-        rounding = 32.0 * float(np.finfo(float).eps)
-        worst = paced(worst_moment)(
-            self._moored, self._shape, self._written, solution.hanging,
-            rounding * float(np.abs(solution.position).max()),
-            max(rounding * float(solution.tension.max()), 1e-300),
-        )  # fmt: skip
-        return float(worst)
+        """Largest angle between an element's axis and the mean of the forces at its ends [rad]."""
+        return worst_moment(self._moored, self._shape, self._written)
 
 
-def _taken(columns: Floats | Integers) -> Any:
-    """Columns of numbers as laws take them: compiled an array, else lists."""
-    return columns if is_fast() else columns.tolist()
-
-
-def _moored(solution: Solution) -> Moored:
-    water, line = solution.water, solution.carried
+def moored_of(line: Line, water: Water, frequency: float, compiled: bool) -> Moored:
+    """A line and its water as the referee takes them."""
     bodies, knots = bodies_of(line)
     law = line.strumming
+
+    def taken(column: Floats) -> Any:
+        return np.array(column) if compiled else column.tolist()
+
     moored = Moored(
-        bodies if is_fast() else list(map(Body._make, bodies.tolist())),
+        bodies if compiled else list(map(Body._make, bodies.tolist())),
         knots,
         len(line.length),
         head_count(line),
         line.friction.law,
         AT_REST if law is None else law.vibration(0.0),
-        0.0 if law is None else solution.frequency,
-        _taken(water.level),
-        _taken(water.u),
-        _taken(water.v),
-        _taken(water.w),
-        _taken(water.density),
+        0.0 if law is None else frequency,
+        taken(water.level),
+        taken(water.u),
+        taken(water.v),
+        taken(water.w),
+        taken(water.density),
         water.gravity,
-        _taken(water.viscosity_level),
-        _taken(water.viscosity),
+        taken(water.viscosity_level),
+        taken(water.viscosity),
     )
-    return packed(moored) if is_fast() else moored
+    if not compiled:
+        return moored
+    records: Any = np.array(knots, record_type(Knot))
+    return moored._replace(knots=records)
+
+
+def referee_of(line: Line, water: Water, frequency: float, compiled: bool) -> Referee:
+    """A line and its water as the audit takes them, with room to work in."""
+    moored = moored_of(line, water, frequency, compiled)
+    pieces = len(line.length)
+    if compiled:
+        given: Any = moored.bodies
+        nodes: Any = np.zeros((2, pieces), np.int64)
+        return Referee(moored, given.copy(), nodes[0], nodes[1])
+    return Referee(moored, list(moored.bodies), [0] * pieces, [0] * pieces)
 
 
 def bodies_of(line: Line) -> tuple[Any, list[Knot]]:
@@ -150,15 +144,23 @@ _OF_CLAMP = {
 
 
 def _shape(solution: Solution) -> Shape:
+    nodes = len(solution.position)
+    none = np.zeros(1)
     columns = (
-        *np.ascontiguousarray(solution.position.T),
-        *np.ascontiguousarray(solution.force.T),
-        solution.element_piece,
-        solution.element_clamp,
-        solution.cut,
-        *np.ascontiguousarray(solution.piece_nodes.T),
+        *solution.position.T,
+        *solution.force.T,
+        *(
+            np.concatenate([none, column])
+            for column in (
+                solution.element_piece,
+                solution.element_clamp,
+                solution.cut,
+                solution.strain,
+            )
+        ),
     )
-    return Shape(*map(_taken, columns))
+    first, last = solution.piece_nodes.T.tolist()
+    return Shape([column.tolist() for column in columns], nodes, solution.hanging, first, last)
 
 
 def amplification(solution: Solution) -> Floats:
@@ -196,28 +198,3 @@ def _flow(solution: Solution) -> Floats:
     """Current (k, 3) at the middle of every element [m/s]."""
     current, _ = solution.water.at(-0.5 * (solution.position[:-1] + solution.position[1:])[:, 2])
     return current
-
-
-def _points(solution: Solution, element: int) -> bool:
-    """Whether the seabed can bear on an element at a point: a rigid piece or a clamp."""
-    if element == len(solution.element_piece):
-        return False
-    rigid = not solution.line.flexible[solution.element_piece[element]]
-    return bool(rigid or solution.element_clamp[element] >= 0)
-
-
-def _weight_on_seabed(solution: Solution) -> float:
-    """Weight in water of what lies on the seabed [N]."""
-    line, lying = solution.line, slice(solution.hanging, None)
-    piece, clamp, cut = (
-        array[lying] for array in (solution.element_piece, solution.element_clamp, solution.cut)
-    )
-    length = line.length[piece]
-    amount = np.where(line.flexible[piece], cut, 1.0)
-    np.divide(cut, length, out=amount, where=~line.flexible[piece] & (length > 0.0))
-    _, density = solution.water.at(np.array(solution.water.depth))
-    excess = (float(density) - REFERENCE_DENSITY) * solution.water.gravity
-    lift = np.where(clamp < 0, (line.buoyancy + excess * line.volume)[piece] * amount, 0.0)
-    here = clamp[clamp >= 0]
-    lift[clamp >= 0] = line.clamp_buoyancy[here] + excess * line.clamp_volume[here]
-    return float(-lift.sum())

@@ -1,300 +1,383 @@
-"""Closing a line: what is unknown, the miss that follows, and its root on fixed segments."""
+"""Closing a line: the miss that follows from its unknown, and its root on fixed segments.
+
+The *miss* is the height of the line's last end above where it is to be [m]: the top of its anchor,
+or the ship that tows it. It falls as the free end goes deeper and as more buoyancy is used.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from functools import cached_property
-from math import degrees, radians
+from math import isnan, nan
+from typing import NamedTuple
 
-import numpy as np
-
-from calm.physics import pace
-from calm.physics.line import Floats, Line, Water
-from calm.physics.march import Cuts, End, march
-from calm.physics.profile import Profile
-from calm.physics.seabed import lie_down
-from calm.physics.state import Trace
-from calm.physics.track import Cable, Track
+from calm.physics.compiled import set_row
+from calm.physics.hull import Riding, riding_of
+from calm.physics.passing import FAILURE, FX, FY, HANGING, LANDED, NODES, How, Z, pass_line
+from calm.physics.reference import REFERENCE_DENSITY
+from calm.physics.seabed import lay_line
+from calm.physics.state import GOES_ON
+from calm.physics.track import Load
+from calm.solve.endings import (
+    FOUND,
+    MARCH_STOPPED,
+    MISSES,
+    NO_SHAPE_NEAR,
+    SLACK_ON_DIGITS,
+)
+from calm.solve.problem import (
+    BELOW,
+    CHANGED,
+    CHOSEN,
+    HALVED,
+    LAST,
+    MARCHES,
+    NOT_RECORDED,
+    About,
+    Problem,
+    Search,
+    Unknown,
+    reach_of,
+)
 from calm.solve.root import bracketed_root, root_near
-from calm.solve.solution import Settings
-from calm.solve.standing import standing_lift
-from calm.solve.status import Status
-from calm.solve.unknown import Afloat, Unknown
 
-AS_MANY = 8
-"""Pieces and clamps of which a line's solve takes as long as one of an ordinary mooring."""
-COARSE_STEP = radians(4.0)
-"""Angle step of the marches that only look for the neighbourhood of a root."""
-REACH = 0.01
-"""Longest segment at an angle step of 1°, as a share of the span."""
+OF_A_PART = 0.01
+"""Miss of a part of a line, which is light and slack, as a share of that of the whole."""
 NEARLY_LINEAR = 5e-3
 """Miss, as a share of the span, below which a secant through a far larger one finds the root."""
-SHARE_TOLERANCE = 1e-9
-"""How well the share of a surface float's buoyancy in use is found."""
 COARSEST_BRACKET = 1e-7
 NARROWEST_BRACKET = 1e-15
 """Width of the last bracket, as a share of the whole range: of a march that chooses its cuts, and
 on fixed ones."""
 
 
-@dataclass(frozen=True)
-class Root:
-    """Where a line closes: its unknown, the value of it, and the slope of the miss there."""
+class Root(NamedTuple):
+    """Where a line closes: its unknown, the value of it, the miss and its slope there.
 
+    `found` is false where the miss does not change its sign; a miss of NaN shows a march that
+    stopped.
+    """
+
+    found: bool
     unknown: Unknown
     x: float
+    miss: float
     slope: float
 
 
-@dataclass(frozen=True)
-class Closed:
-    """A closed line: its root, what is left of the miss [m], and its shape.
-
-    `hanging` counts the elements above the touchdown, all of them where there is none;
-    `grounded_length` is what lies below it, unstretched [m].
-    """
-
-    root: Root
-    miss: float
-    end: End
-    hanging: int
-    grounded_length: float
-
-    @property
-    def trace(self) -> Trace:
-        return self.end.trace
-
-
-class Closing:
-    """The marches of one solve; those of the whole line are counted.
-
-    The *miss* is the height of the line's last end above where it is to be [m]: the top of its
-    anchor, or the ship that tows it. It falls as the free end goes deeper and as more buoyancy is
-    used.
+class Closed(NamedTuple):
+    """A closed line, or how it ended: see `calm.solve.endings`.
 
     Attributes
     ----------
-    span : what lengths are measured by: the water depth, in a tow the line out [m]
-    allowed : the greatest miss of a solution [m]
-    floats : the rigid buoyant pieces, those that may lie at the surface
-    frequency : of the cables that strum [Hz]
-    marches : done so far
+    ending, value, piece : FOUND, or why there is none
+    root : the unknown and what is left of the miss [m]
+    nodes, hanging : of the shape, and its elements above the touchdown, all where there is none
+    landed : whether there is a touchdown
+    grounded : unstretched length that lies below it [m]
     """
 
-    def __init__(self, line: Line, water: Water, settings: Settings) -> None:
-        self.line, self.water, self.settings = line, water, settings
-        self.profile = Profile(water)
-        self.span = float(line.length.sum()) if line.towed else water.depth
-        self.allowed = settings.tolerance * self.span
-        self.floats = np.flatnonzero(~line.flexible & (line.buoyancy > 0.0)).tolist()
-        self.frequency = 0.0
-        self.marches = 0
-        pace.expect((len(line.length) + len(line.clamp_piece)) / AS_MANY)
+    ending: int
+    value: float
+    piece: int
+    root: Root
+    nodes: int
+    hanging: int
+    landed: bool
+    grounded: float
 
-    @cached_property
-    def track(self) -> Track:
-        """The whole line, of which nothing strums."""
-        return Track.of(self.line)
 
-    def whole(self, lands: bool) -> Unknown:
-        """The whole line with its free end below the surface; `lands`: as in `Unknown`.
+def whole_line(problem: Problem, lands: bool) -> Unknown:
+    """The whole line with its free end below the surface; `lands`: as in `Unknown`.
 
-        A line on the seabed ends there, not at the top of its anchor.
-        """
-        height = 0.0 if lands else self.line.anchor_height
-        return Unknown(
-            self.track,
-            height - self.water.depth,
-            lands=lands,
-            floating=self.line.floating,
-        )
+    A line on the seabed ends there, not at the top of its anchor.
+    """
+    limits = problem.limits
+    height = 0.0 if lands else limits.anchor_height
+    goal = limits.tow_height if limits.towed else height - limits.depth
+    return Unknown(goal, BELOW, limits.rides, lands, len(problem.course.stages))
 
-    def towed(self, height: float) -> Unknown:
-        """The whole line towed from a height above the surface [m]."""
-        return Unknown(Track.of(self.line, self.frequency), height)
 
-    def clear_of_seabed(self, root: Root) -> Root:
-        """The same root for the line hanging clear of the seabed, to be sought again from there."""
-        goal = self.line.anchor_height - self.water.depth
-        return replace(root, unknown=replace(root.unknown, goal=goal, lands=False))
+def down_to(problem: Problem, unknown: Unknown, lower: int) -> Unknown:
+    """The question for the part of the line above a float: to bring its top to the surface."""
+    stages = int(problem.surfacing[lower].stage)
+    return Unknown(0.0, unknown.sought, unknown.rides, False, stages)
 
-    @cached_property
-    def lift(self) -> Floats:
-        """`standing_lift` of the line."""
-        return standing_lift(self.line, self.water)
 
-    @property
-    def at_rest(self) -> bool:
-        """Whether neither water nor wind moves."""
-        floating = self.line.floating
-        return not (self.water.moving or (floating is not None and floating.blown))
+def with_sought(unknown: Unknown, sought: int, rides: bool) -> Unknown:
+    """The same question for another float."""
+    return Unknown(unknown.goal, sought, rides, unknown.lands, unknown.stages)
 
-    @property
-    def coarse_step(self) -> float:
-        return max(COARSE_STEP, 2.0 * self.settings.angle_step)
 
-    def run(
-        self,
-        unknown: Unknown,
-        x: float,
-        step: float,
-        *,
-        profile: Profile | None = None,
-        cuts: Cuts | None = None,
-        record: bool = False,
-    ) -> End:
-        """One march at an angle step, or over given cuts."""
-        depth, out, afloat = unknown.placed(x, self.water.gravity)
-        self.marches += not unknown.part
-        return march(
-            unknown.track,
-            profile or self.profile,
-            depth,
-            angle_step=step,
-            reach=REACH * degrees(step) * self.span,
-            cuts=cuts,
-            record=record,
-            lands=unknown.lands,
-            out=out,
-            afloat=afloat,
-        )
+def miss_at(about: About, x: float) -> float:
+    """The miss at a value of the unknown [m]; NaN where the march stops.
 
-    def coarse_miss(self, unknown: Unknown) -> Callable[[float], float]:
-        """The miss as the march sees it at the coarse step."""
-        return lambda x: self.run(unknown, x, self.coarse_step).z - unknown.goal
+    What else the march leaves is in the work of the problem.
+    """
+    problem, unknown, work = about.problem, about.unknown, about.problem.work
+    depth, out = place(problem, unknown, x)
+    how = How(
+        about.step,
+        reach_of(problem.limits, about.step),
+        problem.limits.near,
+        unknown.stages,
+        unknown.lands,
+        about.given,
+        about.record != NOT_RECORDED,
+    )
+    cuts = work.halved if about.cuts == HALVED else work.chosen
+    record = work.records[max(about.record, 0)]
+    counts = work.counts[about.cuts]
+    pass_line(problem.course, problem.sea, how, depth, out, cuts, counts, record, work.left)
+    work.left[LAST] = x
+    if unknown.stages == len(problem.course.stages):
+        work.left[MARCHES] += 1
+    if work.left[FAILURE] != GOES_ON:
+        return nan
+    return work.left[Z] - unknown.goal
 
-    def coarse_root(
-        self, unknown: Unknown, a: float, miss_a: float, b: float, miss_b: float
-    ) -> Root:
-        """Root of the coarse miss between a and b, to about 1e-4 of the span."""
-        small, linear = 1e-4 * self.span, unknown.afloat is None
-        if linear:  # below the surface the miss all but is, so that the last step needs no march
-            small = max(small, 0.2 * max(abs(miss_a), abs(miss_b)))
-        x, miss, slope = bracketed_root(
-            self.coarse_miss(unknown), a, miss_a, b, miss_b,
-            small=min(small, NEARLY_LINEAR * self.span),
-            narrow=COARSEST_BRACKET * abs(b - a),
+
+def miss_now(miss: Callable[[About, float], float], about: About, x: float) -> float:
+    """Call a march by its address."""
+    return miss(about, x)
+
+
+def place(problem: Problem, unknown: Unknown, x: float) -> tuple[float, float]:
+    """Load what is at the surface for a value of the unknown.
+
+    Returns
+    -------
+    Depth of the free end, and length of the head above the surface from which it follows [m], 0
+    without.
+    """
+    work, loads, given = problem.work, problem.course.loads, problem.loads
+    if work.left[CHANGED] > 0.0:
+        for i in range(int(work.left[CHANGED])):
+            set_row(loads, i, given[i])
+        work.left[CHANGED] = 0.0
+    if unknown.sought == BELOW:
+        return x, 0.0
+    lowest = problem.course.stages[problem.surfacing[unknown.sought].stage]
+    work.left[CHANGED] = lowest.first + lowest.size
+    for k in range(unknown.sought + 1):
+        share = x if k == unknown.sought else work.shares[0][k]
+        place_of = problem.surfacing[k].load
+        set_row(loads, place_of, with_share(given[place_of], share))
+    if not unknown.rides:
+        return 0.0, 0.0
+    own = problem.surfacing[unknown.sought]
+    riding = riding_of(problem.afloat, problem.hull, x)
+    stage = problem.course.stages[own.stage]
+    for i in range(stage.first, stage.first + stage.size):
+        if given[i].piece < own.piece:
+            set_row(loads, i, lifted_out(given[i], riding.above, problem.sea.gravity))
+    set_row(loads, own.load, as_riding(with_share(given[own.load], x), riding))
+    if own.stage > 0:
+        return 0.0, 0.0
+    return 0.0, riding.above * own.rigid_above + riding.standing * own.length
+
+
+def with_share(load: Load, share: float) -> Load:
+    """A float with a share of its buoyancy."""
+    return changed(
+        load, share * load.buoyancy, share * load.volume, 1.0, load.lift, load.push_east,
+        load.push_north,
+    )  # fmt: skip
+
+
+def as_riding(load: Load, riding: Riding) -> Load:
+    """A float with the wind on it and its drag at the surface."""
+    return changed(
+        load, load.buoyancy, load.volume, riding.drag, load.lift, riding.push_east,
+        riding.push_north,
+    )  # fmt: skip
+
+
+def lifted_out(load: Load, share: float, gravity: float) -> Load:
+    """A load with a share of it out of the water: there it is not dragged, nor does it displace."""
+    wet = 1.0 - share
+    buoyancy = load.buoyancy - share * REFERENCE_DENSITY * gravity * load.volume
+    return changed(
+        load, buoyancy, wet * load.volume, wet, wet * load.lift, load.push_east, load.push_north
+    )
+
+
+def changed(
+    load: Load,
+    buoyancy: float,
+    volume: float,
+    drag: float,
+    lift: float,
+    push_east: float,
+    push_north: float,
+) -> Load:
+    """A load with other forces, its drags multiplied."""
+    return Load(
+        load.piece, load.clamp, load.at, load.lever, load.length, buoyancy, volume,
+        drag * load.normal_drag, drag * load.tangential_drag, load.directional, lift, push_east,
+        push_north, load.diameter, load.lengthening,
+    )  # fmt: skip
+
+
+def coarse_about(search: Search, unknown: Unknown) -> About:
+    """What the marches are about that only look for the neighbourhood of a root."""
+    step = search.problem.limits.coarse_step
+    return About(search.problem, unknown, step, CHOSEN, False, NOT_RECORDED)
+
+
+def coarse_miss(search: Search, unknown: Unknown, x: float) -> float:
+    """The miss as the march sees it at the coarse step."""
+    return search.miss(coarse_about(search, unknown), x)
+
+
+def coarse_root(
+    search: Search, unknown: Unknown, a: float, miss_a: float, b: float, miss_b: float
+) -> Root:
+    """Root of the coarse miss between a and b, to about 1e-4 of the span."""
+    span = search.problem.limits.span
+    small, linear = 1e-4 * span, unknown.sought == BELOW
+    if linear:  # below the surface the miss all but is, so that the last step needs no march
+        small = max(small, 0.2 * max(abs(miss_a), abs(miss_b)))
+    x, miss, slope = bracketed_root(
+        search.miss, coarse_about(search, unknown), a, miss_a, b, miss_b,
+        min(small, NEARLY_LINEAR * span), COARSEST_BRACKET * abs(b - a),
+    )  # fmt: skip
+    if linear and slope != 0.0:
+        x -= miss / slope
+    return Root(True, unknown, x, miss, slope)
+
+
+def coarser(search: Search, root: Root) -> Root:
+    """The coarse root near another one; that one where there is none."""
+    limits = search.problem.limits
+    small = 1e-4 * limits.span
+    found = near_root(
+        search, root, limits.coarse_step, CHOSEN, False, NOT_RECORDED, small, COARSEST_BRACKET
+    )
+    return found if found.found else root
+
+
+def planned(search: Search, root: Root, step: float) -> Root:
+    """The root as the march sees it at a step, near a coarser one; the cuts it takes are chosen.
+
+    With its free choice of cuts the march is not quite continuous, so this is no solution yet. On
+    the cuts it took last it is: the root is a last step away, which the caller marches.
+    """
+    limits = search.problem.limits
+    small = (2e-3 if limits.near > 0.0 else 1e-6) * limits.span
+    found = near_root(search, root, step, CHOSEN, False, NOT_RECORDED, small, COARSEST_BRACKET)
+    if not found.found and not isnan(found.miss):
+        return root
+    x = found.x
+    if found.slope < 0.0:
+        x -= found.miss / found.slope
+    return Root(True, found.unknown, x, found.miss, found.slope)
+
+
+def halve(problem: Problem) -> int:
+    """Halve the chosen cuts; returns how many that makes."""
+    work, chosen = problem.work, 0
+    for k in range(len(problem.course.cables)):
+        chosen += work.counts[CHOSEN][k]
+        work.counts[HALVED][k] = 2 * work.counts[CHOSEN][k]
+    for i in range(chosen):
+        half = 0.5 * work.chosen[i]
+        work.halved[2 * i] = half
+        work.halved[2 * i + 1] = half
+    return 2 * chosen
+
+
+def polish(search: Search, root: Root, cuts: int, record: int) -> Closed:
+    """Close the line on fixed segments, from a root found on others.
+
+    Floats at the surface above the one in question are first brought back to the surface.
+    """
+    unknown, shares = root.unknown, search.problem.work.shares
+    for k in range(unknown.sought):
+        part = down_to(search.problem, with_sought(unknown, k, False), k + 1)
+        near = Root(True, part, shares[0][k], 0.0, shares[1][k])
+        closed = close_near(search, near, cuts, record)
+        if closed.ending != FOUND:
+            return closed
+        shares[0][k], shares[1][k] = closed.root.x, closed.root.slope
+    return close_near(search, root, cuts, record)
+
+
+def close_near(search: Search, root: Root, cuts: int, record: int) -> Closed:
+    """Close a line, or a part of it, on fixed segments."""
+    problem, limits = search.problem, search.problem.limits
+    small = 0.1 * limits.allowed
+    if limits.near > 0.0:
+        small = (4.0 if cuts == CHOSEN else 0.5) * limits.allowed
+    if root.unknown.sought != BELOW:
+        small = min(small, limits.share_allowed * abs(root.slope))
+    if limits.near > 0.0 and root.unknown.stages < len(problem.course.stages):
+        small *= OF_A_PART
+    found = near_root(search, root, limits.angle_step, cuts, True, record, small, NARROWEST_BRACKET)
+    left = problem.work.left
+    if isnan(found.miss):
+        return not_closed(MARCH_STOPPED, left[FAILURE], found)
+    if not found.found:
+        return not_closed(NO_SHAPE_NEAR, 0.0, found)
+    if abs(found.miss) > max(limits.allowed, small):
+        ending = MISSES if found.unknown.sought == BELOW else SLACK_ON_DIGITS
+        return not_closed(ending, abs(found.miss), found)
+    nodes, landed, grounded = int(left[NODES]), left[LANDED] >= 0.0, 0.0
+    hanging = nodes - 1
+    if landed:
+        nodes, grounded = lay_line(
+            problem.course, problem.work.records[record], nodes, int(left[LANDED]), left[HANGING],
+            left[FX], left[FY], found.unknown.goal, limits.excess, limits.friction,
         )  # fmt: skip
-        return Root(unknown, x - miss / slope if linear and slope else x, slope)
+    return Closed(FOUND, 0.0, -1, found, nodes, hanging, landed, grounded)
 
-    def coarser(self, root: Root) -> Root:
-        """The coarse root near another one; that one where there is none."""
-        small = 1e-4 * self.span
-        found, *_ = self._near(root, self.coarse_step, None, small, COARSEST_BRACKET, record=False)
-        return found or root
 
-    def planned(self, root: Root, step: float) -> tuple[Root, Cuts]:
-        """The root as the march sees it at a step, near a coarser one, and the cuts it takes there.
+def not_closed(ending: int, value: float, root: Root) -> Closed:
+    """How a line ended that does not close."""
+    return Closed(ending, value, -1, root, 0, 0, False, 0.0)
 
-        With its free choice of cuts the march is not quite continuous, so this is no solution yet.
-        On the cuts it took last it is: the root is a last step away, which the caller marches.
-        """
-        small = 1e-6 * self.span
-        found, miss, end = self._near(root, step, None, small, COARSEST_BRACKET, record=False)
-        if found is None:
-            return root, end.cuts
-        if found.slope < 0.0:
-            found = replace(found, x=found.x - miss / found.slope)
-        return found, end.cuts
 
-    def polish(self, root: Root, cuts: Cuts) -> Closed:
-        """Close the line on fixed segments, from a root found on others.
+def near_root(
+    search: Search,
+    root: Root,
+    step: float,
+    cuts: int,
+    given: bool,
+    record: int,
+    small: float,
+    narrow: float,
+) -> Root:
+    """Root near another one, across the surface if need be; its march is the last one.
 
-        Floats at the surface above the one in question are first brought back to the surface.
-
-        Raises
-        ------
-        NoEquilibrium
-            ``slack`` where the shape hangs on the last digits of the buoyancy in use,
-            ``not-converged`` where no root is found.
-        """
-        unknown = self._resurfaced(root.unknown, cuts)
-        return self._closed(replace(root, unknown=unknown), cuts)
-
-    def _resurfaced(self, unknown: Unknown, cuts: Cuts) -> Unknown:
-        above: tuple[Afloat, ...] = ()
-        at_surface = list(unknown.shares(0.0))
-        for afloat, lower in zip(unknown.above, at_surface[1:], strict=False):
-            part = replace(unknown, afloat=afloat.piece, above=above).down_to(lower)
-            cables = sum(isinstance(stage, Cable) for stage in part.track.stages)
-            root = self._closed(Root(part, afloat.share, afloat.slope), cuts.first(cables)).root
-            above = (*above, Afloat(afloat.piece, root.x, root.slope))
-        return replace(unknown, above=above)
-
-    def _closed(self, root: Root, cuts: Cuts) -> Closed:
-        small = 0.1 * self.allowed
-        if root.unknown.afloat is not None:
-            small = min(small, SHARE_TOLERANCE * abs(root.slope))
-        step = self.settings.angle_step
-        found, miss, end = self._near(root, step, cuts, small, NARROWEST_BRACKET)
-        if found is None:
-            raise Status.NOT_CONVERGED.because("No closed shape was found near the first one.")
-        if abs(miss) > self.allowed:
-            if found.unknown.afloat is not None:
-                raise Status.SLACK.because(
-                    "The line is slack: its shape hangs on the last digits of the buoyancy in use."
-                )
-            end_point = "ship" if self.line.towed else "anchor"
-            raise Status.NOT_CONVERGED.because(
-                f"The line's end misses the {end_point} by {abs(miss):.3g} m."
-            )
-        hanging, grounded = end.nodes - 1, 0.0
-        if end.landed:
-            unknown, friction = found.unknown, self.settings.seabed_friction
-            end, grounded = lie_down(unknown.track, self.profile, end, unknown.goal, friction)
-        return Closed(found, miss, end, hanging, grounded)
-
-    def _near(
-        self,
-        root: Root,
-        step: float,
-        cuts: Cuts | None,
-        small: float,
-        narrow: float,
-        *,
-        record: bool = True,
-    ) -> tuple[Root | None, float, End]:
-        """Root near another one, across the surface if need be, its miss and its march.
-
-        Where there is none, the miss and march are those of the last try. `narrow` is the width
-        of the last bracket as a share of the whole range; `record` keeps the trace of the march.
-        """
-        tried: dict[float, tuple[float, End]] = {}
-        start: Root | None = root
-
-        def miss(x: float) -> float:
-            assert start is not None
-            end = self.run(start.unknown, x, step, cuts=cuts, record=record)
-            tried.clear()
-            tried[x] = end.z - start.unknown.goal, end
-            return tried[x][0]
-
-        while start is not None:
-            low, high = self._limits(start.unknown)
-            found = root_near(
-                miss, start.x, start.slope, (low, high), small=small, narrow=narrow * high
-            )
-            if found is not None:
-                x, _, slope = found
-                if x not in tried:
-                    miss(x)
-                return Root(start.unknown, x, slope), *tried[x]
-            start = self._across_the_surface(root.unknown) if start is root else None
-        return None, *next(iter(tried.values()))
-
-    def _limits(self, unknown: Unknown) -> tuple[float, float]:
-        """Between what the unknown is sought."""
-        if unknown.afloat is not None:
-            return 0.0, 1.0
-        return (-2.0 * self.span, 2.0 * self.span) if self.line.towed else (0.0, self.span)
-
-    def _across_the_surface(self, unknown: Unknown) -> Root | None:
-        """Where to seek on when a free end just below the surface should float, or the reverse."""
-        if unknown.above or unknown.part or self.line.towed:
-            return None
-        if unknown.afloat is not None:
-            return Root(replace(unknown, afloat=None), 0.0, -1.0)
-        if not self.floats:
-            return None
-        return Root(replace(unknown, afloat=self.floats[0]), 1.0, -0.01 * self.water.depth)
+    Parameters
+    ----------
+    step, cuts, given, record : as in `About`
+    small : the miss that is small enough [m]
+    narrow : width of the last bracket as a share of the whole range
+    """
+    problem = search.problem
+    unknown, x, slope = root.unknown, root.x, root.slope
+    miss = 0.0
+    for side in range(2):
+        about = About(problem, unknown, step, cuts, given, record)
+        low, high = 0.0, 1.0
+        if unknown.sought == BELOW:
+            high = problem.limits.span
+            if problem.limits.towed:
+                low, high = -2.0 * high, 2.0 * high
+        found, x, miss, slope = root_near(
+            search.miss, about, x, slope, low, high, small, narrow * high
+        )
+        if found:
+            if x != problem.work.left[LAST] and not isnan(miss):
+                miss = search.miss(about, x)
+            return Root(True, unknown, x, miss, slope)
+        whole = unknown.stages == len(problem.course.stages)
+        across = whole and unknown.sought <= 0 and len(problem.surfacing) > 0
+        if side > 0 or problem.limits.towed or not across:
+            break
+        if unknown.sought == BELOW:
+            unknown, x = with_sought(unknown, 0, unknown.rides), 1.0
+            slope = -0.01 * problem.limits.depth
+        else:
+            unknown, x, slope = with_sought(unknown, BELOW, unknown.rides), 0.0, -1.0
+    return Root(False, unknown, x, miss, slope)

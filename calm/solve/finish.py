@@ -1,22 +1,62 @@
-"""From a closed line to a solution that has passed every check."""
+"""From a closed line to a solution, or to the reason why there is none."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import replace
 
-from calm.physics.line import Floats, Line
+import numpy as np
+
+from calm.errors import NoEquilibrium
+from calm.physics.compiled import compiled as compiled_law
+from calm.physics.line import Line, Water
+from calm.physics.state import FAILURES, Trace
 from calm.physics.track import Load
-from calm.solve.audit import LARGEST_CLOSURE, LARGEST_MOMENT, Audit
-from calm.solve.closing import Closed, Closing
-from calm.solve.refine import Refined
-from calm.solve.solution import Solution, nodes_of, sizes
-from calm.solve.standing import surface_lift
+from calm.solve.closing import Closed
+from calm.solve.endings import (
+    ABOVE_SURFACE,
+    BELOW_SEABED,
+    DRAGGED_DOWN,
+    FOLDED,
+    FOUND,
+    MARCH_STOPPED,
+    MISSES,
+    NO_SHAPE_NEAR,
+    NOT_CLOSED,
+    NOT_LYING,
+    OUT_OF_BALANCE,
+    RISES,
+    SLACK_AT_REST,
+    SLACK_ON_DIGITS,
+    TOO_MANY_AFLOAT,
+    UNSUPPORTED,
+)
+from calm.solve.problem import BELOW, CHANGED, FINE, MARCHES, MOST_AFLOAT, Problem, Search
+from calm.solve.refine import Errors, Refined
+from calm.solve.search import NO_OTHER, Found, Referee, audit_shape, ending_of_audit, stated_errors
+from calm.solve.solution import Settings, Solution
+from calm.solve.standing import standing_lift, too_heavy
 from calm.solve.status import Status
 
-UNSEEN = 1e-9
-"""Error, as a share of the span and of the greatest force, that both step sizes may have alike:
-of rounding, of a share of buoyancy, of a node that should be at a level and is just beside it."""
+STATUS_OF = {
+    FOUND: Status.CONVERGED,
+    MARCH_STOPPED: Status.NOT_CONVERGED,
+    NO_SHAPE_NEAR: Status.NOT_CONVERGED,
+    MISSES: Status.NOT_CONVERGED,
+    SLACK_ON_DIGITS: Status.SLACK,
+    SLACK_AT_REST: Status.SLACK,
+    TOO_MANY_AFLOAT: Status.ABOVE_SURFACE,
+    RISES: Status.ABOVE_SURFACE,
+    DRAGGED_DOWN: Status.GROUNDED,
+    NOT_LYING: Status.GROUNDED,
+    UNSUPPORTED: Status.NO_EQUILIBRIUM,
+    BELOW_SEABED: Status.GROUNDED,
+    ABOVE_SURFACE: Status.ABOVE_SURFACE,
+    NOT_CLOSED: Status.NOT_CONVERGED,
+    OUT_OF_BALANCE: Status.NOT_CONVERGED,
+    FOLDED: Status.SLACK,
+}
+"""What an ending comes to."""
 
 _OF_CLAMP = {
     "clamp_buoyancy": "buoyancy",
@@ -39,100 +79,225 @@ _OF_PIECE = {
 """Columns of a line and what of a load of the march stands there."""
 
 
-def finished(
-    closing: Closing,
+def solution_of(
+    problem: Problem,
+    line: Line,
+    water: Water,
+    settings: Settings,
     refined: Refined,
-    other_depth: float | None,
-    check: Callable[[Solution], None],
+    errors: Errors,
+    frequency: float = 0.0,
 ) -> Solution:
-    """The solution of a closed line.
+    """The solution in the record `FINE`, not audited.
 
     Parameters
     ----------
-    other_depth : as in `Solution`
-    check : refuses a shape that cannot be where it is
+    problem : of the line, as it was left by the search
+    errors : as stated
+    frequency : of the cables that strum [Hz]
+    """
+    closed = refined.closed
+    trace = Trace.of(problem.work.records[FINE], closed.nodes)
+    position = trace.position
+    position[:, :2] -= position[-1, :2]
+    used, reserve = _buoyancy_in_use(problem, closed)
+    unknown = closed.root.unknown
+    floats = problem.surfacing[: unknown.sought + 1]
+    riding = None
+    if unknown.sought != BELOW and unknown.rides and line.floating is not None:
+        riding = line.floating.riding(closed.root.x)
+    return Solution(
+        line=line,
+        water=water,
+        settings=settings,
+        position=position,
+        force=trace.force,
+        element_piece=trace.piece,
+        element_clamp=trace.clamp,
+        landed=bool(closed.landed),
+        hanging=closed.hanging,
+        grounded_length=closed.grounded,
+        cut=trace.cut,
+        strain=trace.strain,
+        afloat=tuple(int(each[0]) for each in floats),
+        buoyancy_used=used,
+        reserve=reserve,
+        carried=_carried(line, problem) if unknown.sought != BELOW else line,
+        riding=riding,
+        marches=int(problem.work.left[MARCHES]),
+        segments=refined.segments,
+        miss=closed.root.miss,
+        depth_error=errors.depth,
+        tension_error=errors.tension,
+        lift_error=errors.lift,
+        pull_error=errors.pull,
+        frequency=frequency,
+    )
+
+
+def _buoyancy_in_use(problem: Problem, closed: Closed) -> tuple[float, float]:
+    """Share in use of the buoyancy of the floats at the surface, and the rest of it [N]."""
+    sought = closed.root.unknown.sought
+    if sought == BELOW:
+        return 1.0, 0.0
+    lifts = [float(each[6]) for each in problem.surfacing[: sought + 1]]
+    shares = [*problem.work.shares[0][:sought], closed.root.x]
+    total, used = sum(lifts), sum(a * b for a, b in zip(shares, lifts, strict=True))
+    return float(used / total), float(total - used)
+
+
+def _carried(line: Line, problem: Problem) -> Line:
+    """The line as it is loaded: what is at the surface by what is in the water and in use of it."""
+    columns = {name: getattr(line, name).copy() for name in (*_OF_PIECE, *_OF_CLAMP)}
+    for i in range(int(problem.work.left[CHANGED])):
+        load = Load(*problem.course.loads[i])
+        where, names = (load.piece, _OF_PIECE) if load.clamp < 0 else (load.clamp, _OF_CLAMP)
+        for column, name in names.items():
+            columns[column][int(where)] = getattr(load, name)
+    return replace(line, **columns)
+
+
+def finished(
+    search: Search,
+    referee: Referee,
+    line: Line,
+    water: Water,
+    settings: Settings,
+    refined: Refined,
+    check: Callable[[Solution], None],
+    *,
+    compiled: bool,
+    frequency: float = 0.0,
+) -> Solution:
+    """The solution of a closed line that passes a check, and the audit.
 
     Raises
     ------
     NoEquilibrium
         Where a check fails, that of the place or one of the audit.
     """
-    fine = refined.closed
-    position, force = nodes_of(fine.trace)
-    unknown = fine.root.unknown
-    changed = unknown.placed(fine.root.x, closing.water.gravity).afloat.values()
-    used, reserve = _buoyancy_in_use(closing, fine)
-    afloat = tuple(unknown.shares(fine.root.x))
-    unclosed = abs(fine.miss) / closing.span + UNSEEN
-    unseen = _greatest_force(closing, fine, force) * unclosed
-    solution = Solution(
-        line=closing.line,
-        water=closing.water,
-        settings=closing.settings,
-        position=position,
-        force=force,
-        element_piece=fine.trace.piece,
-        element_clamp=fine.trace.clamp,
-        landed=fine.end.landed,
-        hanging=fine.hanging,
-        grounded_length=fine.grounded_length,
-        cut=fine.trace.cut,
-        strain=fine.trace.strain,
-        afloat=afloat,
-        buoyancy_used=used,
-        reserve=reserve,
-        carried=_carried(closing.line, changed) if afloat else closing.line,
-        riding=unknown.riding(fine.root.x),
-        marches=closing.marches,
-        segments=len(fine.end.cuts.lengths),
-        miss=fine.miss,
-        depth_error=refined.depth_error + closing.span * unclosed,
-        tension_error=refined.tension_error + unseen,
-        lift_error=refined.lift_error + unseen,
-        pull_error=refined.pull_error + unseen,
-        other_depth=other_depth,
-        frequency=closing.frequency,
-    )
+    errors = stated_errors(search.problem, refined)
+    solution = solution_of(search.problem, line, water, settings, refined, errors, frequency)
     check(solution)
-    return _audited(solution)
+    audit = compiled_law(audit_shape) if compiled else audit_shape
+    closure, moment = audit(search.problem, referee, refined.closed)
+    refuse_unbalanced(closure, moment)
+    return replace(solution, closure=closure, moment_residual=moment)
 
 
-def _buoyancy_in_use(closing: Closing, fine: Closed) -> tuple[float, float]:
-    """Share in use of the buoyancy of the floats at the surface, and the rest of it [N]."""
-    shares = fine.root.unknown.shares(fine.root.x)
-    if not shares:
-        return 1.0, 0.0
-    lift = surface_lift(closing.line, closing.water)
-    total = float(sum(lift[p] for p in shares))
-    used = float(sum(shares[p] * lift[p] for p in shares))
-    return used / total, total - used
+def refuse_unbalanced(closure: float, moment: float) -> None:
+    """Refuse a shape that the audit does not pass.
+
+    Raises
+    ------
+    NoEquilibrium
+    """
+    ending, value = ending_of_audit(closure, moment)
+    if ending != FOUND:
+        raise audit_refusal(ending, value)
 
 
-def _greatest_force(closing: Closing, fine: Closed, force: Floats) -> float:
-    """The greatest tension, or buoyancy of a float whose share in use is sought [N]."""
-    lift = closing.line.buoyancy[list(fine.root.unknown.shares(fine.root.x))]
-    return max(float(sizes(force).max()), float(lift.max(initial=0.0)))
-
-
-def _carried(line: Line, changed: Iterable[Load]) -> Line:
-    """The line as it is loaded: what is at the surface by what is in the water and in use of it."""
-    columns = {name: getattr(line, name).copy() for name in (*_OF_PIECE, *_OF_CLAMP)}
-    for load in changed:
-        where, names = (load.piece, _OF_PIECE) if load.clamp < 0 else (load.clamp, _OF_CLAMP)
-        for column, name in names.items():
-            columns[column][where] = getattr(load, name)
-    return replace(line, **columns)
-
-
-def _audited(solution: Solution) -> Solution:
-    """The solution with its closure and moment residual; refused where a check fails."""
-    audit = Audit(solution)
-    closure, moment_residual = audit.closure(), audit.moment_residual()
-    solution = replace(solution, closure=closure, moment_residual=moment_residual)
-    if not closure <= LARGEST_CLOSURE:
-        raise Status.NOT_CONVERGED.because(
-            f"The loads do not sum to the force at the line's end: they are {closure:.1e} off."
+def audit_refusal(ending: int, value: float) -> NoEquilibrium:
+    """What the audit says against a shape."""
+    if ending == NOT_CLOSED:
+        return Status.NOT_CONVERGED.because(
+            f"The loads do not sum to the force at the line's end: they are {value:.1e} off."
         )
-    if not moment_residual <= LARGEST_MOMENT:
-        raise Status.NOT_CONVERGED.because(f"A piece is {moment_residual:.1e} rad out of balance.")
-    return solution
+    return Status.NOT_CONVERGED.because(f"A piece is {value:.1e} rad out of balance.")
+
+
+def closing_refusal(closed: Closed, towed: bool) -> NoEquilibrium:
+    """Why a line does not close."""
+    if closed.ending == MARCH_STOPPED:
+        return march_stopped(closed.value)
+    if closed.ending == NO_SHAPE_NEAR:
+        return Status.NOT_CONVERGED.because("No closed shape was found near the first one.")
+    if closed.ending == SLACK_ON_DIGITS:
+        return Status.SLACK.because(
+            "The line is slack: its shape hangs on the last digits of the buoyancy in use."
+        )
+    end_point = "ship" if towed else "anchor"
+    return Status.NOT_CONVERGED.because(
+        f"The line's end misses the {end_point} by {closed.value:.3g} m."
+    )
+
+
+def march_stopped(failure: float, piece: int | None = None) -> NoEquilibrium:
+    """Why a march stopped, by its number."""
+    return Status.NOT_CONVERGED.because(f"The march stopped: {FAILURES[int(failure)]}.", piece)
+
+
+def refusal_of(found: Found, line: Line, water: Water) -> NoEquilibrium:
+    """Why a moored line has no shape."""
+    ending, value, piece = found.ending, found.value, found.piece
+    if ending in (MARCH_STOPPED, NO_SHAPE_NEAR, MISSES, SLACK_ON_DIGITS):
+        return closing_refusal(found.refined.closed, False)
+    if ending == UNSUPPORTED:
+        return too_heavy(standing_lift(line, water))
+    if ending == SLACK_AT_REST:
+        length = float(line.length.sum())
+        radius = np.sqrt(max(length**2 - water.depth**2, 0.0))
+        return Status.SLACK.because(
+            f"There is no current and the line, {length:.1f} m uncut, is longer than the "
+            "water is deep: it has no unique shape. Its watch circle has a radius of "
+            f"{radius:.0f} m."
+        )
+    if ending == TOO_MANY_AFLOAT:
+        return Status.ABOVE_SURFACE.because(
+            f"More than {MOST_AFLOAT} floats would lie at the surface, one after the other."
+        )
+    if ending == RISES:
+        return Status.ABOVE_SURFACE.because(
+            "A buoyant part of the line would rise above the surface: "
+            "more of it than the floats listed one below the other."
+        )
+    if ending == DRAGGED_DOWN:
+        return Status.GROUNDED.because("The current drags the whole line down to the seabed.")
+    if ending == NOT_LYING:
+        return Status.GROUNDED.because("The line does not lie on the seabed.")
+    if ending == BELOW_SEABED:
+        return touching(piece, value)
+    if ending == ABOVE_SURFACE:
+        return risen(piece, value)
+    return audit_refusal(ending, value)
+
+
+def refuse_out_of_the_water(solution: Solution) -> None:
+    """Refuse a shape that comes below the seabed or above the surface.
+
+    Raises
+    ------
+    NoEquilibrium
+    """
+    height, depth = solution.position[:, 2], solution.water.depth
+    margin = max(solution.depth_error, 1e-6 * depth)
+    # a float at the surface may stand out of it, however it is turned
+    standing = float(solution.line.length[list(solution.afloat)].sum())
+    if solution.riding is not None:
+        standing = float(solution.line.length[: max(solution.afloat) + 1].sum())
+    lowest, highest = int(np.argmin(height)), int(np.argmax(height))
+    if height[lowest] < -depth - margin:
+        raise touching(solution.piece_at(lowest), -depth - height[lowest])
+    if height[highest] > margin + standing:
+        raise risen(solution.piece_at(highest), height[highest])
+
+
+def risen(piece: int, above: float) -> NoEquilibrium:
+    """A line that would rise out of the water."""
+    return Status.ABOVE_SURFACE.because(
+        f"The line would rise out of the water: {{piece}} comes {above:.2f} m above the surface.",
+        piece,
+    )
+
+
+def touching(piece: int, below: float) -> NoEquilibrium:
+    """A line that would touch the seabed."""
+    return Status.GROUNDED.because(
+        f"The line would touch the seabed: {{piece}} comes {below:.2f} m below it.", piece
+    )
+
+
+def other_of(found: Found) -> tuple[float | None, float]:
+    """Depth of the free end in another equilibrium, and its length on the seabed [m]."""
+    depth = None if found.other_depth == NO_OTHER else found.other_depth
+    return depth, found.other_grounded

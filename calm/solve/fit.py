@@ -11,10 +11,11 @@ from calm.physics.march import march
 from calm.physics.profile import Profile
 from calm.physics.state import MarchError
 from calm.physics.track import Track
-from calm.solve.closing import COARSE_STEP, REACH
 from calm.solve.mooring import solve_mooring
+from calm.solve.problem import COARSE_STEP, REACH
 from calm.solve.root import root_near
 from calm.solve.solution import Settings
+from calm.solve.speed import runs_compiled
 from calm.solve.standing import refuse_unsupported, standing_lift, too_heavy
 from calm.solve.status import Status
 from calm.solve.tow import Towing, solve_tow
@@ -42,7 +43,7 @@ def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings:
     # a plumb line is exact with long segments
     coarse = replace(settings, angle_step=max(settings.angle_step, COARSE_STEP))
 
-    def excess(length: float) -> float:
+    def excess(_: None, length: float) -> float:
         """Depth of the free end of the line as it is solved, below what is asked."""
         try:
             solution = solve_mooring(line.with_length(piece, length), still_water, coarse)
@@ -53,17 +54,17 @@ def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings:
         return -float(solution.position[0, 2]) - top_depth
 
     near = settings.tolerance * water.depth
-    if upright is not None and abs(excess(upright)) <= near:
+    if upright is not None and abs(excess(None, upright)) <= near:
         return upright
     # part of the line lies on the seabed, which lengthens what stands by nothing
     room = water.depth - line.anchor_height - top_depth
     others = float(line.length.sum()) - float(line.length[piece])
     start = max(room - others, shortest) if upright is None else upright
-    found = root_near(
-        excess, start, -1.0, (shortest, water.depth), small=near, narrow=1e-9 * water.depth
+    found, fitting, left, _ = root_near(
+        excess, None, start, -1.0, shortest, water.depth, near, 1e-9 * water.depth
     )
-    if found is not None and abs(found[1]) <= near:
-        return found[0]
+    if found and abs(left) <= near:
+        return fitting
     lift = standing_lift(line, water)
     if float(lift[:piece].sum()) <= 0.0:
         raise too_heavy(lift)
@@ -85,7 +86,9 @@ def _upright_length(
     still, goal = Profile(water), line.anchor_height - water.depth
     room = water.depth - line.anchor_height - top_depth
 
-    def miss(length: float) -> float:
+    compiled = runs_compiled(settings)
+
+    def miss(_: None, length: float) -> float:
         track = Track.of(line.with_length(piece, length))
         # a plumb line's strain is linear along it, so long segments are exact
         end = march(
@@ -94,6 +97,7 @@ def _upright_length(
             top_depth,
             angle_step=COARSE_STEP,
             reach=4 * REACH * water.depth,
+            compiled=compiled,
         )
         return end.z - goal
 
@@ -101,19 +105,14 @@ def _upright_length(
     others = float(line.length.sum()) - float(line.length[piece])
     shortest = float(line.clamp_at[line.clamp_piece == piece].max(initial=0.0))
     try:
-        found = root_near(
-            miss,
-            room - others,
-            -1.0,
-            (shortest, water.depth),
-            small=small,
-            narrow=1e-9 * water.depth,
+        found, fitting, left, _ = root_near(
+            miss, None, room - others, -1.0, shortest, water.depth, small, 1e-9 * water.depth
         )
     except MarchError as error:
         raise Status.NOT_CONVERGED.because(f"The march stopped: {error}.", piece) from error
-    if found is None or abs(found[1]) > settings.tolerance * water.depth:
+    if not found or abs(left) > settings.tolerance * water.depth:
         return None
-    return found[0]
+    return fitting
 
 
 def fit_tow_length(
@@ -135,7 +134,7 @@ def fit_tow_length(
     bottomless = replace(water, depth=inf)
     node = len(line.length) - 1 - piece
 
-    def lacking(length: float) -> float:
+    def lacking(_: None, length: float) -> float:
         try:
             out = line.with_length(piece, length)
             solution = solve_tow(out, bottomless, towing, settings)
@@ -149,16 +148,16 @@ def fit_tow_length(
     longest = 1000.0 * depth
     start = max(depth + towing.height, shortest)
     # where a solution's cuts change their number its depth makes a step, within its accuracy
-    found = root_near(
-        lacking, start, -1.0, (shortest, longest), small=1e-7 * depth, narrow=1e-9 * depth
+    found, fitting, left, _ = root_near(
+        lacking, None, start, -1.0, shortest, longest, 1e-7 * depth, 1e-9 * depth
     )
-    if found is None or found[1] > 1e-4 * depth:
-        short = lacking(shortest)
-        out, lack = (shortest, short) if short < 0.0 else (longest, lacking(longest))
+    if not found or left > 1e-4 * depth:
+        short = lacking(None, shortest)
+        out, lack = (shortest, short) if short < 0.0 else (longest, lacking(None, longest))
         raise Status.NO_EQUILIBRIUM.because(
             f"No length of {{piece}} brings its lower end to {depth:g} m at this speed: "
             f"with {out:g} m out it runs at {depth - lack:.2f} m.",
             piece,
             "Choose another depth or speed, or change what the cable or its body weighs.",
         )
-    return found[0]
+    return fitting

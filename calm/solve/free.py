@@ -24,10 +24,12 @@ from calm.physics.line import Floats, Line, Water
 from calm.physics.march import Cuts
 from calm.physics.state import MarchError
 from calm.physics.track import head_count
-from calm.solve.audit import LARGEST_CLOSURE, Audit
+from calm.solve.audit import Audit
 from calm.solve.free_march import Falling, FallingAnchor, Moving, Rising
 from calm.solve.free_search import Place, terminal
+from calm.solve.search import LARGEST_CLOSURE
 from calm.solve.solution import Settings, Solution, nodes_of
+from calm.solve.speed import runs_compiled
 from calm.solve.status import Status
 
 
@@ -68,7 +70,8 @@ def solve_fall(
         ``anchor-lifts`` where the line is too buoyant to fall, ``no-equilibrium`` where no drag
         limits its speed, ``not-converged`` where no motion passes the checks.
     """
-    motion = _solve(Falling(line, water, anchor), settings or Settings())
+    settings = settings or Settings()
+    motion = _solve(Falling(line, water, runs_compiled(settings, line), anchor), settings)
     if motion.velocity[2] >= 0.0:
         raise Status.ANCHOR_LIFTS.because(
             f"The anchor weighs {anchor.weight:.0f} N in water and does not pull the line down."
@@ -97,7 +100,8 @@ def solve_rise(
         ``no-equilibrium`` where no drag limits the speed, ``not-converged`` where no motion passes
         the checks.
     """
-    return _solve(Rising(line, water, depth), settings or Settings())
+    settings = settings or Settings()
+    return _solve(Rising(line, water, runs_compiled(settings, line), depth), settings)
 
 
 def _solve(moving: Moving, settings: Settings) -> FreeMotion:

@@ -20,7 +20,7 @@ from calm.physics.profile import Profile
 from calm.physics.reference import REFERENCE_DENSITY
 from calm.physics.state import Trace
 from calm.physics.track import Cable, Rod, Track, head_count
-from calm.solve.closing import REACH
+from calm.solve.problem import REACH
 
 
 @dataclass(frozen=True)
@@ -66,11 +66,13 @@ class Meeting:
 class Moving(ABC):
     """A line that moves steadily, all of it alike, in water whose current is that over the ground.
 
-    One of its ends is at a depth that is unknown; it is the `depth` of the methods [m].
+    One of its ends is at a depth that is unknown; it is the `depth` of the methods [m]. `compiled`
+    is as in `Settings`.
     """
 
     line: Line
     water: Water
+    compiled: bool
 
     @property
     @abstractmethod
@@ -137,6 +139,7 @@ class Moving(ABC):
             reach=reach,
             cuts=cuts,
             record=record,
+            compiled=self.compiled,
         )
 
 

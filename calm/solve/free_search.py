@@ -23,7 +23,7 @@ COARSE = 4.0
 """Segments of the marches that look for the neighbourhood of a root, in those of the final ones."""
 NEAR, CLOSE = 1e-3, 1e-9
 """Force without balance, as a share of the net weight, before and after the last choice of cuts."""
-WAYS = ((1.0,), (0.1, 0.25, 0.5, 0.75, 1.0))
+SHEARS = ((1.0,), (0.1, 0.25, 0.5, 0.75, 1.0))
 """By way of which shares of a sheared current the motion in it is sought: at once, or in steps."""
 
 
@@ -49,7 +49,7 @@ def terminal(moving: Moving, angle_step: float) -> tuple[Place, Cuts]:
     MarchError
     """
     plumb = _plumb(moving, angle_step)
-    for shares in WAYS:
+    for shares in SHEARS:
         found: tuple[Place, Cuts] | None = (plumb, NO_CUTS)
         for share in shares:
             if found is not None:
@@ -82,21 +82,21 @@ def _plumb(moving: Moving, angle_step: float) -> Place:
         met = upright.meet(upright.flow(velocity), depth, COARSE * angle_step)
         return Place(velocity, depth + met.gap), float(met.force[2])
 
-    def lifted(squared: float) -> float:
+    def lifted(_: None, squared: float) -> float:
         return meeting(squared)[1]
 
-    resting = lifted(0.0)
-    slope = lifted(copysign(1.0, resting)) - resting
+    resting = lifted(None, 0.0)
+    slope = lifted(None, copysign(1.0, resting)) - resting
     limit = FASTEST**2
-    found = root_near(
-        lifted, 0.0, -abs(slope), (-limit, limit), small=NEAR * abs(resting), narrow=1e-9
+    found, squared, _, _ = root_near(
+        lifted, None, 0.0, -abs(slope), -limit, limit, NEAR * abs(resting), 1e-9
     )
-    if found is None:
+    if not found:
         raise Status.NO_EQUILIBRIUM.because(
             "Nothing limits the speed of the line: neither it nor its anchor has any drag.",
             advice="Give its pieces, or the anchor (`kt`), their drag.",
         )
-    place, _ = meeting(found[0])
+    place, _ = meeting(squared)
     return replace(place, velocity=place.velocity + _mean_current(moving, place, angle_step))
 
 

@@ -155,8 +155,8 @@ class LeastChange:
                 bad = middle
         ceiling = self.at(bad)
         root, _, _ = bracketed_root(
-            lambda x: min(self.at(x), ceiling), bad, ceiling, good, self.at(good),
-            small=self.small if self.exact else 0.0, narrow=_NARROW * max(abs(bad), abs(good)),
+            lambda _, x: min(self.at(x), ceiling), None, bad, ceiling, good, self.at(good),
+            self.small if self.exact else 0.0, _NARROW * max(abs(bad), abs(good)),
         )  # fmt: skip
         return root if self.exact else self._rounded(root, good)
 

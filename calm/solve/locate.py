@@ -2,19 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
-from itertools import pairwise
-from math import sqrt
+from math import isnan, nan, sqrt
+from typing import NamedTuple
 
-import numpy as np
-
+from calm.physics.compiled import set_row
 from calm.physics.hull import AWASH
-from calm.physics.profile import Profile
-from calm.solve.closing import Closing, Root
-from calm.solve.standing import standing_length
-from calm.solve.status import Status
-from calm.solve.unknown import Afloat, Unknown
+from calm.physics.passing import FAILURE, Z
+from calm.physics.profile import Interval, Sea
+from calm.solve.closing import (
+    Root,
+    coarse_about,
+    coarse_miss,
+    coarse_root,
+    down_to,
+    whole_line,
+    with_sought,
+)
+from calm.solve.endings import (
+    DRAGGED_DOWN,
+    FOUND,
+    MARCH_STOPPED,
+    RISES,
+    SLACK_AT_REST,
+    TOO_MANY_AFLOAT,
+)
+from calm.solve.problem import BELOW, MOST_AFLOAT, About, Problem, Search, Unknown
 
 SCAN = 16
 """Depths tried between the upright line and its deepest conceivable knockdown where the current
@@ -27,8 +39,6 @@ DIP = 8
 GOLDEN = 0.381966
 ROUNDING = 1e-12
 """Share of a current that is no growth of it: what a weaker one of the same direction leaves."""
-MOST_AFLOAT = 16
-"""Floats at the surface one after the other: each is sought with all those above it."""
 SHARES = (0.0, 0.4, 0.7, 0.85, 0.94, 1.0 - AWASH, 0.995)
 """Shares of its buoyancy in use at which a float that would be under water is tried afloat."""
 
@@ -36,164 +46,249 @@ Sample = tuple[float, float]
 """A value of the unknown and the miss there [m]."""
 
 
-def locate(closing: Closing, lands: bool) -> tuple[Root, Root | None]:
-    """Find coarse roots, of a line that hangs clear of the seabed or one that lands.
+class Located(NamedTuple):
+    """Coarse roots, of a line that hangs clear of the seabed or one that lands.
 
-    Returns
-    -------
-    The highest root, and the deepest one that the scan came upon; None where that is the same.
-    Where the miss grows with depth a line does not stay, so such roots do not count.
-
-    Raises
-    ------
-    NoEquilibrium
-        ``slack``, ``above-surface`` or ``grounded``.
+    Attributes
+    ----------
+    ending, value : FOUND, or why there is none: see `calm.solve.endings`
+    root : the highest
+    deeper : the deepest that the scan came upon; not `found` where that is the same
     """
-    unknown = closing.whole(lands)
-    miss = closing.coarse_miss(unknown)
-    upright = upright_depth(closing, unknown)
-    samples = [(upright, miss(upright))]
-    if samples[0][1] < 0.0 < upright:
+
+    ending: int
+    value: float
+    root: Root
+    deeper: Root
+
+
+def locate(search: Search, lands: bool) -> Located:
+    """Find coarse roots.
+
+    Where the miss grows with depth a line does not stay, so such roots do not count.
+    """
+    problem = search.problem
+    unknown = whole_line(problem, lands)
+    none = Root(False, unknown, nan, nan, nan)
+    upright = max(-problem.limits.standing - unknown.goal, 0.0)
+    samples = problem.work.samples
+    count, samples[0][0] = 1, upright
+    samples[1][0] = coarse_miss(search, unknown, upright)
+    if samples[1][0] < 0.0 < upright:
         # the current's pull stretches the line further
-        samples.insert(0, (0.0, miss(0.0)))
-    depth, high = samples[0]
-    roots = []
+        samples[0][1], samples[1][1] = upright, samples[1][0]
+        samples[0][0], samples[1][0] = 0.0, coarse_miss(search, unknown, 0.0)
+        count = 2
+    top, high = samples[0][0], samples[1][0]
+    if isnan(high):
+        return stopped(problem, none)
+    highest, deepest = none, none
     if high < 0.0:
-        roots.append(_at_surface(closing, unknown, high))
-    elif depth == 0.0 and (awash := _awash(closing, unknown, high)) is not None:
-        roots.append(awash)
-    for upper, lower in _below_surface(closing, unknown, samples):
-        roots.append(closing.coarse_root(unknown, *upper, *lower))
-    if not roots:
-        raise Status.GROUNDED.because("The current drags the whole line down to the seabed.")
-    return roots[0], roots[-1] if len(roots) > 1 else None
+        at_surface = surface_root(search, unknown, high)
+        if at_surface.ending != FOUND:
+            return at_surface
+        highest = at_surface.root
+    elif top == 0.0:
+        highest = awash(search, unknown, high)
+        if isnan(highest.miss) and highest.found:
+            return stopped(problem, none)
+    count = samples_below(search, unknown, count)
+    if count == 0:
+        return stopped(problem, none)
+    before: Sample = (nan, nan)
+    for i in range(count):
+        here = (samples[0][i], samples[1][i])
+        between = here
+        if 0 < i < count - 1:
+            after = (samples[0][i + 1], samples[1][i + 1])
+            earlier = (samples[0][i - 1], samples[1][i - 1])
+            between = dip(search, unknown, earlier, here, after)
+            if isnan(between[1]):
+                return stopped(problem, none)
+        first, second = (between, here) if between[0] < here[0] else (here, between)
+        for step in range(2):
+            lower = first if step == 0 else second
+            if before[1] >= 0.0 > lower[1]:
+                root = coarse_root(search, unknown, before[0], before[1], lower[0], lower[1])
+                if isnan(root.miss):
+                    return stopped(problem, none)
+                if highest.found:
+                    deepest = root
+                else:
+                    highest = root
+                if problem.limits.near > 0.0:
+                    return Located(FOUND, 0.0, highest, deepest)
+            before = lower
+    if not highest.found:
+        return Located(DRAGGED_DOWN, 0.0, none, none)
+    return Located(FOUND, 0.0, highest, deepest)
 
 
-def upright_depth(closing: Closing, unknown: Unknown) -> float:
-    """Depth of the free end of the line standing in still water, with its stretch [m]."""
-    return max(-standing_length(closing.line, closing.lift) - unknown.goal, 0.0)
+def stopped(problem: Problem, none: Root) -> Located:
+    """What comes of a march that stopped."""
+    return Located(MARCH_STOPPED, problem.work.left[FAILURE], none, none)
 
 
-def _below_surface(
-    closing: Closing, unknown: Unknown, samples: list[Sample]
-) -> list[tuple[Sample, Sample]]:
-    """Intervals of depth that each hold a root, the highest first, from given samples on.
+def sample(search: Search, unknown: Unknown, count: int, depth: float) -> int:
+    """Add the miss at a depth to the samples; returns how many there are."""
+    miss = coarse_miss(search, unknown, depth)
+    samples = search.problem.work.samples
+    samples[0][count], samples[1][count] = depth, miss
+    return count + 1
+
+
+def samples_below(search: Search, unknown: Unknown, count: int) -> int:
+    """Samples of depth that tell roots apart, from given samples on; 0 where a march stops.
 
     Where the current neither grows nor turns with depth the miss falls by more than the shift, so
     that there is one root at most, which the first shift brackets. Where it does so enough to
     matter, depths are scanned.
     """
-    miss, deepest = closing.coarse_miss(unknown), closing.water.depth
-    (top, high), (depth, low) = samples[0], samples[-1]
-    growth = _growth(closing, top)
-    if growth > 0.0 and (high < 0.0 or high > closing.allowed):
-        fall = _largest_fall(closing, unknown, top)
+    problem, limits = search.problem, search.problem.limits
+    samples, deepest = problem.work.samples, limits.depth
+    top, high = samples[0][0], samples[1][0]
+    depth, low = samples[0][count - 1], samples[1][count - 1]
+    growth = growth_below(problem.sea, top)
+    if growth > 0.0 and (high < 0.0 or high > limits.allowed):
+        fall = largest_fall(search, unknown, top)
+        if isnan(fall):
+            return 0
         if fall * growth > 0.25:
             last = min(depth + 1.02 * fall, deepest)
-            steps = np.linspace(0.0, last - depth, SCAN + 1)[1:]
-            near = [share * steps[0] for share in NEAR]
-            samples += [(depth + step, miss(depth + step)) for step in (*near, *steps.tolist())]
+            step = (last - depth) / SCAN
+            for k in range(len(NEAR)):
+                count = sample(search, unknown, count, depth + NEAR[k] * step)
+            for k in range(1, SCAN + 1):
+                at = last if k == SCAN else depth + k * step
+                count = sample(search, unknown, count, at)
             if last < deepest:
-                samples.append((deepest, miss(deepest)))
-            return _falls(miss, samples)
-    shift = closing.allowed
+                count = sample(search, unknown, count, deepest)
+            for k in range(count):
+                if isnan(samples[1][k]):
+                    return 0
+            return count
+    shift = limits.allowed
     while high >= 0.0 and low >= 0.0 and depth < deepest:
         shift = max(low, shift)
         depth, shift = min(depth + shift, deepest), 2.0 * shift
-        low = miss(depth)
-        samples.append((depth, low))
-    return _falls(miss, samples)
+        count = sample(search, unknown, count, depth)
+        low = samples[1][count - 1]
+    return 0 if isnan(low) else count
 
 
-def _falls(miss: Callable[[float], float], samples: list[Sample]) -> list[tuple[Sample, Sample]]:
-    """Neighbours among the samples between which the miss falls through zero.
+def dip(search: Search, unknown: Unknown, before: Sample, here: Sample, after: Sample) -> Sample:
+    """A sample beside the middle one and of the other sign, where the miss dips there to and fro.
 
-    Where it comes near zero and turns back, it is looked for between the samples, too.
-    """
-    seen = samples[:1]
-    for before, here, after in zip(samples, samples[1:], samples[2:], strict=False):
-        seen += _dip(miss, before, here, after)
-    seen += samples[-1:]
-    return [(a, b) for a, b in pairwise(seen) if a[1] >= 0.0 > b[1]]
-
-
-def _dip(
-    miss: Callable[[float], float], before: Sample, here: Sample, after: Sample
-) -> list[Sample]:
-    """The middle sample, and beside it one of the other sign where the miss dips in between.
-
-    By golden section.
+    By golden section; the middle sample where it does not.
     """
     sign = 1.0 if here[1] > 0.0 else -1.0
     if not 0.0 < sign * here[1] < min(sign * before[1], sign * after[1]):
-        return [here]
+        return here
     low, best, high = before, here, after
     for _ in range(DIP):
         left = best[0] - low[0] > high[0] - best[0]
         x = best[0] - GOLDEN * (best[0] - low[0] if left else best[0] - high[0])
-        tried = x, miss(x)
-        if sign * tried[1] <= 0.0:
-            return sorted([here, tried])
+        tried = (x, coarse_miss(search, unknown, x))
+        if isnan(tried[1]) or sign * tried[1] <= 0.0:
+            return tried
         if sign * tried[1] < sign * best[1]:
             low, best, high = (low, tried, best) if left else (best, tried, high)
         elif left:
             low = tried
         else:
             high = tried
-    return [here]
+    return here
 
 
-def _growth(closing: Closing, depth: float) -> float:
-    """Largest growth of the current with depth below `depth`, relative to the top speed [1/m].
+def growth_below(sea: Sea, depth: float) -> float:
+    """Largest growth of the current with depth below a depth, relative to the top speed [1/m].
 
     A current that only weakens does not grow; one that turns does, by what is new in it.
     """
-    water, levels = closing.water, closing.water.level
-    current = np.stack([water.u, water.v, water.w], axis=1)
-    upper, lower = current[:-1], current[1:]
-    squares = (current * current).sum(axis=1)
-    left = (upper * lower).sum(axis=1) / np.maximum(squares[:-1], 1e-300)
-    new = lower - np.minimum(np.maximum(left, 0.0), 1.0)[:, None] * upper
-    growth = np.sqrt((new * new).sum(axis=1))
-    speeds = np.sqrt(squares)
-    growth[growth <= ROUNDING * speeds[1:]] = 0.0
-    rise = (growth / (levels[1:] - levels[:-1]))[levels[1:] > depth]
-    speed = float(speeds.max())
-    return float(rise.max(initial=0.0)) / max(speed, 1e-300)
+    greatest = rise = 0.0
+    last = len(sea.intervals) - 1
+    for k in range(1, last + 1):
+        here = sea.intervals[k]
+        square = here.u * here.u + here.v * here.v + here.w * here.w
+        greatest = max(greatest, square)
+        if k == last or not sea.levels[k + 1] > depth:
+            continue
+        below = sea.intervals[k + 1]
+        product = here.u * below.u + here.v * below.v + here.w * below.w
+        left = min(max(product / max(square, 1e-300), 0.0), 1.0)
+        u, v, w = below.u - left * here.u, below.v - left * here.v, below.w - left * here.w
+        new = sqrt(u * u + v * v + w * w)
+        speed = sqrt(below.u * below.u + below.v * below.v + below.w * below.w)
+        if new > ROUNDING * speed:
+            rise = max(rise, new / (below.origin - here.origin))
+    return rise / max(sqrt(greatest), 1e-300)
 
 
-def _largest_fall(closing: Closing, unknown: Unknown, depth: float) -> float:
+def largest_fall(search: Search, unknown: Unknown, depth: float) -> float:
     """Knockdown if the greatest current ran at every level [m]."""
-    water = closing.water
-    current = np.column_stack([water.u, water.v, water.w])
-    greatest = current[int(np.argmax(np.linalg.norm(current, axis=1)))]
-    u, v, w = (np.full(len(water.level), component) for component in greatest)
-    even = Profile(replace(water, u=u, v=v, w=w))
-    end = closing.run(unknown, depth, closing.coarse_step, profile=even)
-    return max(end.z - unknown.goal, closing.allowed)
+    problem, sea = search.problem, search.problem.sea
+    greatest, fastest = 1, -1.0
+    for k in range(1, len(sea.intervals)):
+        here = sea.intervals[k]
+        square = here.u * here.u + here.v * here.v + here.w * here.w
+        if square > fastest:
+            greatest, fastest = k, square
+    most = sea.intervals[greatest]
+    about = coarse_about(search, unknown)
+    evenly = in_even_current(problem, most.u, most.v, most.w)
+    miss = search.miss(
+        About(evenly, unknown, about.step, about.cuts, about.given, about.record), depth
+    )
+    return nan if isnan(miss) else max(miss, problem.limits.allowed)
 
 
-def _awash(closing: Closing, unknown: Unknown, immersed: float) -> Root | None:
+def in_even_current(problem: Problem, u: float, v: float, w: float) -> Problem:
+    """The same problem with one current at every level."""
+    sea, even = problem.sea, problem.work.even
+    for k in range(len(sea.intervals)):
+        here = sea.intervals[k]
+        row = Interval(here.origin, u, 0.0, v, 0.0, w, 0.0, here.density, here.ddensity)
+        set_row(even, k, row)
+    return Problem(
+        problem.course, Sea(sea.levels, even[: len(sea.intervals)], sea.gravity, sea.strata),
+        problem.loads,
+        problem.flexible, problem.surfacing, problem.afloat, problem.hull, problem.limits,
+        problem.starts, problem.work,
+    )  # fmt: skip
+
+
+def awash(search: Search, unknown: Unknown, immersed: float) -> Root:
     """The highest root with a float at the surface that could be under water as well.
 
     There its drag is less, or the wind pushes against the current. `immersed` ≥ 0 is the miss with
-    all buoyancy in use.
+    all buoyancy in use. A miss of NaN in what is `found` shows a march that stopped.
     """
-    if closing.line.floating is None:
-        return None
-    piece, *lower = closing.floats
-    unknown = replace(unknown, afloat=piece)
-    miss = closing.coarse_miss(unknown)
-    samples = [*((share, miss(share)) for share in SHARES), (1.0, immersed)]
-    for a, b in pairwise(samples):
-        if a[1] > 0.0 >= b[1]:
-            root = closing.coarse_root(unknown, *b, *a)
-            in_water = not lower or _height_at(closing, root, lower[0]) <= closing.allowed
-            return root if in_water else None
-    return None
+    problem = search.problem
+    none = Root(False, unknown, nan, nan, nan)
+    if not problem.limits.rides or len(problem.surfacing) == 0:
+        return none
+    unknown = with_sought(unknown, 0, True)
+    share, high = SHARES[0], coarse_miss(search, unknown, SHARES[0])
+    for k in range(1, len(SHARES) + 1):
+        following, low = 1.0, immersed
+        if k < len(SHARES):
+            following = SHARES[k]
+            low = coarse_miss(search, unknown, following)
+        if isnan(low) or isnan(high):
+            return Root(True, unknown, nan, nan, nan)
+        if high > 0.0 >= low:
+            root = coarse_root(search, unknown, following, low, share, high)
+            if isnan(root.miss) or len(problem.surfacing) == 1:
+                return root
+            stands = height_at(search, root, 1)
+            if isnan(stands):
+                return Root(True, unknown, nan, nan, nan)
+            return root if stands <= problem.limits.allowed else none
+        share, high = following, low
+    return none
 
 
-def _at_surface(closing: Closing, unknown: Unknown, deep: float) -> Root:
+def surface_root(search: Search, unknown: Unknown, deep: float) -> Located:
     """Share of buoyancy in use of the lowest float at the surface, and of those above it.
 
     The top float is tried first. Where it closes the line only with the next float out of the
@@ -202,65 +297,69 @@ def _at_surface(closing: Closing, unknown: Unknown, deep: float) -> Root:
     rides at its draft; several are taken as just below the surface.
     `deep` < 0 is the miss with the free end at the surface and all buoyancy in use.
     """
-    line = closing.line
-    floats = closing.floats
-    for piece, lower in zip(floats, [*floats[1:], None], strict=True):
-        if len(unknown.above) == MOST_AFLOAT:
-            raise Status.ABOVE_SURFACE.because(
-                f"More than {MOST_AFLOAT} floats would lie at the surface, one after the other."
-            )
-        unknown = replace(unknown, afloat=piece)
-        if closing.at_rest and (unknown.lands or _slack_at_rest(closing, unknown)):
-            length = float(line.length.sum())
-            radius = sqrt(max(length**2 - closing.water.depth**2, 0.0))
-            raise Status.SLACK.because(
-                f"There is no current and the line, {length:.1f} m uncut, is longer than the "
-                "water is deep: it has no unique shape. Its watch circle has a radius of "
-                f"{radius:.0f} m."
-            )
-        unloaded = closing.coarse_miss(unknown)(0.0)
+    problem, limits = search.problem, search.problem.limits
+    none = Root(False, unknown, nan, nan, nan)
+    rides = unknown.rides
+    count = len(problem.surfacing)
+    for k in range(count):
+        if k == MOST_AFLOAT:
+            return Located(TOO_MANY_AFLOAT, 0.0, none, none)
+        unknown = with_sought(unknown, k, rides)
+        if limits.at_rest and (unknown.lands or slack_at_rest(search, unknown)):
+            return Located(SLACK_AT_REST, 0.0, none, none)
+        unloaded = coarse_miss(search, unknown, 0.0)
+        if isnan(unloaded):
+            return stopped(problem, none)
         if unloaded > 0.0:
-            root = closing.coarse_root(unknown, 1.0, deep, 0.0, unloaded)
-            if lower is None or _height_at(closing, root, lower) <= closing.allowed:
-                return root
-        if lower is None:
+            root = coarse_root(search, unknown, 1.0, deep, 0.0, unloaded)
+            stands = 0.0
+            if not isnan(root.miss) and k + 1 < count:
+                stands = height_at(search, root, k + 1)
+            if isnan(root.miss) or isnan(stands):
+                return stopped(problem, none)
+            if k + 1 == count or stands <= limits.allowed:
+                return Located(FOUND, 0.0, root, none)
+        if k + 1 == count:
             break
-        unknown = replace(unknown, floating=None)
-        surfaced = _surfaced(closing, unknown, piece, lower)
-        if surfaced is None:
+        rides = False
+        unknown = with_sought(unknown, k, rides)
+        surfaced = surfaced_root(search, unknown, k + 1)
+        if isnan(surfaced.miss) and surfaced.found:
+            return stopped(problem, none)
+        if not surfaced.found:
             break
-        unknown = replace(unknown, above=(*unknown.above, surfaced), afloat=lower)
-        deep = closing.coarse_miss(unknown)(1.0)
+        problem.work.shares[0][k] = surfaced.x
+        problem.work.shares[1][k] = surfaced.slope
+        deep = coarse_miss(search, with_sought(unknown, k + 1, rides), 1.0)
+        if isnan(deep):
+            return stopped(problem, none)
         if deep >= 0.0:
             break
-    raise Status.ABOVE_SURFACE.because(
-        "A buoyant part of the line would rise above the surface: "
-        "more of it than the floats listed one below the other."
-    )
+    return Located(RISES, 0.0, none, none)
 
 
-def _height_at(closing: Closing, root: Root, piece: int) -> float:
-    """Height of the top of a piece above the surface [m]."""
-    return closing.run(root.unknown.down_to(piece), root.x, closing.coarse_step).z
+def height_at(search: Search, root: Root, lower: int) -> float:
+    """Height of the top of a float above the surface [m]."""
+    miss = coarse_miss(search, down_to(search.problem, root.unknown, lower), root.x)
+    return nan if isnan(miss) else search.problem.work.left[Z]
 
 
-def _surfaced(closing: Closing, unknown: Unknown, piece: int, lower: int) -> Afloat | None:
-    """The float `piece` with the share that leaves the next one's top at the surface."""
-    part = unknown.down_to(lower)
-    miss = closing.coarse_miss(part)
-    loaded, unloaded = miss(1.0), miss(0.0)
-    if abs(unloaded) <= closing.allowed:
-        return Afloat(piece, 0.0, loaded - unloaded)
+def surfaced_root(search: Search, unknown: Unknown, lower: int) -> Root:
+    """The share in use of a float that leaves the next one's top at the surface."""
+    part = down_to(search.problem, unknown, lower)
+    loaded, unloaded = coarse_miss(search, part, 1.0), coarse_miss(search, part, 0.0)
+    if isnan(loaded) or isnan(unloaded):
+        return Root(True, part, nan, nan, nan)
+    if abs(unloaded) <= search.problem.limits.allowed:
+        return Root(True, part, 0.0, unloaded, loaded - unloaded)
     if loaded >= 0.0 or unloaded < 0.0:
-        return None
-    root = closing.coarse_root(part, 1.0, loaded, 0.0, unloaded)
-    return Afloat(piece, root.x, root.slope)
+        return Root(False, part, nan, nan, nan)
+    return coarse_root(search, part, 1.0, loaded, 0.0, unloaded)
 
 
-def _slack_at_rest(closing: Closing, unknown: Unknown) -> bool:
+def slack_at_rest(search: Search, unknown: Unknown) -> bool:
     """In still water: whether the line stands too deep however little buoyancy is used."""
-    piece = unknown.afloat
-    assert piece is not None
-    spare = float(np.cumsum(closing.lift)[piece:].min())
-    least = 1.0 - spare / float(closing.line.buoyancy[piece])
-    return closing.coarse_miss(unknown)(min(max(least, 0.0) * (1.0 + 1e-9) + 1e-9, 1.0)) < 0.0
+    assert unknown.sought != BELOW
+    least = search.problem.surfacing[unknown.sought].least
+    share = min(max(least, 0.0) * (1.0 + 1e-9) + 1e-9, 1.0)
+    return coarse_miss(search, unknown, share) < 0.0

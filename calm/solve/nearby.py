@@ -7,21 +7,25 @@ root: two or three marches close it.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from math import isnan
 
 import numpy as np
 
-from calm.errors import NoEquilibrium
+from calm.physics.compiled import entry
 from calm.physics.line import Floats, Line, Water
-from calm.physics.march import Cuts
-from calm.physics.state import MarchError
+from calm.physics.passing import FAILURE
+from calm.physics.state import Trace
 from calm.physics.track import Track
-from calm.solve.closing import Closed, Closing
-from calm.solve.finish import finished
+from calm.solve.audit import referee_of
+from calm.solve.closing import Closed, Root, not_closed, planned, polish
+from calm.solve.endings import FOUND, MARCH_STOPPED
+from calm.solve.finish import closing_refusal, finished, refuse_out_of_the_water
 from calm.solve.locate import locate
-from calm.solve.mooring import refuse_out_of_the_water, solve_mooring
-from calm.solve.refine import Refined
-from calm.solve.solution import Settings, Solution, nodes_of
+from calm.solve.mooring import search_of, solve_mooring
+from calm.solve.problem import BELOW, CHOSEN, FINE, Problem, Search, Unknown, problem_of
+from calm.solve.refine import Errors, Refined
+from calm.solve.solution import Settings, Solution
+from calm.solve.speed import runs_compiled
 from calm.solve.status import Status
 
 
@@ -44,16 +48,20 @@ class Nearby:
 
     def __init__(self, line: Line, water: Water, settings: Settings) -> None:
         self.solution = solve_mooring(line, water, settings)
-        lands = self.solution.landed
         self._water, self._settings = water, settings
-        closing = Closing(line, water, settings)
-        try:
-            root, _ = locate(closing, lands)
-            self._root, self._cuts = closing.planned(root, settings.angle_step)
-            closed = closing.polish(self._root, self._cuts)
-        except MarchError as error:
-            raise _stopped(error) from error
-        self._root, self._trace = closed.root, closed.trace
+        self._room = 2 * len(self.solution.cut) + 64
+        self._compiled = compiled = runs_compiled(settings, line)
+        problem = problem_of(line, water, settings, compiled=compiled, room=self._room)
+        search = search_of(problem, compiled)
+        close = entry(close_coarsely, search, True) if compiled else close_coarsely
+        closed: Closed = close(search, self.solution.landed)
+        if closed.ending != FOUND:
+            raise closing_refusal(closed, False)
+        self._root, work = closed.root, problem.work
+        self._counts = np.array(work.counts[CHOSEN])
+        self._cuts = np.array(work.chosen[: int(self._counts.sum())])
+        self._shares = np.array(work.shares)
+        self._trace = Trace.of(work.records[FINE], closed.nodes)
 
     def node(self, piece: int, clamp: int = -1) -> int:
         """The node at the top of a piece, or at a clamp, in every one of these shapes."""
@@ -74,9 +82,11 @@ class Nearby:
         NoEquilibrium
             ``not-converged`` or ``slack``.
         """
-        _, closed = self._closed(line, self._water)
-        position, _ = nodes_of(closed.trace)
-        return position, _used(closed, line)
+        search, closed = self._closed(line, self._water, None)
+        trace = Trace.of(search.problem.work.records[FINE], closed.nodes)
+        position = trace.position
+        position[:, :2] -= position[-1, :2]
+        return position, _used(search.problem, closed, line)
 
     def solved(self, line: Line, water: Water, track: Track | None = None) -> Solution:
         """The solution of a line that differs, on the cuts of this one.
@@ -93,44 +103,63 @@ class Nearby:
         NoEquilibrium
             Where there is none that passes every check, or none of the same kind near by.
         """
-        closing, closed = self._closed(line, water, track)
-        base = self.solution
-        if closed.end.landed != base.landed:
+        search, closed = self._closed(line, water, track)
+        base, compiled = self.solution, self._compiled
+        if closed.landed != base.landed:
             raise Status.NOT_CONVERGED.because("It lies on the seabed, or hangs, unlike the other.")
-        errors = (base.depth_error, base.tension_error, base.lift_error, base.pull_error)
-        return finished(closing, Refined(closed, *errors), None, refuse_out_of_the_water)
+        errors = Errors(base.depth_error, base.tension_error, 0.0, base.lift_error, base.pull_error)
+        referee = referee_of(line, water, 0.0, compiled)
+        refined = Refined(closed, len(self._cuts), errors)
+        return finished(
+            search, referee, line, water, self._settings, refined, refuse_out_of_the_water,
+            compiled=compiled,
+        )  # fmt: skip
 
-    def _closed(
-        self, line: Line, water: Water, track: Track | None = None
-    ) -> tuple[Closing, Closed]:
-        closing = Closing(line, water, self._settings)
-        root, deeper = self._root, water.depth - self._water.depth
-        unknown = replace(
-            root.unknown,
-            track=track or Track.of(line),
-            goal=root.unknown.goal - deeper,
-            floating=None if root.unknown.floating is None else line.floating,
+    def _closed(self, line: Line, water: Water, track: Track | None) -> tuple[Search, Closed]:
+        compiled = self._compiled
+        problem = problem_of(
+            line, water, self._settings, compiled=compiled, track=track, room=self._room
         )
-        if unknown.afloat is None:
-            root = replace(root, x=max(root.x + deeper, 0.0))
-        given = self.solution.line
-        cables = line.flexible
+        given, cables = self.solution.line, line.flexible
         longer = line.length[cables].sum() / given.length[cables].sum() if cables.any() else 1.0
-        cuts = Cuts(longer * self._cuts.lengths, self._cuts.counts)
-        try:
-            return closing, closing.polish(replace(root, unknown=unknown), cuts)
-        except MarchError as error:
-            raise _stopped(error) from error
+        work = problem.work
+        work.chosen[: len(self._cuts)] = (longer * self._cuts).tolist()
+        work.counts[CHOSEN][:] = self._counts.tolist()
+        for row in range(2):
+            work.shares[row][:] = self._shares[row].tolist()
+        search = search_of(problem, compiled)
+        close = entry(polish, search, self._root, CHOSEN, FINE) if compiled else polish
+        closed: Closed = close(search, self._moved(water, problem), CHOSEN, FINE)
+        if closed.ending != FOUND:
+            raise closing_refusal(closed, False)
+        return search, closed
+
+    def _moved(self, water: Water, problem: Problem) -> Root:
+        """The root in water of another depth."""
+        root, deeper = self._root, water.depth - self._water.depth
+        was, x = root.unknown, root.x
+        unknown = Unknown(was.goal - deeper, was.sought, was.rides, was.lands, was.stages)
+        if unknown.sought == BELOW:
+            x = max(x + deeper, 0.0)
+        return Root(True, unknown, x, root.miss, root.slope)
 
 
-def _stopped(error: MarchError) -> NoEquilibrium:
-    return Status.NOT_CONVERGED.because(f"The march stopped: {error}.")
+def close_coarsely(search: Search, lands: bool) -> Closed:
+    """Close a line on the cuts that the march chooses at its angle step, in the record `FINE`."""
+    located = locate(search, lands)
+    if located.ending != FOUND:
+        return not_closed(located.ending, located.value, located.root)
+    root = planned(search, located.root, search.problem.limits.angle_step)
+    if isnan(root.miss):
+        return not_closed(MARCH_STOPPED, search.problem.work.left[FAILURE], root)
+    return polish(search, root, CHOSEN, FINE)
 
 
-def _used(closed: Closed, line: Line) -> float:
-    shares = closed.root.unknown.shares(closed.root.x)
-    if not shares:
+def _used(problem: Problem, closed: Closed, line: Line) -> float:
+    """Share in use of the buoyancy in reference water of the floats at the surface."""
+    sought = closed.root.unknown.sought
+    if sought == BELOW:
         return 1.0
-    buoyancy = {piece: float(line.buoyancy[piece]) for piece in shares}
-    used = sum(share * buoyancy[piece] for piece, share in shares.items())
-    return used / sum(buoyancy.values())
+    lifts = [float(line.buoyancy[each[0]]) for each in problem.surfacing[: sought + 1]]
+    shares = [*problem.work.shares[0][:sought], closed.root.x]
+    return float(sum(a * b for a, b in zip(shares, lifts, strict=True)) / sum(lifts))

@@ -11,154 +11,273 @@ neighbours, and that is added.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from math import degrees, sqrt
+from math import degrees, isnan, sqrt
+from typing import Any, NamedTuple
 
-import numpy as np
-
-from calm.physics.line import Floats, Line
-from calm.physics.march import Cuts
-from calm.solve.closing import Closed, Closing, Root
-from calm.solve.solution import nodes_of, sizes
+from calm.physics.element import Vector
+from calm.physics.passing import FAILURE
+from calm.physics.profile import interval_at
+from calm.physics.state import Record
+from calm.solve.closing import Closed, Root, halve, not_closed, planned, polish
+from calm.solve.endings import BELOW_SEABED, FOUND, MARCH_STOPPED, NO_SHAPE_NEAR
+from calm.solve.problem import CHOSEN, COARSE, FINE, HALVED, Problem, Search
 
 DEPTH_TARGET = 4e-5
 TENSION_TARGET = 1.6e-4
 """Error estimates, relative to the span and to the tension, above which the step is taken
 smaller, at an angle step of 1°; they follow its square."""
+AS_FOUND = 0.25
 MOST_ROUNDS = 6
 MOST_SEGMENTS = 20_000
 AT_A_LEVEL = 0.05
 """How near to a level, in segments, a node is as good as there: bends are at home at levels."""
+FAR_BELOW = 1.01
+"""Depth, in depths of the water, at which a line need not be cut finer to be refused."""
 
 
-@dataclass(frozen=True)
-class Refined:
-    """A closed line and its errors: of depths and offsets [m], of tensions [N], and of the upward
-    and the horizontal force at its end [N]."""
+class Errors(NamedTuple):
+    """Own estimates of the errors of a shape: of depths and offsets [m], of tensions [N] and
+    relative, and of the upward and the horizontal force at its end [N]."""
+
+    depth: float
+    tension: float
+    relative: float
+    lift: float
+    pull: float
+
+
+class Refined(NamedTuple):
+    """A line closed finely, how many segments it has, and its errors."""
 
     closed: Closed
-    depth_error: float
-    tension_error: float
-    lift_error: float
-    pull_error: float
+    segments: int
+    errors: Errors
 
 
-Polish = Callable[[Root, Cuts], Closed]
-"""Closes a line on cuts, near a root."""
+UNKNOWN_ERRORS = Errors(0.0, 0.0, 0.0, 0.0, 0.0)
 
 
-def refine(closing: Closing, root: Root, polish: Polish | None = None) -> Refined:
-    """Close the line finely enough, from a coarse root.
+def refine(search: Search, root: Root, hangs: bool) -> Refined:
+    """Close the line finely enough, from a coarse root; in the record `FINE`.
 
     Parameters
     ----------
-    polish : where that takes more than `Closing.polish`
-
-    Raises
-    ------
-    NoEquilibrium
-        Where the root cannot be polished.
+    hangs : whether it is to hang clear of the seabed: then one that comes far below is refused
     """
-    polish = polish or closing.polish
-    wanted = closing.settings.angle_step
-    step = wanted
+    problem, step = search.problem, search.problem.limits.angle_step
+    refined = Refined(not_closed(NO_SHAPE_NEAR, 0.0, root), 0, UNKNOWN_ERRORS)
     for _ in range(MOST_ROUNDS):
-        root, cuts = closing.planned(root, 2.0 * step)
-        coarse = polish(root, cuts)
-        fine = polish(coarse.root, cuts.halved())
-        depth_error, tension_error, relative = _errors(closing.line, coarse, fine)
-        target = degrees(wanted) ** 2
-        excess = max(
-            depth_error / (DEPTH_TARGET * target * closing.span),
-            relative / (TENSION_TARGET * target),
-        )
-        if excess <= 1.0 or len(fine.end.cuts.lengths) > MOST_SEGMENTS:
+        root = planned(search, root, 2.0 * step)
+        if isnan(root.miss):
+            stopped = not_closed(MARCH_STOPPED, problem.work.left[FAILURE], root)
+            return Refined(stopped, 0, UNKNOWN_ERRORS)
+        coarse = polish_hanging(search, root, CHOSEN, COARSE, hangs)
+        if coarse.ending != FOUND:
+            return Refined(coarse, 0, UNKNOWN_ERRORS)
+        segments = halve(problem)
+        fine = polish_hanging(search, coarse.root, HALVED, FINE, hangs)
+        if fine.ending != FOUND:
+            return Refined(fine, 0, UNKNOWN_ERRORS)
+        errors = errors_of(problem, coarse, fine)
+        refined = Refined(fine, segments, errors)
+        excess = excess_of(problem, errors, fine.landed)
+        if excess <= 1.0 or segments > MOST_SEGMENTS:
             break
         root, step = fine.root, step * max(0.8 / sqrt(excess), 0.2)
-    strayed, lost = _abrupt(closing.line, fine, closing.water.level)
-    lift, pull = _errors_at_the_end(coarse, fine)
-    return Refined(fine, depth_error + strayed, tension_error + lost, lift + lost, pull + lost)
+    return with_bends(problem, refined)
 
 
-def _errors(line: Line, coarse: Closed, fine: Closed) -> tuple[float, float, float]:
-    """Error of the finer shape: of depths and offsets [m], of tensions [N] and relative.
+def excess_of(problem: Problem, errors: Errors, landed: bool) -> float:
+    """How many times the errors of a shape are what is aimed at.
 
-    From the nodes both have: all but those around the touchdown, where there is one.
+    That is less for one of many, the places of which are extrapolated where it has not landed.
     """
-    pieces, clamps = coarse.trace.piece[: coarse.hanging], coarse.trace.clamp[: coarse.hanging]
-    halves = np.where(line.flexible[pieces] & (clamps < 0), 2, 1)
-    same = np.concatenate([[0], np.cumsum(halves)])
-    if coarse.end.landed:
-        same = same[:-1]
-    same = same[same <= fine.hanging]
-    position, force = nodes_of(fine.trace)
-    before, pulled = nodes_of(coarse.trace)
-    place = float(np.abs(before[: len(same)] - position[same]).max()) / 3.0
-    there = np.arange(len(same))
-    lying = len(before) - 1 - coarse.hanging
-    if coarse.end.landed and lying == len(position) - 1 - fine.hanging:
-        there = np.concatenate([there, np.arange(coarse.hanging + 1, len(before))])
-        same = np.concatenate([same, np.arange(fine.hanging + 1, len(position))])
-    tension = sizes(force[same])
-    change = np.abs(sizes(pulled[there]) - tension) / 3.0
-    floor = 1e-3 * float(tension.max())
-    return (
-        place,
-        float(change.max()),
-        float((change / np.maximum(tension, max(floor, 1e-300))).max()),
+    target = degrees(problem.limits.angle_step)
+    target *= target
+    rough = problem.limits.near > 0.0
+    place = DEPTH_TARGET * target * (AS_FOUND if rough and landed else 1.0)
+    tension = TENSION_TARGET * target * (AS_FOUND if rough else 1.0)
+    return max(errors.depth / (place * problem.limits.span), errors.relative / tension)
+
+
+def with_bends(problem: Problem, refined: Refined) -> Refined:
+    """The same with what abrupt changes inside its segments may cost."""
+    errors = refined.errors
+    strayed, lost = abrupt_change(problem, refined.closed)
+    return Refined(
+        refined.closed,
+        refined.segments,
+        Errors(
+            errors.depth + strayed,
+            errors.tension + lost,
+            errors.relative,
+            errors.lift + lost,
+            errors.pull + lost,
+        ),
     )
 
 
-def _errors_at_the_end(coarse: Closed, fine: Closed) -> tuple[float, float]:
-    """Error of the upward and of the horizontal force at the end of the finer shape [N].
+def polish_hanging(search: Search, root: Root, cuts: int, record: int, hangs: bool) -> Closed:
+    """`polish`, sparing a line that hangs far below the seabed the finer cuts."""
+    closed = polish(search, root, cuts, record)
+    if not hangs or closed.ending != FOUND:
+        return closed
+    depth = search.problem.limits.depth
+    height = search.problem.work.records[record]
+    lowest = 0
+    for n in range(closed.nodes):
+        if height[2][n] < height[2][lowest]:
+            lowest = n
+    below = -depth - height[2][lowest]
+    if height[2][lowest] < -FAR_BELOW * depth:
+        piece = int(height[6][max(lowest, 1)])
+        return Closed(BELOW_SEABED, below, piece, closed.root, 0, 0, False, 0.0)
+    return closed
 
-    A third of the change is their error where the shape is smooth; a little more is stated, as
-    these are two figures and no worst of many.
+
+def is_segment(problem: Problem, record: Record, node: int) -> bool:
+    """Whether the element that ends at a node is a part of a cable or chain."""
+    return bool(problem.flexible[int(record[6][node])]) and record[7][node] < 0
+
+
+def tension_at(record: Record, node: int) -> float:
+    """Tension at a node [N]."""
+    fx, fy, fz = record[3][node], record[4][node], record[5][node]
+    return sqrt(fx * fx + fy * fy + fz * fz)
+
+
+def errors_of(problem: Problem, coarse: Closed, fine: Closed) -> Errors:
+    """Errors of the finer of two shapes, by the nodes that both have.
+
+    That is all but those around the touchdown, where there is one.
     """
-    change = (coarse.trace.force[-1] - fine.trace.force[-1]) / 2.5
-    return abs(float(change[2])), float(np.hypot(change[0], change[1]))
+    before, after = problem.work.records[COARSE], problem.work.records[FINE]
+    last, end = coarse.nodes - 1, fine.nodes - 1
+    ahead, behind = (before[0][last], before[1][last]), (after[0][end], after[1][end])
+    common = coarse.hanging if coarse.landed else coarse.hanging + 1
+    lying = last - coarse.hanging
+    if not coarse.landed or lying != end - fine.hanging:
+        lying = 0
+    place = greatest = 0.0
+    same = 0
+    for n in range(common):
+        if n > 0:
+            same += 2 if is_segment(problem, before, n) else 1
+        if same > fine.hanging:
+            common = n
+            break
+        x, y = before[0][n] - ahead[0], before[1][n] - ahead[1]
+        place = max(place, abs(x - (after[0][same] - behind[0])))
+        place = max(place, abs(y - (after[1][same] - behind[1])))
+        place = max(place, abs(before[2][n] - after[2][same]))
+        greatest = max(greatest, tension_at(after, same))
+    for n in range(1, lying + 1):
+        greatest = max(greatest, tension_at(after, fine.hanging + n))
+    floor = max(1e-3 * greatest, 1e-300)
+    worst = relative = 0.0
+    same = 0
+    for n in range(common + lying):
+        here = n
+        if n >= common:
+            here = coarse.hanging + 1 + n - common
+            same = fine.hanging + 1 + n - common
+        elif n > 0:
+            same += 2 if is_segment(problem, before, n) else 1
+        tension = tension_at(after, same)
+        change = abs(tension_at(before, here) - tension) / 3.0
+        worst = max(worst, change)
+        relative = max(relative, change / max(tension, floor))
+    # a third of the change is the error at the end where the shape is smooth; a little more is
+    # stated, as these are two figures and no worst of many
+    east, north = before[3][last] - after[3][end], before[4][last] - after[4][end]
+    return Errors(
+        place / 3.0,
+        worst,
+        relative,
+        abs(before[5][last] - after[5][end]) / 2.5,
+        sqrt(east * east + north * north) / 2.5,
+    )
 
 
-def _abrupt(line: Line, fine: Closed, levels: Floats) -> tuple[float, float]:
+def abrupt_change(problem: Problem, fine: Closed) -> tuple[float, float]:
     """What the worst abrupt change inside a segment may cost: in place [m], in tension [N].
 
     If the slope of what a segment adds per metre bends by Δ inside one of length h, its value at
     the middle is off by up to Δh²/8. Where the curve is smooth the segments two away bend alike:
     only what exceeds their bend is abrupt.
     """
-    hanging = fine.hanging
-    trace = fine.trace
-    piece, clamp, cut = trace.piece[:hanging], trace.clamp[:hanging], trace.cut[:hanging]
-    segment = line.flexible[piece] & (clamp < 0) & (cut > 0.0)
-    longer = np.maximum(cut[1:], cut[:-1])
-    position, force = (nodes[: hanging + 1] for nodes in nodes_of(fine.trace))
-    off = np.abs(position[1:-1, 2, None] + levels).min(axis=1)
-    smooth = segment[1:] & segment[:-1] & (piece[1:] == piece[:-1]) & (off > AT_A_LEVEL * longer)
-    between = smooth[1:] & smooth[:-1]
-    if not between.any():
-        return 0.0, 0.0
-    length = np.where(segment, cut, 1.0)[:, None]
-    # of place and force together: columns 0 to 2, and 3 to 5
-    nodes = np.concatenate([position, force], axis=1)
-    added = (nodes[1:] - nodes[:-1]) / length
-    slope = (added[1:] - added[:-1]) / (0.5 * (length[1:] + length[:-1]))
-    bend = (slope[1:] - slope[:-1]) * length[1:-1] ** 2 / 8.0
-    bend = bend.reshape(-1, 2, 3)
-    size = np.sqrt(np.einsum("ijk,ijk->ij", bend, bend))
-    around = np.full((len(size) + 4, 2), -1.0)
-    np.copyto(around[2:-2], size, where=between[:, None])
-    usual = np.maximum(around[:-4], around[4:])
-    abrupt = between[:, None] & (usual >= 0.0) & (size > usual)
-    here = np.flatnonzero(abrupt.any(axis=1))
-    if not here.size:
-        return 0.0, 0.0
-    bend, size, usual, abrupt = bend[here], size[here], usual[here], abrupt[here]
-    share = np.divide(size - usual, size, out=np.zeros_like(size), where=abrupt)
-    strayed, lost = share[:, 0, None] * bend[:, 0], share[:, 1, None] * bend[:, 1]
-    # what a force adds to the tension there, and where the line hangs from in the end
-    pulled = force[[*here + 2, -1]]
-    tension = sizes(pulled)[:, None]
-    axis = np.divide(pulled, tension, out=np.zeros_like(pulled), where=tension > 0.0)
-    along = np.maximum(np.abs((lost * axis[:-1]).sum(axis=1)), np.abs(lost @ axis[-1]))
-    return float(sizes(strayed).max()), float(along.max())
+    record, sizes = problem.work.records[FINE], problem.work.elements
+    levels, hanging = problem.sea.levels, fine.hanging
+    level, smooth_before = 0, False
+    for k in range(hanging + 1):
+        sizes[0][k] = sizes[1][k] = -1.0
+    for k in range(1, hanging):  # the joint between elements k and k + 1, at node k
+        smooth = (
+            is_segment(problem, record, k)
+            and is_segment(problem, record, k + 1)
+            and record[6][k] == record[6][k + 1]
+            and record[8][k] > 0.0
+            and record[8][k + 1] > 0.0
+        )
+        if smooth:
+            depth = -record[2][k]
+            level = interval_at(levels, depth, level)
+            off = min(depth - levels[level], levels[level + 1] - depth)
+            smooth = off > AT_A_LEVEL * max(record[8][k], record[8][k + 1])
+        if smooth and smooth_before:
+            for part in range(2):
+                x, y, z = bend_in(record, k, 3 * part)
+                sizes[part][k] = sqrt(x * x + y * y + z * z)
+        smooth_before = smooth
+    strayed = lost = 0.0
+    pull = tension_at(record, hanging)
+    for k in range(2, hanging):
+        for part in range(2):
+            size = sizes[part][k]
+            usual = max(sizes[part][k - 2], sizes[part][k + 2] if k + 2 < hanging else -1.0)
+            if size < 0.0 or not (usual >= 0.0 and size > usual):
+                continue
+            share = (size - usual) / size
+            if part == 0:
+                strayed = max(strayed, share * size)
+                continue
+            x, y, z = bend_in(record, k, 3)
+            # what a force adds to the tension there, and where the line hangs from in the end
+            here = along(record, k, tension_at(record, k), x, y, z)
+            there = along(record, hanging, pull, x, y, z)
+            lost = max(lost, share * max(here, there))
+    return strayed, lost
+
+
+def bend_in(record: Any, k: int, column: int) -> Vector:
+    """What a bend inside element k may cost of a place, or of a force, by its neighbours' slopes.
+
+    `column` : the first of the three in the record
+    """
+    above, own, below = record[8][k - 1], record[8][k], record[8][k + 1]
+    rise, fall = 0.5 * (above + own), 0.5 * (own + below)
+    scale = own * own / 8.0
+    return (
+        bend_of(record[column], k, above, own, below, rise, fall) * scale,
+        bend_of(record[column + 1], k, above, own, below, rise, fall) * scale,
+        bend_of(record[column + 2], k, above, own, below, rise, fall) * scale,
+    )
+
+
+def bend_of(
+    values: Any, k: int, above: float, own: float, below: float, rise: float, fall: float
+) -> float:
+    """By how much the slope of what is added per metre changes along element k."""
+    first = (values[k - 1] - values[k - 2]) / above
+    second = (values[k] - values[k - 1]) / own
+    third = (values[k + 1] - values[k]) / below
+    bend: float = (third - second) / fall - (second - first) / rise
+    return bend
+
+
+def along(record: Record, node: int, tension: float, x: float, y: float, z: float) -> float:
+    """How much of a vector is along the force at a node."""
+    if tension == 0.0:
+        return 0.0
+    pulled: float = abs(x * record[3][node] + y * record[4][node] + z * record[5][node])
+    return pulled / tension

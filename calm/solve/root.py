@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import isnan
+from typing import Any
 
 
 def bracketed_root(
-    function: Callable[[float], float],
+    function: Callable[[Any, float], float],
+    about: Any,
     a: float,
     fa: float,
     b: float,
     fb: float,
-    *,
     small: float,
     narrow: float,
 ) -> tuple[float, float, float]:
@@ -22,6 +24,8 @@ def bracketed_root(
 
     Parameters
     ----------
+    function, about : of a number, `function(about, number)`; NaN, where it cannot be had, ends it
+    a, fa, b, fb : two numbers and the function there
     small : stop when |function| is at most this
     narrow : stop when the bracket is at most this wide
 
@@ -39,7 +43,13 @@ def bracketed_root(
             a, b, c = b, c, b
             fa, fb, fc = fb, fc, fb
         half = 0.5 * (c - b)
-        if abs(fb) <= small or abs(half) <= 0.5 * narrow or b + half in (b, c):
+        if (
+            isnan(fb)
+            or abs(fb) <= small
+            or abs(half) <= 0.5 * narrow
+            or b + half == b
+            or b + half == c
+        ):
             return b, fb, (fc - fb) / (c - b) if c != b else 0.0
         if abs(fa) <= abs(fb):
             step = earlier = half
@@ -50,7 +60,7 @@ def bracketed_root(
         a, fa = b, fb
         least = 0.25 * narrow
         b += step if abs(step) > least else (least if half > 0.0 else -least)
-        fb = function(b)
+        fb = function(about, b)
 
 
 def _interpolated_step(
@@ -78,37 +88,46 @@ def _interpolated_step(
 
 
 def root_near(
-    function: Callable[[float], float],
+    function: Callable[[Any, float], float],
+    about: Any,
     x: float,
     slope: float,
-    limits: tuple[float, float],
-    *,
+    low: float,
+    high: float,
     small: float,
     narrow: float,
-) -> tuple[float, float, float] | None:
-    """Root near x of a falling function, within limits; None where there is no sign change.
+) -> tuple[bool, float, float, float]:
+    """Root near x of a falling function, between two limits.
 
     Secants from x and its slope while they halve the value, then ever longer steps until the sign
-    changes, then `bracketed_root`. `small` and `narrow` are as there.
+    changes, then `bracketed_root`.
+
+    Parameters
+    ----------
+    function, about, small, narrow : as there
+    x, slope : about where the root is, and the slope there
+    low, high : the limits
 
     Returns
     -------
-    root, value there, and the slope of the last secant.
+    Whether the sign changes; root, value there, and the slope of the last secant.
     """
-    low, high = limits
     x = min(max(x, low), high)
-    fx = function(x)
+    fx = function(about, x)
     step = -fx / slope if slope < 0.0 else 0.0
     while abs(fx) > small:
         reach = max(abs(step), 1e-12 * (high - low))
         following = min(max(x + (reach if fx > 0.0 else -reach), low), high)
         if following == x:
-            return None
-        value = function(following)
+            return False, x, fx, slope
+        value = function(about, following)
         slope = (value - fx) / (following - x)
-        if (value > 0.0) != (fx > 0.0):
-            return bracketed_root(function, x, fx, following, value, small=small, narrow=narrow)
+        if (value > 0.0) != (fx > 0.0) and not isnan(value):
+            root, left, slope = bracketed_root(
+                function, about, x, fx, following, value, small, narrow
+            )
+            return True, root, left, slope
         halved = abs(value) < 0.5 * abs(fx)
         step = -value / slope if halved else 8.0 * reach
         x, fx = following, value
-    return x, fx, slope
+    return True, x, fx, slope

@@ -25,11 +25,14 @@ class Settings:
     angle_step : turn of one segment [rad]
     tolerance : allowed miss of the anchor, as a share of the water depth
     seabed_friction : of a line that lies on the seabed [-]
+    compiled : whether the solver is compiled, or interpreted as it stands, which gives the same
+        digits; None leaves it to `calm.solve.speed`
     """
 
     angle_step: float = radians(1.0)
     tolerance: float = 1e-7
     seabed_friction: float = 0.0
+    compiled: bool | None = None
 
     def __post_init__(self) -> None:
         if not 0.0 < self.angle_step <= radians(10.0):

@@ -40,6 +40,31 @@ def standing_length(line: Line, lift: Floats) -> float:
     return float(((1.0 + strain) * line.length).sum())
 
 
+SUPPORTED, TOO_HEAVY, FOLDS = range(3)
+"""Whether a line is held up, or why not."""
+
+
+def support_of(lift: Floats, at_rest: bool) -> tuple[int, int, float]:
+    """Whether a line is held up, else the piece below which it folds and what is lacking [N].
+
+    Parameters
+    ----------
+    lift : the `standing_lift`
+    at_rest : whether nothing moves; then it must stay held up down to its lowest float
+    """
+    above = np.cumsum(lift)
+    if not (above > 0.0).any():
+        return TOO_HEAVY, -1, 0.0
+    if not at_rest:
+        return SUPPORTED, -1, 0.0
+    first, last = int(np.argmax(above > 0.0)), int(np.flatnonzero(lift > 0.0)[-1])
+    short = np.flatnonzero(above[first:last] <= 0.0)
+    if not len(short):
+        return SUPPORTED, -1, 0.0
+    piece = first + int(short[0])
+    return (TOO_HEAVY if above[-1] <= 0.0 else FOLDS), piece, -float(above[piece])
+
+
 def refuse_unsupported(line: Line, water: Water, lift: Floats) -> None:
     """Refuse a line that nothing holds up or, in still water, one that folds.
 
@@ -50,19 +75,13 @@ def refuse_unsupported(line: Line, water: Water, lift: Floats) -> None:
     NoEquilibrium
         ``slack``, or ``no-equilibrium`` where too little holds the line up.
     """
-    above = np.cumsum(lift)
-    if not (above > 0.0).any():
+    blown = line.floating is not None and line.floating.blown
+    support, piece, lacking = support_of(lift, not (water.moving or blown))
+    if support == TOO_HEAVY:
         raise too_heavy(lift)
-    if water.moving or (line.floating is not None and line.floating.blown):
-        return
-    first, last = int(np.argmax(above > 0.0)), int(np.flatnonzero(lift > 0.0)[-1])
-    short = np.flatnonzero(above[first:last] <= 0.0)
-    if len(short) and above[-1] <= 0.0:
-        raise too_heavy(lift)
-    if len(short):
-        piece = first + int(short[0])
+    if support == FOLDS:
         raise Status.SLACK.because(
-            f"In still water the line is slack below {{piece}}: {-above[piece]:.0f} N are "
+            f"In still water the line is slack below {{piece}}: {lacking:.0f} N are "
             "lacking to hold up what is above.",
             piece,
         )

@@ -9,14 +9,12 @@ import numpy as np
 from calm.errors import NoEquilibrium
 from calm.physics.hull import AIR_DENSITY
 from calm.physics.line import Floats, Line, Water
-from calm.physics.march import Cuts, End
 from calm.physics.state import MarchError
-from calm.solve.closing import Closed, Closing, Root
 from calm.solve.finish import finished
-from calm.solve.refine import refine
 from calm.solve.root import bracketed_root
 from calm.solve.solution import Settings, Solution
 from calm.solve.status import Status
+from calm.solve.towing import Towed
 from calm.solve.waterline import Waterline, half_out
 
 SURFACE_BAND = 1e-7
@@ -75,28 +73,33 @@ def solve_tow(
         the seabed, ``not-converged`` where no shape passes every check.
     """
     towed = replace(line.reversed(), towed=True)
-    closing = Closing(towed, _relative(line, water, towing), settings or Settings())
-    root: Root | None = None
+    water = _relative(line, water, towing)
+    tow = Towed(towed, water, settings or Settings(), towing.height)
+    found = False
     try:
-        if closing.span == 0.0:
+        if tow.span == 0.0:
             raise Status.NO_EQUILIBRIUM.because("The towed line has no length.", advice=PAY_OUT)
         _refuse_limp(towed)
-        root, other_depth = _locate(closing, towing)
+        other_depth = _locate(tow, towing)
+        found = True
         if towed.strumming is not None and towed.diameter.any():
-            root = _at_its_frequency(closing, towing, root)
-        refined = refine(closing, root, lambda near, cuts: _polish(closing, towing, near, cuts))
+            _set_frequency(tow)
+        refined = tow.refine(lambda cuts, record: _polish(tow, towing, cuts, record))
     except (MarchError, NoEquilibrium) as failure:
-        if root is not None and not towing.in_air and _surfaces(closing, root):
+        if found and not towing.in_air and _surfaces(tow):
             raise Status.ABOVE_SURFACE.because(AT_SURFACE, advice=STAY_BELOW) from failure
         if isinstance(failure, MarchError):
             message = f"The march stopped: {failure}."
             raise Status.NOT_CONVERGED.because(message) from failure
-        if root is not None and towing.height > 0.0 and not towing.in_air:
-            raise half_out(closing, root) or failure from failure
+        if found and towing.height > 0.0 and not towing.in_air:
+            raise half_out(tow) or failure from failure
         raise
-    return finished(
-        closing, refined, other_depth, lambda solution: _refuse_misplaced(solution, towing)
-    )
+    solution = finished(
+        tow.search, tow.referee, towed, water, tow.settings, refined,
+        lambda solution: _refuse_misplaced(solution, towing),
+        compiled=tow.compiled, frequency=tow.frequency,
+    )  # fmt: skip
+    return replace(solution, other_depth=other_depth)
 
 
 def _refuse_limp(towed: Line) -> None:
@@ -141,126 +144,122 @@ def _relative(line: Line, water: Water, towing: Towing) -> Water:
     )
 
 
-def _locate(closing: Closing, towing: Towing) -> tuple[Root, float | None]:
-    """The deepest coarse root, and the depth of the free end at the next one above [m]."""
-    unknown = closing.towed(towing.height)
-    miss = closing.coarse_miss(unknown)
-    shallowest = -towing.height - closing.span if towing.in_air else 0.0
-    depth = max(closing.span - towing.height, closing.span * 1e-3)
-    low = miss(depth)
+def _locate(tow: Towed, towing: Towing) -> float | None:
+    """Find the deepest coarse root; the depth of the free end at the next one above [m]."""
+    shallowest = -towing.height - tow.span if towing.in_air else 0.0
+    depth = max(tow.span - towing.height, tow.span * 1e-3)
+    low = tow.coarse_miss(depth)
     while low > 0.0:  # the line stretches
-        if depth > 100.0 * closing.span:
+        if depth > 100.0 * tow.span:
             raise Status.NOT_CONVERGED.because("The line stretches without end.")
         depth += 2.0 * low
-        low = miss(depth)
-    roots: list[Root] = []
-    for upper in _upwards(closing, depth, low, shallowest):
+        low = tow.coarse_miss(depth)
+    found = False
+    for upper in _upwards(tow, depth, low, shallowest):
         try:
-            high = miss(upper)
+            high = tow.coarse_miss(upper)
         except MarchError:
             # a line that drifts at the surface is now in the water, now in the air
-            if upper != shallowest or towing.in_air or roots:
+            if upper != shallowest or towing.in_air or found:
                 raise
-            upper = NEARLY_OUT * closing.span
-            if miss(upper) <= 0.0:
+            upper = NEARLY_OUT * tow.span
+            if tow.coarse_miss(upper) <= 0.0:
                 raise Status.ABOVE_SURFACE.because(AT_SURFACE, advice=STAY_BELOW) from None
-            high = miss(upper)
-        if upper == shallowest and -closing.allowed <= high <= 0.0:
-            high = closing.allowed  # at the surface, to within what is allowed
+            high = tow.coarse_miss(upper)
+        if upper == shallowest and -tow.allowed <= high <= 0.0:
+            high = tow.allowed  # at the surface, to within what is allowed
         if (low <= 0.0) is not (high <= 0.0):
-            roots.append(closing.coarse_root(unknown, upper, high, depth, low))
-        if len(roots) == 2:
-            return roots[0], roots[1].x
+            root = tow.coarse_root(upper, high, depth, low)
+            if found:
+                return root.x
+            tow.root, found = root, True
         depth, low = upper, high
-    if not roots and closing.span <= towing.height:
+    if not found and tow.span <= towing.height:
         raise Status.ABOVE_SURFACE.because(
-            f"The line, {closing.span:.2f} m long, does not reach the water from "
+            f"The line, {tow.span:.2f} m long, does not reach the water from "
             f"{towing.height:g} m above it.",
             advice=PAY_OUT,
         )
-    if not roots:
+    if not found:
         raise Status.ABOVE_SURFACE.because(
             "The towed body would come out of the water: even at the surface the line's upper end "
             f"is {-low:.2f} m below the tow point.",
             advice=STAY_BELOW,
         )
-    return roots[0], None
+    return None
 
 
-def _upwards(closing: Closing, depth: float, low: float, shallowest: float) -> list[float]:
+def _upwards(tow: Towed, depth: float, low: float, shallowest: float) -> list[float]:
     """Depths to try, from below; where nothing changes with depth the miss itself is the way."""
-    water = closing.water
+    water = tow.water
     if any(np.ptp(column) for column in (water.u, water.v, water.w, water.density)):
         steps: list[float] = np.linspace(depth, shallowest, SCAN + 1)[1:].tolist()
         return steps
-    return [max(depth + low - closing.allowed, shallowest)]
+    return [max(depth + low - tow.allowed, shallowest)]
 
 
-def _at_its_frequency(closing: Closing, towing: Towing, root: Root) -> Root:
-    """The coarse root of a line that strums at the frequency its own angle at the ship gives it.
+def _set_frequency(tow: Towed) -> None:
+    """Find the coarse root of a line that strums at the frequency its angle at the ship gives it.
 
     The frequency that follows falls as the one assumed rises, since more drag lifts the line: so
     there is one.
     """
 
-    def excess(frequency: float) -> float:
-        nonlocal root
-        closing.frequency = frequency
-        root = closing.coarser(replace(root, unknown=closing.towed(towing.height)))
-        return (
-            _frequency(closing, closing.run(root.unknown, root.x, closing.coarse_step)) - frequency
-        )
+    def excess(_: None, frequency: float) -> float:
+        tow.strum(frequency)
+        tow.find_coarser()
+        tow.coarse_miss(tow.root.x)
+        return _frequency(tow) - frequency
 
-    most = excess(0.0)
+    most = excess(None, 0.0)
     if most > 0.0:
-        closing.frequency, *_ = bracketed_root(
-            excess, 0.0, most, most, excess(most), small=1e-3 * most, narrow=1e-9 * most
+        frequency, *_ = bracketed_root(
+            excess, None, 0.0, most, most, excess(None, most), 1e-3 * most, 1e-9 * most
         )
-    return replace(root, unknown=closing.towed(towing.height))
+        tow.strum(frequency)
 
 
-def _polish(closing: Closing, towing: Towing, root: Root, cuts: Cuts) -> Closed:
+def _polish(tow: Towed, towing: Towing, cuts: int, record: int) -> None:
     """Close the line on cuts at its own frequency, found by secants, with a node at the surface."""
-    closed = closing.polish(root, cuts)
+    tow.polish(cuts, record)
     waterline = None
     if towing.height > 0.0 and not towing.in_air:
-        waterline = Waterline(closing, max(closing.allowed, SURFACE_BAND * closing.span))
+        waterline = Waterline(tow, max(tow.allowed, SURFACE_BAND * tow.span))
     before, lacked, slope = 0.0, 0.0, -1.0
     for _ in range(_ROUNDS):
-        frequency, lacking = closing.frequency, 0.0
+        frequency, lacking = tow.frequency, 0.0
         if frequency > 0.0:
-            lacking = _frequency(closing, closed.end) - frequency
-        moved = None if waterline is None else waterline.moved(closed)
-        if abs(lacking) <= FREQUENCY_TOLERANCE * frequency and moved is None:
-            return closed
+            lacking = _frequency(tow) - frequency
+        moved = waterline is not None and waterline.moves(cuts, record)
+        if abs(lacking) <= FREQUENCY_TOLERANCE * frequency and not moved:
+            return
         if before and frequency != before:
             slope = min((lacking - lacked) / (frequency - before), -1.0)
         before, lacked = frequency, lacking
-        closing.frequency = frequency - lacking / slope
-        near = replace(closed.root, unknown=closing.towed(towing.height))
-        closed = closing.polish(near, moved or closed.end.cuts)
+        tow.strum(frequency - lacking / slope)
+        tow.polish(cuts, record)
     raise Status.NOT_CONVERGED.because("The frequency of the strumming line does not settle.")
 
 
-def _frequency(closing: Closing, end: End) -> float:
-    """F = 0.166 V₀ sin φ_n/D [Hz], from the angle to the flow at the ship."""
-    law, line = closing.line.strumming, closing.line
+def _frequency(tow: Towed) -> float:
+    """F = 0.166 V₀ sin φ_n/D [Hz], from the angle to the flow at the ship of the last march."""
+    law, line = tow.line.strumming, tow.line
     assert law is not None
     diameter = float(line.diameter[line.diameter > 0.0][-1])
-    flow, _ = closing.water.at(np.array(0.5 * SURFACE_BAND * closing.span))
-    force = np.array(end.force)
+    flow, _ = tow.water.at(np.array(0.5 * SURFACE_BAND * tow.span))
+    force = np.array(tow.force)
     across = float(np.linalg.norm(np.cross(flow, force)) / np.linalg.norm(force))
     return law.strouhal * across / diameter
 
 
-def _surfaces(closing: Closing, root: Root) -> bool:
+def _surfaces(tow: Towed) -> bool:
     """Whether the line comes near to the surface on the far side of its lowest point."""
     try:
-        end = closing.run(root.unknown, root.x, closing.coarse_step, record=True)
+        trace = tow.shape_at(tow.root.x, tow.coarse_step)
     except MarchError:
-        return root.x < NEARLY_OUT * closing.span
-    height = end.trace.position[:, 2]
-    return bool(height[: int(np.argmin(height)) + 1].max() > -NEARLY_OUT * closing.span)
+        return tow.root.x < NEARLY_OUT * tow.span
+    height = trace.position[:, 2]
+    return bool(height[: int(np.argmin(height)) + 1].max() > -NEARLY_OUT * tow.span)
 
 
 def _refuse_misplaced(solution: Solution, towing: Towing) -> None:

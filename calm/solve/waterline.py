@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.errors import NoEquilibrium
-from calm.physics.march import Cuts
 from calm.physics.state import MarchError, Trace
-from calm.solve.closing import Closed, Closing, Root
+from calm.solve.problem import HALVED
 from calm.solve.status import Status
+from calm.solve.towing import Towed
 
 MOST_MOVES = 6
 WIDEST_JUMP = 0.02
@@ -29,69 +29,63 @@ class Waterline:
     near : what is near enough [m]
     """
 
-    def __init__(self, closing: Closing, near: float) -> None:
-        self._line, self._near = closing.line, near
+    def __init__(self, tow: Towed, near: float) -> None:
+        self._tow, self._near = tow, near
         self._shift = self._height = 0.0
         self._moves = 0
 
-    def moved(self, closed: Closed) -> Cuts | None:
-        """The cuts with that node shifted along its cable; None where it need or can not be."""
-        trace = closed.trace
+    def moves(self, cuts: int, record: int) -> bool:
+        """Shift that node along its cable, where it need and can be; whether it was."""
+        tow, work = self._tow, self._tow.search.problem.work
+        trace = Trace.of(work.records[record], tow.closed.nodes)
         heights, cut = trace.position[:, 2], trace.cut
         node = int(np.argmin(np.abs(heights)))
         height = float(heights[node])
-        cable = self._line.flexible[trace.piece] & (trace.clamp < 0)
+        cable = tow.line.flexible[trace.piece] & (trace.clamp < 0)
         if abs(height) <= self._near or not 0 < node < len(cable) or self._moves == MOST_MOVES:
-            return None
+            return False
         if not (cable[node - 1] and cable[node]):
-            return None
+            return False
         here = slice(node - 1, node + 1)
         rise = float(heights[node + 1] - heights[node - 1]) / float(cut[here].sum())
         if self._shift and height != self._height:
             rise = (height - self._height) / self._shift
         shift = -height / rise if rise else 0.0
         if not -cut[node - 1] < shift < cut[node]:
-            return None
+            return False
         self._shift, self._height = shift, height
         self._moves += 1
-        return _shifted(closed.end.cuts, int(cable[: node - 1].sum()), shift)
+        segment = int(cable[: node - 1].sum())
+        if segment + 1 in np.cumsum(work.counts[cuts]):
+            return False  # the next segment is another cable's
+        lengths = work.halved if cuts == HALVED else work.chosen
+        lengths[segment] += shift
+        lengths[segment + 1] -= shift
+        return True
 
 
-def _shifted(cuts: Cuts, segment: int, shift: float) -> Cuts | None:
-    """The cuts with one segment longer and the next shorter; None where that is another cable's."""
-    if segment + 1 in np.cumsum(cuts.counts):
-        return None
-    lengths = cuts.lengths.copy()
-    lengths[segment : segment + 2] += shift, -shift
-    return cuts._replace(lengths=lengths)
-
-
-def half_out(closing: Closing, root: Root) -> NoEquilibrium | None:
+def half_out(tow: Towed) -> NoEquilibrium | None:
     """Why a tow does not close at a root where its miss jumps; None where it does not jump there.
 
     A rigid piece or a clamp is in the water or out of it, by its middle. Where the line is too
     high with one in the water and too low with it out, it would ride half out: no equilibrium.
     """
-    unknown, step = root.unknown, closing.settings.angle_step
-
-    def miss(x: float) -> float:
-        return closing.run(unknown, x, step).z - unknown.goal
-
+    root, span = tow.root, tow.span
     try:
-        reach = 1e-4 * closing.span
-        while miss(root.x - reach) < 0.0 or miss(root.x + reach) > 0.0:
+        reach = 1e-4 * span
+        while tow.miss(root.x - reach) < 0.0 or tow.miss(root.x + reach) > 0.0:
             reach *= 2.0
-            if reach > WIDEST_JUMP * closing.span:
+            if reach > WIDEST_JUMP * span:
                 return None
         high, low = root.x - reach, root.x + reach
-        while low - high > NARROW_JUMP * closing.span:
+        while low - high > NARROW_JUMP * span:
             middle = 0.5 * (high + low)
-            high, low = (middle, low) if miss(middle) > 0.0 else (high, middle)
-        jump = miss(high), miss(low)
-        shapes = [closing.run(unknown, x, step, record=True).trace for x in (high, low)]
+            high, low = (middle, low) if tow.miss(middle) > 0.0 else (high, middle)
+        jump = tow.miss(high), tow.miss(low)
+        shapes = [tow.shape_at(x, tow.settings.angle_step) for x in (high, low)]
     except MarchError:
         return None
-    above, below = (_middles(closing.line.flexible, shape) for shape in shapes)
+    above, below = (_middles(tow.line.flexible, shape) for shape in shapes)
     for (piece, clamp), height in above.items():
         if (height > 0.0) is not (below[piece, clamp] > 0.0):
             what = "{piece}" if clamp < 0 else "a clamp on {piece}"

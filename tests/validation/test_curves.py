@@ -19,7 +19,8 @@ from calm.physics.line import Line
 from calm.physics.reynolds import DragCurve
 from calm.physics.stretch import ElongationCurve
 from calm.solve import Settings, Solution, solve_mooring
-from calm.solve.audit import LARGEST_CLOSURE, LARGEST_MOMENT, Audit
+from calm.solve.audit import Audit
+from calm.solve.search import LARGEST_CLOSURE, LARGEST_MOMENT
 from tests.property.strategies import draws, mooring
 from tests.validation.agreement import closure, difference
 from tests.validation.cables import Folded, NoContinuousSolution

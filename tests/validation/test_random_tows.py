@@ -19,7 +19,8 @@ import pytest
 
 from calm.errors import NoEquilibrium
 from calm.solve import Settings, solve_tow
-from calm.solve.audit import LARGEST_MOMENT, Audit
+from calm.solve.audit import Audit
+from calm.solve.search import LARGEST_MOMENT
 from tests.validation.agreement import closure, difference
 from tests.validation.cables import Folded, NoContinuousSolution
 from tests.validation.random_tows import tow

@@ -8,12 +8,11 @@ from pathlib import Path
 import pytest
 
 import calm
-from calm.physics import pace
 
 
-@pytest.fixture(params=[False, True], ids=["plain", "compiled"], autouse=True)
-def speed(request: pytest.FixtureRequest) -> None:
-    pace.march_fast(request.param)
+@pytest.fixture(params=["never", "always"], ids=["plain", "compiled"], autouse=True)
+def speed(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("CALM_COMPILED", request.param)
 
 
 def solved(folder: Path, text: str) -> calm.Result:

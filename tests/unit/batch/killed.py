@@ -19,7 +19,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[3]))
 import h5netcdf
 import h5py
 
-from calm.batch.compiling import compile_kernel
+from calm.batch.compiling import compile_solver
 from calm.batch.profiles import Batch
 from calm.batch.run import run_batch
 from tests.unit.batch.made import PLAIN, MadeRecord, content, made_mooring
@@ -125,7 +125,7 @@ if __name__ == "__main__":
     # few blocks of few variables where every step is tried
     mooring = made_mooring(folder, *([PLAIN] if how == "steps" else []))
     record, block = (MadeRecord(8), 4) if how == "steps" else (MadeRecord(100), 16)
-    compile_kernel(Batch(mooring), print)
+    compile_solver(Batch(mooring), print)
     os.fsync = lambda handle: None  # the power stays on
 
     began = time.perf_counter()

@@ -123,7 +123,7 @@ def test_a_worker_that_compiles_says_so(tmp_path, monkeypatch):
     def compile_anew(batch, tell):
         tell("compiling the solver")
 
-    monkeypatch.setattr(cluster_module, "compile_kernel", compile_anew)
+    monkeypatch.setattr(cluster_module, "compile_solver", compile_anew)
     told = []
     with distributed.LocalCluster(
         n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None

@@ -54,7 +54,7 @@ def test_what_is_done_is_not_done_again(tmp_path, mooring, record, ending):
     assert second.done
     assert asked == [24, 32]
     ended = {**dict.fromkeys(Ending, 0), Ending.SOLVED: 23, Ending.NO_DATA: 1}
-    assert told[0] == Progress(done=24, total=40, found=24, endings=ended, alone=0)
+    assert told[0] == Progress(done=24, total=40, found=24, endings=ended)
     assert content(output) == content(undisturbed)
     third = run_batch(mooring, record, output, block=8)
     assert asked == [24, 32]

@@ -6,9 +6,6 @@ import numpy as np
 import pytest
 
 from calm.batch import profiles
-from calm.batch.kernel import compiled
-from calm.batch.kernel.cases import solve_chunks
-from calm.batch.kernel.lane import LANES
 from calm.batch.profiles import Profiles, solve_profiles
 from calm.batch.statuses import STATUSES
 from calm.case import Mooring, load
@@ -54,15 +51,6 @@ def test_neither_order_nor_company_nor_workers_change_a_bit(
     assert_same(whole, solve_profiles(mooring, u, v, depth, w, workers=2))
 
 
-def test_every_lane_gives_the_same_digits(mooring: Mooring) -> None:
-    depth, u, v, w = drawn(3, 60, mooring.water.depth)
-    each = np.repeat(np.arange(60), LANES)
-    found = solve_profiles(mooring, u[each], v[each], depth, w[each])
-    for values in (found.depth_top, found.tension_top, found.tilt, found.clamp_tilt):
-        lanes = values.reshape(60, LANES, -1)
-        assert lanes.tobytes() == np.repeat(lanes[:, :1], LANES, axis=1).tobytes()
-
-
 def test_a_level_without_a_value_is_left_out(subsurface: Mooring) -> None:
     depth, u, v, _ = drawn(5, 12, subsurface.water.depth)
     gaps = [3, 4, 17, len(depth) - 1]
@@ -97,7 +85,7 @@ def test_levels_may_vary_and_come_in_any_order(subsurface: Mooring) -> None:
     )
 
 
-@pytest.mark.parametrize("friction", ["berteaux", "hoerner"])  # together; each lane by itself
+@pytest.mark.parametrize("friction", ["berteaux", "hoerner"])
 def test_profiles_that_cannot_be_solved_have_a_status(subsurface: Mooring, friction: str) -> None:
     solver = subsurface.file.solver.model_copy(update={"friction": friction})
     subsurface = Mooring(replace(subsurface.file, solver=solver))
@@ -109,7 +97,6 @@ def test_profiles_that_cannot_be_solved_have_a_status(subsurface: Mooring, frict
     assert [STATUSES[s] for s in found.status] == ["no-current", "levels-coincide", "converged"]
     assert np.isnan(found.depth_top[:2]).all()
     assert np.isfinite(found.depth_top[2]).all()
-    assert not found.alone.any()
 
 
 def test_still_water_leaves_the_line_upright(subsurface: Mooring) -> None:
@@ -165,12 +152,12 @@ def test_what_is_no_mooring_and_no_current_is_refused(subsurface: Mooring) -> No
             solve_profiles(subsurface, u, v, depth, workers=workers)
 
 
-def test_it_is_compiled_for_one_kind_of_arrays(subsurface: Mooring) -> None:
+def test_arrays_of_any_layout_are_taken(subsurface: Mooring) -> None:
     depth, u, v, w = drawn(11, 4, subsurface.water.depth)
+    found = solve_profiles(subsurface, u, v, depth, w)
     u.setflags(write=False)
-    solve_profiles(subsurface, u, v, depth)
-    solve_profiles(subsurface, np.asfortranarray(u), v.astype(np.float32), depth, w)
-    assert len(compiled.entry(solve_chunks).signatures) == 1
+    other = solve_profiles(subsurface, np.asfortranarray(u), np.repeat(v, 2, axis=0)[::2], depth, w)
+    assert_same(found, other)
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ import pytest
 
 import calm
 from calm.batch import run as run_module
-from calm.batch.compiling import compile_kernel
+from calm.batch.compiling import compile_solver
 from calm.batch.profiles import Batch
 from calm.batch.run import LARGEST_BLOCK, run_batch
 from calm.batch.statuses import STATUSES, Ending
@@ -116,7 +116,7 @@ def test_compiling_is_told_when_it_takes_place(tmp_path, mooring):
     program = (
         "import sys\n"
         "from pathlib import Path\n"
-        "from calm.batch.compiling import compile_kernel\n"
+        "from calm.batch.compiling import compile_solver\n"
         "from numba.core.dispatcher import _FunctionCompiler\n"
         "from calm.batch.profiles import Batch\n"
         "from tests.unit.batch.made import made_mooring\n"
@@ -125,9 +125,9 @@ def test_compiling_is_told_when_it_takes_place(tmp_path, mooring):
         "    if type(self) is _FunctionCompiler: sys.exit('compiles')\n"
         "    return compile(self, *signature)\n"
         "_FunctionCompiler.compile = seen\n"
-        "compile_kernel(Batch(made_mooring(Path(sys.argv[1]))), print)\n"
+        "compile_solver(Batch(made_mooring(Path(sys.argv[1]))), print)\n"
     )
-    compile_kernel(Batch(mooring), print)
+    compile_solver(Batch(mooring), print)
     for cache, expected in (({}, ""), ({"NUMBA_CACHE_DIR": str(tmp_path / "cache")}, "compiling")):
         finished = subprocess.run(
             [sys.executable, "-c", program, tmp_path], cwd=Path(__file__).parents[3],

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from calm.solve import solve_mooring
-from calm.solve.audit import LARGEST_CLOSURE, LARGEST_MOMENT, Audit
+from calm.solve.audit import Audit
+from calm.solve.search import LARGEST_CLOSURE, LARGEST_MOMENT
 from tests.unit.solve.simple import line, rigid, rope, water
 
 

@@ -1,11 +1,13 @@
-"""The current profiles of a block, laid out in its lanes."""
+"""The levels of a current profile, joined with those of the water and laid out for the march."""
 
 from __future__ import annotations
 
-from math import inf, isfinite, sqrt
+from math import inf, isfinite
 from typing import Any
 
+from calm.physics.compiled import set_row
 from calm.physics.line import Floats
+from calm.physics.profile import Interval
 
 
 def read_profile(depth: Floats, u: Floats, v: Floats, w: Floats, read: Floats) -> int:
@@ -77,14 +79,13 @@ def lay_profile(
         upper, lower = max(k - 1, 0), min(k, total - 1)
         depth = joined[upper, 0]
         thickness = joined[lower, 0] - depth if lower > upper else inf
-        row = intervals[k]
-        row.origin = depth
-        row.u, row.v, row.w = joined[upper, 1], joined[upper, 2], joined[upper, 3]
-        row.density = joined[upper, 4]
-        row.du = (joined[lower, 1] - row.u) / thickness
-        row.dv = (joined[lower, 2] - row.v) / thickness
-        row.dw = (joined[lower, 3] - row.w) / thickness
-        row.ddensity = (joined[lower, 4] - row.density) / thickness
+        u, v, w, density = joined[upper, 1], joined[upper, 2], joined[upper, 3], joined[upper, 4]
+        row = Interval(
+            depth, u, (joined[lower, 1] - u) / thickness, v, (joined[lower, 2] - v) / thickness,
+            w, (joined[lower, 3] - w) / thickness, density,
+            (joined[lower, 4] - density) / thickness,
+        )  # fmt: skip
+        set_row(intervals, k, row)
         if k < total:
             levels[k + 1] = joined[k, 0]
     return total
@@ -95,26 +96,3 @@ def value_at(table: Floats, count: int, k: int, depth: float, c: int) -> float:
     if k < count and table[k, 0] == depth:
         return float(table[k, c])
     return between(table, count, k, depth, c)
-
-
-def growth_below(joined: Floats, total: int, top: float) -> tuple[float, float]:
-    """Largest growth of the current with depth below `top`, relative to the top speed [1/m].
-
-    As `calm.solve.locate` has it; and that speed [m/s].
-    """
-    greatest = rise = 0.0
-    for k in range(total):
-        size = joined[k, 1] ** 2 + joined[k, 2] ** 2 + joined[k, 3] ** 2
-        if size > greatest:
-            greatest = size
-        if k + 1 < total and joined[k + 1, 0] > top:
-            product = square = 0.0
-            for c in range(1, 4):
-                square += joined[k, c] ** 2
-                product += joined[k, c] * joined[k + 1, c]
-            left = min(max(product / max(square, 1e-300), 0.0), 1.0)
-            new = 0.0
-            for c in range(1, 4):
-                new += (joined[k + 1, c] - left * joined[k, c]) ** 2
-            rise = max(rise, sqrt(new) / (joined[k + 1, 0] - joined[k, 0]))
-    return rise / max(sqrt(greatest), 1e-300), sqrt(greatest)

@@ -1,12 +1,12 @@
 """Many current profiles of one mooring: solves a second, accuracy, and scipy by hand.
 
-    python benchmarks/batch_kernel.py [PROFILES] [CHECKED] [CHECKOUT]
+    python benchmarks/profiles.py [PROFILES] [CHECKED] [CHECKOUT]
 
 PROFILES of every mooring (8192), of which CHECKED (24) are solved again at a tenth of the angle
-step. The currents are sheared and turn with depth; the best of five runs counts, after one that
-compiles. Prints the kernel alone on one thread, then all of a batch on one and on two; then the
-kernel under every other law of the manual. CHECKOUT is the folder of another version, with its own
-`.venv`, whose kernel is measured first, by its own copy of this program.
+step. The currents are sheared and turn with depth; the best of three runs counts, after one that
+compiles. Prints the rate on one thread and on two; then that under every other law of the manual.
+CHECKOUT is the folder of another version, with its own `.venv`, whose rates are measured first, by
+its own copy of this program.
 """
 
 import subprocess
@@ -25,15 +25,10 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import s1000_by_hand as by_hand
 
-from calm.batch.kernel.closing import FEWEST_HALVINGS
-from calm.batch.kernel.layout import Results
-from calm.batch.kernel.outcome import OF_CLAMP, OF_ENDS, OF_PIECE
-from calm.batch.kernel.plan import Plan
-from calm.batch.kernel.solve import Kernel
-from calm.batch.kernel.stragglers import water_of
 from calm.batch.profiles import Batch, Profiles
 from calm.case import Mooring, load
 from calm.case.measure import components_of
+from calm.physics.line import Floats, Water
 from calm.shipped import shipped_folder
 from calm.solve import solve_mooring
 
@@ -68,23 +63,12 @@ def best(solve: Callable[[], object], runs: int = 5) -> float:
     return min(times)
 
 
-def kernel(mooring: Mooring, plan: Plan, current: Arrays) -> Callable[[], np.ndarray]:
-    """The kernel by itself, on one thread; what it returns is how the cases ended."""
-    depth, u, v, w = current
-    count, line = len(u), mooring.line
-    rows = Results(
-        np.empty((count, len(OF_PIECE), len(line.length))),
-        np.empty((count, len(OF_CLAMP), len(line.clamp_piece))),
-        np.empty((count, len(OF_ENDS))),
-    )
-    ended = np.empty(count, np.int64)
-    lanes = Kernel(plan)
-
-    def solve() -> np.ndarray:
-        lanes.solve(depth[None], u, v, w, rows, ended)
-        return ended
-
-    return solve
+def water_of(base: Water, depth: Floats, u: Floats, v: Floats, w: Floats) -> Water:
+    """A water with a profile's current."""
+    levels = np.union1d(base.level, depth)
+    current, density = base.at(levels)
+    parts = [np.interp(levels, depth, part) + current[:, i] for i, part in enumerate((u, v, w))]
+    return replace(base, level=levels, u=parts[0], v=parts[1], w=parts[2], density=density)
 
 
 def arrays_rate(batch: Batch, current: Arrays, workers: int) -> float:
@@ -93,14 +77,16 @@ def arrays_rate(batch: Batch, current: Arrays, workers: int) -> float:
     return len(u) / best(lambda: batch.solve(u, v, depth, w, workers=workers), 3)
 
 
-def errors(mooring: Mooring, plan: Plan, current: Arrays, found: Profiles, count: int) -> list[str]:
+def errors(
+    mooring: Mooring, base: Water, current: Arrays, found: Profiles, count: int
+) -> list[str]:
     """Worst differences from `calm run` at its usual angle step and at a tenth of it."""
     depth, u, v, w = current
     lines = []
     for degrees in (1.0, 0.1):
         place = tension = 0.0
         for case in range(count):
-            water = water_of(plan.water, depth, u[case], v[case], w[case])
+            water = water_of(base, depth, u[case], v[case], w[case])
             settings = replace(mooring.settings, angle_step=radians(degrees))
             exact = components_of(
                 mooring.file.pieces[:-1],
@@ -129,18 +115,18 @@ def by_scipy(count: int = 20) -> float:
 
 
 def rates_of(checkout: Path, profiles: str) -> dict[str, float]:
-    """Solves a second of the kernel of another version, by mooring."""
+    """Solves a second of another version on one thread, by mooring."""
     python = checkout / ".venv" / "bin" / "python"
-    program = checkout / "benchmarks" / "batch_kernel.py"
+    program = checkout / "benchmarks" / Path(__file__).name
     printed = subprocess.run(
         [python, program, profiles, "1"], check=True, capture_output=True, text=True
     ).stdout
     found: dict[str, float] = {}
     name = ""
     for line in printed.splitlines():
-        if ": " in line and "segments" in line:
+        if ": " in line and "pieces" in line:
             name = line.split(":")[0]
-        elif "kernel, 1 thread" in line:
+        elif "1 threads" in line:
             found.setdefault(name, float(line.split()[-2]))
     return found
 
@@ -191,36 +177,27 @@ def main(profiles: str = "8192", checked: str = "24", checkout: str = "") -> Non
         mooring = load(shipped_folder("lines") / f"{name}.yaml")
         assert isinstance(mooring, Mooring)
         batch = Batch(mooring)
-        plan = batch.plan
         current = currents(mooring, int(profiles))
-        solve = kernel(mooring, plan, current)
+        depth, u, v, w = current
         start = perf_counter()
-        ended = solve()
-        first = perf_counter() - start
-        rate = len(ended) / best(solve)
-        segments = 2**FEWEST_HALVINGS * len(plan.clear.cuts)
-        print(f"\n{name}: {len(mooring.line.length)} pieces, {segments} segments, {LEVELS} levels")
-        print(f"  first run {first:.1f} s; left to be solved alone: {np.count_nonzero(ended)}")
-        print(f"  kernel, 1 thread      {rate:9.0f} solves/s")
-        if name in others:
-            print(f"  that of {checkout}  {others[name]:9.0f} solves/s")
+        batch.solve(u[:1], v[:1], depth, w[:1])
+        print(f"\n{name}: {len(mooring.line.length)} pieces, {LEVELS} levels")
+        print(f"  first profile {perf_counter() - start:.1f} s")
         for workers in (1, 2):
             rate = arrays_rate(batch, current, workers)
-            print(f"  arrays out, {workers} threads {rate:9.0f} solves/s")
+            print(f"  {workers} threads  {rate:9.0f} solves/s")
+        if name in others:
+            print(f"  1 thread of {checkout}  {others[name]:9.0f} solves/s")
         few = int(checked)
-        depth, u, v, w = current
         found = batch.solve(u[:few], v[:few], depth, w[:few])
-        for line in errors(mooring, plan, current, found, few):
+        for line in errors(mooring, batch.water, current, found, few):
             print(f"  off by {line}")
-    print("\nS1000 under other laws, kernel, 1 thread")
+    print("\nS1000 under other laws, 1 thread")
     for name, law in {"constant drag": ("", "", LINE), **LAWS}.items():
         mooring = s1000_with(*law)
-        plan = Batch(mooring).plan
         current = currents(mooring, int(profiles) // 4)
-        solve = kernel(mooring, plan, current)
-        left = np.count_nonzero(solve())
-        rate = len(current[1]) / best(solve, 3)
-        print(f"  {name:20} {rate:9.0f} solves/s; left to be solved alone: {left}")
+        rate = arrays_rate(Batch(mooring), current, 1)
+        print(f"  {name:20} {rate:9.0f} solves/s")
     print(f"\nS1000 by scipy alone at 1e-6: {by_scipy():.0f} solves/s")
 
 

@@ -1,0 +1,281 @@
+"""Profiles solved one after another, by the search of `calm.solve`, and what is kept of each.
+
+A profile is solved roughly: to a millionth of the depth, and not audited. What its shapes on cuts
+and on halved cuts lead to is extrapolated from both.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import atan2, pi, sqrt
+from typing import Any, NamedTuple
+
+from calm.batch.levels import lay_profile, read_profile
+from calm.physics.line import Floats, Integers
+from calm.physics.passing import FAILURE
+from calm.physics.profile import Sea
+from calm.physics.referee import Shape, find_ends
+from calm.physics.state import NO_ROOM
+from calm.solve.endings import FOLDED, FOUND, MARCH_STOPPED, UNSUPPORTED
+from calm.solve.problem import BELOW, COARSE, FINE, Limits, Problem, Search
+from calm.solve.refine import is_segment
+from calm.solve.search import (
+    HANGING,
+    LANDED,
+    NODES,
+    SOUGHT,
+    UNKNOWN_VALUE,
+    Asked,
+    Referee,
+)
+from calm.solve.standing import SUPPORTED, TOO_HEAVY
+
+DEPTH, EAST, NORTH, TENSION_TOP, TENSION_BOTTOM, TILT = range(6)
+OF_PIECE = ("depth_top", "x_top", "y_top", "tension_top", "tension_bottom", "tilt")
+OF_CLAMP = ("depth", "x", "y", "tension", "tilt")
+OF_ENDS = ("top_depth", "anchor_vertical", "anchor_horizontal", "used_buoyancy", "end_depth")
+
+NO_CURRENT, LEVELS_COINCIDE, HEAPED, LACKS_ROOM = range(100, 104)
+"""How a profile ends, besides the endings of `calm.solve.endings`: no level with a value, two of
+one depth, a heap on the seabed of what is meant to stand; more segments than there is room for."""
+
+
+class Results(NamedTuple):
+    """Rows of the profiles: of pieces (n, 6, p), clamps (n, 5, m) and ends (n, 5)."""
+
+    pieces: Floats
+    clamps: Floats
+    ends: Floats
+
+
+class Paper(NamedTuple):
+    """What a profile is laid out on, and its shape measured.
+
+    Attributes
+    ----------
+    read, joined : its levels, and these joined with the others: see `calm.batch.levels`
+    levels, intervals : as in `Sea`
+    fixed : (f, 4) depth, what is added to u and to v, and density of the levels all profiles get
+    first, last : node of every piece in the coarse shape
+    may_lie : whether a piece may lie on the seabed below a line that stands under water
+    """
+
+    read: Floats
+    joined: Floats
+    levels: Any
+    intervals: Any
+    fixed: Floats
+    first: Any
+    last: Any
+    may_lie: Integers
+
+
+def solve_rows(
+    find: Callable[[Asked, float], float],
+    search: Search,
+    referee: Referee,
+    paper: Paper,
+    depth: Floats,
+    u: Floats,
+    v: Floats,
+    w: Floats,
+    results: Results,
+    endings: Integers,
+) -> None:
+    """Solve profiles; what they lead to goes to their rows of the results.
+
+    Parameters
+    ----------
+    depth : (1 or n, k) of the levels [m]
+    u, v, w : (n, k) current [m/s]; NaN where there is none
+    endings : (n,) how each ends
+    """
+    for case in range(endings.size):
+        levels_at = depth[case if depth.shape[0] > 1 else 0]
+        found = read_profile(levels_at, u[case], v[case], w[case], paper.read)
+        if found <= 0:
+            endings[case] = NO_CURRENT if found == 0 else LEVELS_COINCIDE
+            continue
+        total = lay_profile(
+            paper.read, found, paper.fixed, paper.levels, paper.intervals, paper.joined
+        )
+        problem = in_current(search.problem, paper, total)
+        ending = refused_at_once(problem.limits)
+        if ending == FOUND:
+            ending = int(find(Asked(Search(search.miss, problem), referee), 0.0))
+            if ending == MARCH_STOPPED and problem.work.left[FAILURE] == NO_ROOM:
+                ending = LACKS_ROOM
+        endings[case] = ending
+        if ending == FOUND:
+            if is_heap(problem, paper):
+                endings[case] = HEAPED
+            measure(problem, referee, paper, results, case)
+
+
+def in_current(problem: Problem, paper: Paper, total: int) -> Problem:
+    """The same problem in a profile's current of so many levels."""
+    given, sea = problem.limits, problem.sea
+    moving = False
+    for k in range(total):
+        moving |= paper.joined[k, 1] != 0.0 or paper.joined[k, 2] != 0.0
+        moving |= paper.joined[k, 3] != 0.0
+    limits = Limits(
+        given.span, given.depth, given.anchor_height, given.tow_height, given.towed,
+        given.angle_step, given.coarse_step, given.allowed, given.share_allowed, given.friction,
+        given.excess, given.near, given.length, given.standing, given.lift, given.rides,
+        not (moving or given.blown), given.blown, given.refused, given.refused_at_rest,
+    )  # fmt: skip
+    levels, intervals = paper.levels[: total + 2], paper.intervals[: total + 1]
+    return Problem(
+        problem.course, Sea(levels, intervals, sea.gravity, sea.strata), problem.loads,
+        problem.flexible, problem.surfacing, problem.afloat, problem.hull, limits, problem.starts,
+        problem.work,
+    )  # fmt: skip
+
+
+def refused_at_once(limits: Limits) -> int:
+    """How a line ends that need not be sought; FOUND where it is to be sought."""
+    refused = limits.refused_at_rest if limits.at_rest else limits.refused
+    if refused == SUPPORTED:
+        return FOUND
+    return UNSUPPORTED if refused == TOO_HEAVY else FOLDED
+
+
+def is_heap(problem: Problem, paper: Paper) -> bool:
+    """Whether more of a line that stands under water lies on the seabed than may."""
+    told, record = problem.work.found, problem.work.records[FINE]
+    if told[SOUGHT] != BELOW:
+        return False
+    heap = False
+    for n in range(int(told[HANGING]) + 1, int(told[NODES])):
+        heap |= paper.may_lie[int(record[6][n])] == 0
+    return heap
+
+
+def tilt_of(x: float, y: float, z: float) -> float:
+    """Angle of a vector from the vertical [degrees]; 0 for none."""
+    return atan2(sqrt(x * x + y * y), z) * 180.0 / pi
+
+
+def measure(problem: Problem, referee: Referee, paper: Paper, results: Results, case: int) -> None:
+    """Write what the shape of a profile leads to in its row."""
+    told, records = problem.work.found, problem.work.records
+    fine, coarse = records[FINE], records[COARSE]
+    nodes = int(told[NODES])
+    before = nodes_before(problem, nodes, int(told[HANGING]), told[LANDED] > 0.0)
+    find_ends(Shape(fine, nodes, nodes - 1, referee.first, referee.last))
+    last = paper.last
+    if before > 0:
+        find_ends(Shape(coarse, before, before - 1, paper.first, last))
+    pieces, _, ends = results
+    head = referee.moored.head
+    for p in range(len(referee.first)):
+        a, b = referee.first[p], referee.last[p]
+        c, d = (paper.first[p], last[p]) if before > 0 else (-1, -1)
+        x, y, z, fx, fy, fz = node_of(fine, coarse, nodes, before, a, c)
+        i, j, k, gx, gy, gz = node_of(fine, coarse, nodes, before, b, d)
+        row = pieces[case]
+        row[DEPTH, p], row[EAST, p], row[NORTH, p] = -z, x, y
+        row[TENSION_TOP, p] = sqrt(fx * fx + fy * fy + fz * fz)
+        row[TENSION_BOTTOM, p] = sqrt(gx * gx + gy * gy + gz * gz)
+        dx, dy, dz = x - i, y - j, z - k
+        if dx == 0.0 and dy == 0.0 and dz == 0.0:
+            dx, dy, dz = fx + gx, fy + gy, fz + gz
+        row[TILT, p] = tilt_of(dx, dy, dz)
+        if p == len(referee.first) - 1:
+            ends[case, 1], ends[case, 2] = gz, sqrt(gx * gx + gy * gy)
+            ends[case, 4] = -k
+    ends[case, 0] = pieces[case, DEPTH, 0]
+    ends[case, 3] = used_buoyancy(problem)
+    if head > 1:
+        lean_of_head(problem, referee, results, case, head)
+    measure_clamps(problem, before, results, case)
+
+
+def lean_of_head(
+    problem: Problem, referee: Referee, results: Results, case: int, head: int
+) -> None:
+    """Give all pieces of a head, which is one rod, its tilt."""
+    fine = problem.work.records[FINE]
+    end = referee.last[head - 1]
+    dx, dy, dz = fine[0][0] - fine[0][end], fine[1][0] - fine[1][end], fine[2][0] - fine[2][end]
+    if dx == 0.0 and dy == 0.0 and dz == 0.0:
+        return
+    for p in range(head):
+        results.pieces[case, TILT, p] = tilt_of(dx, dy, dz)
+
+
+def nodes_before(problem: Problem, nodes: int, hanging: int, landed: bool) -> int:
+    """Nodes of the coarse shape; 0 where it is not that of the fine one.
+
+    A segment of the coarse shape is two of the fine one. Where the line lands both need not have
+    the same elements; their pieces have.
+    """
+    coarse = problem.work.records[COARSE]
+    count, n = 1, 1
+    while n < nodes:
+        n += 2 if is_segment(problem, coarse, count) else 1
+        count += 1
+    if landed:
+        return 0
+    return count if n == nodes else 0
+
+
+def node_of(
+    fine: Any, coarse: Any, nodes: int, before: int, n: int, c: int
+) -> tuple[float, float, float, float, float, float]:
+    """Place [m], from the line's end, and force [N] at a node, extrapolated from both shapes."""
+    end = nodes - 1
+    x, y, z = fine[0][n] - fine[0][end], fine[1][n] - fine[1][end], fine[2][n]
+    fx, fy, fz = fine[3][n], fine[4][n], fine[5][n]
+    if before == 0:
+        return x, y, z, fx, fy, fz
+    last = before - 1
+    return (
+        x + (x - (coarse[0][c] - coarse[0][last])) / 3.0,
+        y + (y - (coarse[1][c] - coarse[1][last])) / 3.0,
+        z + (z - coarse[2][c]) / 3.0,
+        fx + (fx - coarse[3][c]) / 3.0,
+        fy + (fy - coarse[4][c]) / 3.0,
+        fz + (fz - coarse[5][c]) / 3.0,
+    )
+
+
+def measure_clamps(problem: Problem, before: int, results: Results, case: int) -> None:
+    """Write what the shape leads to at the clamps, down the line."""
+    fine, coarse = problem.work.records[FINE], problem.work.records[COARSE]
+    nodes, row, c = int(problem.work.found[NODES]), 0, 0
+    for n in range(1, nodes):
+        if fine[7][n] < 0.0:
+            continue
+        if before > 0:
+            c += 1
+            while coarse[7][c] < 0.0:
+                c += 1
+        x, y, z, fx, fy, fz = node_of(fine, coarse, nodes, before, n - 1, c - 1)
+        _, _, _, gx, gy, gz = node_of(fine, coarse, nodes, before, n, c)
+        clamp = results.clamps[case]
+        upper, lower = sqrt(fx * fx + fy * fy + fz * fz), sqrt(gx * gx + gy * gy + gz * gz)
+        clamp[0, row], clamp[1, row], clamp[2, row] = -z, x, y
+        clamp[3, row] = max(upper, lower)
+        piece = int(fine[6][n])
+        tilt = tilt_of(fx + gx, fy + gy, fz + gz)
+        if not problem.flexible[piece]:
+            tilt = results.pieces[case, TILT, piece]
+        clamp[4, row] = tilt
+        row += 1
+
+
+def used_buoyancy(problem: Problem) -> float:
+    """Share in use of the buoyancy of the floats at the surface."""
+    told = problem.work.found
+    sought = int(told[SOUGHT])
+    if sought == BELOW:
+        return 1.0
+    total = used = 0.0
+    for k in range(sought + 1):
+        share = told[UNKNOWN_VALUE] if k == sought else problem.work.shares[0][k]
+        lift = problem.surfacing[k].surface_lift
+        total += lift
+        used += share * lift
+    return used / total

@@ -1,0 +1,411 @@
+"""The whole search for a moored line: from a problem to a shape that has passed every check.
+
+What is found clear of the seabed, or lying on it, is refined, looked at for what is out of the
+water or in the seabed, and audited.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, MutableSequence, Sequence
+from math import isnan, nan
+from typing import NamedTuple
+
+from calm.physics.compiled import set_row
+from calm.physics.passing import FAILURE
+from calm.physics.passing import LANDED as CAME_DOWN
+from calm.physics.referee import (
+    Body,
+    Moored,
+    Shape,
+    closure,
+    element_loads,
+    find_ends,
+    worst_moment,
+)
+from calm.physics.track import Load
+from calm.solve.closing import Closed, Root, not_closed, planned, whole_line
+from calm.solve.endings import (
+    ABOVE_SURFACE,
+    BELOW_SEABED,
+    FOUND,
+    MARCH_STOPPED,
+    NOT_CLOSED,
+    NOT_LYING,
+    OUT_OF_BALANCE,
+    SLACK_AT_REST,
+    SLACK_ON_DIGITS,
+    UNSUPPORTED,
+)
+from calm.solve.locate import locate
+from calm.solve.problem import (
+    BELOW,
+    CHANGED,
+    CHOSEN,
+    FINE,
+    KEPT,
+    NOT_RECORDED,
+    OTHER,
+    About,
+    Problem,
+    Search,
+    Unknown,
+)
+from calm.solve.refine import UNKNOWN_ERRORS, Errors, Refined, refine, tension_at
+from calm.solve.starts import NOWHERE_NEAR, start_of
+
+LARGEST_CLOSURE = 1e-6
+LARGEST_MOMENT = 1e-8
+UNSEEN = 1e-9
+"""Error, as a share of the span and of the greatest force, that both step sizes may have alike:
+of rounding, of a share of buoyancy, of a node that should be at a level and is just beside it."""
+BARELY_LANDED = 4.0
+"""Length on the seabed, in heights of the anchor, up to which a line that can as well hang between
+the seabed and the top of its anchor is taken to hang there."""
+PERHAPS_LANDED = 20.0
+"""The same, up to which it is looked whether it could hang: the other shape is then reported."""
+
+
+class Referee(NamedTuple):
+    """What the audit of a line takes.
+
+    Attributes
+    ----------
+    moored : the line as it is loaded, and its water
+    bodies : as they are in the line
+    first, last : room for the nodes of every piece
+    """
+
+    moored: Moored
+    bodies: Sequence[Body]
+    first: MutableSequence[int]
+    last: MutableSequence[int]
+
+
+class Found(NamedTuple):
+    """A shape in the record `FINE`, or why there is none.
+
+    Attributes
+    ----------
+    ending, value, piece : see `calm.solve.endings`
+    refined : the closed line
+    errors : of the shape, with what no halving shows
+    closure, moment : what the audit found
+    other_depth, other_grounded : of another equilibrium that the search came upon, see `Solution`;
+        the depth is negative where there is none
+    """
+
+    ending: int
+    value: float
+    piece: int
+    refined: Refined
+    errors: Errors
+    closure: float
+    moment: float
+    other_depth: float
+    other_grounded: float
+
+
+NO_OTHER = -1.0
+
+
+def find_shape(search: Search, referee: Referee) -> Found:
+    """Look for a line clear of the seabed or lying on it, the likelier first."""
+    problem = search.problem
+    limits = problem.limits
+    may_land = problem.course.landing < len(problem.course.stages)
+    lands_first = may_land and limits.length > limits.depth
+    first = highest(search, referee, lands_first)
+    if first.ending == FOUND or first.ending == MARCH_STOPPED or not may_land:
+        return first
+    second = highest(search, referee, not lands_first)
+    if second.ending == FOUND or second.ending == MARCH_STOPPED:
+        return second
+    if is_slack(first):
+        return first
+    if is_slack(second):
+        return second
+    return second if lands_first else first
+
+
+class Asked(NamedTuple):
+    """What `find_asked` is asked for."""
+
+    search: Search
+    referee: Referee
+
+
+def find_asked(asked: Asked, _: float) -> float:
+    """Look for a shape, and tell what was found in the work of the problem; how it ended."""
+    found = find_shape(asked.search, asked.referee)
+    tell(found, asked.search.problem.work.found)
+    return float(found.ending)
+
+
+def find_now(find: Callable[[Asked, float], float], asked: Asked) -> float:
+    """Call a search by its address."""
+    return find(asked, 0.0)
+
+
+ENDING, VALUE, PIECE, GOAL, SOUGHT, RIDES, LANDS, STAGES, UNKNOWN_VALUE, MISS, SLOPE = range(11)
+NODES, HANGING, LANDED, GROUNDED, SEGMENTS, FIRST_ERROR = range(11, 17)
+CLOSURE, MOMENT, OTHER_DEPTH, OTHER_GROUNDED = range(22, 26)
+"""Where it stands in what a search tells; from `FIRST_ERROR` on the errors."""
+
+
+def tell(found: Found, told: MutableSequence[float]) -> None:
+    """Write down what was found."""
+    closed, errors = found.refined.closed, found.errors
+    root = closed.root
+    unknown = root.unknown
+    told[ENDING], told[VALUE], told[PIECE] = found.ending, found.value, found.piece
+    told[GOAL], told[SOUGHT] = unknown.goal, unknown.sought
+    told[RIDES], told[LANDS], told[STAGES] = unknown.rides, unknown.lands, unknown.stages
+    told[UNKNOWN_VALUE], told[MISS], told[SLOPE] = root.x, root.miss, root.slope
+    told[NODES], told[HANGING] = closed.nodes, closed.hanging
+    told[LANDED], told[GROUNDED] = closed.landed, closed.grounded
+    told[SEGMENTS] = found.refined.segments
+    told[FIRST_ERROR], told[FIRST_ERROR + 1] = errors.depth, errors.tension
+    told[FIRST_ERROR + 2] = errors.relative
+    told[FIRST_ERROR + 3], told[FIRST_ERROR + 4] = errors.lift, errors.pull
+    told[CLOSURE], told[MOMENT] = found.closure, found.moment
+    told[OTHER_DEPTH], told[OTHER_GROUNDED] = found.other_depth, found.other_grounded
+
+
+def as_told(told: Sequence[float]) -> Found:
+    """What was found, by what was written down."""
+    whole = [int(told[i]) for i in range(len(told)) if i in WHOLE]
+    ending, piece, sought, rides, lands, stages, nodes, hanging, landed, segments = whole
+    unknown = Unknown(told[GOAL], sought, bool(rides), bool(lands), stages)
+    root = Root(True, unknown, told[UNKNOWN_VALUE], told[MISS], told[SLOPE])
+    value = float(told[VALUE])
+    closed = Closed(ending, value, piece, root, nodes, hanging, bool(landed), float(told[GROUNDED]))
+    errors = Errors(*(float(error) for error in told[FIRST_ERROR : FIRST_ERROR + 5]))
+    last = [float(told[i]) for i in (CLOSURE, MOMENT, OTHER_DEPTH, OTHER_GROUNDED)]
+    return Found(ending, value, piece, Refined(closed, segments, errors), errors, *last)
+
+
+WHOLE = (ENDING, PIECE, SOUGHT, RIDES, LANDS, STAGES, NODES, HANGING, LANDED, SEGMENTS)
+
+
+def is_slack(found: Found) -> bool:
+    """Whether a line is refused as slack."""
+    return found.ending == SLACK_AT_REST or found.ending == SLACK_ON_DIGITS
+
+
+def refused(ending: int, value: float, piece: int, root: Root) -> Found:
+    """Why there is no shape."""
+    refined = Refined(not_closed(ending, value, root), 0, UNKNOWN_ERRORS)
+    return Found(ending, value, piece, refined, UNKNOWN_ERRORS, 0.0, 0.0, NO_OTHER, 0.0)
+
+
+def beside(found: Found, other_depth: float, other_grounded: float) -> Found:
+    """The shape, with where the free end is and how much lies on the seabed in another one."""
+    return Found(
+        found.ending, found.value, found.piece, found.refined, found.errors, found.closure,
+        found.moment, other_depth, other_grounded,
+    )  # fmt: skip
+
+
+def highest(search: Search, referee: Referee, lands: bool) -> Found:
+    """The highest shape of a kind, with the depth of the deepest where that is another."""
+    problem = search.problem
+    if not lands and problem.limits.lift <= 0.0:
+        nowhere = Root(False, whole_line(problem, lands), nan, nan, nan)
+        return refused(UNSUPPORTED, 0.0, -1, nowhere)
+    start = start_of(search, lands)
+    if start.found and lands:
+        start = planned(search, start, problem.limits.coarse_step)
+    if start.found and not isnan(start.miss):
+        found = shape_near(search, referee, start, lands)
+        if found.ending == FOUND and is_surely_highest(found):
+            return found
+    located = locate(search, lands)
+    if located.ending != FOUND:
+        return refused(located.ending, located.value, -1, located.root)
+    found = shape_near(search, referee, located.root, lands)
+    if found.ending != FOUND or not located.deeper.found or problem.limits.near > 0.0:
+        return found
+    keep(problem, OTHER, FINE, found)
+    other = shape_near(search, referee, located.deeper, lands)
+    depth = -problem.work.records[FINE][2][0]
+    keep(problem, FINE, OTHER, found)
+    load_again(search, found)
+    if other.ending != FOUND:
+        return found
+    fall = depth + problem.work.records[FINE][2][0]
+    if fall <= 2.0 * (found.errors.depth + other.errors.depth):
+        return found
+    return beside(found, depth, other.refined.closed.grounded)
+
+
+def is_surely_highest(found: Found) -> bool:
+    """Whether a line found from its start needs no other search: see `calm.solve.starts`."""
+    root = found.refined.closed.root
+    if root.unknown.sought == BELOW:
+        return root.x > 0.0
+    return root.x < NOWHERE_NEAR
+
+
+def keep(problem: Problem, to: int, of: int, found: Found) -> None:
+    """Copy a shape from one record to another."""
+    source, kept = problem.work.records[of], problem.work.records[to]
+    for column in range(len(source)):
+        for n in range(found.refined.closed.nodes):
+            kept[column][n] = source[column][n]
+
+
+def load_again(search: Search, found: Found) -> None:
+    """Load what is at the surface as it is in a shape."""
+    root = found.refined.closed.root
+    limits = search.problem.limits
+    about = About(search.problem, root.unknown, limits.coarse_step, CHOSEN, False, NOT_RECORDED)
+    search.miss(about, root.x)
+
+
+def shape_near(search: Search, referee: Referee, root: Root, lands: bool) -> Found:
+    """The audited shape near a coarse root."""
+    problem, limits = search.problem, search.problem.limits
+    if not lands:
+        return audited(problem, referee, refine(search, root, True))
+    clear = hanging_clear(problem, root)
+    about = About(problem, root.unknown, limits.coarse_step, CHOSEN, False, NOT_RECORDED)
+    search.miss(about, root.x)
+    if problem.work.left[FAILURE] > 0.0:
+        return refused(MARCH_STOPPED, problem.work.left[FAILURE], -1, root)
+    if problem.work.left[CAME_DOWN] < 0.0:
+        return audited(problem, referee, refine(search, clear, False))
+    landed = audited(problem, referee, refine(search, root, False))
+    if landed.ending != FOUND:
+        return landed
+    closed = landed.refined.closed
+    if not closed.landed:
+        return refused(NOT_LYING, 0.0, -1, root)
+    if closed.grounded > PERHAPS_LANDED * limits.anchor_height:
+        return landed
+    keep(problem, KEPT, FINE, landed)
+    depth = -problem.work.records[FINE][2][0]
+    hanging = audited(problem, referee, refine(search, clear, False))
+    if hanging.ending == MARCH_STOPPED:
+        return hanging
+    if hanging.ending == FOUND and closed.grounded <= BARELY_LANDED * limits.anchor_height:
+        return beside(hanging, depth, closed.grounded)
+    other = -problem.work.records[FINE][2][0]
+    keep(problem, FINE, KEPT, landed)
+    load_again(search, landed)
+    if hanging.ending != FOUND:
+        return landed
+    return beside(landed, other, 0.0)
+
+
+def hanging_clear(problem: Problem, root: Root) -> Root:
+    """The same root for the line hanging clear of the seabed, to be sought again from there."""
+    goal = problem.limits.anchor_height - problem.limits.depth
+    given = root.unknown
+    unknown = Unknown(goal, given.sought, given.rides, False, given.stages)
+    return Root(root.found, unknown, root.x, root.miss, root.slope)
+
+
+def audited(problem: Problem, referee: Referee, refined: Refined) -> Found:
+    """A refined shape, refused where a check fails."""
+    closed = refined.closed
+    if closed.ending != FOUND:
+        return refused(closed.ending, closed.value, closed.piece, closed.root)
+    errors = stated_errors(problem, refined)
+    piece, height = misplaced(problem, refined, errors.depth)
+    if piece >= 0:
+        ending = ABOVE_SURFACE if height > 0.0 else BELOW_SEABED
+        return refused(ending, abs(height), piece, closed.root)
+    if problem.limits.near > 0.0:
+        return Found(FOUND, 0.0, -1, refined, errors, 0.0, 0.0, NO_OTHER, 0.0)
+    off, moment = audit_shape(problem, referee, closed)
+    ending, value = ending_of_audit(off, moment)
+    if ending != FOUND:
+        return refused(ending, value, -1, closed.root)
+    return Found(FOUND, 0.0, -1, refined, errors, off, moment, NO_OTHER, 0.0)
+
+
+def audit_shape(problem: Problem, referee: Referee, closed: Closed) -> tuple[float, float]:
+    """Closure and moment residual of the shape in the record `FINE`."""
+    record, elements = problem.work.records[FINE], problem.work.elements
+    shape = Shape(record, closed.nodes, closed.hanging, referee.first, referee.last)
+    moored, limits = referee.moored, problem.limits
+    take_loads(problem, referee)
+    find_ends(shape)
+    element_loads(moored, shape, elements)
+    off = closure(moored, shape, elements, closed.landed, limits.friction, limits.excess)
+    return off, worst_moment(moored, shape, elements)
+
+
+def ending_of_audit(off: float, moment: float) -> tuple[int, float]:
+    """Whether a shape passes the audit, and what is wrong with it."""
+    if not off <= LARGEST_CLOSURE:
+        return NOT_CLOSED, off
+    if not moment <= LARGEST_MOMENT:
+        return OUT_OF_BALANCE, moment
+    return FOUND, 0.0
+
+
+def stated_errors(problem: Problem, refined: Refined) -> Errors:
+    """The errors of a shape, with what no halving shows."""
+    closed, span, errors = refined.closed, problem.limits.span, refined.errors
+    unclosed = abs(closed.root.miss) / span + UNSEEN
+    record, greatest = problem.work.records[FINE], 0.0
+    for n in range(closed.nodes):
+        greatest = max(greatest, tension_at(record, n))
+    for k in range(closed.root.unknown.sought + 1):
+        greatest = max(greatest, problem.loads[problem.surfacing[k].load].buoyancy)
+    unseen = greatest * unclosed
+    return Errors(
+        errors.depth + span * unclosed,
+        errors.tension + unseen,
+        errors.relative,
+        errors.lift + unseen,
+        errors.pull + unseen,
+    )
+
+
+def misplaced(problem: Problem, refined: Refined, depth_error: float) -> tuple[int, float]:
+    """The piece that is out of the water, and by how much, or in the seabed, negative [m]; or -1.
+
+    A float at the surface may stand out of it, however it is turned.
+    """
+    closed, depth = refined.closed, problem.limits.depth
+    record = problem.work.records[FINE]
+    margin = max(depth_error, 1e-6 * depth)
+    standing, unknown = 0.0, closed.root.unknown
+    for k in range(unknown.sought + 1):
+        standing += problem.surfacing[k].length
+    if unknown.sought != BELOW and unknown.rides:
+        standing = problem.surfacing[unknown.sought].upto
+    lowest = topmost = 0
+    for n in range(1, closed.nodes):
+        if record[2][n] < record[2][lowest]:
+            lowest = n
+        if record[2][n] > record[2][topmost]:
+            topmost = n
+    if record[2][lowest] < -depth - margin:
+        return int(record[6][max(lowest, 1)]), depth + record[2][lowest]
+    if record[2][topmost] > margin + standing:
+        return int(record[6][max(topmost, 1)]), record[2][topmost]
+    return -1, 0.0
+
+
+def take_loads(problem: Problem, referee: Referee) -> None:
+    """Give the referee the loads as they are at the surface."""
+    bodies, pieces = referee.moored.bodies, referee.moored.pieces
+    for k in range(len(referee.bodies)):
+        set_row(bodies, k, referee.bodies[k])
+    for i in range(int(problem.work.left[CHANGED])):
+        load = problem.course.loads[i]
+        k = load.piece if load.clamp < 0 else pieces + load.clamp
+        set_row(bodies, k, loaded(referee.bodies[k], load))
+
+
+def loaded(body: Body, load: Load) -> Body:
+    """A body with the forces of a load."""
+    return Body(
+        body.flexible, body.length, load.buoyancy, load.volume, load.normal_drag,
+        load.tangential_drag, body.directional, body.compliance, body.thinning, load.lift,
+        load.push_east, load.push_north, body.diameter, body.smooth, body.lengthening,
+        body.first_knot, body.end_knot,
+    )  # fmt: skip

@@ -1,0 +1,227 @@
+"""The marches of a tow, and its root on fixed segments."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import isnan, sqrt
+from typing import Any
+
+from calm.physics.compiled import entry
+from calm.physics.element import Vector
+from calm.physics.line import Line, Water
+from calm.physics.passing import FAILURE, FX, FY, FZ, NODES
+from calm.physics.state import FAILURES, NO_ROOM, MarchError, Trace
+from calm.physics.track import Track
+from calm.solve.audit import referee_of
+from calm.solve.closing import (
+    Closed,
+    Root,
+    coarse_root,
+    coarser,
+    halve,
+    miss_now,
+    planned,
+    polish,
+    whole_line,
+)
+from calm.solve.endings import FOUND, MARCH_STOPPED
+from calm.solve.finish import closing_refusal
+from calm.solve.mooring import MORE_ROOM, search_of
+from calm.solve.problem import (
+    CHOSEN,
+    COARSE,
+    FINE,
+    HALVED,
+    KEPT,
+    NOT_RECORDED,
+    ROOM,
+    About,
+    Search,
+    problem_of,
+)
+from calm.solve.refine import (
+    MOST_ROUNDS,
+    MOST_SEGMENTS,
+    Errors,
+    Refined,
+    errors_of,
+    excess_of,
+    with_bends,
+)
+from calm.solve.search import Referee
+from calm.solve.solution import Settings
+from calm.solve.speed import runs_compiled
+
+
+class Towed:
+    """A towed line, from its free end, in the water as the ship sees it.
+
+    Attributes
+    ----------
+    span : the line out, by which lengths are measured [m]
+    allowed : the greatest miss of a solution [m]
+    compiled : whether its laws are compiled
+    frequency : of the cables that strum [Hz]
+    root : the last that was found
+    closed : the same on fixed segments
+    """
+
+    def __init__(self, line: Line, water: Water, settings: Settings, height: float) -> None:
+        self.line, self.water, self.settings = line, water, settings
+        self.span = float(line.length.sum())
+        self.allowed = settings.tolerance * self.span
+        self.frequency = 0.0
+        self._height = height
+        self.compiled = runs_compiled(settings, line)
+        self.search: Search
+        self.referee: Referee
+        self._lay_out(ROOM)
+        self.root = Root(False, whole_line(self.search.problem, False), 0.0, 0.0, 0.0)
+        self.closed: Closed
+
+    @property
+    def coarse_step(self) -> float:
+        """Angle step of the marches that look for the neighbourhood of a root [rad]."""
+        return self.search.problem.limits.coarse_step
+
+    @property
+    def force(self) -> Vector:
+        """The force at the end of the last march [N]."""
+        left = self.search.problem.work.left
+        return float(left[FX]), float(left[FY]), float(left[FZ])
+
+    def coarse_miss(self, x: float) -> float:
+        """The miss with the free end at a depth, at the coarse step [m].
+
+        Raises
+        ------
+        MarchError
+        """
+        return self._marched(x, self.coarse_step, NOT_RECORDED)
+
+    def miss(self, x: float) -> float:
+        """The miss with the free end at a depth, at the angle step [m].
+
+        Raises
+        ------
+        MarchError
+        """
+        return self._marched(x, self.settings.angle_step, NOT_RECORDED)
+
+    def shape_at(self, x: float, step: float) -> Trace:
+        """The shape with the free end at a depth, closed or not.
+
+        Raises
+        ------
+        MarchError
+        """
+        self._marched(x, step, KEPT)
+        work = self.search.problem.work
+        return Trace.of(work.records[KEPT], int(work.left[NODES]))
+
+    def coarse_root(self, a: float, miss_a: float, b: float, miss_b: float) -> Root:
+        """Root of the coarse miss between two depths [m]."""
+        unknown = self.root.unknown
+        root: Root = self._law(coarse_root)(self.search, unknown, a, miss_a, b, miss_b)
+        self._refuse_stopped(root.miss)
+        return root
+
+    def find_coarser(self) -> None:
+        """Seek the coarse root near the last one."""
+        self.root = self._law(coarser)(self.search, self.root)
+        self._refuse_stopped(self.root.miss)
+
+    def strum(self, frequency: float) -> None:
+        """Let the cables strum at a frequency [Hz]."""
+        self.frequency = frequency
+        track = Track.of(self.line, frequency)
+        course = track.packed if self.compiled else track.course
+        problem = self.search.problem._replace(course=course, loads=course.loads)
+        self.search = self.search._replace(problem=problem)
+        moored = self.referee.moored._replace(frequency=frequency)
+        self.referee = self.referee._replace(moored=moored)
+
+    def polish(self, cuts: int, record: int) -> None:
+        """Close the line on its cuts, from the last root.
+
+        Raises
+        ------
+        NoEquilibrium, MarchError
+        """
+        self.closed = self._law(polish)(self.search, self.root, cuts, record)
+        if self.closed.ending == MARCH_STOPPED:
+            self._refuse_stopped(self.closed.root.miss)
+        if self.closed.ending != FOUND:
+            raise closing_refusal(self.closed, True)
+        self.root = self.closed.root
+
+    def refine(self, polish: Callable[[int, int], None]) -> Refined:
+        """As `calm.solve.refine`, where closing the line on cuts in a record takes more.
+
+        Raises
+        ------
+        NoEquilibrium, MarchError
+        """
+        step, problem = self.settings.angle_step, self.search.problem
+        for _ in range(MOST_ROUNDS):
+            self.root = self._planned(2.0 * step)
+            segments: int = self._law(halve)(self.search.problem)
+            polish(CHOSEN, COARSE)
+            coarse = self.closed
+            polish(HALVED, FINE)
+            problem = self.search.problem
+            errors: Errors = self._law(errors_of)(problem, coarse, self.closed)
+            refined = Refined(self.closed, segments, errors)
+            excess = excess_of(problem, errors, False)
+            if excess <= 1.0 or segments > MOST_SEGMENTS:
+                break
+            step *= max(0.8 / sqrt(excess), 0.2)
+        bent: Refined = self._law(with_bends)(problem, refined)
+        return bent
+
+    def _planned(self, step: float) -> Root:
+        root: Root = self._law(planned)(self.search, self.root, step)
+        while self._lacks_room():
+            self._lay_out(MORE_ROOM * len(self.search.problem.work.chosen))
+            root = self._law(planned)(self.search, self.root, step)
+        self._refuse_stopped(root.miss)
+        return root
+
+    def _marched(self, x: float, step: float, record: int) -> float:
+        miss = self._miss(x, step, record)
+        while self._lacks_room():
+            self._lay_out(MORE_ROOM * len(self.search.problem.work.chosen))
+            miss = self._miss(x, step, record)
+        self._refuse_stopped(miss)
+        return miss
+
+    def _miss(self, x: float, step: float, record: int) -> float:
+        about = About(self.search.problem, self.root.unknown, step, CHOSEN, False, record)
+        miss: float = self._law(miss_now)(self.search.miss, about, x)
+        return miss
+
+    def _lay_out(self, room: int) -> None:
+        compiled = self.compiled
+        problem = problem_of(
+            self.line, self.water, self.settings, compiled=compiled, frequency=self.frequency,
+            tow_height=self._height, room=room,
+        )  # fmt: skip
+        self.search = search_of(problem, compiled)
+        self.referee = referee_of(self.line, self.water, self.frequency, compiled)
+
+    def _lacks_room(self) -> bool:
+        return bool(self.search.problem.work.left[FAILURE] == NO_ROOM)
+
+    def _refuse_stopped(self, miss: float) -> None:
+        if isnan(miss):
+            raise MarchError(FAILURES[int(self.search.problem.work.left[FAILURE])])
+
+    def _law(self, law: Callable[..., Any]) -> Callable[..., Any]:
+        """A law as it stands, or compiled."""
+        if not self.compiled:
+            return law
+
+        def compiled(*given: Any) -> Any:
+            return entry(law, *given)(*given)
+
+        return compiled
