@@ -15,7 +15,7 @@ from calm.deck.deck_items import (
     DeckItem,
     Order,
     Posted,
-    Surfacing,
+    RecoveryOrder,
     hung_of,
     over_the_side,
     posted,
@@ -60,7 +60,7 @@ class Deck:
     order: Order
     parts: tuple[DeckItem, ...]
     deployment: tuple[DeckItem, ...]
-    recovery: tuple[Surfacing, ...]
+    recovery: tuple[RecoveryOrder, ...]
     rise: Recovery | None
     cuts: tuple[Cut, ...]
     hardware: tuple[Stock, ...]

@@ -198,7 +198,7 @@ def _with_unknown(detail: str, count: int) -> str:
 
 
 def unknown_count(findings: Iterable[Finding]) -> int:
-    """How many of the findings are unknown."""
+    """Return how many of the findings are unknown."""
     return sum(finding.state is State.UNKNOWN for finding in findings)
 
 
@@ -257,7 +257,7 @@ def verdict_prose(findings: Iterable[Finding]) -> Prose:
 
 
 def accepted_table(moorings: Sequence[tuple[str, Sequence[Finding]]]) -> Table | None:
-    """What is accepted of each mooring, with its reason; None where nothing is."""
+    """Return what is accepted of each mooring, with its reason; None where nothing is."""
     rows = tuple(
         (
             Cell(State.ACCEPTED.value, state=State.ACCEPTED),
@@ -313,7 +313,9 @@ def limits_table(moorings: Sequence[tuple[str, Sequence[LimitKey]]]) -> Table:
 
 
 def unknown_table(findings: Iterable[Finding]) -> Table | None:
-    """What is unknown, piece by piece, and which figure would settle it; None where nothing is."""
+    """Return what is unknown, piece by piece, and which figure would settle it; None where nothing
+    is.
+    """
     parts: dict[str, list[Finding]] = {}
     for finding in worst_by_part(findings):
         if finding.state is State.UNKNOWN:

@@ -56,7 +56,9 @@ def factors_table(factors: Mapping[str, tuple[float, float, float]], datum: floa
 
 
 def sensors_table(study: Study) -> Table:
-    """How the sensors that are used agree with the currents alone, and with what is estimated."""
+    """Return how the sensors that are used agree with the currents alone, and with what is
+    estimated.
+    """
     columns = (
         Column("sensor"),
         Column("times", numeric=True),
@@ -80,7 +82,7 @@ def sensors_table(study: Study) -> Table:
 
 
 def held_out_table(held_out: Sequence[HeldOut]) -> Table:
-    """How well the depths of hidden sensors were estimated."""
+    """Return how well the depths of hidden sensors were estimated."""
     columns = (
         Column("hidden sensor"),
         Column("times", numeric=True),

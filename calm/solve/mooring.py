@@ -17,13 +17,13 @@ from calm.solve.problem import (
     NOT_RECORDED,
     ROOM,
     About,
-    Problem,
+    LineProblem,
     Search,
     problem_of,
 )
 from calm.solve.search import (
-    Asked,
-    Found,
+    AskedSearch,
+    FoundShape,
     Referee,
     as_told,
     find_asked,
@@ -85,15 +85,15 @@ def solve_mooring(line: Line, water: Water, settings: Settings | None = None) ->
     )
 
 
-def find_compiled(search: Search, referee: Referee) -> Found:
+def find_compiled(search: Search, referee: Referee) -> FoundShape:
     """`find_shape`, compiled."""
-    asked = Asked(search, referee)
+    asked = AskedSearch(search, referee)
     find = by_address(find_asked, asked)
     entry(find_now, find, asked)(find, asked)
     return as_told(list(search.problem.work.found))
 
 
-def search_of(problem: Problem, compiled: bool) -> Search:
+def search_of(problem: LineProblem, compiled: bool) -> Search:
     """The search for a problem, at either speed."""
     if not compiled:
         return Search(miss_at, problem)
@@ -102,8 +102,10 @@ def search_of(problem: Problem, compiled: bool) -> Search:
     return Search(by_address(miss_at, about), problem)
 
 
-def lacks_room(problem: Problem) -> bool:
-    """Whether a search has ended because a line needs more segments than there was room for."""
+def lacks_room(problem: LineProblem) -> bool:
+    """Return whether a search has ended because a line needs more segments than there was room
+    for.
+    """
     return bool(problem.work.left[FAILURE] == NO_ROOM)
 
 

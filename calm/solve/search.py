@@ -14,9 +14,9 @@ from calm.physics.compiled import set_row
 from calm.physics.passing import FAILURE
 from calm.physics.passing import LANDED as CAME_DOWN
 from calm.physics.referee import (
-    Body,
     Moored,
-    Shape,
+    RefereeBody,
+    RefereeShape,
     closure,
     element_loads,
     find_ends,
@@ -46,7 +46,7 @@ from calm.solve.problem import (
     NOT_RECORDED,
     OTHER,
     About,
-    Problem,
+    LineProblem,
     Search,
     Unknown,
 )
@@ -76,12 +76,12 @@ class Referee(NamedTuple):
     """
 
     moored: Moored
-    bodies: Sequence[Body]
+    bodies: Sequence[RefereeBody]
     first: MutableSequence[int]
     last: MutableSequence[int]
 
 
-class Found(NamedTuple):
+class FoundShape(NamedTuple):
     """A shape in the record `FINE`, or why there is none.
 
     Attributes
@@ -108,7 +108,7 @@ class Found(NamedTuple):
 NO_OTHER = -1.0
 
 
-def find_shape(search: Search, referee: Referee) -> Found:
+def find_shape(search: Search, referee: Referee) -> FoundShape:
     """Look for a line clear of the seabed or lying on it, the likelier first."""
     problem = search.problem
     limits = problem.limits
@@ -127,21 +127,21 @@ def find_shape(search: Search, referee: Referee) -> Found:
     return second if lands_first else first
 
 
-class Asked(NamedTuple):
+class AskedSearch(NamedTuple):
     """What `find_asked` is asked for."""
 
     search: Search
     referee: Referee
 
 
-def find_asked(asked: Asked, _: float) -> float:
+def find_asked(asked: AskedSearch, _: float) -> float:
     """Look for a shape, and tell what was found in the work of the problem; how it ended."""
     found = find_shape(asked.search, asked.referee)
     tell(found, asked.search.problem.work.found)
     return float(found.ending)
 
 
-def find_now(find: Callable[[Asked, float], float], asked: Asked) -> float:
+def find_now(find: Callable[[AskedSearch, float], float], asked: AskedSearch) -> float:
     """Call a search by its address."""
     return find(asked, 0.0)
 
@@ -152,7 +152,7 @@ CLOSURE, MOMENT, OTHER_DEPTH, OTHER_GROUNDED = range(22, 26)
 """Where it stands in what a search tells; from `FIRST_ERROR` on the errors."""
 
 
-def tell(found: Found, told: MutableSequence[float]) -> None:
+def tell(found: FoundShape, told: MutableSequence[float]) -> None:
     """Write down what was found."""
     closed, errors = found.refined.closed, found.errors
     root = closed.root
@@ -171,8 +171,8 @@ def tell(found: Found, told: MutableSequence[float]) -> None:
     told[OTHER_DEPTH], told[OTHER_GROUNDED] = found.other_depth, found.other_grounded
 
 
-def as_told(told: Sequence[float]) -> Found:
-    """What was found, by what was written down."""
+def as_told(told: Sequence[float]) -> FoundShape:
+    """Return what was found, by what was written down."""
     whole = [int(told[i]) for i in range(len(told)) if i in WHOLE]
     ending, piece, sought, rides, lands, stages, nodes, hanging, landed, segments = whole
     unknown = Unknown(told[GOAL], sought, bool(rides), bool(lands), stages)
@@ -181,32 +181,32 @@ def as_told(told: Sequence[float]) -> Found:
     closed = Closed(ending, value, piece, root, nodes, hanging, bool(landed), float(told[GROUNDED]))
     errors = Errors(*(float(error) for error in told[FIRST_ERROR : FIRST_ERROR + 5]))
     last = [float(told[i]) for i in (CLOSURE, MOMENT, OTHER_DEPTH, OTHER_GROUNDED)]
-    return Found(ending, value, piece, Refined(closed, segments, errors), errors, *last)
+    return FoundShape(ending, value, piece, Refined(closed, segments, errors), errors, *last)
 
 
 WHOLE = (ENDING, PIECE, SOUGHT, RIDES, LANDS, STAGES, NODES, HANGING, LANDED, SEGMENTS)
 
 
-def is_slack(found: Found) -> bool:
-    """Whether a line is refused as slack."""
+def is_slack(found: FoundShape) -> bool:
+    """Return whether a line is refused as slack."""
     return found.ending == SLACK_AT_REST or found.ending == SLACK_ON_DIGITS
 
 
-def refused(ending: int, value: float, piece: int, root: Root) -> Found:
-    """Why there is no shape."""
+def refused(ending: int, value: float, piece: int, root: Root) -> FoundShape:
+    """Return why there is no shape."""
     refined = Refined(not_closed(ending, value, root), 0, UNKNOWN_ERRORS)
-    return Found(ending, value, piece, refined, UNKNOWN_ERRORS, 0.0, 0.0, NO_OTHER, 0.0)
+    return FoundShape(ending, value, piece, refined, UNKNOWN_ERRORS, 0.0, 0.0, NO_OTHER, 0.0)
 
 
-def beside(found: Found, other_depth: float, other_grounded: float) -> Found:
+def beside(found: FoundShape, other_depth: float, other_grounded: float) -> FoundShape:
     """The shape, with where the free end is and how much lies on the seabed in another one."""
-    return Found(
+    return FoundShape(
         found.ending, found.value, found.piece, found.refined, found.errors, found.closure,
         found.moment, other_depth, other_grounded,
     )  # fmt: skip
 
 
-def highest(search: Search, referee: Referee, lands: bool) -> Found:
+def highest(search: Search, referee: Referee, lands: bool) -> FoundShape:
     """The highest shape of a kind, with the depth of the deepest where that is another."""
     problem = search.problem
     if not lands and problem.limits.lift <= 0.0:
@@ -238,15 +238,15 @@ def highest(search: Search, referee: Referee, lands: bool) -> Found:
     return beside(found, depth, other.refined.closed.grounded)
 
 
-def is_surely_highest(found: Found) -> bool:
-    """Whether a line found from its start needs no other search: see `calm.solve.starts`."""
+def is_surely_highest(found: FoundShape) -> bool:
+    """Return whether a line found from its start needs no other search: see `calm.solve.starts`."""
     root = found.refined.closed.root
     if root.unknown.sought == BELOW:
         return root.x > 0.0
     return root.x < NOWHERE_NEAR
 
 
-def keep(problem: Problem, to: int, of: int, found: Found) -> None:
+def keep(problem: LineProblem, to: int, of: int, found: FoundShape) -> None:
     """Copy a shape from one record to another."""
     source, kept = problem.work.records[of], problem.work.records[to]
     for column in range(len(source)):
@@ -254,7 +254,7 @@ def keep(problem: Problem, to: int, of: int, found: Found) -> None:
             kept[column][n] = source[column][n]
 
 
-def load_again(search: Search, found: Found) -> None:
+def load_again(search: Search, found: FoundShape) -> None:
     """Load what is at the surface as it is in a shape."""
     root = found.refined.closed.root
     limits = search.problem.limits
@@ -262,7 +262,7 @@ def load_again(search: Search, found: Found) -> None:
     search.miss(about, root.x)
 
 
-def shape_near(search: Search, referee: Referee, root: Root, lands: bool) -> Found:
+def shape_near(search: Search, referee: Referee, root: Root, lands: bool) -> FoundShape:
     """The audited shape near a coarse root."""
     problem, limits = search.problem, search.problem.limits
     if not lands:
@@ -297,15 +297,17 @@ def shape_near(search: Search, referee: Referee, root: Root, lands: bool) -> Fou
     return beside(landed, other, 0.0)
 
 
-def hanging_clear(problem: Problem, root: Root) -> Root:
-    """The same root for the line hanging clear of the seabed, to be sought again from there."""
+def hanging_clear(problem: LineProblem, root: Root) -> Root:
+    """Return the same root for the line hanging clear of the seabed, to be sought again from
+    there.
+    """
     goal = problem.limits.anchor_height - problem.limits.depth
     given = root.unknown
     unknown = Unknown(goal, given.sought, given.rides, False, given.stages)
     return Root(root.found, unknown, root.x, root.miss, root.slope)
 
 
-def audited(problem: Problem, referee: Referee, refined: Refined) -> Found:
+def audited(problem: LineProblem, referee: Referee, refined: Refined) -> FoundShape:
     """A refined shape, refused where a check fails."""
     closed = refined.closed
     if closed.ending != FOUND:
@@ -316,18 +318,18 @@ def audited(problem: Problem, referee: Referee, refined: Refined) -> Found:
         ending = ABOVE_SURFACE if height > 0.0 else BELOW_SEABED
         return refused(ending, abs(height), piece, closed.root)
     if problem.limits.near > 0.0:
-        return Found(FOUND, 0.0, -1, refined, errors, 0.0, 0.0, NO_OTHER, 0.0)
+        return FoundShape(FOUND, 0.0, -1, refined, errors, 0.0, 0.0, NO_OTHER, 0.0)
     off, moment = audit_shape(problem, referee, closed)
     ending, value = ending_of_audit(off, moment)
     if ending != FOUND:
         return refused(ending, value, -1, closed.root)
-    return Found(FOUND, 0.0, -1, refined, errors, off, moment, NO_OTHER, 0.0)
+    return FoundShape(FOUND, 0.0, -1, refined, errors, off, moment, NO_OTHER, 0.0)
 
 
-def audit_shape(problem: Problem, referee: Referee, closed: Closed) -> tuple[float, float]:
+def audit_shape(problem: LineProblem, referee: Referee, closed: Closed) -> tuple[float, float]:
     """Closure and moment residual of the shape in the record `FINE`."""
     record, elements = problem.work.records[FINE], problem.work.elements
-    shape = Shape(record, closed.nodes, closed.hanging, referee.first, referee.last)
+    shape = RefereeShape(record, closed.nodes, closed.hanging, referee.first, referee.last)
     moored, limits = referee.moored, problem.limits
     take_loads(problem, referee)
     find_ends(shape)
@@ -337,7 +339,7 @@ def audit_shape(problem: Problem, referee: Referee, closed: Closed) -> tuple[flo
 
 
 def ending_of_audit(off: float, moment: float) -> tuple[int, float]:
-    """Whether a shape passes the audit, and what is wrong with it."""
+    """Return whether a shape passes the audit, and what is wrong with it."""
     if not off <= LARGEST_CLOSURE:
         return NOT_CLOSED, off
     if not moment <= LARGEST_MOMENT:
@@ -345,7 +347,7 @@ def ending_of_audit(off: float, moment: float) -> tuple[int, float]:
     return FOUND, 0.0
 
 
-def stated_errors(problem: Problem, refined: Refined) -> Errors:
+def stated_errors(problem: LineProblem, refined: Refined) -> Errors:
     """The errors of a shape, with what no halving shows."""
     closed, span, errors = refined.closed, problem.limits.span, refined.errors
     unclosed = abs(closed.root.miss) / span + UNSEEN
@@ -364,7 +366,7 @@ def stated_errors(problem: Problem, refined: Refined) -> Errors:
     )
 
 
-def misplaced(problem: Problem, refined: Refined, depth_error: float) -> tuple[int, float]:
+def misplaced(problem: LineProblem, refined: Refined, depth_error: float) -> tuple[int, float]:
     """The piece that is out of the water, and by how much, or in the seabed, negative [m]; or -1.
 
     A float at the surface may stand out of it, however it is turned.
@@ -390,7 +392,7 @@ def misplaced(problem: Problem, refined: Refined, depth_error: float) -> tuple[i
     return -1, 0.0
 
 
-def take_loads(problem: Problem, referee: Referee) -> None:
+def take_loads(problem: LineProblem, referee: Referee) -> None:
     """Give the referee the loads as they are at the surface."""
     bodies, pieces = referee.moored.bodies, referee.moored.pieces
     for k in range(len(referee.bodies)):
@@ -401,9 +403,9 @@ def take_loads(problem: Problem, referee: Referee) -> None:
         set_row(bodies, k, loaded(referee.bodies[k], load))
 
 
-def loaded(body: Body, load: Load) -> Body:
+def loaded(body: RefereeBody, load: Load) -> RefereeBody:
     """A body with the forces of a load."""
-    return Body(
+    return RefereeBody(
         body.flexible, body.length, load.buoyancy, load.volume, load.normal_drag,
         load.tangential_drag, body.directional, body.compliance, body.thinning, load.lift,
         load.push_east, load.push_north, body.diameter, body.smooth, body.lengthening,

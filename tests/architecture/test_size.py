@@ -6,9 +6,9 @@ from collections import Counter
 from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parents[2] / "calm"
-MOST_LINES = 60_000
-MOST_MODULES = 330
-MOST_IMPORTS = 0.07
+MOST_LINES = 78_500
+MOST_MODULES = 415
+MOST_IMPORTS = 0.108
 """Share of the lines of code that import something."""
 
 
@@ -25,9 +25,9 @@ def code_lines(text: str) -> set[int]:
         if line.strip() and not line.lstrip().startswith("#")
     }
     for node in ast.walk(tree):
-        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
-            if isinstance(node.value.value, str):
-                lines -= set(range(node.lineno, (node.end_lineno or node.lineno) + 1))
+        text_alone = isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
+        if text_alone and isinstance(node.value.value, str):
+            lines -= set(range(node.lineno, (node.end_lineno or node.lineno) + 1))
     return lines
 
 
