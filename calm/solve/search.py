@@ -6,10 +6,11 @@ water or in the seabed, and audited.
 
 from __future__ import annotations
 
-from collections.abc import Callable, MutableSequence, Sequence
+from collections.abc import MutableSequence, Sequence
 from math import isnan, nan
 from typing import NamedTuple
 
+from calm.physics.closure import closure
 from calm.physics.compiled import set_row
 from calm.physics.passing import FAILURE
 from calm.physics.passing import LANDED as CAME_DOWN
@@ -17,7 +18,6 @@ from calm.physics.referee import (
     Body,
     Moored,
     Shape,
-    closure,
     element_loads,
     find_ends,
     worst_moment,
@@ -125,66 +125,6 @@ def find_shape(search: Search, referee: Referee) -> Found:
     if is_slack(second):
         return second
     return second if lands_first else first
-
-
-class Asked(NamedTuple):
-    """What `find_asked` is asked for."""
-
-    search: Search
-    referee: Referee
-
-
-def find_asked(asked: Asked, _: float) -> float:
-    """Look for a shape, and tell what was found in the work of the problem; how it ended."""
-    found = find_shape(asked.search, asked.referee)
-    tell(found, asked.search.problem.work.found)
-    return float(found.ending)
-
-
-def find_now(find: Callable[[Asked, float], float], asked: Asked) -> float:
-    """Call a search by its address."""
-    return find(asked, 0.0)
-
-
-ENDING, VALUE, PIECE, GOAL, SOUGHT, RIDES, LANDS, STAGES, UNKNOWN_VALUE, MISS, SLOPE = range(11)
-NODES, HANGING, LANDED, GROUNDED, SEGMENTS, FIRST_ERROR = range(11, 17)
-CLOSURE, MOMENT, OTHER_DEPTH, OTHER_GROUNDED = range(22, 26)
-"""Where it stands in what a search tells; from `FIRST_ERROR` on the errors."""
-
-
-def tell(found: Found, told: MutableSequence[float]) -> None:
-    """Write down what was found."""
-    closed, errors = found.refined.closed, found.errors
-    root = closed.root
-    unknown = root.unknown
-    told[ENDING], told[VALUE], told[PIECE] = found.ending, found.value, found.piece
-    told[GOAL], told[SOUGHT] = unknown.goal, unknown.sought
-    told[RIDES], told[LANDS], told[STAGES] = unknown.rides, unknown.lands, unknown.stages
-    told[UNKNOWN_VALUE], told[MISS], told[SLOPE] = root.x, root.miss, root.slope
-    told[NODES], told[HANGING] = closed.nodes, closed.hanging
-    told[LANDED], told[GROUNDED] = closed.landed, closed.grounded
-    told[SEGMENTS] = found.refined.segments
-    told[FIRST_ERROR], told[FIRST_ERROR + 1] = errors.depth, errors.tension
-    told[FIRST_ERROR + 2] = errors.relative
-    told[FIRST_ERROR + 3], told[FIRST_ERROR + 4] = errors.lift, errors.pull
-    told[CLOSURE], told[MOMENT] = found.closure, found.moment
-    told[OTHER_DEPTH], told[OTHER_GROUNDED] = found.other_depth, found.other_grounded
-
-
-def as_told(told: Sequence[float]) -> Found:
-    """What was found, by what was written down."""
-    whole = [int(told[i]) for i in range(len(told)) if i in WHOLE]
-    ending, piece, sought, rides, lands, stages, nodes, hanging, landed, segments = whole
-    unknown = Unknown(told[GOAL], sought, bool(rides), bool(lands), stages)
-    root = Root(True, unknown, told[UNKNOWN_VALUE], told[MISS], told[SLOPE])
-    value = float(told[VALUE])
-    closed = Closed(ending, value, piece, root, nodes, hanging, bool(landed), float(told[GROUNDED]))
-    errors = Errors(*(float(error) for error in told[FIRST_ERROR : FIRST_ERROR + 5]))
-    last = [float(told[i]) for i in (CLOSURE, MOMENT, OTHER_DEPTH, OTHER_GROUNDED)]
-    return Found(ending, value, piece, Refined(closed, segments, errors), errors, *last)
-
-
-WHOLE = (ENDING, PIECE, SOUGHT, RIDES, LANDS, STAGES, NODES, HANGING, LANDED, SEGMENTS)
 
 
 def is_slack(found: Found) -> bool:
