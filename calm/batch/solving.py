@@ -16,18 +16,11 @@ from calm.physics.passing import FAILURE
 from calm.physics.profile import Sea
 from calm.physics.referee import RefereeShape, find_ends
 from calm.physics.state import NO_ROOM
+from calm.solve.asking import HANGING, LANDED, NODES, SOUGHT, UNKNOWN_VALUE, AskedSearch
 from calm.solve.endings import FOLDED, FOUND, MARCH_STOPPED, UNSUPPORTED
 from calm.solve.problem import BELOW, COARSE, FINE, Limits, LineProblem, Search
 from calm.solve.refine import is_segment
-from calm.solve.search import (
-    HANGING,
-    LANDED,
-    NODES,
-    SOUGHT,
-    UNKNOWN_VALUE,
-    AskedSearch,
-    Referee,
-)
+from calm.solve.search import Referee
 from calm.solve.standing import SUPPORTED, TOO_HEAVY
 
 DEPTH, EAST, NORTH, TENSION_TOP, TENSION_BOTTOM, TILT = range(6)

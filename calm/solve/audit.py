@@ -12,13 +12,13 @@ from typing import Any
 
 import numpy as np
 
+from calm.physics.closure import closure
 from calm.physics.compiled import record_type
 from calm.physics.line import Floats, Line, Water
 from calm.physics.referee import (
     Moored,
     RefereeBody,
     RefereeShape,
-    closure,
     element_loads,
     strumming,
     worst_moment,

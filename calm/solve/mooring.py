@@ -8,28 +8,13 @@ from calm.physics.compiled import by_address, entry
 from calm.physics.line import Line, Water
 from calm.physics.passing import FAILURE
 from calm.physics.state import NO_ROOM
+from calm.solve.asking import AskedSearch, as_told, find_asked, find_now
 from calm.solve.audit import referee_of
 from calm.solve.closing import miss_at, whole_line
 from calm.solve.endings import FOUND
 from calm.solve.finish import other_of, refusal_of, solution_of
-from calm.solve.problem import (
-    CHOSEN,
-    NOT_RECORDED,
-    ROOM,
-    About,
-    LineProblem,
-    Search,
-    problem_of,
-)
-from calm.solve.search import (
-    AskedSearch,
-    FoundShape,
-    Referee,
-    as_told,
-    find_asked,
-    find_now,
-    find_shape,
-)
+from calm.solve.problem import CHOSEN, NOT_RECORDED, ROOM, About, LineProblem, Search, problem_of
+from calm.solve.search import FoundShape, Referee, find_shape
 from calm.solve.solution import Settings, Solution
 from calm.solve.speed import runs_compiled
 from calm.solve.standing import refuse_unsupported, standing_lift

@@ -6,10 +6,11 @@ water or in the seabed, and audited.
 
 from __future__ import annotations
 
-from collections.abc import Callable, MutableSequence, Sequence
+from collections.abc import MutableSequence, Sequence
 from math import isnan, nan
 from typing import NamedTuple
 
+from calm.physics.closure import closure
 from calm.physics.compiled import set_row
 from calm.physics.passing import FAILURE
 from calm.physics.passing import LANDED as CAME_DOWN
@@ -17,7 +18,6 @@ from calm.physics.referee import (
     Moored,
     RefereeBody,
     RefereeShape,
-    closure,
     element_loads,
     find_ends,
     worst_moment,
@@ -127,73 +127,13 @@ def find_shape(search: Search, referee: Referee) -> FoundShape:
     return second if lands_first else first
 
 
-class AskedSearch(NamedTuple):
-    """What `find_asked` is asked for."""
-
-    search: Search
-    referee: Referee
-
-
-def find_asked(asked: AskedSearch, _: float) -> float:
-    """Look for a shape, and tell what was found in the work of the problem; how it ended."""
-    found = find_shape(asked.search, asked.referee)
-    tell(found, asked.search.problem.work.found)
-    return float(found.ending)
-
-
-def find_now(find: Callable[[AskedSearch, float], float], asked: AskedSearch) -> float:
-    """Call a search by its address."""
-    return find(asked, 0.0)
-
-
-ENDING, VALUE, PIECE, GOAL, SOUGHT, RIDES, LANDS, STAGES, UNKNOWN_VALUE, MISS, SLOPE = range(11)
-NODES, HANGING, LANDED, GROUNDED, SEGMENTS, FIRST_ERROR = range(11, 17)
-CLOSURE, MOMENT, OTHER_DEPTH, OTHER_GROUNDED = range(22, 26)
-"""Where it stands in what a search tells; from `FIRST_ERROR` on the errors."""
-
-
-def tell(found: FoundShape, told: MutableSequence[float]) -> None:
-    """Write down what was found."""
-    closed, errors = found.refined.closed, found.errors
-    root = closed.root
-    unknown = root.unknown
-    told[ENDING], told[VALUE], told[PIECE] = found.ending, found.value, found.piece
-    told[GOAL], told[SOUGHT] = unknown.goal, unknown.sought
-    told[RIDES], told[LANDS], told[STAGES] = unknown.rides, unknown.lands, unknown.stages
-    told[UNKNOWN_VALUE], told[MISS], told[SLOPE] = root.x, root.miss, root.slope
-    told[NODES], told[HANGING] = closed.nodes, closed.hanging
-    told[LANDED], told[GROUNDED] = closed.landed, closed.grounded
-    told[SEGMENTS] = found.refined.segments
-    told[FIRST_ERROR], told[FIRST_ERROR + 1] = errors.depth, errors.tension
-    told[FIRST_ERROR + 2] = errors.relative
-    told[FIRST_ERROR + 3], told[FIRST_ERROR + 4] = errors.lift, errors.pull
-    told[CLOSURE], told[MOMENT] = found.closure, found.moment
-    told[OTHER_DEPTH], told[OTHER_GROUNDED] = found.other_depth, found.other_grounded
-
-
-def as_told(told: Sequence[float]) -> FoundShape:
-    """Return what was found, by what was written down."""
-    whole = [int(told[i]) for i in range(len(told)) if i in WHOLE]
-    ending, piece, sought, rides, lands, stages, nodes, hanging, landed, segments = whole
-    unknown = Unknown(told[GOAL], sought, bool(rides), bool(lands), stages)
-    root = Root(True, unknown, told[UNKNOWN_VALUE], told[MISS], told[SLOPE])
-    value = float(told[VALUE])
-    closed = Closed(ending, value, piece, root, nodes, hanging, bool(landed), float(told[GROUNDED]))
-    errors = Errors(*(float(error) for error in told[FIRST_ERROR : FIRST_ERROR + 5]))
-    last = [float(told[i]) for i in (CLOSURE, MOMENT, OTHER_DEPTH, OTHER_GROUNDED)]
-    return FoundShape(ending, value, piece, Refined(closed, segments, errors), errors, *last)
-
-
-WHOLE = (ENDING, PIECE, SOUGHT, RIDES, LANDS, STAGES, NODES, HANGING, LANDED, SEGMENTS)
-
-
 def is_slack(found: FoundShape) -> bool:
-    """Return whether a line is refused as slack."""
+    """Whether a line is refused as slack."""
     return found.ending == SLACK_AT_REST or found.ending == SLACK_ON_DIGITS
 
 
 def refused(ending: int, value: float, piece: int, root: Root) -> FoundShape:
-    """Return why there is no shape."""
+    """Why there is no shape."""
     refined = Refined(not_closed(ending, value, root), 0, UNKNOWN_ERRORS)
     return FoundShape(ending, value, piece, refined, UNKNOWN_ERRORS, 0.0, 0.0, NO_OTHER, 0.0)
 
@@ -239,7 +179,7 @@ def highest(search: Search, referee: Referee, lands: bool) -> FoundShape:
 
 
 def is_surely_highest(found: FoundShape) -> bool:
-    """Return whether a line found from its start needs no other search: see `calm.solve.starts`."""
+    """Whether a line found from its start needs no other search: see `calm.solve.starts`."""
     root = found.refined.closed.root
     if root.unknown.sought == BELOW:
         return root.x > 0.0
@@ -298,9 +238,7 @@ def shape_near(search: Search, referee: Referee, root: Root, lands: bool) -> Fou
 
 
 def hanging_clear(problem: LineProblem, root: Root) -> Root:
-    """Return the same root for the line hanging clear of the seabed, to be sought again from
-    there.
-    """
+    """The same root for the line hanging clear of the seabed, to be sought again from there."""
     goal = problem.limits.anchor_height - problem.limits.depth
     given = root.unknown
     unknown = Unknown(goal, given.sought, given.rides, False, given.stages)
@@ -339,7 +277,7 @@ def audit_shape(problem: LineProblem, referee: Referee, closed: Closed) -> tuple
 
 
 def ending_of_audit(off: float, moment: float) -> tuple[int, float]:
-    """Return whether a shape passes the audit, and what is wrong with it."""
+    """Whether a shape passes the audit, and what is wrong with it."""
     if not off <= LARGEST_CLOSURE:
         return NOT_CLOSED, off
     if not moment <= LARGEST_MOMENT:
