@@ -183,7 +183,8 @@ def finished(
     NoEquilibrium
         Where a check fails, that of the place or one of the audit.
     """
-    errors = stated_errors(search.problem, refined)
+    state = compiled_law(stated_errors) if compiled else stated_errors
+    errors = state(search.problem, refined)
     solution = solution_of(search.problem, line, water, settings, refined, errors, frequency)
     check(solution)
     audit = compiled_law(audit_shape) if compiled else audit_shape
