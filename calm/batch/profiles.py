@@ -20,7 +20,7 @@ from calm.batch.solving import (
     OF_CLAMP,
     OF_ENDS,
     OF_PIECE,
-    Paper,
+    ProfileArrays,
     Results,
     solve_rows,
 )
@@ -34,12 +34,12 @@ from calm.physics.compiled import by_address, entry, record_type
 from calm.physics.line import Floats, Integers, Water
 from calm.physics.profile import Interval
 from calm.solve import Status
+from calm.solve.asking import AskedSearch, find_asked
 from calm.solve.audit import referee_of
 from calm.solve.endings import FOUND
 from calm.solve.finish import STATUS_OF
 from calm.solve.mooring import MORE_ROOM, search_of
 from calm.solve.problem import MANY_ROOM, problem_of
-from calm.solve.search import Asked, find_asked
 from calm.solve.starts import fill_starts
 
 BLOCK = 1024
@@ -223,7 +223,7 @@ class Batch:
         intervals: Any = np.zeros(levels + 2, record_type(Interval))
         pieces = len(line.length)
         chain = [piece.component.kind == "chain" for piece in mooring.file.pieces[:-1]]
-        paper = Paper(
+        paper = ProfileArrays(
             read=np.zeros((levels, 4)),
             joined=np.zeros((levels, 5)),
             levels=np.zeros(levels + 2),
@@ -233,7 +233,7 @@ class Batch:
             last=np.zeros(pieces, np.int64),
             may_lie=np.array(chain, np.int64),
         )
-        find = by_address(find_asked, Asked(search, referee))
+        find = by_address(find_asked, AskedSearch(search, referee))
         given = (find, search, referee, paper, depth, *parts, rows, endings)
         entry(solve_rows, *given)(*given)
         again = np.flatnonzero(endings == LACKS_ROOM)

@@ -28,7 +28,7 @@ from calm.batch.store.identity import identity_of, to_text
 from calm.batch.store.store import open_store
 from calm.batch.stored_result import readable, statuses_of, stored_result
 from calm.batch.threads import Stopped, go_on, processors
-from calm.batch.work import Progress, Work
+from calm.batch.work import BatchWork, Progress
 from calm.case import Mooring
 from calm.errors import UsageError
 
@@ -120,11 +120,11 @@ def run_batch(
     def identify() -> str:
         return to_text(identity_of(mooring, record, options, stop))
 
-    def begin(folder: Path, identity: str) -> Work:
+    def begin(folder: Path, identity: str) -> BatchWork:
         store = open_store(folder, layout_of(mooring, record, nodes), length, identity)
-        return Work(batch, record, store, nodes, progress, stop)
+        return BatchWork(batch, record, store, nodes, progress, stop)
 
-    def solve(work: Work) -> None:
+    def solve(work: BatchWork) -> None:
         if scheduler is None:
             if work.missing:
                 compile_solver(batch, say)
@@ -140,7 +140,7 @@ def run_batch(
     return run_kept(output, identify, begin, solve, say)
 
 
-W = TypeVar("W", bound=Work)
+W = TypeVar("W", bound=BatchWork)
 
 
 def run_kept(

@@ -14,20 +14,13 @@ from calm.batch.levels import lay_profile, read_profile
 from calm.physics.line import Floats, Integers
 from calm.physics.passing import FAILURE
 from calm.physics.profile import Sea
-from calm.physics.referee import Shape, find_ends
+from calm.physics.referee import RefereeShape, find_ends
 from calm.physics.state import NO_ROOM
+from calm.solve.asking import HANGING, LANDED, NODES, SOUGHT, UNKNOWN_VALUE, AskedSearch
 from calm.solve.endings import FOLDED, FOUND, MARCH_STOPPED, UNSUPPORTED
-from calm.solve.problem import BELOW, COARSE, FINE, Limits, Problem, Search
+from calm.solve.problem import BELOW, COARSE, FINE, Limits, LineProblem, Search
 from calm.solve.refine import is_segment
-from calm.solve.search import (
-    HANGING,
-    LANDED,
-    NODES,
-    SOUGHT,
-    UNKNOWN_VALUE,
-    Asked,
-    Referee,
-)
+from calm.solve.search import Referee
 from calm.solve.standing import SUPPORTED, TOO_HEAVY
 
 DEPTH, EAST, NORTH, TENSION_TOP, TENSION_BOTTOM, TILT = range(6)
@@ -48,7 +41,7 @@ class Results(NamedTuple):
     ends: Floats
 
 
-class Paper(NamedTuple):
+class ProfileArrays(NamedTuple):
     """What a profile is laid out on, and its shape measured.
 
     Attributes
@@ -71,10 +64,10 @@ class Paper(NamedTuple):
 
 
 def solve_rows(
-    find: Callable[[Asked, float], float],
+    find: Callable[[AskedSearch, float], float],
     search: Search,
     referee: Referee,
-    paper: Paper,
+    paper: ProfileArrays,
     depth: Floats,
     u: Floats,
     v: Floats,
@@ -102,7 +95,7 @@ def solve_rows(
         problem = in_current(search.problem, paper, total)
         ending = refused_at_once(problem.limits)
         if ending == FOUND:
-            ending = int(find(Asked(Search(search.miss, problem), referee), 0.0))
+            ending = int(find(AskedSearch(Search(search.miss, problem), referee), 0.0))
             if ending == MARCH_STOPPED and problem.work.left[FAILURE] == NO_ROOM:
                 ending = LACKS_ROOM
         endings[case] = ending
@@ -112,8 +105,8 @@ def solve_rows(
             measure(problem, referee, paper, results, case)
 
 
-def in_current(problem: Problem, paper: Paper, total: int) -> Problem:
-    """The same problem in a profile's current of so many levels."""
+def in_current(problem: LineProblem, paper: ProfileArrays, total: int) -> LineProblem:
+    """Return the same problem in a profile's current of so many levels."""
     given, sea = problem.limits, problem.sea
     moving = False
     for k in range(total):
@@ -126,7 +119,7 @@ def in_current(problem: Problem, paper: Paper, total: int) -> Problem:
         not (moving or given.blown), given.blown, given.refused, given.refused_at_rest,
     )  # fmt: skip
     levels, intervals = paper.levels[: total + 2], paper.intervals[: total + 1]
-    return Problem(
+    return LineProblem(
         problem.course, Sea(levels, intervals, sea.gravity, sea.strata), problem.loads,
         problem.flexible, problem.surfacing, problem.afloat, problem.hull, limits, problem.starts,
         problem.work,
@@ -134,15 +127,15 @@ def in_current(problem: Problem, paper: Paper, total: int) -> Problem:
 
 
 def refused_at_once(limits: Limits) -> int:
-    """How a line ends that need not be sought; FOUND where it is to be sought."""
+    """Return how a line ends that need not be sought; FOUND where it is to be sought."""
     refused = limits.refused_at_rest if limits.at_rest else limits.refused
     if refused == SUPPORTED:
         return FOUND
     return UNSUPPORTED if refused == TOO_HEAVY else FOLDED
 
 
-def is_heap(problem: Problem, paper: Paper) -> bool:
-    """Whether more of a line that stands under water lies on the seabed than may."""
+def is_heap(problem: LineProblem, paper: ProfileArrays) -> bool:
+    """Return whether more of a line that stands under water lies on the seabed than may."""
     told, record = problem.work.found, problem.work.records[FINE]
     if told[SOUGHT] != BELOW:
         return False
@@ -157,16 +150,18 @@ def tilt_of(x: float, y: float, z: float) -> float:
     return atan2(sqrt(x * x + y * y), z) * 180.0 / pi
 
 
-def measure(problem: Problem, referee: Referee, paper: Paper, results: Results, case: int) -> None:
+def measure(
+    problem: LineProblem, referee: Referee, paper: ProfileArrays, results: Results, case: int
+) -> None:
     """Write what the shape of a profile leads to in its row."""
     told, records = problem.work.found, problem.work.records
     fine, coarse = records[FINE], records[COARSE]
     nodes = int(told[NODES])
     before = nodes_before(problem, nodes, int(told[HANGING]), told[LANDED] > 0.0)
-    find_ends(Shape(fine, nodes, nodes - 1, referee.first, referee.last))
+    find_ends(RefereeShape(fine, nodes, nodes - 1, referee.first, referee.last))
     last = paper.last
     if before > 0:
-        find_ends(Shape(coarse, before, before - 1, paper.first, last))
+        find_ends(RefereeShape(coarse, before, before - 1, paper.first, last))
     pieces, _, ends = results
     head = referee.moored.head
     for p in range(len(referee.first)):
@@ -193,7 +188,7 @@ def measure(problem: Problem, referee: Referee, paper: Paper, results: Results, 
 
 
 def lean_of_head(
-    problem: Problem, referee: Referee, results: Results, case: int, head: int
+    problem: LineProblem, referee: Referee, results: Results, case: int, head: int
 ) -> None:
     """Give all pieces of a head, which is one rod, its tilt."""
     fine = problem.work.records[FINE]
@@ -205,7 +200,7 @@ def lean_of_head(
         results.pieces[case, TILT, p] = tilt_of(dx, dy, dz)
 
 
-def nodes_before(problem: Problem, nodes: int, hanging: int, landed: bool) -> int:
+def nodes_before(problem: LineProblem, nodes: int, hanging: int, landed: bool) -> int:
     """Nodes of the coarse shape; 0 where it is not that of the fine one.
 
     A segment of the coarse shape is two of the fine one. Where the line lands both need not have
@@ -241,7 +236,7 @@ def node_of(
     )
 
 
-def measure_clamps(problem: Problem, before: int, results: Results, case: int) -> None:
+def measure_clamps(problem: LineProblem, before: int, results: Results, case: int) -> None:
     """Write what the shape leads to at the clamps, down the line."""
     fine, coarse = problem.work.records[FINE], problem.work.records[COARSE]
     nodes, row, c = int(problem.work.found[NODES]), 0, 0
@@ -266,7 +261,7 @@ def measure_clamps(problem: Problem, before: int, results: Results, case: int) -
         row += 1
 
 
-def used_buoyancy(problem: Problem) -> float:
+def used_buoyancy(problem: LineProblem) -> float:
     """Share in use of the buoyancy of the floats at the surface."""
     told = problem.work.found
     sought = int(told[SOUGHT])

@@ -47,7 +47,7 @@ class Progress:
     endings: Mapping[Ending, int]
 
 
-class Work:
+class BatchWork:
     """What is to be done in a store, which nobody else works on, and what has been done."""
 
     def __init__(
@@ -75,7 +75,7 @@ class Work:
 
     @property
     def counts(self) -> dict[str, int]:
-        """How many profiles are on the disk, by status."""
+        """Return how many profiles are on the disk, by status."""
         return _named(sum(self._kept.values(), _NONE))
 
     def here(self, workers: int) -> None:

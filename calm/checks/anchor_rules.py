@@ -98,7 +98,7 @@ def _heavier(mooring: Mooring, weight: float) -> str:
 
 
 def _in_air(mooring: Mooring, weight: float) -> str:
-    """What weighs so much in water [N]."""
+    """Return what weighs so much in water [N]."""
     water = mooring.water
     _, density = water.at(np.array(water.depth))
     steel, concrete = anchor_dry_mass(weight, float(density), water.gravity)

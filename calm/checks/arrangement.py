@@ -49,7 +49,7 @@ _INSULATED = ("plastic", "jacket", "sheath", "coated", "insulat")
 
 @rule("release-present", once=True)
 def release_present(handling: Handling) -> Iterator[Verdict]:
-    """Whether a sub-surface line says what lets go of its anchor."""
+    """Return whether a sub-surface line says what lets go of its anchor."""
     mooring = handling.mooring
     if reaches_the_surface(mooring):
         return
@@ -125,7 +125,9 @@ def metals(handling: Handling) -> Iterator[Verdict]:
 def unlike_metals(
     pieces: Sequence[Piece],
 ) -> Iterator[tuple[Piece | Clamp, Piece | Clamp, float]]:
-    """What touches of metals far apart in the galvanic series: base, noble, and how far [V]."""
+    """Return what touches of metals far apart in the galvanic series: base, noble, and how far
+    [V].
+    """
     pairs: list[tuple[Piece | Clamp, Piece | Clamp]] = [*pairwise(pieces)]
     for piece in pieces:
         if not _has(piece, _INSULATED):

@@ -122,7 +122,7 @@ def findings_of(
     anchored: bool = True,
     day: date | None = None,
 ) -> Iterator[Finding]:
-    """What the rules of a standing line find in one situation.
+    """Return what the rules of a standing line find in one situation.
 
     Parameters
     ----------
@@ -182,7 +182,7 @@ def handled(mooring: Mooring, result: Result) -> Handling:
 
 
 def _handled(stand: MooringInEnvironment) -> Handling:
-    """The same of a stand; of one that has no equilibrium, why not."""
+    """Return the same of a stand; of one that has no equilibrium, why not."""
     mooring, result = stand.mooring, stand.result
     if result is not None:
         return handled(mooring, result)

@@ -95,7 +95,7 @@ class Assessment:
         return self.stands[0].mooring
 
     def all_findings(self) -> Iterator[Finding]:
-        """Those of every environment, then those of launch, recovery and breaks."""
+        """Return those of every environment, then those of launch, recovery and breaks."""
         for stand in self.stands:
             yield from stand.findings
         yield from self.findings
@@ -107,7 +107,7 @@ class Assessment:
         return State.PASS if worst is State.ACCEPTED else worst
 
     def accepted_findings(self) -> list[Finding]:
-        """What is accepted, once for each rule and component, in the order of the rules."""
+        """Return what is accepted, once for each rule and component, in the order of the rules."""
         every = (*(one for stand in self.stands for one in stand.accepted), *self.findings)
         once: dict[tuple[str, str | None], Finding] = {}
         for finding in every:

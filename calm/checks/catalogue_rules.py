@@ -263,7 +263,8 @@ def _envelope(component: Component) -> float | None:
 
 @rule("figures", once=True)
 def figures(handling: Handling) -> Iterator[Verdict]:
-    """What no component of its size and material can have, such as a load in N that was in kN.
+    """Return what no component of its size and material can have, such as a load in N that was in
+    kN.
 
     What hangs several times on the line is named once.
     """

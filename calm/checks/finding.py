@@ -79,7 +79,7 @@ class Verdict:
 
     @property
     def rank(self) -> tuple[int, float]:
-        """What sorts verdicts, the worst first: the state, then the margin as a share."""
+        """Return what sorts verdicts, the worst first: the state, then the margin as a share."""
         return -self.state.severity, inf if self.share is None else self.share
 
 

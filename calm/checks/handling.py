@@ -88,7 +88,7 @@ def backup(handling: Handling) -> Iterator[Verdict]:
 
 
 def _room(one: Break | Loss) -> float:
-    """What is left beyond what is required [N]."""
+    """Return what is left beyond what is required [N]."""
     return one.margin - one.required
 
 
@@ -191,7 +191,7 @@ def recovery(handling: Handling) -> Iterator[Verdict]:
 
 @rule("tangling", once=True)
 def tangling(handling: Handling) -> Iterator[Verdict]:
-    """Whether the line doubles back on itself as it falls or rises."""
+    """Return whether the line doubles back on itself as it falls or rises."""
     launch, rise = handling.launch, handling.recovery
     if isinstance(launch, Launch) and launch.tangles:
         yield _tangled(

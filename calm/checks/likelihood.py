@@ -95,7 +95,7 @@ _ALL: Key = ("", None)
 def _broken(
     mooring: Mooring, draws: Sequence[Draw], mapped: Mapped, *, standing: bool = True
 ) -> Counter[Key]:
-    """How many samples break each limit, of a line that stands or of its handling."""
+    """Return how many samples break each limit, of a line that stands or of its handling."""
     block = BLOCK if standing else BLOCK // 16
     blocks = [draws[first : first + block] for first in range(0, len(draws), block)]
     broken: Counter[Key] = Counter()
@@ -120,7 +120,7 @@ def _counted(standing: bool, mooring: Mooring, draws: Sequence[Draw]) -> Counter
 
 
 def _beyond(rules: Sequence[Rule], evidence: object) -> set[Key]:
-    """What is beyond its limit, each once."""
+    """Return what is beyond its limit, each once."""
     return {
         (rule.name, verdict.place)
         for rule in rules

@@ -33,12 +33,13 @@ JUDGED_ROLES = ("float", "instrument", "release")
 
 
 def meant_for_the_surface(result: Result) -> bool:
-    """Whether the float is at the surface but for the current, the wind or the tide."""
+    """Return whether the float is at the surface but for the current, the wind or the tide."""
     return reaches_the_surface(result.mooring)
 
 
 def reaches_the_surface(mooring: Mooring) -> bool:
-    """Whether a line is meant to have its float at the surface: whether it has in still water.
+    """Return whether a line is meant to have its float at the surface: whether it has in still
+    water.
 
     A line that reaches it has no unique shape in still water where it is longer than that is deep.
     """

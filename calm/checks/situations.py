@@ -85,7 +85,7 @@ def _changed(mooring: Mooring, given: Result) -> Iterator[tuple[str, Mooring]]:
 
 
 def _shapeless(situation: Situation) -> bool:
-    """Whether it is still water in which a slack line has no shape of its own."""
+    """Return whether it is still water in which a slack line has no shape of its own."""
     failure = situation.failure
     still = situation.name in (STILL, STILL_LOW)
     return still and failure is not None and failure.status == Status.SLACK.label
@@ -131,7 +131,7 @@ def as_deployed(mooring: Mooring) -> Mooring:
 
 
 def differs(mooring: Mooring, deployed: Mooring) -> bool:
-    """Whether it stands in another depth than designed, or on other lengths."""
+    """Return whether it stands in another depth than designed, or on other lengths."""
     return deployed.water.depth != mooring.water.depth or any(
         piece.length is not None and piece.length != length
         for piece, length in zip(deployed.file.pieces, mooring.line.length.tolist(), strict=False)
@@ -157,7 +157,7 @@ def cut_like(file: MooringFile, mooring: Mooring) -> MooringFile:
 
 @rule("as-deployed", once=True)
 def deployed_depth(handling: Handling) -> Iterator[Verdict]:
-    """How far the top of the upright line is from where it was designed to be.
+    """Return how far the top of the upright line is from where it was designed to be.
 
     A line to the surface keeps its top there: what differs is the depth under it.
     """

@@ -47,7 +47,7 @@ def safety_factor(component: Component, factors: SafetyFactors, surface: bool) -
 
 
 def safety_factor_name(component: Component, surface: bool) -> str:
-    """Which of the `safety_factor` is asked of a component."""
+    """Return which of the `safety_factor` is asked of a component."""
     if surface:
         return "surface"
     return "synthetic" if is_synthetic(component) else "steel"
@@ -96,7 +96,7 @@ def _strength_words(
 
 @criteria("release-load")
 def release_load(mooring: Mooring) -> Iterator[Criterion]:
-    """What every release bears as long as it stands, and as it opens, against its own loads.
+    """Return what every release bears as long as it stands, and as it opens, against its own loads.
 
     As it opens it bears the pull below it, against its `opening_load`; where the maker gives none,
     what it may bear as long as it stands has to do, and the message says so.

@@ -109,7 +109,7 @@ def _marks(piece: Piece, longer: float) -> Iterator[Mark]:
 
 
 def _effect(result: Result, index: int, length: float) -> float | None:
-    """How much deeper the top is, in the same water, where a piece is cut too long [m]."""
+    """Return how much deeper the top is, in the same water, where a piece is cut too long [m]."""
     from calm.case import Mooring
 
     mooring = result.mooring

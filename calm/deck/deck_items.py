@@ -54,7 +54,7 @@ class DeckItem:
 
     @property
     def label(self) -> str:
-        """What people call it."""
+        """Return what people call it."""
         return self.part.label
 
     @property
@@ -64,12 +64,12 @@ class DeckItem:
 
     @property
     def is_rigid(self) -> bool:
-        """Whether it is no cable or chain."""
+        """Return whether it is no cable or chain."""
         return not isinstance(self.part.component, Flexible)
 
     @property
     def role(self) -> str:
-        """What it is for."""
+        """Return what it is for."""
         return self.part.component.role
 
 
@@ -187,7 +187,7 @@ class Order(StrEnum):
 
 
 @dataclass(frozen=True)
-class Surfacing:
+class RecoveryOrder:
     """A piece or clamp as it comes up.
 
     Attributes
@@ -215,25 +215,26 @@ def over_the_side(parts: Sequence[DeckItem], order: Order) -> tuple[DeckItem, ..
     return tuple(each for piece, *clamps in reversed(groups) for each in (piece, *reversed(clamps)))
 
 
-def surfacing(parts: Sequence[DeckItem], recovery: Recovery | None) -> tuple[Surfacing, ...]:
-    """What comes up, the first first; what hangs below, and what stays, comes after it in order.
+def surfacing(parts: Sequence[DeckItem], recovery: Recovery | None) -> tuple[RecoveryOrder, ...]:
+    """Return what comes up, the first first; what hangs below, and what stays, comes after it in
+    order.
 
     Without a solved rise there are no times, and the order is that of the line.
     """
     released = parts[-1].index - 1 if recovery is None else recovery.released
     rising = [one for one in parts if one.index <= released]
     if recovery is None:
-        return tuple(Surfacing(one, None, None, False) for one in rising)
+        return tuple(RecoveryOrder(one, None, None, False) for one in rising)
     found = [_surfacing(one, recovery) for one in rising]
     times = [inf if one.time is None else one.time for one in found]
     # stable: what comes up with a piece stays after it
     return tuple(found[i] for i in sorted(range(len(found)), key=times.__getitem__))
 
 
-def _surfacing(one: DeckItem, recovery: Recovery) -> Surfacing:
+def _surfacing(one: DeckItem, recovery: Recovery) -> RecoveryOrder:
     time = float(recovery.arrival[one.index])
     hangs_at = float(recovery.hangs_at[one.index])
-    return Surfacing(
+    return RecoveryOrder(
         one,
         None if isnan(time) else time,
         None if isnan(hangs_at) else hangs_at,

@@ -52,7 +52,7 @@ class BarChain:
     span: Floats
     clamp_bar: Integers
     clamp_place: Floats
-    afloat: SurfaceFloat | None
+    afloat: FloatOnChain | None
 
 
 def chain_of(line: Line, count: int) -> BarChain:
@@ -274,7 +274,7 @@ def first_float(line: Line) -> int:
 
 
 @dataclass(frozen=True)
-class SurfaceFloat:
+class FloatOnChain:
     """The first float at the surface, by its draft as a share of its height, 0 to 1.
 
     Attributes
@@ -296,8 +296,8 @@ class SurfaceFloat:
     push: Floats
 
 
-def afloat_of(line: Line, elements: Elements) -> SurfaceFloat | None:
-    """How the first float of a line rides by its draft; None where its hull is not known."""
+def afloat_of(line: Line, elements: Elements) -> FloatOnChain | None:
+    """Return how the first float of a line rides by its draft; None where its hull is not known."""
     floating = line.floating
     if floating is None or floating.hull is None:
         return None
@@ -308,7 +308,7 @@ def afloat_of(line: Line, elements: Elements) -> SurfaceFloat | None:
     ridings = [floating.riding(used) for used in (net / floating.lift).tolist()]
     draft = np.array([floating.hull.curve(one)[0] for one in share.tolist()])
     growing = np.append(True, np.diff(np.maximum.accumulate(draft)) > 0.0)
-    return SurfaceFloat(
+    return FloatOnChain(
         element=element,
         height=float(elements.height[element]) or floating.hull.height,
         weight=floating.weight,

@@ -158,7 +158,7 @@ def nothing_limits() -> NoEquilibrium:
 def settle(
     line: Line, water: Water, anchor: FallingAnchor, landed: ChainState, fineness: Fineness
 ) -> Motion:
-    """How a line comes to rest on the anchor that holds it.
+    """Return how a line comes to rest on the anchor that holds it.
 
     Raises
     ------

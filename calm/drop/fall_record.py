@@ -47,7 +47,7 @@ class DepthReached:
 
     @property
     def beyond(self) -> bool:
-        """Whether it comes deeper than it is made for."""
+        """Return whether it comes deeper than it is made for."""
         return self.rating is not None and self.greatest > self.rating
 
 
@@ -176,7 +176,7 @@ def moments_of(drop: Motion, rest: Motion | None, toward: Floats) -> tuple[Shape
 
 
 def depths_of(pieces: Sequence[Piece], drop: Motion, rest: Motion) -> tuple[DepthReached, ...]:
-    """How deep floats, instruments and releases come, from letting go to rest."""
+    """Return how deep floats, instruments and releases come, from letting go to rest."""
     parts: list[Piece | Clamp] = [*pieces[:-1], *clamps_in(pieces[:-1])]
     chain, states = drop.mover.chain, (*drop.states, *rest.states[1:])
     depth = np.array([_depths(chain, state) for state in states])

@@ -38,7 +38,9 @@ class NoStep(ArithmeticError):
 
 
 def _overturned(before: Floats, after: Floats) -> bool:
-    """Whether a bar has turned by more than 120°: then it may be one that is pushed, not pulled."""
+    """Return whether a bar has turned by more than 120°: then it may be one that is pushed, not
+    pulled.
+    """
     chords = np.diff(before, axis=0), np.diff(after, axis=0)
     sizes = np.prod([np.linalg.norm(chord, axis=1) for chord in chords], axis=0)
     return bool((np.einsum("ij,ij->i", *chords) < -0.5 * sizes).any())
@@ -124,7 +126,7 @@ class Mover:
 
     @cached_property
     def scale(self) -> float:
-        """What forces are measured by [N]."""
+        """Return what forces are measured by [N]."""
         return self.anchor.weight + float(np.abs(self.chain.elements.buoyancy).sum())
 
     def loads(
@@ -199,7 +201,9 @@ class Mover:
         step: float,
         slowest: float,
     ) -> Floats:
-        """What the nodes and tensions are too much by, one node and one tension after another."""
+        """Return what the nodes and tensions are too much by, one node and one tension after
+        another.
+        """
         chain, place = self.chain, self.chain.elements.place
         velocity = (node - before) / step
         loads, axis = self.loads(node, velocity, tension, variation, slowest)
@@ -331,7 +335,7 @@ class Band:
 
     @cached_property
     def _places(self) -> tuple[Integers, ...]:
-        """Where the blocks stand in the band, flat."""
+        """Return where the blocks stand in the band, flat."""
         width = 4 * self.bars + 3
         node = 4 * np.arange(self.bars + 1)[:, np.newaxis] + np.arange(3)
         pull = 4 * np.arange(self.bars)[:, np.newaxis] + 3

@@ -119,12 +119,12 @@ class DropPlan:
 
     @property
     def beyond_rating(self) -> tuple[DepthReached, ...]:
-        """What comes deeper in the drop than it is made for."""
+        """Return what comes deeper in the drop than it is made for."""
         return tuple(each for each in self.depths if each.beyond)
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What makes the plan less certain than it looks."""
+        """Return what makes the plan less certain than it looks."""
         said = []
         if not self.drag_known:
             said.append(
@@ -340,13 +340,14 @@ def _equilibrium(mooring: Mooring) -> Result | None:
 
 
 def _split(state: ChainState, toward: Floats) -> tuple[float, float]:
-    """Where the anchor is: towards the float, and to the right of that [m]."""
+    """Return where the anchor is: towards the float, and to the right of that [m]."""
     (east, north), (x, y) = state.node[-1, :2].tolist(), toward.tolist()
     return east * x + north * y, east * y - north * x
 
 
 def _run(water: Water, way: Floats, speed: float, streamed: float) -> tuple[float, float]:
-    """How far the ship goes while it leaves its float behind [m], and how long that takes [s].
+    """Return how far the ship goes while it leaves its float behind [m], and how long that takes
+    [s].
 
     The float drifts with the water at the surface from where it is put out.
     """

@@ -17,7 +17,7 @@ from calm.batch.run import BatchOutcome, run_kept
 from calm.batch.store.identity import identity_of, to_text
 from calm.batch.store.store import Store, open_store
 from calm.batch.threads import processors
-from calm.batch.work import Progress, Work
+from calm.batch.work import BatchWork, Progress
 from calm.dataset.variables import Attributes, ResultLayout, labels, numbers
 from calm.motion.matching import labels_of
 from calm.motion.measurements import level_names
@@ -85,7 +85,7 @@ def run_motion(
     return run_kept(output, identify, begin, solve, tell)
 
 
-class MotionWork(Work):
+class MotionWork(BatchWork):
     """The blocks of a result that are missing."""
 
     def __init__(

@@ -13,7 +13,7 @@ from calm.physics.reference import REFERENCE_DENSITY
 from calm.physics.state import NO_BALANCE, State
 from calm.physics.stretch import Knot, curve_strain, mean_curve_strain
 from calm.physics.strumming import Vibration, amplified_share, strummed
-from calm.physics.track import Cable
+from calm.physics.track import CableStretch
 
 PASSES = 200
 LITTLE_TURN = 1e-6
@@ -22,7 +22,7 @@ need not settle to the last digits."""
 
 
 @within
-def strain_at(cable: Cable, knots: Sequence[Knot], tension: float) -> float:
+def strain_at(cable: CableStretch, knots: Sequence[Knot], tension: float) -> float:
     """Strain of a cable at a tension [N]: by its compliance, or by its curve if it has one."""
     if cable.first_knot == cable.end_knot:
         return cable.compliance * tension
@@ -30,13 +30,13 @@ def strain_at(cable: Cable, knots: Sequence[Knot], tension: float) -> float:
 
 
 @within
-def segment_lift(cable: Cable, cut: float, density: float, gravity: float) -> float:
+def segment_lift(cable: CableStretch, cut: float, density: float, gravity: float) -> float:
     """Net force in water of a segment of an unstretched length [m], + up [N]."""
     return cut * (cable.buoyancy + (density - REFERENCE_DENSITY) * gravity * cable.volume)
 
 
 @within
-def segment_area(cable: Cable, cut: float, density: float, strain: float) -> float:
+def segment_area(cable: CableStretch, cut: float, density: float, strain: float) -> float:
     """Metres of cable unstretched and in reference water that are dragged as a segment is [m].
 
     Where its volume is conserved (thinning ½) the drag grows by √(1 + strain), else not (0).
@@ -69,7 +69,7 @@ def segment_drag(
 
 @within
 def pass_segment(
-    cable: Cable,
+    cable: CableStretch,
     knots: Sequence[Knot],
     vibration: Vibration,
     sea: Sea,
@@ -192,7 +192,7 @@ def vibrating_share(
 
 
 def touchdown(
-    cable: Cable,
+    cable: CableStretch,
     knots: Sequence[Knot],
     vibration: Vibration,
     sea: Sea,
@@ -201,7 +201,8 @@ def touchdown(
     near: float,
     expected: Vector,
 ) -> float:
-    """How much of a segment hangs before its end has nothing left to carry [m]; at most `cut`.
+    """Return how much of a segment hangs before its end has nothing left to carry [m]; at most
+    `cut`.
 
     `near` and `expected` are as in `pass_segment`.
     """
@@ -226,7 +227,7 @@ def touchdown(
 
 @within
 def segment_length(
-    cable: Cable,
+    cable: CableStretch,
     knots: Sequence[Knot],
     vibration: Vibration,
     sea: Sea,
@@ -234,7 +235,7 @@ def segment_length(
     angle_step: float,
     reach: float,
 ) -> float:
-    """How long the next segment may be [m]: by its turn, by depth, and to the next level.
+    """Return how long the next segment may be [m]: by its turn, by depth, and to the next level.
 
     The turn is that of the load at either end of the segment, the tension that at its top. Near a
     free end the tension vanishes: a floor keeps the count finite.
@@ -260,7 +261,7 @@ def segment_length(
 
 @within
 def rate_of_turn(
-    cable: Cable,
+    cable: CableStretch,
     kn: float,
     sea: Sea,
     depth: float,

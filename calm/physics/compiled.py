@@ -172,7 +172,7 @@ def packed(value: Any) -> Any:
 
 @cache
 def _packers(named: Any) -> tuple[Callable[[Any], Any], ...]:
-    """What packs each field of a named tuple."""
+    """Return what packs each field of a named tuple."""
     return tuple(map(_packer, get_type_hints(named).values()))
 
 
@@ -200,7 +200,7 @@ def record_type(named: type) -> np.dtype[Any]:
 
 @cache
 def cache_folder() -> Path | None:
-    """Where compiled code is kept; None where no such folder can be written.
+    """Return where compiled code is kept; None where no such folder can be written.
 
     `NUMBA_CACHE_DIR`, or else CALM's folder in the user's cache. What is compiled from other
     sources has another folder, as numba itself looks at one file alone.
@@ -216,7 +216,7 @@ def cache_folder() -> Path | None:
 
 
 def is_kept() -> bool:
-    """Whether compiled laws are there already, from an earlier process."""
+    """Return whether compiled laws are there already, from an earlier process."""
     folder = cache_folder()
     return folder is not None and next(folder.rglob("*.nbi"), None) is not None
 

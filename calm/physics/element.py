@@ -76,7 +76,7 @@ def drag_share(ax: float, ay: float, az: float, k: float, vx: float, vy: float, 
 
 @within
 def share_step(aa: float, av: float, vv: float, target: float, c: float) -> Vector:
-    """How far c |A + c V| is above a target; |A + c V|; and their slope by c times that.
+    """Return how far c |A + c V| is above a target; |A + c V|; and their slope by c times that.
 
     `aa`, `av` and `vv` are the products A·A, A·V and V·V.
     """

@@ -33,7 +33,8 @@ BERTEAUX, HOERNER, CONSTANT = (friction.law for friction in Friction)
 
 
 def turning_friction(law: int, kt: float, u: float, v: float, w: float) -> float:
-    """What a friction of Kt [N/(m/s)²] that is not along the cable pulls with per m/s [N/(m/s)].
+    """Return what a friction of Kt [N/(m/s)²] that is not along the cable pulls with per m/s
+    [N/(m/s)].
 
     Along the current u, v, w [m/s]; it turns the cable, which a friction along it does not.
     """

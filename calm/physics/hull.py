@@ -19,7 +19,7 @@ SPHERE, SPAR, TABULATED = range(3)
 """The forms of a hull."""
 
 
-class Waterline(NamedTuple):
+class HullRow(NamedTuple):
     """A row of a hull's table: draft [m], displaced volume [m³] and immersed area [m²]."""
 
     draft: float
@@ -42,7 +42,7 @@ class Hull:
     height: float
     area: float
     form: int
-    rows: tuple[Waterline, ...] = ()
+    rows: tuple[HullRow, ...] = ()
 
     def curve(self, share: float) -> tuple[float, float]:
         """Draft and immersed area, as shares of the whole, by the share of the volume immersed."""
@@ -72,7 +72,7 @@ def tabulated_hull(rows: Sequence[tuple[float, float, float]]) -> Hull:
     if not rows:
         raise ValueError("the table of a hull has no rows")
     keel = () if rows[0][0] == 0.0 else ((0.0, 0.0, 0.0),)
-    table = tuple(Waterline(*map(float, row)) for row in (*keel, *rows))
+    table = tuple(HullRow(*map(float, row)) for row in (*keel, *rows))
     for name in ("draft", "volume"):
         if any(getattr(b, name) <= getattr(a, name) for a, b in pairwise(table)):
             raise ValueError(f"the {name} must grow from row to row")
@@ -81,7 +81,7 @@ def tabulated_hull(rows: Sequence[tuple[float, float, float]]) -> Hull:
     return Hull(table[-1].draft, table[-1].area, TABULATED, table)
 
 
-def immersed_shares(form: int, rows: Sequence[Waterline], share: float) -> tuple[float, float]:
+def immersed_shares(form: int, rows: Sequence[HullRow], share: float) -> tuple[float, float]:
     """Draft and immersed area of a hull, as shares of the whole.
 
     Parameters
@@ -158,16 +158,16 @@ class Floating:
 
     @property
     def blown(self) -> bool:
-        """Whether there is any wind."""
+        """Return whether there is any wind."""
         return self.wind != (0.0, 0.0)
 
     def riding(self, used: float) -> Riding:
-        """How it rides with a share of its net buoyancy in use, 0 to 1."""
+        """Return how it rides with a share of its net buoyancy in use, 0 to 1."""
         return riding_of(self.as_numbers, self.hull.rows if self.hull else (), used)
 
     @property
     def as_numbers(self) -> SurfaceFloat:
-        """The same as the solver takes it."""
+        """Return the same as the solver takes it."""
         form, height, area = UNKNOWN_HULL, nan, 0.0
         if self.hull is not None:
             form, height, area = self.hull.form, self.hull.height, self.hull.area
@@ -207,8 +207,8 @@ NEVER_AFLOAT = SurfaceFloat(UNKNOWN_HULL, nan, 0.0, 0.0, 1.0, nan, 0.0, 0.0, nan
 """In place of a float of which nothing is known."""
 
 
-def riding_of(floats: SurfaceFloat, rows: Sequence[Waterline], used: float) -> Riding:
-    """How a float rides with a share of its net buoyancy in use, 0 to 1.
+def riding_of(floats: SurfaceFloat, rows: Sequence[HullRow], used: float) -> Riding:
+    """Return how a float rides with a share of its net buoyancy in use, 0 to 1.
 
     The displaced water carries the weight and what the line pulls, so the share of the volume
     immersed is (weight + used lift)/(weight + lift). `rows` are those of its hull.

@@ -174,13 +174,15 @@ class Line(_Arrays):
         return total
 
     def with_length(self, piece: int, length: float) -> Line:
-        """The same line with one piece cut to another unstretched length [m]."""
+        """Return the same line with one piece cut to another unstretched length [m]."""
         lengths = self.length.copy()
         lengths[piece] = length
         return replace(self, length=lengths)
 
     def reversed(self) -> Line:
-        """The same line listed from its other end, from where its clamps are measured then."""
+        """Return the same line listed from its other end, from where its clamps are measured
+        then.
+        """
         columns = {
             column.name: getattr(self, column.name)[::-1]
             for column in fields(self)
@@ -236,11 +238,11 @@ class Water(_Arrays):
 
     @property
     def moving(self) -> bool:
-        """Whether there is any current at all."""
+        """Return whether there is any current at all."""
         return bool(self.u.any() or self.v.any() or self.w.any())
 
     def still(self) -> Water:
-        """The same water without current."""
+        """Return the same water without current."""
         zero = np.zeros_like(self.u)
         return replace(self, u=zero, v=zero, w=zero)
 

@@ -52,7 +52,9 @@ def load_force(
 def load_variation(
     load: Load, viscosity: float, u: float, v: float, w: float, tx: float, ty: float, tz: float
 ) -> float:
-    """How many times its constant normal drag a load of axis t has, in water of a viscosity."""
+    """Return how many times its constant normal drag a load of axis t has, in water of a
+    viscosity.
+    """
     if load.diameter == 0.0:
         return 1.0
     speed = speed_across(u, v, w, tx, ty, tz)

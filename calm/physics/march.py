@@ -42,16 +42,16 @@ class Cuts(NamedTuple):
         return Cuts(np.repeat(0.5 * self.lengths, 2), 2 * self.counts)
 
     def first(self, cables: int) -> Cuts:
-        """Those of the first cables."""
+        """Return those of the first cables."""
         counts = self.counts[:cables]
         return Cuts(self.lengths[: counts.sum()], counts)
 
     def after(self, cables: int) -> Cuts:
-        """Those of the other cables."""
+        """Return those of the other cables."""
         return Cuts(self.lengths[self.counts[:cables].sum() :], self.counts[cables:])
 
     def and_then(self, others: Cuts) -> Cuts:
-        """Those of more cables, too."""
+        """Return those of more cables, too."""
         lengths = np.concatenate([self.lengths, others.lengths])
         return Cuts(lengths, np.concatenate([self.counts, others.counts]))
 

@@ -145,12 +145,14 @@ class Profile:
 
     @cached_property
     def packed(self) -> Sea:
-        """The same as compiled laws take it."""
+        """Return the same as compiled laws take it."""
         sea: Sea = packed(self.sea)
         return sea
 
     def excess_at(self, depth: float) -> float:
-        """What a displaced cubic metre lifts more at a depth than in reference water [N/m³]."""
+        """Return what a displaced cubic metre lifts more at a depth than in reference water
+        [N/m³].
+        """
         *_, density, _ = water_at(self.sea, depth, 0)
         return (density - REFERENCE_DENSITY) * self.sea.gravity
 

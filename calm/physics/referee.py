@@ -24,7 +24,7 @@ ROUNDING = 32.0 * float_info.epsilon
 """Of a coordinate, or a force, as a share of the greatest."""
 
 
-class Body(NamedTuple):
+class RefereeBody(NamedTuple):
     """A piece or a clamp of a line.
 
     Attributes
@@ -60,7 +60,7 @@ class Moored(NamedTuple):
     `friction` is the number of a law, `frequency` that of the cables that strum [Hz].
     """
 
-    bodies: Sequence[Body]
+    bodies: Sequence[RefereeBody]
     knots: Sequence[Knot]
     pieces: int
     head: int
@@ -77,7 +77,7 @@ class Moored(NamedTuple):
     viscosity: Sequence[float]
 
 
-class Shape(NamedTuple):
+class RefereeShape(NamedTuple):
     """A shape, free end first.
 
     Attributes
@@ -94,7 +94,7 @@ class Shape(NamedTuple):
     last: MutableSequence[int]
 
 
-def find_ends(shape: Shape) -> None:
+def find_ends(shape: RefereeShape) -> None:
     """Find the first and the last node of every piece."""
     pieces, node = len(shape.first), 0
     for piece in range(pieces):
@@ -104,7 +104,9 @@ def find_ends(shape: Shape) -> None:
         shape.last[piece] = node
 
 
-def element_loads(moored: Moored, shape: Shape, loads: Sequence[MutableSequence[float]]) -> None:
+def element_loads(
+    moored: Moored, shape: RefereeShape, loads: Sequence[MutableSequence[float]]
+) -> None:
     """Write buoyancy and drag of every element to the columns of `loads` [N].
 
     A rigid piece's are those at its own middle, spread over its elements by length.
@@ -146,13 +148,13 @@ def element_loads(moored: Moored, shape: Shape, loads: Sequence[MutableSequence[
         up[i] = scale * qz + amount * lift
 
 
-def chord(shape: Shape, top: int, bottom: int) -> Vector:
+def chord(shape: RefereeShape, top: int, bottom: int) -> Vector:
     """From one node to another [m]."""
     x, y, z = shape.record[0], shape.record[1], shape.record[2]
     return x[bottom] - x[top], y[bottom] - y[top], z[bottom] - z[top]
 
 
-def rigid_axis(moored: Moored, shape: Shape, piece: int) -> Vector:
+def rigid_axis(moored: Moored, shape: RefereeShape, piece: int) -> Vector:
     """Along the rod of a rigid piece; where it has no length, against the force at its ends."""
     top, bottom = rod_nodes(moored, shape, piece)
     x, y, z = chord(shape, top, bottom)
@@ -162,7 +164,7 @@ def rigid_axis(moored: Moored, shape: Shape, piece: int) -> Vector:
     return x, y, z
 
 
-def rod_nodes(moored: Moored, shape: Shape, piece: int) -> tuple[int, int]:
+def rod_nodes(moored: Moored, shape: RefereeShape, piece: int) -> tuple[int, int]:
     """First and last node of the rod that a rigid piece belongs to."""
     if piece < moored.head:
         return shape.first[0], shape.last[moored.head - 1]
@@ -193,7 +195,7 @@ def flow_at(moored: Moored, depth: float) -> tuple[float, float, float, float]:
 
 def drag_on(
     moored: Moored,
-    body: Body,
+    body: RefereeBody,
     depth: float,
     u: float,
     v: float,
@@ -229,7 +231,7 @@ def drag_on(
     return qx + pull * u, qy + pull * v, qz + pull * w
 
 
-def varied(moored: Moored, body: Body, depth: float, speed: float) -> float:
+def varied(moored: Moored, body: RefereeBody, depth: float, speed: float) -> float:
     """How many times its constant drag a body has at a speed across it [m/s]."""
     if body.smooth == 0.0:
         return 1.0
@@ -258,7 +260,9 @@ def strumming(
     return strummed(here, min(across / speed, 1.0))
 
 
-def worst_moment(moored: Moored, shape: Shape, loads: Sequence[MutableSequence[float]]) -> float:
+def worst_moment(
+    moored: Moored, shape: RefereeShape, loads: Sequence[MutableSequence[float]]
+) -> float:
     """Largest angle between an element's axis and the mean of the forces at its ends [rad].
 
     The forces follow from the loads. Or, where that is larger, departure of a cable's strain from
@@ -300,7 +304,7 @@ def worst_moment(moored: Moored, shape: Shape, loads: Sequence[MutableSequence[f
     return worst
 
 
-def greatest_size(shape: Shape, first: int) -> float:
+def greatest_size(shape: RefereeShape, first: int) -> float:
     """Of places, the greatest of any coordinate [m]; of forces, from column 3, of any size [N]."""
     greatest = 0.0
     for n in range(shape.nodes):
@@ -312,72 +316,7 @@ def greatest_size(shape: Shape, first: int) -> float:
     return greatest
 
 
-def closure(
-    moored: Moored,
-    shape: Shape,
-    loads: Sequence[MutableSequence[float]],
-    landed: bool,
-    friction: float,
-    excess: float,
-) -> float:
-    """Relative departure of the sum of the loads from the force at the line's end.
-
-    Where the line lies on the seabed, the loads above its touchdown must leave no vertical force
-    there: but a downward one where a rigid piece or clamp stands, and an upward one that the weight
-    of a rigid piece lying there holds down. Friction on what lies takes its share of the horizontal
-    force.
-
-    Parameters
-    ----------
-    loads : of every element, as by `element_loads`
-    landed : whether the line lies on the seabed
-    friction : there [-]
-    excess : what a displaced cubic metre lifts more there than in reference water [N/m³]
-    """
-    record, end = shape.record, shape.nodes - 1
-    x = y = z = whole = 0.0
-    for i in range(shape.hanging):
-        x, y, z = x + loads[0][i], y + loads[1][i], z + loads[2][i]
-        whole += abs(loads[0][i]) + abs(loads[1][i]) + abs(loads[2][i])
-    fx, fy, fz = record[3][end], record[4][end], record[5][end]
-    scale = max(sqrt(fx * fx + fy * fy + fz * fz), 1e-3 * whole, 1e-300)
-    if landed:
-        if bears_at_a_point(moored, shape, shape.hanging - 1):
-            z = max(z, 0.0)
-        if bears_at_a_point(moored, shape, shape.hanging):
-            z = min(z, 0.0)
-        tension = sqrt(x * x + y * y)
-        held = min(friction * weight_on_seabed(moored, shape, excess), tension)
-        left = 1.0 - held / tension if tension > 0.0 else 0.0
-        x, y = left * x, left * y
-    x, y, z = x - fx, y - fy, z - fz
-    return sqrt(x * x + y * y + z * z) / scale
-
-
-def bears_at_a_point(moored: Moored, shape: Shape, element: int) -> bool:
-    """Whether the seabed can bear on an element at a point: a rigid piece or a clamp."""
-    if element >= shape.nodes - 1:
-        return False
-    piece = int(shape.record[6][element + 1])
-    return moored.bodies[piece].flexible == 0 or shape.record[7][element + 1] >= 0
-
-
-def weight_on_seabed(moored: Moored, shape: Shape, excess: float) -> float:
-    """Weight in water of what lies on the seabed [N]."""
-    weight = 0.0
-    for i in range(shape.hanging, shape.nodes - 1):
-        piece, clamp = int(shape.record[6][i + 1]), int(shape.record[7][i + 1])
-        body = moored.bodies[piece if clamp < 0 else moored.pieces + clamp]
-        amount = 1.0
-        if clamp < 0 and body.flexible:
-            amount = shape.record[8][i + 1]
-        elif clamp < 0 and body.length > 0.0:
-            amount = shape.record[8][i + 1] / body.length
-        weight -= amount * (body.buoyancy + excess * body.volume)
-    return weight
-
-
-def expected_strain(moored: Moored, body: Body, middle: float, half: float) -> float:
+def expected_strain(moored: Moored, body: RefereeBody, middle: float, half: float) -> float:
     """Strain of a segment whose tension goes evenly from `middle` - `half` to their sum [N]."""
     if body.first_knot == body.end_knot:
         return body.compliance * middle
@@ -385,7 +324,7 @@ def expected_strain(moored: Moored, body: Body, middle: float, half: float) -> f
 
 
 def rod_moment(
-    shape: Shape,
+    shape: RefereeShape,
     loads: Sequence[MutableSequence[float]],
     top: int,
     bottom: int,

@@ -8,7 +8,7 @@ from math import sqrt
 from calm.physics.cable import strain_at
 from calm.physics.state import Record, write_element, write_node
 from calm.physics.stretch import Knot, mean_curve_strain
-from calm.physics.track import CABLE, Cable, Course
+from calm.physics.track import CABLE, CableStretch, Course
 
 
 def lay_line(
@@ -122,7 +122,7 @@ def held_back(tension: float, hold: float) -> tuple[float, float]:
 
 
 def lying_strain(
-    cable: Cable, knots: Sequence[Knot], pulled: float, tension: float, left: float
+    cable: CableStretch, knots: Sequence[Knot], pulled: float, tension: float, left: float
 ) -> float:
     """Mean strain of a part where the tension falls evenly over a share `pulled` of its length."""
     middle = 0.5 * (tension + left)

@@ -63,7 +63,7 @@ class Rod:
         return sum(self.lengths)
 
 
-class Cable(NamedTuple):
+class CableStretch(NamedTuple):
     """A stretch of cable or chain without clamps: a whole piece, or the part between two clamps.
 
     Attributes
@@ -91,7 +91,7 @@ class Cable(NamedTuple):
     beat: float
 
 
-Part = Rod | Cable | Load
+Part = Rod | CableStretch | Load
 
 
 ROD, CABLE, CLAMP = range(3)
@@ -122,7 +122,7 @@ class Course(NamedTuple):
 
     stages: Sequence[Stage]
     loads: Sequence[Load]
-    cables: Sequence[Cable]
+    cables: Sequence[CableStretch]
     knots: Sequence[Knot]
     vibration: Vibration
     landing: int
@@ -145,9 +145,9 @@ class Track:
         """As the march takes it."""
         stages: list[Stage] = []
         loads: list[Load] = []
-        cables: list[Cable] = []
+        cables: list[CableStretch] = []
         for part in self.stages:
-            if isinstance(part, Cable):
+            if isinstance(part, CableStretch):
                 stages.append(Stage(CABLE, len(cables), 1, part.length))
                 cables.append(part)
             elif isinstance(part, Rod):
@@ -160,7 +160,7 @@ class Track:
 
     @cached_property
     def packed(self) -> Course:
-        """The same as compiled laws take it."""
+        """Return the same as compiled laws take it."""
         course: Course = packed(self.course)
         return course
 
@@ -194,13 +194,13 @@ class Track:
         return Track(tuple(parts), tuple(knots), vibration)
 
 
-def loads_of(stage: Part) -> tuple[Load | Cable, ...]:
-    """What hangs on the line in a stage."""
+def loads_of(stage: Part) -> tuple[Load | CableStretch, ...]:
+    """Return what hangs on the line in a stage."""
     return stage.loads if isinstance(stage, Rod) else (stage,)
 
 
 def head_count(line: Line) -> int:
-    """How many pieces at the free end make one rigid body: down to the first buoyant piece.
+    """Return how many pieces at the free end make one rigid body: down to the first buoyant piece.
 
     Pieces without buoyancy listed above the first buoyant one (a beacon, ballast) are rigid with
     it; where a cable lies between, or nothing is buoyant, the first piece stands alone. At a
@@ -223,8 +223,8 @@ class _Rows:
     ----------
     length, clamp_at : as in `Line`
     rigid, clamp : of each piece, and of each clamp, what comes after the length in a `Load`
-    cable : of each piece, what comes between the length and the knots in a `Cable`
-    beat : of each piece, as in `Cable`
+    cable : of each piece, what comes between the length and the knots in a `CableStretch`
+    beat : of each piece, as in `CableStretch`
     clamps : of each piece, from its top
     """
 
@@ -300,8 +300,8 @@ def _cable_parts(rows: _Rows, piece: int, first_knot: int, knots: int) -> Iterab
     for m in rows.clamps.get(piece, ()):
         at = rows.clamp_at[m]
         if at - start > rounding:
-            yield Cable(piece, at - start, *figures)
+            yield CableStretch(piece, at - start, *figures)
             start = at
         yield rows.clamp_load(m, piece)
     if end - start > rounding or end == 0.0:
-        yield Cable(piece, end - start, *figures)
+        yield CableStretch(piece, end - start, *figures)

@@ -41,7 +41,7 @@ _ALL = "All percentiles, limits and profiles are in the JSON and on the page."
 
 
 def summary_part(summary: Summary) -> ReportPart:
-    """What a summary says; it fits 80 columns, where long labels wrap.
+    """Return what a summary says; it fits 80 columns, where long labels wrap.
 
     Components and clamps with the 99 % percentile and the maximum of each quantity, how often
     each rule fails, the worst profile by each response, and return levels.

@@ -101,7 +101,7 @@ def exceedance_figure(summary: Summary) -> str:
 
 
 def parts_figure(parts: list[PartDistributions]) -> str:
-    """The same of the knockdown and the tilt of some parts, those that move most, as SVG."""
+    """Return the same of the knockdown and the tilt of some parts, those that move most, as SVG."""
     panels = []
     for name in ("knockdown", "tilt"):
         known = [(part.label, getattr(part, name)) for part in parts]

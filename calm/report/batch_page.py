@@ -58,7 +58,9 @@ def summary_html(summary: Summary) -> str:
 
 
 def summary_report(summary: Summary) -> Report:
-    """How often limits are broken, drawings, distributions, worst profiles, return levels."""
+    """Return how often limits are broken, drawings, distributions, worst profiles, return
+    levels.
+    """
     moving = [part for part in summary.parts if part.clamped] or list(summary.parts[:-1])
     parts = (
         ReportPart("Result", tuple(_result(summary))),
@@ -126,7 +128,7 @@ _EXTRAPOLATED = (
 
 
 def rules_table(summary: Summary) -> Table:
-    """How often each rule fails or warns anywhere on the line."""
+    """Return how often each rule fails or warns anywhere on the line."""
     return table_of(
         "How often a rule fails",
         summary.rules,
@@ -146,7 +148,7 @@ def rules_table(summary: Summary) -> Table:
 
 
 def limits_table(summary: Summary) -> Table:
-    """How often every limit is broken, and the worst of it."""
+    """Return how often every limit is broken, and the worst of it."""
 
     def state(one: Exceedance) -> Cell:
         broken = one.limit.beyond if one.share else State.PASS
@@ -294,5 +296,5 @@ def write_summary(
 
 
 def summary_paths(result: Path) -> tuple[Path, Path]:
-    """Where the summary of a result stands: its JSON and its page."""
+    """Return where the summary of a result stands: its JSON and its page."""
     return result.with_suffix(".summary.json"), result.with_suffix(".summary.html")

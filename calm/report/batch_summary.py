@@ -179,7 +179,7 @@ def grouped(count: int) -> str:
 
 
 def extent(summary: Summary) -> str:
-    """How many profiles there are, and from when to when."""
+    """Return how many profiles there are, and from when to when."""
     return (
         f"{grouped(summary.count)} profiles, {when(summary.begin)} to {when(summary.end)}, "
         f"{summary.years:.2f} years solved"
@@ -187,13 +187,15 @@ def extent(summary: Summary) -> str:
 
 
 def standing(summary: Summary) -> str:
-    """How the profiles ended, by their status."""
+    """Return how the profiles ended, by their status."""
     ended = (f"{grouped(count)} {status}" for status, count in summary.statuses.items())
     return ", ".join(ended)
 
 
 def left_out(summary: Summary) -> str:
-    """How many profiles with a current were not solved, and what that does to figures, if any."""
+    """Return how many profiles with a current were not solved, and what that does to figures, if
+    any.
+    """
     if not summary.unsolved:
         return ""
     with_current = summary.solved + summary.unsolved
@@ -206,7 +208,9 @@ def left_out(summary: Summary) -> str:
 
 
 def refusals(summary: Summary) -> Iterator[str]:
-    """Why there are no return levels: each reason once, with the responses that it holds for."""
+    """Return why there are no return levels: each reason once, with the responses that it holds
+    for.
+    """
     reasons: dict[str, list[str]] = {}
     for response in summary.responses:
         for fit in response.return_levels:

@@ -86,7 +86,9 @@ def _worded(lines: Iterator[Span]) -> Iterator[Prose]:
 
 
 def _accepted(assessment: Assessment) -> Iterator[Span]:
-    """What is accepted, and why: a sentence for each reason, with the components it is for."""
+    """Return what is accepted, and why: a sentence for each reason, with the components it is
+    for.
+    """
     reasons: dict[tuple[str, str], list[str]] = {}
     for finding in assessment.accepted_findings():
         accept = finding.accept
@@ -180,7 +182,9 @@ def _where(finding: Finding, several: bool) -> str:
 
 
 def _told(assessment: Assessment) -> Iterator[Block]:
-    """What a mooring fails or is warned of, the gravest first with its remedy; what is missing."""
+    """Return what a mooring fails or is warned of, the gravest first with its remedy; what is
+    missing.
+    """
     every = (*assessment.all_findings(), *assessment.tighter_findings())
     listed = [each for each in worst_by_part(every) if each.state in _SIGNS]
     if not listed:

@@ -203,7 +203,9 @@ def _widened(scale: Scale, extent: float) -> Scale:
 
 
 def _draw_breaks(graph: Graph, place: Place, backup: Sequence[Break]) -> None:
-    """What is left to lift after each break, and what is required; grey where it is not judged."""
+    """Do what is left to lift after each break, and what is required; grey where it is not
+    judged.
+    """
     number = np.array([each.break_after for each in backup], dtype=np.float64)
     required = np.array([each.required for each in backup])
     margins = np.array([each.margin for each in backup])

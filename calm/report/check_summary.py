@@ -192,7 +192,7 @@ def _with_unknown(detail: str, count: int) -> str:
 
 
 def unknown_count(findings: Iterable[Finding]) -> int:
-    """How many of the findings are unknown."""
+    """Return how many of the findings are unknown."""
     return sum(finding.state is State.UNKNOWN for finding in findings)
 
 
@@ -251,7 +251,7 @@ def verdict_prose(findings: Iterable[Finding]) -> Prose:
 
 
 def accepted_table(moorings: Sequence[tuple[str, Sequence[Finding]]]) -> Table | None:
-    """What is accepted of each mooring, with its reason; None where nothing is."""
+    """Return what is accepted of each mooring, with its reason; None where nothing is."""
     accepted = [
         (name, finding, accept)
         for name, findings in moorings
@@ -299,7 +299,9 @@ def limits_table(moorings: Sequence[tuple[str, Sequence[LimitKey]]]) -> Table:
 
 
 def unknown_table(findings: Iterable[Finding]) -> Table | None:
-    """What is unknown, piece by piece, and which figure would settle it; None where nothing is."""
+    """Return what is unknown, piece by piece, and which figure would settle it; None where nothing
+    is.
+    """
     unknown = [each for each in worst_by_part(findings) if each.state is State.UNKNOWN]
     if not unknown:
         return None

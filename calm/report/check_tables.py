@@ -83,8 +83,8 @@ def checks_table(findings: Iterable[Finding]) -> Iterator[Table | Prose]:
 
 
 def _said(finding: Finding) -> Cell:
-    """What was found and what to do; the figures of a pass say it all, and so does a remedy that
-    names the figure missing."""
+    """Return what was found and what to do; the figures of a pass say it all, and so does a remedy
+    that names the figure missing."""
     if finding.state is State.PASS:
         return Cell()
     if finding.state is State.UNKNOWN and finding.remedy:
@@ -93,7 +93,7 @@ def _said(finding: Finding) -> Cell:
 
 
 def breaks_table(backup: Sequence[Break]) -> Table:
-    """What would float the release up again after each break."""
+    """Return what would float the release up again after each break."""
     return table_of(
         "Back-up buoyancy",
         backup,
@@ -206,7 +206,7 @@ def deck_table(items: Sequence[InventoryItem]) -> Table:
 
 
 def inventory_table(items: Sequence[InventoryItem]) -> Table:
-    """How many and how much of each component is needed, with room for the spares."""
+    """Return how many and how much of each component is needed, with room for the spares."""
     groups: dict[str, list[InventoryItem]] = {}
     for item in items:
         groups.setdefault(item.use, []).append(item)

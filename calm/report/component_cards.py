@@ -106,7 +106,7 @@ def _figures(definition: Definition) -> Iterator[tuple[str, str]]:
 
 
 def _following(sheet: Datasheet | None, per_metre: str) -> Iterator[tuple[str, str]]:
-    """What follows from the figures, for people."""
+    """Return what follows from the figures, for people."""
     if sheet is None:
         return
     yield _heading("net_buoyancy"), _text("net_buoyancy", sheet.net_buoyancy) + per_metre
@@ -185,7 +185,7 @@ def _text(name: str, value: Any) -> str:
 
 
 def in_words(missing: MissingFigures) -> str:
-    """What a component lacks, what was searched for in vain last."""
+    """Return what a component lacks, what was searched for in vain last."""
     sought = [_missing_heading(name) for name in missing.figures if name in missing.searched]
     open_yet = [_missing_heading(name) for name in missing.figures if name not in missing.searched]
     parts = [f"gives no {', '.join(open_yet)}"] if open_yet else []
@@ -194,7 +194,7 @@ def in_words(missing: MissingFigures) -> str:
 
 
 def summarised(missing: Sequence[MissingFigures]) -> str:
-    """How many components lack which figure."""
+    """Return how many components lack which figure."""
     counts = Counter(name for each in missing for name in each.figures)
     figures = ", ".join(f"{_heading(name)} {count}" for name, count in counts.most_common())
     return f"{len(missing)} of them lack figures: {figures}"

@@ -20,7 +20,7 @@ _SOUNDINGS = 6
 
 
 def deployment_part(deck: Deck) -> ReportPart:
-    """What is done before, the order over the side, and where the anchor went."""
+    """Return what is done before, the order over the side, and where the anchor went."""
     last = deck.order is Order.ANCHOR_LAST
     blocks: tuple[Block, ...] = (
         *(() if deck.file.document else (Pairs(tuple(title_pairs(deck.file))),)),
@@ -40,7 +40,7 @@ def deployment_part(deck: Deck) -> ReportPart:
 
 
 def recovery_part(deck: Deck) -> ReportPart:
-    """What is done at the release, and the order in which the line comes up."""
+    """Return what is done at the release, and the order in which the line comes up."""
     rise = deck.rise
     said = []
     if rise is None:
@@ -72,7 +72,9 @@ _AT_THE_RELEASE = (
 
 
 def placed(one: DeckItem, deck: Deck) -> str:
-    """Where a clamp sits: from the upper end of its piece, anchor first from the lower end too."""
+    """Return where a clamp sits: from the upper end of its piece, anchor first from the lower end
+    too.
+    """
     if one.on is None or one.at is None:
         return ""
     text = f"{one.at:.2f} m from the upper end"

@@ -179,7 +179,7 @@ class Paper(StrEnum):
 
     @property
     def columns(self) -> int:
-        """How many columns stand side by side."""
+        """Return how many columns stand side by side."""
         return 2 if self is Paper.A3 else 1
 
     @property

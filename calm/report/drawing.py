@@ -206,7 +206,7 @@ def names(parts: list[Named], near: float) -> list[tuple[str, Named]]:
 
 
 def alike(label: str, other: str) -> bool:
-    """Whether two labels differ only by a number at the end."""
+    """Return whether two labels differ only by a number at the end."""
     stems = [text.removesuffix(_number(text)) for text in (label, other)]
     return stems[0] == stems[1] and bool(_number(other))
 
@@ -236,7 +236,7 @@ def spread(wanted: list[float], gap: float, start: float, end: float) -> list[fl
 
 
 def _is_next(part: Named, other: Named) -> bool:
-    """Whether two parts are the same component under the same label, numbers apart."""
+    """Return whether two parts are the same component under the same label, numbers apart."""
     return part.use == other.use and alike(part.text, other.text)
 
 

@@ -51,7 +51,7 @@ def drop_part(plan: DropPlan) -> ReportPart:
 
 
 def _instructions(plan: DropPlan) -> Prose:
-    """What the ship does."""
+    """Return what the ship does."""
     beyond = "beyond" if plan.tow_past >= 0.0 else "before"
     behind = "before" if plan.run_in >= 0.0 else "beyond"
     return Prose(

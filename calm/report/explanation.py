@@ -149,7 +149,7 @@ def _growth(column: _Column, now: Figures, then: Figures) -> str:
 
 
 def _decimals(column: _Column, whole: float) -> int:
-    """Those of the quantity, more where three digits of the whole need them."""
+    """Return those of the quantity, more where three digits of the whole need them."""
     usual = QUANTITIES[column.quantity].decimals if column.scale == 1.0 else 1
     if whole == 0.0:
         return usual

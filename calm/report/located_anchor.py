@@ -101,7 +101,7 @@ def _notes(located: Located) -> tuple[str, ...]:
 
 
 def located_figure(located: Located) -> Figure:
-    """Where each range meets the depth of what answers, as a circle about the ship.
+    """Return where each range meets the depth of what answers, as a circle about the ship.
 
     Left all of the survey, right the place itself with its ellipse of 95 %. What is not used is
     grey and dashed, and carries the number of its line.

@@ -58,7 +58,9 @@ def factors_table(factors: Mapping[str, tuple[float, float, float]], datum: floa
 
 
 def sensors_table(study: Study) -> Table:
-    """How the sensors that are used agree with the currents alone, and with what is estimated."""
+    """Return how the sensors that are used agree with the currents alone, and with what is
+    estimated.
+    """
     return table_of(
         "",
         study.plain.items(),
@@ -73,7 +75,7 @@ def sensors_table(study: Study) -> Table:
 
 
 def held_out_table(held_out: Sequence[HeldOut]) -> Table:
-    """How well the depths of hidden sensors were estimated."""
+    """Return how well the depths of hidden sensors were estimated."""
     return table_of(
         "",
         held_out,

@@ -33,7 +33,7 @@ def report_pdf(sections: Sequence[Section], leaves: Sequence[str] | None = None)
 
 
 def pdf_leaf(section: Section) -> str:
-    """What the pages show of a section."""
+    """Return what the pages show of a section."""
     return _text(section)
 
 

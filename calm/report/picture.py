@@ -65,7 +65,7 @@ _NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
 def figure_svg(figure: Figure) -> str:
-    """What matplotlib drew, without a prologue and what it says about itself.
+    """Return what matplotlib drew, without a prologue and what it says about itself.
 
     Its style sheet would hold for all of a page; the drawing carries what it says as attributes.
     """

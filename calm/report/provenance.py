@@ -190,7 +190,7 @@ def document_part(file: MooringFile) -> tuple[ReportPart, ...]:
 
 
 def title_pairs(file: MooringFile) -> list[tuple[str, str]]:
-    """What is known of the names under which a mooring goes, and where it is."""
+    """Return what is known of the names under which a mooring goes, and where it is."""
     document = file.document
     names = (
         ("document", "id"),

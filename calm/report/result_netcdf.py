@@ -88,7 +88,7 @@ def result_netcdf(result: Result | TowResult) -> bytes:
 
 
 def _ends(result: Result | TowResult) -> dict[str, float]:
-    """What is known of the line as a whole."""
+    """Return what is known of the line as a whole."""
     if isinstance(result, Result):
         return {
             "top_depth": result.top.depth,

@@ -58,7 +58,9 @@ class Sheet:
 
 
 def sheet(result: Result | TowResult, *, places: bool = False) -> Sheet:
-    """What a mooring or a tow says; in a report its clamps have their places on their pieces."""
+    """Return what a mooring or a tow says; in a report its clamps have their places on their
+    pieces.
+    """
     if isinstance(result, TowResult):
         return _tow(result, places)
     return _mooring(result, places)
@@ -150,7 +152,9 @@ def _tow_summary(result: TowResult) -> tuple[Prose, ...]:
 
 
 def _strumming(result: Result | TowResult) -> tuple[str, ...]:
-    """How fast the cables vibrate and what that makes of their drag; or what it would make."""
+    """Return how fast the cables vibrate and what that makes of their drag; or what it would
+    make.
+    """
     strumming, band = result.strumming, result.strumming_band
     if strumming is not None:
         together = isinstance(result.file.solver.strumming, BourgetMarichalKeys)
@@ -163,7 +167,7 @@ def _strumming(result: Result | TowResult) -> tuple[str, ...]:
 
 
 def _with(result: Result | TowResult, band: StrummingBand) -> str:
-    """What the line would do with more drag on its cables."""
+    """Return what the line would do with more drag on its cables."""
     if band.status != Status.CONVERGED.label:
         return band.status
     assert band.depth is not None
@@ -183,14 +187,14 @@ def _pull(tension: float, angle: float) -> str:
 
 
 def _level(result: TowResult, depth: float) -> str:
-    """How deep the body is, or how high it flies."""
+    """Return how deep the body is, or how high it flies."""
     if result.file.environment.fluid == "air":
         return f"{say('depth', depth + result.tow.keys.height)} below the tow point"
     return f"{say('depth', depth)} deep" if depth >= 0.0 else f"{say('depth', -depth)} in the air"
 
 
 def _convergence(result: Result | TowResult, end: str) -> str:
-    """How the solution was reached and how good it is; `end` is where the line is held."""
+    """Return how the solution was reached and how good it is; `end` is where the line is held."""
     accuracy = result.accuracy
     pull = "" if accuracy.anchor is None else f", at the anchor {accuracy.anchor:.2g} N"
     return (
@@ -218,7 +222,7 @@ class FigureMark(StrEnum):
 
     @property
     def state(self) -> State | None:
-        """How it looks."""
+        """Return how it looks."""
         return _STATES[self]
 
 
@@ -307,12 +311,12 @@ def _rows(
 
 
 def place_text(at: float) -> str:
-    """Where a clamp sits, from the top of its piece [m], as it stands among lengths."""
+    """Return where a clamp sits, from the top of its piece [m], as it stands among lengths."""
     return f"at {QUANTITIES['at'].format(at)}"
 
 
 def _where(result: Result | TowResult, depth: float, x: float, y: float) -> dict[str, float]:
-    """Where a clamped instrument is, or the upper end of a piece."""
+    """Return where a clamped instrument is, or the upper end of a piece."""
     bottom = result.file.environment.depth
     return {
         "depth": depth,

@@ -46,7 +46,7 @@ def in_ascii(text: str) -> str:
 
 
 def encodable(encoding: str | None, signs: str) -> bool:
-    """Whether an output of this encoding has these signs."""
+    """Return whether an output of this encoding has these signs."""
     try:
         signs.encode(encoding or "ascii")
     except (UnicodeEncodeError, LookupError):

@@ -26,7 +26,7 @@ _ROWS = (
 
 
 def sizing_part(sizing: Sizing) -> ReportPart:
-    """What to change so that the target is met, and what else that changes.
+    """Return what to change so that the target is met, and what else that changes.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def sizing_part(sizing: Sizing) -> ReportPart:
 
 
 def refusal(sizing: Sizing) -> str:
-    """Why a target is not met, and what to do, in a line."""
+    """Return why a target is not met, and what to do, in a line."""
     return f"{sizing.target.text} is not met. {sizing.message} {sizing.advice}"
 
 
@@ -99,7 +99,7 @@ def _sign(unit: str) -> str:
 
 
 def _new_warnings(sizing: Sizing) -> list[str]:
-    """Those of the mooring after the change that it did not have before."""
+    """Return those of the mooring after the change that it did not have before."""
     old = sizing.before.result.warnings if sizing.before.result is not None else ()
     new = sizing.after.result.warnings if sizing.after and sizing.after.result else ()
     return [warning for warning in new if warning not in old]

@@ -81,12 +81,12 @@ class Tabulation:
 
     @property
     def strumming(self) -> bool:
-        """Whether any row has a frequency."""
+        """Return whether any row has a frequency."""
         return any(row.figures["frequency"] is not None for row in self.rows)
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What holds for every row that has an equilibrium."""
+        """Return what holds for every row that has an equilibrium."""
         warnings = [row.result.warnings for row in self.rows if row.result is not None]
         first = warnings[0] if warnings else ()
         return tuple(text for text in first if all(text in each for each in warnings))

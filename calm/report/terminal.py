@@ -154,7 +154,7 @@ class _Printer:
 
 
 def _together(block: Block, following: Block) -> bool:
-    """Whether nothing stands between two blocks."""
+    """Return whether nothing stands between two blocks."""
     if isinstance(following, Prose):
         return isinstance(block, Prose | Heading)
     return isinstance(block, Heading)

@@ -42,7 +42,7 @@ def _basis(uncertain: Uncertain) -> str:
 
 
 def drawn_text(uncertainty: Uncertainty) -> str:
-    """What is drawn, and how far: ``current ±10 %, cable drag −15 to +30 %``."""
+    """Return what is drawn, and how far: ``current ±10 %, cable drag −15 to +30 %``."""
     said = []
     for name in type(uncertainty).model_fields:
         spread: Spread = getattr(uncertainty, name)

@@ -50,7 +50,9 @@ def verification_document(findings: Findings) -> dict[str, Any]:
 
 
 def by_kind(cases: Iterable[Case]) -> dict[Kind, int]:
-    """How many cases there are of each kind, in the order of `Kind`; kinds without one left out."""
+    """Return how many cases there are of each kind, in the order of `Kind`; kinds without one left
+    out.
+    """
     from calm.verification import Kind
 
     number = Counter(case.kind for case in cases)

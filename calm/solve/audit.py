@@ -12,13 +12,13 @@ from typing import Any
 
 import numpy as np
 
+from calm.physics.closure import closure
 from calm.physics.compiled import record_type
 from calm.physics.line import Floats, Line, Water
 from calm.physics.referee import (
-    Body,
     Moored,
-    Shape,
-    closure,
+    RefereeBody,
+    RefereeShape,
     element_loads,
     strumming,
     worst_moment,
@@ -73,7 +73,7 @@ def moored_of(line: Line, water: Water, frequency: float, compiled: bool) -> Moo
         return np.array(column) if compiled else column.tolist()
 
     moored = Moored(
-        bodies if compiled else list(map(Body._make, bodies.tolist())),
+        bodies if compiled else list(map(RefereeBody._make, bodies.tolist())),
         knots,
         len(line.length),
         head_count(line),
@@ -109,10 +109,10 @@ def referee_of(line: Line, water: Water, frequency: float, compiled: bool) -> Re
 def bodies_of(line: Line) -> tuple[Any, list[Knot]]:
     """The pieces of a line and, after them, its clamps, and the knots of its elongation curves.
 
-    The bodies are an array of records, one each `Body`.
+    The bodies are an array of records, one each `RefereeBody`.
     """
     pieces = len(line.length)
-    bodies: Any = np.zeros(pieces + len(line.clamp_at), record_type(Body))
+    bodies: Any = np.zeros(pieces + len(line.clamp_at), record_type(RefereeBody))
     for name in _OF_PIECE:
         bodies[name][:pieces] = getattr(line, name)
     for name, column in _OF_CLAMP.items():
@@ -143,7 +143,7 @@ _OF_CLAMP = {
 }
 
 
-def _shape(solution: Solution) -> Shape:
+def _shape(solution: Solution) -> RefereeShape:
     nodes = len(solution.position)
     none = np.zeros(1)
     columns = (
@@ -160,7 +160,9 @@ def _shape(solution: Solution) -> Shape:
         ),
     )
     first, last = solution.piece_nodes.T.tolist()
-    return Shape([column.tolist() for column in columns], nodes, solution.hanging, first, last)
+    return RefereeShape(
+        [column.tolist() for column in columns], nodes, solution.hanging, first, last
+    )
 
 
 def amplification(solution: Solution) -> Floats:

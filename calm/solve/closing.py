@@ -33,7 +33,7 @@ from calm.solve.problem import (
     MARCHES,
     NOT_RECORDED,
     About,
-    Problem,
+    LineProblem,
     Search,
     Unknown,
     reach_of,
@@ -86,7 +86,7 @@ class Closed(NamedTuple):
     grounded: float
 
 
-def whole_line(problem: Problem, lands: bool) -> Unknown:
+def whole_line(problem: LineProblem, lands: bool) -> Unknown:
     """The whole line with its free end below the surface; `lands`: as in `Unknown`.
 
     A line on the seabed ends there, not at the top of its anchor.
@@ -97,14 +97,14 @@ def whole_line(problem: Problem, lands: bool) -> Unknown:
     return Unknown(goal, BELOW, limits.rides, lands, len(problem.course.stages))
 
 
-def down_to(problem: Problem, unknown: Unknown, lower: int) -> Unknown:
+def down_to(problem: LineProblem, unknown: Unknown, lower: int) -> Unknown:
     """The question for the part of the line above a float: to bring its top to the surface."""
     stages = int(problem.surfacing[lower].stage)
     return Unknown(0.0, unknown.sought, unknown.rides, False, stages)
 
 
 def with_sought(unknown: Unknown, sought: int, rides: bool) -> Unknown:
-    """The same question for another float."""
+    """Return the same question for another float."""
     return Unknown(unknown.goal, sought, rides, unknown.lands, unknown.stages)
 
 
@@ -141,7 +141,7 @@ def miss_now(miss: Callable[[About, float], float], about: About, x: float) -> f
     return miss(about, x)
 
 
-def place(problem: Problem, unknown: Unknown, x: float) -> tuple[float, float]:
+def place(problem: LineProblem, unknown: Unknown, x: float) -> tuple[float, float]:
     """Load what is at the surface for a value of the unknown.
 
     Returns
@@ -219,7 +219,7 @@ def changed(
 
 
 def coarse_about(search: Search, unknown: Unknown) -> About:
-    """What the marches are about that only look for the neighbourhood of a root."""
+    """Return what the marches are about that only look for the neighbourhood of a root."""
     step = search.problem.limits.coarse_step
     return About(search.problem, unknown, step, CHOSEN, False, NOT_RECORDED)
 
@@ -273,7 +273,7 @@ def planned(search: Search, root: Root, step: float) -> Root:
     return Root(True, found.unknown, x, found.miss, found.slope)
 
 
-def halve(problem: Problem) -> int:
+def halve(problem: LineProblem) -> int:
     """Halve the chosen cuts; returns how many that makes."""
     work, chosen = problem.work, 0
     for k in range(len(problem.course.cables)):
@@ -332,7 +332,7 @@ def close_near(search: Search, root: Root, cuts: int, record: int) -> Closed:
 
 
 def not_closed(ending: int, value: float, root: Root) -> Closed:
-    """How a line ended that does not close."""
+    """Return how a line ended that does not close."""
     return Closed(ending, value, -1, root, 0, 0, False, 0.0)
 
 

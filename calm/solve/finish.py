@@ -31,9 +31,16 @@ from calm.solve.endings import (
     TOO_MANY_AFLOAT,
     UNSUPPORTED,
 )
-from calm.solve.problem import BELOW, CHANGED, FINE, MARCHES, MOST_AFLOAT, Problem, Search
+from calm.solve.problem import BELOW, CHANGED, FINE, MARCHES, MOST_AFLOAT, LineProblem, Search
 from calm.solve.refine import Errors, Refined
-from calm.solve.search import NO_OTHER, Found, Referee, audit_shape, ending_of_audit, stated_errors
+from calm.solve.search import (
+    NO_OTHER,
+    FoundShape,
+    Referee,
+    audit_shape,
+    ending_of_audit,
+    stated_errors,
+)
 from calm.solve.solution import Settings, Solution
 from calm.solve.standing import standing_lift, too_heavy
 from calm.solve.status import Status
@@ -80,7 +87,7 @@ _OF_PIECE = {
 
 
 def solution_of(
-    problem: Problem,
+    problem: LineProblem,
     line: Line,
     water: Water,
     settings: Settings,
@@ -135,7 +142,7 @@ def solution_of(
     )
 
 
-def _buoyancy_in_use(problem: Problem, closed: Closed) -> tuple[float, float]:
+def _buoyancy_in_use(problem: LineProblem, closed: Closed) -> tuple[float, float]:
     """Share in use of the buoyancy of the floats at the surface, and the rest of it [N]."""
     sought = closed.root.unknown.sought
     if sought == BELOW:
@@ -146,7 +153,7 @@ def _buoyancy_in_use(problem: Problem, closed: Closed) -> tuple[float, float]:
     return float(used / total), float(total - used)
 
 
-def _carried(line: Line, problem: Problem) -> Line:
+def _carried(line: Line, problem: LineProblem) -> Line:
     """The line as it is loaded: what is at the surface by what is in the water and in use of it."""
     columns = {name: getattr(line, name).copy() for name in (*_OF_PIECE, *_OF_CLAMP)}
     for i in range(int(problem.work.left[CHANGED])):
@@ -176,7 +183,8 @@ def finished(
     NoEquilibrium
         Where a check fails, that of the place or one of the audit.
     """
-    errors = stated_errors(search.problem, refined)
+    state = compiled_law(stated_errors) if compiled else stated_errors
+    errors = state(search.problem, refined)
     solution = solution_of(search.problem, line, water, settings, refined, errors, frequency)
     check(solution)
     audit = compiled_law(audit_shape) if compiled else audit_shape
@@ -198,7 +206,7 @@ def refuse_unbalanced(closure: float, moment: float) -> None:
 
 
 def audit_refusal(ending: int, value: float) -> NoEquilibrium:
-    """What the audit says against a shape."""
+    """Return what the audit says against a shape."""
     if ending == NOT_CLOSED:
         return Status.NOT_CONVERGED.because(
             f"The loads do not sum to the force at the line's end: they are {value:.1e} off."
@@ -207,7 +215,7 @@ def audit_refusal(ending: int, value: float) -> NoEquilibrium:
 
 
 def closing_refusal(closed: Closed, towed: bool) -> NoEquilibrium:
-    """Why a line does not close."""
+    """Return why a line does not close."""
     if closed.ending == MARCH_STOPPED:
         return march_stopped(closed.value)
     if closed.ending == NO_SHAPE_NEAR:
@@ -223,12 +231,12 @@ def closing_refusal(closed: Closed, towed: bool) -> NoEquilibrium:
 
 
 def march_stopped(failure: float, piece: int | None = None) -> NoEquilibrium:
-    """Why a march stopped, by its number."""
+    """Return why a march stopped, by its number."""
     return Status.NOT_CONVERGED.because(f"The march stopped: {FAILURES[int(failure)]}.", piece)
 
 
-def refusal_of(found: Found, line: Line, water: Water) -> NoEquilibrium:
-    """Why a moored line has no shape."""
+def refusal_of(found: FoundShape, line: Line, water: Water) -> NoEquilibrium:
+    """Return why a moored line has no shape."""
     ending, value, piece = found.ending, found.value, found.piece
     if ending in (MARCH_STOPPED, NO_SHAPE_NEAR, MISSES, SLACK_ON_DIGITS):
         return closing_refusal(found.refined.closed, False)
@@ -297,7 +305,7 @@ def touching(piece: int, below: float) -> NoEquilibrium:
     )
 
 
-def other_of(found: Found) -> tuple[float | None, float]:
+def other_of(found: FoundShape) -> tuple[float | None, float]:
     """Depth of the free end in another equilibrium, and its length on the seabed [m]."""
     depth = None if found.other_depth == NO_OTHER else found.other_depth
     return depth, found.other_grounded

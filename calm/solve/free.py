@@ -26,7 +26,7 @@ from calm.physics.state import MarchError
 from calm.physics.track import head_count
 from calm.solve.audit import Audit
 from calm.solve.free_march import Falling, FallingAnchor, Moving, Rising
-from calm.solve.free_search import Place, terminal
+from calm.solve.free_search import FreePlace, terminal
 from calm.solve.search import LARGEST_CLOSURE
 from calm.solve.solution import Settings, Solution, nodes_of
 from calm.solve.speed import runs_compiled
@@ -112,7 +112,7 @@ def _solve(moving: Moving, settings: Settings) -> FreeMotion:
         raise Status.NOT_CONVERGED.because(f"The march stopped: {error}.") from error
 
 
-def _recorded(moving: Moving, place: Place, cuts: Cuts, settings: Settings) -> FreeMotion:
+def _recorded(moving: Moving, place: FreePlace, cuts: Cuts, settings: Settings) -> FreeMotion:
     """The motion at a place, marched once more, audited."""
     flow = moving.flow(place.velocity)
     meeting = moving.meet(flow, place.depth, settings.angle_step, cuts, record=True)

@@ -19,7 +19,7 @@ from calm.physics.march import Cuts, End, march
 from calm.physics.profile import Profile
 from calm.physics.reference import REFERENCE_DENSITY
 from calm.physics.state import Trace
-from calm.physics.track import Cable, Rod, Track, head_count
+from calm.physics.track import CableStretch, Rod, Track, head_count
 from calm.solve.problem import REACH
 
 
@@ -104,7 +104,7 @@ class Moving(ABC):
 
     @cached_property
     def weight(self) -> float:
-        """What forces are measured by [N]: all net forces together.
+        """Return what forces are measured by [N]: all net forces together.
 
         Or a thousandth of what they are without regard to sign, where that is more.
         """
@@ -112,7 +112,9 @@ class Moving(ABC):
 
     @property
     def plumb(self) -> bool:
-        """Whether the horizontal current is the same at all depths: the line drifts with it."""
+        """Return whether the horizontal current is the same at all depths: the line drifts with
+        it.
+        """
         return not (np.ptp(self.water.u) or np.ptp(self.water.v))
 
     def flow(self, velocity: Floats) -> Water:
@@ -207,7 +209,7 @@ class Rising(Moving):
 
     @cached_property
     def _tracks(self) -> tuple[Track, Track]:
-        """Those from the upper and from the lower end."""
+        """Return those from the upper and from the lower end."""
         below = replace(self.line.reversed(), towed=True)
         return (
             _first_pieces(Track.of(self.line), self._split),
@@ -223,7 +225,7 @@ class Rising(Moving):
         record: bool = False,
     ) -> Meeting:
         above, below = self._tracks
-        cables = sum(isinstance(stage, Cable) for stage in above.stages)
+        cables = sum(isinstance(stage, CableStretch) for stage in above.stages)
         upper = None if cuts is None else cuts.first(cables)
         lower = None if cuts is None else cuts.after(cables)
         down = self._run(above, flow, self.top, angle_step, upper, record)

@@ -28,15 +28,15 @@ SHEARS = ((1.0,), (0.1, 0.25, 0.5, 0.75, 1.0))
 
 
 @dataclass(frozen=True)
-class Place:
+class FreePlace:
     """Velocity over the ground (3,) [m/s], and the depth that a `Moving` leaves open [m]."""
 
     velocity: Floats
     depth: float
 
 
-def terminal(moving: Moving, angle_step: float) -> tuple[Place, Cuts]:
-    """How fast and where a line moves, and the segments on which it does so exactly.
+def terminal(moving: Moving, angle_step: float) -> tuple[FreePlace, Cuts]:
+    """Return how fast and where a line moves, and the segments on which it does so exactly.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def terminal(moving: Moving, angle_step: float) -> tuple[Place, Cuts]:
     """
     plumb = _plumb(moving, angle_step)
     for shares in SHEARS:
-        found: tuple[Place, Cuts] | None = (plumb, NO_CUTS)
+        found: tuple[FreePlace, Cuts] | None = (plumb, NO_CUTS)
         for share in shares:
             if found is not None:
                 found = _closed(_sheared(moving, plumb.velocity, share), found[0], angle_step)
@@ -60,13 +60,13 @@ def terminal(moving: Moving, angle_step: float) -> tuple[Place, Cuts]:
 
 
 def _sheared(moving: Moving, velocity: Floats, share: float) -> Moving:
-    """The same line in a current that departs from a velocity (3,) [m/s] by a share only."""
+    """Return the same line in a current that departs from a velocity (3,) [m/s] by a share only."""
     (east, north, _), water = velocity, moving.water
     u, v = east + share * (water.u - east), north + share * (water.v - north)
     return replace(moving, water=replace(water, u=u, v=v))
 
 
-def _plumb(moving: Moving, angle_step: float) -> Place:
+def _plumb(moving: Moving, angle_step: float) -> FreePlace:
     """The motion of the line if it were plumb, drifting with the mean current.
 
     The drag goes with the square of the speed or nearly so: secants in that find it at once. Where
@@ -76,11 +76,11 @@ def _plumb(moving: Moving, angle_step: float) -> Place:
     upright = replace(moving, water=replace(moving.water, u=none, v=none))
     depth = moving.guessed_depth
 
-    def meeting(squared: float) -> tuple[Place, float]:
-        """Where the line is at the signed square of a speed, and what lifts it there [N]."""
+    def meeting(squared: float) -> tuple[FreePlace, float]:
+        """Return where the line is at the signed square of a speed, and what lifts it there [N]."""
         velocity = np.array([0.0, 0.0, copysign(sqrt(abs(squared)), squared)])
         met = upright.meet(upright.flow(velocity), depth, COARSE * angle_step)
-        return Place(velocity, depth + met.gap), float(met.force[2])
+        return FreePlace(velocity, depth + met.gap), float(met.force[2])
 
     def lifted(_: None, squared: float) -> float:
         return meeting(squared)[1]
@@ -100,7 +100,7 @@ def _plumb(moving: Moving, angle_step: float) -> Place:
     return replace(place, velocity=place.velocity + _mean_current(moving, place, angle_step))
 
 
-def _mean_current(moving: Moving, place: Place, angle_step: float) -> Floats:
+def _mean_current(moving: Moving, place: FreePlace, angle_step: float) -> Floats:
     """(3,) horizontal current where the line is, the mean by normal drag or nearly so [m/s]."""
     water, line = moving.water, moving.line
     if moving.plumb:
@@ -117,7 +117,7 @@ def _mean_current(moving: Moving, place: Place, angle_step: float) -> Floats:
     return mean * [1.0, 1.0, 0.0]
 
 
-def _closed(moving: Moving, place: Place, angle_step: float) -> tuple[Place, Cuts] | None:
+def _closed(moving: Moving, place: FreePlace, angle_step: float) -> tuple[FreePlace, Cuts] | None:
     """The motion near a place, on the segments that the march chooses there; None if there is none.
 
     With its free choice of segments the march is not quite continuous, so it is closed on given
@@ -136,18 +136,18 @@ def _closed(moving: Moving, place: Place, angle_step: float) -> tuple[Place, Cut
 
 
 def _on_cuts(
-    moving: Moving, start: Place, cuts: Cuts, angle_step: float, small: float
-) -> Place | None:
+    moving: Moving, start: FreePlace, cuts: Cuts, angle_step: float, small: float
+) -> FreePlace | None:
     """The motion near a place on given segments, forces closed to a share of the weight."""
     unknown = np.array([not moving.plumb, not moving.plumb, True, True])
     pace, span = max(float(np.linalg.norm(start.velocity)), SLOWEST), moving.water.depth
     units = np.array([pace, pace, pace, span])[unknown]
     origin = np.append(start.velocity, start.depth)
 
-    def place(x: Floats) -> Place:
+    def place(x: Floats) -> FreePlace:
         values = origin.copy()
         values[unknown] += x * units
-        return Place(values[:3], float(values[3]))
+        return FreePlace(values[:3], float(values[3]))
 
     def system(x: Floats) -> Floats:
         here = place(x)

@@ -80,7 +80,7 @@ class LeastChange:
 
     @property
     def steady(self) -> bool:
-        """Whether the excess only rises or only falls over the numbers tried."""
+        """Return whether the excess only rises or only falls over the numbers tried."""
         excesses = [self.tried[x] for x in sorted(self.tried) if isfinite(self.tried[x])]
         noise = 1e-6 * max(map(abs, excesses), default=0.0)
         steps = [b - a for a, b in pairwise(excesses)]
@@ -110,7 +110,8 @@ class LeastChange:
         return [room * 2.0 ** (k - DOUBLINGS) for k in range(DOUBLINGS + 1)]
 
     def _around_the_least(self) -> float | None:
-        """The same by halving the wider of the two gaps beside the least excess, as often as pays.
+        """Return the same by halving the wider of the two gaps beside the least excess, as often
+        as pays.
 
         That finds a dip between two steps, and the last numbers before those without answer.
         """
@@ -129,7 +130,9 @@ class LeastChange:
         return None
 
     def _nearest(self, start: float, good: float) -> float:
-        """Where the condition begins to hold between the start and a number at which it does."""
+        """Return where the condition begins to hold between the start and a number at which it
+        does.
+        """
         between = [x for x in self.tried if min(start, good) <= x <= max(start, good)]
         bad = min((x for x in between if self.tried[x] > 0.0), key=lambda x: abs(x - good))
         return self._whole(bad, good) if self.whole else self._root(bad, good)

@@ -26,7 +26,7 @@ from calm.solve.endings import (
     SLACK_AT_REST,
     TOO_MANY_AFLOAT,
 )
-from calm.solve.problem import BELOW, MOST_AFLOAT, About, Problem, Search, Unknown
+from calm.solve.problem import BELOW, MOST_AFLOAT, About, LineProblem, Search, Unknown
 
 SCAN = 16
 """Depths tried between the upright line and its deepest conceivable knockdown where the current
@@ -46,7 +46,7 @@ Sample = tuple[float, float]
 """A value of the unknown and the miss there [m]."""
 
 
-class Located(NamedTuple):
+class CoarseRoots(NamedTuple):
     """Coarse roots, of a line that hangs clear of the seabed or one that lands.
 
     Attributes
@@ -62,7 +62,7 @@ class Located(NamedTuple):
     deeper: Root
 
 
-def locate(search: Search, lands: bool) -> Located:
+def locate(search: Search, lands: bool) -> CoarseRoots:
     """Find coarse roots.
 
     Where the miss grows with depth a line does not stay, so such roots do not count.
@@ -117,16 +117,16 @@ def locate(search: Search, lands: bool) -> Located:
                 else:
                     highest = root
                 if problem.limits.near > 0.0:
-                    return Located(FOUND, 0.0, highest, deepest)
+                    return CoarseRoots(FOUND, 0.0, highest, deepest)
             before = lower
     if not highest.found:
-        return Located(DRAGGED_DOWN, 0.0, none, none)
-    return Located(FOUND, 0.0, highest, deepest)
+        return CoarseRoots(DRAGGED_DOWN, 0.0, none, none)
+    return CoarseRoots(FOUND, 0.0, highest, deepest)
 
 
-def stopped(problem: Problem, none: Root) -> Located:
-    """What comes of a march that stopped."""
-    return Located(MARCH_STOPPED, problem.work.left[FAILURE], none, none)
+def stopped(problem: LineProblem, none: Root) -> CoarseRoots:
+    """Return what comes of a march that stopped."""
+    return CoarseRoots(MARCH_STOPPED, problem.work.left[FAILURE], none, none)
 
 
 def sample(search: Search, unknown: Unknown, count: int, depth: float) -> int:
@@ -242,14 +242,14 @@ def largest_fall(search: Search, unknown: Unknown, depth: float) -> float:
     return nan if isnan(miss) else max(miss, problem.limits.allowed)
 
 
-def in_even_current(problem: Problem, u: float, v: float, w: float) -> Problem:
-    """The same problem with one current at every level."""
+def in_even_current(problem: LineProblem, u: float, v: float, w: float) -> LineProblem:
+    """Return the same problem with one current at every level."""
     sea, even = problem.sea, problem.work.even
     for k in range(len(sea.intervals)):
         here = sea.intervals[k]
         row = Interval(here.origin, u, 0.0, v, 0.0, w, 0.0, here.density, here.ddensity)
         set_row(even, k, row)
-    return Problem(
+    return LineProblem(
         problem.course, Sea(sea.levels, even[: len(sea.intervals)], sea.gravity, sea.strata),
         problem.loads,
         problem.flexible, problem.surfacing, problem.afloat, problem.hull, problem.limits,
@@ -288,7 +288,7 @@ def awash(search: Search, unknown: Unknown, immersed: float) -> Root:
     return none
 
 
-def surface_root(search: Search, unknown: Unknown, deep: float) -> Located:
+def surface_root(search: Search, unknown: Unknown, deep: float) -> CoarseRoots:
     """Share of buoyancy in use of the lowest float at the surface, and of those above it.
 
     The top float is tried first. Where it closes the line only with the next float out of the
@@ -303,10 +303,10 @@ def surface_root(search: Search, unknown: Unknown, deep: float) -> Located:
     count = len(problem.surfacing)
     for k in range(count):
         if k == MOST_AFLOAT:
-            return Located(TOO_MANY_AFLOAT, 0.0, none, none)
+            return CoarseRoots(TOO_MANY_AFLOAT, 0.0, none, none)
         unknown = with_sought(unknown, k, rides)
         if limits.at_rest and (unknown.lands or slack_at_rest(search, unknown)):
-            return Located(SLACK_AT_REST, 0.0, none, none)
+            return CoarseRoots(SLACK_AT_REST, 0.0, none, none)
         unloaded = coarse_miss(search, unknown, 0.0)
         if isnan(unloaded):
             return stopped(problem, none)
@@ -318,7 +318,7 @@ def surface_root(search: Search, unknown: Unknown, deep: float) -> Located:
             if isnan(root.miss) or isnan(stands):
                 return stopped(problem, none)
             if k + 1 == count or stands <= limits.allowed:
-                return Located(FOUND, 0.0, root, none)
+                return CoarseRoots(FOUND, 0.0, root, none)
         if k + 1 == count:
             break
         rides = False
@@ -335,7 +335,7 @@ def surface_root(search: Search, unknown: Unknown, deep: float) -> Located:
             return stopped(problem, none)
         if deep >= 0.0:
             break
-    return Located(RISES, 0.0, none, none)
+    return CoarseRoots(RISES, 0.0, none, none)
 
 
 def height_at(search: Search, root: Root, lower: int) -> float:

@@ -8,28 +8,13 @@ from calm.physics.compiled import by_address, entry
 from calm.physics.line import Line, Water
 from calm.physics.passing import FAILURE
 from calm.physics.state import NO_ROOM
+from calm.solve.asking import AskedSearch, as_told, find_asked, find_now
 from calm.solve.audit import referee_of
 from calm.solve.closing import miss_at, whole_line
 from calm.solve.endings import FOUND
 from calm.solve.finish import other_of, refusal_of, solution_of
-from calm.solve.problem import (
-    CHOSEN,
-    NOT_RECORDED,
-    ROOM,
-    About,
-    Problem,
-    Search,
-    problem_of,
-)
-from calm.solve.search import (
-    Asked,
-    Found,
-    Referee,
-    as_told,
-    find_asked,
-    find_now,
-    find_shape,
-)
+from calm.solve.problem import CHOSEN, NOT_RECORDED, ROOM, About, LineProblem, Search, problem_of
+from calm.solve.search import FoundShape, Referee, find_shape
 from calm.solve.solution import Settings, Solution
 from calm.solve.speed import runs_compiled
 from calm.solve.standing import refuse_unsupported, standing_lift
@@ -85,15 +70,15 @@ def solve_mooring(line: Line, water: Water, settings: Settings | None = None) ->
     )
 
 
-def find_compiled(search: Search, referee: Referee) -> Found:
+def find_compiled(search: Search, referee: Referee) -> FoundShape:
     """`find_shape`, compiled."""
-    asked = Asked(search, referee)
+    asked = AskedSearch(search, referee)
     find = by_address(find_asked, asked)
     entry(find_now, find, asked)(find, asked)
     return as_told(list(search.problem.work.found))
 
 
-def search_of(problem: Problem, compiled: bool) -> Search:
+def search_of(problem: LineProblem, compiled: bool) -> Search:
     """The search for a problem, at either speed."""
     if not compiled:
         return Search(miss_at, problem)
@@ -102,8 +87,10 @@ def search_of(problem: Problem, compiled: bool) -> Search:
     return Search(by_address(miss_at, about), problem)
 
 
-def lacks_room(problem: Problem) -> bool:
-    """Whether a search has ended because a line needs more segments than there was room for."""
+def lacks_room(problem: LineProblem) -> bool:
+    """Return whether a search has ended because a line needs more segments than there was room
+    for.
+    """
     return bool(problem.work.left[FAILURE] == NO_ROOM)
 
 

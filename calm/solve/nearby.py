@@ -22,7 +22,7 @@ from calm.solve.endings import FOUND, MARCH_STOPPED
 from calm.solve.finish import closing_refusal, finished, refuse_out_of_the_water
 from calm.solve.locate import locate
 from calm.solve.mooring import search_of, solve_mooring
-from calm.solve.problem import BELOW, CHOSEN, FINE, Problem, Search, Unknown, problem_of
+from calm.solve.problem import BELOW, CHOSEN, FINE, LineProblem, Search, Unknown, problem_of
 from calm.solve.refine import Errors, Refined
 from calm.solve.solution import Settings, Solution
 from calm.solve.speed import runs_compiled
@@ -134,7 +134,7 @@ class Nearby:
             raise closing_refusal(closed, False)
         return search, closed
 
-    def _moved(self, water: Water, problem: Problem) -> Root:
+    def _moved(self, water: Water, problem: LineProblem) -> Root:
         """The root in water of another depth."""
         root, deeper = self._root, water.depth - self._water.depth
         was, x = root.unknown, root.x
@@ -155,7 +155,7 @@ def close_coarsely(search: Search, lands: bool) -> Closed:
     return polish(search, root, CHOSEN, FINE)
 
 
-def _used(problem: Problem, closed: Closed, line: Line) -> float:
+def _used(problem: LineProblem, closed: Closed, line: Line) -> float:
     """Share in use of the buoyancy in reference water of the floats at the surface."""
     sought = closed.root.unknown.sought
     if sought == BELOW:

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from calm.physics.compiled import record_type
-from calm.physics.hull import NEVER_AFLOAT, SurfaceFloat, Waterline
+from calm.physics.hull import NEVER_AFLOAT, HullRow, SurfaceFloat
 from calm.physics.line import Floats, Line, Water
 from calm.physics.passing import LEFT
 from calm.physics.profile import Interval, Profile, Sea
@@ -47,11 +47,11 @@ CHOSEN, HALVED = range(2)
 """The cuts: as the march chose them, and halved."""
 NOT_RECORDED = -1
 MARCHES, CHANGED, LAST = range(LEFT, LEFT + 3)
-"""In `Work.left`, after what a march leaves: how many there have been of the whole line, whether
-loads are not as they are in the line, and the unknown of the last one."""
+"""In `SearchArrays.left`, after what a march leaves: how many there have been of the whole line,
+whether loads are not as they are in the line, and the unknown of the last one."""
 
 
-class Surfacing(NamedTuple):
+class BuoyantPiece(NamedTuple):
     """A rigid buoyant piece, which may lie at the surface.
 
     Attributes
@@ -121,7 +121,7 @@ class Limits(NamedTuple):
     refused_at_rest: int
 
 
-class Work(NamedTuple):
+class SearchArrays(NamedTuple):
     """What a search writes on.
 
     Attributes
@@ -149,7 +149,7 @@ class Work(NamedTuple):
     found: MutableSequence[float]
 
 
-class Problem(NamedTuple):
+class LineProblem(NamedTuple):
     """A line and its water, its limits, and room to work in.
 
     Attributes
@@ -166,12 +166,12 @@ class Problem(NamedTuple):
     sea: Sea
     loads: Sequence[Load]
     flexible: Sequence[int]
-    surfacing: Sequence[Surfacing]
+    surfacing: Sequence[BuoyantPiece]
     afloat: SurfaceFloat
-    hull: Sequence[Waterline]
+    hull: Sequence[HullRow]
     limits: Limits
     starts: Sequence[MutableSequence[float]]
-    work: Work
+    work: SearchArrays
 
 
 class Unknown(NamedTuple):
@@ -208,7 +208,7 @@ class About(NamedTuple):
     record : where the shape is recorded, or `NOT_RECORDED`
     """
 
-    problem: Problem
+    problem: LineProblem
     unknown: Unknown
     step: float
     cuts: int
@@ -220,7 +220,7 @@ class Search(NamedTuple):
     """A problem and the march that it is solved by, see `calm.solve.closing.miss_at`."""
 
     miss: Callable[[About, float], float]
-    problem: Problem
+    problem: LineProblem
 
 
 def problem_of(
@@ -235,7 +235,7 @@ def problem_of(
     rough: bool = False,
     room: int = ROOM,
     intervals: int = 0,
-) -> Problem:
+) -> LineProblem:
     """Lay out a line and its water.
 
     Parameters
@@ -295,26 +295,26 @@ def problem_of(
         course, sea = track.packed, profile.packed
         loads: Any = course.loads
         course = course._replace(loads=loads.copy())
-        rows: Any = np.array(surfacing, record_type(Surfacing))
-        hulls: Any = np.array(list(hull), record_type(Waterline))
+        rows: Any = np.array(surfacing, record_type(BuoyantPiece))
+        hulls: Any = np.array(list(hull), record_type(HullRow))
         starts: Any = np.zeros((START_ROWS, STARTS if rough else 0))
         work = work_for(course, max(len(sea.intervals), intervals), room, True)
-        return Problem(course, sea, loads, flexible, rows, afloat, hulls, limits, starts, work)
+        return LineProblem(course, sea, loads, flexible, rows, afloat, hulls, limits, starts, work)
     loads, none = course.loads, [[0.0] * 0] * START_ROWS
     course = course._replace(loads=list(loads))
     work = work_for(course, len(sea.intervals), room, False)
-    return Problem(
+    return LineProblem(
         course, sea, loads, flexible.tolist(), surfacing, afloat, hull, limits, none, work
     )
 
 
-def work_for(course: Course, intervals: int, room: int, compiled: bool) -> Work:
+def work_for(course: Course, intervals: int, room: int, compiled: bool) -> SearchArrays:
     """Room to work in, for so many intervals of the water and so many segments."""
     cables = len(course.cables)
     nodes = 2 * room + 3 * len(course.loads) + 2 * len(course.stages) + 2
     if compiled:
         zeros: Any = np.zeros
-        return Work(
+        return SearchArrays(
             left=zeros(LAST + 1),
             chosen=zeros(room),
             halved=zeros(2 * room),
@@ -330,7 +330,7 @@ def work_for(course: Course, intervals: int, room: int, compiled: bool) -> Work:
     def rows(count: int, length: int) -> list[list[float]]:
         return [[0.0] * length for _ in range(count)]
 
-    return Work(
+    return SearchArrays(
         left=[0.0] * (LAST + 1),
         chosen=[0.0] * room,
         halved=[0.0] * (2 * room),
@@ -350,7 +350,7 @@ def reach_of(limits: Limits, step: float) -> float:
     return reach * degrees(step) * limits.span
 
 
-def _surfacing(line: Line, water: Water, track: Track, lift: Floats) -> list[Surfacing]:
+def _surfacing(line: Line, water: Water, track: Track, lift: Floats) -> list[BuoyantPiece]:
     """The rigid buoyant pieces of a line, from the top down."""
     _, density = water.at(np.zeros(1))
     at_surface = line.buoyancy + (float(density[0]) - 1025.0) * water.gravity * line.volume
@@ -366,7 +366,7 @@ def _surfacing(line: Line, water: Water, track: Track, lift: Floats) -> list[Sur
                 continue
             above = sum(part.lengths[: part.pieces.index(piece)])
             found.append(
-                Surfacing(
+                BuoyantPiece(
                     piece=piece,
                     load=place + i,
                     stage=number,

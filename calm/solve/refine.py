@@ -20,7 +20,7 @@ from calm.physics.profile import interval_at
 from calm.physics.state import Record
 from calm.solve.closing import Closed, Root, halve, not_closed, planned, polish
 from calm.solve.endings import BELOW_SEABED, FOUND, MARCH_STOPPED, NO_SHAPE_NEAR
-from calm.solve.problem import CHOSEN, COARSE, FINE, HALVED, Problem, Search
+from calm.solve.problem import CHOSEN, COARSE, FINE, HALVED, LineProblem, Search
 
 DEPTH_TARGET = 4e-5
 TENSION_TARGET = 1.6e-4
@@ -87,8 +87,8 @@ def refine(search: Search, root: Root, hangs: bool) -> Refined:
     return with_bends(problem, refined)
 
 
-def excess_of(problem: Problem, errors: Errors, landed: bool) -> float:
-    """How many times the errors of a shape are what is aimed at.
+def excess_of(problem: LineProblem, errors: Errors, landed: bool) -> float:
+    """Return how many times the errors of a shape are what is aimed at.
 
     That is less for one of many, the places of which are extrapolated where it has not landed.
     """
@@ -100,8 +100,8 @@ def excess_of(problem: Problem, errors: Errors, landed: bool) -> float:
     return max(errors.depth / (place * problem.limits.span), errors.relative / tension)
 
 
-def with_bends(problem: Problem, refined: Refined) -> Refined:
-    """The same with what abrupt changes inside its segments may cost."""
+def with_bends(problem: LineProblem, refined: Refined) -> Refined:
+    """Return the same with what abrupt changes inside its segments may cost."""
     errors = refined.errors
     strayed, lost = abrupt_change(problem, refined.closed)
     return Refined(
@@ -135,8 +135,8 @@ def polish_hanging(search: Search, root: Root, cuts: int, record: int, hangs: bo
     return closed
 
 
-def is_segment(problem: Problem, record: Record, node: int) -> bool:
-    """Whether the element that ends at a node is a part of a cable or chain."""
+def is_segment(problem: LineProblem, record: Record, node: int) -> bool:
+    """Return whether the element that ends at a node is a part of a cable or chain."""
     return bool(problem.flexible[int(record[6][node])]) and record[7][node] < 0
 
 
@@ -146,7 +146,7 @@ def tension_at(record: Record, node: int) -> float:
     return sqrt(fx * fx + fy * fy + fz * fz)
 
 
-def errors_of(problem: Problem, coarse: Closed, fine: Closed) -> Errors:
+def errors_of(problem: LineProblem, coarse: Closed, fine: Closed) -> Errors:
     """Errors of the finer of two shapes, by the nodes that both have.
 
     That is all but those around the touchdown, where there is one.
@@ -199,8 +199,8 @@ def errors_of(problem: Problem, coarse: Closed, fine: Closed) -> Errors:
     )
 
 
-def abrupt_change(problem: Problem, fine: Closed) -> tuple[float, float]:
-    """What the worst abrupt change inside a segment may cost: in place [m], in tension [N].
+def abrupt_change(problem: LineProblem, fine: Closed) -> tuple[float, float]:
+    """Return what the worst abrupt change inside a segment may cost: in place [m], in tension [N].
 
     If the slope of what a segment adds per metre bends by Δ inside one of length h, its value at
     the middle is off by up to Δh²/8. Where the curve is smooth the segments two away bend alike:
@@ -250,7 +250,8 @@ def abrupt_change(problem: Problem, fine: Closed) -> tuple[float, float]:
 
 
 def bend_in(record: Any, k: int, column: int) -> Vector:
-    """What a bend inside element k may cost of a place, or of a force, by its neighbours' slopes.
+    """Return what a bend inside element k may cost of a place, or of a force, by its neighbours'
+    slopes.
 
     `column` : the first of the three in the record
     """
@@ -276,7 +277,7 @@ def bend_of(
 
 
 def along(record: Record, node: int, tension: float, x: float, y: float, z: float) -> float:
-    """How much of a vector is along the force at a node."""
+    """Return how much of a vector is along the force at a node."""
     if tension == 0.0:
         return 0.0
     pulled: float = abs(x * record[3][node] + y * record[4][node] + z * record[5][node])

@@ -6,18 +6,18 @@ water or in the seabed, and audited.
 
 from __future__ import annotations
 
-from collections.abc import Callable, MutableSequence, Sequence
+from collections.abc import MutableSequence, Sequence
 from math import isnan, nan
 from typing import NamedTuple
 
+from calm.physics.closure import closure
 from calm.physics.compiled import set_row
 from calm.physics.passing import FAILURE
 from calm.physics.passing import LANDED as CAME_DOWN
 from calm.physics.referee import (
-    Body,
     Moored,
-    Shape,
-    closure,
+    RefereeBody,
+    RefereeShape,
     element_loads,
     find_ends,
     worst_moment,
@@ -46,7 +46,7 @@ from calm.solve.problem import (
     NOT_RECORDED,
     OTHER,
     About,
-    Problem,
+    LineProblem,
     Search,
     Unknown,
 )
@@ -76,12 +76,12 @@ class Referee(NamedTuple):
     """
 
     moored: Moored
-    bodies: Sequence[Body]
+    bodies: Sequence[RefereeBody]
     first: MutableSequence[int]
     last: MutableSequence[int]
 
 
-class Found(NamedTuple):
+class FoundShape(NamedTuple):
     """A shape in the record `FINE`, or why there is none.
 
     Attributes
@@ -108,7 +108,7 @@ class Found(NamedTuple):
 NO_OTHER = -1.0
 
 
-def find_shape(search: Search, referee: Referee) -> Found:
+def find_shape(search: Search, referee: Referee) -> FoundShape:
     """Look for a line clear of the seabed or lying on it, the likelier first."""
     problem = search.problem
     limits = problem.limits
@@ -127,86 +127,26 @@ def find_shape(search: Search, referee: Referee) -> Found:
     return second if lands_first else first
 
 
-class Asked(NamedTuple):
-    """What `find_asked` is asked for."""
-
-    search: Search
-    referee: Referee
-
-
-def find_asked(asked: Asked, _: float) -> float:
-    """Look for a shape, and tell what was found in the work of the problem; how it ended."""
-    found = find_shape(asked.search, asked.referee)
-    tell(found, asked.search.problem.work.found)
-    return float(found.ending)
-
-
-def find_now(find: Callable[[Asked, float], float], asked: Asked) -> float:
-    """Call a search by its address."""
-    return find(asked, 0.0)
-
-
-ENDING, VALUE, PIECE, GOAL, SOUGHT, RIDES, LANDS, STAGES, UNKNOWN_VALUE, MISS, SLOPE = range(11)
-NODES, HANGING, LANDED, GROUNDED, SEGMENTS, FIRST_ERROR = range(11, 17)
-CLOSURE, MOMENT, OTHER_DEPTH, OTHER_GROUNDED = range(22, 26)
-"""Where it stands in what a search tells; from `FIRST_ERROR` on the errors."""
-
-
-def tell(found: Found, told: MutableSequence[float]) -> None:
-    """Write down what was found."""
-    closed, errors = found.refined.closed, found.errors
-    root = closed.root
-    unknown = root.unknown
-    told[ENDING], told[VALUE], told[PIECE] = found.ending, found.value, found.piece
-    told[GOAL], told[SOUGHT] = unknown.goal, unknown.sought
-    told[RIDES], told[LANDS], told[STAGES] = unknown.rides, unknown.lands, unknown.stages
-    told[UNKNOWN_VALUE], told[MISS], told[SLOPE] = root.x, root.miss, root.slope
-    told[NODES], told[HANGING] = closed.nodes, closed.hanging
-    told[LANDED], told[GROUNDED] = closed.landed, closed.grounded
-    told[SEGMENTS] = found.refined.segments
-    told[FIRST_ERROR], told[FIRST_ERROR + 1] = errors.depth, errors.tension
-    told[FIRST_ERROR + 2] = errors.relative
-    told[FIRST_ERROR + 3], told[FIRST_ERROR + 4] = errors.lift, errors.pull
-    told[CLOSURE], told[MOMENT] = found.closure, found.moment
-    told[OTHER_DEPTH], told[OTHER_GROUNDED] = found.other_depth, found.other_grounded
-
-
-def as_told(told: Sequence[float]) -> Found:
-    """What was found, by what was written down."""
-    whole = [int(told[i]) for i in range(len(told)) if i in WHOLE]
-    ending, piece, sought, rides, lands, stages, nodes, hanging, landed, segments = whole
-    unknown = Unknown(told[GOAL], sought, bool(rides), bool(lands), stages)
-    root = Root(True, unknown, told[UNKNOWN_VALUE], told[MISS], told[SLOPE])
-    value = float(told[VALUE])
-    closed = Closed(ending, value, piece, root, nodes, hanging, bool(landed), float(told[GROUNDED]))
-    errors = Errors(*(float(error) for error in told[FIRST_ERROR : FIRST_ERROR + 5]))
-    last = [float(told[i]) for i in (CLOSURE, MOMENT, OTHER_DEPTH, OTHER_GROUNDED)]
-    return Found(ending, value, piece, Refined(closed, segments, errors), errors, *last)
-
-
-WHOLE = (ENDING, PIECE, SOUGHT, RIDES, LANDS, STAGES, NODES, HANGING, LANDED, SEGMENTS)
-
-
-def is_slack(found: Found) -> bool:
+def is_slack(found: FoundShape) -> bool:
     """Whether a line is refused as slack."""
     return found.ending == SLACK_AT_REST or found.ending == SLACK_ON_DIGITS
 
 
-def refused(ending: int, value: float, piece: int, root: Root) -> Found:
+def refused(ending: int, value: float, piece: int, root: Root) -> FoundShape:
     """Why there is no shape."""
     refined = Refined(not_closed(ending, value, root), 0, UNKNOWN_ERRORS)
-    return Found(ending, value, piece, refined, UNKNOWN_ERRORS, 0.0, 0.0, NO_OTHER, 0.0)
+    return FoundShape(ending, value, piece, refined, UNKNOWN_ERRORS, 0.0, 0.0, NO_OTHER, 0.0)
 
 
-def beside(found: Found, other_depth: float, other_grounded: float) -> Found:
+def beside(found: FoundShape, other_depth: float, other_grounded: float) -> FoundShape:
     """The shape, with where the free end is and how much lies on the seabed in another one."""
-    return Found(
+    return FoundShape(
         found.ending, found.value, found.piece, found.refined, found.errors, found.closure,
         found.moment, other_depth, other_grounded,
     )  # fmt: skip
 
 
-def highest(search: Search, referee: Referee, lands: bool) -> Found:
+def highest(search: Search, referee: Referee, lands: bool) -> FoundShape:
     """The highest shape of a kind, with the depth of the deepest where that is another."""
     problem = search.problem
     if not lands and problem.limits.lift <= 0.0:
@@ -238,7 +178,7 @@ def highest(search: Search, referee: Referee, lands: bool) -> Found:
     return beside(found, depth, other.refined.closed.grounded)
 
 
-def is_surely_highest(found: Found) -> bool:
+def is_surely_highest(found: FoundShape) -> bool:
     """Whether a line found from its start needs no other search: see `calm.solve.starts`."""
     root = found.refined.closed.root
     if root.unknown.sought == BELOW:
@@ -246,7 +186,7 @@ def is_surely_highest(found: Found) -> bool:
     return root.x < NOWHERE_NEAR
 
 
-def keep(problem: Problem, to: int, of: int, found: Found) -> None:
+def keep(problem: LineProblem, to: int, of: int, found: FoundShape) -> None:
     """Copy a shape from one record to another."""
     source, kept = problem.work.records[of], problem.work.records[to]
     for column in range(len(source)):
@@ -254,7 +194,7 @@ def keep(problem: Problem, to: int, of: int, found: Found) -> None:
             kept[column][n] = source[column][n]
 
 
-def load_again(search: Search, found: Found) -> None:
+def load_again(search: Search, found: FoundShape) -> None:
     """Load what is at the surface as it is in a shape."""
     root = found.refined.closed.root
     limits = search.problem.limits
@@ -262,7 +202,7 @@ def load_again(search: Search, found: Found) -> None:
     search.miss(about, root.x)
 
 
-def shape_near(search: Search, referee: Referee, root: Root, lands: bool) -> Found:
+def shape_near(search: Search, referee: Referee, root: Root, lands: bool) -> FoundShape:
     """The audited shape near a coarse root."""
     problem, limits = search.problem, search.problem.limits
     if not lands:
@@ -297,7 +237,7 @@ def shape_near(search: Search, referee: Referee, root: Root, lands: bool) -> Fou
     return beside(landed, other, 0.0)
 
 
-def hanging_clear(problem: Problem, root: Root) -> Root:
+def hanging_clear(problem: LineProblem, root: Root) -> Root:
     """The same root for the line hanging clear of the seabed, to be sought again from there."""
     goal = problem.limits.anchor_height - problem.limits.depth
     given = root.unknown
@@ -305,7 +245,7 @@ def hanging_clear(problem: Problem, root: Root) -> Root:
     return Root(root.found, unknown, root.x, root.miss, root.slope)
 
 
-def audited(problem: Problem, referee: Referee, refined: Refined) -> Found:
+def audited(problem: LineProblem, referee: Referee, refined: Refined) -> FoundShape:
     """A refined shape, refused where a check fails."""
     closed = refined.closed
     if closed.ending != FOUND:
@@ -316,18 +256,18 @@ def audited(problem: Problem, referee: Referee, refined: Refined) -> Found:
         ending = ABOVE_SURFACE if height > 0.0 else BELOW_SEABED
         return refused(ending, abs(height), piece, closed.root)
     if problem.limits.near > 0.0:
-        return Found(FOUND, 0.0, -1, refined, errors, 0.0, 0.0, NO_OTHER, 0.0)
+        return FoundShape(FOUND, 0.0, -1, refined, errors, 0.0, 0.0, NO_OTHER, 0.0)
     off, moment = audit_shape(problem, referee, closed)
     ending, value = ending_of_audit(off, moment)
     if ending != FOUND:
         return refused(ending, value, -1, closed.root)
-    return Found(FOUND, 0.0, -1, refined, errors, off, moment, NO_OTHER, 0.0)
+    return FoundShape(FOUND, 0.0, -1, refined, errors, off, moment, NO_OTHER, 0.0)
 
 
-def audit_shape(problem: Problem, referee: Referee, closed: Closed) -> tuple[float, float]:
+def audit_shape(problem: LineProblem, referee: Referee, closed: Closed) -> tuple[float, float]:
     """Closure and moment residual of the shape in the record `FINE`."""
     record, elements = problem.work.records[FINE], problem.work.elements
-    shape = Shape(record, closed.nodes, closed.hanging, referee.first, referee.last)
+    shape = RefereeShape(record, closed.nodes, closed.hanging, referee.first, referee.last)
     moored, limits = referee.moored, problem.limits
     take_loads(problem, referee)
     find_ends(shape)
@@ -345,7 +285,7 @@ def ending_of_audit(off: float, moment: float) -> tuple[int, float]:
     return FOUND, 0.0
 
 
-def stated_errors(problem: Problem, refined: Refined) -> Errors:
+def stated_errors(problem: LineProblem, refined: Refined) -> Errors:
     """The errors of a shape, with what no halving shows."""
     closed, span, errors = refined.closed, problem.limits.span, refined.errors
     unclosed = abs(closed.root.miss) / span + UNSEEN
@@ -364,7 +304,7 @@ def stated_errors(problem: Problem, refined: Refined) -> Errors:
     )
 
 
-def misplaced(problem: Problem, refined: Refined, depth_error: float) -> tuple[int, float]:
+def misplaced(problem: LineProblem, refined: Refined, depth_error: float) -> tuple[int, float]:
     """The piece that is out of the water, and by how much, or in the seabed, negative [m]; or -1.
 
     A float at the surface may stand out of it, however it is turned.
@@ -390,7 +330,7 @@ def misplaced(problem: Problem, refined: Refined, depth_error: float) -> tuple[i
     return -1, 0.0
 
 
-def take_loads(problem: Problem, referee: Referee) -> None:
+def take_loads(problem: LineProblem, referee: Referee) -> None:
     """Give the referee the loads as they are at the surface."""
     bodies, pieces = referee.moored.bodies, referee.moored.pieces
     for k in range(len(referee.bodies)):
@@ -401,9 +341,9 @@ def take_loads(problem: Problem, referee: Referee) -> None:
         set_row(bodies, k, loaded(referee.bodies[k], load))
 
 
-def loaded(body: Body, load: Load) -> Body:
+def loaded(body: RefereeBody, load: Load) -> RefereeBody:
     """A body with the forces of a load."""
-    return Body(
+    return RefereeBody(
         body.flexible, body.length, load.buoyancy, load.volume, load.normal_drag,
         load.tangential_drag, body.directional, body.compliance, body.thinning, load.lift,
         load.push_east, load.push_north, body.diameter, body.smooth, body.lengthening,

@@ -109,7 +109,7 @@ class Solution:
 
     @property
     def surface(self) -> bool:
-        """Whether the line reaches the sea surface."""
+        """Return whether the line reaches the sea surface."""
         return bool(self.afloat)
 
     @cached_property
@@ -129,7 +129,9 @@ class Solution:
 
     @property
     def body_node(self) -> int:
-        """Where the lowest piece of a tow hangs on the line; of a bare cable, where that ends."""
+        """Return where the lowest piece of a tow hangs on the line; of a bare cable, where that
+        ends.
+        """
         return 0 if self.line.flexible[0] else int(self.piece_nodes[0, 1])
 
     def piece_at(self, node: int) -> int:

@@ -43,7 +43,7 @@ def expect_many(solves: float) -> None:
 
 
 def runs_compiled(settings: Settings, line: Line | None = None) -> bool:
-    """Whether the solver is to be compiled for a line that is now solved."""
+    """Return whether the solver is to be compiled for a line that is now solved."""
     if settings.compiled is not None:
         return settings.compiled
     if line is not None:

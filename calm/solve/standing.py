@@ -45,7 +45,8 @@ SUPPORTED, TOO_HEAVY, FOLDS = range(3)
 
 
 def support_of(lift: Floats, at_rest: bool) -> tuple[int, int, float]:
-    """Whether a line is held up, else the piece below which it folds and what is lacking [N].
+    """Return whether a line is held up, else the piece below which it folds and what is lacking
+    [N].
 
     Parameters
     ----------

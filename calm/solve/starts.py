@@ -55,7 +55,7 @@ def fill_starts(search: Search) -> int:
 
 
 def start_of(search: Search, lands: bool) -> Root:
-    """Where a line is sought first; not `found` where the whole search is needed."""
+    """Return where a line is sought first; not `found` where the whole search is needed."""
     problem, limits = search.problem, search.problem.limits
     unknown = whole_line(problem, lands)
     nowhere = Root(False, unknown, nan, nan, nan)
@@ -79,7 +79,7 @@ def start_of(search: Search, lands: bool) -> Root:
 
 
 def at_speed(row: Sequence[float], speed: float) -> float:
-    """What is known of a line in an even current, linear between the speeds."""
+    """Return what is known of a line in an even current, linear between the speeds."""
     at = min(speed / FASTEST, 1.0) * (STARTS - 1)
     k = min(int(at), STARTS - 2)
     return row[k] + (at - k) * (row[k + 1] - row[k])

@@ -253,7 +253,7 @@ def _frequency(tow: Towed) -> float:
 
 
 def _surfaces(tow: Towed) -> bool:
-    """Whether the line comes near to the surface on the far side of its lowest point."""
+    """Return whether the line comes near to the surface on the far side of its lowest point."""
     try:
         trace = tow.shape_at(tow.root.x, tow.coarse_step)
     except MarchError:

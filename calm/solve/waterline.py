@@ -65,7 +65,8 @@ class Waterline:
 
 
 def half_out(tow: Towed) -> NoEquilibrium | None:
-    """Why a tow does not close at a root where its miss jumps; None where it does not jump there.
+    """Return why a tow does not close at a root where its miss jumps; None where it does not jump
+    there.
 
     A rigid piece or a clamp is in the water or out of it, by its middle. Where the line is too
     high with one in the water and too low with it out, it would ride half out: no equilibrium.

@@ -47,7 +47,7 @@ class Offer:
 
 
 def offers(view: View, catalogue: Catalogue | None) -> list[Offer]:
-    """What mends the failures and warnings of a line that was judged, the gravest first."""
+    """Return what mends the failures and warnings of a line that was judged, the gravest first."""
     if not isinstance(view.result, Result):
         return [*_against_lifting(view, catalogue)]
     mooring = view.result.mooring
@@ -116,7 +116,7 @@ def _for(
 
 
 def _needed_weight(result: Result, grave: Sequence[Finding]) -> float:
-    """What the anchor is to weigh in water for all that is found of it [N]."""
+    """Return what the anchor is to weigh in water for all that is found of it [N]."""
     factor = result.file.checks.anchor_factor
     needed = [result.anchor.required_weight]
     for finding in grave:
@@ -204,7 +204,7 @@ def _buoyancy(mooring: Mooring, finding: Finding) -> Iterator[Offer]:
 
 
 def differences(before: View, after: View) -> list[str]:
-    """What a change does to the figures and to the findings, each as ``from → to``."""
+    """Return what a change does to the figures and to the findings, each as ``from → to``."""
     effects = []
     one, other = before.result, after.result
     if isinstance(one, Result) and isinstance(other, Result):

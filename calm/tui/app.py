@@ -112,7 +112,9 @@ class BuildApp(InTurn):
         yield SystemCommand("colours", "Choose other colours.", self.action_change_theme)
 
     def get_line_filters(self) -> Sequence[LineFilter]:
-        """Those of textual; one that takes all colours off, one for terminals of plain signs."""
+        """Return those of textual; one that takes all colours off, one for terminals of plain
+        signs.
+        """
         filters = [_COLOURLESS] if self.no_color else super().get_line_filters()
         return [*filters, *self._plain]
 
@@ -139,7 +141,7 @@ class BuildApp(InTurn):
         return [each for each in self.screen_stack if isinstance(each, DraftScreen)]
 
     def is_settled(self) -> bool:
-        """Whether nothing is being typed any more; a bad value has been reported."""
+        """Return whether nothing is being typed any more; a bad value has been reported."""
         return not isinstance(self.screen, DraftScreen) or self.screen.part.settle()
 
     def taken_over(self, message: str) -> None:
@@ -172,7 +174,7 @@ class BuildApp(InTurn):
 
     @property
     def is_idle(self) -> bool:
-        """Whether the line that is shown has been solved, and nothing else is under way."""
+        """Return whether the line that is shown has been solved, and nothing else is under way."""
         return self.judging.is_idle and self._is_catalogue_read
 
     @on(Edited)

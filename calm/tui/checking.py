@@ -38,7 +38,7 @@ class Reading:
 
     @property
     def is_good(self) -> bool:
-        """Whether it can be used."""
+        """Return whether it can be used."""
         return not self.complaint
 
     @property
@@ -133,7 +133,7 @@ def number(text: str) -> Reading:
 
 
 def count(text: str) -> Reading:
-    """How often a piece comes, a whole number; nothing is once."""
+    """Return how often a piece comes, a whole number; nothing is once."""
     tidy = text.strip().lstrip("x×* ")
     if not tidy:
         return Reading("1")
@@ -145,7 +145,7 @@ def count(text: str) -> Reading:
 
 
 def distance(before: str = "") -> Check:
-    """How far down a piece something is clamped."""
+    """Return how far down a piece something is clamped."""
     return quantity(LENGTH, usual_unit=unit_of(before))
 
 

@@ -57,7 +57,7 @@ class Question(ModalScreen[str | None]):
         self._title, self._text, self._answers, self._must = title, text, answers, must
 
     def compose(self) -> ComposeResult:
-        """What is asked, and the answers below each other."""
+        """Return what is asked, and the answers below each other."""
         with Vertical():
             yield Static(self._title, classes="title", markup=False)
             yield Static(self._text, classes="text", markup=False)
@@ -114,7 +114,7 @@ class InputSheet(ModalScreen[dict[str, str] | None]):
         self._title, self._text, self._asked = title, text, asked
 
     def compose(self) -> ComposeResult:
-        """What is asked, and where it is typed."""
+        """Return what is asked, and where it is typed."""
         with Vertical():
             yield Static(self._title, classes="title", markup=False)
             if self._text:

@@ -22,13 +22,15 @@ class Standing:
 
     @property
     def environments(self) -> list[str | None]:
-        """Those of the file; None is its own, the first."""
+        """Return those of the file; None is its own, the first."""
         named = self._history.draft.value(("environments",))
         return [None, *(named if isinstance(named, dict) else ())]
 
     @property
     def environment(self) -> str | None:
-        """What the line stands in: the own one, too, where that chosen is in the file no more."""
+        """Return what the line stands in: the own one, too, where that chosen is in the file no
+        more.
+        """
         return None if self.lost_environment else self._environment
 
     @environment.setter

@@ -21,7 +21,9 @@ from calm.tui.scrolled import ScrolledEntry
 
 
 def all_settled(fields: Iterable[Field]) -> bool:
-    """Whether all texts are good, and taken; of those that are not the first gets the focus."""
+    """Return whether all texts are good, and taken; of those that are not the first gets the
+    focus.
+    """
     wrong = [field for field in fields if not field.settle()]
     if wrong:
         wrong[0].focus_input()
@@ -98,17 +100,17 @@ class Field(Horizontal):
 
     @property
     def is_typing(self) -> bool:
-        """Whether the text differs from the one shown first."""
+        """Return whether the text differs from the one shown first."""
         return self.input.value != self._shown
 
     @property
     def text(self) -> str:
-        """What was typed, as it is to be written; as it was, where nothing was typed."""
+        """Return what was typed, as it is to be written; as it was, where nothing was typed."""
         return self.check(self.input.value).text if self.is_typing else self.begun
 
     @property
     def reading(self) -> Reading:
-        """What the text comes to."""
+        """Return what the text comes to."""
         return self.check(self.input.value)
 
     def ask(self, key: str, title: str, check: Check, placeholder: str) -> None:
@@ -136,7 +138,7 @@ class Field(Horizontal):
             self.query_one(".field-note", Static).update(note, layout=False)
 
     def note(self, reading: Reading) -> str:
-        """What is said of the typed text: what is wrong, or what is added."""
+        """Return what is said of the typed text: what is wrong, or what is added."""
         if not reading.is_good:
             return reading.note
         if reading.comes_to:
@@ -206,7 +208,7 @@ class Cycle(Widget, can_focus=True):
 
         @property
         def control(self) -> Cycle:
-            """Which of several it was."""
+            """Return which of several it was."""
             return self.cycle
 
     def __init__(
@@ -223,7 +225,7 @@ class Cycle(Widget, can_focus=True):
 
     @property
     def hint(self) -> str:
-        """What the keys do here."""
+        """Return what the keys do here."""
         return "← → another, ↑ ↓ go on"
 
     def show(self, word: str) -> None:

@@ -98,7 +98,7 @@ class Actions(Provider):
             yield DiscoveryHit(_shown(action), self._run(action), help=action.meaning)
 
     async def search(self, query: str) -> Hits:
-        """Those whose name or meaning is like the words."""
+        """Return those whose name or meaning is like the words."""
         matcher = self.matcher(query)
         for action in self._offered:
             score = max(matcher.match(action.title), 0.8 * matcher.match(action.meaning))

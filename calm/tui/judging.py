@@ -40,7 +40,7 @@ class Judging:
 
     @property
     def is_idle(self) -> bool:
-        """Whether the draft has been judged, and nothing is under way."""
+        """Return whether the draft has been judged, and nothing is under way."""
         busy = self._is_judging or self._is_stale or self._checked is not None
         return not busy and self._workspace.view is not None
 

@@ -74,7 +74,7 @@ class View:
     memory: Memory = field(default_factory=Memory, repr=False, compare=False)
 
     def is_of(self, text: str, path: Path | None, environment: str | None) -> bool:
-        """Whether a text, of the file of a path, was judged in this environment."""
+        """Return whether a text, of the file of a path, was judged in this environment."""
         return (self.text, self.path, self.environment) == (text, _placed(path), environment)
 
     @cached_property
@@ -89,7 +89,7 @@ class View:
 
     @property
     def anchored(self) -> bool:
-        """Whether the line has an anchor of its own, or needs none."""
+        """Return whether the line has an anchor of its own, or needs none."""
         return self.file is not None and self.file.pieces[-1].use != STAND_IN
 
 
@@ -128,13 +128,13 @@ def judge(
 
 
 def _placed(path: str | Path | None) -> Path:
-    """Where a text belongs, beside which the files that it names are looked for."""
+    """Return where a text belongs, beside which the files that it names are looked for."""
     return Path.cwd() / UNNAMED if path is None else Path(path)
 
 
 def judge_fully(view: View, catalogs: Sequence[str | Path] = ()) -> View:
-    """The same with all that `calm check` finds: in every environment and situation, at launch and
-    at recovery, and where a part breaks.
+    """Return the same with all that `calm check` finds: in every environment and situation, at
+    launch and at recovery, and where a part breaks.
 
     A tow, and a line without an anchor of its own or without equilibrium, is returned as it is.
     """
@@ -195,7 +195,7 @@ def _judged(view: View, catalogs: Sequence[str | Path]) -> View:
 
 
 def _lacking(file: MooringFile) -> Iterator[str]:
-    """What no mooring stands without and this line has not; nothing of a tow."""
+    """Return what no mooring stands without and this line has not; nothing of a tow."""
     if file.tow is not None:
         return
     clamps = [clamp.component for piece in file.pieces for clamp in piece.clamps]
@@ -223,7 +223,7 @@ def _solved(view: View, file: MooringFile) -> View:
 def _found(
     view: View, file: MooringFile, result: Result | None, failure: NoEquilibrium | None
 ) -> Iterator[Finding]:
-    """What the rules of a standing line find; none of them is of a tow."""
+    """Return what the rules of a standing line find; none of them is of a tow."""
     if file.tow is None:
         as_given = Situation(AS_GIVEN, result, failure)
         here = file.environment.name or OWN
@@ -231,7 +231,7 @@ def _found(
 
 
 def _wrong(view: View, problems: Sequence[Problem]) -> View:
-    """What is wrong and what is lacking, apart."""
+    """Return what is wrong and what is lacking, apart."""
     lacking = dict.fromkeys(problem.lacks for problem in problems if problem.lacks)
     wrong = tuple(problem for problem in problems if not problem.lacks)
     return replace(view, problems=wrong, missing=tuple(lacking))

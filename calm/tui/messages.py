@@ -49,12 +49,14 @@ class CatalogueRead(Message):
 
 
 def is_elsewhere(problem: Problem, path: Path) -> bool:
-    """Whether a mistake is in another file than the one that is edited, which has this path."""
+    """Return whether a mistake is in another file than the one that is edited, which has this
+    path.
+    """
     return problem.path not in ("", str(path))
 
 
 def place_of(problem: Problem, path: Path) -> str:
-    """Where a mistake is: ``line 4:2``, with the file where it is not that of the path."""
+    """Return where a mistake is: ``line 4:2``, with the file where it is not that of the path."""
     place = f"line {problem.line}:{problem.column}" if problem.line else ""
     if not is_elsewhere(problem, path):
         return place
@@ -70,7 +72,7 @@ def said(problem: Problem, path: Path) -> Content:
 
 
 def mistakes(problems: Sequence[Problem], path: Path) -> str:
-    """How many there are, and in which file; empty of none."""
+    """Return how many there are, and in which file; empty of none."""
     count = len(problems)
     files = {each.path for each in problems if is_elsewhere(each, path)}
     if not count:
@@ -136,7 +138,9 @@ class Workspace:
 
     @property
     def is_fresh(self) -> bool:
-        """Whether the view is of what is edited: the text, the file's place and the environment."""
+        """Return whether the view is of what is edited: the text, the file's place and the
+        environment.
+        """
         session, view = self.session, self.view
         return view is not None and view.is_of(
             session.draft.text, session.file.path, session.standing.environment
@@ -144,7 +148,7 @@ class Workspace:
 
     @property
     def is_old(self) -> bool:
-        """Whether the figures are to be shown dimmed, those of an earlier draft."""
+        """Return whether the figures are to be shown dimmed, those of an earlier draft."""
         return self.is_late and not self.is_fresh
 
     @property

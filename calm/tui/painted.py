@@ -46,7 +46,7 @@ class Painted:
         return _Changes(self, update)
 
     def put(self, y: int, x: int, cells: list[Cell], pen: _Pen) -> str:
-        """What is to be sent to have cells in a row, from a column on."""
+        """Return what is to be sent to have cells in a row, from a column on."""
         while len(self._rows) <= y:
             self._rows.append([])
         row = self._rows[y]
@@ -116,7 +116,9 @@ def _cells(segments: Iterable[Segment]) -> Iterator[Cell]:
 
 @lru_cache(1024)
 def _ground(style: Style | None) -> Style | None:
-    """What is seen of a style where nothing is written: two blanks that look alike are alike."""
+    """Return what is seen of a style where nothing is written: two blanks that look alike are
+    alike.
+    """
     if style is None or style.underline or style.overline or style.strike or style.reverse:
         return style
     return Style(bgcolor=style.bgcolor)
@@ -158,7 +160,7 @@ class _Pen:
         self._ground: Style | None = None
 
     def written(self, cells: list[Cell]) -> str:
-        """What is sent for cells beside each other."""
+        """Return what is sent for cells beside each other."""
         parts = []
         for sign, style in cells:
             if sign == " " and self._held and style is not None and style == self._ground:
@@ -173,7 +175,7 @@ class _Pen:
         return "".join(parts)
 
     def put_down(self) -> str:
-        """What leaves the terminal without a style."""
+        """Return what leaves the terminal without a style."""
         held, self._held = self._held, ""
         return _PLAIN if held else ""
 
@@ -219,7 +221,7 @@ _DOTS = ((0x01, 0x02, 0x04, 0x40), (0x08, 0x10, 0x20, 0x80))
 
 
 def shows_all_signs(environ: Mapping[str, str], output: TextIO | None) -> bool:
-    """Whether a terminal can be taken to show more than ASCII.
+    """Return whether a terminal can be taken to show more than ASCII.
 
     Parameters
     ----------
@@ -253,7 +255,7 @@ class PlainSigns(LineFilter):
     """Puts signs of ASCII in place of all others, each as wide as what it stands for."""
 
     def apply(self, segments: list[Segment], background: Color) -> list[Segment]:
-        """The same in signs of ASCII."""
+        """Return the same in signs of ASCII."""
         return [Segment(plain(text), style, control) for text, style, control in segments]
 
 

@@ -152,7 +152,7 @@ def _water_of(result: Result | TowResult) -> Water:
 
 
 def _words(view: View | None, size: Size) -> list[Text]:
-    """What stands where there is no picture yet."""
+    """Return what stands where there is no picture yet."""
     if size.width < 20 or size.height < 6:
         return [Text("(too small)", style="dim")]
     text = ELLIPSIS if view is None else "A picture appears once the line stands."

@@ -215,7 +215,7 @@ def _free_name(path: Path) -> Path:
 
 
 def _is_writable(text: str) -> Reading:
-    """Whether a file of that name could be written."""
+    """Return whether a file of that name could be written."""
     tidy = text.strip()
     if not tidy:
         return Reading("", "a name is needed")
@@ -240,7 +240,9 @@ def moment(seconds: float) -> str:
 
 
 def offer(session: Session, kept: KeptWork) -> Question:
-    """Whether it is to be recovered; it says when it was kept and whether the file is newer."""
+    """Return whether it is to be recovered; it says when it was kept and whether the file is
+    newer.
+    """
     whose = "" if kept.keeper.is_here else f" on {kept.keeper.host}, where it may still be open"
     sentences = [f"An earlier run ended before {session.name} was saved. It kept its work"]
     sentences.append(f"{moment(kept.at)}{whose}.")
@@ -261,6 +263,6 @@ def offer(session: Session, kept: KeptWork) -> Question:
 
 
 def confirmation(kept: KeptWork) -> Question:
-    """Whether it is really to be thrown away: nothing brings it back."""
+    """Return whether it is really to be thrown away: nothing brings it back."""
     answers = [Answer("y", "yes, throw it away for good", "discard")]
     return Question("Throw the work away?", f"It was kept {moment(kept.at)}.", answers)

@@ -22,7 +22,7 @@ class ScreenPart(Protocol):
 
     @property
     def is_typing(self) -> bool:
-        """Whether something is typed that is not in the draft yet."""
+        """Return whether something is typed that is not in the draft yet."""
 
     def settle(self) -> bool:
         """Take over what is being typed: the draft holds it when this returns True.
@@ -43,7 +43,7 @@ class ScreenPart(Protocol):
         """Show what a worker made of the draft."""
 
     def title(self) -> tuple[str, str]:
-        """What the first line says at its left and at its right end."""
+        """Return what the first line says at its left and at its right end."""
 
 
 class DraftScreen(Screen[None]):

@@ -70,7 +70,7 @@ class Browser(Server):
 
     @property
     def address(self) -> str:
-        """Where the page is."""
+        """Return where the page is."""
         where = HOST if self.port == _UNSAID else f"{HOST}:{self.port}"
         return f"http://{where}/?token={self.token}"
 
@@ -139,7 +139,7 @@ class Browser(Server):
         return response
 
     def _is_own(self, name: str) -> bool:
-        """Whether a name is that of this machine, or one that was allowed."""
+        """Return whether a name is that of this machine, or one that was allowed."""
         if name == HOST or name in self._hosts:
             return True
         try:

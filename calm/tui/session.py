@@ -84,7 +84,7 @@ class Session:
 
     @property
     def changed(self) -> bool:
-        """Whether something is not saved yet."""
+        """Return whether something is not saved yet."""
         return self.history.changed
 
     @property

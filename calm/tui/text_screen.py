@@ -95,7 +95,7 @@ class TextPart(Vertical):
 
     @property
     def text_area(self) -> TextArea:
-        """Where one writes."""
+        """Return where one writes."""
         return self.query_one(TextArea)
 
     def show_view(self) -> None:
@@ -114,7 +114,7 @@ class TextPart(Vertical):
         self.query_one("#mistakes-text", Static).update(Content("\n").join(lines))
 
     def title(self) -> tuple[str, str]:
-        """What is shown, and how many mistakes it has."""
+        """Return what is shown, and how many mistakes it has."""
         return f"The text of {self.workspace.called}", mistakes(self._problems, self._path)
 
     @property
@@ -124,7 +124,7 @@ class TextPart(Vertical):
 
     @property
     def _path(self) -> Path:
-        """That of the file, as its problems have it."""
+        """Return that of the file, as its problems have it."""
         return Path() if self.workspace.view is None else self.workspace.view.path
 
     @on(TextArea.Changed)
@@ -143,7 +143,7 @@ class TextPart(Vertical):
 
     @property
     def is_typing(self) -> bool:
-        """Whether the text that is shown is not in the draft yet."""
+        """Return whether the text that is shown is not in the draft yet."""
         return self._typed != self.session.draft.text
 
     @property
@@ -237,6 +237,8 @@ class TextScreen(DraftScreen):
 
 
 def _row(text: str, line: int) -> int:
-    """Where the editor has a line of the file, both counted as they count: it knows more breaks."""
+    """Return where the editor has a line of the file, both counted as they count: it knows more
+    breaks.
+    """
     ends = [0, *(found.end() for found in _LINE_BREAK.finditer(text))]
     return len(text[: ends[min(line, len(ends)) - 1]].splitlines())

@@ -91,7 +91,7 @@ PICTURE_LIGHT = TerminalTheme(
 
 
 def themes() -> tuple[Theme, ...]:
-    """Those of the application."""
+    """Return those of the application."""
     return DARK, LIGHT
 
 

@@ -33,7 +33,7 @@ class InTurn(App[int]):
 
     @property
     def has_keys_waiting(self) -> bool:
-        """Whether a key is not handled yet."""
+        """Return whether a key is not handled yet."""
         return self._is_pressed
 
     async def on_event(self, event: events.Event) -> None:
@@ -81,7 +81,7 @@ class InTurn(App[int]):
 
 
 def _is_done_by_a_person(event: events.Event) -> bool:
-    """What is forwarded has had its turn; the mouse may move meanwhile."""
+    """Return what is forwarded has had its turn; the mouse may move meanwhile."""
     if event.is_forwarded or isinstance(event, events.MouseMove):
         return False
     return isinstance(event, events.InputEvent | events.Paste)

@@ -97,7 +97,7 @@ class VerdictPane(Scrolled, can_focus=True):
 
     @property
     def said_here(self) -> str:
-        """What the line that is chosen says."""
+        """Return what the line that is chosen says."""
         return self._said[self._chosen][0].text
 
     def on_focus(self) -> None:

@@ -38,7 +38,7 @@ class Saying:
 
     @property
     def sign(self) -> str:
-        """What stands in front."""
+        """Return what stands in front."""
         if self.pending:
             return ELLIPSIS
         return " " if self.state is None else LOOKS[self.state].sign
@@ -64,7 +64,7 @@ def headline(view: View | None) -> Saying:
 
 
 def _judged(findings: Sequence[Finding]) -> Saying:
-    """What is counted is a rule of a component in a situation, in whichever environments."""
+    """Return what is counted is a rule of a component in a situation, in whichever environments."""
     states: dict[tuple[str, str | None, str], State] = {}
     for each in sorted(findings, key=lambda each: each.rank):
         states.setdefault((each.rule, each.component, each.situation), each.state)
@@ -125,7 +125,7 @@ def _environment(name: str) -> str:
 
 
 def _stand(stand: MooringInEnvironment) -> Saying:
-    """How the line does in one environment, in one line."""
+    """Return how the line does in one environment, in one line."""
     said, result = _judged(stand.findings), stand.result
     figures = ""
     if result is not None and result.type != "surface":
@@ -162,7 +162,7 @@ def _figures(
 
 
 def _mooring(result: Result, findings: Sequence[Finding], pending: bool) -> Iterator[Saying]:
-    """What the line does as given; what is judged shows the worst of its findings."""
+    """Return what the line does as given; what is judged shows the worst of its findings."""
     from calm.checks.anchor_rules import anchor_weight
     from calm.checks.posture import knockdown, reserve
 
@@ -189,7 +189,7 @@ def _mooring(result: Result, findings: Sequence[Finding], pending: bool) -> Iter
 
 
 def _holds(result: Result, worst: Finding | None, pending: bool) -> Saying:
-    """What the anchor is to weigh, and weighs; of a line without one the first alone."""
+    """Return what the anchor is to weigh, and weighs; of a line without one the first alone."""
     if worst is None:
         return Saying(f"needs {_say('required_weight', result.anchor.required_weight)} in water")
     needs = f"needs {_say('required_weight', worst.limit)}{_situation(worst)}"

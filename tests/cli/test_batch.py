@@ -208,9 +208,9 @@ def test_stopped_and_taken_up_again(calm, write_mooring, record, folder, monkeyp
             raise KeyboardInterrupt
         kept(self, number, parts)
 
-    kept = batch_work.Work._keep
+    kept = batch_work.BatchWork._keep
     with monkeypatch.context() as patched:
-        patched.setattr(batch_work.Work, "_keep", stopped)
+        patched.setattr(batch_work.BatchWork, "_keep", stopped)
         done = calm("batch", write_mooring(), "--currents", record, "-o", "r.nc")
     assert done.code == 75
     assert done.out == ""
@@ -367,7 +367,7 @@ def test_the_bar_goes_whatever_happens(calm, write_mooring, record, monkeypatch)
 
     written = Terminal()
     monkeypatch.setattr(sys, "stderr", written)
-    monkeypatch.setattr(batch_work.Work, "_keep", fail)
+    monkeypatch.setattr(batch_work.BatchWork, "_keep", fail)
     assert main(["batch", write_mooring(), "--currents", record, "-o", "r.nc"]) == 70
     shown = written.getvalue()
     assert "[....." in shown

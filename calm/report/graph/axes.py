@@ -121,14 +121,14 @@ class Axes:
         self._drawn.line(x, self.top, x, self.top + self.height, **stroke.attributes())
 
     def strip(self, low: float, high: float, colour: str) -> None:
-        """What lies between two values of the upward axis, filled."""
+        """Do what lies between two values of the upward axis, filled."""
         y = sorted(map(float, self.y([low, high])))
         self._drawn.draw(
             "rect", x=self.left, y=y[0], width=self.width, height=y[1] - y[0], fill=colour
         )
 
     def band(self, x: ArrayLike, low: ArrayLike, high: ArrayLike, colour: str) -> None:
-        """What lies between two curves, filled; parted where one is not known."""
+        """Do what lies between two curves, filled; parted where one is not known."""
         across, bottom, top = self.x(x), self.y(low), self.y(high)
         known = np.isfinite(bottom) & np.isfinite(top)
         ends = np.flatnonzero(np.diff(np.concatenate([[False], known, [False]])))

@@ -34,7 +34,7 @@ def report_html(sections: Sequence[Section], leaves: Sequence[str] | None = None
 
 
 def leaf(section: Section, number: int) -> str:
-    """What the page shows of a section, the `number`th from 1."""
+    """Return what the page shows of a section, the `number`th from 1."""
     template = _environment().get_template("parts.html.jinja")
     shown: str = template.module.parts(section.parts, f"m{number}")  # type: ignore[attr-defined]
     return shown
@@ -107,7 +107,7 @@ def _kinds(columns: Sequence[Column]) -> list[str]:
 
 
 def _is_of(block: Any, kind: str) -> bool:
-    """Whether a block of a report is of a kind."""
+    """Return whether a block of a report is of a kind."""
     return type(block).__name__ == kind
 
 

@@ -95,7 +95,7 @@ def schematic_text(
 
 
 def can_carry(encoding: str | None) -> bool:
-    """Whether an output of this encoding has all signs of the picture."""
+    """Return whether an output of this encoding has all signs of the picture."""
     return encodable(encoding, _SIGNS)
 
 

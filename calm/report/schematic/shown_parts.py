@@ -105,7 +105,7 @@ class Schematic:
 
 
 def schematic_of(file: MooringFile, result: Result | TowResult | None = None) -> Schematic:
-    """What the schematic of a line shows.
+    """Return what the schematic of a line shows.
 
     Parameters
     ----------
@@ -312,6 +312,6 @@ def _upright(file: MooringFile, lengths: tuple[float, ...]) -> tuple[float, ...]
 
 
 def _has_a_hull(file: MooringFile) -> bool:
-    """Whether the first piece is made to float at the surface."""
+    """Return whether the first piece is made to float at the surface."""
     top = file.pieces[0].component
     return isinstance(top, Rigid) and not (top.hull is None and top.wind_area is None)

@@ -66,7 +66,7 @@ def _sounding(figure: SymbolFigure, sign: Sign) -> SymbolFigure:
 
 
 def _row(figure: SymbolFigure, count: int) -> SymbolFigure:
-    """The same figure several times, one below the other."""
+    """Return the same figure several times, one below the other."""
 
     def draw(pen: Pen) -> None:
         for number in range(count):
@@ -313,6 +313,6 @@ def draw_leader(pen: Pen, start: float, end: float, y: float) -> None:
 
 
 def draw_clamp(pen: Pen, reach: float) -> None:
-    """What holds an instrument beside the line, which is at the origin."""
+    """Do what holds an instrument beside the line, which is at the origin."""
     for y in (-3.5, 3.5):
         pen.line(0.0, y, reach, y, stroke=INK, stroke_width=1.6)

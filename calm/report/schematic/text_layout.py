@@ -129,7 +129,7 @@ def layout_of(schematic: Schematic) -> SchematicLayout:
 
 
 def _headroom(schematic: Schematic) -> float:
-    """What stands between the headings and the sea surface."""
+    """Return what stands between the headings and the sea surface."""
     if schematic.towed_by is not None:
         return _SHIP if schematic.sea else _HELICOPTER
     return _MAST if schematic.surface else _SKY

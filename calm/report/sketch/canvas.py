@@ -114,7 +114,7 @@ class CellScale:
     dots: int
 
     def dot(self, value: float) -> float:
-        """Where a value is, counted in dots from the start of the range."""
+        """Return where a value is, counted in dots from the start of the range."""
         return (value - self.low) / (self.high - self.low) * (self.dots - 1)
 
 
@@ -141,7 +141,8 @@ class PlotFrame:
         down: tuple[float, float],
         beside: int = 0,
     ) -> PlotFrame:
-        """What of a canvas the scales leave, below and to the left, and what else stands around it.
+        """Return what of a canvas the scales leave, below and to the left, and what else stands
+        around it.
 
         Parameters
         ----------

@@ -164,7 +164,7 @@ def current_profile(water: Water, width: int, height: int) -> list[Text]:
 
 
 def _direction(u: float, v: float, room: int) -> str:
-    """Where it flows to: an arrow, and the degrees where there is room."""
+    """Return where it flows to: an arrow, and the degrees where there is room."""
     arrow = _ARROWS[round(np.degrees(np.arctan2(u, v)) / 45.0) % 8]
     return arrow if room == 2 else f"{bearing_text(bearing_of(u, v))}{arrow}"
 

@@ -101,7 +101,7 @@ class CataloguePane(Vertical):
 
     @property
     def listing(self) -> ComponentList:
-        """What was found."""
+        """Return what was found."""
         return self.query_one(ComponentList)
 
     @property

@@ -11,7 +11,7 @@ from textual import events
 from textual.message import Message
 from textual.strip import Strip
 
-from calm.tui.catalogue.index import COLUMNS, Index, ListColumn, Listed
+from calm.tui.catalogue.index import COLUMNS, CatalogueColumn, Index, Listed
 from calm.tui.scrolled import RowList
 from calm.tui.theme import CURSOR, FAVOURITE, ROLES
 
@@ -91,7 +91,7 @@ class ComponentList(RowList, can_focus=False):
         else:
             self.cursor = number
 
-    def _columns(self) -> tuple[int, list[ListColumn], int]:
+    def _columns(self) -> tuple[int, list[CatalogueColumn], int]:
         """Cells of the ids, the figures that have room beside them, cells left for the names."""
         width = self.scrollable_content_region.width
         id_width = max(min(self._longest, width - _LEAD), 0)

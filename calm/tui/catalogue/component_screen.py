@@ -133,7 +133,7 @@ class ComponentScreen(Screen[Defined | None]):
         return id, {"kind": self._kind} | {key: text for key, text in texts.items() if text}
 
     def _all(self) -> tuple[str, dict[str, Any]]:
-        """The same with what the form does not show."""
+        """Return the same with what the form does not show."""
         id, values = self._given()
         whole = {**self._begun, **values}
         return id, {key: value for key, value in whole.items() if value != ""}
@@ -253,7 +253,9 @@ def _one_of(words: tuple[str, ...]) -> Check:
 
 
 def id_check(own: Collection[str]) -> Check:
-    """Whether a text can be the id of a component; `own` are those that the file has already."""
+    """Return whether a text can be the id of a component; `own` are those that the file has
+    already.
+    """
 
     def check(text: str) -> Reading:
         tidy = text.strip()

@@ -82,7 +82,8 @@ class Index:
         first: Sequence[str] = (),
         by: str | None = None,
     ) -> list[Listed]:
-        """Those that have every word of a text and keep every limit in it, as ``breaking>50kN``.
+        """Return those that have every word of a text and keep every limit in it, as
+        ``breaking>50kN``.
 
         Hyphens part words as blanks do: makers, catalogues and people set them differently.
 
@@ -120,7 +121,7 @@ class Index:
 
 
 def _rank(each: Listed, words: Sequence[str]) -> int:
-    """How well a component fits: its id, the beginning of it, all words in it, elsewhere.
+    """Return how well a component fits: its id, the beginning of it, all words in it, elsewhere.
 
     Of ids that have all words, one that begins with the first of them is nearer.
     """
@@ -244,7 +245,7 @@ def _ids(kept: Iterable[object]) -> list[str]:
 
 
 @dataclass(frozen=True)
-class ListColumn:
+class CatalogueColumn:
     """A figure of components: its key, heading, dimension, and the unit it is shown in."""
 
     key: str
@@ -260,12 +261,12 @@ class ListColumn:
 
 
 COLUMNS = (
-    ListColumn("net", "net N", "force", "N"),
-    ListColumn("breaking", "break kN", "force", "kN", 1e-3, 1),
-    ListColumn("working", "work kN", "force", "kN", 1e-3, 1),
-    ListColumn("depth", "to m", "length", "m"),
-    ListColumn("drag", "drag N", "force", "N", 1.0, 1),
-    ListColumn("mass", "mass kg", "mass", "kg", 1.0, 1),
+    CatalogueColumn("net", "net N", "force", "N"),
+    CatalogueColumn("breaking", "break kN", "force", "kN", 1e-3, 1),
+    CatalogueColumn("working", "work kN", "force", "kN", 1e-3, 1),
+    CatalogueColumn("depth", "to m", "length", "m"),
+    CatalogueColumn("drag", "drag N", "force", "N", 1.0, 1),
+    CatalogueColumn("mass", "mass kg", "mass", "kg", 1.0, 1),
 )
 """Net force in water, + up; loads; depth rating; drag across the axis at 1 m/s; mass in air. Of a
 cable or chain per metre, but for its loads."""
@@ -322,7 +323,7 @@ class Wanted:
     limit: float
 
     def holds(self, figures: Figures) -> bool:
-        """Whether it is kept; not where the figure is unknown."""
+        """Return whether it is kept; not where the figure is unknown."""
         value = figures.get(self.key)
         return value is not None and _HOLDS[self.relation](value, self.limit)
 

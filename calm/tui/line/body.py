@@ -35,7 +35,7 @@ class LineBody(Horizontal):
 
     @property
     def is_typing(self) -> bool:
-        """Whether a value is typed in place that is not in the draft yet."""
+        """Return whether a value is typed in place that is not in the draft yet."""
         return self.line.editor.is_typing
 
     def settle(self) -> bool:
@@ -127,13 +127,13 @@ class LineBody(Horizontal):
         self.catalogue.open(purpose, target, used, clampable=is_on_line, towed=towed)
 
     def _used(self) -> list[str]:
-        """What the line uses, from the bottom."""
+        """Return what the line uses, from the bottom."""
         items = self.session.draft.items
         parts = [part for item in items for part in (item, *item.clamps)]
         return [part.values.get("use", "") for part in reversed(parts)]
 
     def _target(self, purpose: Purpose) -> str:
-        """What the row is called that the component is for."""
+        """Return what the row is called that the component is for."""
         spot = self.line.table.spot
         if spot is None:
             return ""

@@ -282,7 +282,7 @@ class BuilderScreen(DraftScreen):
         self._sheets.mooring()
 
     def action_document(self) -> None:
-        """What the title block of the drawings says, and what the revision changed."""
+        """Do what the title block of the drawings says, and what the revision changed."""
         self._sheets.document()
 
     def action_deployed(self) -> None:

@@ -57,7 +57,7 @@ class CellEditor(ScrolledEntry):
 
     @property
     def is_open(self) -> bool:
-        """Whether a value is being edited."""
+        """Return whether a value is being edited."""
         return self.has_class("-open")
 
     def open(
@@ -91,12 +91,14 @@ class CellEditor(ScrolledEntry):
 
     @property
     def is_typing(self) -> bool:
-        """Whether something else was typed than there was."""
+        """Return whether something else was typed than there was."""
         return self.is_open and self.value != self._before
 
     @property
     def text(self) -> str | None:
-        """What is to be written; None where nothing is: it stays, or what was typed is bad."""
+        """Return what is to be written; None where nothing is: it stays, or what was typed is
+        bad.
+        """
         reading = self._check(self.value)
         # a value that nobody touched has its unit added, and is not tidied
         is_completed = reading.text.startswith(f"{self.value.strip()} ")

@@ -12,7 +12,7 @@ from calm.tui.verdict_text import Saying, why
 _GRAVE = (State.FAIL, State.WARN, State.UNKNOWN)
 
 
-class Found:
+class RowFindings:
     """The findings of the rows of a table, as they are known now."""
 
     def __init__(self, workspace: Workspace, table: LineTable) -> None:

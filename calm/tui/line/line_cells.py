@@ -125,7 +125,7 @@ class LineCell:
 
     @property
     def refused(self) -> str:
-        """Why it cannot be edited; empty where it can."""
+        """Return why it cannot be edited; empty where it can."""
         if self.spot.is_clamp:
             return _NO_COUNT if self.column == "count" else ""
         index = self.workspace.index
@@ -144,7 +144,7 @@ class LineCell:
 
     @property
     def check(self) -> Check:
-        """What judges another text of it."""
+        """Return what judges another text of it."""
         if self.column == "count":
             return count
         if self.column != "length":

@@ -16,7 +16,7 @@ from calm.files import Place
 from calm.tui.actions import bindings
 from calm.tui.catalogue.catalogue_pane import Purpose
 from calm.tui.line.cell_editor import CellEditor
-from calm.tui.line.findings_on_rows import Found
+from calm.tui.line.findings_on_rows import RowFindings
 from calm.tui.line.line_cells import LineCells
 from calm.tui.line.mooring_sheet import equipment_changes, equipment_sheet, naming
 from calm.tui.line.rows import table_rows
@@ -52,7 +52,7 @@ class LinePane(Vertical):
         self.workspace, self.session = workspace, workspace.session
         self.table, self.editor = LineTable(id="line"), CellEditor(id="cell")
         self.cells = LineCells(workspace, self.table, self.editor, self._show_edited)
-        self.found = Found(workspace, self.table)
+        self.found = RowFindings(workspace, self.table)
         self.came_from_verdict = False
 
     def compose(self) -> ComposeResult:
@@ -251,7 +251,8 @@ class LinePane(Vertical):
             self.attempt(lambda: self.session.paste(self.table.spot, below=bool(below)))
 
     def _chosen_of_a_kind(self) -> tuple[Place, ...]:
-        """What is chosen; nothing, with a report, where clamps of other pieces are with pieces.
+        """Return what is chosen; nothing, with a report, where clamps of other pieces are with
+        pieces.
 
         They have no place of their own among pieces that are pasted or moved.
         """

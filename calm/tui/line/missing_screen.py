@@ -155,12 +155,12 @@ class Missing:
 
     @property
     def fields(self) -> list[FormField]:
-        """What would do and can be filled in, as the form of a component has it."""
+        """Return what would do and can be filled in, as the form of a component has it."""
         return [each for each in form_fields(self.kind) if self.targets.get(each.key)]
 
 
 def missing_figures(view: View, draft: Draft) -> list[Missing]:
-    """What the unknown findings of a line ask for, down the line."""
+    """Return what the unknown findings of a line ask for, down the line."""
     if view.file is None:
         return []
     wanted: dict[Place, dict[str, None]] = {}
@@ -185,7 +185,7 @@ def missing_figures(view: View, draft: Draft) -> list[Missing]:
 
 
 def _row(place: Place) -> Location:
-    """Where a row of the line stands in the file."""
+    """Return where a row of the line stands in the file."""
     if place.is_clamp:
         return (*clamps_of(place.item), place.clamp)
     return ("line", place.item)

@@ -88,7 +88,7 @@ def mooring_sheet(draft: Draft) -> InputSheet:
 
 
 def document_sheet(draft: Draft) -> InputSheet:
-    """What the title block of the drawings says, as the file has it."""
+    """Return what the title block of the drawings says, as the file has it."""
     revision = draft.text_at(_PLACES["revision"])
     change = said(draft, _HISTORY, ("revision", revision), "change")
     asked = [*filled(draft, _DOCUMENT), Asked("change", "What it changed", change)]
@@ -103,7 +103,7 @@ def tow_sheet(draft: Draft) -> InputSheet:
 def filled(
     draft: Draft, asked: tuple[Asked, ...], places: Mapping[str, Location] = _PLACES
 ) -> list[Asked]:
-    """What is asked, with the texts that the file has in the places of its keys."""
+    """Return what is asked, with the texts that the file has in the places of its keys."""
     return [replace(each, text=draft.text_at(places[each.key])) for each in asked]
 
 
@@ -158,7 +158,7 @@ _RELEASES: Location = ("releases",)
 
 
 @dataclass(frozen=True)
-class DeployedItem:
+class DeployedRow:
     """What hangs at a row, and is deployed once: its label and designed serial number."""
 
     label: str
@@ -167,8 +167,8 @@ class DeployedItem:
     is_release: bool
 
 
-def hung_at(file: MooringFile | None, spot: Place | None) -> DeployedItem | None:
-    """What hangs at a row of a line; None where that is several things, or not known."""
+def hung_at(file: MooringFile | None, spot: Place | None) -> DeployedRow | None:
+    """Return what hangs at a row of a line; None where that is several things, or not known."""
     if file is None or spot is None:
         return None
     found = [
@@ -181,7 +181,7 @@ def hung_at(file: MooringFile | None, spot: Place | None) -> DeployedItem | None
         return None
     [part] = found
     serial = part.equipment.serial
-    return DeployedItem(
+    return DeployedRow(
         part.label,
         serial if isinstance(serial, str) else "",
         isinstance(part, Piece) and isinstance(part.component, Flexible),
@@ -189,8 +189,10 @@ def hung_at(file: MooringFile | None, spot: Place | None) -> DeployedItem | None
     )
 
 
-def deployed_sheet(draft: Draft, hung: DeployedItem | None) -> InputSheet:
-    """When and where the mooring was deployed, and what hangs at a row, as the file has them."""
+def deployed_sheet(draft: Draft, hung: DeployedRow | None) -> InputSheet:
+    """Return when and where the mooring was deployed, and what hangs at a row, as the file has
+    them.
+    """
     asked = filled(draft, _WHOLE, _DEPLOYED_PLACES)
     if hung is None:
         return InputSheet("As deployed", _COMPARED, asked)
@@ -204,7 +206,7 @@ def deployed_sheet(draft: Draft, hung: DeployedItem | None) -> InputSheet:
     return InputSheet("As deployed", f"{_COMPARED} Below the depth: {hung.label}.", asked)
 
 
-def as_deployed(draft: Draft, hung: DeployedItem | None, texts: Mapping[str, str]) -> Draft:
+def as_deployed(draft: Draft, hung: DeployedRow | None, texts: Mapping[str, str]) -> Draft:
     """The file with what was entered."""
     draft = written(draft, {key: texts[key] for key in _DEPLOYED_PLACES}, _DEPLOYED_PLACES)
     if hung is None:
@@ -219,7 +221,7 @@ def as_deployed(draft: Draft, hung: DeployedItem | None, texts: Mapping[str, str
     return draft
 
 
-def _serial(draft: Draft, hung: DeployedItem) -> str:
+def _serial(draft: Draft, hung: DeployedRow) -> str:
     """Of the release as designed, else as deployed."""
     return hung.serial or said(draft, _ITEMS, ("label", hung.label), "serial")
 
@@ -250,7 +252,7 @@ def equipment_sheet(label: str, values: Mapping[str, Any], *, is_clamp: bool) ->
 def equipment_changes(
     values: Mapping[str, Any], texts: Mapping[str, str]
 ) -> dict[str, Value | None]:
-    """What of the texts differs from what the file says; None takes a key away."""
+    """Return what of the texts differs from what the file says; None takes a key away."""
     changed: dict[str, Value | None] = {}
     for key, new in texts.items():
         if new != _said(values, key):
@@ -272,7 +274,7 @@ def _serial_of_equipment(text: str) -> Reading:
 
 
 def said(draft: Draft, rows: Location, called: tuple[str, str], key: str) -> str:
-    """What an entry says under a key, where that is a plain text; else empty.
+    """Return what an entry says under a key, where that is a plain text; else empty.
 
     Parameters
     ----------
@@ -326,7 +328,7 @@ def beginning() -> Question:
 
 
 def history(session: Session) -> Question:
-    """How many steps to take back, the last ones listed; it answers with their number."""
+    """Return how many steps to take back, the last ones listed; it answers with their number."""
     steps = session.history.steps
     answers = [
         Answer(str(number), f"before: {label}", str(number))

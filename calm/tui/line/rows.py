@@ -54,7 +54,7 @@ def _wrong_items(draft: Draft, view: View | None) -> set[int]:
 
 
 def _figures(draft: Draft, view: View | None) -> dict[Place, Sequence[FoundRow]]:
-    """What was found for each row."""
+    """Return what was found for each row."""
     if view is None:
         return {}
     found: dict[Place, list[FoundRow]] = {}
@@ -76,7 +76,7 @@ def _figures(draft: Draft, view: View | None) -> dict[Place, Sequence[FoundRow]]
 
 
 def _called(items: Sequence[LineItem], place: Place) -> tuple[str, str, bool]:
-    """What the file says a row is: component, label, and whether it is clamped."""
+    """Return what the file says a row is: component, label, and whether it is clamped."""
     item = items[place.item]
     values = (item.clamps[place.clamp] if place.is_clamp else item).values
     use = values.get("use", "")

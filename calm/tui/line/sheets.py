@@ -37,7 +37,7 @@ class Sheets:
         self._ask(mooring_sheet(self._draft), "name and place", written)
 
     def document(self) -> None:
-        """What the title block of the drawings says, and what the revision changed."""
+        """Do what the title block of the drawings says, and what the revision changed."""
         self._ask(document_sheet(self._draft), "the document", documented)
 
     def deployed(self) -> None:

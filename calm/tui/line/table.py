@@ -98,7 +98,7 @@ class LineTable(RowList, can_focus=True):
 
     @property
     def spot(self) -> Place | None:
-        """Where the cursor is in the line."""
+        """Return where the cursor is in the line."""
         return self.row.spot if self.row else None
 
     @property
@@ -133,7 +133,7 @@ class LineTable(RowList, can_focus=True):
         self.refresh()
 
     def cell_region(self, column: str) -> Region:
-        """Where a cell of the row under the cursor is, within the widget."""
+        """Return where a cell of the row under the cursor is, within the widget."""
         start, width = self.arrangement.place(column)
         return Region(start, self.cursor + 1 - self.scroll_offset.y, width, 1)
 

@@ -66,22 +66,22 @@ class WaterForm:
         return (*self.place, *keys)
 
     def own(self, *keys: str) -> Any:
-        """What this environment says; None where nothing."""
+        """Return what this environment says; None where nothing."""
         return self.draft.value(self.at(*keys))
 
     def value(self, *keys: str) -> Any:
-        """What holds: its own word, or that of the file's own environment below it."""
+        """Return what holds: its own word, or that of the file's own environment below it."""
         if self.own(keys[0]) is not None:
             return self.own(*keys)
         return self.draft.value(("environment", *keys))
 
     def text(self, *keys: str) -> str:
-        """The same, where it is a plain value; empty elsewhere."""
+        """Return the same, where it is a plain value; empty elsewhere."""
         value = self.value(*keys)
         return value if isinstance(value, str) else ""
 
     def is_own(self, key: str) -> bool:
-        """Whether a key is this environment's own; those of the file always are."""
+        """Return whether a key is this environment's own; those of the file always are."""
         return self.variant is None or self.own(key) is not None
 
     @property
@@ -91,11 +91,11 @@ class WaterForm:
 
     @property
     def lacks_direction(self) -> bool:
-        """Whether there is a wind without a direction."""
+        """Return whether there is a wind without a direction."""
         return bool(self.text("wind", "speed")) and not self.text("wind", "toward")
 
     def form(self, *keys: str) -> str:
-        """How the current, the density, or the temperature or salinity of that is given."""
+        """Return how the current, the density, or the temperature or salinity of that is given."""
         value = self.value(*keys)
         if isinstance(value, dict) and {"columns", "rows"} & set(value):
             return "table"
@@ -149,7 +149,7 @@ class WaterForm:
         return draft.put_at(self.at(*keys), value)
 
     def begun(self, keys: Place, form: str) -> Value | None:
-        """What another form begins with: what is known, else something usual.
+        """Return what another form begins with: what is known, else something usual.
 
         None where nothing has to be said.
         """
@@ -274,10 +274,10 @@ class FormChoice(Cycle):
             self.action_turn(1)
 
     def on_blur(self) -> None:
-        """What was not taken is not there."""
+        """Do what was not taken is not there."""
         self.show(self._given)
 
     @property
     def hint(self) -> str:
-        """How the form that is shown is taken, where it is another one."""
+        """Return how the form that is shown is taken, where it is another one."""
         return _TAKE_IT if self.word != self._given else super().hint

@@ -70,7 +70,7 @@ class Grid(Vertical):
 
     @property
     def editor(self) -> CellEditor:
-        """What is edited."""
+        """Return what is edited."""
         return self.query_one(CellEditor)
 
     def show(
@@ -83,7 +83,7 @@ class Grid(Vertical):
 
     @property
     def is_typing(self) -> bool:
-        """Whether a value is typed that is not in the rows yet."""
+        """Return whether a value is typed that is not in the rows yet."""
         return self.editor.is_typing
 
     def settle(self) -> Reading:

@@ -88,7 +88,7 @@ class GridCells(RowList, can_focus=True):
         return self.rows[self.cursor][self.column] if self.rows else ""
 
     def cell_region(self) -> Region:
-        """Where it is, within the widget."""
+        """Return where it is, within the widget."""
         y = self.cursor + 1 - self.scroll_offset.y
         return Region(_LEAD + self.column * _WIDTH, y, _WIDTH - 2, 1)
 
@@ -153,16 +153,18 @@ class GridCells(RowList, can_focus=True):
 
     @property
     def is_at_the_end(self) -> bool:
-        """Whether the cursor is on the last value of its row."""
+        """Return whether the cursor is on the last value of its row."""
         return self.column == len(self.columns) - 1
 
     @property
     def has_room_below(self) -> bool:
-        """Whether a row below that of the cursor would not be of a depth below the seabed."""
+        """Return whether a row below that of the cursor would not be of a depth below the
+        seabed.
+        """
         return not self._ends_at_the_seabed(self.cursor + 1)
 
     def _ends_at_the_seabed(self, at: int) -> bool:
-        """Whether a row at a place would be of a depth below the seabed."""
+        """Return whether a row at a place would be of a depth below the seabed."""
         if self.seabed is None or not self.rows or at < len(self.rows):
             return False
         try:

@@ -177,7 +177,9 @@ def dimension_of(name: str) -> str:
 
 
 def check_of(column: str) -> Check:
-    """What judges the values of a column: numbers where it gives its unit, else quantities."""
+    """Return what judges the values of a column: numbers where it gives its unit, else
+    quantities.
+    """
     name, unit = heading(column)
     kind = _KINDS.get(name)
     if kind is None:

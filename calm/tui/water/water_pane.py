@@ -121,7 +121,7 @@ class WaterPane(Horizontal):
         return None if here in standing.environments or draft.problems else here
 
     def title(self) -> tuple[str, str]:
-        """What is shown, and the verdict."""
+        """Return what is shown, and the verdict."""
         state = state_word(self.workspace.view, old=not self.workspace.is_fresh)
         return f"The water of {self.workspace.called}", state
 
@@ -132,7 +132,7 @@ class WaterPane(Horizontal):
         self.query_one(ProfilePicture).show(view, old=self.workspace.is_old)
 
     def _show_notes(self, problems: Sequence[Problem]) -> None:
-        """What keeps the line from standing in the water that the form shows."""
+        """Do what keeps the line from standing in the water that the form shows."""
         file, path = self.environment_file, Path()
         if self.workspace.view is not None:
             path = self.workspace.view.path
@@ -172,7 +172,9 @@ class WaterPane(Horizontal):
             grid.show(*water.table(*place), seabed=water.depth)
 
     def _is_shown(self, place: Place, form: str = "") -> bool:
-        """Whether a part of the form is of use as the water is given, in this form of its own."""
+        """Return whether a part of the form is of use as the water is given, in this form of its
+        own.
+        """
         match place:
             case ("density", _) if self.water.form("density") != DENSITY_FORMS[2]:
                 return False
@@ -225,7 +227,7 @@ class WaterPane(Horizontal):
 
     @property
     def is_typing(self) -> bool:
-        """Whether something is typed that is not in the draft yet."""
+        """Return whether something is typed that is not in the draft yet."""
         return any(part.is_typing for part in (*self.query(Field), *self.query(Grid)))
 
     def settle(self) -> bool:
@@ -300,7 +302,7 @@ class WaterPane(Horizontal):
             self.call_after_refresh(self._first_of(place, event.form).focus)
 
     def _first_of(self, place: Place, form: str) -> Widget:
-        """Where the value of a form begins; below it, where it has none."""
+        """Return where the value of a form begins; below it, where it has none."""
         key = "-".join(place)
         if form == "table":
             return self.query_one(f"#{key}-table GridCells")
@@ -311,5 +313,5 @@ class WaterPane(Horizontal):
 
 
 def _place(part: Widget) -> Place:
-    """Where in an environment the value of a part of the form is written."""
+    """Return where in an environment the value of a part of the form is written."""
     return tuple((part.id or "").removesuffix("-form").removesuffix("-table").split("-"))

@@ -182,7 +182,7 @@ def test_a_disk_that_keeps_nothing_is_given_up(tmp_path, mooring, record, monkey
 def test_the_lock_is_held_until_the_last_thread_has_ended(tmp_path, mooring, record, monkeypatch):
     """Ctrl-C twice while a thread writes: nobody may begin before it is done."""
     output = tmp_path / "r.nc"
-    keep = work_module.Work._keep
+    keep = work_module.BatchWork._keep
     at_it, interrupted, alive = Event(), [], []
 
     def slowly(self, number, parts):
@@ -215,7 +215,7 @@ def test_the_lock_is_held_until_the_last_thread_has_ended(tmp_path, mooring, rec
         return Watched()
 
     with monkeypatch.context() as patched:
-        patched.setattr(work_module.Work, "_keep", slowly)
+        patched.setattr(work_module.BatchWork, "_keep", slowly)
         patched.setattr("calm.batch.threads.Thread.join", interrupt)
         patched.setattr(run_module, "locked", watched)
         outcome = run_batch(mooring, record, output, workers=1, block=8)

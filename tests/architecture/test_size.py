@@ -1,0 +1,63 @@
+"""What keeps the package as small as it is: who adds also deletes."""
+
+import ast
+import re
+from collections import Counter
+from pathlib import Path
+
+PACKAGE = Path(__file__).resolve().parents[2] / "calm"
+MOST_LINES = 78_500
+MOST_MODULES = 415
+MOST_IMPORTS = 0.108
+"""Share of the lines of code that import something."""
+
+
+def modules() -> list[Path]:
+    return sorted(PACKAGE.rglob("*.py"))
+
+
+def code_lines(text: str) -> set[int]:
+    """Lines that hold code: neither blank, nor comments, nor docstrings."""
+    tree = ast.parse(text)
+    lines = {
+        number
+        for number, line in enumerate(text.splitlines(), 1)
+        if line.strip() and not line.lstrip().startswith("#")
+    }
+    for node in ast.walk(tree):
+        text_alone = isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
+        if text_alone and isinstance(node.value.value, str):
+            lines -= set(range(node.lineno, (node.end_lineno or node.lineno) + 1))
+    return lines
+
+
+def import_lines(text: str) -> set[int]:
+    return {
+        line
+        for node in ast.walk(ast.parse(text))
+        if isinstance(node, ast.Import | ast.ImportFrom)
+        for line in range(node.lineno, (node.end_lineno or node.lineno) + 1)
+    }
+
+
+def test_lines() -> None:
+    assert sum(len(path.read_text("utf-8").splitlines()) for path in modules()) <= MOST_LINES
+
+
+def test_modules() -> None:
+    assert len(modules()) <= MOST_MODULES
+
+
+def test_imports_are_a_small_part_of_the_code() -> None:
+    texts = [path.read_text("utf-8") for path in modules()]
+    code = sum(len(code_lines(text)) for text in texts)
+    assert sum(len(import_lines(text)) for text in texts) <= MOST_IMPORTS * code
+
+
+def test_a_public_class_name_is_used_once() -> None:
+    names = Counter(
+        name
+        for path in modules()
+        for name in re.findall(r"^class ([A-Z]\w*)", path.read_text("utf-8"), re.MULTILINE)
+    )
+    assert [name for name, count in names.items() if count > 1] == []
