@@ -186,14 +186,10 @@ def statistics_tables(summary: Summary) -> Iterator[Table]:
         numbers = (Column(figure, numeric=True) for figure in figures)
         columns = (Column("component"), *numbers, Column("maximum reached", share=0.0))
         rows = tuple(
-            (
-                Cell(part.label, indented=part.clamped),
-                *_figures(name, getattr(part, name)),
-            )
+            (Cell(part.label, indented=part.clamped), *_figures(name, getattr(part, name)))
             for part in summary.parts
         )
-        quantity = QUANTITIES[name]
-        yield Table(quantity.label.capitalize(), columns, rows)
+        yield Table(QUANTITIES[name].label.capitalize(), columns, rows)
 
 
 def worst_tables(summary: Summary) -> Iterator[Table | Prose]:

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 from calm.deck.deck_items import Order
 from calm.drop import DropPlan
 from calm.quantities import QUANTITIES, say
-from calm.report.blocks import Block, Cell, Column, Pairs, Prose, ReportPart, Table
+from calm.report.blocks import Block, Cell, Column, Pairs, Prose, ReportPart, Table, table_of
 from calm.report.drop_sheet import whereabouts
 from calm.report.provenance import position_text, title_pairs
 
 if TYPE_CHECKING:
     from calm.deck import Deck
-    from calm.deck.deck_items import DeckItem
+    from calm.deck.deck_items import DeckItem, 
 
 _BOX = Cell("☐")
 _SOUNDINGS = 6
@@ -106,30 +106,27 @@ def _releases(deck: Deck) -> Table:
 
 
 def _over_the_side(deck: Deck) -> Table:
-    rows = []
-    for number, one in enumerate(deck.deployment, 1):
-        length = "" if one.cut_length is None or one.is_rigid else f"{one.cut_length:.2f}"
-        rows.append(
-            (
-                Cell(str(number)),
-                Cell(one.label, one.name, indented=one.on is not None),
-                Cell(placed(one, deck) or length),
-                Cell(one.serial or ""),
-                Cell(),
-                Cell(),
-                _BOX,
-            )
-        )
-    columns = (
-        Column("no.", numeric=True),
-        Column("piece", share=1.6),
-        Column("length cut, or place on its wire", "m"),
-        Column("serial number", share=0.7),
-        Column("time over", "UTC", share=0.7),
-        Column("remarks"),
-        Column("checked", share=0.0),
+    def length(one: DeckItem) -> str:
+        return "" if one.cut_length is None or one.is_rigid else f"{one.cut_length:.2f}"
+
+    return table_of(
+        "Order over the side",
+        list(enumerate(deck.deployment, 1)),
+        (Column("no.", numeric=True), lambda one: str(one[0])),
+        (
+            Column("piece", share=1.6),
+            lambda one: Cell(one[1].label, one[1].name, indented=one[1].on is not None),
+        ),
+        (
+            Column("length cut, or place on its wire", "m"),
+            lambda one: placed(one[1], deck) or length(one[1]),
+        ),
+        (Column("serial number", share=0.7), lambda one: one[1].serial or ""),
+        (Column("time over", "UTC", share=0.7), lambda one: ""),
+        (Column("remarks"), lambda one: ""),
+        (Column("checked", share=0.0), lambda one: _BOX),
+        by_hand=True,
     )
-    return Table("Order over the side", columns, tuple(rows), by_hand=True)
 
 
 def _positions(deck: Deck) -> Table:
@@ -158,67 +155,59 @@ def _positions(deck: Deck) -> Table:
 
 
 def _soundings() -> Table:
-    columns = (
-        Column("sounding", share=0.0),
-        Column("time", "UTC"),
-        Column("position", share=2.0),
-        Column("depth as read", "m"),
-        Column("correction", "m"),
-        Column("depth", "m"),
+    return table_of(
+        "Soundings",
+        range(1, _SOUNDINGS + 1),
+        (Column("sounding", share=0.0), str),
+        (Column("time", "UTC"), lambda one: ""),
+        (Column("position", share=2.0), lambda one: ""),
+        (Column("depth as read", "m"), lambda one: ""),
+        (Column("correction", "m"), lambda one: ""),
+        (Column("depth", "m"), lambda one: ""),
+        by_hand=True,
     )
-    rows = tuple(
-        (Cell(str(number)), *[Cell()] * (len(columns) - 1)) for number in range(1, _SOUNDINGS + 1)
-    )
-    return Table("Soundings", columns, rows, by_hand=True)
 
 
 def _events(events: tuple[str, ...]) -> Table:
-    columns = (
-        Column("event"),
-        Column("time", "UTC", share=0.7),
-        Column("position"),
-        Column("remarks", share=1.5),
+    return table_of(
+        "At the release",
+        events,
+        (Column("event"), str),
+        (Column("time", "UTC", share=0.7), lambda one: ""),
+        (Column("position"), lambda one: ""),
+        (Column("remarks", share=1.5), lambda one: ""),
+        by_hand=True,
     )
-    rows = tuple((Cell(one), *[Cell()] * 3) for one in events)
-    return Table("At the release", columns, rows, by_hand=True)
 
 
 def _surfacing(deck: Deck) -> Table:
-    rows = []
-    for number, one in enumerate(deck.recovery, 1):
-        item = one.item
-        if one.time is not None:
-            expected = f"{one.time / 60.0:.1f} min"
-        elif one.hangs_at is not None:
-            expected = f"hangs at {say('depth', one.hangs_at)}"
-        else:
-            expected = ""
-        rows.append(
-            (
-                Cell(str(number)),
-                Cell(item.label, item.name, indented=item.on is not None),
-                Cell(item.deployed_serial or ""),
-                Cell(expected, "by itself" if one.by_itself else ""),
-                Cell(),
-                Cell(),
-                *[_BOX] * 3,
-                Cell(item.remark or ""),
-            )
-        )
-    columns = (
-        Column("no.", numeric=True),
-        Column("piece", share=1.7),
-        Column("serial number", share=0.8),
-        Column("expected after\nthe release", share=1.3),
-        Column("seen", "UTC", share=0.6),
-        Column("on deck", "UTC", share=0.6),
-        Column("whole", share=0.0),
-        Column("fouled", share=0.0),
-        Column("runs", share=0.0),
-        Column("remarks", share=1.2),
+    return table_of(
+        "Order of surfacing",
+        list(enumerate(deck.recovery, 1)),
+        (Column("no.", numeric=True), lambda one: str(one[0])),
+        (
+            Column("piece", share=1.7),
+            lambda one: Cell(
+                one[1].item.label, one[1].item.name, indented=one[1].item.on is not None
+            ),
+        ),
+        (Column("serial number", share=0.8), lambda one: one[1].item.deployed_serial or ""),
+        (Column("expected after\nthe release", share=1.3), lambda one: _expected(one[1])),
+        (Column("seen", "UTC", share=0.6), lambda one: ""),
+        (Column("on deck", "UTC", share=0.6), lambda one: ""),
+        (Column("whole", share=0.0), lambda one: _BOX),
+        (Column("fouled", share=0.0), lambda one: _BOX),
+        (Column("runs", share=0.0), lambda one: _BOX),
+        (Column("remarks", share=1.2), lambda one: one[1].item.remark or ""),
+        note="By itself: what is buoyant enough; the rest comes with it, or hangs below when all "
+        "is up. The order is that of surfacing, not of hauling.",
+        by_hand=True,
     )
-    note = (
-        "By itself: what is buoyant enough; the rest comes with it, or hangs below when all is up. "
-        "The order is that of surfacing, not of hauling."
-    )
-    return Table("Order of surfacing", columns, tuple(rows), note, by_hand=True)
+
+
+def _expected(one: ) -> Cell:
+    if one.time is not None:
+        text = f"{one.time / 60.0:.1f} min"
+    else:
+        text = "" if one.hangs_at is None else f"hangs at {say('depth', one.hangs_at)}"
+    return Cell(text, "by itself" if one.by_itself else "")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from calm.checks.finding import State
 from calm.files.uncertainty import Spread
-from calm.report.blocks import Block, Cell, Column, Line, Prose, ReportPart, Span, Table
+from calm.report.blocks import Block, Cell, Column, Line, Prose, ReportPart, Span, Table, table_of
 
 if TYPE_CHECKING:
     from calm.case.uncertain import Uncertain
@@ -90,20 +90,16 @@ def _pieces(uncertain: Uncertain) -> Table:
 
 
 def _contributions(uncertain: Uncertain) -> Table:
-    quantity = uncertain.contributions[0].quantity
-    heads = (
-        Column(f"the spread of the {quantity} comes from"),
-        Column("alone", "%", numeric=True),
-        Column("in all", "%", numeric=True),
+    quantity, unexplained = uncertain.contributions[0].quantity, uncertain.unexplained
+    note = f"{unexplained:.0%} of it no index explains: the line answers unevenly."
+    return table_of(
+        "",
+        uncertain.contributions,
+        (Column(f"the spread of the {quantity} comes from"), lambda one: _words(one.cause)),
+        (Column("alone", "%", numeric=True), lambda one: _share(one.first)),
+        (Column("in all", "%", numeric=True), lambda one: _share(one.total)),
+        note=note if unexplained > 0.05 else "",
     )
-    rows = tuple(
-        (Cell(_words(each.cause)), Cell(_share(each.first)), Cell(_share(each.total)))
-        for each in uncertain.contributions
-    )
-    note = ""
-    if uncertain.unexplained > 0.05:
-        note = f"{uncertain.unexplained:.0%} of it no index explains: the line answers unevenly."
-    return Table("", heads, rows, note=note)
 
 
 def _share(share: float) -> str:
