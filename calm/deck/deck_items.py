@@ -187,7 +187,7 @@ class Order(StrEnum):
 
 
 @dataclass(frozen=True)
-class RecoveryOrder:
+class RecoveredItem:
     """A piece or clamp as it comes up.
 
     Attributes
@@ -215,7 +215,7 @@ def over_the_side(parts: Sequence[DeckItem], order: Order) -> tuple[DeckItem, ..
     return tuple(each for piece, *clamps in reversed(groups) for each in (piece, *reversed(clamps)))
 
 
-def surfacing(parts: Sequence[DeckItem], recovery: Recovery | None) -> tuple[RecoveryOrder, ...]:
+def surfacing(parts: Sequence[DeckItem], recovery: Recovery | None) -> tuple[RecoveredItem, ...]:
     """Return what comes up, the first first; what hangs below, and what stays, comes after it in
     order.
 
@@ -224,17 +224,17 @@ def surfacing(parts: Sequence[DeckItem], recovery: Recovery | None) -> tuple[Rec
     released = parts[-1].index - 1 if recovery is None else recovery.released
     rising = [one for one in parts if one.index <= released]
     if recovery is None:
-        return tuple(RecoveryOrder(one, None, None, False) for one in rising)
+        return tuple(RecoveredItem(one, None, None, False) for one in rising)
     found = [_surfacing(one, recovery) for one in rising]
     times = [inf if one.time is None else one.time for one in found]
     # stable: what comes up with a piece stays after it
     return tuple(found[i] for i in sorted(range(len(found)), key=times.__getitem__))
 
 
-def _surfacing(one: DeckItem, recovery: Recovery) -> RecoveryOrder:
+def _surfacing(one: DeckItem, recovery: Recovery) -> RecoveredItem:
     time = float(recovery.arrival[one.index])
     hangs_at = float(recovery.hangs_at[one.index])
-    return RecoveryOrder(
+    return RecoveredItem(
         one,
         None if isnan(time) else time,
         None if isnan(hangs_at) else hangs_at,

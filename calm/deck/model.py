@@ -15,7 +15,7 @@ from calm.deck.deck_items import (
     DeckInstrument,
     DeckItem,
     Order,
-    RecoveryOrder,
+    RecoveredItem,
     deck_items_of,
     instruments_of,
     over_the_side,
@@ -60,7 +60,7 @@ class Deck:
     order: Order
     parts: tuple[DeckItem, ...]
     deployment: tuple[DeckItem, ...]
-    recovery: tuple[RecoveryOrder, ...]
+    recovery: tuple[RecoveredItem, ...]
     rise: Recovery | None
     cuts: tuple[Cut, ...]
     hardware: tuple[Stock, ...]

@@ -13,7 +13,7 @@ from calm.report.provenance import position_text, title_pairs
 
 if TYPE_CHECKING:
     from calm.deck import Deck
-    from calm.deck.deck_items import DeckItem, 
+    from calm.deck.deck_items import DeckItem, RecoveredItem
 
 _BOX = Cell("☐")
 _SOUNDINGS = 6
@@ -205,7 +205,7 @@ def _surfacing(deck: Deck) -> Table:
     )
 
 
-def _expected(one: ) -> Cell:
+def _expected(one: RecoveredItem) -> Cell:
     if one.time is not None:
         text = f"{one.time / 60.0:.1f} min"
     else:
