@@ -86,7 +86,14 @@ def _take_room(handle: int, size: int) -> None:
 
 
 def chunk_shape(layout: ResultLayout, variable: Variable, block: int) -> tuple[int, ...]:
-    """Return the shape of the chunks of a variable that goes with time; the last is whole, too."""
+    """Return the shape of the chunks of a variable that goes with time; the last is whole, too.
+
+    Parameters
+    ----------
+    layout : of the result
+    variable : one of its variables
+    block : profiles in a chunk, at most
+    """
     length = min(block, layout.sizes["time"])
     return length, *(layout.sizes[name] for name in variable.dimensions[1:])
 

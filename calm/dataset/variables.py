@@ -123,7 +123,14 @@ def numbers(
 
 
 def labels(name: str, dimension: str, texts: Iterable[str], meaning: str) -> Variable:
-    """A variable of names along a dimension."""
+    """Return a variable of names along a dimension.
+
+    Parameters
+    ----------
+    name, dimension : of the variable
+    texts : the names
+    meaning : what they name
+    """
     values = np.array(list(texts), dtype=np.str_)
     return Variable(name, (dimension,), values.dtype.str, {"long_name": meaning}, values)
 

@@ -28,7 +28,7 @@ LEAST_TOLERANCE = 0.02
 
 @dataclass(frozen=True)
 class Mark:
-    """Where a clamp goes: metres from the upper end, measured as the cable is."""
+    """Tell where a clamp goes: metres from the upper end, measured as the cable is."""
 
     label: str
     at: float
@@ -64,7 +64,14 @@ class Cut:
 
 
 def cuts_of(result: Result, parts: Sequence[DeckItem], order: Order) -> tuple[Cut, ...]:
-    """All that is cut and marked, down the line."""
+    """Return all that is cut and marked, down the line.
+
+    Parameters
+    ----------
+    result : in the environment of the sheets
+    parts : every piece and clamp, down the line
+    order : in which the line goes over the side
+    """
     cables = [one for one in parts if _is_cut(one)]
     count = len(cables)
     expect_many(count * max(1.0, len(result.components) / ORDINARY))

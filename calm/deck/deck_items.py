@@ -86,7 +86,7 @@ def deck_items_of(result: Result) -> tuple[DeckItem, ...]:
 
 
 def depth_of(row: ComponentRow | ClampRow) -> float:
-    """Of the upper end of a piece, or of the place of a clamp [m]."""
+    """Return the depth of the upper end of a piece, or of the place of a clamp [m]."""
     return row.depth if isinstance(row, ClampRow) else row.depth_top
 
 
@@ -180,7 +180,7 @@ def _rows(result: Result) -> dict[Place, ComponentRow | ClampRow]:
 
 
 class Order(StrEnum):
-    """Which end goes over the side last."""
+    """Tell which end goes over the side last."""
 
     ANCHOR_LAST = "anchor-last"
     ANCHOR_FIRST = "anchor-first"

@@ -38,7 +38,7 @@ _SMALL = frozenset({"shackles", "pins", "cotter pins", "thimbles"})
 
 @dataclass(frozen=True)
 class Stock:
-    """So many of one thing.
+    """Count one kind of thing that is brought along.
 
     Attributes
     ----------
@@ -142,7 +142,7 @@ def _is_bolted(component: Component) -> bool:
 
 
 def _against_corrosion(parts: Sequence[DeckItem]) -> Iterator[Stock]:
-    """By what there is of unlike metals: `calm check` warns of the same contacts."""
+    """Yield isolators and anodes for the contacts of which `calm check` warns."""
     pieces = [one.part for one in parts if isinstance(one.part, Piece)]
     contacts = [(base, noble) for base, noble, _ in unlike_metals(pieces)]
     names = Counter(tuple(sorted((base.use, noble.use))) for base, noble in contacts)

@@ -73,7 +73,7 @@ class Deck:
 
     @property
     def file(self) -> MooringFile:
-        """As read, in the environment of the sheets."""
+        """Return the file as read, in the environment of the sheets."""
         return self.result.file
 
 

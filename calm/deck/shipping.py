@@ -81,7 +81,7 @@ def volume_of(component: Component, length: float | None) -> float | None:
 
 
 def _components(file: MooringFile) -> dict[tuple[int, str], Component]:
-    """By index of the piece and label."""
+    """Return the components by index of the piece and label."""
     found: dict[tuple[int, str], Component] = {}
     for piece in file.pieces:
         found[piece.index, piece.label] = piece.component
@@ -167,7 +167,7 @@ def lifts_of(inventory: Sequence[InventoryItem], released: int, order: Order) ->
 
 
 def _weights(inventory: Sequence[InventoryItem]) -> dict[int, float | None]:
-    """In water, of each piece with its clamps."""
+    """Return the weight in water of each piece with its clamps [N]."""
     weights: dict[int, float | None] = {}
     for one in inventory:
         before, own = weights.get(one.index, 0.0), one.wet_weight

@@ -180,7 +180,7 @@ def limits_table(summary: Summary) -> Table:
 
 
 def statistics_tables(summary: Summary) -> Iterator[Table]:
-    """Of each quantity the mean, the percentiles and the maximum of every part."""
+    """Yield for each quantity the mean, the percentiles and the maximum of every part."""
     for name in ("knockdown", "tilt", "tension"):
         figures = ("mean", *(f"{percentile:g} %" for percentile in PERCENTILES), "maximum")
         numbers = (Column(figure, numeric=True) for figure in figures)

@@ -76,7 +76,7 @@ class Table:
 
 @dataclass(frozen=True)
 class Pairs:
-    """Of each of several things a name and a value, which may have several lines."""
+    """Hold a name and a value of each of several things; a value may have several lines."""
 
     pairs: tuple[tuple[str, str], ...]
 
@@ -150,7 +150,7 @@ class Signatures:
 
 @dataclass(frozen=True)
 class PageBreak:
-    """What follows begins a page, where there are pages."""
+    """Begin a page with what follows, where there are pages."""
 
 
 Block = Table | Pairs | Figure | Prose | Note | Heading | Listing | Signatures | PageBreak

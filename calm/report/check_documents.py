@@ -81,7 +81,7 @@ def limit_document(key: LimitKey) -> dict[str, Any]:
 
 
 def _finding(assessment: Assessment, finding: Finding) -> dict[str, Any]:
-    """With its probability, null where it has no limit, if those were counted."""
+    """Return a finding, with its probability if those were counted: null without a limit."""
     counted = {"probability": finding.probability} if assessment.draws else {}
     return finding.to_dict() | counted
 

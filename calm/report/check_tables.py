@@ -302,7 +302,7 @@ def _percent(probability: float) -> str:
 
 
 def _likeliest(findings: Sequence[Finding]) -> list[Finding]:
-    """Of each rule the finding of the greatest probability, the greatest first."""
+    """Return the finding of each rule with the greatest probability, the greatest first."""
     found: dict[str, Finding] = {}
     for one in findings:
         if one.probability is not None:

@@ -62,7 +62,12 @@ def motion_report(
     name: str,
     notes: Sequence[str],
 ) -> Report:
-    """Factors, agreement, what to doubt, depths, scatter and residuals."""
+    """Return the report: factors, agreement, what to doubt, depths, scatter and residuals.
+
+    Parameters
+    ----------
+    study, series, time, factor, name, notes : as in `motion_files`
+    """
     shown = sorted(series, key=lambda one: not one.hidden)[:MOST_PANELS]
     shown = [one for one in series if any(one is each for each in shown)]
     doubts = Prose(study.remarks, State.WARN) if study.remarks else Prose((_NOTHING,))

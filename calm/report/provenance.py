@@ -221,7 +221,14 @@ def position_text(position: Position) -> str:
 
 
 def degrees_text(degrees: float, sides: str, digits: int) -> str:
-    """Degrees, of so many digits at least, and minutes to a thousandth; `sides` are + and -."""
+    """Return an angle in whole degrees and in minutes to a thousandth.
+
+    Parameters
+    ----------
+    degrees : of latitude or longitude
+    sides : letters of a positive and of a negative angle
+    digits : of the whole degrees, at least
+    """
     whole, minutes = divmod(round(abs(degrees) * 60_000), 60_000)
     return f"{whole:0{digits}d}° {minutes / 1000:06.3f}′ {sides[degrees < 0.0]}"
 

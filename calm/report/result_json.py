@@ -67,7 +67,7 @@ def _encoder(between: str) -> Callable[[Any], str]:
 
 
 def _finite(value: Any) -> Any:
-    """None in place of a number that is not finite."""
+    """Return None in place of a number that is not finite."""
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 

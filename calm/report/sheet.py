@@ -261,7 +261,14 @@ def quantity_column(name: str) -> Column:
 
 
 def figure_cell(name: str, value: float | None, mark: FigureMark = FigureMark.NONE) -> Cell:
-    """A value of a quantity under its `quantity_column`."""
+    """Return a value of a quantity as it stands under its `quantity_column`.
+
+    Parameters
+    ----------
+    name : of the quantity
+    value : SI, degrees; None where it is not known
+    mark : sign after the figure
+    """
     return Cell(QUANTITIES[name].format(value), state=mark.state, mark=mark)
 
 

@@ -95,7 +95,14 @@ class Tabulation:
 def by_speed(
     tow: Tow, speeds: Sequence[float], outcomes: Sequence[TowResult | NoEquilibrium]
 ) -> Tabulation:
-    """A row for each speed [m/s]."""
+    """Return a row for each speed.
+
+    Parameters
+    ----------
+    tow : as its file has it
+    speeds : over the ground [m/s]
+    outcomes : what came out at each speed
+    """
     speed = QUANTITIES["speed"]
     return Tabulation(
         name=tow.file.name,

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @xr.register_dataset_accessor("calm")  # type: ignore[no-untyped-call]
 class BatchAccessor:
-    """What a batch result gives for a part of the line, by its label in the mooring file.
+    """Give what a batch result has for a part of the line, by its label in the mooring file.
 
     ``top`` is the first component, even where another part is labelled so. Nothing is loaded
     before it is asked for.
