@@ -276,7 +276,7 @@ def test_a_result_of_somebody_else_in_the_meantime_is_taken(tmp_path, mooring, r
         return locked(folder, tell)
 
     monkeypatch.setattr(run_module, "locked", later)
-    monkeypatch.setattr(run_module, "Work", None)
+    monkeypatch.setattr(run_module, "BatchWork", None)
     with pytest.raises(TypeError):
         run_batch(mooring, record, tmp_path / "other.nc", block=8)
     monkeypatch.undo()
