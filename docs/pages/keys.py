@@ -28,7 +28,7 @@ _SECTIONS = {
     "TowEnvironmentKeys": "`environment:` of a tow",
     "UniformCurrent": "`current:`, the same at all depths",
     "CurrentFile": "`current:`, from a file",
-    "Table": "`current:` or `density:`, a table",
+    "TableKeys": "`current:` or `density:`, a table",
     "SeaWaterKeys": "`density:`, by temperature and salinity",
     "Wind": "`wind:`",
     "Fouling": "`fouling:`",
