@@ -177,7 +177,7 @@ def samples_below(search: Search, unknown: Unknown, count: int) -> int:
 
 
 def dip(search: Search, unknown: Unknown, before: Sample, here: Sample, after: Sample) -> Sample:
-    """A sample beside the middle one and of the other sign, where the miss dips there back and forth.
+    """Find a sample beside the middle one and of the other sign, in a dip of the miss.
 
     By golden section; the middle sample where it does not.
     """
