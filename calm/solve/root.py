@@ -43,7 +43,7 @@ def bracketed_root(
             return a, fa, slope
         root, value = (a, fa) if abs(fa) < abs(fb) else (b, fb)
         middle = a + 0.5 * (b - a)
-        if abs(value) <= small or middle == a or middle == b:
+        if abs(value) <= small or middle in (a, b):
             return root, value, slope
         if width <= narrow:
             return a, fa, slope
