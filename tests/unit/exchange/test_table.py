@@ -8,7 +8,7 @@ import pytest
 from calm.case import load
 from calm.errors import InputError
 from calm.exchange.importing import ImportOptions, import_file
-from calm.exchange.list_headings import number
+from calm.exchange.list_cells import number
 
 SITE = """\
 environment:
