@@ -19,7 +19,7 @@ from calm.exchange.design import (
 )
 from calm.exchange.element_library import Library, complete_rows, is_library, key_of, read_library
 from calm.exchange.list_cells import SheetRows, number, read_sheets
-from calm.exchange.list_headings import WORDS, ListHeadings, check_given, headings_of
+from calm.exchange.list_headings import ListHeadings, check_given, headings_of
 from calm.exchange.list_rows import (
     ListRow,
     component_of,
@@ -93,13 +93,12 @@ def read_list(path: Path, columns: Mapping[str, str], elements: Path | None = No
 
 
 def _unit_remarks(headings: ListHeadings) -> list[Remark]:
-    """Return what is taken for the unit of columns whose headings give none."""
-    usual = {"buoyancy": "kg", "weight": "kg", "mass": "kg", "stiffness": "N", "breaking_load": "N"}
-    none = (*WORDS, "cd", "count", "material", "area", "drag_area", "tangential_area")
+    """Return what is taken for the unit of forces whose headings give none."""
+    usual = {"buoyancy": "kg", "weight": "kg", "stiffness": "N", "breaking_load": "N"}
     return [
-        Remark(f"column {column.heading}", f"gives no unit: read as {usual.get(what, 'm')}")
+        Remark(f"column {column.heading}", f"gives no unit: read as {usual[what]}")
         for what, column in headings.columns.items()
-        if what not in none and not column.known
+        if what in usual and not column.known
     ]
 
 
@@ -213,7 +212,11 @@ def _items(rows: list[ListRow], problems: list[str]) -> list[ImportedPiece]:
         at = row.figures.get("at")
         if at is None:
             length = row.figures.get("length") if component.kind in FLEXIBLE_KINDS else None
-            items += [ImportedPiece(component, length, label=row.label) for _ in range(row.count)]
+            guess = "" if length is None else row.guesses.get("length", "")
+            items += [
+                ImportedPiece(component, length, label=row.label, guess=guess)
+                for _ in range(row.count)
+            ]
         elif items:
-            items[-1].clamps.append(ImportedClamp(component, at))
+            items[-1].clamps.append(ImportedClamp(component, at, row.guesses.get("at", "")))
     return items
