@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -106,6 +107,7 @@ def _lay_mooring(
     design.items.append(ImportedPiece(anchor_of(last)))
     depth = design.water.depth if design.water is not None else None
     if depth is None or _STRETCHED * sum(item.extent for item in design.items) >= depth:
+        design.items[0] = _item(replace(elements[0], mass=None))
         rides_by_buoyancy(design.items[0].component)
 
 

@@ -130,7 +130,8 @@ class SearchArrays(NamedTuple):
     chosen, halved : the segments as the march chose them, and halved [m]
     counts : how many of them each cable has, in rows CHOSEN and HALVED
     records : of shapes, COARSE to OTHER
-    shares : share in use of every float at the surface, and the slope of its miss
+    shares : share in use of every float at the surface, the slope of its miss, and the shares of
+        the shapes in the records KEPT and OTHER
     samples : unknowns and misses
     even : intervals of an even current
     elements : (3, n) numbers for every element of a shape
@@ -320,7 +321,7 @@ def work_for(course: Course, intervals: int, room: int, compiled: bool) -> Searc
             halved=zeros(2 * room),
             counts=zeros((2, cables), np.int64),
             records=zeros((OTHER + 1, COLUMNS, nodes)),
-            shares=zeros((2, MOST_AFLOAT + 1)),
+            shares=zeros((OTHER + 1, MOST_AFLOAT + 1)),
             samples=zeros((2, MOST_SAMPLES)),
             even=zeros(intervals, record_type(Interval)),
             elements=zeros((3, nodes)),
@@ -336,7 +337,7 @@ def work_for(course: Course, intervals: int, room: int, compiled: bool) -> Searc
         halved=[0.0] * (2 * room),
         counts=[[0] * cables for _ in range(2)],
         records=[rows(COLUMNS, nodes) for _ in range(OTHER + 1)],
-        shares=rows(2, MOST_AFLOAT + 1),
+        shares=rows(OTHER + 1, MOST_AFLOAT + 1),
         samples=rows(2, MOST_SAMPLES),
         even=[Interval(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)] * intervals,
         elements=rows(3, nodes),

@@ -19,8 +19,8 @@ def bracketed_root(
 ) -> tuple[float, float, float]:
     """Root of a continuous function between a and b, where its signs differ.
 
-    Brent's method: inverse quadratic or secant steps where they keep to the bracket and at least
-    halve the step before last, bisection elsewhere.
+    Chandrupatla's method: inverse quadratic steps where three values lie on a curve that these can
+    follow, else bisection; the first step is a secant.
 
     Parameters
     ----------
@@ -31,60 +31,35 @@ def bracketed_root(
 
     Returns
     -------
-    root, value there, and the slope of the secant across the last bracket.
+    root, value there, and the slope of the secant across the last bracket. That is where the
+    function was last had, but where another is good enough.
+
+    Source: Chandrupatla, Advances in Engineering Software 28 (1997), 145-149.
     """
-    c, fc = a, fa
-    step = earlier = b - a
+    share = fa / (fa - fb) if fa != fb else 0.5
     while True:
-        if (fb > 0.0) == (fc > 0.0):
+        width, slope = abs(b - a), (fb - fa) / (b - a) if b != a else 0.0
+        if isnan(fa):
+            return a, fa, slope
+        root, value = (a, fa) if abs(fa) < abs(fb) else (b, fb)
+        middle = a + 0.5 * (b - a)
+        if abs(value) <= small or middle in (a, b):
+            return root, value, slope
+        if width <= narrow:
+            return a, fa, slope
+        least = 0.25 * narrow / width
+        x = a + min(max(share, least), 1.0 - least) * (b - a)
+        value = function(about, x)
+        if (value > 0.0) == (fa > 0.0):
             c, fc = a, fa
-            step = earlier = b - a
-        if abs(fc) < abs(fb):
-            a, b, c = b, c, b
-            fa, fb, fc = fb, fc, fb
-        half = 0.5 * (c - b)
-        if (
-            isnan(fb)
-            or abs(fb) <= small
-            or abs(half) <= 0.5 * narrow
-            or b + half == b
-            or b + half == c
-        ):
-            return b, fb, (fc - fb) / (c - b) if c != b else 0.0
-        if abs(fa) <= abs(fb):
-            step = earlier = half
         else:
-            earlier, step = step, _interpolated_step(a, fa, b, fb, c, fc, half, earlier)
-            if step == half:
-                earlier = half
-        a, fa = b, fb
-        least = 0.25 * narrow
-        b += step if abs(step) > least else (least if half > 0.0 else -least)
-        fb = function(about, b)
-
-
-def _interpolated_step(
-    a: float,
-    fa: float,
-    b: float,
-    fb: float,
-    c: float,
-    fc: float,
-    half: float,
-    earlier: float,
-) -> float:
-    """Step from b by inverse interpolation, or half way to c where that is not to be trusted."""
-    s = fb / fa
-    if a == c:
-        p, q = 2.0 * half * s, 1.0 - s
-    else:
-        q, r = fa / fc, fb / fc
-        p = s * (2.0 * half * q * (q - r) - (b - a) * (r - 1.0))
-        q = (q - 1.0) * (r - 1.0) * (s - 1.0)
-    if p > 0.0:
-        q = -q
-    p = abs(p)
-    return p / q if 2.0 * p < min(3.0 * half * q, abs(earlier * q)) else half
+            c, fc, b, fb = b, fb, a, fa
+        a, fa = x, value
+        share = 0.5
+        place, height = (a - b) / (c - b), (fa - fb) / (fc - fb)
+        if height * height < place and (1.0 - height) * (1.0 - height) < 1.0 - place:
+            share = fa / (fb - fa) * fc / (fb - fc)
+            share += (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
 
 
 def root_near(

@@ -23,7 +23,7 @@ from calm.physics.referee import (
     worst_moment,
 )
 from calm.physics.track import Load
-from calm.solve.closing import Closed, Root, not_closed, planned, whole_line
+from calm.solve.closing import Closed, Root, not_closed, place, planned, whole_line
 from calm.solve.endings import (
     ABOVE_SURFACE,
     BELOW_SEABED,
@@ -169,7 +169,7 @@ def highest(search: Search, referee: Referee, lands: bool) -> FoundShape:
     other = shape_near(search, referee, located.deeper, lands)
     depth = -problem.work.records[FINE][2][0]
     keep(problem, FINE, OTHER, found)
-    load_again(search, found)
+    load_again(problem, found)
     if other.ending != FOUND:
         return found
     fall = depth + problem.work.records[FINE][2][0]
@@ -187,19 +187,23 @@ def is_surely_highest(found: FoundShape) -> bool:
 
 
 def keep(problem: LineProblem, to: int, of: int, found: FoundShape) -> None:
-    """Copy a shape from one record to another."""
+    """Copy a shape from one record to another, and the shares in use of the floats above it."""
     source, kept = problem.work.records[of], problem.work.records[to]
+    shares = problem.work.shares
+    for k in range(found.refined.closed.root.unknown.sought):
+        if of == FINE:
+            shares[to][k] = shares[0][k]
+        else:
+            shares[0][k] = shares[of][k]
     for column in range(len(source)):
         for n in range(found.refined.closed.nodes):
             kept[column][n] = source[column][n]
 
 
-def load_again(search: Search, found: FoundShape) -> None:
+def load_again(problem: LineProblem, found: FoundShape) -> None:
     """Load what is at the surface as it is in a shape."""
     root = found.refined.closed.root
-    limits = search.problem.limits
-    about = About(search.problem, root.unknown, limits.coarse_step, CHOSEN, False, NOT_RECORDED)
-    search.miss(about, root.x)
+    place(problem, root.unknown, root.x)
 
 
 def shape_near(search: Search, referee: Referee, root: Root, lands: bool) -> FoundShape:
@@ -224,14 +228,14 @@ def shape_near(search: Search, referee: Referee, root: Root, lands: bool) -> Fou
         return landed
     keep(problem, KEPT, FINE, landed)
     depth = -problem.work.records[FINE][2][0]
-    hanging = audited(problem, referee, refine(search, clear, False))
+    hanging = audited(problem, referee, refine(search, clear, True))
     if hanging.ending == MARCH_STOPPED:
         return hanging
     if hanging.ending == FOUND and closed.grounded <= BARELY_LANDED * limits.anchor_height:
         return beside(hanging, depth, closed.grounded)
     other = -problem.work.records[FINE][2][0]
     keep(problem, FINE, KEPT, landed)
-    load_again(search, landed)
+    load_again(problem, landed)
     if hanging.ending != FOUND:
         return landed
     return beside(landed, other, 0.0)
