@@ -47,6 +47,7 @@ DIMENSIONS: Mapping[str, Dimension] = {
             "in": _INCH,
             "ft": _FOOT,
             "yd": 3 * _FOOT,
+            "fathom": 6 * _FOOT,
             "nmi": 1852.0,
         },
     ),

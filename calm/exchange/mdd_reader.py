@@ -211,7 +211,7 @@ def read_water(
     ----------
     variables : of the file
     towed : whether it is a tow
-    guessed : to which what is guessed about the times is added
+    guessed : to which what is guessed about times and density is added
 
     Raises
     ------
@@ -231,11 +231,13 @@ def read_water(
     u, v, w = (
         _filled(each, name, levels.size, times) for each, name in zip(profiles, "UVW", strict=True)
     )
-    density = _numbers(variables, "rho").ravel()
-    if density.size == levels.size:
-        density = np.asarray(density)
-    elif density.size:
-        raise ValueError(f"`rho` has {density.size} values for {levels.size} of `z`")
+    densities = _profiles(variables, "rho", levels.size)
+    density = np.zeros(0) if densities is None else densities[:, 0]
+    if densities is not None and densities.shape[1] > 1:
+        if not np.all(np.isfinite(density)):
+            raise ValueError("`rho` has gaps in its first profile")
+        what = f"the first of {densities.shape[1]} profiles; a mooring has one density"
+        guessed.append(Remark("environment.density", what))
     depth = np.sort(levels) if towed else seabed - levels
     order = np.arange(levels.size) if towed else np.argsort(depth, kind="stable")
     depth = depth if towed else depth[order]
