@@ -45,7 +45,7 @@ OF_A_PART = 0.01
 """Miss of a part of a line, which is light and slack, as a share of that of the whole."""
 NEARLY_LINEAR = 5e-3
 """Miss, as a share of the span, below which a secant through a far larger one finds the root."""
-ABOUT = 5e-3
+ABOUT = 2e-3
 """Miss, as a share of the span, at which one of many is near enough to its root to be closed."""
 COARSEST_BRACKET = 1e-7
 NARROWEST_BRACKET = 1e-15

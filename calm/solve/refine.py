@@ -37,7 +37,8 @@ DEPTH_TARGET = 4e-5
 TENSION_TARGET = 1.6e-4
 """Error estimates, relative to the span and to the tension, above which the step is taken
 smaller, at an angle step of 1°; they follow its square."""
-AS_FOUND = 0.25
+AS_FOUND, EXTRAPOLATED = 0.25, 0.35
+"""Shares of these that one of many may have: as found, and where it is extrapolated."""
 MOST_ROUNDS = 6
 MOST_SEGMENTS = 20_000
 AT_A_LEVEL = 0.05
@@ -109,13 +110,14 @@ def refine(search: Search, root: Root, hangs: bool) -> Refined:
 def excess_of(problem: LineProblem, errors: Errors, landed: bool) -> float:
     """Return how many times the errors of a shape are what is aimed at.
 
-    That is less for one of many that has landed: it is not extrapolated.
+    That is less for one of many, the places of which are extrapolated where it has not landed.
     """
     target = degrees(problem.limits.angle_step)
     target *= target
-    if problem.limits.near > 0.0 and landed:
-        target *= AS_FOUND
     place, tension = DEPTH_TARGET * target, TENSION_TARGET * target
+    if problem.limits.near > 0.0:
+        place *= AS_FOUND if landed else 1.0
+        tension *= AS_FOUND if landed else EXTRAPOLATED
     return max(errors.depth / (place * problem.limits.span), errors.relative / tension)
 
 
@@ -168,7 +170,9 @@ def closed_between(search: Search, root: Root) -> tuple[Closed, Closed]:
     none = not_closed(NO_SHAPE_NEAR, 0.0, root)
     if limits.near == 0.0 or unknown.sought > 0 or unknown.lands:
         return none, none
-    high = limits.span if unknown.sought == BELOW else 1.0
+    high, near, halved = limits.span, 0.5, 1.0
+    if unknown.sought != BELOW:  # a slack line swings far by little of its buoyancy
+        high, near, halved = 1.0, 0.05, 0.3
     before, last, x = work.left[LAST], root.miss, root.x
     for _ in range(MOST_ROUNDS):
         if not 0.0 < x < high or x == before:
@@ -178,7 +182,7 @@ def closed_between(search: Search, root: Root) -> tuple[Closed, Closed]:
         slope = (miss - last) / (x - before)
         if not slope < 0.0:
             return none, none
-        if abs(miss) <= 0.5 * abs(last) and abs(miss * last) <= LINEAR * limits.span * limits.span:
+        if abs(miss) <= near * abs(last) and abs(miss * last) <= LINEAR * limits.span * limits.span:
             break
         for n in range(nodes):
             for column in range(6):
@@ -186,7 +190,7 @@ def closed_between(search: Search, root: Root) -> tuple[Closed, Closed]:
         before, last, x = x, miss, x - miss / slope
     closing = -miss / slope
     off = search.miss(About(problem, unknown, limits.angle_step, HALVED, True, FINE), x)
-    if not abs(off) <= min(abs(miss - last), FAR * limits.span):
+    if not abs(off) <= min(halved * abs(miss - last), FAR * limits.span):
         return none, none
     change = x - before
     coarse_root = Root(True, unknown, x + closing, 0.0, slope)
