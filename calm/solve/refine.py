@@ -37,8 +37,8 @@ DEPTH_TARGET = 4e-5
 TENSION_TARGET = 1.6e-4
 """Error estimates, relative to the span and to the tension, above which the step is taken
 smaller, at an angle step of 1°; they follow its square."""
-AS_FOUND, EXTRAPOLATED = 0.25, 0.35
-"""Shares of these that one of many may have: as found, and where it is extrapolated."""
+AS_FOUND = 0.25
+"""Share of these that the tensions of one of many may have, and its places where it lies."""
 MOST_ROUNDS = 6
 MOST_SEGMENTS = 20_000
 AT_A_LEVEL = 0.05
@@ -117,7 +117,7 @@ def excess_of(problem: LineProblem, errors: Errors, landed: bool) -> float:
     place, tension = DEPTH_TARGET * target, TENSION_TARGET * target
     if problem.limits.near > 0.0:
         place *= AS_FOUND if landed else 1.0
-        tension *= AS_FOUND if landed else EXTRAPOLATED
+        tension *= AS_FOUND
     return max(errors.depth / (place * problem.limits.span), errors.relative / tension)
 
 
