@@ -47,7 +47,7 @@ def read_apart(
     try:
         if not here.poll(MOST_SECONDS):
             raise ValueError(f"its reader takes longer than {MOST_SECONDS:g} s")
-        found, wrong = here.recv()
+        answer: tuple[_Found, str] = here.recv()
     except EOFError:
         child.join()
         raise ValueError(f"its reader ended with {child.exitcode}") from None
@@ -55,9 +55,10 @@ def read_apart(
         child.kill()
         child.join()
         here.close()
+    found, wrong = answer
     if wrong:
         raise ValueError(wrong)
-    return found  # type: ignore[no-any-return]
+    return found
 
 
 def _read(
