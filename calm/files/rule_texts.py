@@ -56,7 +56,7 @@ RULES = {
     "strength": RuleText(
         "Strength",
         "tension",
-        "greatest tension of every piece",
+        "greatest tension of every piece; of the top one and the anchor where they give a load",
         "the lesser of its working load and its breaking load over `safety_factor`: 3 steel, "
         "5 synthetic, 5 anything in a surface mooring",
         "The lesser of working load and breaking load over a factor: UFC 4-159-03 table 3-7 (3, "

@@ -103,7 +103,7 @@ def test_page_one_says_what_is_accepted_and_why():
     assert "? nothing fails, 1 figure unknown" in text
     accepted = text.index("Accepted with a reason")
     assert text.index("? nothing fails") < accepted < text.index("Moorings by environment")
-    reason = "no maker prints it; proof-loaded to 10 kN before each cruise"
+    reason = "its load in line is printed nowhere; proof-loaded to 20 kN before each cruise"
     assert accepted < text.index(reason) < text.index("Moorings by environment")
     assert "Unknown, piece by piece" in text
 
