@@ -71,11 +71,11 @@ def locate(
         A mooring file: write position and depth into its `deployed:`, and say how far that is from
         its planned position.
     """
+    from calm.drawing.picture import check_format, image
     from calm.locate import locate as found_at
     from calm.locate import read_ranges
     from calm.report.folder import check_destination, write_file
     from calm.report.located_anchor import located_figure, located_part
-    from calm.report.picture import check_format, image
 
     outputs = Outputs((file,), json)
     outputs.check()
