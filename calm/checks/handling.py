@@ -19,7 +19,7 @@ from calm.checks.finding import (
     verdict_on,
 )
 from calm.checks.recovery import Recovery
-from calm.checks.strength import lesser_load
+from calm.checks.strength import lesser_load, passes_load_on
 from calm.drop.launch import Launch
 from calm.errors import NoEquilibrium
 from calm.files import LinePart
@@ -107,8 +107,11 @@ def launch_strength(handling: Handling) -> Iterator[Verdict]:
         return
     most = "" if launch.anchor_drag_known else "at most "
     greatest = launch.greatest_tension.tolist()
-    for piece, tension in zip(handling.mooring.file.pieces, greatest, strict=False):
+    pieces = handling.mooring.file.pieces
+    for piece, tension in zip(pieces, greatest, strict=False):
         limit = lesser_load(piece.component, *factors)
+        if limit is None and not passes_load_on(pieces, piece.index):
+            continue
         bears = f"{piece.label} bears {most}{say('tension', tension)} in the fall"
         if limit is None:
             yield unknown(

@@ -49,7 +49,8 @@ def missing_figures(definitions: Mapping[str, Component | Assembly]) -> list[Mis
 def _missing(component: Component) -> Iterator[str]:
     if mass_in_air(component) is None:
         yield "mass"
-    if all(getattr(component, load) is None for load in LOADS):
+    borne = not isinstance(component, Anchor)
+    if borne and all(getattr(component, load) is None for load in LOADS):
         yield from LOADS
     if component.role in JUDGED_ROLES and component.depth_rating is None:
         yield "depth_rating"

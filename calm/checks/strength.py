@@ -40,6 +40,14 @@ def lesser_load(component: Component, working_factor: float, factor: float) -> f
     return min(known, default=None)
 
 
+def passes_load_on(pieces: Sequence[object], index: int) -> bool:
+    """Return whether the tension of the line goes through a piece.
+
+    The top one and the anchor are pulled at one end only: the shackle there bears what they do.
+    """
+    return 0 < index < len(pieces) - 1
+
+
 def safety_factor(component: Component, factors: SafetyFactors, surface: bool) -> float:
     """The safety factor asked on the breaking load of a component."""
     factor: float = getattr(factors, safety_factor_name(component, surface))
@@ -55,7 +63,9 @@ def safety_factor_name(component: Component, surface: bool) -> str:
 
 @criteria("strength")
 def strength(mooring: Mooring) -> Iterator[Criterion]:
-    """The greatest tension in every piece against working load, and breaking load / factor.
+    """Judge the greatest tension in every piece by working load, and breaking load / factor.
+
+    The top piece and the anchor are judged where they give a load: nothing pulls through them.
 
     UFC 4-159-03 table 3-7 asks for 3 on new breaking strength of chain and wire; oceanographic
     practice for 3 to 5, synthetics and surface moorings at the upper end.
@@ -65,6 +75,8 @@ def strength(mooring: Mooring) -> Iterator[Criterion]:
     for part in pieces_of(mooring):
         component = part.component
         limit = allowable_load(component, factors, surface)
+        if limit is None and not passes_load_on(mooring.file.pieces, part.index):
+            continue
         name = safety_factor_name(component, surface)
         of_factor = limit is not None and limit != component.working_load
         source = cite(f"safety_factor.{name}") if of_factor else ""

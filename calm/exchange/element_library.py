@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from calm.exchange.design import refused
-from calm.exchange.list_headings import SheetRows, headings_of, read_sheets
+from calm.exchange.list_cells import SheetRows, read_sheets
+from calm.exchange.list_headings import headings_of
 from calm.exchange.list_rows import ListRow, rows_of, weights_as_buoyancy
 from calm.exchange.mat_file import MatValue, is_mat, names, numbers, read_variables
 from calm.exchange.part_names import is_line
@@ -157,7 +158,9 @@ def _of_sheets(path: Path) -> Iterable[LibraryElement]:
         headings = headings_of(cells, {})
         if headings is None:
             continue
-        rows = rows_of(cells, headings, [], [])
+        if headings.problems:
+            raise refused(path, *headings.problems)
+        rows = rows_of(cells, headings, [], [], [])
         weights_as_buoyancy(rows, [])
         for row in rows:
             found = True

@@ -18,7 +18,7 @@ from calm.exchange.import_completion import (
     match_catalogue_entries,
     secure_anchor,
 )
-from calm.exchange.list_headings import is_table
+from calm.exchange.list_cells import is_table
 from calm.exchange.list_reader import read_list
 from calm.exchange.mat_file import is_mat
 from calm.exchange.mdd_reader import read_mdd

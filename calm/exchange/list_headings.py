@@ -1,8 +1,7 @@
-"""Read the cells of a list, and tell what its columns hold by headings in English or French."""
+"""Tell what the columns of a list hold, by headings in English, French, German or Spanish."""
 
 from __future__ import annotations
 
-import io
 import re
 import unicodedata
 from collections.abc import Mapping
@@ -10,10 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from calm.exchange.design import refused
-from calm.records.delimited import cells_in
+from calm.exchange.list_cells import SheetRows, number, unit_called, unit_of_heading
 from calm.suggestions import unknown
 from calm.units import KILOGRAM_FORCE
-from calm.whole_file import read_content
 
 COLUMNS = (
     "name", "label", "kind", "role", "length", "diameter", "width", "mass", "buoyancy", "weight",
@@ -25,55 +23,56 @@ COLUMNS = (
 WORDS = ("name", "label", "kind", "role")
 """Columns that hold words."""
 
+_WEIGHT = r"(weight|poids|gewicht|\bpeso|mass(e|a)?\b|\bmasa\b)"
+_WET = r"(water|\bwet|\beau\b|immerg|submer|immersed|\bsea|\bmer\b|wasser|nass|agua|sumergid|mojad)"
+_AIR = r"(\bair\b|luft|trocken|\baire\b|\bsec[oa]?\b|\bdry\b)"
 _PATTERNS: tuple[tuple[str, str], ...] = (
     ("count", r"^(qty|quantity|count|number|no\.? of|nb|nombre|qte|quantite)\b"),
-    ("at", r"clamped at|along|position sur|distance"),
+    ("count", r"^(anzahl|menge|stuck(zahl)?|stk|cant(idad)?)\b"),
+    ("at", r"clamped at|along|position sur|distance|geklemmt|abstand|distancia"),
     ("tangential_area", r"tangential cd x area"),
     ("drag_area", r"drag area|\bcd ?[x*.]? ?a(rea)?\b|\bcda\b"),
-    ("area", r"area|surface|maitre.?couple"),
-    ("cd", r"^(cd|cx|c_?d|cn)\b|drag|trainee"),
-    ("breaking_load", r"break|rupture|\bmbl\b|strength|resistance"),
-    ("stiffness", r"^ea\b|stiff|raideur"),
-    ("buoyancy", r"buoy|flott|lift|portance|poussee"),
-    ("weight", r"(weight|poids|masse?).*(water|wet|eau|immerg|submer|sea|mer)"),
-    ("weight", r"(wet|submerged|immersed).*(weight|mass)"),
-    ("mass", r"(weight|poids).*\bair\b|\bmasse?\b|\bdry\b"),
-    ("weight", r"^(weight|poids)\b"),
-    ("mass", r"^(weight|poids)\b"),
-    ("diameter", r"diam|ø"),
-    ("width", r"width|largeur"),
-    ("height", r"(height|hauteur|altitude).*(bottom|btm|fond|seabed|above)|bottom_height"),
-    ("height", r"^altitude|^height$|^hauteur$"),
-    ("length", r"^(length|longueur|long|len|l)\b|length|longueur"),
-    ("material", r"^(material|materiau)\b"),
-    ("role", r"^(role|fonction|function)\b"),
-    ("kind", r"^(kind|type|category|categorie|famille|family)\b"),
-    ("label", r"^(label|etiquette|serial|s/?n|repere)\b"),
-    ("name", r"name|^nom\b|item|element|description|designation|component|composant|materiel"),
-    ("name", r"equip|instrument|piece|part"),
-)  # fmt: skip
+    ("area", r"area|surface|maitre.?couple|flache|superficie"),
+    ("cd", r"^(cd|cx|cw|c_?d|cn)\b|drag|trainee|widerstand|arrastre"),
+    ("breaking_load", r"break|rupture|\bmbl\b|strength|resistance|bruch|rotura"),
+    ("stiffness", r"^ea\b|stiff|raideur|steifigkeit|rigidez"),
+    ("buoyancy", r"buoy|flott|lift|portance|poussee|auftrieb|flotabilidad|empuje"),
+    ("weight", f"{_WEIGHT}.*{_WET}|{_WET}.*{_WEIGHT}"),
+    ("mass", rf"{_WEIGHT}.*{_AIR}|{_AIR}.*{_WEIGHT}|\bmass(e|a)?\b|\bmasa\b|\bdry\b"),
+    ("weight", r"^(weight|poids|gewicht|peso)\b"),
+    ("mass", r"^(weight|poids|gewicht|peso)\b"),
+    ("diameter", r"diam|ø|durchmesser|^dia\b"),
+    ("width", r"width|largeur|breite|\banch(o|ura)\b"),
+    (
+        "height",
+        r"(height|hauteur|altitude|hohe|altura).*(bottom|btm|fond|seabed|above|grund|boden)",
+    ),
+    ("height", r"bottom_height|^altitude|^(height|hauteur|hohe|altura)\b"),
+    ("length", r"^(length|longueur|lange|laenge|longitud|largo|long|len|l)\b"),
+    ("length", r"length|longueur|lange\b|laenge|longitud"),
+    ("material", r"^(material|materiau|werkstoff)\b"),
+    ("role", r"^(role|fonction|function|funktion|funcion)\b"),
+    ("kind", r"^(kind|type?|art|tipo|categor(y|ie|ia)|kategorie|famille|family)\b"),
+    ("label", r"\b(label|etiquette|etiqueta|serial|s/?n|repere)\b|seriennummer|serie\b"),
+)
+_NAMES = (
+    r"name|^nom\b|element|description|designation|component|composant|materiel|bezeichnung"
+    r"|benennung|beschreibung|descripcion|komponente|bauteil",
+    r"^(item|article|artikel|teil)\b|equip|instrument|piece|pieza|part|gerat",
+)
+_NUMBERED = re.compile(
+    r"\b(no|nr|n°|number|num|nummer|numero|serial|s/?n|id|code|pos)\b|seriennummer"
+)
+_SPANISH = re.compile(r"\b(longitud|largo|peso|diametro|cantidad|empuje|flotabilidad)\b")
+_LINES = r"(length|lange|laenge|longueur|longitud|rope|wire|line|cable|chain|seil|leine|kette|cabo)"
+_BESIDE = re.compile(
+    rf"\b{_LINES}\w*\b.*\b(below|above|beneath|under|between|to next|unterhalb|darunter|oberhalb"
+    r"|daruber|zwischen|dessous|dessus|entre|debajo|encima)\b"
+)  # a line beside another piece, which is not the length of that
 _ALONG = re.compile(r"tangent|axial")  # a drag along the piece, which has a column of its own
-_UNITS = {
-    "m": 1.0, "mm": 1e-3, "cm": 1e-2, "in": 0.0254, "inch": 0.0254, "inches": 0.0254, "ft": 0.3048,
-    "kg": 1.0, "kgf": KILOGRAM_FORCE, "g": 1e-3, "lb": 0.45359237, "lbs": 0.45359237,
-    "lbf": 0.45359237 * KILOGRAM_FORCE, "n": 1.0, "kn": 1e3, "dan": 10.0, "t": 1e3, "m2": 1.0,
-    "m^2": 1.0, "m²": 1.0, "cm2": 1e-4, "cm²": 1e-4, "pouces": 0.0254,
-}  # fmt: skip
-_MASSES = {"kg", "g", "lb", "lbs", "t"}
-_FORCES = {"buoyancy", "weight", "stiffness", "breaking_load"}
+_RUNNING = re.compile(r"cumul|kumul|acumul|running")
 _SEARCHED = 60  # rows in which the headings stand
 _MEASURES = {"length", "buoyancy", "weight", "mass"}
-_SPREADSHEETS = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1")  # xlsx, xls
-_UTF_16 = (b"\xff\xfe", b"\xfe\xff")
-_LARGEST = 20_000_000
-_MOST_ROWS, _MOST_COLUMNS = 20_000, 500
-SheetRows = list[list[str]]
-"""Cells as text, up to the last that is not empty."""
-
-_NUMBER = re.compile(r"[-+−]?\s*(?:\d{1,3}(?:[ \u00a0]\d{3})+|\d+)?(?:[.,]\d+)?(?:[eE][-+]?\d+)?")
-_NOTHING = {
-    "", "-", "–", "—", "/", "*", "**", "n/a", "na", "nan", "none", "?", "nil", "x", "sans", "null",
-}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -81,7 +80,8 @@ class ListColumn:
     """Describe a column: where it stands, its heading, and what its numbers are multiplied by.
 
     `by_mass`: forces are counted in kilograms; `per_metre`: figures of lines are those of a metre;
-    `known`: the heading gives a unit; `whole`: it says that its figures are those of a whole piece.
+    `known`: the heading gives a unit; `whole`: it says that its figures are those of a whole piece;
+    `wrong`: what is wrong with it.
     """
 
     index: int
@@ -91,15 +91,36 @@ class ListColumn:
     per_metre: bool = False
     known: bool = False
     whole: bool = False
+    wrong: str = ""
 
 
 @dataclass(frozen=True)
 class ListHeadings:
-    """Hold the row of the headings, the columns that are understood, and the other headings."""
+    """Hold the row of the headings, the columns that are understood, and the other headings.
+
+    `problems` says what in the headings is not understood and cannot be left out.
+    """
 
     row: int
     columns: dict[str, ListColumn]
     others: tuple[str, ...]
+
+    @property
+    def problems(self) -> list[str]:
+        """Units that are none, and lines that stand beside other pieces, each with its place."""
+        beside = "has lines beside other pieces; a line needs a row of its own"
+        return [
+            *(
+                f"row {self.row + 1}, column {column.index + 1}, `{column.heading}`: {column.wrong}"
+                for column in self.columns.values()
+                if column.wrong
+            ),
+            *(
+                f"row {self.row + 1}, `{heading}`: {beside}"
+                for heading in self.others
+                if _BESIDE.search(_plain(heading)) and not re.search("height|hohe", _plain(heading))
+            ),
+        ]
 
 
 def headings_of(rows: SheetRows, given: Mapping[str, str]) -> ListHeadings | None:
@@ -112,7 +133,7 @@ def headings_of(rows: SheetRows, given: Mapping[str, str]) -> ListHeadings | Non
     best: tuple[int, int, ListHeadings] | None = None
     for i in range(min(len(rows), _SEARCHED)):
         cells = _with_units(rows, i)
-        found = _columns(cells, given)
+        found = _columns(cells, given, rows[i + 1 : i + 31])
         if "name" not in found and len(found) >= 2:
             index = _unnamed(rows, i, found)
             if index is not None:
@@ -156,9 +177,12 @@ def check_given(sheets: Mapping[str, SheetRows], given: Mapping[str, str], path:
             raise refused(path, f"--columns: no column is called `{heading}` ({what})")
 
 
-def _columns(row: list[str], given: Mapping[str, str]) -> dict[str, ListColumn]:
+def _columns(row: list[str], given: Mapping[str, str], below: SheetRows) -> dict[str, ListColumn]:
+    """Return the columns of a row of headings; names are where words stand below."""
     found: dict[str, ListColumn] = {}
     plain = [_plain(cell) for cell in row]
+    if any(_SPANISH.search(cell) for cell in plain):
+        plain = [re.sub(r"^nombre\b", "name", cell) for cell in plain]  # of French, a count
     taken: set[int] = set()
     for what, heading in given.items():
         wanted = _plain(heading)
@@ -171,20 +195,45 @@ def _columns(row: list[str], given: Mapping[str, str]) -> dict[str, ListColumn]:
     for what, pattern in _PATTERNS:
         for i, cell in enumerate(plain):
             along = what != "tangential_area" and _ALONG.search(cell)
-            if what in found or i in taken or not cell or along:
+            other = _BESIDE.search(cell) or _RUNNING.search(cell) if what == "length" else None
+            if what in found or i in taken or not cell or along or other:
                 continue
-            if re.search(pattern, cell):
+            if re.search(pattern, cell) and (what != "count" or not _worded(below, i)):
                 taken.add(i)
                 found[what] = _column(what, i, row[i])
+    for pattern in _NAMES:
+        for i, cell in enumerate(plain):
+            if "name" in found or i in taken or _NUMBERED.search(cell):
+                continue
+            if re.search(pattern, cell) and _worded(below, i):
+                found["name"] = ListColumn(i, row[i])
+    if "name" not in found and "kind" in found and _worded(below, found["kind"].index):
+        found["name"] = found["kind"]
     _resolve(found)
     return found
 
 
+def _worded(below: SheetRows, index: int) -> bool:
+    """Return whether most cells of a column hold words."""
+    cells = [row[index] for row in below if index < len(row) and row[index]]
+    return 2 * sum(bool(re.search(r"[^\W\d]{2}", cell)) for cell in cells) > len(cells)
+
+
 def _resolve(found: dict[str, ListColumn]) -> None:
     """Take a height for a missing length, and a weight beside a buoyancy as that in air."""
-    if "length" not in found and "height" in found and _plain(found["height"].heading) == "height":
+    if (
+        "length" not in found
+        and "height" in found
+        and "above" not in _plain(found["height"].heading)
+        and re.match(
+            r"(height|hauteur|hohe|altura)\b(?!.*(bottom|btm|fond|grund))",
+            _plain_of(found, "height"),
+        )
+    ):
         found["length"] = found.pop("height")
-    plain_weight = re.match(r"(weight|poids)\b(?!.*(water|wet|eau))", _plain_of(found, "weight"))
+    plain_weight = re.match(
+        rf"(weight|poids|gewicht|peso)\b(?!.*{_WET})", _plain_of(found, "weight")
+    )
     if plain_weight and "buoyancy" in found and "mass" not in found:
         found["mass"] = _column("mass", found["weight"].index, found.pop("weight").heading)
 
@@ -194,21 +243,33 @@ def _plain_of(found: dict[str, ListColumn], what: str) -> str:
 
 
 def _with_units(rows: SheetRows, i: int) -> list[str]:
-    """Return a row of headings, with the units that stand below them."""
+    """Return a row of headings, with the units that stand below them.
+
+    A row without numbers is one of units where half of its cells are; the others are refused then.
+    """
     row = rows[i]
     below = rows[i + 1] if i + 1 < len(rows) else []
-    units = [cell for cell in below if cell]
-    if not units or not all(_is_unit(cell) for cell in units):
+    cells = [cell for cell in below if cell]
+    units = sum(_is_unit(cell) for cell in cells)
+    if not units or 2 * units < len(cells) or any(number(cell).value is not None for cell in cells):
         return row
     below = below + [""] * (len(row) - len(below))
-    return [f"{cell} {unit}".strip() for cell, unit in zip(row, below, strict=False)]
+    return [
+        cell if not unit or not cell else f"{cell} {unit if '(' in unit else f'({unit})'}"
+        for cell, unit in zip(row, below, strict=False)
+    ]
 
 
 def _is_unit(cell: str) -> bool:
     """Return whether a cell below a heading goes with it: `(kg)`, `m`, `off btm (m)`."""
-    inside = re.search(r"\(([^()]*)\)\s*$", cell)
-    words = _plain(inside[1] if inside else cell, keep="²^/").split("/")[0].split()
-    return bool(words) and words[0] in _UNITS
+    inside = re.search(r"[(\[]([^()\[\]]*)[)\]]\s*$", cell)
+    for what in ("length", "weight", "area"):
+        try:
+            if unit_called(inside[1] if inside else cell, what):
+                return True
+        except ValueError:
+            continue
+    return False
 
 
 def _unnamed(rows: SheetRows, i: int, found: dict[str, ListColumn]) -> int | None:
@@ -227,20 +288,23 @@ def _unnamed(rows: SheetRows, i: int, found: dict[str, ListColumn]) -> int | Non
 def _column(what: str, index: int, heading: str) -> ListColumn:
     if what in WORDS:
         return ListColumn(index, heading)
-    words = re.findall(r"[a-z]+(?:\^?2|²)?", _plain(heading, keep="²^/"))
-    unit = next((word for word in reversed(words) if word in _UNITS and word != what), None)
-    per_metre = bool(re.search(r"/ ?m\b|per m|par m|lineique", _plain(heading, keep="/")))
-    if per_metre and unit == "m":
-        unit = next((word for word in words if word in _UNITS and word not in ("m", what)), None)
-    by_mass = unit in _MASSES if unit else what in ("buoyancy", "weight")
+    try:
+        unit, wrong = unit_of_heading(heading, what), ""
+    except ValueError as error:
+        unit, wrong = None, str(error)
+    plain = _plain(heading, keep="/")
+    per_metre = what not in ("length", "diameter", "width", "at", "height") and bool(
+        re.search(r"/ ?m\b|\b(per|par|pro|je|por) (m\b|met)|lineique|metergewicht", plain)
+    )
     return ListColumn(
         index=index,
         heading=heading,
-        factor=_UNITS[unit] if unit else 1.0,
-        by_mass=by_mass and what in _FORCES,
-        per_metre=per_metre,
+        factor=unit.factor if unit else KILOGRAM_FORCE if what in ("buoyancy", "weight") else 1.0,
+        by_mass=unit.by_mass if unit else what in ("buoyancy", "weight"),
+        per_metre=unit.per_metre or per_metre if unit else per_metre,
         known=unit is not None,
-        whole=bool(re.search(r"whole|total", _plain(heading))),
+        whole=bool(re.search(r"whole|total|gesamt", plain)),
+        wrong=wrong,
     )
 
 
@@ -253,105 +317,3 @@ def _plain(text: str, keep: str = "") -> str:
     return " ".join(
         "".join(sign if sign.isalnum() or sign in allowed else " " for sign in letters).split()
     )
-
-
-def _is_spreadsheet(content: bytes) -> bool:
-    """Return whether a file is an Excel workbook, by its first bytes."""
-    return content.startswith(_SPREADSHEETS)
-
-
-def is_table(content: bytes) -> bool:
-    """Return whether a file is a workbook, or text whose lines have the same separator."""
-    if _is_spreadsheet(content):
-        return True
-    if content.startswith(_UTF_16):
-        content = content[: len(content) // 2 * 2].decode("utf-16", "replace").encode()
-    lines = [line for line in content.split(b"\n")[:20] if line.strip()]
-    cut = any(sum(sign in line for line in lines) >= 2 for sign in (b"\t", b";", b","))
-    return b"\0" not in content and cut
-
-
-def read_sheets(path: Path) -> dict[str, SheetRows]:
-    """Return the rows of every sheet by its name; lines that begin with # are comments.
-
-    A sheet without a cell is left out; text has one sheet, without a name.
-
-    Raises
-    ------
-    InputError
-        It cannot be read.
-    """
-    content = read_content(path, largest=_LARGEST)
-    workbook = _is_spreadsheet(content)
-    sheets = _workbook(path, content) if workbook else {"": cells_in(_text(path, content))}
-    for rows in sheets.values():
-        if len(rows) > _MOST_ROWS or any(len(row) > _MOST_COLUMNS for row in rows):
-            raise refused(path, f"has more than {_MOST_ROWS} rows or {_MOST_COLUMNS} columns")
-    return {name: cleaned for name, rows in sheets.items() if (cleaned := _cleaned(rows))}
-
-
-def _cleaned(rows: SheetRows) -> SheetRows:
-    """Rows without blanks at the ends of cells, empty cells at the end, and comments."""
-    cleaned = []
-    for row in rows:
-        cells = [" ".join(cell.split()) for cell in row]
-        while cells and not cells[-1]:
-            cells.pop()
-        if cells and not cells[0].startswith("#"):
-            cleaned.append(cells)
-    return cleaned
-
-
-def _text(path: Path, content: bytes) -> str:
-    """Return the text: UTF-8, UTF-16 with the mark of Excel, or the Western encoding of Windows."""
-    if content.startswith(_UTF_16):
-        return content.decode("utf-16", "replace")
-    if b"\0" in content:
-        raise refused(path, "is a binary file; a table in text or a workbook is needed")
-    try:
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        return content.decode("cp1252", "replace")
-
-
-def _workbook(path: Path, content: bytes) -> dict[str, SheetRows]:
-    try:
-        import python_calamine
-    except ImportError:
-        raise refused(
-            path, "is a workbook; install `calm-mooring[sheets]`, or save the sheet as CSV"
-        ) from None
-    try:
-        book = python_calamine.load_workbook(io.BytesIO(content))
-        sheets = {name: book.get_sheet_by_name(name).to_python() for name in book.sheet_names}
-    except Exception as error:  # of the library, for damaged files
-        raise refused(path, f"is a damaged workbook ({error})") from None
-    return {
-        name: [[_shown(cell) for cell in row] for row in sheet] for name, sheet in sheets.items()
-    }
-
-
-def _shown(cell: object) -> str:
-    return f"{cell:.12g}" if isinstance(cell, float) else str(cell)
-
-
-def number(cell: str) -> tuple[float | None, str]:
-    """Return the number of a cell, None where there is none; and how it was interpreted.
-
-    A comma is a decimal sign, or parts thousands where a point follows; a word or unit after the
-    number, or `~` before it, is left out and reported.
-    """
-    text = cell.strip().lstrip("'")
-    if text.lower() in _NOTHING:
-        return None, ""
-    if re.fullmatch(r"[-+]?\d{1,3}(,\d{3})+\.\d+", text):
-        return float(text.replace(",", "")), ""
-    bare = text.lstrip("~≈≃<> ").removeprefix("ca.").removeprefix("env.").strip()
-    found = _NUMBER.match(bare)
-    if found is None or not any(sign.isdigit() for sign in found[0]):
-        return None, f"`{cell}` is not a number"
-    plain = found[0].replace("−", "-").replace(",", ".")
-    value = float("".join(plain.split()).replace("\u00a0", ""))
-    rest = bare[found.end() :].strip()
-    reading = f"`{cell}` read as {value:g}" if rest or bare != text else ""
-    return value, reading

@@ -18,14 +18,8 @@ from calm.exchange.design import (
     refused,
 )
 from calm.exchange.element_library import Library, complete_rows, is_library, key_of, read_library
-from calm.exchange.list_headings import (
-    ListHeadings,
-    SheetRows,
-    check_given,
-    headings_of,
-    number,
-    read_sheets,
-)
+from calm.exchange.list_cells import SheetRows, number, read_sheets
+from calm.exchange.list_headings import ListHeadings, check_given, headings_of
 from calm.exchange.list_rows import (
     ListRow,
     component_of,
@@ -67,12 +61,14 @@ def read_list(path: Path, columns: Mapping[str, str], elements: Path | None = No
     design.water = _water(sheets, design, path)
     problems: list[str] = []
     chosen = _sheet(sheets, columns)
-    headings = None
+    headings, said = None, list[Remark]()
     if chosen is not None:
         cells, headings = chosen
+        problems += headings.problems
+        said = _unit_remarks(headings)
         weighed = {"buoyancy", "weight"} & headings.columns.keys()
         rows = rows_of(
-            cells, headings, problems, design.dropped,
+            cells, headings, problems, design.dropped, said,
             bare=lambda name: bool(library) and (not weighed or key_of(name) in library),
         )  # fmt: skip
         weights_as_buoyancy(rows, design.guessed)
@@ -87,12 +83,23 @@ def read_list(path: Path, columns: Mapping[str, str], elements: Path | None = No
         raise refused(path, f"has more than {MOST_PIECES} pieces")
     rows = _from_the_top(rows, path, design)
     design.items = _items(rows, problems)
+    design.guessed += said
     if problems:
         raise refused(path, *problems)
     design.in_kilograms = headings is None or any(
         headings.columns[key].by_mass for key in ("buoyancy", "weight") if key in headings.columns
     )
     return design
+
+
+def _unit_remarks(headings: ListHeadings) -> list[Remark]:
+    """Return what is taken for the unit of forces whose headings give none."""
+    usual = {"buoyancy": "kg", "weight": "kg", "stiffness": "N", "breaking_load": "N"}
+    return [
+        Remark(f"column {column.heading}", f"gives no unit: read as {usual[what]}")
+        for what, column in headings.columns.items()
+        if what in usual and not column.known
+    ]
 
 
 def _sheet(
@@ -141,7 +148,7 @@ def _water(sheets: Mapping[str, SheetRows], design: Design, path: Path) -> Impor
         if not {"z", "u"} <= set(headings):
             continue
         columns = {
-            name: np.array([number(row[i])[0] or 0.0 for row in rows[1:] if i < len(row)])
+            name: np.array([_figure(row, i, path) for row in rows[1:] if i < len(row)])
             for name in _WATER
             if name.lower() in headings and (i := headings.index(name.lower())) >= 0
         }
@@ -151,6 +158,14 @@ def _water(sheets: Mapping[str, SheetRows], design: Design, path: Path) -> Impor
             raise refused(path, str(error)) from None
         return water
     return None
+
+
+def _figure(row: list[str], index: int, path: Path) -> float:
+    """Return a number of the water; 0 of an empty cell."""
+    found = number(row[index])
+    if found.wrong or found.rest:
+        raise refused(path, f"water: {found.wrong or f'`{row[index]}` is not a number'}")
+    return found.value or 0.0
 
 
 def _from_the_top(rows: list[ListRow], path: Path, design: Design) -> list[ListRow]:
@@ -197,7 +212,11 @@ def _items(rows: list[ListRow], problems: list[str]) -> list[ImportedPiece]:
         at = row.figures.get("at")
         if at is None:
             length = row.figures.get("length") if component.kind in FLEXIBLE_KINDS else None
-            items += [ImportedPiece(component, length, label=row.label) for _ in range(row.count)]
+            guess = "" if length is None else row.guesses.get("length", "")
+            items += [
+                ImportedPiece(component, length, label=row.label, guess=guess)
+                for _ in range(row.count)
+            ]
         elif items:
-            items[-1].clamps.append(ImportedClamp(component, at))
+            items[-1].clamps.append(ImportedClamp(component, at, row.guesses.get("at", "")))
     return items

@@ -8,22 +8,33 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 
 from calm.exchange.design import FigureOrWord, ImportedComponent, Remark
-from calm.exchange.list_headings import WORDS, ListColumn, ListHeadings, SheetRows, number
+from calm.exchange.list_cells import SheetRows, decimal_sign, number, unit_called
+from calm.exchange.list_headings import WORDS, ListColumn, ListHeadings
 from calm.exchange.mdd_elements import MODULI
-from calm.exchange.part_names import is_anchor, is_chain, is_connector, is_line, is_release, role_of
+from calm.exchange.part_names import (
+    is_anchor,
+    is_chain,
+    is_connector,
+    is_line,
+    is_long,
+    is_release,
+    is_rigid,
+    role_of,
+)
 from calm.physics.reference import REFERENCE_DENSITY
 from calm.units import KILOGRAM_FORCE
 
 _TOTAL = re.compile(r"^(sub-?)?(total|totaux|sum|somme|ensemble)\b", re.I)
-_LINE_KINDS = re.compile(r"\b(cable|c[âa]ble|chain|cha[iî]ne|line|wire|rope|cordage)s?\b", re.I)
 _ANCHOR_KINDS = re.compile(r"\banchors?\b|\bancre|\blest\b", re.I)
 _ENOUGH = {"length", "buoyancy", "weight"}  # one of them makes a piece
 _MOST = 1000  # of one row's count
+_WIDEST, _WIDEST_LINE = 10.0, 0.5  # m of what has no unit
 _FULL = 5.0  # times its diameter: a metre of line shows no larger area
 _SPREAD = ("buoyancy", "mass", "area", "drag_area", "tangential_area")  # along a line
 _USUAL = {"cable": 1.3, "chain": 2.75, "sphere": 0.5, "cylinder": 1.2}
 _COEFFICIENT = {"cable": "cn", "chain": "cn", "sphere": "cx", "cylinder": "cn"}
 _ROLES = ("float", "instrument", "release", "connector")
+_FITTING = 1.0  # m: a shorter link or shackle of a rope is none
 _ROUND = 1.5  # times its diameter: a float no longer is a sphere
 _HALF_DENSITY = 0.5 * REFERENCE_DENSITY
 
@@ -63,9 +74,10 @@ class ListRow:
         """Tell whether it is a cable or a chain."""
         if self.line is not None:
             return self.line
-        if self.kind:
-            return bool(_LINE_KINDS.search(self.kind))
-        return is_line(self.name)
+        if self.role in _ROLES or is_rigid(self.kind):
+            return False
+        fitting = is_connector(self.name) and self.figures.get("length", 0.0) < _FITTING
+        return self.role == "line" or (is_line(f"{self.kind} {self.name}") and not fitting)
 
 
 def rows_of(
@@ -73,6 +85,7 @@ def rows_of(
     headings: ListHeadings,
     problems: list[str],
     dropped: list[Remark],
+    guessed: list[Remark],
     *,
     bare: Callable[[str], bool] = lambda name: False,
 ) -> list[ListRow]:
@@ -80,10 +93,14 @@ def rows_of(
 
     Parameters
     ----------
+    guessed : to which the decimal sign is added where the file has commas
     bare : whether a name alone makes a piece, since a library has its figures
     """
     rows: list[ListRow] = []
     known = headings.columns
+    decimal, said = _decimals(cells, headings, problems)
+    if said:
+        guessed.append(Remark("numbers", said))
     for place, each in enumerate(cells[headings.row + 1 :], headings.row + 2):
         name = _cell(each, known["name"])
         if not name:
@@ -92,13 +109,32 @@ def rows_of(
             dropped.append(Remark(f"row {place}", f"`{name}`, a sum"))
             continue
         mistakes: list[str] = []
-        row = _row(each, place, name, known, mistakes)
+        row = _row(each, place, name, known, decimal, mistakes)
         if not (bare(name) or _ENOUGH & row.figures.keys() or row.is_anchor):
             dropped.append(Remark(f"row {place}", f"`{name}`, without length and weight"))
             continue
         problems += mistakes
+        size = row.figures.get("diameter", 0.0) or row.figures.get("width", 0.0) or _size_in(name)
+        fixed = row.is_line or row.is_anchor or row.role in _ROLES or is_rigid(row.kind)
+        if not fixed and is_long(name, row.figures.get("length", 0.0), size):
+            row.line = True
+            guessed.append(Remark(row.where, "taken for a rope, since it is long and thin"))
         rows.append(row)
     return rows
+
+
+def _decimals(cells: SheetRows, headings: ListHeadings, problems: list[str]) -> tuple[str, str]:
+    """Return the decimal sign of the columns that hold numbers, and what is to be said of it."""
+    figures = [column for what, column in headings.columns.items() if what not in WORDS]
+    try:
+        return decimal_sign(
+            (f"row {place}", _cell(row, column))
+            for place, row in enumerate(cells[headings.row + 1 :], headings.row + 2)
+            for column in figures
+        )
+    except ValueError as error:
+        problems.append(str(error))
+        return "", ""
 
 
 def names_in(cells: SheetRows) -> list[ListRow]:
@@ -118,32 +154,45 @@ def names_in(cells: SheetRows) -> list[ListRow]:
 def _cell(row: list[str], column: ListColumn | None) -> str:
     if column is None or column.index >= len(row):
         return ""
-    return row[column.index].strip().removeprefix("'")
+    return row[column.index]
 
 
 def _row(
-    cells: list[str], place: int, name: str, known: dict[str, ListColumn], mistakes: list[str]
+    cells: list[str],
+    place: int,
+    name: str,
+    known: dict[str, ListColumn],
+    decimal: str,
+    mistakes: list[str],
 ) -> ListRow:
-    words = {what: _cell(cells, known.get(what)) for what in WORDS}
+    words = {what: _cell(cells, known.get(what)).removeprefix("'") for what in WORDS}
     row = ListRow(place, name, words["label"], words["kind"], words["role"])
     for what, column in known.items():
         if what in WORDS:
             continue
-        value, reading = number(_cell(cells, column))
-        if value is None:
-            if reading and what != "material":
-                mistakes.append(f"{row.where}: {column.heading}: {reading}")
+        cell = _cell(cells, column)
+        found = number(cell, decimal)
+        if found.value is None:
+            if found.wrong and what != "material":
+                mistakes.append(f"{row.where}: {column.heading}: {found.wrong}")
             continue
-        scale = KILOGRAM_FORCE if column.by_mass else 1.0
-        figure = value * column.factor * scale
+        try:
+            unit = unit_called(found.rest, what)
+        except ValueError as error:
+            mistakes.append(f"{row.where}: {column.heading}: `{cell}`: {error}")
+            continue
+        figure = found.value * (unit or column).factor
         if not math.isfinite(figure):
-            mistakes.append(f"{row.where}: {column.heading} is {value:g}")
+            mistakes.append(f"{row.where}: {column.heading} is {found.value:g}")
             continue
+        widest = _WIDEST_LINE if row.is_line else _WIDEST
+        if what in ("diameter", "width") and not (unit or column.known) and figure > widest:
+            mistakes.append(f"{row.where}: {column.heading} is {figure:g} m; which unit is it in?")
         row.figures[what] = figure
-        if column.per_metre:
+        if unit.per_metre if unit else column.per_metre:
             row.metre.add(what)
-        if reading:
-            row.guesses[what] = reading
+        if found.tidied:
+            row.guesses[what] = f"`{cell}` read as {found.value:g} {found.rest}".rstrip()
     count = row.figures.pop("count", 1.0)
     if not 1.0 <= round(count) <= _MOST:
         mistakes.append(f"{row.where}: {count:.12g} of them")

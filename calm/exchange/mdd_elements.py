@@ -52,6 +52,8 @@ def rigid(element: MddElement) -> ImportedComponent:
     figures["buoyancy"] = lift
     if lift > 0.0 and element.mass is not None:
         figures["mass"] = element.mass
+        volume = (element.mass + element.lift) / element.density
+        figures["buoyancy"] = (CATALOGUE_DENSITY * volume - element.mass) * KILOGRAM_FORCE
     component = ImportedComponent(element.name, kind, {**figures, "role": role})
     if kind == "body":
         component.comment = "The file gives it no size, so that it has no drag."
@@ -68,7 +70,6 @@ def rides_by_buoyancy(component: ImportedComponent) -> None:
 
     Its hull displaces, in proportion to the draft, no more than its net buoyancy needs.
     """
-    figures = component.figures
     lift, height = component.number("buoyancy"), component.number("length")
     if component.kind not in ("sphere", "cylinder", "body") or lift <= 0.0:
         return
@@ -78,7 +79,6 @@ def rides_by_buoyancy(component: ImportedComponent) -> None:
         "cylinder": across * height,
         "body": component.number("drag_area"),
     }
-    figures.pop("mass", None)
     volume = (1.0 + _SLIGHT) * lift / (CATALOGUE_DENSITY * KILOGRAM_FORCE)
     component.hull = ((0.0, 0.0, 0.0), (height or _FLAT, volume, shown[component.kind]))
     component.comment = "At the surface it sinks, and drags, in proportion to the buoyancy it uses."
@@ -139,6 +139,7 @@ class MddElement:
     mass : in air, where that version of the program has it [kg]
     modulus : of a line [Pa]; None where it is not known, inf where it does not stretch
     number : its column, from 1
+    density : of the water in which it lifts as much [kg/m³]
     """
 
     name: str
@@ -152,6 +153,7 @@ class MddElement:
     mass: float | None
     modulus: float | None
     number: int
+    density: float = CATALOGUE_DENSITY
 
     @property
     def across(self) -> float:
@@ -180,6 +182,7 @@ def read_elements(
         return [], problems
     modulus = _optional(variables, f"ME{suffix}")
     mass = _optional(variables, f"Wt{suffix}")
+    density = _densities(variables, size[0])
     called = _names(variables, f"{prefix}{suffix}", count)
     elements = []
     for i in range(count):
@@ -197,6 +200,7 @@ def read_elements(
                 mass=float(mass[i]) if mass.size == count and mass[i] > 0.0 else None,
                 modulus=_modulus(float(modulus[i])) if modulus.size == count else None,
                 number=i + 1,
+                density=float(density[i]),
             )
         )
         problems += mistakes_of(elements[-1], f"element {i + 1}, {called[i]}")
@@ -257,6 +261,16 @@ def _row(
 def _optional(variables: Mapping[str, MatValue], name: str) -> RealArray:
     row = _reals(variables, name, [])
     return np.zeros(0) if row is None else row.ravel()
+
+
+def _densities(variables: Mapping[str, MatValue], length: RealArray) -> RealArray:
+    """Return the density of the water at every element of a line that stands upright [kg/m³]."""
+    levels, density = _optional(variables, "z"), _optional(variables, "rho")
+    if not density.size == levels.size > 0 or not density.min() > 0.0:
+        return np.full(length.size, CATALOGUE_DENSITY)
+    order = np.argsort(levels)
+    heights = np.cumsum(length[::-1])[::-1]
+    return np.interp(heights, levels[order], density[order])
 
 
 def _names(variables: Mapping[str, MatValue], name: str, count: int) -> list[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -106,6 +107,7 @@ def _lay_mooring(
     design.items.append(ImportedPiece(anchor_of(last)))
     depth = design.water.depth if design.water is not None else None
     if depth is None or _STRETCHED * sum(item.extent for item in design.items) >= depth:
+        design.items[0] = _item(replace(elements[0], mass=None))
         rides_by_buoyancy(design.items[0].component)
 
 
@@ -209,7 +211,7 @@ def read_water(
     ----------
     variables : of the file
     towed : whether it is a tow
-    guessed : to which what is guessed about the times is added
+    guessed : to which what is guessed about times and density is added
 
     Raises
     ------
@@ -229,11 +231,13 @@ def read_water(
     u, v, w = (
         _filled(each, name, levels.size, times) for each, name in zip(profiles, "UVW", strict=True)
     )
-    density = _numbers(variables, "rho").ravel()
-    if density.size == levels.size:
-        density = np.asarray(density)
-    elif density.size:
-        raise ValueError(f"`rho` has {density.size} values for {levels.size} of `z`")
+    densities = _profiles(variables, "rho", levels.size)
+    density = np.zeros(0) if densities is None else densities[:, 0]
+    if densities is not None and densities.shape[1] > 1:
+        if not np.all(np.isfinite(density)):
+            raise ValueError("`rho` has gaps in its first profile")
+        what = f"the first of {densities.shape[1]} profiles; a mooring has one density"
+        guessed.append(Remark("environment.density", what))
     depth = np.sort(levels) if towed else seabed - levels
     order = np.arange(levels.size) if towed else np.argsort(depth, kind="stable")
     depth = depth if towed else depth[order]

@@ -27,6 +27,8 @@ _CURRENTS = "current_profile.txt"
 _NEAR, _NEAR_AT_LEAST = 0.05, 2.0
 """Share of the depth, and metres: an upper end so near the surface hangs under a float."""
 
+_ABOVE = 0.01  # m: what is higher is held above the water
+
 _NOTE = "cn and ct are its Cd and CdAx, defined alike. See `calm docs import-moordyn`."
 
 _SECTIONS = (
@@ -87,7 +89,7 @@ def read_moordyn(path: Path) -> Design:
         if length <= 0.0:
             raise line.refuse("a line has no length")
         items.append(ImportedPiece(_cable(kind, gravity), length))
-    design.items = [_upper_end(_last(points, legs), items, design), *items[::-1]]
+    design.items = [_upper_end(_last(points, legs), design), *items[::-1]]
     design.items.append(ImportedPiece(_anchor(anchor, design.water)))
     what = "damping, stiffness in bending, added mass"
     design.dropped.append(Remark("line types", what))
@@ -222,8 +224,8 @@ def _figures(point: SectionRow) -> dict[str, FigureOrWord]:
     }  # fmt: skip
 
 
-def _upper_end(top: SectionRow, items: list[ImportedPiece], design: Design) -> ImportedPiece:
-    """Return the float: a free point, or a guess for one that is held at the surface."""
+def _upper_end(top: SectionRow, design: Design) -> ImportedPiece:
+    """Return the float: a free point, or one that is held at the surface and would float there."""
     assert design.water is not None and design.water.depth is not None
     if _is(top, _FREE):
         figures = _figures(top)
@@ -233,33 +235,24 @@ def _upper_end(top: SectionRow, items: list[ImportedPiece], design: Design) -> I
             ImportedComponent(f"point {top.words['id']}", "body", {**figures, "role": "float"})
         )
     depth = 0.0 - top.number("z")
+    if depth < -_ABOVE:
+        raise top.refuse(
+            f"the upper end is held {-depth:g} m above the water: a ship's or a quay's; CALM has "
+            "lines under a float"
+        )
     if depth > max(_NEAR * design.water.depth, _NEAR_AT_LEAST):
         raise top.refuse(
             f"the upper end is held {depth:g} m deep: a platform's; CALM has lines under a float"
         )
     figures = _figures(top)
-    if CATALOGUE_DENSITY * float(figures["volume"]) > float(figures["mass"]):
-        guess = {"volume": "the file holds the upper end; here a float of its point, free to move"}
-        figures["role"] = "float"
-        return ImportedPiece(ImportedComponent(f"point {top.words['id']}", "body", figures, guess))
-    gravity = design.water.gravity or STANDARD_GRAVITY
-    lift = 1.5 * sum(_weight(item, gravity) for item in items) + 1e4
-    volume = lift / (CATALOGUE_DENSITY * gravity)
-    across = (6.0 * volume / math.pi) ** (1.0 / 3.0)
-    component = ImportedComponent(
-        "float", "sphere",
-        {"diameter": across, "buoyancy": lift, "cx": 0.0, "role": "float"},
-        {"buoyancy": "the file holds the upper end; here a float without drag, free to move"},
-    )  # fmt: skip
-    return ImportedPiece(component)
-
-
-def _weight(item: ImportedPiece, gravity: float) -> float:
-    """Weight in water [N] under a gravity [m/s²]; 0 of what floats."""
-    figure = item.component.number
-    if item.length is None:
-        return max((figure("mass") - CATALOGUE_DENSITY * figure("volume")) * gravity, 0.0)
-    return figure("weight") * item.length
+    if CATALOGUE_DENSITY * float(figures["volume"]) <= float(figures["mass"]):
+        raise top.refuse(
+            "the upper end is held, and its point has no volume that floats its mass: CALM has "
+            "lines under a float (make it Free, with Mass, Volume and CdA)"
+        )
+    guess = {"volume": "the file holds the upper end; here a float of its point, free to move"}
+    figures["role"] = "float"
+    return ImportedPiece(ImportedComponent(f"point {top.words['id']}", "body", figures, guess))
 
 
 def _anchor(point: SectionRow, water: ImportedWater) -> ImportedComponent:

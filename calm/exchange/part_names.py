@@ -9,20 +9,40 @@ from collections.abc import Iterable
 from calm.exchange.design import ImportedComponent
 
 _RELEASE = re.compile(
-    r"\brelease|\bacoustic rel|\blargu|\blargage|\bar[ -]?\d{3}|\bcdms ar\b|\b8242\b|\b866\b", re.I
+    r"\brelease|\bacoustic rel|\blargu|\blargage|\bar[ -]?\d{3}|\bcdms ar\b|\b8242\b|\b866\b"
+    r"|ausl[öo]se|\bliberador|\bsuelta",
+    re.I,
 )
 _HEAVY = 20.0  # N: nothing that only joins weighs more, whatever it is called
-_CHAIN = re.compile(r"chain|cha[iî]ne", re.I)
+_CHAIN = re.compile(r"chain|cha[iî]ne|\w*kette\b|\bcadena", re.I)
 _CONNECTOR = re.compile(
-    r"shackle|\bshac|swivel|sling|\blink|pear|\bring|ringlet|miller|manille|[ée]merillon|maillon|anneau",
+    r"shackle|\bshac|swivel|sling|\blink|pear|\bring|ringlet|miller|manille|[ée]merillon|maillon"
+    r"|anneau|sch[äa]kel|wirbel|\bgrillete|giratorio|anilla|thimble|kausch|guardacabo",
     re.I,
 )
-_ANCHOR = re.compile(r"anchor|sinker|railway|\blest|\bancre|\bcorps.mort|dead ?weight|clump", re.I)
+_ANCHOR = re.compile(
+    r"anchor|sinker|railway|\blest|\bancre|\bcorps.mort|dead ?weight|clump|\banker|grundgewicht"
+    r"|\bancla|\bmuerto|\blastre",
+    re.I,
+)
+_RIGID = re.compile(
+    r"float|buoy|sphere|syntactic|instrument|sensor|logger|release|hardware|connector|shackle|swivel"
+    r"|bou[ée]e|flotteur|capteur|auftrieb|boje|kugel|ger[äa]t|boya|flotador|esfera|sonde|terminal"
+    r"|\bbody\b|cylinder",
+    re.I,
+)
 _LINE = re.compile(
-    r"\bwire|\brope|kevlar|nylon|dacron|polyester|polyprop|polysteel|\bcable|amsteel|dyneema|tenex"
-    r"|\bline\b|c[âa]ble|cordage|jetstr|spectra|nilspin",
+    r"wire|rope|\blines?\b|\bcable|c[âa]ble\b|cordage|filin|aussi[èe]re|\bbout\b|seil\b|seile\b|draht"
+    r"|leine\b|\btau\b|trosse|kabel|\bcabo\b|cuerda|estacha|tether|hawser|\bwarp\b|nilspin|jetstr"
+    r"|kevlar|aramid|twaron|technora|vectran|nylon|polyamid|dacron|polyester|polyprop|polysteel|danline"
+    r"|dyneema|spectra|uhmwpe|\bhmpe|amsteel|plasma|tenex|samson|colmega|dynex|steelite|phillystran"
+    r"|braid|strand|\b\d{1,2}x\d{1,2}\b|\bmanila\b|sisal|hemp\b|umbilical|\bcoax",
     re.I,
 )
+_LONG, _SLENDER = 3.0, 60.0
+"""Metres, and diameters, of which a piece is longer where it is a line, whatever it is called."""
+
+_LONGEST_PIECE = 20.0  # m of a rigid piece
 _LONGEST = 40
 _NO_IDS = {"null", "true", "false", "yes", "no", "on", "off", "y", "n"}  # other words in YAML
 _SIGNS = {'"': "in ", "″": "in ", "↑": " up ", "↓": " down ", "+": " ", "&": " and ", "µ": "u"}
@@ -51,6 +71,24 @@ def is_anchor(name: str) -> bool:
 def is_line(name: str) -> bool:
     """Return whether a piece is called a wire, a rope or a chain."""
     return bool(_LINE.search(name)) or is_chain(name)
+
+
+def is_long(name: str, length: float, across: float) -> bool:
+    """Return whether a piece is a line by its size, whatever it is called.
+
+    Parameters
+    ----------
+    length, across : of the piece [m]; 0 where it is not known how wide it is
+    """
+    if is_release(name) or is_connector(name):
+        return False
+    slender = length >= _LONG and across > 0.0 and length >= _SLENDER * across
+    return slender or length >= _LONGEST_PIECE
+
+
+def is_rigid(kind: str) -> bool:
+    """Return whether a kind or family of pieces is one of floats, instruments or fittings."""
+    return bool(_RIGID.search(kind))
 
 
 def role_of(name: str, buoyancy: float, *, fastener: bool = False) -> str:

@@ -32,7 +32,7 @@ def test_what_a_person_reads(calm, write_mooring):
     assert lines[0].split() == ["mooring", "own", "launch,", "recovery,", "breaks"]
     assert lines[1].split()[:2] == ["Test", "unknown"]
     assert "There is no release in the line" in done.out
-    assert "? strength of top float, weight is unknown. Give its `working_load`" in done.out
+    assert "? depth-rating of top float, logger is unknown." in done.out
     assert "A static calculation does not see waves" in done.out
     assert max(map(len, lines)) <= 80
 
@@ -129,7 +129,7 @@ components:
     assert done.code == 0
     assert json.loads(done.out)["state"] == "pass"
     assert {finding["state"] for finding in findings(done)} == {"pass"}
-    assert len({finding["rule"] for finding in findings(done)}) == 14
+    assert len({finding["rule"] for finding in findings(done)}) == 15
 
 
 def test_what_is_unknown_ends_with_1_unless_it_is_allowed(calm, write_mooring, heavy):
@@ -150,8 +150,22 @@ def test_an_unknown_ranks_above_a_pass_in_every_table(calm, write_mooring):
     lines = [line.split() for line in calm("check", write_mooring()).out.splitlines()]
     assert lines[1][:2] == ["Test", "unknown"]
     states = {line[0]: line[1] for line in lines if len(line) > 2}
-    # of the strength of three pieces one is known, and passes
-    assert states["strength"] == "unknown" and states["anchor-weight"] == "pass"
+    # of the tilts of two parts one has a limit, and passes
+    assert states["tilt"] == "unknown" and states["anchor-weight"] == "pass"
+
+
+def test_no_load_is_asked_of_what_is_pulled_at_one_end(calm, write_mooring, folder):
+    def strengths(text):
+        (folder / "m.yaml").write_text(text, encoding="utf-8")
+        found = findings(calm("check", "m.yaml", "--json", "-"))
+        return {f["component"]: f["state"] for f in found if f["rule"] == "strength"}
+
+    text = (folder / write_mooring()).read_text(encoding="utf-8")
+    assert strengths(text) == {"rope": "pass"}
+    weak = text.replace("max_tilt: 80 deg", "max_tilt: 80 deg, working_load: 100 N")
+    assert strengths(weak) == {"top float": "fail", "rope": "pass"}
+    between = text.replace("  - {use: weight}", "  - {use: ball, label: lower}\n  - {use: weight}")
+    assert strengths(between) == {"rope": "pass", "lower": "unknown"}
 
 
 def test_the_verdict_counts_each_figure_of_each_mooring_once(calm, write_mooring):
@@ -358,7 +372,6 @@ def test_limits_are_told_as_used_with_default_and_source(calm, write_mooring):
     assert cited["strength", "rope"] == (
         "The design's own `safety_factor.steel`, 1.2 in place of 3"
     )
-    assert "UFC" in cited["strength", "weight"]  # nothing is known of it
     assert "UFC" not in cited["strength", "rope"]
 
 

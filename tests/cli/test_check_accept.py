@@ -20,7 +20,8 @@ def accepting(write_mooring, folder):
         file = folder / write_mooring("accepting.yaml", **figures)
         text = file.read_text(encoding="utf-8")
         balls = "".join(f"  - {{use: ball, label: {json.dumps(label)}}}\n" for label in labels)
-        text = text.replace("  - {use: ball, label: top float}\n", balls)
+        crown = "  - {use: ball, label: crown, diameter: 10 mm, buoyancy: 1 N}\n"  # asked no load
+        text = text.replace("  - {use: ball, label: top float}\n", crown + balls)
         items = "".join(f"    - {accept}\n" for accept in accepts)
         file.write_text(f"{text}checks:\n{more}  accept:\n{items}", encoding="utf-8")
         return "accepting.yaml"
@@ -46,8 +47,8 @@ def test_a_failure_and_an_unknown_are_accepted_with_a_reason(calm, accepting):
     )
     done, document, states = checked(calm, file)
     assert set(states["strength", "top float"]) == {"accepted"}
-    assert set(states["strength", "weight"]) == {"unknown"}
-    assert set(states["knockdown", "top float"]) == {"accepted"}
+    assert set(states["depth-rating", "top float"]) == {"unknown"}
+    assert set(states["knockdown", "crown"]) == {"accepted"}
     assert (done.code, document["state"]) == (1, "unknown")
     by_rule = {one["rule"]: one for one in document["accepted"]}
     assert by_rule["strength"] == {
@@ -72,7 +73,7 @@ def test_what_is_all_accepted_ends_with_0_and_reads_pass(calm, accepting):
 @pytest.mark.parametrize(
     ("component", "labels", "covered"),
     [
-        ("*", ["a", "b"], {"a", "b", "rope", "weight"}),
+        ("*", ["a", "b"], {"a", "b", "rope"}),
         ("ball ?", ["ball", "ball"], {"ball 1", "ball 2"}),
         ("ADCP [a]", ["ADCP [a]", "ADCP [b]", "ADCP a"], {"ADCP [a]"}),  # a label is that label
         ("ADCP [ab]", ["ADCP [a]", "ADCP a", "ADCP b"], {"ADCP a", "ADCP b"}),
@@ -96,24 +97,24 @@ def test_a_component_is_a_label_or_a_pattern_of_labels(calm, accepting, componen
 @pytest.mark.parametrize(
     ("accept", "place", "says"),
     [
-        ("{rule: strenght, reason: x}", "16:14", "is called `strenght`; did you mean `strength`?"),
-        ("{rule: equilibrium, reason: x}", "16:14", "no rule that can be accepted is called"),
+        ("{rule: strenght, reason: x}", "17:14", "is called `strenght`; did you mean `strength`?"),
+        ("{rule: equilibrium, reason: x}", "17:14", "no rule that can be accepted is called"),
         (
             "{rule: tilt, component: top flaot, reason: x}",
-            "16:31",
+            "17:31",
             "no piece or clamp is called `top flaot`; did you mean `top float`?",
         ),
-        ("{rule: tilt, component: 'x*', reason: x}", "16:31", "no piece or clamp is called `x*`"),
-        ("{rule: tilt, component: '', reason: x}", "16:31", "no piece or clamp is called"),
-        ("{rule: tilt, component: '[', reason: x}", "16:31", "no piece or clamp is called `[`"),
-        ("{rule: tilt}", "16:7", "`reason` is missing"),
-        ("{reason: x}", "16:7", "`rule` is missing"),
-        ("{rule: tilt, reason: ' '}", "16:28", "`reason` is blank"),
-        ("{rule: tilt, reason: x, until: 2027-02-30}", "16:38", "not a day of the calendar"),
-        ("{rule: tilt, reason: x, until: 30.6.2027}", "16:38", "write it as 2027-06-30"),
-        ("{rule: tilt, reason: x, untill: 2027-06-30}", "16:31", "did you mean `until`?"),
-        ("{rule: tilt, reason: x, date: 2027-06-30, until: 2027-06-29}", "16:7", "before its"),
-        ("tilt", "16:7", "accept"),
+        ("{rule: tilt, component: 'x*', reason: x}", "17:31", "no piece or clamp is called `x*`"),
+        ("{rule: tilt, component: '', reason: x}", "17:31", "no piece or clamp is called"),
+        ("{rule: tilt, component: '[', reason: x}", "17:31", "no piece or clamp is called `[`"),
+        ("{rule: tilt}", "17:7", "`reason` is missing"),
+        ("{reason: x}", "17:7", "`rule` is missing"),
+        ("{rule: tilt, reason: ' '}", "17:28", "`reason` is blank"),
+        ("{rule: tilt, reason: x, until: 2027-02-30}", "17:38", "not a day of the calendar"),
+        ("{rule: tilt, reason: x, until: 30.6.2027}", "17:38", "write it as 2027-06-30"),
+        ("{rule: tilt, reason: x, untill: 2027-06-30}", "17:31", "did you mean `until`?"),
+        ("{rule: tilt, reason: x, date: 2027-06-30, until: 2027-06-29}", "17:7", "before its"),
+        ("tilt", "17:7", "accept"),
     ],
 )
 def test_what_is_no_accept_is_a_mistake_at_its_place(calm, accepting, accept, place, says):
@@ -144,9 +145,9 @@ def test_an_accept_that_nothing_needs_is_a_notice(calm, accepting):
         "{rule: strength, component: top float, reason: a test}",
     )
     done = calm("check", file, "--json", "-")
-    assert "accepting.yaml: line 16: `accept` for anchor-weight is not needed" in done.err
-    assert "line 17: `accept` for strength of rope is not needed" in done.err
-    assert "line 18" not in done.err
+    assert "accepting.yaml: line 17: `accept` for anchor-weight is not needed" in done.err
+    assert "line 18: `accept` for strength of rope is not needed" in done.err
+    assert "line 19" not in done.err
 
 
 @pytest.mark.parametrize(
@@ -156,7 +157,7 @@ def test_an_accept_counts_through_its_last_day(calm, accepting, until, counts):
     file = accepting(f"{{rule: strength, component: top float, reason: a test, until: {until}}}")
     done, _, states = checked(calm, file)
     assert states["strength", "top float"] == ["accepted" if counts else "unknown"]
-    ended = f"line 16: `accept` for strength of top float ended on {until}: it no longer counts"
+    ended = f"line 17: `accept` for strength of top float ended on {until}: it no longer counts"
     assert (ended in done.err) is not counts
 
 
@@ -202,11 +203,12 @@ def test_the_more_particular_accept_is_the_one_that_counts(calm, accepting):
         "{rule: strength, reason: all of it}",
         "{rule: strength, component: 't*', reason: some}",
         "{rule: strength, component: top float, reason: this one}",
+        labels=("top float", "ball"),
     )
     done, document, _ = checked(calm, file)
     reasons = {one["component"]: one["reason"] for one in document["accepted"]}
-    assert reasons == {"top float": "this one", "weight": "all of it"}
-    assert "line 17: `accept` for strength of t* is not needed" in done.err
+    assert reasons == {"top float": "this one", "ball": "all of it"}
+    assert "line 19: `accept` for strength of t* is not needed" in done.err
 
 
 def test_a_warning_cannot_be_accepted(calm, accepting, folder):

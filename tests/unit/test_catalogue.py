@@ -193,6 +193,7 @@ def test_depth_ratings_are_those_of_things_under_water(components: dict[str, Com
 
 ROPE_STRENGTHS = {
     "nylon": (100.0, 220.0),
+    "nylon/polyester": (100.0, 295.0),
     "polyester": (100.0, 295.0),
     "polypropylene": (80.0, 170.0),
     "HMPE": (900.0, 1600.0),

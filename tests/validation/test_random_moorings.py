@@ -31,7 +31,10 @@ BLOCKS = [
 
 @pytest.mark.parametrize("block", BLOCKS)
 def test_calm_agrees_with_the_referee(block) -> None:
-    """Twenty standing moorings a block; a failure names the number that draws its mooring."""
+    """Twenty standing moorings a block; a failure names the number that draws its mooring.
+
+    Each float at the surface is sought on its own, so that marches are counted for each.
+    """
     number, standing = 1000 * block, 0
     while standing < STANDING:
         number += 1
@@ -51,5 +54,5 @@ def test_calm_agrees_with_the_referee(block) -> None:
             found = difference(solution, referee)
             assert found.place <= near, case
             assert found.tension <= close, case
-            assert solution.marches <= 60, case
+            assert solution.marches <= 60 * max(1, len(solution.afloat)), case
             assert closure(solution) <= 1e-6, case

@@ -106,7 +106,7 @@ def test_both_dialects_say_the_same(text, read, tmp_path):
     assert answer["top"]["y"] > 0.0
 
 
-def test_a_held_upper_end_at_the_surface_gets_a_float(read, tmp_path):
+def test_a_held_upper_end_at_the_surface_is_the_float_of_its_point(read, tmp_path):
     text = V2.replace("3     Free        0     0     -100", "3     Vessel      0     0     -1  ")
     text = text.replace(
         "1    rope       1        2        60", "1    rope       1        2        180"
@@ -117,12 +117,10 @@ def test_a_held_upper_end_at_the_surface_gets_a_float(read, tmp_path):
     top = mooring.file.pieces[0].component
     assert (top.kind, top.mass, top.volume) == ("body", 100.0, 0.6)  # those of its point
     assert mooring.solve().to_dict()["type"] == "surface"
-    bare = load(tmp_path / "m.yaml", text=read(text.replace("100    0.6", "0      0.0")).text)
-    top = bare.file.pieces[0].component
-    assert top.kind == "sphere"
-    assert top.buoyancy > 1e4
-    assert 1025 * 9.81 * 3.14159265 / 6 * top.diameter**3 == pytest.approx(top.buoyancy, rel=1e-6)
-    assert bare.solve().to_dict()["type"] == "surface"
+    with pytest.raises(InputError, match="no volume that floats its mass"):
+        read(text.replace("100    0.6", "0      0.0"))
+    with pytest.raises(InputError, match=r"is held 3 m above the water"):
+        read(text.replace("     -1  ", "     3   "))
 
 
 REFUSED = {

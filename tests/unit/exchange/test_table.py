@@ -8,7 +8,7 @@ import pytest
 from calm.case import load
 from calm.errors import InputError
 from calm.exchange.importing import ImportOptions, import_file
-from calm.exchange.list_headings import number
+from calm.exchange.list_cells import number
 
 SITE = """\
 environment:
@@ -413,3 +413,138 @@ def test_a_design_of_moords(read, tmp_path):
 def test_a_design_of_moords_with_a_bad_number(read):
     with pytest.raises(InputError, match="drag is `much`"):
         read(MOORDS.replace("1.04,0.65", "1.04,much"))
+
+
+def with_cell(heading, cell, *, name="8 mm wire"):
+    """A list with a cell in one column, whose heading is given."""
+    return (
+        f"Item;Length (m);Diameter (mm);{heading}\nBall;1.04;1016;-4330\n"
+        f"{name};100.5;8;{cell}\nAR861 release;1.1;130;22\nAnchor;0.4;;9000\n"
+    )
+
+
+WEIGHTS = {
+    ("Weight in water", "30"): 30 * 9.80665,  # no inches: `in` is a word
+    ("Weight in water (kN)", "3"): 3000.0,
+    ("Weight in water [daN]", "30"): 300.0,
+    ("Weight in water, kgf", "30"): 30 * 9.80665,
+    ("Weight (wet, lbs)", "30"): 30 * 0.45359237 * 9.80665,
+    ("Wet weight", "0.3 kN"): 300.0,
+    ("Wet weight (kp)", "300 N"): 300.0,
+    ("Gewicht unter Wasser [kN]", "0,3"): None,
+    ("Peso en agua (kN)", "0.3"): 300.0,
+    ("Weight_in_water_N", "30"): 30.0,
+    ("Weight in water (kg/100m)", "30"): 30 * 9.80665 * 1.005,
+}
+
+
+@pytest.mark.parametrize(("heading", "cell"), WEIGHTS)
+def test_a_weight_has_the_unit_that_is_written(heading, cell, read, tmp_path):
+    weight = WEIGHTS[heading, cell]
+    if weight is None:
+        with pytest.raises(InputError, match=r"has decimal points, `1.04`"):
+            read(with_cell(heading, cell))
+        return
+    wire = pieces(read(with_cell(heading, cell)), tmp_path)[1]
+    assert wire.component.weight * wire.length == pytest.approx(weight)
+
+
+LENGTHS = {
+    "8 mm": 0.008, "0.1 km": 100.0, "330 ft": 100.584, "330 Fuß": 100.584, "55 fathoms": 100.584,
+    "3960 pouces": 100.584, "100 metros": 100.0,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("cell", LENGTHS)
+def test_a_length_has_the_unit_that_stands_behind_it(cell, read, tmp_path):
+    made = read(ENGLISH.replace("8 mm wire,100,", f"8 mm wire,{cell},"))
+    assert pieces(made, tmp_path)[3].length == pytest.approx(LENGTHS[cell])
+    assert any(f"`{cell}` read as {cell}" in each.what for each in made.guessed)
+
+
+DOUBTFUL = "Item;Length (m);Wet weight (kg)\nBall;1;-433\nWire 8 mm;1.250;24\nAnchor;1;900\n"
+UNITS_BELOW = (
+    "Item,Length,Diameter,Wet weight\n,m,ell,kg\nBall,1,1,-433\nWire,9,1,2\nAnchor,1,,900\n"
+)
+NOT_UNDERSTOOD = {
+    "a unit of a heading": (
+        with_cell("Weight in water (slug)", "30"),
+        "row 1, column 4, `Weight in water (slug)`: `slug` is no unit of force that CALM knows",
+    ),
+    "one unit of a row": (
+        UNITS_BELOW, "row 1, column 3, `Diameter (ell)`: `ell` is no unit of length"
+    ),
+    "behind a number": (
+        ENGLISH.replace(",22,1.2", ",22 Stein,1.2"),
+        "row 5, AR861 release: Wet weight (kg): `22 Stein`: `Stein` is no unit of force",
+    ),
+    "a ton": (with_cell("Weight in water (tons)", "0.3"), "of 907, 1000 or 1016 kg"),
+    "a length for a weight": (with_cell("Weight in water (mm)", "3"), "`mm` is no unit of force"),
+    "two units": (ENGLISH.replace("Length (m)", "Length (m) (ft)"), "names two units"),
+    "a diameter of 8 m": (ENGLISH.replace("(mm)", ""), "is 8 m; which unit is it in?"),
+    "two decimal signs": (
+        FRENCH.replace("0,05", "0.05"),
+        "has decimal points, `0.05` (row 6), and decimal commas, `0,4` (row 2)",
+    ),
+    "thousands or decimals": (DOUBTFUL, "`1.250` (row 3) is 1250 or 1.250; write one of these"),
+    "ropes beside pieces": (
+        ENGLISH.replace("Cd,", "Length of rope below (m),"), "a line needs a row of its own"
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", NOT_UNDERSTOOD)
+def test_what_is_not_understood_is_refused_with_its_place(case, read):
+    text, message = NOT_UNDERSTOOD[case]
+    with pytest.raises(InputError) as error:
+        read(text)
+    assert message in str(error.value)
+
+
+def test_one_decimal_sign_holds_for_the_file(read, tmp_path):
+    german = FRENCH.replace("Câble de 8 mm;100;", "Câble de 8 mm;1.250;")
+    made = read(german)
+    assert pieces(made, tmp_path)[3].length == 1250.0
+    assert any("commas are decimal signs, as in `0,4` (row 2)" in str(one) for one in made.guessed)
+    english = ENGLISH.replace("8 mm wire,100,", '8 mm wire,"1,250",')
+    made = read(english)
+    assert pieces(made, tmp_path)[3].length == 1250.0
+    assert any("commas part thousands, as in `1,250` (row 4)" in str(one) for one in made.guessed)
+
+
+LANGUAGES = {
+    "German": "Bezeichnung;Länge [m];Durchmesser [mm];Gewicht im Wasser [kg];cw;Anzahl",
+    "French": "Désignation;Longueur (m);Diamètre (mm);Poids dans l'eau (kg);Traînée;Nombre",
+    "Spanish": "Nombre;Longitud (m);Diámetro (mm);Peso en agua (kg);Arrastre;Cantidad",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_headings_of_four_languages(language, read, tmp_path):
+    rows = ENGLISH.replace(",", ";").split("\n", 1)[1]
+    made = read(LANGUAGES[language] + "\n" + rows)
+    assert made.text.partition("\n")[2] == read(ENGLISH).text.partition("\n")[2]
+
+
+ROPES = (
+    "Vectran", "Plasma 12", "Samson Quantum", "Colmega", "Seil", "Drahtseil", "Trosse", "Filin",
+    "Aussière", "Cuerda", "Cabo", "Dyneema", "Twaron", "Technora", "3x19", "Hercules", "Nr. 7",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ROPES)
+def test_what_is_long_and_thin_is_a_rope_whatever_it_is_called(name, read, tmp_path):
+    wire = pieces(read(with_cell("Weight in water (kg)", "30", name=name)), tmp_path)[1]
+    assert (wire.component.kind, wire.length) == ("cable", 100.5)
+
+
+def test_columns_of_numbers_name_nothing(read, tmp_path):
+    """Neither serial numbers nor an `Item` that counts."""
+    rows = [line.split(",", 1) for line in ENGLISH.splitlines()]
+    for heading in ("Item", "Item no", "Serial", "Part number"):
+        text = f"{heading},Description,{rows[0][1]}\n" + "".join(
+            f"{place},{name},{rest}\n" for place, (name, rest) in enumerate(rows[1:], 1)
+        )
+        assert [piece.component.name for piece in pieces(read(text), tmp_path)][:2] == [
+            "Ball 40 in", "1/2 in shackle",
+        ]  # fmt: skip

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from calm.errors import InputError
-from calm.exchange.list_headings import read_sheets
+from calm.exchange.list_cells import read_sheets
 from calm.locate.ranges import read_ranges
 from calm.locate.sound import read_sound
 from calm.motion.measured_currents import read_currents

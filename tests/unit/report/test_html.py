@@ -13,11 +13,11 @@ import pytest
 
 import calm
 from calm.checks.finding import State
+from calm.drawing.check_figures import check_figure
+from calm.drawing.picture import set_apart
 from calm.errors import UsageError
-from calm.report.check_figures import check_figure
 from calm.report.check_report import mooring_section
 from calm.report.html import report_html, result_html
-from calm.report.picture import set_apart
 from calm.report.provenance import input_hash
 from tests.judged import (
     FORMULA,
@@ -103,7 +103,7 @@ def test_page_one_says_what_is_accepted_and_why():
     assert "? nothing fails, 1 figure unknown" in text
     accepted = text.index("Accepted with a reason")
     assert text.index("? nothing fails") < accepted < text.index("Moorings by environment")
-    reason = "no maker prints it; proof-loaded to 10 kN before each cruise"
+    reason = "its load in line is printed nowhere; proof-loaded to 20 kN before each cruise"
     assert accepted < text.index(reason) < text.index("Moorings by environment")
     assert "Unknown, piece by piece" in text
 
@@ -236,7 +236,7 @@ PROGRAM = """
 import hashlib, sys
 from pathlib import Path
 from tests.judged import judged
-from calm.report.check_figures import check_figure
+from calm.drawing.check_figures import check_figure
 from calm.report.check_report import mooring_section
 from calm.report.html import report_html
 from calm.report.pdf import report_pdf

@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import pytest
 
-from calm.report.sketch import current_profile, elevation, plan, tension
-from calm.report.sketch.elevation import SIGNS
+from calm.drawing.sketch import current_profile, elevation, plan, tension
+from calm.drawing.sketch.elevation import SIGNS
 
 ALL = (
     "a-frame-sheared-tow",
@@ -67,15 +67,15 @@ def test_elevation_of_s1000(solved):
 
 def test_plan_of_veering_current(solved):
     assert rows(plan(solved("veering-current"), 24, 12)) == [
-        "top 52.4 m off to 175°  ",
+        "top 52.5 m off to 174°  ",
         "  0┤N ⠄ ⠄ ⠄ ◆▼● ⠄ ⠄ ⠄ ⠄ ",
-        "   │         ⣏          ",
-        "   │        ⢀●■         ",
+        "   │         ⣇          ",
+        "   │        ⢠●■         ",
         "-20┤        ⢸⢀          ",
         "   │        ⢸⢀          ",
         "   │        ⢸⣀          ",
         "-40┤         ■          ",
-        "   │         ⢸■         ",
+        "   │         ⢘■         ",
         "   │         ⢀■●        ",
         "  m───┴──────┴───────┴──",
         "     -25     0 m E      ",
@@ -85,7 +85,7 @@ def test_plan_of_veering_current(solved):
 def test_tension_of_veering_current(solved):
     assert rows(tension(solved("veering-current"), 24, 12)) == [
         "at most 3598 N; dotted: ",
-        "  0┤⠉⠉⠉⠉⠉⠉⣉⠇          ⠅ ",
+        "  0┤⠉⠉⠉⠉⠉⠉⣩⠇          ⠅ ",
         "   │     ⢀⡇           ⠅ ",
         "   │    ⢀⣸            ⠅ ",
         "   │    ⢸               ",
@@ -206,7 +206,7 @@ def test_still_water_says_so(solved):
 def test_tension_tells_the_greatest_and_dots_the_limits(solved):
     result = solved("deep-current-meters")
     texts = tension(result, 38, 18)
-    assert texts[0].plain.rstrip() == "at most 5130 N; dotted: limits"
+    assert texts[0].plain.rstrip() == "at most 5138 N; dotted: limits"
     assert any("red" in str(span.style) for text in texts for span in text.spans)
     texts = tension(solved("s1000"), 38, 18)
     assert texts[0].plain.rstrip() == "at most 4003 N"

@@ -1,0 +1,398 @@
+"""Read the cells of a list: its sheets, its numbers as people write them, and their units."""
+
+from __future__ import annotations
+
+import io
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+from typing import NamedTuple
+
+from calm.exchange.design import refused
+from calm.exchange.foreign_process import read_apart
+from calm.records.delimited import cells_in
+from calm.units import DIMENSIONS, KILOGRAM_FORCE, QuantityError, unit_factor
+from calm.whole_file import read_content
+
+_DIMENSIONS = {
+    **dict.fromkeys(("length", "diameter", "width", "at", "height"), "length"),
+    **dict.fromkeys(("buoyancy", "weight", "stiffness", "breaking_load"), "force"),
+    **dict.fromkeys(("area", "drag_area", "tangential_area"), "area"),
+    "mass": "mass",
+}  # of a column
+_SPELLED = {
+    **dict.fromkeys(("meter", "metre", "metres", "meters", "mtr", "mètre", "mètres"), "m"),
+    **dict.fromkeys(("metern", "metro", "metros", "mts"), "m"),
+    **dict.fromkeys(("inch", "inches", "zoll", "pouce", "pouces", "pulgada", "pulgadas"), "in"),
+    **dict.fromkeys(('"', "″", "''", "”", "po"), "in"),
+    **dict.fromkeys(("foot", "feet", "fuß", "fuss", "pied", "pieds", "pie", "pies"), "ft"),
+    **dict.fromkeys(("'", "′", "’"), "ft"),
+    **dict.fromkeys(("fathom", "fathoms", "fth", "faden", "brasse", "brasses"), "fathom"),
+    **dict.fromkeys(("millimeter", "millimetre", "millimetres", "millimètres"), "mm"),
+    **dict.fromkeys(("zentimeter", "centimeter", "centimetre", "centimètres"), "cm"),
+    **dict.fromkeys(("kgs", "kilo", "kilos", "kilogram", "kilograms", "kilogramm"), "kg"),
+    **dict.fromkeys(("kilogramme", "kilogrammes", "kilogramo", "kilogramos"), "kg"),
+    **dict.fromkeys(("gram", "grams", "gramm", "gramme", "grammes", "gr"), "g"),
+    **dict.fromkeys(("tonne", "tonnes", "tonnen", "tonelada", "toneladas"), "t"),
+    **dict.fromkeys(("pound", "pounds", "lbs", "libra", "libras"), "lb"),
+    **dict.fromkeys(("newton", "newtons"), "N"),
+    **dict.fromkeys(("kp", "kgp", "kilopond", "kg-f", "kgforce"), "kgf"),
+    **dict.fromkeys(("m²", "m2", "sqm", "qm"), "m^2"),
+    **dict.fromkeys(("cm²", "cm2"), "cm^2"),
+    **dict.fromkeys(("ft²", "ft2", "sqft"), "ft^2"),
+    **dict.fromkeys(("in²", "in2"), "in^2"),
+}
+_AMBIGUOUS = ("ton", "tons")  # of 907, 1000 or 1016 kg
+_SUBSTANCES = r"(?:sea ?|salt ?|fresh ?)?(?:water|air|wasser|luft|l'?eau|eau|agua|aire|mer|mar)"
+_IN_WATER = re.compile(
+    rf"\b(?:in|im|an|dans|unter|en|el|l['’])(?: the| el| der| la)? {_SUBSTANCES}\b"
+)
+_PLAIN_WORDS = re.compile(
+    rf"\b(?:wet|dry|{_SUBSTANCES}|net|nett[oa]?|gross|brutto|each|ea|total|whole|nominal|nom|approx"
+    r"|est|ca|outer|outside|od|id|mean|max|min|immersed|submerged|immerg[ée]e?|sec|nass|trocken"
+    r"|sumergido|seco|mojado|off|btm|bottom|fond|mbl|cyl|sph|unit|pc|pcs|pieces?|stk|stück"
+    r"|st|x|pzas?|pi[èe]ces?)\b\.?"
+)
+_PER_METRE = re.compile(
+    r"^(?P<unit>\S+?)\s*(?:/|\bper\b|\bpro\b|\bpar\b|\bpor\b|\bje\b)\s*(?P<count>\d*)\s*(?P<of>\S+)$"
+)
+_BRACKETS = re.compile(r"[(\[{]([^()\[\]{}]*)[)\]}]")
+_NUMERAL = re.compile(
+    r"(?P<sign>[-+−]?)\s*(?P<digits>\d[\d.,'’]*(?:[ \u00a0\u202f]\d{3}(?!\d)[\d.,]*)*|[.,]\d+)"
+    r"(?P<power>[eE][-+]?\d{1,3}(?!\d))?"
+)
+_RATIO = re.compile(r"(?P<sign>[-+−]?)(?:(?P<whole>\d+)[ -])?(?P<over>\d+)/(?P<under>[1-9]\d*)")
+_BEFORE = re.compile(r"^(?:[~≈≃<>øØ±\s]|ca\.|env\.|etwa\b|approx\.?|aprox\.?)+")
+_SPREADSHEETS = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1")  # xlsx, xls
+_UTF_16 = (b"\xff\xfe", b"\xfe\xff")
+_LARGEST = 20_000_000
+_MOST_ROWS, _MOST_COLUMNS = 20_000, 500
+_NOTHING = {
+    "", "-", "–", "—", "/", "*", "**", "n/a", "na", "nan", "none", "?", "nil", "x", "sans", "null",
+}  # fmt: skip
+
+
+class WorkbookNumber(str):
+    """Hold a number of a workbook as text; it has a point whatever its reader sees."""
+
+    __slots__ = ()
+
+
+SheetRows = list[list[str]]
+"""Cells as text, up to the last that is not empty."""
+
+
+@dataclass(frozen=True)
+class ColumnUnit:
+    """Hold what a number is multiplied by to be in SI, and whether it is that of a metre.
+
+    `by_mass`: a force is counted in kilograms or pounds.
+    """
+
+    factor: float
+    per_metre: bool = False
+    by_mass: bool = False
+
+
+def unit_called(text: str, what: str) -> ColumnUnit | None:
+    """Return the unit that a text names, words such as *wet* apart; None where it names none.
+
+    Parameters
+    ----------
+    text : that stands in brackets, in a units row or after a number
+    what : the column holds
+
+    Raises
+    ------
+    ValueError
+        It is no unit of what the column holds.
+    """
+    plain = " ".join(text.replace("_", " ").split())
+    while plain:
+        if (found := _unit(plain, what)) is not None:
+            return found
+        less = _IN_WATER.sub(" ", plain.lower()) if _IN_WATER.search(plain.lower()) else ""
+        if not less:
+            less = re.sub(_PLAIN_WORDS.pattern, " ", plain, flags=re.I)
+        less = " ".join(re.sub(r"[,;:]", " ", less).split()).strip(".- ")
+        if less == plain:
+            break
+        plain = less
+    if not plain:
+        return None
+    if what not in _DIMENSIONS:
+        raise ValueError(f"`{text}` is not understood")
+    raise ValueError(f"`{plain}` is no unit of {_DIMENSIONS[what]} that CALM knows{_hint(plain)}")
+
+
+def unit_of_heading(heading: str, what: str) -> ColumnUnit | None:
+    """Return the unit of a heading: in brackets, or its last word; None where it has none.
+
+    Raises
+    ------
+    ValueError
+        What stands in brackets is no unit, or there are two.
+    """
+    if what not in _DIMENSIONS:
+        return None
+    spaced = re.sub(r"(?<=[a-z])(?=[A-Z][a-z])", " ", heading)  # buoyancyPerMeter
+    found = [unit for inside in _BRACKETS.findall(spaced) if (unit := unit_called(inside, what))]
+    if len(set(found)) > 1:
+        raise ValueError(f"`{heading}` names two units")
+    if found:
+        return found[0]
+    bare = " ".join(_IN_WATER.sub(" ", _BRACKETS.sub(" ", spaced).replace("_", " ")).split())
+    words = re.sub(r"(\s*/\s*)(?=[^/]*$)", "/", bare).rstrip(".:").split()
+    while len(words) > 1 and re.fullmatch(_PLAIN_WORDS, words[-1].lower()):
+        words.pop()
+    for count in (3, 2, 1):
+        if len(words) > count and (unit := _unit(" ".join(words[-count:]), what)):
+            return unit
+    last = words[-1].partition("/")[2] if len(words) == 1 else words[-1].lstrip("/")
+    if last and (unit := _unit(last, what)):
+        return unit
+    if len(words) > 2 and words[-2].lower() in ("in", "en") and words[-1].isalpha():
+        raise ValueError(f"`{words[-1]}` is no unit of {_DIMENSIONS[what]} that CALM knows")
+    return None
+
+
+def _unit(text: str, what: str) -> ColumnUnit | None:
+    """Return a unit, whole; None where a text is none of what the column holds."""
+    dimension = _DIMENSIONS.get(what, "")
+    for each, scale, by_mass in (
+        (dimension, 1.0, False),
+        *([("mass", KILOGRAM_FORCE, True)] if dimension == "force" else []),
+        *([("force", 1.0 / KILOGRAM_FORCE, False)] if dimension == "mass" else []),
+    ):
+        if (factor := _factor(text, each)) is not None:
+            return ColumnUnit(factor * scale, False, by_mass)
+    parted = _PER_METRE.match(text)
+    if parted is None or dimension not in ("mass", "force", "area"):
+        return None
+    of = _factor(parted["of"], "length")
+    above = _unit(parted["unit"], what)
+    if of is None or above is None or above.per_metre:
+        return None
+    return ColumnUnit(above.factor / of / float(parted["count"] or 1), True, above.by_mass)
+
+
+def _factor(text: str, dimension: str) -> float | None:
+    """Return what a number in a unit is multiplied by, whatever language and capitals it has."""
+    if dimension not in DIMENSIONS or text.lower() in _AMBIGUOUS:
+        return None
+    known = DIMENSIONS[dimension].units
+    near = [unit for unit in known if unit and unit.lower() == text.lower() and unit != "MN"]
+    spelled = text if text in known else _SPELLED.get(text.lower().rstrip("."), "")
+    spelled = spelled or (near[0] if near else "")
+    if not spelled:
+        return None
+    try:
+        return unit_factor(spelled, dimension)
+    except QuantityError:
+        return None
+
+
+def _hint(text: str) -> str:
+    return ": of 907, 1000 or 1016 kg" if text.lower() in _AMBIGUOUS else ""
+
+
+class CellNumber(NamedTuple):
+    """Hold the number of a cell, None where it has none; what stands behind it; what is wrong."""
+
+    value: float | None
+    rest: str = ""
+    wrong: str = ""
+    tidied: bool = False
+
+
+def number(cell: str, decimal: str = "") -> CellNumber:
+    """Return the number of a cell.
+
+    Parameters
+    ----------
+    decimal : sign of the file; found in the cell itself where it is not given
+    """
+    text = cell.strip().lstrip("'")
+    if text.lower() in _NOTHING:
+        return CellNumber(None)
+    bare = _BEFORE.sub("", text)
+    ratio = _RATIO.match(bare)
+    if ratio:
+        value = int(ratio["whole"] or 0) + int(ratio["over"]) / int(ratio["under"])
+        return CellNumber(
+            -value if ratio["sign"] in "-−" and ratio["sign"] else value,
+            bare[ratio.end() :].strip(), tidied=True,
+        )  # fmt: skip
+    found = _NUMERAL.match(bare)
+    if found is None:
+        return CellNumber(None, wrong=f"`{cell}` is not a number")
+    digits = found["digits"].rstrip(".,'’")
+    rest = (
+        bare[found.start("digits") + len(digits) :] if not found["power"] else bare[found.end() :]
+    )
+    if isinstance(cell, WorkbookNumber):
+        decimal = "."
+    sure, doubtful = _signs(digits)
+    if doubtful and not decimal:
+        return CellNumber(None, wrong=f"`{cell}` is {_either(digits)}")
+    decimal = decimal or sure or "."
+    groups = re.split(f"[{re.escape(',' if decimal == '.' else '.')}'’ \u00a0\u202f]", digits)
+    whole, _, part = groups[-1].partition(decimal)
+    if (
+        any(decimal in group for group in groups[:-1])
+        or not re.fullmatch(r"\d*", part)
+        or (groups[1:] and not all(len(group) == 3 for group in [*groups[1:-1], whole]))
+    ):
+        return CellNumber(None, wrong=f"`{cell}` is not a number")
+    plain = "".join(groups[:-1]) + whole + "." + part + (found["power"] or "")
+    value = float(plain) * (-1.0 if found["sign"] in ("-", "−") else 1.0)
+    return CellNumber(value, rest.strip(), tidied=bool(rest.strip()) or bare != text)
+
+
+def _signs(digits: str) -> tuple[str, str]:
+    """Return the decimal sign of a numeral, and a sign that may be that or one of thousands."""
+    plain = re.sub(r"['’\s]", "", digits)
+    present = [sign for sign in ".," if sign in plain]
+    if len(present) == 2:
+        return max(present, key=plain.rfind), ""
+    if not present:
+        return "", ""
+    (sign,), other = present, {".": ",", ",": "."}[present[0]]
+    if plain.count(sign) > 1:
+        return other, ""
+    whole, _, part = plain.partition(sign)
+    return ("", sign) if len(part) == 3 and whole.strip("0") and len(whole) <= 3 else (sign, "")
+
+
+def _either(digits: str) -> str:
+    plain = re.sub(r"[.,]", "", digits)
+    return f"{plain} or {plain[:-3]}.{plain[-3:]}; write one of these"
+
+
+def decimal_sign(cells: Iterable[tuple[str, str]]) -> tuple[str, str]:
+    """Return the decimal sign of a file, and what it was found from where it has commas.
+
+    Parameters
+    ----------
+    cells : place and text of all that hold numbers
+
+    Raises
+    ------
+    ValueError
+        Two signs are used, or nothing tells what `1,250` is.
+    """
+    seen: dict[str, str] = {}
+    doubtful: dict[str, str] = {}
+    for place, cell in cells:
+        found = None if isinstance(cell, WorkbookNumber) else _NUMERAL.match(_BEFORE.sub("", cell))
+        if found is None or _RATIO.match(_BEFORE.sub("", cell)):
+            continue
+        sure, doubt = _signs(found["digits"].rstrip(".,'’"))
+        if sure:
+            seen.setdefault(sure, f"`{cell}` ({place})")
+        if doubt:
+            doubtful.setdefault(doubt, f"`{cell}` ({place})")
+    if len(seen) == 2:
+        raise ValueError(f"has decimal points, {seen['.']}, and decimal commas, {seen[',']}")
+    if not seen and doubtful:
+        sign, first = next(iter(doubtful.items()))
+        one = first[1:].partition("`")[0]
+        found = _NUMERAL.match(_BEFORE.sub("", one))
+        assert found is not None
+        what = "points" if sign == "." else "commas"
+        either = _either(found["digits"])
+        raise ValueError(f"{first} is {either}: no number of the file tells what its {what} are")
+    decimal = next(iter(seen), ".")
+    if decimal == ",":
+        return decimal, f"commas are decimal signs, as in {seen[',']}"
+    if "," in doubtful:
+        return decimal, f"commas part thousands, as in {doubtful[',']}; decimals have points"
+    return decimal, ""
+
+
+def _is_spreadsheet(content: bytes) -> bool:
+    """Return whether a file is an Excel workbook, by its first bytes."""
+    return content.startswith(_SPREADSHEETS)
+
+
+def is_table(content: bytes) -> bool:
+    """Return whether a file is a workbook, or text whose lines have the same separator."""
+    if _is_spreadsheet(content):
+        return True
+    if content.startswith(_UTF_16):
+        content = content[: len(content) // 2 * 2].decode("utf-16", "replace").encode()
+    lines = [line for line in content.split(b"\n")[:20] if line.strip()]
+    cut = any(sum(sign in line for line in lines) >= 2 for sign in (b"\t", b";", b","))
+    return b"\0" not in content and cut
+
+
+def read_sheets(path: Path) -> dict[str, SheetRows]:
+    """Return the rows of every sheet by its name; lines that begin with # are comments.
+
+    A sheet without a cell is left out; text has one sheet, without a name.
+
+    Raises
+    ------
+    InputError
+        It cannot be read.
+    """
+    content = read_content(path, largest=_LARGEST)
+    workbook = _is_spreadsheet(content)
+    sheets = _workbook(path, content) if workbook else {"": cells_in(_text(path, content))}
+    for rows in sheets.values():
+        if len(rows) > _MOST_ROWS or any(len(row) > _MOST_COLUMNS for row in rows):
+            raise refused(path, f"has more than {_MOST_ROWS} rows or {_MOST_COLUMNS} columns")
+    return {name: cleaned for name, rows in sheets.items() if (cleaned := _cleaned(rows))}
+
+
+def _cleaned(rows: SheetRows) -> SheetRows:
+    """Rows without blanks at the ends of cells, empty cells at the end, and comments."""
+    cleaned = []
+    for row in rows:
+        cells = [
+            cell if isinstance(cell, WorkbookNumber) else " ".join(cell.split()) for cell in row
+        ]
+        while cells and not cells[-1]:
+            cells.pop()
+        if cells and not cells[0].startswith("#"):
+            cleaned.append(cells)
+    return cleaned
+
+
+def _text(path: Path, content: bytes) -> str:
+    """Return the text: UTF-8, UTF-16 with the mark of Excel, or the Western encoding of Windows."""
+    if content.startswith(_UTF_16):
+        return content.decode("utf-16", "replace")
+    if b"\0" in content:
+        raise refused(path, "is a binary file; a table in text or a workbook is needed")
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return content.decode("cp1252", "replace")
+
+
+def _workbook(path: Path, content: bytes) -> dict[str, SheetRows]:
+    if find_spec("python_calamine") is None:
+        raise refused(
+            path, "is a workbook; install `calm-mooring[sheets]`, or save the sheet as CSV"
+        )
+    try:
+        return read_apart(_sheets, content)
+    except ValueError as error:
+        raise refused(path, f"is a damaged workbook ({error})") from None
+
+
+def _sheets(content: bytes) -> dict[str, SheetRows]:
+    import python_calamine
+
+    book = python_calamine.load_workbook(io.BytesIO(content))
+    sheets = {name: book.get_sheet_by_name(name).to_python() for name in book.sheet_names}
+    return {
+        name: [[_shown(cell) for cell in row] for row in sheet] for name, sheet in sheets.items()
+    }
+
+
+def _shown(cell: object) -> str:
+    return WorkbookNumber(f"{cell:.12g}") if isinstance(cell, float) else str(cell)
