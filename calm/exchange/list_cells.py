@@ -6,10 +6,12 @@ import io
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
 from calm.exchange.design import refused
+from calm.exchange.foreign_process import read_apart
 from calm.records.delimited import cells_in
 from calm.units import DIMENSIONS, KILOGRAM_FORCE, QuantityError, unit_factor
 from calm.whole_file import read_content
@@ -372,17 +374,21 @@ def _text(path: Path, content: bytes) -> str:
 
 
 def _workbook(path: Path, content: bytes) -> dict[str, SheetRows]:
-    try:
-        import python_calamine
-    except ImportError:
+    if find_spec("python_calamine") is None:
         raise refused(
             path, "is a workbook; install `calm-mooring[sheets]`, or save the sheet as CSV"
-        ) from None
+        )
     try:
-        book = python_calamine.load_workbook(io.BytesIO(content))
-        sheets = {name: book.get_sheet_by_name(name).to_python() for name in book.sheet_names}
-    except Exception as error:  # of the library, for damaged files
+        return read_apart(_sheets, content)
+    except ValueError as error:
         raise refused(path, f"is a damaged workbook ({error})") from None
+
+
+def _sheets(content: bytes) -> dict[str, SheetRows]:
+    import python_calamine
+
+    book = python_calamine.load_workbook(io.BytesIO(content))
+    sheets = {name: book.get_sheet_by_name(name).to_python() for name in book.sheet_names}
     return {
         name: [[_shown(cell) for cell in row] for row in sheet] for name, sheet in sheets.items()
     }
