@@ -201,10 +201,6 @@ def _two_depths(value: object) -> object:
     return value
 
 
-_GRAVITY = QuantityField("acceleration", at_least=9.7, at_most=10.0)
-"""On Earth 9.78 to 9.83 m/s² (WGS 84, at the equator and the poles)."""
-
-
 class TowEnvironmentKeys(Model):
     """The keys of `environment:` as a person writes them for a tow."""
 
@@ -219,8 +215,8 @@ class TowEnvironmentKeys(Model):
         description="of the water: one, a table, or by temperature and salinity",
         examples=["1025 kg/m^3"],
     )
-    gravity: Annotated[float | None, _GRAVITY] = Field(
-        default=None, description="acceleration", examples=["9.81 m/s^2"]
+    gravity: Annotated[float | None, QuantityField("acceleration", at_least=9.7, at_most=10)] = (
+        Field(default=None, description="acceleration", examples=["9.81 m/s^2"])
     )
     current: Annotated[
         Annotated[TableKeys, Tag("table")]
