@@ -47,6 +47,7 @@ _UNBALANCED = re.compile(
     r"|\bun(torque|balanced)|balanced\W+(no|not|false)\b"
 )
 _STEEL = re.compile(r"\b(steel|galv\w*|stainless|nilspin)\b")
+_NO_RELEASE = re.compile(r"\b(shackle|swivel|sling|chain|rope|wire|thimble|pear[- ]?link)s?\b")
 _INSULATED = ("plastic", "jacket", "sheath", "coated", "insulat")
 
 
@@ -66,6 +67,15 @@ def release_present(handling: Handling) -> Iterator[Verdict]:
         )
         return
     piece = mooring.file.pieces[release]
+    if _NO_RELEASE.search(_words(piece.use, piece.component.name)):
+        message = f"{piece.label} has the role of a release, and is called what opens nothing."
+        yield unknown(piece, message, "Give `role: release` to the release alone.")
+        return
+    for below in mooring.file.pieces[release + 1 :]:
+        if net_buoyancy(below.component, mooring.water.gravity) > 0.0:
+            message = f"{below.label} floats below the release, and stays on the anchor."
+            remedy = "Put it above the release, or take what sinks."
+            yield verdict_on(below, State.WARN, message, remedy)
     yield verdict_on(piece, State.PASS, f"{piece.label} frees the line from everything below it.")
 
 

@@ -22,28 +22,27 @@ _DIMENSIONS = {
     **dict.fromkeys(("area", "drag_area", "tangential_area"), "area"),
     "mass": "mass",
 }  # of a column
-_SPELLED = {
-    **dict.fromkeys(("meter", "metre", "metres", "meters", "mtr", "mètre", "mètres"), "m"),
-    **dict.fromkeys(("metern", "metro", "metros", "mts"), "m"),
-    **dict.fromkeys(("inch", "inches", "zoll", "pouce", "pouces", "pulgada", "pulgadas"), "in"),
-    **dict.fromkeys(('"', "″", "''", "”", "po"), "in"),
-    **dict.fromkeys(("foot", "feet", "fuß", "fuss", "pied", "pieds", "pie", "pies"), "ft"),
-    **dict.fromkeys(("'", "′", "’"), "ft"),
-    **dict.fromkeys(("fathom", "fathoms", "fth", "faden", "brasse", "brasses"), "fathom"),
-    **dict.fromkeys(("millimeter", "millimetre", "millimetres", "millimètres"), "mm"),
-    **dict.fromkeys(("zentimeter", "centimeter", "centimetre", "centimètres"), "cm"),
-    **dict.fromkeys(("kgs", "kilo", "kilos", "kilogram", "kilograms", "kilogramm"), "kg"),
-    **dict.fromkeys(("kilogramme", "kilogrammes", "kilogramo", "kilogramos"), "kg"),
-    **dict.fromkeys(("gram", "grams", "gramm", "gramme", "grammes", "gr"), "g"),
-    **dict.fromkeys(("tonne", "tonnes", "tonnen", "tonelada", "toneladas"), "t"),
-    **dict.fromkeys(("pound", "pounds", "lbs", "libra", "libras"), "lb"),
-    **dict.fromkeys(("newton", "newtons"), "N"),
-    **dict.fromkeys(("kp", "kgp", "kilopond", "kg-f", "kgforce"), "kgf"),
-    **dict.fromkeys(("m²", "m2", "sqm", "qm"), "m^2"),
-    **dict.fromkeys(("cm²", "cm2"), "cm^2"),
-    **dict.fromkeys(("ft²", "ft2", "sqft"), "ft^2"),
-    **dict.fromkeys(("in²", "in2"), "in^2"),
+_NAMES_OF_UNITS = {
+    "m": "meter metre metres meters mtr mètre mètres metern metro metros mts",
+    "in": "inch inches zoll pouce pouces pulgada pulgadas \" ″ '' ” po",
+    "ft": "foot feet fuß fuss pied pieds pie pies ' ′ ’",
+    "fathom": "fathom fathoms fth faden brasse brasses",
+    "mm": "millimeter millimetre millimetres millimètres",
+    "cm": "zentimeter centimeter centimetre centimètres",
+    "kg": (
+        "kgs kilo kilos kilogram kilograms kilogramm kilogramme kilogrammes kilogramo kilogramos"
+    ),
+    "g": "gram grams gramm gramme grammes gr",
+    "t": "tonne tonnes tonnen tonelada toneladas",
+    "lb": "pound pounds lbs libra libras",
+    "N": "newton newtons",
+    "kgf": "kp kgp kilopond kg-f kgforce",
+    "m^2": "m² m2 sqm qm",
+    "cm^2": "cm² cm2",
+    "ft^2": "ft² ft2 sqft",
+    "in^2": "in² in2",
 }
+_SPELLED = {name: unit for unit, names in _NAMES_OF_UNITS.items() for name in names.split()}
 _AMBIGUOUS = ("ton", "tons")  # of 907, 1000 or 1016 kg
 _SUBSTANCES = r"(?:sea ?|salt ?|fresh ?)?(?:water|air|wasser|luft|l'?eau|eau|agua|aire|mer|mar)"
 _IN_WATER = re.compile(

@@ -212,7 +212,8 @@ RULES = {
         "Release",
         "",
         "whether a piece of a sub-surface line has `role: release`",
-        "unknown where none has",
+        "unknown where none has, or one that is called a shackle, swivel, rope or the like; a "
+        "warning where something below it floats",
         "Defaults of this program: a line to be recovered names its release",
         _ONCE,
     ),

@@ -100,6 +100,34 @@ def test_a_mooring_deployed_elsewhere_is_unknown(tmp_path):
     ]  # fmt: skip
 
 
+@pytest.mark.parametrize(
+    ("more", "message"),
+    [
+        ("checks: {anchor_friction: 5}\n", "`anchor_friction: 5` must be at most 1"),
+        ("gravity", r"`gravity: 1 m/s^2` must be at least 9.7 m/s^2"),
+    ],
+)
+def test_what_can_only_flatter_is_refused(more, message, tmp_path):
+    text = SOUND.replace("CURRENT", HALF)
+    if more == "gravity":
+        text, more = text.replace("depth: 200 m,", "depth: 200 m, gravity: 1 m/s^2,"), ""
+    with pytest.raises(InputError) as error:
+        load(tmp_path / "m.yaml", text=text + more)
+    assert message in str(error.value)
+
+
+def test_a_rope_that_floats_below_the_release_is_told(tmp_path):
+    text = SOUND.replace("  - {use: weight}", "  - {use: tail, length: 10 m}\n  - {use: weight}")
+    text = text.replace(
+        "  rope:", "  tail: {kind: cable, diameter: 10 mm, buoyancy: 0.05 N/m}\n  rope:"
+    )
+    mooring = load(tmp_path / "m.yaml", text=text.replace("CURRENT", HALF))
+    found = assessment_of("m", [stand_of(mooring, "m")]).findings
+    assert next(one.message for one in found if one.rule == "release-present") == (
+        "tail floats below the release, and stays on the anchor."
+    )
+
+
 def test_strumming_that_lessens_drag_is_refused(tmp_path):
     with pytest.raises(InputError, match=r"`factor: 0.1` must be at least 1"):
         of(tmp_path, more="solver: {strumming: {factor: 0.1}}\n")

@@ -476,6 +476,15 @@ FLAWS = (
         "without a swivel between them",
     ),
     Flaw(
+        "a shackle for a release",
+        FIT,
+        (("{use: release-", "{name: shackle 13, use: release-"),),
+        "release-present",
+        None,
+        "unknown",
+        "has the role of a release, and is called what opens nothing.",
+    ),
+    Flaw(
         "two clamps in one place",
         FIT,
         (("at: 20 m, label: CTD 130 m", "at: 5.3 m, label: CTD 130 m"),),
