@@ -14,6 +14,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from calm.positions import HEMISPHERES, degrees_of
+
 if TYPE_CHECKING:
     import pint
 
@@ -119,6 +121,8 @@ DIMENSIONS: Mapping[str, Dimension] = {
         "a time", "s", {"s": 1.0, "ms": 1e-3, "min": 60.0, "h": 3600.0, "d": 86400.0}
     ),
     "angle": Dimension("an angle", "deg", {"deg": 1.0, "rad": 180 / math.pi}),
+    "latitude": Dimension("a latitude", "deg", {"deg": 1.0}),
+    "longitude": Dimension("a longitude", "deg", {"deg": 1.0}),
 }
 """Every kind of quantity, by name.
 
@@ -181,7 +185,8 @@ def parse_quantity(text: object, dimension: str, *, usual_unit: str | None = Non
     Parameters
     ----------
     text : str or float
-        Such as ``"12 mm"``, ``"1/2 in"``, ``"1.5e3 N"``; zero, and any `number`, needs no unit.
+        Such as ``"12 mm"``, ``"1/2 in"``, ``"1.5e3 N"``; zero, and any `number`, needs no unit. A
+        latitude or longitude may be of degrees and minutes: see `calm.positions`.
     dimension : str
         A key of `DIMENSIONS`.
     usual_unit : str, optional
@@ -201,6 +206,13 @@ def parse_quantity(text: object, dimension: str, *, usual_unit: str | None = Non
 def _parsed(text: str, dimension: str, usual_unit: str | None) -> float:
     """Return the value of a text without blanks around it."""
     wanted = DIMENSIONS[dimension]
+    if dimension in HEMISPHERES:
+        try:
+            placed = degrees_of(text, dimension)
+        except ValueError as error:
+            raise QuantityError(str(error)) from None
+        if placed is not None:
+            return placed
     number, unit = _split(text, wanted)
     if unit:
         try:

@@ -22,7 +22,8 @@ LOCATE_EXAMPLES = """Examples:
   calm locate ranges.csv
   calm locate times.csv --sound-speed "1492 m/s" --transducer "5 m" --plot circles.png
   calm locate times.csv --sound-speed profile.csv --depth "1103 m"
-  calm locate ranges.csv -o mooring.yaml       (its deployed: gets position and depth)
+  calm locate ranges.csv --depth "1103 m" --near "48 18.0 N, 5 12.0 W"
+  calm locate ranges.csv --update mooring.yaml   (its deployed: gets position and depth)
 
 ranges.csv:
 
@@ -40,19 +41,23 @@ def locate(
     above_seabed: str = "0 m",
     plot: Path | None = None,
     json: OutputPath = None,
-    output: Annotated[Path | None, Parameter(name=["--output", "-o"])] = None,
+    near: Annotated[str | None, Parameter(allow_leading_hyphen=True)] = None,
+    update: Path | None = None,
+    accept: bool = False,
+    output: Annotated[Path | None, Parameter(name=["--output", "-o"], show=False)] = None,
 ) -> ExitCode:
     """Find where an anchor lies from acoustic ranges taken by a ship.
 
-    Outliers among the ranges are named and left out. The place comes with its 95 %
-    ellipse, the depth with its interval, and a warning where the ship's positions
-    leave them poorly known. Rays are taken as straight.
+    Outliers among the ranges are named and left out, where enough ranges remain. The
+    place comes with its 95 % ellipse, the depth with its interval, and a warning where
+    the ship's positions leave them poorly known. Where two places fit, the one near the
+    planned position is taken, and the other named. Rays are taken as straight.
 
     Parameters
     ----------
     file
-        CSV file with the columns latitude[deg], longitude[deg] (WGS 84, of the
-        transducer) and range[m], or time[s], there and back.
+        CSV file with the columns latitude, longitude (WGS 84, of the transducer; degrees, or
+        degrees and minutes) and range[m], or time[s], there and back.
     sound_speed
         Speed of sound for times: a speed, or a CSV file with the columns depth[m] and
         sound_speed[m/s]; 1500 m/s unless given. Ranges in metres are taken as they are.
@@ -67,15 +72,23 @@ def locate(
         Draw the ranges as circles about the ship, with the place: .png, .svg or .pdf.
     json
         Write the place as JSON, - to print it.
-    output
+    near
+        Latitude and longitude of about where it was dropped, as LAT,LON: which of two places is
+        meant. The planned position of the file of --update unless given.
+    update
         A mooring file: write position and depth into its `deployed:`, and say how far that is from
-        its planned position.
+        its planned position. Where the place is in doubt nothing is written, and the exit code is
+        1.
+    accept
+        Write the place in spite of a doubt.
     """
+    from calm.drawing.picture import check_format, image
     from calm.locate import locate as found_at
     from calm.locate import read_ranges
+    from calm.locate.deployed import planned_in, with_deployed
+    from calm.records.record import parse_place
     from calm.report.folder import check_destination, write_file
     from calm.report.located_anchor import located_figure, located_part
-    from calm.report.picture import check_format, image
 
     outputs = Outputs((file,), json)
     outputs.check()
@@ -102,25 +115,31 @@ def locate(
         narrate("--sound-speed is not used: ranges in metres are taken as they are")
     for notice in survey.notices:
         narrate(f"{file}: {notice}")
-    located = found_at(survey, sound, answering)
-    water_depth = located.depth + height
-    edited = None
     if output is not None:
-        from calm.locate.deployed import with_deployed
-
-        working, text, beside = with_deployed(output, located, water_depth)
-        edited = working, text
+        narrate("-o is spelt --update from now on: the file is edited in place")
+        update = update or output
+    planned = None if update is None else planned_in(update)
+    located = found_at(survey, sound, answering, planned if near is None else parse_place(near))
+    water_depth = located.depth + height
+    doubts, edited = located.doubts, None
+    if update is not None:
+        working, text, beside, far = with_deployed(update, located, water_depth)
+        edited, doubts = (working, text), (*doubts, *far)
         for line in beside:
-            narrate(f"{output}: {line}")
+            narrate(f"{update}: {line}")
     outputs.write_answer(
         lambda: {**located.to_dict(), "depth": water_depth}, located_part(located, water_depth)
     )
     if plot is not None:
         write_file(plot, image(located_figure(located), plot.suffix))
-    if edited is not None:
-        working, text = edited
-        lost = working.save(text)
-        narrate(f"{output}: `deployed:` has position and depth" + (f"; {lost}" if lost else ""))
+    if edited is None:
+        return ExitCode.DONE
+    if doubts and not accept:
+        narrate(f"{update} is not written: {'; '.join(doubts)}. --accept writes it all the same")
+        return ExitCode.FINDING
+    working, text = edited
+    lost = working.save(text)
+    narrate(f"{update}: `deployed:` has position and depth" + (f"; {lost}" if lost else ""))
     return ExitCode.DONE
 
 

@@ -45,11 +45,11 @@ _MAXIMUM_SPEED = 5.0
 class Position(Model):
     """Where the mooring stands [degrees]."""
 
-    latitude: Annotated[float, QuantityField("angle", at_least=-90, at_most=90)] = Field(
-        description="north positive", examples=["48.3 deg"]
+    latitude: Annotated[float, QuantityField("latitude", at_least=-90, at_most=90)] = Field(
+        description="north positive, or degrees and minutes: 48 18.0 N", examples=["48.3 deg"]
     )
-    longitude: Annotated[float, QuantityField("angle", at_least=-360, at_most=360)] = Field(
-        description="east positive", examples=["-5.2 deg"]
+    longitude: Annotated[float, QuantityField("longitude", at_least=-360, at_most=360)] = Field(
+        description="east positive, or degrees and minutes: 5 12.0 W", examples=["-5.2 deg"]
     )
 
 
@@ -215,8 +215,8 @@ class TowEnvironmentKeys(Model):
         description="of the water: one, a table, or by temperature and salinity",
         examples=["1025 kg/m^3"],
     )
-    gravity: Annotated[float | None, QuantityField("acceleration", above=0)] = Field(
-        default=None, description="acceleration", examples=["9.81 m/s^2"]
+    gravity: Annotated[float | None, QuantityField("acceleration", at_least=9.7, at_most=10)] = (
+        Field(default=None, description="acceleration", examples=["9.81 m/s^2"])
     )
     current: Annotated[
         Annotated[TableKeys, Tag("table")]

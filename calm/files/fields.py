@@ -16,6 +16,7 @@ from pydantic import (
 from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, core_schema
 
+from calm.positions import HEMISPHERES
 from calm.units import DIMENSIONS, QuantityRange
 
 
@@ -45,6 +46,12 @@ class QuantityField(QuantityRange):
             units = "|".join(kind.units)
             return {"type": ["number", "string"], "pattern": rf"{number}\s*({units})$"}
         units = ", ".join(kind.units)
+        if self.dimension in HEMISPHERES:
+            text = {"type": "string", "pattern": r"[0-9].*[A-Za-z°'′ -]"}
+            return {
+                "description": f"{kind.noun} such as 48.3 deg or 48 18.0 N",
+                "anyOf": [text, {"const": 0}],
+            }
         return {
             "description": f"{kind.noun} with its unit ({units})",
             "anyOf": [{"type": "string", "pattern": number + r"\s*[A-Za-z°µ].*$"}, {"const": 0}],

@@ -6,14 +6,14 @@ normal and alike.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from math import atan2, degrees, nan, sqrt
 from typing import Any
 
 import numpy as np
 
 from calm.errors import UsageError
-from calm.locate.range_model import RangeModel, fitted
+from calm.locate.range_model import FLOOR, RangeModel, fitted
 from calm.locate.ranges import Survey
 from calm.locate.sound import Sound
 from calm.locate.survey_warnings import another_place, consistency, geometry_warnings
@@ -22,6 +22,31 @@ from calm.physics.line import Booleans, Floats
 CONFIDENCE = 0.95
 MISSED = 0.25
 """Of the ranges: where most miss the place that fits best by more, it is none."""
+SCATTERED, SCATTERED_SHARE = 10.0, 0.005
+"""Scatter [m], and as a share of the ranges, beyond which it is more than ranging gives."""
+LEVEL = 0.05
+"""Depth below the ship, in lengths of the ranges, of what answers at the ship's own level."""
+MOST_REJECTED = 1.0 / 3.0
+"""Share of the ranges that may be rejected without a doubt."""
+CLEARLY = 0.5
+"""Of two places the nearer is meant that is within this share of the other's distance."""
+
+
+@dataclass(frozen=True)
+class SecondPlace:
+    """Describe another place that fits nearly as well.
+
+    Attributes
+    ----------
+    latitude, longitude : WGS 84 [degrees]
+    distance : from the place taken [m]
+    rms : of its residuals, by the degrees of freedom [m]; nan where there are none
+    """
+
+    latitude: float
+    longitude: float
+    distance: float
+    rms: float
 
 
 @dataclass(frozen=True)
@@ -44,6 +69,8 @@ class Located:
     warnings : about geometry and consistency
     place : (3,) east, north, up in the frame of the survey [m]
     depth_given : whether the depth was given
+    second : another place that fits nearly as well; None where there is none
+    doubts : why the place is not to be written down without a person's word
     """
 
     survey: Survey
@@ -60,6 +87,8 @@ class Located:
     warnings: tuple[str, ...]
     place: Floats
     depth_given: bool
+    second: SecondPlace | None
+    doubts: tuple[str, ...]
 
     def to_dict(self) -> dict[str, Any]:
         """Return the JSON object; None stands where a figure is unknown."""
@@ -73,6 +102,11 @@ class Located:
             "depth_95": _known(self.depth_95),
             "residuals": self.residuals.tolist(),
             "rms": _known(self.rms),
+            "used": [line for line, used in zip(lines, self.used, strict=True) if used],
+            "rejected": [line for line, used in zip(lines, self.used, strict=True) if not used],
+            "second": None
+            if self.second is None
+            else asdict(self.second) | {"rms": _known(self.second.rms)},
             "ellipse_95": {"major": major, "minor": minor, "bearing": bearing},
             "sound_speed": self.sound_speed if self.survey.timed else None,
             "lines": list(lines),
@@ -84,6 +118,7 @@ class Located:
                 if not used
             ],
             "warnings": list(self.warnings),
+            "doubts": list(self.doubts),
         }
 
 
@@ -91,18 +126,26 @@ def _known(value: float) -> float | None:
     return value if np.isfinite(value) else None
 
 
-def locate(survey: Survey, sound: Sound, depth: float | None = None) -> Located:
+def locate(
+    survey: Survey,
+    sound: Sound,
+    depth: float | None = None,
+    near: tuple[float, float] | None = None,
+) -> Located:
     """Find where what answers stands.
 
     Parameters
     ----------
     sound : its speed, for times
     depth : of what answers [m], where it is known; else it is found too
+    near : latitude and longitude [degrees] of about where it was dropped: of two places that fit
+        alike the nearer is taken
 
     Raises
     ------
     UsageError
-        Fewer ranges than unknowns, a depth that no range reaches, or ranges that meet nowhere.
+        Fewer ranges than unknowns, a depth that no range reaches, ranges that meet nowhere, or
+        ranges along the horizontal.
     """
     unknowns = 2 if depth is not None else 3
     count = len(survey.line)
@@ -116,34 +159,53 @@ def locate(survey: Survey, sound: Sound, depth: float | None = None) -> Located:
     ships = frame.place(survey.latitude, survey.longitude, np.full(count, survey.transducer))
     model = RangeModel(survey, sound, frame, ships, depth)
     x, used = fitted(model)
-    residuals = model.residuals(x)
     inconsistent = consistency(model, x, used)  # a wrong unit is named for what it is
     missed, reach = (
-        float(np.median(np.abs(each[used]))) for each in (residuals, model.measured(x))
+        float(np.median(np.abs(each[used]))) for each in (model.residuals(x), model.measured(x))
     )
     if missed > MISSED * reach:
         raise UsageError(
             f"{survey.path}: the ranges meet nowhere: the place that fits best is missed by "
             f"{missed:.0f} m, by ranges of {reach:.0f} m; are positions and ranges of one survey?"
         )
-    jacobian = model.jacobian(x)[used]
+    x, other, meant = _nearer(model, x, another_place(model, x, used), near)
+    residuals = model.residuals(x)
     freedom = int(used.sum()) - unknowns
-    rms = sqrt(float(residuals[used] @ residuals[used]) / freedom) if freedom else nan
-    major, minor, bearing, depth_95 = _intervals(
-        jacobian, rms, freedom, depth is not None, float(model.measured(x).max())
-    )
+    rms = _scatter(residuals[used], freedom)
     place = model.place(x)
     latitude, longitude, found = frame.position(place)
+    if depth is None and found - survey.transducer < LEVEL * reach:
+        raise UsageError(
+            f"{survey.path}: what answers would be {found:.1f} m deep, level with the ship: are "
+            "these horizontal distances? Distances from the transducer to what answers are needed, "
+            "or --depth"
+        )
+    major, minor, bearing, depth_95 = _intervals(
+        model.jacobian(x)[used], rms, freedom, depth is not None, float(model.measured(x).max())
+    )
+    second = None if other is None else _second(model, x, other, used)
+    doubts = []
     warnings = [
         *inconsistent,
         *geometry_warnings(ships[used], place, found - survey.transducer, depth is not None),
-        *another_place(model, x, used),
     ]
+    if second is not None:
+        warnings.append(
+            f"Another place fits nearly as well, {second.distance:.0f} m away: latitude "
+            f"{second.latitude:.6f}, longitude {second.longitude:.6f}."
+        )
+        if not meant:
+            doubts.append("two places fit; say with --near LAT,LON which is meant")
     if not freedom:
         warnings.append(
             "There are no more ranges than unknowns: nothing tells how well they fit, and no "
             "interval can be given."
         )
+    if rms > SCATTERED + SCATTERED_SHARE * reach:
+        doubts.append(f"the ranges scatter by {rms:.0f} m, more than ranging does")
+    if (~used).sum() > MOST_REJECTED * count:
+        doubts.append(f"{int((~used).sum())} of {count} ranges do not fit the others")
+    warnings += [f"{doubt[0].upper()}{doubt[1:]}." for doubt in doubts if "two places" not in doubt]
     return Located(
         survey=survey,
         latitude=latitude,
@@ -159,7 +221,38 @@ def locate(survey: Survey, sound: Sound, depth: float | None = None) -> Located:
         warnings=tuple(warnings),
         place=place,
         depth_given=depth is not None,
+        second=second,
+        doubts=tuple(doubts),
     )
+
+
+def _nearer(
+    model: RangeModel, x: Floats, other: Floats | None, near: tuple[float, float] | None
+) -> tuple[Floats, Floats | None, bool]:
+    """Return the place that is meant, the other one, and whether it is clear which is meant."""
+    if other is None or near is None:
+        return x, other, other is None
+    there = model.frame.place(np.array(near[0]), np.array(near[1]), np.array(0.0))
+    away, its = (float(np.linalg.norm((there - model.place(each))[:2])) for each in (x, other))
+    if its < away:
+        x, other, away, its = other, x, its, away
+    return x, other, away <= CLEARLY * its
+
+
+def _second(model: RangeModel, x: Floats, other: Floats, used: Booleans) -> SecondPlace:
+    latitude, longitude, _ = model.frame.position(model.place(other))
+    freedom = int(used.sum()) - model.unknowns
+    return SecondPlace(
+        latitude,
+        longitude,
+        float(np.linalg.norm((other - x)[:2])),
+        _scatter(model.residuals(other)[used], freedom),
+    )
+
+
+def _scatter(residuals: Floats, freedom: int) -> float:
+    """Return the root of the mean square by the degrees of freedom [m]; nan of none."""
+    return sqrt(float(residuals @ residuals) / freedom) if freedom else nan
 
 
 def _intervals(
@@ -169,19 +262,25 @@ def _intervals(
 
     None of them, nan, where they are as wide as the longest range.
     """
+    from scipy.stats import chi2, norm
     from scipy.stats import f as fisher
     from scipy.stats import t as student
 
     if not freedom:
         return nan, nan, nan, 0.0 if depth_given else nan
     _, sizes, axes = np.linalg.svd(jacobian, full_matrices=False)
-    covariance = (axes.T * (rms / np.maximum(sizes, 1e-12)) ** 2) @ axes
+    covariance = (axes.T / np.maximum(sizes, 1e-12) ** 2) @ axes
     lengths, ways = np.linalg.eigh(covariance[:2, :2])
-    reach = np.sqrt(2.0 * fisher.ppf(CONFIDENCE, 2, freedom) * np.maximum(lengths, 0.0))
+    # as the residuals tell, and no less than ranges and ship are known to scatter
+    of_residuals = rms * sqrt(2.0 * float(fisher.ppf(CONFIDENCE, 2, freedom)))
+    widest = max(of_residuals, FLOOR * sqrt(float(chi2.ppf(CONFIDENCE, 2))))
+    reach = widest * np.sqrt(np.maximum(lengths, 0.0))
     bearing = degrees(atan2(ways[0, 1], ways[1, 1])) % 180.0
     depth = 0.0
     if not depth_given:
-        depth = float(student.ppf(0.5 + 0.5 * CONFIDENCE, freedom)) * sqrt(covariance[2, 2])
+        side = 0.5 + 0.5 * CONFIDENCE
+        of_residuals = rms * float(student.ppf(side, freedom))
+        depth = max(of_residuals, FLOOR * float(norm.ppf(side))) * sqrt(covariance[2, 2])
     known = reach[1] < farthest
     return (
         float(reach[1]) if known else nan,

@@ -1,7 +1,7 @@
 """Ranges as they should be from a place, the place that most agree on, and those that do not.
 
-A fit that outliers hardly move comes first; then each doubtful range is judged by the others
-(Student's test, all of them together at 1 %).
+Where ranges can be spared, a fit that outliers hardly move comes first; then each doubtful range is
+judged by the others (Student's test, all of them together at 1 %). Where none can, all count.
 """
 
 from __future__ import annotations
@@ -69,17 +69,25 @@ class RangeModel:
 
 BY_CHANCE = 0.01
 """Of a survey without an outlier: how often one is called so."""
-FLOOR = 0.02
-"""Scatter that no range is better than, to tell what does not belong [m]."""
+FLOOR = 2.0
+"""Scatter that no range is better than [m]: the ship's antenna is some metres from its transducer,
+and both move while the sound travels."""
+SPARE = 2
+"""Ranges beyond the unknowns that are left when others are rejected: with fewer, any two that are
+wrong alike outvote a third that is right."""
 
 
 def fitted(model: RangeModel) -> tuple[Floats, Booleans]:
     """Return the unknowns, and which ranges belong."""
+    count = len(model.ships)
+    used = np.ones(count, dtype=bool)
+    if count <= model.unknowns + SPARE:
+        fits = (least_squares_of(model, start, used) for start in starts_of(model))
+        return min(fits, key=lambda x: float(np.sum(model.residuals(x) ** 2))), used
     x = _sturdy(model)
     residuals = np.abs(model.residuals(x))
     used = residuals <= 5.0 * scatter(residuals, model.unknowns)
-    if used.sum() < model.unknowns:
-        used[np.argsort(residuals)[: model.unknowns]] = True
+    used[np.argsort(residuals)[: model.unknowns + SPARE]] = True
     for _ in range(2 * len(used)):
         x = least_squares_of(model, x, used)
         changed = _judged(model, x, used)
@@ -94,7 +102,7 @@ def _sturdy(model: RangeModel) -> Floats:
     from scipy.optimize import least_squares
 
     found = []
-    for start in _starts(model):
+    for start in starts_of(model):
         x, scale = start, 0.1 * float(np.median(model.measured(start)))
         for _ in range(4):
             fit = least_squares(
@@ -107,7 +115,8 @@ def _sturdy(model: RangeModel) -> Floats:
     return min(found, key=lambda each: each[0])[1]
 
 
-def _starts(model: RangeModel) -> list[Floats]:
+def starts_of(model: RangeModel) -> list[Floats]:
+    """Return the unknowns of places in the middle of the survey, and on its four sides."""
     middle = model.ships.mean(axis=0)
     _, _, axes = np.linalg.svd((model.ships - middle)[:, :2], full_matrices=True)
     reach = float(np.median(model.measured(np.array([0.0, 0.0, -1000.0])[: model.unknowns])))
@@ -160,7 +169,7 @@ def _judged(model: RangeModel, x: Floats, used: Booleans) -> Booleans:
 
     residuals, jacobian = model.residuals(x), model.jacobian(x)
     freedom = int(used.sum()) - model.unknowns
-    if freedom < 2:
+    if freedom < SPARE:
         return used
     inverse = np.linalg.pinv(jacobian[used].T @ jacobian[used])
     leverage = np.einsum("ij,jk,ik->i", jacobian, inverse, jacobian)
@@ -178,6 +187,6 @@ def _judged(model: RangeModel, x: Floats, used: Booleans) -> Booleans:
         changed[np.argmin(np.where(back, ratio, np.inf))] = True
         return changed
     worst = int(np.argmax(np.where(used, ratio, 0.0)))
-    if ratio[worst] > limit[worst] and freedom > 2:
+    if ratio[worst] > limit[worst] and freedom > SPARE:
         changed[worst] = False
     return changed

@@ -12,6 +12,7 @@ import numpy as np
 from calm.errors import InputError, Problem
 from calm.physics.ellipsoid import Frame
 from calm.physics.line import Floats
+from calm.positions import HEMISPHERES, degrees_of, plain_degrees
 from calm.records.columns import NamedRow, read_named_columns
 from calm.records.delimited import GAPS, abridged, no_number
 from calm.suggestions import shown
@@ -23,7 +24,7 @@ LONGEST = {"range": 25_000.0, "time": 35.0}
 WIDEST = 50_000.0
 """How far from the middle of a survey its positions may be [m]."""
 _FILLS = frozenset({"-9999", "-999", "-99", "9999", "99999", "999999", "-99999", "1e35", "1e+35"})
-_COLUMNS = {"latitude": "angle", "longitude": "angle", "range": "length", "time": "time"}
+_COLUMNS = {"latitude": "latitude", "longitude": "longitude", "range": "length", "time": "time"}
 _EARTH = 111_200.0  # metres of a degree, about
 
 
@@ -130,19 +131,23 @@ def _value(
     if refusal:
         problems.append(row.problem(path, name, f"`{name}: {shown(text)}` {refusal}"))
         return None
-    return float(text) * factor
+    return plain_degrees(text, name) * factor if name in HEMISPHERES else float(text) * factor
 
 
 def _refusal(name: str, text: str, factor: float) -> str:
     """Return what is wrong with a cell; empty where nothing is."""
-    placed = name in ("latitude", "longitude")
+    placed = name in HEMISPHERES
     if re.sub(r"\.0*$", "", text) in _FILLS:
         leave = "leave the row out" if placed else "leave the cell blank"
         return f"is a fill value; {leave} where there is none"
-    if complaint := no_number(text):
-        degrees = "; decimal degrees are needed, south and west negative" if placed else ""
+    try:
+        sexagesimal = degrees_of(text, name) if placed else None
+    except ValueError as error:
+        return str(error)
+    if sexagesimal is None and (complaint := no_number(text)):
+        degrees = "; degrees are needed, such as -5.2 or 5 12.0 W" if placed else ""
         return complaint + degrees
-    value = float(text) * factor
+    value = (float(text) if sexagesimal is None else sexagesimal) * factor
     if name == "latitude" and abs(value) > 90.0:
         return "is beyond 90 degrees; are latitude and longitude exchanged?"
     if name == "longitude" and abs(value) > 360.0:

@@ -8,7 +8,14 @@ from math import sqrt
 import numpy as np
 
 from calm.errors import UsageError
-from calm.locate.range_model import BY_CHANCE, FLOOR, RangeModel, least_squares_of, scatter
+from calm.locate.range_model import (
+    BY_CHANCE,
+    FLOOR,
+    RangeModel,
+    least_squares_of,
+    scatter,
+    starts_of,
+)
 from calm.physics.line import Booleans, Floats
 
 
@@ -83,8 +90,8 @@ def _doubled(timed: bool, factor: float) -> str:
     return f"the {what} fit far better as {two_way}"
 
 
-def another_place(model: RangeModel, x: Floats, used: Booleans) -> list[str]:
-    """Return whether a place on the other side of the ship's track fits as well.
+def another_place(model: RangeModel, x: Floats, used: Booleans) -> Floats | None:
+    """Return the unknowns of another place that fits nearly as well; None where there is none.
 
     Parameters
     ----------
@@ -92,19 +99,25 @@ def another_place(model: RangeModel, x: Floats, used: Booleans) -> list[str]:
     x : the unknowns found
     used : (n,) which ranges count
     """
-    other = least_squares_of(model, mirrored(model.ships[used], model.place(x))[: len(x)], used)
-    apart = float(np.linalg.norm((other - x)[:2]))
-    own, its = (model.residuals(each)[used] for each in (x, other))
+    starts = [mirrored(model.ships[used], model.place(x))[: len(x)], *starts_of(model)]
+    fits = [least_squares_of(model, start, used) for start in starts]
     least = float(used.sum()) * FLOOR**2
-    if apart < 1.0 or float(its @ its) > 4.0 * max(float(own @ own), least):
-        return []
-    latitude, longitude, _ = model.frame.position(model.place(other))
-    return [
-        f"Another place fits nearly as well, {apart:.0f} m away: latitude {latitude:.6f}, "
-        f"longitude {longitude:.6f}."
+    most = 4.0 * max(_squares(model, x, used), least)
+    others = [
+        fit
+        for fit in fits
+        if np.linalg.norm((fit - x)[:2]) > APART and _squares(model, fit, used) <= most
     ]
+    return min(others, key=lambda fit: _squares(model, fit, used), default=None)
 
 
+def _squares(model: RangeModel, x: Floats, used: Booleans) -> float:
+    """Return the sum of the squares of the residuals of the ranges in use [m²]."""
+    return float(np.sum(model.residuals(x)[used] ** 2))
+
+
+APART = 10.0
+"""Distance from which two places are two [m]."""
 NARROW = 0.15
 """Width over length of a track that is as good as a straight line."""
 WIDEST_GAP = 180.0

@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
+from calm.positions import HEMISPHERES
 from calm.records.times import ZONES_OF_UTC
 from calm.suggestions import shown
 from calm.units import DIMENSIONS, QuantityError, unit_factor
@@ -49,6 +50,8 @@ def column_unit(
 ) -> tuple[str, float]:
     """Return the dimension of a column and its factor to SI (degrees).
 
+    Latitudes and longitudes need no unit: they are in degrees, or in degrees and minutes.
+
     Parameters
     ----------
     column : its heading, for the message
@@ -62,6 +65,8 @@ def column_unit(
         The unit is unknown, or of something else; its text is the whole message.
     """
     name = heading(column, dimensions)[0]
+    if not unit and dimensions[0] in HEMISPHERES:
+        return dimensions[0], 1.0
     if not unit:
         usual = usual or DIMENSIONS[dimensions[0]].unit
         raise QuantityError(f"column `{shown(name)}` needs a unit; did you mean `{name}[{usual}]`?")

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from calm.errors import InputError, Problem, UsageError
 from calm.physics.line import Floats
+from calm.positions import plain_degrees
 from calm.records.times import TimeChoiceError, parse_time
 from calm.records.water_column import Place
 
@@ -137,6 +138,8 @@ def parse_period(text: str) -> Period:
 def parse_place(text: str) -> Place:
     """Return a place ``LAT,LON`` [degrees north, degrees east], longitudes from −180 or from 0.
 
+    Either may be of degrees and minutes: ``57 28.84 N, 19 10.2 W``.
+
     Raises
     ------
     UsageError
@@ -144,7 +147,8 @@ def parse_place(text: str) -> Place:
     """
     parts = text.split(",")
     try:
-        latitude, longitude = (float(part) for part in parts)
+        first, second = parts
+        latitude, longitude = plain_degrees(first, "latitude"), plain_degrees(second, "longitude")
     except ValueError:
         raise UsageError(f"`{text[:40]}` is not a place; write 48.3,-5.2") from None
     if not (-90 <= latitude <= 90 and -360 <= longitude <= 360):

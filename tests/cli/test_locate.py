@@ -31,7 +31,10 @@ def test_the_place(calm, ranges):
     assert document["latitude"] == pytest.approx(48.3, abs=1e-5)
     assert document["longitude"] == pytest.approx(-5.2, abs=1e-5)
     assert document["depth"] == pytest.approx(1999.5, abs=1.0)
-    assert document["horizontal_95"] < 5.0
+    # five ranges from round about: 2 m of range and ship, no less, times 2.45 for 95 % in a plane
+    assert 4.0 < document["horizontal_95"] < 7.0
+    assert (document["used"], document["rejected"]) == ([2, 3, 4, 5, 6], [7])
+    assert document["second"] is None
     assert len(document["residuals"]) == 6
     assert [one["line"] for one in document["outliers"]] == [7]
 
@@ -60,7 +63,7 @@ def test_it_is_written_into_the_mooring_and_nothing_else_changes(
         "  depth: 12 m\n  items: [{label: rope, remark: remade}]\n"
     )
     (folder / "m.yaml").write_text(text)
-    done = calm("locate", ranges(), "-o", "m.yaml")
+    done = calm("locate", ranges(), "--update", "m.yaml")
     assert done.code == 0
     written = (folder / "m.yaml").read_text()
     assert "deployed:   # by the mate\n  date: 2027-03-02   # a Tuesday\n" in written
@@ -77,7 +80,7 @@ def test_it_is_compared_with_the_plan(calm, ranges, write_mooring, folder):
         text = (folder / "m.yaml").read_text()
         text = re.sub(r"depth: \d+ m", f"depth: {depth} m", text, count=1)
         (folder / "m.yaml").write_text(f"position: {{{position}}}\n{text}")
-        return calm("locate", ranges(), "-o", "m.yaml", "--sound-speed", "1480 m/s")
+        return calm("locate", ranges(), "--update", "m.yaml", "--sound-speed", "1480 m/s")
 
     # a thousandth of a degree south is 111 m on WGS 84
     done = located("latitude: 48.301 deg, longitude: -5.2 deg")
@@ -87,12 +90,106 @@ def test_it_is_compared_with_the_plan(calm, ranges, write_mooring, folder):
     assert "far from the planned" not in done.err
     assert "--sound-speed is not used: ranges in metres are taken as they are" in done.err
     done = located("latitude: 48.4 deg, longitude: -5.2 deg", depth=1500)
-    assert done.code == 0
+    assert done.code == 1
+    assert "deployed" not in (folder / "m.yaml").read_text()
+    assert "m.yaml is not written: the place is 11.1 km from the planned position" in done.err
     assert "that is far from the planned position" in done.err
     assert "the depth is far from the planned one" in done.err
     done = located("latitude: -5.2 deg, longitude: 48.3 deg")
     assert done.code == 2
     assert "latitude and longitude are exchanged" in done.err
+    assert "deployed" not in (folder / "m.yaml").read_text()
+
+
+THREE = """\
+latitude,longitude,range[m]
+57.7905,-19.2033,2460
+57 48.72 N,19-10.404W,1561
+57°47.454'N,19 09 13.32 W,1786
+"""
+"""A survey of the National Oceanography Centre of an anchor at 57.801 N, 19.171 W, 954 m deep, its
+release 10 m up and the transducer at 5 m; two of its positions as the bridge writes them."""
+
+
+def test_three_ranges_are_all_counted(calm, ranges):
+    done = calm(
+        "locate", ranges(THREE), "--depth", "954 m", "--above-seabed", "10 m",
+        "--transducer", "5 m", "--json", "-",
+    )  # fmt: skip
+    document = json.loads(done.out)
+    # 57.801 N, 19.171 W to a thousandth of a degree; two were fitted exactly, 1.7 km off
+    assert document["latitude"] == pytest.approx(57.801, abs=5e-4)
+    assert document["longitude"] == pytest.approx(-19.171, abs=5e-4)
+    assert (document["used"], document["rejected"]) == ([2, 3, 4], [])
+
+
+LINE = """\
+latitude,longitude,range[m]
+48.300,-5.220,2487.5
+48.300,-5.200,2000.0
+48.300,-5.180,2487.6
+48.300,-5.190,2133.6
+48.300,-5.210,2133.5
+"""
+"""Along a parallel, of what is 1732 m deep and 1000 m to the north of it, or of its south."""
+
+
+def test_of_two_places_the_one_near_the_plan_is_taken(calm, ranges, write_mooring, folder):
+    def written(*options, position=None):
+        write_mooring("m.yaml")
+        text = (folder / "m.yaml").read_text().replace("depth: 100 m", "depth: 1732 m")
+        plan = "" if position is None else f"position: {{{position}}}\n"
+        (folder / "m.yaml").write_text(plan + text)
+        done = calm(
+            "locate", ranges(LINE), "--depth", "1732 m", "--update", "m.yaml", "--json", "-",
+            *options,
+        )  # fmt: skip
+        return done, json.loads(done.out), "deployed" in (folder / "m.yaml").read_text()
+
+    done, document, updated = written()
+    assert (done.code, updated) == (1, False)
+    assert "m.yaml is not written: two places fit; say with --near LAT,LON" in done.err
+    assert document["second"]["distance"] == pytest.approx(2000.0, rel=0.01)
+    assert written("--accept")[2]
+    for position, side in (("48 18.5 N", 1.0), ("48°17.5'N", -1.0)):
+        done, document, updated = written(
+            position=f"latitude: {json.dumps(position)}, longitude: 5 12.0 W"
+        )
+        assert (done.code, updated) == (0, True)
+        assert (document["latitude"] - 48.3) * side == pytest.approx(1000.0 / 111_200.0, rel=0.01)
+        # what is told on the command line goes before the plan
+        other = written("--near", f"{48.3 - 0.009 * side},-5.2", position="latitude: 48.3 deg, "
+                        "longitude: -5.2 deg")[1]  # fmt: skip
+        assert (other["latitude"] - 48.3) * side < 0.0
+
+
+def test_degrees_and_minutes_written_as_decimals_are_named(calm, ranges, write_mooring, folder):
+    write_mooring("m.yaml")
+    text = (folder / "m.yaml").read_text().replace("depth: 100 m", "depth: 2000 m")
+    position = "position: {latitude: 48.5 deg, longitude: -5.333333 deg}\n"
+    (folder / "m.yaml").write_text(position + text)
+    done = calm("locate", ranges(), "--update", "m.yaml")
+    assert done.code == 1
+    assert "near it if the positions are degrees and minutes" in done.err
+
+
+def test_horizontal_distances_are_refused(calm, ranges):
+    text = re.sub(r"\d+\.\d$", "1500.0", RANGES, flags=re.M)
+    done = calm("locate", ranges(text))
+    assert done.code == 2
+    assert "are these horizontal distances?" in done.err
+
+
+def test_what_scatters_more_than_ranging_does_is_not_written(calm, ranges, write_mooring, folder):
+    lines, wrong = RANGES.splitlines(), (120.0, -90.0, 140.0, -160.0, 60.0, -70.0)
+    made = [lines[0]]
+    for line, off in zip(lines[1:], wrong, strict=True):
+        *place, measured = line.split(",")
+        made.append(",".join([*place, f"{float(measured) + off:.1f}"]))
+    write_mooring("m.yaml")
+    done = calm("locate", ranges("\n".join(made) + "\n"), "--update", "m.yaml")
+    assert done.code == 1
+    assert re.search(r"not written: the ranges scatter by \d+ m, more than ranging does", done.err)
     assert "deployed" not in (folder / "m.yaml").read_text()
 
 
@@ -114,8 +211,8 @@ def test_the_plot(calm, ranges, folder):
 
 def test_every_mistake_at_once_with_its_line(calm, ranges):
     text = (
-        "latitude,longitude[deg],range[m]\n148.3,-5.2,2000\n0,0,2000\n48.3,-5.2,-9999\n"
-        "48.3,-5.2\n48 12N,-5.2,x\n48.3,-5.2,-1\n10.0,-5.2,2000\n48.3,-5.2,99000\n"
+        "latitude,longitude[deg],range\n148.3,-5.2,2000\n0,0,2000\n48.3,-5.2,-9999\n"
+        "48.3,-5.2\n48 72N,-5.2,x\n48.3,-5.2,-1\n10.0,-5.2,2000\n48.3,-5.2,99000\n"
         "48.31,-5.21,2000\n48.32,-5.21,2000\n48.33,-5.21,2000\n48.34,-5.21,2000\n"
     )
     done = calm("locate", ranges(text))
@@ -126,12 +223,12 @@ def test_every_mistake_at_once_with_its_line(calm, ranges):
     for (_, message), part in zip(
         said,
         [
-            "column `latitude` needs a unit; did you mean `latitude[deg]`?",
+            "column `range` needs a unit; did you mean `range[m]`?",
             "is beyond 90 degrees; are latitude and longitude exchanged?",
             "position 0, 0 is a fill value",
             "is a fill value; leave the cell blank",
             "the row has 2 values, 3 are needed",
-            "decimal degrees are needed",
+            "has 60 minutes or seconds, or more",
             "is no number",
             "must be above 0",
             "km from the others",
@@ -154,7 +251,7 @@ def test_every_mistake_at_once_with_its_line(calm, ranges):
             "latitude[deg],longitude[deg],range[ell]\n48.3,-5.2,1\n",
             "`range[ell]` has an unknown unit, `ell`",
         ),
-        ("latitude[deg];longitude[deg];range[m]\n48,3;-5.2;2000\n", "decimal degrees are needed"),
+        ("latitude[deg];longitude[deg];range[m]\n48,3;-5.2;2000\n", "degrees are needed, such as"),
         (RANGES.split("48.29")[0], "2 ranges; 3 are needed"),
         (re.sub(r"\d+\.\d$", "90.0", RANGES, flags=re.M), "the ranges meet nowhere"),
     ],

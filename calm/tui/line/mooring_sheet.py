@@ -42,8 +42,8 @@ _PLACES: dict[str, Location] = {
 
 _HISTORY: Location = ("document", "history")
 
-LATITUDE = quantity(QuantityField("angle", at_least=-90, at_most=90), optional=True)
-LONGITUDE = quantity(QuantityField("angle", at_least=-360, at_most=360), optional=True)
+LATITUDE = quantity(QuantityField("latitude", at_least=-90, at_most=90), optional=True)
+LONGITUDE = quantity(QuantityField("longitude", at_least=-360, at_most=360), optional=True)
 _NAME_AND_PLACE = (
     Asked("name", "Name", check=anything),
     Asked("description", "Description", check=anything),
