@@ -7,9 +7,8 @@ import pytest
 
 from calm.tui import live
 from calm.tui.bars import TitleBar
-from calm.tui.pictures import Picture
+from calm.tui.pictures import Picture, ProfilePicture
 from calm.tui.verdict_pane import VerdictPane
-from calm.tui.water.profile_picture import ProfilePicture
 from tests.tui.conftest import MOORING
 
 STORM = "environments: {storm: {current: {speed: 2 m/s, toward: 0 deg}}}\n"
