@@ -56,7 +56,7 @@ def much_less(now, before):
 
 def figure_is_dimmed(driver):
     """Whether the depth of the first row is."""
-    start, _ = driver.table.arrangement.place("depth")
+    start = next(each.start for each in driver.table.columns if each.name == "depth")
     line = driver.table.render_line(1)
     return bool(line.crop(start, start + 8)._segments[0].style.dim)
 
