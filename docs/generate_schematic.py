@@ -8,8 +8,8 @@ import sys
 from pathlib import Path
 
 import calm
-from calm.report.schematic import schematic_svg
-from calm.report.schematic.in_terminal import schematic_text
+from calm.drawing.schematic import schematic_svg
+from calm.drawing.schematic.in_terminal import schematic_text
 
 PAGE = Path(__file__).parent / "reference" / "schematic.md"
 IMAGES = Path(__file__).with_name("images")
@@ -50,7 +50,7 @@ replace them. `calm run lines/{drawn[0]}.yaml --schematic` begins:
 
 ```python
 import calm
-from calm.report.schematic import schematic_svg
+from calm.drawing.schematic import schematic_svg
 
 result = calm.load("lines/{drawn[0]}.yaml").solve()
 picture = schematic_svg(result.file, result)

@@ -15,8 +15,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from calm.drawing.picture import image
 from calm.physics.reynolds import cylinder_coefficient, sphere_coefficient
-from calm.report.picture import image
 from calm.report.verification import COLUMNS, by_kind, figures
 from calm.verification import (
     SOURCES,

@@ -21,7 +21,7 @@ from urllib.parse import unquote
 
 from pages import api, components, gallery, keys, pictures, results
 
-from calm.report.picture import image
+from calm.drawing.picture import image
 
 _ID = re.compile(r'\bid="([^"]+)"')
 _LINK = re.compile(r'<(\w+)\b[^>]*?\s(?:href|src)="([^"]*)"')

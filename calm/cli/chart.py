@@ -153,9 +153,9 @@ def draw(
     lower_end
         The cables drawn: those whose angle at A is below 90° (when not given), or above.
     """
+    from calm.drawing.picture import check_format
     from calm.report.chart_page import CHART_FORMATS, chart_picture
     from calm.report.folder import check_destination, write_file
-    from calm.report.picture import check_format
 
     check_format(output, CHART_FORMATS)
     check_destination(output)

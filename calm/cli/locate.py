@@ -82,13 +82,13 @@ def locate(
     accept
         Write the place in spite of a doubt.
     """
+    from calm.drawing.picture import check_format, image
     from calm.locate import locate as found_at
     from calm.locate import read_ranges
     from calm.locate.deployed import planned_in, with_deployed
     from calm.records.record import parse_place
     from calm.report.folder import check_destination, write_file
     from calm.report.located_anchor import located_figure, located_part
-    from calm.report.picture import check_format, image
 
     outputs = Outputs((file,), json)
     outputs.check()

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from calm.case import Result, TowResult
     from calm.case.explain import Explanation
     from calm.case.uncertain import Uncertain
+    from calm.drawing.schematic.in_terminal import TerminalSchematic
     from calm.report.blocks import ReportPart
-    from calm.report.schematic.in_terminal import TerminalSchematic
 
     Shows = ReportPart | TerminalSchematic
 
@@ -122,7 +122,7 @@ class FileOutcome:
             from calm.report.result_netcdf import result_netcdf
 
             return result_netcdf(self.result)
-        from calm.report.plot import picture
+        from calm.drawing.plot import picture
 
         return picture(self.result, suffix, self.uncertain)
 
@@ -179,7 +179,7 @@ class Outputs:
                     f"{path} was given where a path is needed; write ./{path} for a file"
                 )
         if self.plot is not None:
-            from calm.report.picture import check_format
+            from calm.drawing.picture import check_format
 
             check_format(self.plot)
         ends = (self.html, ".html"), (self.pdf, ".pdf"), (self.netcdf, ".nc")

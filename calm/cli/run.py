@@ -226,7 +226,7 @@ def _to_draw_often(samples: int, seed: int) -> Callable[[FileOutcome], FileOutco
 
 def _drawn(outcome: FileOutcome, line: Mooring | Tow) -> FileOutcome:
     """The outcome with its line drawn in the signs that the standard output can carry."""
-    from calm.report.schematic.in_terminal import TerminalSchematic, can_carry
+    from calm.drawing.schematic.in_terminal import TerminalSchematic, can_carry
 
     plain = not can_carry(getattr(sys.stdout, "encoding", None))
     return replace(outcome, schematic=TerminalSchematic(line.file, outcome.result, plain))

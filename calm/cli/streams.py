@@ -34,7 +34,7 @@ def prepare() -> None:
 
 
 def _written_out(error: UnicodeError) -> tuple[str, int]:
-    from calm.report.signs import in_ascii
+    from calm.drawing.signs import in_ascii
 
     assert isinstance(error, UnicodeEncodeError)
     text = in_ascii(error.object[error.start : error.end])
@@ -64,8 +64,8 @@ def show_parts(*parts: Shows) -> None:
     """Write to the standard output as the terminal allows, a blank line between two things."""
     from rich.console import Console
 
+    from calm.drawing.signs import encodable
     from calm.report.blocks import ReportPart
-    from calm.report.signs import encodable
     from calm.report.terminal import shown
 
     text = io.StringIO()

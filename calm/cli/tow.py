@@ -114,8 +114,8 @@ class _Tabulated:
         return [tabulation_part(self.tabulation)]
 
     def rendered(self, suffix: str) -> bytes:
-        from calm.report.picture import image
-        from calm.report.plot import draw_sweep
+        from calm.drawing.picture import image
+        from calm.drawing.plot import draw_sweep
 
         return image(draw_sweep(self.tabulation), suffix)
 

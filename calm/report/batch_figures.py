@@ -9,11 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from calm.batch.statistics.summary import RESPONSES
-from calm.errors import UsageError
-from calm.quantities import QUANTITIES
-from calm.report.batch_summary import QUANTITY, TITLES, when
-from calm.report.drawing import LINE_STYLE, WATER_COLOUR, WIDTH, along, set_span
-from calm.report.graph import (
+from calm.drawing.graph import (
     Graph,
     LegendEntry,
     Scale,
@@ -25,6 +21,10 @@ from calm.report.graph import (
     seconds,
     write_legend,
 )
+from calm.drawing.line_on_figure import LINE_STYLE, WATER_COLOUR, WIDTH, along, set_span
+from calm.errors import UsageError
+from calm.quantities import QUANTITIES
+from calm.report.batch_summary import QUANTITY, TITLES, when
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

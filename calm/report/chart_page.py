@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from calm.analytic.chart_branch import CurvePoints, critical_angle, curve
+from calm.drawing.picture import image
 from calm.errors import UsageError
-from calm.report.picture import image
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from calm.checks.finding import State
+from calm.drawing.check_figures import check_figure
 from calm.report.blocks import (
     ON_THE_WAY,
     Block,
@@ -17,7 +18,6 @@ from calm.report.blocks import (
     Section,
     Signatures,
 )
-from calm.report.check_figures import check_figure
 from calm.report.check_summary import (
     accepted_table,
     failures,
@@ -134,7 +134,7 @@ def _judgement(assessment: Assessment, columns: Sequence[str]) -> Iterator[Block
 
 def _line(assessment: Assessment) -> Iterator[Block]:
     """The schematic and the table of the line in the first environment that it stands in."""
-    from calm.report.schematic import schematic_svg
+    from calm.drawing.schematic import schematic_svg
 
     stand = next((stand for stand in assessment.stands if stand.result is not None), None)
     result = stand.result if stand else None

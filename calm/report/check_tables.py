@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING
 
 from calm.checks.finding import Finding, State
 from calm.checks.rules import RULES
+from calm.drawing.schematic.shown_parts import place_text
 from calm.files.components import FLEXIBLE_KINDS
 from calm.quantities import QUANTITIES, say
 from calm.report.blocks import Cell, Column, Prose, Table, table_of
 from calm.report.check_summary import margin_of, place_of, say_in_unit, worst_by_part
-from calm.report.sheet import figure_cell, place_text, quantity_column
+from calm.report.sheet import figure_cell, quantity_column
 
 if TYPE_CHECKING:
     from calm.checks.assessment import Assessment, MooringInEnvironment

@@ -7,6 +7,16 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
+from calm.drawing.schematic.pen import FAINT, INK, SOFT, Pen, wrapped
+from calm.drawing.schematic.shown_parts import one_line
+from calm.drawing.schematic.sign import LINES, Sign, Symbol
+from calm.drawing.schematic.symbols import (
+    draw_cable,
+    draw_clamp,
+    draw_seabed,
+    draw_surface,
+    figure_of,
+)
 from calm.quantities import QUANTITIES
 from calm.report.diagram_layout import (
     CLAMP_SCALE,
@@ -27,16 +37,6 @@ from calm.report.diagram_layout import (
     entries_of,
 )
 from calm.report.provenance import title_pairs
-from calm.report.schematic.pen import FAINT, INK, SOFT, Pen, wrapped
-from calm.report.schematic.shown_parts import one_line
-from calm.report.schematic.sign import LINES, Sign, Symbol
-from calm.report.schematic.symbols import (
-    draw_cable,
-    draw_clamp,
-    draw_seabed,
-    draw_surface,
-    figure_of,
-)
 
 if TYPE_CHECKING:
     from calm.deck import Deck

@@ -9,13 +9,12 @@ from enum import StrEnum
 from itertools import count, groupby
 from typing import TYPE_CHECKING
 
+from calm.drawing.schematic.pen import wrapped
+from calm.drawing.schematic.shown_parts import one_line, place_text
+from calm.drawing.schematic.sign import LINES, Sign, Symbol, sign_of
+from calm.drawing.schematic.symbols import figure_of
 from calm.files.alignment import own_labels
 from calm.quantities import QUANTITIES
-from calm.report.schematic.pen import wrapped
-from calm.report.schematic.shown_parts import one_line
-from calm.report.schematic.sign import LINES, Sign, Symbol, sign_of
-from calm.report.schematic.symbols import figure_of
-from calm.report.sheet import place_text
 
 if TYPE_CHECKING:
     from calm.deck import Deck

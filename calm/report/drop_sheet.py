@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from calm.checks.finding import State
+from calm.drawing.picture import figure_svg
 from calm.drop.plan import DRAG_BAND
 from calm.quantities import QUANTITIES, bearing_text, say
 from calm.report.blocks import (
@@ -22,7 +23,6 @@ from calm.report.blocks import (
     Table,
     table_of,
 )
-from calm.report.picture import figure_svg
 from calm.report.provenance import position_text
 
 if TYPE_CHECKING:

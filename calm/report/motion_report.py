@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from calm.checks.finding import State
+from calm.drawing.picture import figure_svg
 from calm.report.blocks import Block, Figure, Note, Prose, Report, ReportPart, Section
 from calm.report.html import page
 from calm.report.motion_tables import PLAIN, factors_table, held_out_table, sensors_table
 from calm.report.pdf import printed
-from calm.report.picture import figure_svg
 from calm.report.provenance import date
 
 if TYPE_CHECKING:

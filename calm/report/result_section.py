@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 from calm.case import TowResult
 from calm.checks.criterion import limits_used
 from calm.checks.posture import reaches_the_surface
+from calm.drawing.picture import figure_svg
+from calm.drawing.plot import draw
 from calm.report.blocks import Figure, Prose, Report, ReportPart, Section
 from calm.report.check_summary import limits_table
-from calm.report.picture import figure_svg
-from calm.report.plot import draw
 from calm.report.provenance import (
     NOT_JUDGED,
     date,
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 def result_report(result: Result | TowResult, uncertain: Uncertain | None = None) -> Report:
     """Schematic, table, drawing and inputs of one result, and how sure its figures are."""
-    from calm.report.schematic import schematic_svg
+    from calm.drawing.schematic import schematic_svg
 
     said, file = sheet(result, places=True), result.file
     water = result.tow.water if isinstance(result, TowResult) else result.mooring.water

@@ -13,6 +13,7 @@ from calm.case.result_tables import rows_down
 from calm.checks.finding import State
 from calm.checks.posture import meant_for_the_surface
 from calm.checks.strength import safety_factor
+from calm.drawing.schematic.shown_parts import place_text
 from calm.files.strumming_keys import BourgetMarichalKeys
 from calm.quantities import QUANTITIES, say
 from calm.report.blocks import Cell, Column, Line, Note, Prose, ReportPart, Span, Table
@@ -315,11 +316,6 @@ def _rows(
             if places:
                 cells[names.index("length")] = Cell(place_text(clamp.part.at))
             yield Cell(), label, *cells
-
-
-def place_text(at: float) -> str:
-    """Return where a clamp sits, from the top of its piece [m], as it stands among lengths."""
-    return f"at {QUANTITIES['at'].format(at)}"
 
 
 def _where(result: Result | TowResult, depth: float, x: float, y: float) -> dict[str, float]:

@@ -13,6 +13,7 @@ from rich.table import Table as RichTable
 from rich.text import Text
 
 from calm.checks.finding import State
+from calm.drawing.signs import in_ascii, printable
 from calm.report.blocks import (
     Block,
     Cell,
@@ -25,7 +26,6 @@ from calm.report.blocks import (
     ReportPart,
     Table,
 )
-from calm.report.signs import in_ascii, printable
 
 _STYLES = {
     State.PASS: "green",

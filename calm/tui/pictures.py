@@ -115,7 +115,7 @@ class Picture(ScrollView, can_focus=True):
         return draw(result, size)
 
     def _elevation(self, result: Result | TowResult, size: Size) -> list[Text]:
-        from calm.report.sketch import current_profile, elevation
+        from calm.drawing.sketch import current_profile, elevation
 
         if size.width < _LEAST_BESIDE or result.file.environment.depth is None:
             return elevation(result, size.width, size.height, self._beside)
@@ -129,17 +129,17 @@ class Picture(ScrollView, can_focus=True):
         return rows
 
     def _plan(self, result: Result | TowResult, size: Size) -> list[Text]:
-        from calm.report.sketch import plan
+        from calm.drawing.sketch import plan
 
         return plan(result, size.width, size.height, self._beside)
 
     def _tension(self, result: Result | TowResult, size: Size) -> list[Text]:
-        from calm.report.sketch import tension
+        from calm.drawing.sketch import tension
 
         return tension(result, size.width, size.height)
 
     def _schematic(self, result: Result | TowResult, size: Size) -> list[Text]:
-        from calm.report.schematic.in_terminal import schematic_text
+        from calm.drawing.schematic.in_terminal import schematic_text
 
         text = schematic_text(result.file, result, size.width)
         return [Text(line) for line in text.splitlines()]

@@ -15,9 +15,9 @@ from matplotlib.figure import Figure
 import calm
 from calm.cli.main import main
 from calm.cli.streams import ExitCode
-from calm.report.picture import image
-from calm.report.plot import draw
-from calm.report.schematic import schematic_svg
+from calm.drawing.picture import image
+from calm.drawing.plot import draw
+from calm.drawing.schematic import schematic_svg
 from calm.shipped import shipped_folder
 from pages import pictures
 

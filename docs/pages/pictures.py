@@ -12,8 +12,8 @@ from mpl_toolkits.mplot3d.axes3d import Axes3D
 from numpy.typing import NDArray
 
 import calm
-from calm.report.drawing import along, mark_parts, named_parts
-from calm.report.plot import levels_of
+from calm.drawing.line_on_figure import along, mark_parts, named_parts
+from calm.drawing.plot import levels_of
 from calm.shipped import shipped_folder
 
 Floats = NDArray[np.float64]

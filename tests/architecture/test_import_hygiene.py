@@ -79,5 +79,5 @@ def test_help_reads_no_files() -> None:
 def test_reports_of_checks_draw_without_a_plotting_library(tmp_path: Path) -> None:
     arguments = ["check", "lines/s1000.yaml", "--allow-unknown", "--report", str(tmp_path / "to")]
     modules = loaded(COMMAND.format(arguments=arguments))
-    assert "calm.report.graph" in modules
+    assert "calm.drawing.graph" in modules
     assert "matplotlib.figure" not in modules

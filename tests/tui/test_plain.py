@@ -4,7 +4,7 @@ from io import BytesIO, TextIOWrapper
 
 import pytest
 
-from calm.report.sketch.canvas import Canvas
+from calm.drawing.sketch.canvas import Canvas
 from calm.tui.line.table import LineTable
 from calm.tui.painted import plain, shows_all_signs
 from calm.tui.theme import CLAMP, CURSOR, LOOKS, MARK, ROLES, UNKNOWN_ROLE

@@ -8,7 +8,7 @@ from functools import cache
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
-from calm.report.picture import set_apart
+from calm.drawing.picture import set_apart
 
 if TYPE_CHECKING:
     from jinja2 import Environment

@@ -53,7 +53,7 @@ class ProfilePicture(Widget):
         if width < _LEAST[0] or height < _LEAST[1] or self._view is None or self._view.file is None:
             return []
         from calm.assemble import assemble_water
-        from calm.report.sketch import current_profile
+        from calm.drawing.sketch import current_profile
 
         if self._view.file.environment.depth is None:
             return [Text("No depth is given: the water is deep.", style="dim")]

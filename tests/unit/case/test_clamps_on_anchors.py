@@ -9,8 +9,8 @@ from calm.batch.profiles import solve_profiles
 from calm.case import Mooring
 from calm.checks.criterion import parts_of
 from calm.checks.inventory import inventory_of
+from calm.drawing.schematic.shown_parts import levels_of
 from calm.files import read_mooring
-from calm.report.schematic.shown_parts import levels_of
 
 FILE = """
 name: lander

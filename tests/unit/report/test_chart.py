@@ -11,9 +11,9 @@ from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
 from calm.analytic.chart_branch import curve
+from calm.drawing.picture import check_format
 from calm.errors import UsageError
 from calm.report.chart_page import CHART_FORMATS, chart_picture, draw_chart
-from calm.report.picture import check_format
 
 PLATES = [(0.0, "below-90"), (0.15, "below-90"), (0.6, "below-90")]
 PLATES += [(2.4, "below-90"), (2.4, "above-90")]

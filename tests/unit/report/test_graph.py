@@ -6,7 +6,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from calm.report.graph import (
+from calm.drawing.graph import (
     Graph,
     LegendEntry,
     Scale,

@@ -13,11 +13,11 @@ import pytest
 
 import calm
 from calm.checks.finding import State
+from calm.drawing.check_figures import check_figure
+from calm.drawing.picture import set_apart
 from calm.errors import UsageError
-from calm.report.check_figures import check_figure
 from calm.report.check_report import mooring_section
 from calm.report.html import report_html, result_html
-from calm.report.picture import set_apart
 from calm.report.provenance import input_hash
 from tests.judged import (
     FORMULA,
@@ -236,7 +236,7 @@ PROGRAM = """
 import hashlib, sys
 from pathlib import Path
 from tests.judged import judged
-from calm.report.check_figures import check_figure
+from calm.drawing.check_figures import check_figure
 from calm.report.check_report import mooring_section
 from calm.report.html import report_html
 from calm.report.pdf import report_pdf

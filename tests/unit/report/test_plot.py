@@ -8,10 +8,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
+from calm.drawing.line_on_figure import draw_flow
+from calm.drawing.picture import check_format
+from calm.drawing.plot import draw, picture
 from calm.errors import UsageError
-from calm.report.drawing import draw_flow
-from calm.report.picture import check_format
-from calm.report.plot import draw, picture
 
 
 def drawn_names(result):

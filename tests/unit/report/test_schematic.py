@@ -12,7 +12,7 @@ from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import TextToPath
 
 import calm
-from calm.report.schematic import schematic_svg
+from calm.drawing.schematic import schematic_svg
 
 LINES = sorted((Path(__file__).resolve().parents[3] / "lines").glob("*.yaml"))
 SVG = "{http://www.w3.org/2000/svg}"

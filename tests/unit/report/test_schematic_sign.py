@@ -1,8 +1,8 @@
 import pytest
 
+from calm.drawing.schematic.sign import LINES, Symbol, sign_of
+from calm.drawing.schematic.symbols import figure_of
 from calm.files import Body, Catalogue, Cylinder, Sphere
-from calm.report.schematic.sign import LINES, Symbol, sign_of
-from calm.report.schematic.symbols import figure_of
 
 CATALOGUE = Catalogue.shipped()
 

@@ -4,7 +4,7 @@ import pytest
 from rich.cells import cell_len
 
 import calm
-from calm.report.schematic.in_terminal import can_carry, schematic_text
+from calm.drawing.schematic.in_terminal import can_carry, schematic_text
 
 LINES = sorted((Path(__file__).resolve().parents[3] / "lines").glob("*.yaml"))
 MOORING = """\

@@ -6,8 +6,8 @@ import pytest
 from rich.console import Console
 
 from calm.case.tow import Variation
+from calm.drawing.plot import draw_sweep
 from calm.errors import NoEquilibrium
-from calm.report.plot import draw_sweep
 from calm.report.tabulation import (
     by_coefficient,
     by_speed,

@@ -1,6 +1,6 @@
 import pytest
 
-from calm.report.sketch.canvas import Canvas
+from calm.drawing.sketch.canvas import Canvas
 
 
 def plain(canvas: Canvas) -> list[str]:

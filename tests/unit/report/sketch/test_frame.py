@@ -1,8 +1,8 @@
 import pytest
 
-from calm.report.graph.scale import number
-from calm.report.graph.scale import round_numbers as ticks
-from calm.report.sketch.canvas import Canvas, CellScale, PlotFrame, levels
+from calm.drawing.graph.scale import number
+from calm.drawing.graph.scale import round_numbers as ticks
+from calm.drawing.sketch.canvas import Canvas, CellScale, PlotFrame, levels
 
 
 def frame(width: int = 12, height: int = 7) -> PlotFrame:

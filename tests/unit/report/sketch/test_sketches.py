@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import pytest
 
-from calm.report.sketch import current_profile, elevation, plan, tension
-from calm.report.sketch.elevation import SIGNS
+from calm.drawing.sketch import current_profile, elevation, plan, tension
+from calm.drawing.sketch.elevation import SIGNS
 
 ALL = (
     "a-frame-sheared-tow",

@@ -5,10 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
-from calm.quantities import QUANTITIES
-from calm.report.schematic.pen import FAINT, INK, SOFT, Pen
-from calm.report.schematic.shown_parts import HEADINGS, Clamped, Schematic, TextRow, schematic_of
-from calm.report.schematic.symbols import (
+from calm.drawing.schematic.pen import FAINT, INK, SOFT, Pen
+from calm.drawing.schematic.shown_parts import HEADINGS, Clamped, Schematic, TextRow, schematic_of
+from calm.drawing.schematic.symbols import (
     draw_cable,
     draw_clamp,
     draw_helicopter,
@@ -19,7 +18,7 @@ from calm.report.schematic.symbols import (
     draw_water,
     figure_of,
 )
-from calm.report.schematic.text_layout import (
+from calm.drawing.schematic.text_layout import (
     FONT,
     LINE,
     LINE_AT,
@@ -32,6 +31,7 @@ from calm.report.schematic.text_layout import (
     indented,
     layout_of,
 )
+from calm.quantities import QUANTITIES
 
 if TYPE_CHECKING:
     from calm.case import Result, TowResult

@@ -8,12 +8,11 @@ from dataclasses import dataclass, replace
 from itertools import accumulate
 from typing import TYPE_CHECKING
 
+from calm.drawing.line_on_figure import alike, together
+from calm.drawing.schematic.sign import BALLS, Sign, Symbol, sign_of
+from calm.drawing.signs import printable
 from calm.files import Place, Rigid
 from calm.quantities import QUANTITIES, say
-from calm.report.drawing import alike, together
-from calm.report.schematic.sign import BALLS, Sign, Symbol, sign_of
-from calm.report.sheet import place_text
-from calm.report.signs import printable
 
 if TYPE_CHECKING:
     from calm.case import Result, TowResult
@@ -315,3 +314,8 @@ def _has_a_hull(file: MooringFile) -> bool:
     """Return whether the first piece is made to float at the surface."""
     top = file.pieces[0].component
     return isinstance(top, Rigid) and not (top.hull is None and top.wind_area is None)
+
+
+def place_text(at: float) -> str:
+    """Return where a clamp sits, from the top of its piece [m], as it stands among lengths."""
+    return f"at {QUANTITIES['at'].format(at)}"

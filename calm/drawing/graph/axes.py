@@ -10,10 +10,10 @@ from xml.etree import ElementTree
 import numpy as np
 from numpy.typing import ArrayLike
 
+from calm.drawing.graph.scale import Scale, Tick
+from calm.drawing.picture import within_xml
+from calm.drawing.schematic.pen import INK, Pen, text_width
 from calm.physics.line import Floats
-from calm.report.graph.scale import Scale, Tick
-from calm.report.picture import within_xml
-from calm.report.schematic.pen import INK, Pen, text_width
 
 
 class Stroke(NamedTuple):
@@ -152,7 +152,7 @@ class Axes:
                 )  # fmt: skip
 
     def mark(self, x: float, y: float, sign: str, size: float, colour: str) -> None:
-        """A sign at a point, as `calm.report.graph.draw_mark` draws it."""
+        """A sign at a point, as `calm.drawing.graph.draw_mark` draws it."""
         draw_mark(self._drawn, float(self.x(x)), float(self.y(y)), sign, size, colour)
 
     def frame(

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from calm.report.schematic.pen import FAINT, INK, Pen
-from calm.report.schematic.sign import BALLS, Sign, Symbol
+from calm.drawing.schematic.pen import FAINT, INK, Pen
+from calm.drawing.schematic.sign import BALLS, Sign, Symbol
 
 # Fills differ in lightness too, so that they can be told apart without colour.
 _FLOAT, _GLASS, _INSTRUMENT, _RELEASE = "#f4b13e", "#ffe6a3", "#d6e4f0", "#7fb69c"

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from calm.case import TowResult
-from calm.quantities import QUANTITIES, bearing_of, bearing_text
-from calm.report.drawing import (
+from calm.drawing.line_on_figure import (
     LEGEND,
     LINE_STYLE,
     SEABED_COLOUR,
@@ -24,7 +23,8 @@ from calm.report.drawing import (
     texts,
     write_names,
 )
-from calm.report.picture import image
+from calm.drawing.picture import image
+from calm.quantities import QUANTITIES, bearing_of, bearing_text
 from calm.units import KNOT
 
 if TYPE_CHECKING:

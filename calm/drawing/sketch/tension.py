@@ -12,9 +12,8 @@ from rich.text import Text
 from calm.case import Result
 from calm.checks.posture import meant_for_the_surface
 from calm.checks.strength import allowable_load
-from calm.quantities import bearing_of, bearing_text, say
-from calm.report.graph.scale import number, round_numbers
-from calm.report.sketch.canvas import (
+from calm.drawing.graph.scale import number, round_numbers
+from calm.drawing.sketch.canvas import (
     ACROSS,
     AXIS,
     COLUMNS_PER_TICK,
@@ -23,7 +22,7 @@ from calm.report.sketch.canvas import (
     PlotFrame,
     levels,
 )
-from calm.report.sketch.elevation import (
+from calm.drawing.sketch.elevation import (
     LIMIT,
     LINE,
     OTHER,
@@ -34,6 +33,7 @@ from calm.report.sketch.elevation import (
     header_rows,
     mark_parts,
 )
+from calm.quantities import bearing_of, bearing_text, say
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

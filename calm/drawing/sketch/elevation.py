@@ -12,12 +12,12 @@ from rich.cells import cell_len
 from rich.text import Text
 
 from calm.case import Result
+from calm.drawing.graph.scale import number, round_numbers
+from calm.drawing.line_on_figure import Named, along, named_parts, names, spread
+from calm.drawing.plot import levels_of, plane_of
+from calm.drawing.schematic.pen import ELLIPSIS
+from calm.drawing.sketch.canvas import AXIS, COLUMNS_PER_TICK, Canvas, PlotFrame, levels
 from calm.quantities import bearing_of, bearing_text, say
-from calm.report.drawing import Named, along, named_parts, names, spread
-from calm.report.graph.scale import number, round_numbers
-from calm.report.plot import levels_of, plane_of
-from calm.report.schematic.pen import ELLIPSIS
-from calm.report.sketch.canvas import AXIS, COLUMNS_PER_TICK, Canvas, PlotFrame, levels
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
     from calm.case import Result
-    from calm.report.drawing import Named
+    from calm.drawing.line_on_figure import Named
 
 
 LEAST_SPAN = 0.1

@@ -6,10 +6,10 @@ import math
 from dataclasses import dataclass
 from itertools import accumulate
 
-from calm.report.schematic.pen import text_width
-from calm.report.schematic.shown_parts import HEADINGS, Schematic, ShownPart, TextRow
-from calm.report.schematic.sign import LINES
-from calm.report.schematic.symbols import SymbolFigure, figure_of
+from calm.drawing.schematic.pen import text_width
+from calm.drawing.schematic.shown_parts import HEADINGS, Schematic, ShownPart, TextRow
+from calm.drawing.schematic.sign import LINES
+from calm.drawing.schematic.symbols import SymbolFigure, figure_of
 
 # The unit of the page is a quarter of a millimetre in print, less where a line is long.
 

@@ -11,9 +11,7 @@ from numpy.typing import NDArray
 
 from calm.checks.posture import meant_for_the_surface
 from calm.checks.strength import allowable_load
-from calm.quantities import QUANTITIES
-from calm.report.drawing import NAMED_ROLES, SEABED_COLOUR, SIGNS, WATER_COLOUR, along, named_parts
-from calm.report.graph import (
+from calm.drawing.graph import (
     Graph,
     LegendEntry,
     Scale,
@@ -23,7 +21,16 @@ from calm.report.graph import (
     numbers,
     write_legend,
 )
-from calm.report.plot import plane_of
+from calm.drawing.line_on_figure import (
+    NAMED_ROLES,
+    SEABED_COLOUR,
+    SIGNS,
+    WATER_COLOUR,
+    along,
+    named_parts,
+)
+from calm.drawing.plot import plane_of
+from calm.quantities import QUANTITIES
 
 if TYPE_CHECKING:
     from calm.case import Result

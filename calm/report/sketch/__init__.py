@@ -1,9 +1,0 @@
-"""Pictures of a solved line for a terminal, drawn with braille dots in any number of cells.
-
-Each is a text for each row of cells. From 20 by 6 cells on they show a scale; more room shows more.
-"""
-
-from calm.report.sketch.elevation import elevation as elevation
-from calm.report.sketch.tension import current_profile as current_profile
-from calm.report.sketch.tension import plan as plan
-from calm.report.sketch.tension import tension as tension
