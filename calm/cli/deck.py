@@ -105,8 +105,11 @@ def deck(
 
 
 def _write(folder: Path, path: Path, deck: Deck, paper: Paper) -> None:
+    from calm.report.check_summary import SIGNS, verdict_of
     from calm.report.folder import write_report
 
+    state, words = verdict_of(deck.assessment.all_findings())
+    narrate(f"{path}: {SIGNS[state]} {words}: calm check {path}")
     notes = _signs_that_are_lacking(deck)
     for note in (*deck.notes, *notes):
         narrate(f"{path}: {note}")
@@ -121,7 +124,7 @@ def _contents(deck: Deck, paper: Paper, notes: tuple[str, ...]) -> Mapping[str, 
     from calm.report.result_json import to_json
 
     texts = {"diagram.svg": diagram_svg(deck, paper), **deck_csvs(deck)}
-    texts["plan.json"] = to_json([_plan(deck)])
+    texts["plan.json"] = to_json([_plan(deck) | {"verdict": _verdict(deck)}])
     return {
         "deck.pdf": printed(deck_report(deck, paper, notes), paper, least=7.5),
         "diagram.pdf": printed(diagram_report(deck, paper), paper, least=7.5),
@@ -138,6 +141,16 @@ def _plan(deck: Deck) -> dict[str, Any]:
     if isinstance(deck.plan, NoEquilibrium):
         return failure_document(deck.file.name, deck.plan)
     return deck.plan.to_dict()
+
+
+def _verdict(deck: Deck) -> dict[str, Any]:
+    """What the design check says of the mooring that is laid."""
+    from calm.checks.finding import State
+    from calm.report.check_summary import counted_states
+
+    counts = counted_states(deck.assessment.all_findings())
+    state = str(deck.assessment.state)
+    return {"state": state, "fails": counts[State.FAIL], "unknown": counts[State.UNKNOWN]}
 
 
 def _signs_that_are_lacking(deck: Deck) -> tuple[str, ...]:

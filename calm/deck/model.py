@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from calm.case import Mooring
+from calm.checks.assess import check
 from calm.checks.finding import OWN
 from calm.checks.inventory import inventory_of
 from calm.checks.recovery import recovery_of
@@ -31,6 +32,7 @@ from calm.solve import Status
 
 if TYPE_CHECKING:
     from calm.case import Result
+    from calm.checks.assessment import Assessment
     from calm.checks.recovery import Recovery
     from calm.files import MooringFile
 
@@ -53,6 +55,7 @@ class Deck:
     cuts, hardware, shipped, lifts, instruments : what the sheets of these names say
     plan : of the anchor drop, or why it could not be solved; None where the anchor goes first
     notes : what is not known, and why
+    assessment : what the design check says of the mooring
     """
 
     result: Result
@@ -69,6 +72,7 @@ class Deck:
     instruments: tuple[DeckInstrument, ...]
     environments: tuple[str, ...]
     notes: tuple[str, ...]
+    assessment: Assessment
     plan: DropPlan | NoEquilibrium | None = None
 
     @property
@@ -102,6 +106,7 @@ def deck_of(
     first = moorings[0]
     notes: list[str] = []
     result = _standing(first, notes)
+    notes += result.warnings
     results = [(_name(first), result)]
     for other in moorings[1:]:
         try:
@@ -141,6 +146,7 @@ def deck_of(
         instruments=instruments_of(parts, results),
         environments=tuple(name for name, _ in results),
         notes=tuple(notes),
+        assessment=check(*moorings),
         plan=plan,
     )
 
