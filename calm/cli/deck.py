@@ -23,7 +23,7 @@ DECK_EXAMPLES = """Examples:
   calm deck mooring.yaml -o cruise/
   calm deck mooring.yaml -o cruise/ --page a3 --environment storm
   calm deck north.yaml south.yaml -o cruise/
-  calm deck mooring.yaml -o cruise/ --ship-speed "2 knot" --streamed "900 m" --course "245 deg"
+  calm deck mooring.yaml -o cruise/ --ship-speed "2 knot" --course "245 deg" --deck-time "3 min"
   calm deck shallow.yaml -o cruise/ --order anchor-first"""
 
 
@@ -38,6 +38,7 @@ def deck(
     ship_speed: str = "1 m/s",
     streamed: str | None = None,
     course: str | None = None,
+    deck_time: str | None = None,
     catalog: list[Path] | None = None,
 ) -> ExitCode:
     """Draw the diagram and write the lists for the deployment of moorings.
@@ -68,6 +69,10 @@ def deck(
     course
         Of the ship over the ground as it tows the line out; against the current at the surface
         unless given.
+    deck_time
+        Of handling each piece and clamp before it goes over, such as "3 min", shackles and rings
+        apart; by role in the file's `document: deck_time:` unless given. Without either the plan
+        has no start of the run.
     catalog
         A catalogue of your own; its components hide others of the same id. Repeatable.
     """
@@ -84,6 +89,7 @@ def deck(
             "ship_speed": (ship_speed, "speed"),
             "streamed": (streamed, "length"),
             "course": (course, "angle"),
+            "deck_time": (deck_time, "time"),
         }
     )
     designs, tows = read_designs(files, environment, catalog or [], None, "calm deck")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -36,6 +36,8 @@ if TYPE_CHECKING:
     from calm.checks.recovery import Recovery
     from calm.files import MooringFile
 
+HANDLED = ("float", "instrument", "release", "line")
+"""Roles of what takes time on deck by itself; what joins pieces is shackled on with them."""
 FAINT = 0.1
 """Current in which a line is drawn that still water leaves slack [m/s]."""
 
@@ -87,6 +89,7 @@ def deck_of(
     ship_speed: float = SHIP_SPEED,
     streamed: float | None = None,
     course: float | None = None,
+    deck_time: float | None = None,
 ) -> Deck:
     """The sheets of a mooring.
 
@@ -95,6 +98,8 @@ def deck_of(
     moorings : the same one in each environment, that of the sheets first, and cut alike in all
     ship_speed, streamed, course : of the anchor drop, see `calm.drop.drop_plan` [m/s], [m],
         [degrees]
+    deck_time : of handling a piece on deck, but what joins pieces [s]; by role in the file's
+        `document` where not given
 
     Raises
     ------
@@ -126,7 +131,8 @@ def deck_of(
     if order is Order.ANCHOR_LAST:
         try:
             stands = result if result.mooring is first else None
-            plan = drop_plan(first, ship_speed, streamed, course, result=stands)
+            times = _deck_times(first.file, deck_time)
+            plan = drop_plan(first, ship_speed, streamed, course, result=stands, deck_time=times)
         except NoEquilibrium as failure:
             plan = failure
             notes.append(f"The anchor drop is not planned: {failure}")
@@ -149,6 +155,14 @@ def deck_of(
         assessment=check(*moorings),
         plan=plan,
     )
+
+
+def _deck_times(file: MooringFile, each: float | None) -> Mapping[str, float] | None:
+    """Return the time of handling a piece by its role [s]; None where nobody gives it."""
+    if each is not None:
+        return dict.fromkeys(HANDLED, each)
+    given = None if file.document is None else file.document.deck_time
+    return None if given is None else {str(role): time for role, time in given.items()}
 
 
 def _standing(mooring: Mooring, notes: list[str]) -> Result:
