@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -25,25 +26,28 @@ if TYPE_CHECKING:
     from calm.files import Clamp, Piece
 
 POTENTIALS = {
-    "stainless": -0.05,
-    "titanium": 0.0,
-    "bronze": -0.35,
-    "brass": -0.35,
-    "copper": -0.44,
-    "galvani": -0.66,
-    "steel": -0.66,
-    "iron": -0.66,
-    "aluminium": -0.88,
-    "aluminum": -0.88,
-    "zinc": -1.0,
+    r"stainless|inox|a[24]|(aisi ?|1\.4\d\d)?(304|316)l?": -0.05,
+    r"titanium|titan|titane|ti|inconel|hastelloy": 0.0,
+    r"bronze|brass": -0.35,
+    r"copper|cu": -0.44,
+    r"galvani\w*|galv|hdg|steel|stahl|acier|iron": -0.66,
+    r"alumini?um|alu": -0.88,
+    r"zinc": -1.0,
 }
-"""Middle of the corrosion potential of metals in sea water [V], by a word of their `material`, the
-nobler words before those they hold: stainless steel is no steel, aluminium bronze no aluminium.
-Galvanised steel counts as steel, which its zinc protects."""
+"""Middle of the corrosion potential of metals in sea water [V], by a whole word of `material`, the
+nobler words before those that stand beside them: stainless steel is no steel, aluminium bronze
+no aluminium. Galvanised steel counts as steel, which its zinc protects."""
 
 GREATEST_DIFFERENCE = 0.2
 """Beyond it two metals that touch corrode each other in sea water [V]."""
 
+_BALANCED = re.compile(r"\b(torque[- ]balanced|rotation[- ]res\w*|non[- ]rotating)\b")
+_UNBALANCED = re.compile(
+    r"\b(not|no|non|never|un|hardly|without)[- ]?(\w+[- ])?(torque|rotation|balanced)"
+    r"|\bun(torque|balanced)|balanced\W+(no|not|false)\b"
+)
+_STEEL = re.compile(r"\b(steel|galv\w*|stainless|nilspin)\b")
+_NO_RELEASE = re.compile(r"\b(shackle|swivel|sling|chain|rope|wire|thimble|pear[- ]?link)s?\b")
 _INSULATED = ("plastic", "jacket", "sheath", "coated", "insulat")
 
 
@@ -63,6 +67,15 @@ def release_present(handling: Handling) -> Iterator[Verdict]:
         )
         return
     piece = mooring.file.pieces[release]
+    if _NO_RELEASE.search(_words(piece.use, piece.component.name)):
+        message = f"{piece.label} has the role of a release, and is called what opens nothing."
+        yield unknown(piece, message, "Give `role: release` to the release alone.")
+        return
+    for below in mooring.file.pieces[release + 1 :]:
+        if net_buoyancy(below.component, mooring.water.gravity) > 0.0:
+            message = f"{below.label} floats below the release, and stays on the anchor."
+            remedy = "Put it above the release, or take what sinks."
+            yield verdict_on(below, State.WARN, message, remedy)
     yield verdict_on(piece, State.PASS, f"{piece.label} frees the line from everything below it.")
 
 
@@ -95,8 +108,8 @@ def _bears_torque(component: Component) -> bool:
     if not isinstance(component, Cable) or is_synthetic(component):
         return False
     said = _words(component.material, component.name, component.note)
-    balanced = any(word in said for word in ("torque-balanced", "torque balanced", "rotation-res"))
-    return "steel" in _words(component.material) and not balanced
+    balanced = _BALANCED.search(said) and not _UNBALANCED.search(said)
+    return _STEEL.search(_words(component.material)) is not None and not balanced
 
 
 def _held_by(way: Sequence[Piece]) -> tuple[Piece, bool] | None:
@@ -110,6 +123,41 @@ def _held_by(way: Sequence[Piece]) -> tuple[Piece, bool] | None:
         words = _words(piece.use, piece.component.name)
         has_swivel = has_swivel or "swivel" in words
     return None
+
+
+_TOUCH = 0.05
+"""What clamps may overlap by, since what they hold stands beside the line [m]."""
+
+
+@rule("clamp-place", once=True)
+def clamp_place(handling: Handling) -> Iterator[Verdict]:
+    """Clamps on a cable or chain that overlap, or stick out over its end into the next piece."""
+    mooring = handling.mooring
+    lengths = mooring.line.length.tolist()
+    remedy = "Put it where it has room, or look at its `at` and its length."
+    for piece in mooring.file.pieces:
+        if not isinstance(piece.component, Flexible):
+            continue
+        spans = sorted(
+            (_span(clamp, clamp.at) for clamp in piece.clamps), key=lambda span: span[:2]
+        )
+        for upper, lower in pairwise(spans):
+            if upper[1] - lower[0] > _TOUCH:
+                message = (
+                    f"{lower[2].label} overlaps {upper[2].label} by "
+                    f"{upper[1] - lower[0]:.2f} m on {piece.label}."
+                )
+                yield verdict_on(lower[2], State.FAIL, message, remedy)
+        for top, bottom, clamp in spans:
+            out = max(-top, bottom - lengths[piece.index])
+            if out > max(_TOUCH, (bottom - top) / 2.0 + _TOUCH if clamp.at == 0.0 else _TOUCH):
+                message = f"{clamp.label} sticks out {out:.2f} m over the end of {piece.label}."
+                yield verdict_on(clamp, State.FAIL, message, remedy)
+
+
+def _span(clamp: Clamp, middle: float) -> tuple[float, float, Clamp]:
+    half = float(getattr(clamp.component, "length", None) or 0.0) / 2.0
+    return middle - half, middle + half, clamp
 
 
 @rule("metals", once=True)
@@ -145,7 +193,9 @@ def potential_of(component: Component) -> float | None:
     said = _words(component.material)
     if any(word in said for word in _INSULATED):
         return None
-    return next((volts for word, volts in POTENTIALS.items() if word in said), None)
+    return next(
+        (volts for words, volts in POTENTIALS.items() if re.search(rf"\b({words})\b", said)), None
+    )
 
 
 def _corrodes(base: Piece | Clamp, noble: Piece | Clamp, volts: float) -> Verdict:

@@ -12,6 +12,7 @@ from calm.case import Mooring, Result
 from calm.checks.assessment import Acceptance, Assessment, MooringInEnvironment, Situation
 from calm.checks.backup import breaks_of, losses_of
 from calm.checks.criterion import limits_used
+from calm.checks.currents import LEAST_CURRENT, currents
 from calm.checks.finding import AS_GIVEN, OWN, Finding, State
 from calm.checks.handling import Handling
 from calm.checks.inventory import inventory_of
@@ -23,9 +24,6 @@ from calm.drop.launch import Launch, launch_of
 from calm.errors import NoEquilibrium
 from calm.files import MooringFile, Place
 from calm.solve import expect_many
-
-LEAST_CURRENT = 0.01
-"""Speed below which a current counts as none [m/s]."""
 
 
 def check(mooring: Mooring, /, *others: Mooring, day: date | None = None) -> Assessment:
@@ -89,6 +87,11 @@ def assessment_of(
         acceptance.of(rule.find(verdict, name, first.environment, rule.situation))
         for rule in ONCE
         for verdict in rule.judge(handling)
+    ]
+    standing = [stand.mooring for stand in stands if stand.result is not None]
+    findings[:0] = [
+        acceptance.of(currents.find(verdict, name, mooring.file.environment.name or OWN))
+        for mooring, verdict in (currents.judge(standing) if standing else ())
     ]
     if first.result is not None and not any(_moved(stand.mooring) for stand in stands):
         findings.insert(0, equilibrium.find(STILL_ONLY, name, first.environment, AS_GIVEN))

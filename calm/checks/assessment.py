@@ -145,6 +145,11 @@ class Acceptance:
         accepted : every finding that is accepted
         """
         used = {finding.accept for finding in accepted}
+        bare = [one for one in self.accepts if None in (one.by, one.until) and one in used]
+        if bare:
+            said = "1 of 1 `accept` names" if len(self.accepts) == 1 else ""
+            said = said or f"{len(bare)} of {len(self.accepts)} `accept` name"
+            yield f"{said} nobody (`by`) or no end (`until`): accepted is not passed"
         for accept in sorted(self.accepts, key=lambda one: one.line):
             of = f" of {accept.component}" if accept.component is not None else ""
             what = f"line {accept.line}: `accept` for {accept.rule}{of}"

@@ -222,6 +222,29 @@ def has_no_drag(component: Component) -> str | None:
     return "has no drag across it (`cn: 0`)"
 
 
+LEAST_DRAG = {"sphere": 0.06, "cylinder": 0.2, "cable": 0.05, "chain": 1.0}
+"""Least coefficient of drag across each kind, past the crisis of drag in smooth flow.
+
+Of spheres 0.06 (Katz, Automotive Aerodynamics, figure 6.19), of cylinders 0.2 (Roshko 1961, Journal
+of Fluid Mechanics 10, 345-356), of cables the 0.05 of a streamlined section around them.
+"""
+
+MOST_DRAG = 10.0
+"""No piece of a mooring has a greater coefficient, whatever vibrates."""
+
+
+def drags_out_of_range(component: Component) -> str | None:
+    """A coefficient of drag that no piece of its kind has."""
+    name = "cx" if isinstance(component, Sphere) else "cn"
+    value = getattr(component, name, None)
+    least = LEAST_DRAG.get(component.kind)
+    if value is None or least is None or value == 0.0 or least <= value <= MOST_DRAG:
+        return None
+    return (
+        f"has `{name}: {value:g}`; a {component.kind} has {least:g} at least, {MOST_DRAG:g} at most"
+    )
+
+
 IMPOSSIBLE: tuple[Callable[[Component], str | None], ...] = (
     warns_after_limit,
     displaces_more_than_its_size,
@@ -233,6 +256,7 @@ IMPOSSIBLE: tuple[Callable[[Component], str | None], ...] = (
     is_too_strong,
     is_rated_below_the_ocean,
     has_no_drag,
+    drags_out_of_range,
 )
 """Rules on the figures themselves, of a catalogue and of a design."""
 
@@ -277,4 +301,5 @@ def figures(handling: Handling) -> Iterator[Verdict]:
                 if said is not None and (part.use, said) not in named:
                     named.add((part.use, said))
                     remedy = "Look at its figures, and at their units."
-                    yield verdict_on(part, State.WARN, f"{part.label} {said}.", remedy)
+                    state = State.WARN if impossible is warns_after_limit else State.FAIL
+                    yield verdict_on(part, state, f"{part.label} {said}.", remedy)

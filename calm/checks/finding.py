@@ -173,7 +173,7 @@ class Rule:
     title: str
     quantity: str
     source: str
-    judge: Callable[[Any], Iterator[Verdict]]
+    judge: Callable[[Any], Iterator[Any]]
     of_anchor: bool = False
     criteria: Callable[[Any], Iterator[Any]] | None = None
     once: bool = False
@@ -194,11 +194,11 @@ class Rule:
 
 def rule(
     name: str, *, of_anchor: bool = False, once: bool = False, situation: str = AS_GIVEN
-) -> Callable[[Callable[[Any], Iterator[Verdict]]], Rule]:
+) -> Callable[[Callable[[Any], Iterator[Any]]], Rule]:
     """Make the `Rule` of that name in `calm.files.rule_texts` from a function that judges."""
     text = RULE_TEXTS[name]
 
-    def of(judge: Callable[[Any], Iterator[Verdict]]) -> Rule:
+    def of(judge: Callable[[Any], Iterator[Any]]) -> Rule:
         return Rule(
             name, text.title, text.quantity, text.source, judge, of_anchor,
             once=once, situation=situation,

@@ -15,6 +15,7 @@ from calm.checks import (
     situations,
     strength,
 )
+from calm.checks.currents import currents
 from calm.checks.finding import AS_GIVEN, Rule, State, Verdict, rule, verdict_on
 from calm.files.rule_texts import RULES as TEXTS
 
@@ -57,5 +58,5 @@ STANDING = _judging(once=False)
 ONCE = _judging(once=True)
 """What is judged once of a mooring: its breaks, its launch and its recovery."""
 
-RULES = {each.name: each for each in (equilibrium, *STANDING, *ONCE)}
+RULES = {each.name: each for each in (equilibrium, currents, *STANDING, *ONCE)}
 """Every rule by its name."""

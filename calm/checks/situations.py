@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from math import hypot
+from math import cos, hypot, radians
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from calm.case import Mooring, Result
 from calm.case.strumming import FACTOR
 from calm.checks.assessment import Situation
-from calm.checks.finding import AS_GIVEN, State, Verdict, at_most, rule
+from calm.checks.finding import AS_GIVEN, State, Verdict, at_most, rule, unknown
 from calm.checks.growth import grown
 from calm.checks.posture import meant_for_the_surface, reaches_the_surface
 from calm.errors import NoEquilibrium, UsageError
@@ -164,6 +164,8 @@ def deployed_depth(handling: Handling) -> Iterator[Verdict]:
     mooring = handling.mooring
     if mooring.file.deployed is None:
         return
+    if (far := _far_away(mooring)) is not None:
+        yield far
     try:
         deployed = as_deployed(mooring)
     except NoEquilibrium:  # found by `equilibrium`
@@ -185,6 +187,32 @@ def deployed_depth(handling: Handling) -> Iterator[Verdict]:
     )
     remedy = "`calm diff` with this file alone shows what that does."
     yield at_most(None, abs(moved), limit, message, remedy, State.WARN)
+
+
+_EARTH = 6371e3  # m, its radius
+_ANOTHER_SITE = 20e3
+"""Distance from the planned position beyond which the currents of the design are of elsewhere
+[m]."""
+
+
+def _far_away(mooring: Mooring) -> Verdict | None:
+    """Return that it was deployed at another place than it was designed for."""
+    assert mooring.file.deployed is not None
+    planned = mooring.file.position or mooring.file.environment.position
+    there = mooring.file.deployed.position
+    if planned is None or there is None:
+        return None
+    north = radians(there.latitude - planned.latitude)
+    east = radians((there.longitude - planned.longitude + 180.0) % 360.0 - 180.0)
+    mean = radians((there.latitude + planned.latitude) / 2.0)
+    away = _EARTH * hypot(north, east * cos(mean))
+    if away <= _ANOTHER_SITE:
+        return None
+    message = (
+        f"Deployed {away / 1e3:.0f} km from the planned position: the water and the currents of "
+        "this design are those of another place."
+    )
+    return unknown(None, message, "Look at both positions, or give the environment of the site.")
 
 
 def _as_cut(piece: Piece, items: dict[str, DeployedItem]) -> Piece:

@@ -21,15 +21,17 @@ from calm.drawing.graph import (
     numbers,
     write_legend,
 )
-from calm.drawing.line_on_figure import (
+from calm.drawing.line_picture import (
     NAMED_ROLES,
-    SEABED_COLOUR,
-    SIGNS,
-    WATER_COLOUR,
-    along,
+    LineKind,
+    along_the_line,
+    current_between,
+    elevation_of,
+    from_the_side,
     named_parts,
+    plane_of,
 )
-from calm.drawing.plot import plane_of
+from calm.drawing.plot import SEABED_COLOUR, SIGNS, WATER_COLOUR
 from calm.quantities import QUANTITIES
 
 if TYPE_CHECKING:
@@ -111,38 +113,32 @@ def _depths(solved: Solved) -> Scale:
 
 def _draw_elevation(graph: Graph, place: Place, solved: Solved, depths: Scale) -> None:
     _, first = solved[0]
-    depth = depths.low / 1.03
-    offsets = [along(one.shape.x, one.shape.y, plane_of(one)) for _, one in solved]
-    start, end = (float(each) for each in _span([0.0], *offsets))
+    side, depth = elevation_of(first), depths.low / 1.03
+    lines = [from_the_side(one.shape, plane_of(one)) for _, one in solved]
+    start = min(0.0, *(float(line.x.min()) for line in lines))
+    end = max(0.0, *(float(line.x.max()) for line in lines))
     span = max(end - start, _LEAST_SPAN * depth)
     axes = graph.axes(*place, Scale(start - 0.08 * span, start + 1.08 * span), depths)
     axes.strip(depth, depths.low, SEABED_COLOUR)
     axes.level(0.0, Stroke(WATER_COLOUR, 1.0))
-    plane, still = plane_of(first), first.still_shape
-    if still is not None:
-        axes.line(along(still.x, still.y, plane), still.depth, _STILL)
-    for number, ((_, result), offset) in enumerate(zip(solved, offsets, strict=True)):
-        axes.line(offset, result.shape.depth, _stroke(number))
-    for part in named_parts(first):
-        axes.mark(float(along(part.x, part.y, plane)), part.depth, *SIGNS[part.role])
+    for line in side.lines:
+        if line.kind is LineKind.STILL:
+            axes.line(line.x, line.y, _STILL)
+    for number, line in enumerate(lines):
+        axes.line(line.x, line.y, _stroke(number))
+    for mark in side.marks:
+        axes.mark(mark.x, mark.y, *SIGNS[mark.role])
     axes.frame(
         numbers(axes.across.low, axes.across.high, 5), numbers(depths.low, depths.high, 9),
-        below=QUANTITIES["offset"].label, beside=QUANTITIES["depth"].label,
+        below=QUANTITIES["offset"].label, beside=side.up,
     )  # fmt: skip
-
-
-def _span(*values: Sequence[float] | Floats) -> tuple[float, float]:
-    """The least and the greatest of all of them."""
-    return min(float(np.min(each)) for each in values), max(float(np.max(each)) for each in values)
 
 
 def _draw_current(graph: Graph, place: Place, solved: Solved, depths: Scale) -> None:
     profiles = []
     for _, result in solved:
         water = result.mooring.water
-        depth = np.union1d(np.linspace(0.0, water.depth, 60), water.level)
-        depth = depth[(depth >= 0.0) & (depth <= water.depth)]
-        u, v = (np.interp(depth, water.level, speed) for speed in (water.u, water.v))
+        depth, u, v = current_between(water, 0.0, water.depth, samples=60)
         profiles.append((np.hypot(u, v), depth))
     fastest = max(float(speed.max()) for speed, _ in profiles)
     axes = graph.axes(*place, Scale(0.0, 1.05 * fastest or 1.0), depths)
@@ -165,7 +161,7 @@ def _draw_tension(graph: Graph, place: Place, solved: Solved) -> None:
         for piece in first.file.pieces[:-1]
     ]
     edge = min(np.nanmax([*loads, greatest]), _FURTHEST_LIMIT * greatest)
-    distances = [_distance(result) for _, result in solved]
+    distances = [along_the_line(result.shape) for _, result in solved]
     furthest = max(float(each[-1]) for each in (ends, *distances))
     axes = graph.axes(*place, Scale(0.0, 1.04 * edge), Scale(1.02 * furthest, -0.02 * furthest))
     for number, ((_, result), distance) in enumerate(zip(solved, distances, strict=True)):
@@ -175,13 +171,6 @@ def _draw_tension(graph: Graph, place: Place, solved: Solved) -> None:
         numbers(0.0, axes.across.high, 4), numbers(axes.up.low, axes.up.high, 9),
         below=QUANTITIES["tension"].label, beside="distance along the line [m]",
     )  # fmt: skip
-
-
-def _distance(result: Result) -> Floats:
-    """(k,) stretched length from the free end to each node [m]."""
-    shape = result.shape
-    steps = np.sqrt(np.diff(shape.x) ** 2 + np.diff(shape.y) ** 2 + np.diff(shape.depth) ** 2)
-    return np.concatenate([[0.0], np.cumsum(steps)])
 
 
 def _draw_plan(graph: Graph, place: Place, solved: Solved) -> None:

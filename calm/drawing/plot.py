@@ -2,29 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from calm.case import TowResult
-from calm.drawing.line_on_figure import (
-    LEGEND,
-    LINE_STYLE,
-    SEABED_COLOUR,
-    WATER_COLOUR,
-    WIDTH,
+from calm.drawing.line_picture import (
+    NAMED_ROLES,
+    LineKind,
+    LinePicture,
+    PictureMark,
     along,
-    draw_flow,
-    draw_plan,
-    figure_height,
-    mark_parts,
-    set_span,
-    texts,
-    write_names,
+    current_between,
+    elevation_of,
+    names,
+    plan_of,
+    plane_of,
+    spread,
 )
 from calm.drawing.picture import image
-from calm.quantities import QUANTITIES, bearing_of, bearing_text
+from calm.quantities import QUANTITIES
 from calm.units import KNOT
 
 if TYPE_CHECKING:
@@ -37,189 +36,212 @@ if TYPE_CHECKING:
     from calm.report.tabulation import Tabulation
 
     Floats = NDArray[np.float64]
-    from calm.case import TowResult
+
+
+WIDTH = 11.0  # inches
+LINE_STYLE: dict[str, Any] = {"color": "#0b3c5d", "linewidth": 1.5}
+WATER_COLOUR, SEABED_COLOUR = "#3399cc", "#d9c7a3"
+LEGEND: dict[str, Any] = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "frameon": False}
+"""A legend above the axes."""
+
+SIGNS = {
+    "float": ("o", 7.0, "#e69f00"),
+    "instrument": ("s", 4.5, "#cc3311"),
+    "release": ("D", 5.0, "#009e73"),
+    "anchor": ("v", 6.0, "black"),
+}
+"""Form, size [pt] and colour of the mark of a role."""
+
+_FONT_SIZE = 8.0  # points
+_LINE_HEIGHT = 1.3 * _FONT_SIZE / 72  # inches
+_LEAST_HEIGHT, _GREATEST_HEIGHT = 6.5, 20.0  # inches
+_FRAME = 1.5  # inches above and below the axes, for titles and ticks
+# The drawn line keeps to this share of the width of the elevation; the names stand beyond it.
+_SHARE_OF_LINE = 0.55
+# Distances are drawn to at least this share of the height: a still line must not look bent.
+_LEAST_SPAN = 0.1
+# Speeds that differ by less, as a share of the greatest, are drawn as one line: they would cover
+# each other.
+_SAME_SPEED = 0.01
+# A line that leaves the plane of the tow by more than this share of its layback is drawn in plan.
+_PLANE_WITHIN = 0.01
+_SHIP: dict[str, Any] = {"linestyle": "none", "marker": "^", "color": "black", "markersize": 8}
 
 
 def picture(result: Result | TowResult, suffix: str, uncertain: Uncertain | None = None) -> bytes:
-    """The drawing of a mooring or a tow as a file; `suffix` is one of `picture.FORMATS`."""
+    """Return the drawing of a mooring or a tow as a file; `suffix` is one of `picture.FORMATS`."""
     return image(draw(result, uncertain), suffix)
 
 
 def draw(result: Result | TowResult, uncertain: Uncertain | None = None) -> Figure:
-    """The drawing of a mooring or a tow: a figure that belongs to no window.
+    """Draw a mooring or a tow as a figure of two or three views, which belongs to no window.
+
+    The elevation is in the vertical plane of the anchor and the free end, with the same line in
+    still water dashed, or in that of the tow, the ship at distance 0. Beside it stand the speed of
+    the water and its part in that plane, past the line in a tow; and the line from above, where it
+    leaves the plane of a tow.
 
     Parameters
     ----------
     uncertain : of a mooring; its band is drawn behind the line
     """
-    if isinstance(result, TowResult):
-        pass
-
-        return draw_tow(result)
-    pass
-
-    return draw_mooring(result, uncertain)
-
-
-def draw_mooring(result: Result, uncertain: Uncertain | None = None) -> Figure:
-    """A figure of three views, which belongs to no window.
-
-    The elevation is in the vertical plane of the anchor and the free end, with the same line in
-    still water dashed; the current is shown as its speed and as its part in that plane. Behind the
-    line stands the band of its uncertainty, where that is given.
-    """
     from matplotlib.figure import Figure
 
-    written = texts(result, result.mooring.water.depth)
-    height = figure_height(written)
+    side, plane = elevation_of(result, uncertain=uncertain), plane_of(result)
+    extent = side.bottom - side.top
+    near = extent * _LINE_HEIGHT / (_LEAST_HEIGHT - _FRAME)
+    written = sorted(names(list(side.marks), near), key=lambda named: named[1].depth)
+    height = min(max(_LEAST_HEIGHT, len(written) * _LINE_HEIGHT + _FRAME), _GREATEST_HEIGHT)
     figure = Figure(figsize=(WIDTH, height), layout="constrained")
-    elevation, current, plan = figure.subplots(1, 3, width_ratios=(5, 1.5, 3))
-    current.sharey(elevation)
-    figure.suptitle(result.name, parse_math=False)
-
-    plane = plane_of(result)
-    _draw_mooring_elevation(elevation, result, plane, uncertain)
-    write_names(elevation, written, height, lambda part: float(along(part.x, part.y, plane)))
-    _draw_current(current, result, plane)
-    draw_plan(plan, result)
-    return figure
-
-
-def plane_of(result: Result) -> Floats:
-    """(2,) direction, east and north, from the anchor to the free end; east when upright."""
-    excursion = np.array([result.top.x, result.top.y])
-    distance = np.linalg.norm(excursion)
-    east = np.array([1.0, 0.0])
-    return excursion / distance if distance > 1e-6 * result.mooring.water.depth else east
-
-
-def _draw_mooring_elevation(
-    axes: Axes, result: Result, plane: Floats, uncertain: Uncertain | None
-) -> None:
-    depth = result.mooring.water.depth
-    offset = along(result.shape.x, result.shape.y, plane)
-    reach = [offset]
-    if uncertain is not None:
-        reach.append(_draw_band(axes, uncertain))
-    axes.axhline(0.0, color=WATER_COLOUR, linewidth=1)
-    axes.axhspan(depth, 1.05 * depth, color=SEABED_COLOUR)
-    if result.still_shape is not None:
-        still = along(result.still_shape.x, result.still_shape.y, plane)
-        label = "in still water"
-        axes.plot(still, result.still_shape.depth, "--", color="grey", linewidth=1, label=label)
-    axes.plot(offset, result.shape.depth, label="in the current", **LINE_STYLE)
-    axes.legend(ncols=2, **LEGEND)
-    mark_parts(axes, result, lambda part: (float(along(part.x, part.y, plane)), part.depth))
-    low, high = (function(list(map(function, reach))) for function in (min, max))
-    set_span(axes, min(0.0, low), max(0.0, high), depth)
-    axes.set_ylim(1.03 * depth, min(-0.03 * depth, result.shape.depth.min()))
-    axes.set_xlabel(f"{QUANTITIES['offset'].label}, towards {bearing_text(bearing_of(*plane))}")
-    axes.set_ylabel(QUANTITIES["depth"].label)
-
-
-def _draw_band(axes: Axes, uncertain: Uncertain) -> Floats:
-    """The line between its 5 and 95 % of offset and depth; the offsets it covers."""
-    (near, *_, far), (high, *_, low) = uncertain.offset, uncertain.depth_top
-    offset = np.concatenate([near, far[::-1]])
-    depth = np.concatenate([high, low[::-1]])
-    label = "5 to 95 %"
-    axes.fill(offset, depth, color=LINE_STYLE["color"], alpha=0.2, linewidth=0, label=label)
-    return offset
-
-
-def _draw_current(axes: Axes, result: Result, plane: Floats) -> None:
-    water = result.mooring.water
-    depth = np.union1d(np.linspace(0.0, water.depth, 200), water.level)
-    depth = depth[(depth >= 0.0) & (depth <= water.depth)]
-    u, v = (np.interp(depth, water.level, speed) for speed in (water.u, water.v))
-    draw_flow(axes, depth, u, v, plane)
-    axes.set_xlabel(f"current {QUANTITIES['speed'].label}")
-
-
-# A line that leaves the plane of the tow by more than this share of its layback is drawn in plan.
-_PLANE_WITHIN = 0.01
-# The seabed is drawn when it is no deeper than this many times the line.
-_SEABED_NEAR = 1.5
-_SHIP: dict[str, Any] = {"linestyle": "none", "marker": "^", "color": "black", "markersize": 8}
-
-
-def draw_tow(result: TowResult) -> Figure:
-    """A figure of two or three views, which belongs to no window.
-
-    The elevation is in the vertical plane of the tow, the ship at distance 0; beside it the speed
-    of the water past the line, and its part in that plane.
-    """
-    from matplotlib.figure import Figure
-
-    heading = np.radians(result.toward)
-    behind = -np.array([np.sin(heading), np.cos(heading)])
-    top, bottom = levels_of(result)
-    written = texts(result, bottom - top)
-    height = figure_height(written)
-    figure = Figure(figsize=(WIDTH, height), layout="constrained")
-    views = (5, 1.5, 3) if _leaves_plane(result, behind) else (7, 2)
+    flat = side.ship is not None and not _leaves_plane(result, plane)
+    views = (7, 2) if flat else (5, 1.5, 3)
     elevation, flow, *plan = figure.subplots(1, len(views), width_ratios=views)
     flow.sharey(elevation)
     figure.suptitle(result.name, parse_math=False)
 
-    _draw_tow_elevation(elevation, result, behind)
-    elevation.set_ylim(bottom, top)
-    write_names(elevation, written, height, lambda part: float(along(part.x, part.y, behind)))
-    _draw_flow(flow, result, behind, (top, bottom))
+    _draw_elevation(elevation, side)
+    write_names(elevation, written, height)
+    _draw_flow_of(flow, result, side, plane)
     for axes in plan:
-        axes.plot(0.0, 0.0, label="tow point", **_SHIP)
-        draw_plan(axes, result)
+        _draw_plan(axes, plan_of(result))
     return figure
 
 
-def _leaves_plane(result: TowResult, behind: Floats) -> bool:
+def _leaves_plane(result: Result | TowResult, behind: Floats) -> bool:
     across = along(result.shape.x, result.shape.y, np.array([behind[1], -behind[0]]))
     distance = np.hypot(result.shape.x, result.shape.y).max()
     return bool(np.abs(across).max() > _PLANE_WITHIN * distance)
 
 
-def levels_of(result: TowResult) -> tuple[float, float]:
-    """Depths at the upper and the lower edge of the elevation [m]."""
-    depth = result.shape.depth
-    top, bottom = min(float(depth.min()), 0.0), max(float(depth.max()), 0.0)
-    seabed = result.file.environment.depth
-    if seabed is not None and seabed < _SEABED_NEAR * bottom:
-        bottom = seabed
-    margin = 0.04 * (bottom - top)
-    return top - margin, bottom + margin
-
-
-def _draw_tow_elevation(axes: Axes, result: TowResult, behind: Floats) -> None:
-    environment = result.file.environment
-    if environment.fluid == "water":
+def _draw_elevation(axes: Axes, side: LinePicture) -> None:
+    if side.surface:
         axes.axhline(0.0, color=WATER_COLOUR, linewidth=1)
-    if environment.depth is not None:
-        axes.axhspan(environment.depth, 2.0 * environment.depth, color=SEABED_COLOUR)
-    distance = along(result.shape.x, result.shape.y, behind)
-    axes.plot(distance, result.shape.depth, **LINE_STYLE)
-    axes.plot(distance[-1], result.shape.depth[-1], **_SHIP)
-    mark_parts(axes, result, lambda part: (float(along(part.x, part.y, behind)), part.depth))
-    height = float(np.ptp(result.shape.depth))
-    set_span(axes, min(0.0, float(distance.min())), float(distance.max()), height)
-    axes.set_xlabel(f"distance behind the tow point [m], heading {result.toward:.0f}°")
-    axes.set_ylabel(QUANTITIES["depth"].label)
+    if side.seabed is not None:
+        axes.axhspan(side.seabed, max(2.0 * side.seabed, side.bottom), color=SEABED_COLOUR)
+    draw_lines(axes, side)
+    if any(line.label for line in side.lines):
+        axes.legend(ncols=2, **LEGEND)
+    if side.ship is not None:
+        axes.plot(*side.ship, **_SHIP)
+    mark_parts(axes, side.marks)
+    set_span(axes, *side.span(), side.height)
+    axes.set_ylim(side.bottom, side.top)
+    axes.set_xlabel(side.across)
+    axes.set_ylabel(side.up)
 
 
-def _draw_flow(axes: Axes, result: TowResult, behind: Floats, levels: tuple[float, float]) -> None:
-    water = result.tow.water
-    top, bottom = levels
-    if result.file.environment.fluid == "water":
-        top = 0.0
-    depth = np.union1d(np.linspace(top, bottom, 200), water.level)
-    depth = depth[(depth >= top) & (depth <= bottom)]
-    u, v = (np.interp(depth, water.level, speed) for speed in (water.u, water.v))
-    u, v = u + result.speed * behind[0], v + result.speed * behind[1]
-    draw_flow(axes, depth, u, v, behind)
+def draw_lines(axes: Axes, picture: LinePicture) -> None:
+    """Draw the lines of a picture, each with its label for a legend."""
+    for line in picture.lines:
+        if line.kind is LineKind.BAND:
+            colour = LINE_STYLE["color"]
+            axes.fill(line.x, line.y, color=colour, alpha=0.2, linewidth=0, label=line.label)
+        elif line.kind is LineKind.STILL:
+            axes.plot(line.x, line.y, "--", color="grey", linewidth=1, label=line.label)
+        else:
+            axes.plot(line.x, line.y, label=line.label, **LINE_STYLE)
+
+
+def _draw_plan(axes: Axes, above: LinePicture) -> None:
+    """Draw the line from above, both axes to one scale."""
+    if above.ship is not None:
+        axes.plot(*above.ship, label="tow point", **_SHIP)
+    draw_lines(axes, above)
+    mark_parts(axes, above.marks)
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_xlabel(above.across)
+    axes.set_ylabel(above.up)
+    axes.legend(ncols=2, **LEGEND)
+
+
+def _draw_flow_of(axes: Axes, result: Result | TowResult, side: LinePicture, plane: Floats) -> None:
+    """Draw the current, of a tow the water past the line, over the depths of the elevation."""
     speed = QUANTITIES["speed"]
+    if not isinstance(result, TowResult):
+        water = result.mooring.water
+        draw_flow(axes, *current_between(water, 0.0, water.depth), plane)
+        axes.set_xlabel(f"current {speed.label}")
+        return
+    top = 0.0 if side.surface else side.top
+    depth, u, v = current_between(result.tow.water, top, side.bottom)
+    draw_flow(axes, depth, u + result.speed * plane[0], v + result.speed * plane[1], plane)
     axes.set_xlabel(f"{speed.heading} past the line [{speed.display_unit}]")
 
 
-_HEIGHT = 4.5  # inches
+def draw_flow(axes: Axes, depth: Floats, u: Floats, v: Floats, plane: Floats) -> None:
+    """Draw speed by depth, and the part of it in a vertical plane where that is another.
+
+    Parameters
+    ----------
+    depth, u, v : (n,) [m], [m/s] to the east and to the north
+    plane : (2,) direction of the plane, east and north
+    """
+    axes.axvline(0.0, color="grey", linewidth=0.5)
+    speed, in_plane = np.hypot(u, v), along(u, v, plane)
+    axes.plot(speed, depth, color=WATER_COLOUR, label="speed")
+    if np.any(np.abs(speed - in_plane) > _SAME_SPEED * speed.max()):
+        axes.plot(in_plane, depth, "--", color=WATER_COLOUR, linewidth=1, label="in the plane")
+    axes.tick_params(labelleft=False)
+    axes.legend(**LEGEND)
+
+
+def set_span(axes: Axes, start: float, end: float, height: float) -> None:
+    """Give the line, from `start` to `end` [m], its share of the width; plumb lines look plumb.
+
+    `height` [m] is that of the drawing.
+    """
+    span = max(end - start, _LEAST_SPAN * height)
+    axes.set_xlim(start - 0.05 * span, start + span / _SHARE_OF_LINE)
+
+
+def mark_parts(axes: Axes, marks: Sequence[PictureMark]) -> None:
+    """Mark the named parts where they are, in one group for each role that occurs."""
+    for role in NAMED_ROLES:
+        there = [mark for mark in marks if mark.role == role]
+        if there:
+            sign, size, colour = SIGNS[role]
+            x, y = [mark.x for mark in there], [mark.y for mark in there]
+            axes.plot(x, y, sign, label=role, color=colour, markersize=size)
+
+
+def write_names(
+    axes: Axes,
+    written: list[tuple[str, PictureMark]],
+    height: float,
+) -> None:
+    """Names in a column right of the line, each with a thin line to its part.
+
+    Parameters
+    ----------
+    height : of the figure [inches]
+    """
+    if not written:
+        return
+    height -= _FRAME
+    line = min(_LINE_HEIGHT, height / len(written)) / height
+    bottom, top = axes.get_ylim()
+    wanted = [(part.depth - top) / (bottom - top) for _, part in written]
+    places = spread(wanted, line, line / 2, 1.0 - line / 2)
+    for (text, part), place in zip(written, places, strict=True):
+        axes.annotate(
+            text,
+            xy=(part.x, part.depth),
+            xytext=(_SHARE_OF_LINE + 0.1, 1.0 - place),
+            textcoords="axes fraction",
+            fontsize=_FONT_SIZE * line * height / _LINE_HEIGHT,
+            verticalalignment="center",
+            parse_math=False,
+            bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5},
+            arrowprops={
+                "arrowstyle": "-",
+                "color": "grey",
+                "linewidth": 0.5,
+                "relpos": (0.0, 0.5),
+            },
+        )
+
+
+_SWEEP_HEIGHT = 4.5  # inches
 _MOST_MARKED = 60  # points that can still be told apart
 
 
@@ -231,22 +253,22 @@ def draw_sweep(tabulation: Tabulation) -> Figure:
     """
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(WIDTH, _HEIGHT), layout="constrained")
+    figure = Figure(figsize=(WIDTH, _SWEEP_HEIGHT), layout="constrained")
     depth, layback, tension = figure.subplots(1, 3)
     figure.suptitle(tabulation.name, parse_math=False)
-    _draw(depth, tabulation, "depth")
+    _draw_figure(depth, tabulation, "depth")
     depth.axhline(0.0, color=WATER_COLOUR, linewidth=1)
     depth.invert_yaxis()
-    _draw(layback, tabulation, "layback")
-    _draw(tension, tabulation, "tension", label="at the tow point")
-    _draw(tension, tabulation, "body_tension", "--", label="at the body")
+    _draw_figure(layback, tabulation, "layback")
+    _draw_figure(tension, tabulation, "tension", label="at the tow point")
+    _draw_figure(tension, tabulation, "body_tension", "--", label="at the body")
     tension.set_ylabel(QUANTITIES["tension"].label)
     tension.set_ylim(bottom=0.0)
     tension.legend(frameon=False)
     return figure
 
 
-def _draw(
+def _draw_figure(
     axes: Axes, tabulation: Tabulation, name: str, dashes: str = "-", label: str = ""
 ) -> None:
     from matplotlib.ticker import MaxNLocator

@@ -6,10 +6,12 @@ import io
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
 from calm.exchange.design import refused
+from calm.exchange.foreign_process import read_apart
 from calm.records.delimited import cells_in
 from calm.units import DIMENSIONS, KILOGRAM_FORCE, QuantityError, unit_factor
 from calm.whole_file import read_content
@@ -20,28 +22,27 @@ _DIMENSIONS = {
     **dict.fromkeys(("area", "drag_area", "tangential_area"), "area"),
     "mass": "mass",
 }  # of a column
-_SPELLED = {
-    **dict.fromkeys(("meter", "metre", "metres", "meters", "mtr", "mètre", "mètres"), "m"),
-    **dict.fromkeys(("metern", "metro", "metros", "mts"), "m"),
-    **dict.fromkeys(("inch", "inches", "zoll", "pouce", "pouces", "pulgada", "pulgadas"), "in"),
-    **dict.fromkeys(('"', "″", "''", "”", "po"), "in"),
-    **dict.fromkeys(("foot", "feet", "fuß", "fuss", "pied", "pieds", "pie", "pies"), "ft"),
-    **dict.fromkeys(("'", "′", "’"), "ft"),
-    **dict.fromkeys(("fathom", "fathoms", "fth", "faden", "brasse", "brasses"), "fathom"),
-    **dict.fromkeys(("millimeter", "millimetre", "millimetres", "millimètres"), "mm"),
-    **dict.fromkeys(("zentimeter", "centimeter", "centimetre", "centimètres"), "cm"),
-    **dict.fromkeys(("kgs", "kilo", "kilos", "kilogram", "kilograms", "kilogramm"), "kg"),
-    **dict.fromkeys(("kilogramme", "kilogrammes", "kilogramo", "kilogramos"), "kg"),
-    **dict.fromkeys(("gram", "grams", "gramm", "gramme", "grammes", "gr"), "g"),
-    **dict.fromkeys(("tonne", "tonnes", "tonnen", "tonelada", "toneladas"), "t"),
-    **dict.fromkeys(("pound", "pounds", "lbs", "libra", "libras"), "lb"),
-    **dict.fromkeys(("newton", "newtons"), "N"),
-    **dict.fromkeys(("kp", "kgp", "kilopond", "kg-f", "kgforce"), "kgf"),
-    **dict.fromkeys(("m²", "m2", "sqm", "qm"), "m^2"),
-    **dict.fromkeys(("cm²", "cm2"), "cm^2"),
-    **dict.fromkeys(("ft²", "ft2", "sqft"), "ft^2"),
-    **dict.fromkeys(("in²", "in2"), "in^2"),
+_NAMES_OF_UNITS = {
+    "m": "meter metre metres meters mtr mètre mètres metern metro metros mts",
+    "in": "inch inches zoll pouce pouces pulgada pulgadas \" ″ '' ” po",
+    "ft": "foot feet fuß fuss pied pieds pie pies ' ′ ’",
+    "fathom": "fathom fathoms fth faden brasse brasses",
+    "mm": "millimeter millimetre millimetres millimètres",
+    "cm": "zentimeter centimeter centimetre centimètres",
+    "kg": (
+        "kgs kilo kilos kilogram kilograms kilogramm kilogramme kilogrammes kilogramo kilogramos"
+    ),
+    "g": "gram grams gramm gramme grammes gr",
+    "t": "tonne tonnes tonnen tonelada toneladas",
+    "lb": "pound pounds lbs libra libras",
+    "N": "newton newtons",
+    "kgf": "kp kgp kilopond kg-f kgforce",
+    "m^2": "m² m2 sqm qm",
+    "cm^2": "cm² cm2",
+    "ft^2": "ft² ft2 sqft",
+    "in^2": "in² in2",
 }
+_SPELLED = {name: unit for unit, names in _NAMES_OF_UNITS.items() for name in names.split()}
 _AMBIGUOUS = ("ton", "tons")  # of 907, 1000 or 1016 kg
 _SUBSTANCES = r"(?:sea ?|salt ?|fresh ?)?(?:water|air|wasser|luft|l'?eau|eau|agua|aire|mer|mar)"
 _IN_WATER = re.compile(
@@ -372,17 +373,21 @@ def _text(path: Path, content: bytes) -> str:
 
 
 def _workbook(path: Path, content: bytes) -> dict[str, SheetRows]:
-    try:
-        import python_calamine
-    except ImportError:
+    if find_spec("python_calamine") is None:
         raise refused(
             path, "is a workbook; install `calm-mooring[sheets]`, or save the sheet as CSV"
-        ) from None
+        )
     try:
-        book = python_calamine.load_workbook(io.BytesIO(content))
-        sheets = {name: book.get_sheet_by_name(name).to_python() for name in book.sheet_names}
-    except Exception as error:  # of the library, for damaged files
+        return read_apart(_sheets, content)
+    except ValueError as error:
         raise refused(path, f"is a damaged workbook ({error})") from None
+
+
+def _sheets(content: bytes) -> dict[str, SheetRows]:
+    import python_calamine
+
+    book = python_calamine.load_workbook(io.BytesIO(content))
+    sheets = {name: book.get_sheet_by_name(name).to_python() for name in book.sheet_names}
     return {
         name: [[_shown(cell) for cell in row] for row in sheet] for name, sheet in sheets.items()
     }

@@ -9,7 +9,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from calm.exchange.design import refused
-from calm.exchange.list_cells import SheetRows, number, unit_called, unit_of_heading
+from calm.exchange.list_cells import (
+    SheetRows,
+    decimal_sign,
+    number,
+    unit_called,
+    unit_of_heading,
+)
 from calm.suggestions import unknown
 from calm.units import KILOGRAM_FORCE
 
@@ -317,3 +323,24 @@ def _plain(text: str, keep: str = "") -> str:
     return " ".join(
         "".join(sign if sign.isalnum() or sign in allowed else " " for sign in letters).split()
     )
+
+
+def cell_of(row: list[str], column: ListColumn | None) -> str:
+    """Return the cell of a row in a column; "" where it has none."""
+    if column is None or column.index >= len(row):
+        return ""
+    return row[column.index]
+
+
+def decimals_of(cells: SheetRows, headings: ListHeadings, problems: list[str]) -> tuple[str, str]:
+    """Return the decimal sign of the columns that hold numbers, and what is to be said of it."""
+    figures = [column for what, column in headings.columns.items() if what not in WORDS]
+    try:
+        return decimal_sign(
+            (f"row {place}", cell_of(row, column))
+            for place, row in enumerate(cells[headings.row + 1 :], headings.row + 2)
+            for column in figures
+        )
+    except ValueError as error:
+        problems.append(str(error))
+        return "", ""

@@ -8,8 +8,8 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 
 from calm.exchange.design import FigureOrWord, ImportedComponent, Remark
-from calm.exchange.list_cells import SheetRows, decimal_sign, number, unit_called
-from calm.exchange.list_headings import WORDS, ListColumn, ListHeadings
+from calm.exchange.list_cells import SheetRows, number, unit_called
+from calm.exchange.list_headings import WORDS, ListColumn, ListHeadings, cell_of, decimals_of
 from calm.exchange.mdd_elements import MODULI
 from calm.exchange.part_names import (
     is_anchor,
@@ -20,6 +20,7 @@ from calm.exchange.part_names import (
     is_release,
     is_rigid,
     role_of,
+    size_in,
 )
 from calm.physics.reference import REFERENCE_DENSITY
 from calm.units import KILOGRAM_FORCE
@@ -98,11 +99,11 @@ def rows_of(
     """
     rows: list[ListRow] = []
     known = headings.columns
-    decimal, said = _decimals(cells, headings, problems)
+    decimal, said = decimals_of(cells, headings, problems)
     if said:
         guessed.append(Remark("numbers", said))
     for place, each in enumerate(cells[headings.row + 1 :], headings.row + 2):
-        name = _cell(each, known["name"])
+        name = cell_of(each, known["name"])
         if not name:
             continue
         if _TOTAL.match(name):
@@ -114,27 +115,13 @@ def rows_of(
             dropped.append(Remark(f"row {place}", f"`{name}`, without length and weight"))
             continue
         problems += mistakes
-        size = row.figures.get("diameter", 0.0) or row.figures.get("width", 0.0) or _size_in(name)
+        size = row.figures.get("diameter", 0.0) or row.figures.get("width", 0.0) or size_in(name)
         fixed = row.is_line or row.is_anchor or row.role in _ROLES or is_rigid(row.kind)
         if not fixed and is_long(name, row.figures.get("length", 0.0), size):
             row.line = True
             guessed.append(Remark(row.where, "taken for a rope, since it is long and thin"))
         rows.append(row)
     return rows
-
-
-def _decimals(cells: SheetRows, headings: ListHeadings, problems: list[str]) -> tuple[str, str]:
-    """Return the decimal sign of the columns that hold numbers, and what is to be said of it."""
-    figures = [column for what, column in headings.columns.items() if what not in WORDS]
-    try:
-        return decimal_sign(
-            (f"row {place}", _cell(row, column))
-            for place, row in enumerate(cells[headings.row + 1 :], headings.row + 2)
-            for column in figures
-        )
-    except ValueError as error:
-        problems.append(str(error))
-        return "", ""
 
 
 def names_in(cells: SheetRows) -> list[ListRow]:
@@ -151,12 +138,6 @@ def names_in(cells: SheetRows) -> list[ListRow]:
     ]
 
 
-def _cell(row: list[str], column: ListColumn | None) -> str:
-    if column is None or column.index >= len(row):
-        return ""
-    return row[column.index]
-
-
 def _row(
     cells: list[str],
     place: int,
@@ -165,12 +146,12 @@ def _row(
     decimal: str,
     mistakes: list[str],
 ) -> ListRow:
-    words = {what: _cell(cells, known.get(what)).removeprefix("'") for what in WORDS}
+    words = {what: cell_of(cells, known.get(what)).removeprefix("'") for what in WORDS}
     row = ListRow(place, name, words["label"], words["kind"], words["role"])
     for what, column in known.items():
         if what in WORDS:
             continue
-        cell = _cell(cells, column)
+        cell = cell_of(cells, column)
         found = number(cell, decimal)
         if found.value is None:
             if found.wrong and what != "material":
@@ -354,7 +335,7 @@ def _line(row: ListRow, problems: list[str]) -> ImportedComponent:
     across = figures.get("diameter", 0.0) or figures.get("width", 0.0)
     kind = "chain" if is_chain(f"{row.name} {row.kind}") else "cable"
     if across <= 0.0:
-        across = _size_in(row.name)
+        across = size_in(row.name)
         if across <= 0.0:
             problems.append(f"{row.where}: its diameter is missing")
             across = 0.01
@@ -409,15 +390,3 @@ def _keep(row: ListRow, kept: dict[str, FigureOrWord], lift: float, names: tuple
 def _of(guesses: dict[str, str], kept: dict[str, FigureOrWord]) -> dict[str, str]:
     """Return the guesses for the figures that are kept."""
     return {key: text for key, text in guesses.items() if key in kept and text}
-
-
-def _size_in(name: str) -> float:
-    """Return a diameter in a name such as `8 mm wire` or `3/8" chain` [m]; 0 without one."""
-    found = re.search(r"(\d+(?:[.,]\d+)?)\s*mm\b", name, re.I)
-    if found:
-        return float(found[1].replace(",", ".")) / 1000.0
-    found = re.search(r"(?:(\d+)[ -])?(\d+)/(\d+)", name)
-    if found and int(found[3]):
-        return (int(found[1] or 0) + int(found[2]) / int(found[3])) * 0.0254
-    found = re.search(r"(\d+(?:[.,]\d+)?)\s*(?:\"|''|in\b|inch)", name, re.I)
-    return float(found[1].replace(",", ".")) * 0.0254 if found else 0.0

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.exchange.design import refused
+from calm.exchange.foreign_process import read_apart
 from calm.whole_file import read_content
 
 LARGEST = 200_000_000
@@ -52,20 +53,18 @@ def read_variables(path: Path, wanted: Collection[str]) -> dict[str, MatValue]:
     if content.startswith(_OCTAVE_BINARY):
         raise refused(path, "is in Octave's binary format; save it there with -v7, -hdf5 or -text")
     try:
-        if _is_octave_text(content):
-            text = content.decode("utf-8", "replace")
-            found = read_octave_text(text)
-        elif _is_hdf5(content):
-            found = _read_hdf5(content, wanted)
-        else:
-            found = _matlab(content, wanted)
-    except MemoryError:
-        raise
-    except Exception as error:  # the readers fail in many ways on a damaged file
-        reason = " ".join(str(error).split()) or type(error).__name__
-        raise refused(
-            path, f"is not a MATLAB or Octave file, or a damaged one ({reason})"
-        ) from None
+        return read_apart(_variables, content, list(wanted))
+    except ValueError as error:
+        raise refused(path, f"is not a MATLAB or Octave file, or a damaged one ({error})") from None
+
+
+def _variables(content: bytes, wanted: Collection[str]) -> dict[str, MatValue]:
+    if _is_octave_text(content):
+        found = read_octave_text(content.decode("utf-8", "replace"))
+    elif _is_hdf5(content):
+        found = _read_hdf5(content, wanted)
+    else:
+        found = _matlab(content, wanted)
     return {name: value for name, value in found.items() if name in wanted}
 
 

@@ -145,3 +145,15 @@ def ids_of(components: Iterable[ImportedComponent], taken: Iterable[str] = ()) -
             known_ids[identity] = chosen
         ids[id(component)] = known_ids[identity]
     return ids
+
+
+def size_in(name: str) -> float:
+    """Return a diameter in a name such as `8 mm wire` or `3/8" chain` [m]; 0 without one."""
+    found = re.search(r"(\d+(?:[.,]\d+)?)\s*mm\b", name, re.I)
+    if found:
+        return float(found[1].replace(",", ".")) / 1000.0
+    found = re.search(r"(?:(\d+)[ -])?(\d+)/(\d+)", name)
+    if found and int(found[3]):
+        return (int(found[1] or 0) + int(found[2]) / int(found[3])) * 0.0254
+    found = re.search(r"(\d+(?:[.,]\d+)?)\s*(?:\"|''|in\b|inch)", name, re.I)
+    return float(found[1].replace(",", ".")) * 0.0254 if found else 0.0

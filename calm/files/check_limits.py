@@ -24,6 +24,7 @@ from calm.suggestions import shown, unknown
 _FACTOR = QuantityField("number", above=0)
 _SAFETY = QuantityField("number", at_least=1)
 """At least 1: a smaller factor would pass what breaks, or an anchor that is lifted."""
+_FRICTION = QuantityField("number", above=0, at_most=1)
 _SHARE = QuantityField("number", at_least=0, at_most=1)
 _SPEED = QuantityField("speed", at_least=0)
 _LEAST_TENSION = QuantityField("force", at_least=0)
@@ -94,7 +95,7 @@ class Checks(Model):
         description="required weight of the anchor: factor × (vertical + horizontal / friction)",
         examples=[1.5],
     )
-    anchor_friction: Annotated[float, _FACTOR, Limit(_DEWEY)] = Field(
+    anchor_friction: Annotated[float, _FRICTION, Limit(_DEWEY)] = Field(
         default=0.6, description="of an anchor on the seabed, where it gives none", examples=[0.6]
     )
     minimum_tension: MinimumTensions = Field(

@@ -215,8 +215,8 @@ class TowEnvironmentKeys(Model):
         description="of the water: one, a table, or by temperature and salinity",
         examples=["1025 kg/m^3"],
     )
-    gravity: Annotated[float | None, QuantityField("acceleration", above=0)] = Field(
-        default=None, description="acceleration", examples=["9.81 m/s^2"]
+    gravity: Annotated[float | None, QuantityField("acceleration", at_least=9.7, at_most=10)] = (
+        Field(default=None, description="acceleration", examples=["9.81 m/s^2"])
     )
     current: Annotated[
         Annotated[TableKeys, Tag("table")]

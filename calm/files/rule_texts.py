@@ -43,6 +43,16 @@ RULES = {
         "",
         "A mooring that does not stand cannot be judged",
     ),
+    "current": RuleText(
+        "Current",
+        "speed",
+        "the strongest current of all environments; the levels that the profile of each has",
+        "0.2 m/s, and less than a fiftieth of that of another environment; a tenth of the depth, "
+        "and 25 m, without a level at either end: a warning",
+        "DNV-RP-C205: a wind drives 0.015 to 0.03 of its speed at the surface, 0.2 m/s one of "
+        "7 m/s",
+        "the profiles of a record are the current",
+    ),
     "strength": RuleText(
         "Strength",
         "tension",
@@ -193,8 +203,8 @@ RULES = {
         "Figures of components",
         "",
         "figures of pieces and clamps that are impossible for their size and material: lift, "
-        "mass, stiffness, strength, depth rating; a cable without drag",
-        "a warning",
+        "mass, stiffness, strength, depth rating, coefficients of drag",
+        "a failure; of a tilt warned of after the limit a warning",
         "The rules of `calm catalog check`",
         _ONCE,
     ),
@@ -202,16 +212,25 @@ RULES = {
         "Release",
         "",
         "whether a piece of a sub-surface line has `role: release`",
-        "unknown where none has",
+        "unknown where none has, or one that is called a shackle, swivel, rope or the like; a "
+        "warning where something below it floats",
         "Defaults of this program: a line to be recovered names its release",
+        _ONCE,
+    ),
+    "clamp-place": RuleText(
+        "Places of the clamps",
+        "",
+        "clamps on a cable or chain that overlap, or stick out over its end",
+        "5 cm: a failure",
+        "Two things are not in one place",
         _ONCE,
     ),
     "swivel": RuleText(
         "Swivel",
         "",
         "steel wire that ends at a float with no chain or rope between",
-        "a swivel between them, or wire that its name, material or note calls torque-balanced: "
-        "a warning",
+        "a swivel between them, or wire that its name, material or note calls torque-balanced "
+        "(and not *not*): a warning",
         "A default of this program: wire that twists under load kinks when the load goes",
         _ONCE,
     ),

@@ -27,6 +27,8 @@ from calm.units import QuantityError
 
 _NUMBER = QuantityField("number")
 _FACTOR = QuantityField("number", above=0)
+_RAISED = QuantityField("number", at_least=1)
+"""What vibrates is dragged more than what is at rest, by the diameter it sweeps."""
 _RESTING_CN = QuantityField("number", above=0, at_most=BourgetMarichal.ceiling)
 
 AmplitudeName = Literal["vandiver", "blevins", "skop-griffin"]
@@ -36,7 +38,7 @@ _Name = Literal["none", "bourget-marichal", AmplitudeName]
 class StrummingFactor(Model):
     """The Cn of every cable, multiplied."""
 
-    factor: Annotated[float, _FACTOR] = Field(
+    factor: Annotated[float, _RAISED] = Field(
         description="what the Cn of every cable is multiplied by, e.g. 1.5", examples=[1.5]
     )
 

@@ -21,7 +21,8 @@ from calm.drawing.graph import (
     seconds,
     write_legend,
 )
-from calm.drawing.line_on_figure import LINE_STYLE, WATER_COLOUR, WIDTH, along, set_span
+from calm.drawing.line_picture import along
+from calm.drawing.plot import LINE_STYLE, WATER_COLOUR, WIDTH, set_span
 from calm.errors import UsageError
 from calm.quantities import QUANTITIES
 from calm.report.batch_summary import QUANTITY, TITLES, when

@@ -32,6 +32,7 @@ from calm.solve.problem import (
     LAST,
     MARCHES,
     NOT_RECORDED,
+    OTHER,
     About,
     LineProblem,
     Search,
@@ -44,6 +45,8 @@ OF_A_PART = 0.01
 """Miss of a part of a line, which is light and slack, as a share of that of the whole."""
 NEARLY_LINEAR = 5e-3
 """Miss, as a share of the span, below which a secant through a far larger one finds the root."""
+ABOUT = 2e-3
+"""Miss, as a share of the span, at which one of many is near enough to its root to be closed."""
 COARSEST_BRACKET = 1e-7
 NARROWEST_BRACKET = 1e-15
 """Width of the last bracket, as a share of the whole range: of a march that chooses its cuts, and
@@ -263,8 +266,10 @@ def planned(search: Search, root: Root, step: float) -> Root:
     the cuts it took last it is: the root is a last step away, which the caller marches.
     """
     limits = search.problem.limits
-    small = (2e-3 if limits.near > 0.0 else 1e-6) * limits.span
-    found = near_root(search, root, step, CHOSEN, False, NOT_RECORDED, small, COARSEST_BRACKET)
+    rough = limits.near > 0.0
+    small, record = (ABOUT, OTHER) if rough else (1e-6, NOT_RECORDED)
+    small *= limits.span
+    found = near_root(search, root, step, CHOSEN, False, record, small, COARSEST_BRACKET)
     if not found.found and not isnan(found.miss):
         return root
     x = found.x

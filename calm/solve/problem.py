@@ -28,7 +28,7 @@ solved with more."""
 MOST_AFLOAT = 16
 """Floats at the surface one after the other: each is sought with all those above it."""
 MOST_SAMPLES = 64
-STARTS, FASTEST, START_ROWS = 41, 4.0, 6
+STARTS, FASTEST, START_ROWS = 41, 4.0, 7
 """Even currents in which a line is sought beforehand, the fastest [m/s], and what is known of each.
 """
 SHARE_TOLERANCE = 1e-9

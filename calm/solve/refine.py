@@ -15,22 +15,38 @@ from math import degrees, isnan, sqrt
 from typing import Any, NamedTuple
 
 from calm.physics.element import Vector
-from calm.physics.passing import FAILURE
+from calm.physics.passing import FAILURE, NODES
 from calm.physics.profile import interval_at
 from calm.physics.state import Record
 from calm.solve.closing import Closed, Root, halve, not_closed, planned, polish
 from calm.solve.endings import BELOW_SEABED, FOUND, MARCH_STOPPED, NO_SHAPE_NEAR
-from calm.solve.problem import CHOSEN, COARSE, FINE, HALVED, LineProblem, Search
+from calm.solve.problem import (
+    BELOW,
+    CHOSEN,
+    COARSE,
+    FINE,
+    HALVED,
+    LAST,
+    OTHER,
+    About,
+    LineProblem,
+    Search,
+)
 
 DEPTH_TARGET = 4e-5
 TENSION_TARGET = 1.6e-4
 """Error estimates, relative to the span and to the tension, above which the step is taken
 smaller, at an angle step of 1°; they follow its square."""
 AS_FOUND = 0.25
+"""Share of these that the tensions of one of many may have, and its places where it lies."""
 MOST_ROUNDS = 6
 MOST_SEGMENTS = 20_000
 AT_A_LEVEL = 0.05
 """How near to a level, in segments, a node is as good as there: bends are at home at levels."""
+LINEAR = 4e-7
+"""Product of the misses of two shapes, in spans squared, between which a third is linear."""
+FAR = 3e-4
+"""Miss, as a share of the span, that halving the cuts may lead to at most there."""
 FAR_BELOW = 1.01
 """Depth, in depths of the water, at which a line need not be cut finer to be refused."""
 
@@ -71,11 +87,15 @@ def refine(search: Search, root: Root, hangs: bool) -> Refined:
         if isnan(root.miss):
             stopped = not_closed(MARCH_STOPPED, problem.work.left[FAILURE], root)
             return Refined(stopped, 0, UNKNOWN_ERRORS)
-        coarse = polish_hanging(search, root, CHOSEN, COARSE, hangs)
-        if coarse.ending != FOUND:
-            return Refined(coarse, 0, UNKNOWN_ERRORS)
         segments = halve(problem)
-        fine = polish_hanging(search, coarse.root, HALVED, FINE, hangs)
+        coarse, fine = closed_between(search, root)
+        if fine.ending == FOUND:
+            fine = refused_far_below(problem, fine, FINE, hangs)
+        else:
+            coarse = polish_hanging(search, root, CHOSEN, COARSE, hangs)
+            if coarse.ending != FOUND:
+                return Refined(coarse, 0, UNKNOWN_ERRORS)
+            fine = polish_hanging(search, coarse.root, HALVED, FINE, hangs)
         if fine.ending != FOUND:
             return Refined(fine, 0, UNKNOWN_ERRORS)
         errors = errors_of(problem, coarse, fine)
@@ -94,9 +114,10 @@ def excess_of(problem: LineProblem, errors: Errors, landed: bool) -> float:
     """
     target = degrees(problem.limits.angle_step)
     target *= target
-    rough = problem.limits.near > 0.0
-    place = DEPTH_TARGET * target * (AS_FOUND if rough and landed else 1.0)
-    tension = TENSION_TARGET * target * (AS_FOUND if rough else 1.0)
+    place, tension = DEPTH_TARGET * target, TENSION_TARGET * target
+    if problem.limits.near > 0.0:
+        place *= AS_FOUND if landed else 1.0
+        tension *= AS_FOUND
     return max(errors.depth / (place * problem.limits.span), errors.relative / tension)
 
 
@@ -119,11 +140,14 @@ def with_bends(problem: LineProblem, refined: Refined) -> Refined:
 
 def polish_hanging(search: Search, root: Root, cuts: int, record: int, hangs: bool) -> Closed:
     """`polish`, sparing a line that hangs far below the seabed the finer cuts."""
-    closed = polish(search, root, cuts, record)
+    return refused_far_below(search.problem, polish(search, root, cuts, record), record, hangs)
+
+
+def refused_far_below(problem: LineProblem, closed: Closed, record: int, hangs: bool) -> Closed:
+    """Return a closed line, refused where it is to hang and comes far below the seabed."""
     if not hangs or closed.ending != FOUND:
         return closed
-    depth = search.problem.limits.depth
-    height = search.problem.work.records[record]
+    depth, height = problem.limits.depth, problem.work.records[record]
     lowest = 0
     for n in range(closed.nodes):
         if height[2][n] < height[2][lowest]:
@@ -133,6 +157,69 @@ def polish_hanging(search: Search, root: Root, cuts: int, record: int, hangs: bo
         piece = int(height[6][max(lowest, 1)])
         return Closed(BELOW_SEABED, below, piece, closed.root, 0, 0, False, 0.0)
     return closed
+
+
+def closed_between(search: Search, root: Root) -> tuple[Closed, Closed]:
+    """Close one of many on its cuts and on these halved, as what is linear between two shapes.
+
+    One march on either does, as what a change of the unknown leads to is known from the shape
+    before, in the record `OTHER`. Not `FOUND` where that is too far, or lies on the seabed.
+    """
+    problem, unknown = search.problem, root.unknown
+    limits, work = problem.limits, problem.work
+    none = not_closed(NO_SHAPE_NEAR, 0.0, root)
+    if limits.near == 0.0 or unknown.sought > 0 or unknown.lands:
+        return none, none
+    high, near, halved = limits.span, 0.5, 1.0
+    if unknown.sought != BELOW:  # a slack line swings far by little of its buoyancy
+        high, near, halved = 1.0, 0.05, 0.3
+    before, last, x = work.left[LAST], root.miss, root.x
+    for _ in range(MOST_ROUNDS):
+        if not 0.0 < x < high or x == before:
+            return none, none
+        about = About(problem, unknown, limits.angle_step, CHOSEN, True, COARSE)
+        miss, nodes = search.miss(about, x), int(work.left[NODES])
+        slope = (miss - last) / (x - before)
+        if not slope < 0.0:
+            return none, none
+        if abs(miss) <= near * abs(last) and abs(miss * last) <= LINEAR * limits.span * limits.span:
+            break
+        for n in range(nodes):
+            for column in range(6):
+                work.records[OTHER][column][n] = work.records[COARSE][column][n]
+        before, last, x = x, miss, x - miss / slope
+    closing = -miss / slope
+    off = search.miss(About(problem, unknown, limits.angle_step, HALVED, True, FINE), x)
+    if not abs(off) <= min(halved * abs(miss - last), FAR * limits.span):
+        return none, none
+    change = x - before
+    coarse_root = Root(True, unknown, x + closing, 0.0, slope)
+    fine_root = Root(True, unknown, x - off / slope, 0.0, slope)
+    halves = move_shapes(problem, nodes, closing / change, -off / slope / change)
+    coarse = Closed(FOUND, 0.0, -1, coarse_root, nodes, nodes - 1, False, 0.0)
+    return coarse, Closed(FOUND, 0.0, -1, fine_root, halves, halves - 1, False, 0.0)
+
+
+def move_shapes(problem: LineProblem, nodes: int, closing: float, halved: float) -> int:
+    """Move the shapes COARSE and FINE by shares of the way from `OTHER` to COARSE.
+
+    Returns
+    -------
+    How many nodes the fine one has.
+    """
+    records, same = problem.work.records, 0
+    before, coarse, fine = records[OTHER], records[COARSE], records[FINE]
+    for n in range(nodes):
+        split = n > 0 and is_segment(problem, coarse, n)
+        same += (2 if split else 1) if n > 0 else 0
+        for column in range(6):
+            way = coarse[column][n] - before[column][n]
+            before[column][n] = way
+            coarse[column][n] += closing * way
+            fine[column][same] += halved * way
+            if split:
+                fine[column][same - 1] += 0.5 * halved * (way + before[column][n - 1])
+    return same + 1
 
 
 def is_segment(problem: LineProblem, record: Record, node: int) -> bool:

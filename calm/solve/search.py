@@ -51,7 +51,7 @@ from calm.solve.problem import (
     Unknown,
 )
 from calm.solve.refine import UNKNOWN_ERRORS, Errors, Refined, refine, tension_at
-from calm.solve.starts import NOWHERE_NEAR, start_of
+from calm.solve.starts import is_highest, start_of
 
 LARGEST_CLOSURE = 1e-6
 LARGEST_MOMENT = 1e-8
@@ -157,7 +157,7 @@ def highest(search: Search, referee: Referee, lands: bool) -> FoundShape:
         start = planned(search, start, problem.limits.coarse_step)
     if start.found and not isnan(start.miss):
         found = shape_near(search, referee, start, lands)
-        if found.ending == FOUND and is_surely_highest(found):
+        if found.ending == FOUND and is_highest(problem, found.refined.closed.root):
             return found
     located = locate(search, lands)
     if located.ending != FOUND:
@@ -176,14 +176,6 @@ def highest(search: Search, referee: Referee, lands: bool) -> FoundShape:
     if fall <= 2.0 * (found.errors.depth + other.errors.depth):
         return found
     return beside(found, depth, other.refined.closed.grounded)
-
-
-def is_surely_highest(found: FoundShape) -> bool:
-    """Whether a line found from its start needs no other search: see `calm.solve.starts`."""
-    root = found.refined.closed.root
-    if root.unknown.sought == BELOW:
-        return root.x > 0.0
-    return root.x < NOWHERE_NEAR
 
 
 def keep(problem: LineProblem, to: int, of: int, found: FoundShape) -> None:

@@ -10,15 +10,22 @@ from collections.abc import Sequence
 from math import isnan, nan, sqrt
 
 from calm.physics.profile import Sea
+from calm.physics.track import CABLE, Course
 from calm.solve.closing import Root, coarse_about, whole_line, with_sought
 from calm.solve.endings import FOUND
 from calm.solve.locate import growth_below, in_even_current, locate
-from calm.solve.problem import BELOW, FASTEST, STARTS, About, Search
+from calm.solve.problem import BELOW, FASTEST, STARTS, About, LineProblem, Search
 
 NOWHERE_NEAR = 0.97
 """Share of its buoyancy in use beyond which a float may as well be under water."""
+DROPS = 3
+"""How often it is looked what current a line comes into that is dragged down."""
+LEANS = 6
+"""The row of the knockdowns by `lean_of`."""
+LOOKED_AT, SURE = 6, 0.3
+"""Depths at which it is looked whether a line falls on, and by which share of the rest at least."""
 GROWS = 0.25
-"""Growth of the current along the greatest fall of a line beyond which depths are scanned."""
+"""Growth of the current along the greatest fall of a line beyond which it is looked there."""
 
 
 def fill_starts(search: Search) -> int:
@@ -26,6 +33,7 @@ def fill_starts(search: Search) -> int:
 
     The rows of `Problem.starts` are, clear of the seabed and lying on it: the unknown, the depth of
     the free end [m] or, below 0, the share in use less one; the slope of the miss; the fall [m].
+    The last is `lean_of`.
     """
     problem, found = search.problem, 0
     limits, starts = problem.limits, problem.starts
@@ -42,6 +50,9 @@ def fill_starts(search: Search) -> int:
             )
             starts[3 * way + 2][k] = limits.depth if isnan(fall) else max(fall, limits.allowed)
             starts[3 * way][k] = starts[3 * way + 1][k] = nan
+            starts[LEANS][k] = lean_of(
+                problem.course, evenly.sea, upright, limits.depth, upright > 0.0
+            )
             if limits.lift <= 0.0 and not lands:
                 continue
             located = locate(Search(search.miss, evenly), lands)
@@ -63,53 +74,127 @@ def start_of(search: Search, lands: bool) -> Root:
         return nowhere
     row = 3 if lands else 0
     upright = max(-limits.standing - unknown.goal, 0.0)
-    fastest, speed = speeds_of(problem.sea, upright, limits.depth)
-    x = at_speed(problem.starts[row], speed)
-    slope = at_speed(problem.starts[row + 1], speed)
+    x, slope = expected(problem, row, upright, upright)
     if isnan(x) or not slope < 0.0:
         return nowhere
+    if upright > 0.0:  # what is dragged down may leave the strongest current
+        before, fell = upright, x - upright
+        for _ in range(DROPS):
+            below, slope = expected(problem, row, upright, x)
+            change = (below - x) - fell
+            if isnan(below) or not change < 0.0:
+                break
+            before, fell, x = x, below - x, min(x - (below - x) * (x - before) / change, below)
     if x >= 0.0:
-        growth = growth_below(problem.sea, upright)
-        if growth * at_speed(problem.starts[row + 2], fastest) > GROWS or upright == 0.0:
-            return nowhere
-        return Root(True, unknown, x, 0.0, slope)
+        return Root(upright > 0.0, unknown, x, 0.0, slope)
     if x > NOWHERE_NEAR - 1.0:
         return nowhere
     return Root(True, with_sought(unknown, 0, unknown.rides), 1.0 + x, 0.0, slope)
 
 
-def at_speed(row: Sequence[float], speed: float) -> float:
-    """Return what is known of a line in an even current, linear between the speeds."""
-    at = min(speed / FASTEST, 1.0) * (STARTS - 1)
+def is_highest(problem: LineProblem, root: Root) -> bool:
+    """Return whether a line found from its start surely has no equilibrium above.
+
+    It has none where the current does not grow with depth enough to matter. Else its fall in the
+    currents that it would come into above is told by its lean, as a share of what that is where it
+    was found.
+    """
+    limits, starts = problem.limits, problem.starts
+    if root.unknown.sought != BELOW:
+        return root.x < NOWHERE_NEAR
+    row = 3 if root.unknown.lands else 0
+    upright = max(-limits.standing - root.unknown.goal, 0.0)
+    at = min(greatest_speed(problem.sea) / FASTEST, 1.0) * (STARTS - 1)
     k = min(int(at), STARTS - 2)
-    return row[k] + (at - k) * (row[k + 1] - row[k])
+    if growth_below(problem.sea, upright) * between(starts[row + 2], k, at - k) <= GROWS:
+        return root.x > 0.0
+    fell, there = root.x - upright, expected(problem, row, upright, root.x)[0] - upright
+    if not fell > 0.0:
+        return root.x > 0.0
+    for k in range(LOOKED_AT):
+        way = fell * k / LOOKED_AT
+        falls = expected(problem, row, upright, upright + way)[0] - upright
+        if not falls * fell > (way + SURE * (fell - way)) * there:
+            return False
+    return there > 0.0
 
 
-def speeds_of(sea: Sea, top: float, depth: float) -> tuple[float, float]:
-    """The greatest speed of a current, and that of an even one that drags a line down alike [m/s].
+def expected(problem: LineProblem, row: int, upright: float, top: float) -> tuple[float, float]:
+    """The unknown of a line and the slope of its miss, in the even current that leans it alike.
 
-    A taut cable leans by what drags it above, and is dragged down by the square of its lean.
+    Parameters
+    ----------
+    row : the first of its kind among the `starts`
+    upright, top : of the line hung up straight in still water, and as it is dragged down [m]
+    """
+    starts = problem.starts
+    lean = lean_of(problem.course, problem.sea, top, problem.limits.depth, upright > 0.0)
+    at = sqrt(sqrt(lean / starts[LEANS][STARTS - 1])) * (STARTS - 1)
+    k = min(int(min(at, STARTS)), STARTS - 2)
+    share = min((lean - starts[LEANS][k]) / (starts[LEANS][k + 1] - starts[LEANS][k]), 1.0)
+    return between(starts[row], k, share), between(starts[row + 1], k, share)
+
+
+def greatest_speed(sea: Sea) -> float:
+    """The greatest speed of a current [m/s]."""
+    greatest = 0.0
+    for k in range(1, len(sea.intervals)):
+        here = sea.intervals[k]
+        greatest = max(greatest, here.u * here.u + here.v * here.v + here.w * here.w)
+    return sqrt(greatest)
+
+
+def between(row: Sequence[float], k: int, share: float) -> float:
+    """Return what is known of a line in an even current between the k-th and the next."""
+    return row[k] + share * (row[k + 1] - row[k])
+
+
+def lean_of(course: Course, sea: Sea, top: float, depth: float, taut: bool) -> float:
+    """Knockdown of a line if the current leans it but little [m].
+
+    It leans by what drags it above over what pulls there, and falls by the square of its lean; in
+    an even current that is its speed's fourth power.
 
     Parameters
     ----------
     top, depth : of the line, and of the water [m]
+    taut : whether all its buoyancy pulls; else only what its cables lead to is told, but for a
+        factor
     """
-    greatest = east = north = lean = 0.0
-    for k in range(1, len(sea.intervals)):
-        here = sea.intervals[k]
-        greatest = max(greatest, here.u * here.u + here.v * here.v + here.w * here.w)
-        upper = top if k == 1 else max(here.origin, top)
-        lower = min(sea.levels[k + 1], depth)
-        if lower <= upper:
-            continue
-        thick, middle = lower - upper, 0.5 * (lower + upper) - here.origin
-        if k == 1 and middle < 0.0:
-            middle = 0.0
-        u, v = here.u + here.du * middle, here.v + here.dv * middle
-        drag = 0.5 * thick * sqrt(u * u + v * v)
-        east, north = east + drag * u, north + drag * v
-        lean += thick * (east * east + north * north)
-        east, north = east + drag * u, north + drag * v
-    length = max(depth - top, 1e-3 * depth)
-    even = sqrt(3.0 * lean / (length * length * length))
-    return sqrt(greatest), sqrt(even)
+    length = 0.0
+    for i in range(len(course.stages)):
+        length += course.stages[i].length
+    scale = (depth - top) / length
+    east = north = lean = 0.0
+    tension = 0.0 if taut else 1.0
+    level, at = 1, top
+    for i in range(len(course.stages)):
+        stage = course.stages[i]
+        drag = lift = 0.0
+        if stage.kind == CABLE:
+            cable = course.cables[stage.first]
+            drag, lift = cable.normal_drag * stage.length, cable.buoyancy * stage.length
+        else:
+            for k in range(stage.first, stage.first + stage.size):
+                drag += course.loads[k].normal_drag
+                lift += course.loads[k].buoyancy
+        if not taut:
+            lift, drag = 0.0, drag if stage.kind == CABLE else 0.0
+        whole = left = scale * stage.length
+        while True:
+            while level < len(sea.intervals) - 1 and sea.levels[level + 1] <= at:
+                level += 1
+            thick, here = min(left, sea.levels[level + 1] - at), sea.intervals[level]
+            below = at + 0.5 * thick - here.origin
+            u, v = here.u + here.du * below, here.v + here.dv * below
+            share = thick / whole if whole > 0.0 else 1.0
+            half = 0.5 * share * drag * sqrt(u * u + v * v)
+            east, north, tension = east + half * u, north + half * v, tension + 0.5 * share * lift
+            if tension > 0.0:
+                long = share * stage.length
+                lean += 0.5 * long * (east * east + north * north) / (tension * tension)
+            east, north, tension = east + half * u, north + half * v, tension + 0.5 * share * lift
+            at, left = at + thick, left - thick
+            if not left > 1e-9 * whole:
+                break
+    return lean

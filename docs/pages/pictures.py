@@ -12,8 +12,8 @@ from mpl_toolkits.mplot3d.axes3d import Axes3D
 from numpy.typing import NDArray
 
 import calm
-from calm.drawing.line_on_figure import along, mark_parts, named_parts
-from calm.drawing.plot import levels_of
+from calm.drawing.line_picture import along, levels_of, named_parts
+from calm.drawing.plot import mark_parts
 from calm.shipped import shipped_folder
 
 Floats = NDArray[np.float64]
@@ -94,7 +94,13 @@ def thumbnail(result: calm.Result | calm.TowResult) -> Figure:
         axes.axhspan(environment.depth, max(bottom, environment.depth), color=SEABED)
     offset = along(shape.x, shape.y, plane)
     axes.plot(offset, shape.depth, color=LINE, linewidth=1.5)
-    mark_parts(axes, result, lambda part: (float(along(part.x, part.y, plane)), part.depth))
+    mark_parts(
+        axes,
+        [
+            replace(part, x=float(along(part.x, part.y, plane)), y=part.depth)
+            for part in named_parts(result)
+        ],
+    )
     reach = max(float(np.ptp(offset)), 0.1 * (bottom - top))
     middle = (float(offset.min()) + float(offset.max())) / 2
     axes.set(xlim=(middle - 0.7 * reach, middle + 0.7 * reach), ylim=(bottom, top))

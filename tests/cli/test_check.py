@@ -129,7 +129,7 @@ components:
     assert done.code == 0
     assert json.loads(done.out)["state"] == "pass"
     assert {finding["state"] for finding in findings(done)} == {"pass"}
-    assert len({finding["rule"] for finding in findings(done)}) == 14
+    assert len({finding["rule"] for finding in findings(done)}) == 15
 
 
 def test_what_is_unknown_ends_with_1_unless_it_is_allowed(calm, write_mooring, heavy):

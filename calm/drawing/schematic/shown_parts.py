@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from itertools import accumulate
 from typing import TYPE_CHECKING
 
-from calm.drawing.line_on_figure import alike, together
+from calm.drawing.line_picture import alike, together
 from calm.drawing.schematic.sign import BALLS, Sign, Symbol, sign_of
 from calm.drawing.signs import printable
 from calm.files import Place, Rigid

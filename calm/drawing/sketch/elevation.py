@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import replace
 from math import hypot
 from typing import TYPE_CHECKING
 
@@ -13,8 +13,15 @@ from rich.text import Text
 
 from calm.case import Result
 from calm.drawing.graph.scale import number, round_numbers
-from calm.drawing.line_on_figure import Named, along, named_parts, names, spread
-from calm.drawing.plot import levels_of, plane_of
+from calm.drawing.line_picture import (
+    LineKind,
+    LinePicture,
+    PictureMark,
+    elevation_of,
+    names,
+    plane_of,
+    spread,
+)
 from calm.drawing.schematic.pen import ELLIPSIS
 from calm.drawing.sketch.canvas import AXIS, COLUMNS_PER_TICK, Canvas, PlotFrame, levels
 from calm.quantities import bearing_of, bearing_text, say
@@ -27,7 +34,6 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
     from calm.case import Result
-    from calm.drawing.line_on_figure import Named
 
 
 LEAST_SPAN = 0.1
@@ -41,8 +47,6 @@ _FARTHEST = 1.5
 
 _NEED = ("float", "release", "anchor", "instrument")
 
-Points = list[tuple[float, float]]
-
 
 def elevation(
     result: Result | TowResult, width: int, height: int, beside: Sequence[Shape] = ()
@@ -53,135 +57,87 @@ def elevation(
     not that of the depths. The line in still water is dotted. From 50 cells on parts are named.
     Shapes `beside` a mooring, of other environments or designs, are dashed.
     """
-    view = _of_mooring(result, beside) if isinstance(result, Result) else _of_tow(result)
+    side = elevation_of(result, beside)
+    if isinstance(result, Result):  # its seabed is the foot of the picture
+        side = replace(side, top=0.0, bottom=result.mooring.water.depth)
+    seabed = side.seabed if side.seabed is not None and side.seabed <= side.bottom else None
     canvas = Canvas(width, height)
     head = header_rows(height)
     if head:
-        canvas.text(0, 0, view.said, AXIS)
+        canvas.text(0, 0, _caption(result), AXIS)
     rows = height - head - 2
-    values = levels(view.top, view.bottom, rows)
-    foot = "m" if view.seabed is None else number(view.seabed)
+    values = levels(side.top, side.bottom, rows)
+    foot = "m" if seabed is None else number(seabed)
     gutter = max(map(len, [foot, *map(number, values)]))
-    named = _names(result, view, rows, int(_SHARE_OF_NAMES * width)) if width >= _NAMED_FROM else []
+    named = _names(side, rows, int(_SHARE_OF_NAMES * width)) if width >= _NAMED_FROM else []
     room = max((cell_len(text) for _, text in named), default=-1) + 1
-    low, high = _span(view)
-    frame = PlotFrame.within(canvas, head, gutter, (low, high), (view.top, view.bottom), room)
-    _draw_water(frame, view)
+    low, high = _span(side)
+    frame = PlotFrame.within(canvas, head, gutter, (low, high), (side.top, side.bottom), room)
+    if side.surface and side.top <= 0.0 <= side.bottom:
+        frame.line([(low, 0.0), (high, 0.0)], SURFACE)
+    _draw_foot(frame, seabed is not None)
     frame.scale_down(values, gutter, foot)
+    moored = isinstance(result, Result)
+    unit = f"m to {bearing_text(bearing_of(*plane_of(result)))}" if moored else "m behind"
     frame.scale_across(
-        round_numbers(low, high, max(frame.columns // COLUMNS_PER_TICK, 2)), view.along, "m"
+        round_numbers(low, high, max(frame.columns // COLUMNS_PER_TICK, 2)), unit, "m"
     )
-    for other in view.beside:
-        frame.line(other, OTHER, dash=3, gap=2)
-    frame.line(view.still, STILL, dash=1, gap=2)
-    frame.line(view.line, LINE)
-    if view.ship is not None:
-        frame.mark(*view.ship, *SHIP)
-    mark_parts(frame, result, view.place)
+    draw_picture(frame, side)
     for row, text in named:
         canvas.text(width - room + 1, head + row, text, AXIS)
     return canvas.rows()
 
 
-@dataclass(frozen=True)
-class _View:
-    """What is drawn: the plane, the depths of the edges, the line, and its captions."""
-
-    plane: Floats
-    top: float
-    bottom: float
-    seabed: float | None
-    sea: bool
-    line: Points
-    still: Points
-    beside: list[Points]
-    ship: tuple[float, float] | None
-    said: str
-    along: str
-
-    def place(self, part: Named) -> tuple[float, float]:
-        """Distance and depth of a part."""
-        return float(along(part.x, part.y, self.plane)), part.depth
+def draw_picture(frame: PlotFrame, picture: LinePicture) -> None:
+    """Draw the lines, the ship and the marks of a picture."""
+    for line in picture.lines:
+        style, dash, gap = STROKES[line.kind]
+        frame.line(zip(line.x.tolist(), line.y.tolist(), strict=True), style, dash=dash, gap=gap)
+    if picture.ship is not None:
+        frame.mark(*picture.ship, *SHIP)
+    for role, (sign, style) in SIGNS.items():
+        for mark in picture.marks:
+            if mark.role == role:
+                frame.mark(mark.x, mark.y, sign, style)
 
 
-def _of_mooring(result: Result, beside: Sequence[Shape]) -> _View:
-    plane, top, depth = plane_of(result), result.top, result.mooring.water.depth
-    still = result.still_shape
-    moved = still is not None and still is not result.shape
-    offset = hypot(top.x, top.y)
-    deep = "top afloat" if result.type == "surface" else f"top {say('depth', top.depth)}"
-    towards = f" to {bearing_text(bearing_of(top.x, top.y))}" if offset >= 0.05 else ""
-    return _View(
-        plane=plane,
-        top=0.0,
-        bottom=depth,
-        seabed=depth,
-        sea=True,
-        line=_points(result.shape, plane),
-        still=_points(still, plane) if still is not None and moved else [],
-        beside=[_points(shape, plane) for shape in beside],
-        ship=None,
-        said=f"{deep}, {say('offset', offset)} off{towards}",
-        along=f"m to {bearing_text(bearing_of(*plane))}",
-    )
-
-
-def _of_tow(result: TowResult) -> _View:
-    heading = np.radians(result.toward)
-    behind = -np.array([np.sin(heading), np.cos(heading)])
-    top, bottom = levels_of(result)
-    environment, body = result.file.environment, result.body
-    seabed = environment.depth
-    line = _points(result.shape, behind)
+def _caption(result: Result | TowResult) -> str:
+    """Return how deep and how far off the end is, in words."""
+    if isinstance(result, Result):
+        top = result.top
+        offset = hypot(top.x, top.y)
+        deep = "top afloat" if result.type == "surface" else f"top {say('depth', top.depth)}"
+        towards = f" to {bearing_text(bearing_of(top.x, top.y))}" if offset >= 0.05 else ""
+        return f"{deep}, {say('offset', offset)} off{towards}"
+    body = result.body
     deep = say("depth", body.depth)
-    if environment.fluid == "air":
+    if result.file.environment.fluid == "air":
         deep = f"{say('depth', body.depth + result.tow.keys.height)} below"
-    return _View(
-        plane=behind,
-        top=top,
-        bottom=bottom,
-        seabed=seabed if seabed is not None and seabed <= bottom else None,
-        sea=environment.fluid == "water",
-        line=line,
-        still=[],
-        beside=[],
-        ship=line[-1],
-        said=f"body {deep}, {say('layback', body.layback)} behind",
-        along="m behind",
-    )
+    return f"body {deep}, {say('layback', body.layback)} behind"
 
 
-def _points(shape: Shape, plane: Floats) -> Points:
-    offset = along(shape.x, shape.y, plane)
-    return list(zip(offset.tolist(), shape.depth.tolist(), strict=True))
-
-
-def _span(view: _View) -> tuple[float, float]:
-    """Distances at the edges; a line that hardly leaves the plumb stands in the middle."""
-    offsets = [0.0, *(offset for line in (view.line, *view.beside) for offset, _ in line)]
-    low, high = min(offsets), max(offsets)
-    spare = max(LEAST_SPAN * (view.bottom - view.top) - (high - low), 0.0)
+def _span(side: LinePicture) -> tuple[float, float]:
+    """Return the distances at the edges; a line that hardly leans stands in the middle."""
+    low, high = side.span()
+    spare = max(LEAST_SPAN * (side.bottom - side.top) - (high - low), 0.0)
     margin = 0.04 * (high - low + spare) + spare / 2.0
     return low - margin, high + margin
 
 
-def _draw_water(frame: PlotFrame, view: _View) -> None:
-    """The surface, and what is below the frame: the seabed, or an edge."""
-    canvas, (low, high) = frame.canvas, (frame.across.low, frame.across.high)
-    if view.sea and view.top <= 0.0 <= view.bottom:
-        frame.line([(low, 0.0), (high, 0.0)], SURFACE)
-    below = frame.row + frame.rows
-    sign, style = ("─", AXIS) if view.seabed is None else ("▒", SEABED)
-    first = frame.column - (view.seabed is None)
-    canvas.text(first, below, sign * (frame.column + frame.columns - first), style)
+def _draw_foot(frame: PlotFrame, seabed: bool) -> None:
+    """Draw what is below the frame: the seabed, or an edge."""
+    sign, style = ("▒", SEABED) if seabed else ("─", AXIS)
+    first = frame.column - (not seabed)
+    width = frame.column + frame.columns - first
+    frame.canvas.text(first, frame.row + frame.rows, sign * width, style)
 
 
-def _names(result: Result | TowResult, view: _View, rows: int, room: int) -> list[tuple[int, str]]:
+def _names(side: LinePicture, rows: int, room: int) -> list[tuple[int, str]]:
     """Names of parts, each on a row of its own, near its part."""
-    height = (view.bottom - view.top) / rows
-    found = sorted(names(named_parts(result), height), key=lambda each: each[1].depth)
+    height = (side.bottom - side.top) / rows
+    found = sorted(names(list(side.marks), height), key=lambda each: each[1].depth)
     while True:
-        wanted = [(part.depth - view.top) / height - 0.5 for _, part in found]
+        wanted = [(part.depth - side.top) / height - 0.5 for _, part in found]
         places = spread(wanted, 1.0, 0.0, rows - 1.0)
         strayed = [abs(place - each) for place, each in zip(places, wanted, strict=True)]
         if not found or max(strayed) <= _FARTHEST:
@@ -194,7 +150,7 @@ def _names(result: Result | TowResult, view: _View, rows: int, room: int) -> lis
     ]
 
 
-def _least(found: list[tuple[str, Named]], wanted: list[float], crowded: int) -> int:
+def _least(found: list[tuple[str, PictureMark]], wanted: list[float], crowded: int) -> int:
     """Of the names around one the least needed: an instrument, the farthest from the others."""
     around = [i for i, row in enumerate(wanted) if abs(row - wanted[crowded]) <= 2.0 * _FARTHEST]
     middle = sum(around) / len(around)
@@ -217,20 +173,16 @@ SIGNS = {
 }
 """Sign and style of each role, the first where it is and the others beside it."""
 
+STROKES = {
+    LineKind.LINE: (LINE, 0, 0),
+    LineKind.STILL: (STILL, 1, 2),
+    LineKind.BESIDE: (OTHER, 3, 2),
+}
+"""Style, dots drawn and dots left out of each kind of line."""
+
 _HEADED = 9
 
 
 def header_rows(height: int) -> int:
     """Rows above a picture for what it says in words; none where it is low."""
     return int(height >= _HEADED)
-
-
-def mark_parts(
-    frame: PlotFrame, result: Result | TowResult, place: Callable[[Named], tuple[float, float]]
-) -> None:
-    """Mark floats, instruments, releases and the anchor, `place` giving both axes."""
-    parts = named_parts(result)
-    for role, (sign, style) in SIGNS.items():
-        for part in parts:
-            if part.role == role:
-                frame.mark(*place(part), sign, style)

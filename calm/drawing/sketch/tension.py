@@ -13,6 +13,7 @@ from calm.case import Result
 from calm.checks.posture import meant_for_the_surface
 from calm.checks.strength import allowable_load
 from calm.drawing.graph.scale import number, round_numbers
+from calm.drawing.line_picture import along_the_line, current_between, plan_of
 from calm.drawing.sketch.canvas import (
     ACROSS,
     AXIS,
@@ -25,13 +26,11 @@ from calm.drawing.sketch.canvas import (
 from calm.drawing.sketch.elevation import (
     LIMIT,
     LINE,
-    OTHER,
     SEABED,
-    SHIP,
     STILL,
     SURFACE,
+    draw_picture,
     header_rows,
-    mark_parts,
 )
 from calm.quantities import bearing_of, bearing_text, say
 
@@ -59,7 +58,9 @@ def tension(result: Result | TowResult, width: int, height: int) -> list[Text]:
     """
     canvas = Canvas(width, height)
     head = header_rows(height)
-    way, pulls = _along(result)
+    pulls, way = result.shape.tension, along_the_line(result.shape)
+    if not isinstance(result, Result):  # listed from the ship down, its shape from the body up
+        pulls, way = pulls[::-1], (way[-1] - way)[::-1]
     greatest = max(float(pulls.max()), 1e-9)
     loads = _allowable(result)
     near = [load for _, _, load in loads if load <= _FARTHEST * greatest]
@@ -84,16 +85,6 @@ def tension(result: Result | TowResult, width: int, height: int) -> list[Text]:
         before = load
     frame.line(zip((pulls * scale).tolist(), way.tolist(), strict=True), LINE)
     return canvas.rows()
-
-
-def _along(result: Result | TowResult) -> tuple[Floats, Floats]:
-    """(k,) way from the first-listed end [m] and tension [N]."""
-    shape = result.shape
-    steps = np.sqrt(np.diff(shape.x) ** 2 + np.diff(shape.y) ** 2 + np.diff(shape.depth) ** 2)
-    pulls = shape.tension
-    if not isinstance(result, Result):
-        steps, pulls = steps[::-1], pulls[::-1]
-    return np.concatenate([[0.0], np.cumsum(steps)]), pulls
 
 
 def _allowable(result: Result | TowResult) -> list[tuple[float, float, float]]:
@@ -125,7 +116,6 @@ _STYLE = "bold blue"
 _ARROWS = "↑↗→↘↓↙←↖"
 _COLUMNS_PER_TICK = 7
 _DEGREES_FROM = 18
-_SAMPLES = 200
 
 
 def current_profile(water: Water, width: int, height: int) -> list[Text]:
@@ -139,10 +129,8 @@ def current_profile(water: Water, width: int, height: int) -> list[Text]:
     values, foot = levels(0.0, water.depth, rows), number(water.depth)
     gutter = max(map(len, [foot, *map(number, values)]))
     beside = 6 if width >= _DEGREES_FROM else 2
-    depths = np.union1d(np.linspace(0.0, water.depth, _SAMPLES), water.level)
-    depths = depths[(depths >= 0.0) & (depths <= water.depth)]
-    velocity, _ = water.at(depths)
-    speeds = np.hypot(velocity[:, 0], velocity[:, 1])
+    depths, u, v = current_between(water, 0.0, water.depth)
+    speeds = np.hypot(u, v)
     fastest = float(speeds.max())
     right = 1.08 * fastest if fastest > 0.0 else 1.0
     frame = PlotFrame.within(canvas, head, gutter, (0.0, right), (0.0, water.depth), beside)
@@ -157,9 +145,9 @@ def current_profile(water: Water, width: int, height: int) -> list[Text]:
     if beside:
         for value in values:
             _, row = frame.cell(0.0, value)
-            (u, v, _), _ = (each[0] for each in water.at(np.array([value])))
-            if np.hypot(u, v) > 0.0:
-                canvas.text(width - beside + 1, row, _direction(u, v, beside), _STYLE)
+            east, north = (float(np.interp(value, depths, each)) for each in (u, v))
+            if hypot(east, north) > 0.0:
+                canvas.text(width - beside + 1, row, _direction(east, north, beside), _STYLE)
     return canvas.rows()
 
 
@@ -205,12 +193,7 @@ def plan(
     )
     frame.line([(left, 0.0), (right, 0.0)], STILL, dash=1, gap=3)
     frame.line([(0.0, bottom), (0.0, top)], STILL, dash=1, gap=3)
-    for other in beside:
-        frame.line(zip(other.x.tolist(), other.y.tolist(), strict=True), OTHER, dash=3, gap=2)
-    frame.line(zip(shape.x.tolist(), shape.y.tolist(), strict=True), LINE)
-    if not isinstance(result, Result):
-        frame.mark(0.0, 0.0, *SHIP)
-    mark_parts(frame, result, lambda part: (part.x, part.y))
+    draw_picture(frame, plan_of(result, beside))
     canvas.text(gutter + 1, head, "N", AXIS)
     return canvas.rows()
 

@@ -30,6 +30,7 @@ class Flaw:
 
 
 AT_LEAST = (
+    "current",
     "strength-steps",
     "anchor-weight",
     "slack",
@@ -463,6 +464,67 @@ FLAWS = (
         "without a swivel between them",
     ),
     Flaw(
+        "a wire that is not torque-balanced, as its material says",
+        FIT,
+        (
+            ("{use: swivel-miller-c212, label: swivel}", "{use: shackle-16, label: swivel}"),
+            ("    label: wire\n", "    label: wire\n    note: NOT torque-balanced\n"),
+        ),
+        "swivel",
+        "wire",
+        "warn",
+        "without a swivel between them",
+    ),
+    Flaw(
+        "a shackle for a release",
+        FIT,
+        (("{use: release-", "{name: shackle 13, use: release-"),),
+        "release-present",
+        None,
+        "unknown",
+        "has the role of a release, and is called what opens nothing.",
+    ),
+    Flaw(
+        "two clamps in one place",
+        FIT,
+        (("at: 20 m, label: CTD 130 m", "at: 5.3 m, label: CTD 130 m"),),
+        "clamp-place",
+        "CTD 130 m",
+        "fail",
+        "CTD 130 m overlaps hydrophone by 0.67 m on wire.",
+    ),
+    Flaw(
+        "a clamp over the end of its wire",
+        FIT,
+        (("at: 120 m, label: CTD 230 m", "at: 479.9 m, label: CTD 230 m"),),
+        "clamp-place",
+        "CTD 230 m",
+        "fail",
+        "CTD 230 m sticks out 0.21 m over the end of wire.",
+    ),
+    Flaw(
+        "a current weaker than a breeze drives",
+        FIT,
+        (
+            ("[0, 0.80, 90]", "[0, 0.08, 90]"),
+            ("[200, 0.35, 80]", "[200, 0.08, 80]"),
+            ("[600, 0.15, 70]", "[600, 0.08, 70]"),
+        ),
+        "current",
+        None,
+        "warn",
+        "The strongest current judged is 0.08 m/s; a wind of 7 m/s alone drives 0.20 m/s",
+    ),
+    Flaw(
+        "a rope that no water drags",
+        FIT,
+        (("    label: wire\n", "    label: wire\n    cn: 0.001\n"),),
+        "figures",
+        "wire",
+        "fail",
+        "wire has `cn: 0.001`; a cable has 0.05 at least, 10 at most",
+    ),
+    Flaw(
         "a noble shackle on steel",
         FIT,
         (
@@ -494,7 +556,7 @@ FLAWS = (
         (("length: 200 m, label: wire 1,", "length: 200 m, label: wire 1, breaking_load: 48 MN,"),),
         "figures",
         "wire 1",
-        "warn",
+        "fail",
         "wire 1 breaks at 4.8e+07 N; no cable of its diameter at",
     ),
     Flaw(
@@ -503,7 +565,7 @@ FLAWS = (
         (("length: 200 m, label: wire 1,", "length: 200 m, label: wire 1, buoyancy: 1.2 N/m,"),),
         "figures",
         "wire 1",
-        "warn",
+        "fail",
         "wire 1 lifts 1.2 N/m; water of its diameter weighs",
     ),
     Flaw(

@@ -2,7 +2,7 @@ from itertools import pairwise
 
 import pytest
 
-from calm.drawing.line_on_figure import named_parts, names, spread
+from calm.drawing.line_picture import named_parts, names, spread
 
 
 def texts(result, near=1.0):

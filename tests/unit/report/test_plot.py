@@ -8,9 +8,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from calm.drawing.line_on_figure import draw_flow
 from calm.drawing.picture import check_format
-from calm.drawing.plot import draw, picture
+from calm.drawing.plot import draw, draw_flow, picture
 from calm.errors import UsageError
 
 

@@ -1,0 +1,319 @@
+"""A solved line seen from the side and from above: what is drawn, in metres, for every printer.
+
+`calm.drawing.plot` puts it out for files, `calm.drawing.check_figures` for the pages of a report
+and `calm.drawing.sketch` for a terminal.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from enum import Enum
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from calm.case import TowResult
+from calm.case.result_tables import rows_down
+from calm.quantities import QUANTITIES, bearing_of, bearing_text
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from calm.case import Result
+    from calm.case.result_tables import Shape
+    from calm.case.uncertain import Uncertain
+    from calm.physics.line import Water
+
+    Floats = NDArray[np.float64]
+
+# The seabed is drawn when it is no deeper than this many times the line.
+_SEABED_NEAR = 1.5
+_MOORED_MARGIN, _TOWED_MARGIN = 0.03, 0.04  # of the height, above and below
+
+NAMED_ROLES = ("float", "instrument", "release", "anchor")
+"""The roles a drawing marks; what only joins them is left to the table."""
+
+
+class LineKind(Enum):
+    """Tell what a line of a picture stands for; each printer has its strokes for it."""
+
+    LINE = "line"
+    STILL = "still"
+    BESIDE = "beside"
+    BAND = "band"
+
+
+@dataclass(frozen=True)
+class Polyline:
+    """Hold the points of a line: `x` to the right, `y` of the picture's other axis [m]."""
+
+    kind: LineKind
+    x: Floats
+    y: Floats
+    label: str = ""
+
+
+@dataclass(frozen=True)
+class PictureMark:
+    """Hold a marked point of the line: its component, name, role and depth [m].
+
+    `x` and `y` are its place in the picture; east and north [m] as `named_parts` has them.
+    """
+
+    use: str
+    text: str
+    role: str
+    x: float
+    y: float
+    depth: float
+
+
+@dataclass(frozen=True)
+class LinePicture:
+    """Represent a picture of a line.
+
+    Attributes
+    ----------
+    lines : what is drawn behind before what is drawn over it
+    marks : floats, instruments, releases and the anchor
+    top, bottom : depths at the edges of a view from the side, with their margins [m]
+    height : of the water that is moored in, or of the line that is towed [m]
+    surface : whether the sea surface lies at depth 0
+    seabed : its depth [m]; None where it is not in the picture
+    ship : where the ship is, of a tow
+    across, up : what the axes show, with their units
+    """
+
+    lines: tuple[Polyline, ...]
+    marks: tuple[PictureMark, ...]
+    across: str
+    up: str
+    ship: tuple[float, float] | None = None
+    top: float = 0.0
+    bottom: float = 0.0
+    height: float = 0.0
+    surface: bool = False
+    seabed: float | None = None
+
+    def span(self) -> tuple[float, float]:
+        """Return the least and the greatest `x`, zero among them; still water does not count."""
+        reach = [line.x for line in self.lines if line.kind is not LineKind.STILL]
+        return min(0.0, *(float(x.min()) for x in reach)), max(
+            0.0, *(float(x.max()) for x in reach)
+        )
+
+
+def elevation_of(
+    result: Result | TowResult, beside: Sequence[Shape] = (), uncertain: Uncertain | None = None
+) -> LinePicture:
+    """Return a line in the vertical plane of its excursion, or of its tow.
+
+    Parameters
+    ----------
+    beside : shapes of the mooring in other environments, or of other designs
+    uncertain : of a mooring; the band between its 5 and 95 %
+    """
+    plane = plane_of(result)
+    marks = tuple(
+        replace(part, x=float(along(part.x, part.y, plane)), y=part.depth)
+        for part in named_parts(result)
+    )
+    top, bottom = levels_of(result)
+    if isinstance(result, TowResult):
+        line, environment = from_the_side(result.shape, plane), result.file.environment
+        return LinePicture(
+            lines=(line,),
+            marks=marks,
+            across=f"distance behind the tow point [m], heading {result.toward:.0f}°",
+            up=QUANTITIES["depth"].label,
+            ship=(float(line.x[-1]), float(line.y[-1])),
+            top=top,
+            bottom=bottom,
+            height=float(np.ptp(result.shape.depth)),
+            surface=environment.fluid == "water",
+            seabed=environment.depth,
+        )
+    lines = [] if uncertain is None else [_band(uncertain)]
+    lines += [from_the_side(shape, plane, LineKind.BESIDE) for shape in beside]
+    if result.still_shape is not None:
+        lines.append(from_the_side(result.still_shape, plane, LineKind.STILL, "in still water"))
+    lines.append(from_the_side(result.shape, plane, label="in the current"))
+    return LinePicture(
+        lines=tuple(lines),
+        marks=marks,
+        across=f"{QUANTITIES['offset'].label}, towards {bearing_text(bearing_of(*plane))}",
+        up=QUANTITIES["depth"].label,
+        top=top,
+        bottom=bottom,
+        height=result.mooring.water.depth,
+        surface=True,
+        seabed=result.mooring.water.depth,
+    )
+
+
+def plan_of(result: Result | TowResult, beside: Sequence[Shape] = ()) -> LinePicture:
+    """Return a line from above, its anchor, or the ship, at zero; shapes `beside` it too."""
+    shapes = [(LineKind.BESIDE, shape) for shape in beside] + [(LineKind.LINE, result.shape)]
+    return LinePicture(
+        lines=tuple(Polyline(kind, shape.x, shape.y) for kind, shape in shapes),
+        marks=tuple(named_parts(result)),
+        across=QUANTITIES["x"].label,
+        up=QUANTITIES["y"].label,
+        ship=(0.0, 0.0) if isinstance(result, TowResult) else None,
+    )
+
+
+def from_the_side(
+    shape: Shape, plane: Floats, kind: LineKind = LineKind.LINE, label: str = ""
+) -> Polyline:
+    """Return a shape in a vertical plane, distances along it and depths.
+
+    Parameters
+    ----------
+    plane : (2,) direction of the plane, east and north
+    kind, label : what it stands for, and what a legend says of it
+    """
+    return Polyline(kind, along(shape.x, shape.y, plane), shape.depth, label)
+
+
+def _band(uncertain: Uncertain) -> Polyline:
+    """The outline of the line between its 5 and 95 % of offset and depth."""
+    (near, *_, far), (high, *_, low) = uncertain.offset, uncertain.depth_top
+    return Polyline(
+        LineKind.BAND,
+        np.concatenate([near, far[::-1]]),
+        np.concatenate([high, low[::-1]]),
+        "5 to 95 %",
+    )
+
+
+def plane_of(result: Result | TowResult) -> Floats:
+    """Return the direction, east and north, from the anchor to the free end, or behind the ship.
+
+    It is east of a mooring that stands upright.
+    """
+    if isinstance(result, TowResult):
+        heading = np.radians(result.toward)
+        return -np.array([np.sin(heading), np.cos(heading)])
+    excursion = np.array([result.top.x, result.top.y])
+    distance = np.linalg.norm(excursion)
+    east = np.array([1.0, 0.0])
+    return excursion / distance if distance > 1e-6 * result.mooring.water.depth else east
+
+
+def levels_of(result: Result | TowResult) -> tuple[float, float]:
+    """Return the depths at the upper and the lower edge of a view from the side [m]."""
+    highest = float(result.shape.depth.min())
+    if not isinstance(result, TowResult):
+        depth = result.mooring.water.depth
+        return min(-_MOORED_MARGIN * depth, highest), (1.0 + _MOORED_MARGIN) * depth
+    top, bottom = min(highest, 0.0), max(float(result.shape.depth.max()), 0.0)
+    seabed = result.file.environment.depth
+    if seabed is not None and seabed < _SEABED_NEAR * bottom:
+        bottom = seabed
+    margin = _TOWED_MARGIN * (bottom - top)
+    return top - margin, bottom + margin
+
+
+def along(x: Floats | float, y: Floats | float, plane: Floats) -> Floats:
+    """Return the distance along the direction of a plane, of points east and north."""
+    return np.asarray(x * plane[0] + y * plane[1], dtype=np.float64)
+
+
+def current_between(
+    water: Water, top: float, bottom: float, samples: int = 200
+) -> tuple[Floats, Floats, Floats]:
+    """Return depths, and the current east and north there [m/s], with the profile's own levels.
+
+    Parameters
+    ----------
+    top, bottom : depths between which it is wanted [m]
+    samples : how many depths, at least
+    """
+    depth = np.union1d(np.linspace(top, bottom, samples), water.level)
+    depth = depth[(depth >= top) & (depth <= bottom)]
+    u, v = (np.interp(depth, water.level, speed) for speed in (water.u, water.v))
+    return depth, u, v
+
+
+def along_the_line(shape: Shape) -> Floats:
+    """Return the (k,) stretched length from the first node to each node [m]."""
+    steps = np.sqrt(np.diff(shape.x) ** 2 + np.diff(shape.y) ** 2 + np.diff(shape.depth) ** 2)
+    return np.concatenate([[0.0], np.cumsum(steps)])
+
+
+def named_parts(result: Result | TowResult) -> list[PictureMark]:
+    """Return the floats, instruments, releases and the anchor, clamped ones too, in file order."""
+    parts = []
+    for component, clamps in rows_down(result):
+        x = (component.x_top + component.x_bottom) / 2
+        y = (component.y_top + component.y_bottom) / 2
+        depth = (component.depth_top + component.depth_bottom) / 2
+        parts.append(PictureMark(component.use, component.label, component.role, x, y, depth))
+        parts += [
+            PictureMark(
+                clamp.use, clamp.label, clamp.part.component.role, clamp.x, clamp.y, clamp.depth
+            )
+            for clamp in clamps
+        ]
+    return [part for part in parts if part.role in NAMED_ROLES]
+
+
+def names(parts: list[PictureMark], near: float) -> list[tuple[str, PictureMark]]:
+    """Texts to write, each with the part it points at.
+
+    Neighbours of one component within `near` [m] of each other whose labels differ only by a
+    number at the end are named together: ``glass 1–6``.
+    """
+    runs: list[list[PictureMark]] = []
+    for part in parts:
+        last = runs[-1][-1] if runs else None
+        if last and _is_next(last, part) and abs(part.depth - last.depth) <= near:
+            runs[-1].append(part)
+        else:
+            runs.append([part])
+    texts = []
+    for run in runs:
+        texts.append((together([part.text for part in run]), run[len(run) // 2]))
+    return texts
+
+
+def alike(label: str, other: str) -> bool:
+    """Return whether two labels differ only by a number at the end."""
+    stems = [text.removesuffix(_number(text)) for text in (label, other)]
+    return stems[0] == stems[1] and bool(_number(other))
+
+
+def together(labels: list[str]) -> str:
+    """One name for labels that are alike: ``glass 1–6``."""
+    return labels[0] if len(labels) == 1 else f"{labels[0]}–{_number(labels[-1])}"
+
+
+def spread(wanted: list[float], gap: float, start: float, end: float) -> list[float]:
+    """Positions at least `gap` apart, in the given ascending order, as near as can be to `wanted`.
+
+    The sum of the squared shifts is the least possible between `start` and `end`; where not all
+    fit, they pass the end. Once each position is reduced by the gaps before it, they only have to
+    ascend: what then descends is pooled at its mean (isotonic regression).
+    """
+    pools: list[tuple[float, int]] = []
+    for index, position in enumerate(wanted):
+        mean, count = position - index * gap, 1
+        while pools and pools[-1][0] > mean:
+            other, size = pools.pop()
+            mean, count = (mean * count + other * size) / (count + size), count + size
+        pools.append((mean, count))
+    last = max(start, end - (len(wanted) - 1) * gap)
+    reduced = [min(max(mean, start), last) for mean, count in pools for _ in range(count)]
+    return [position + index * gap for index, position in enumerate(reduced)]
+
+
+def _is_next(part: PictureMark, other: PictureMark) -> bool:
+    """Return whether two parts are the same component under the same label, numbers apart."""
+    return part.use == other.use and alike(part.text, other.text)
+
+
+def _number(label: str) -> str:
+    """The digits at the end of a label."""
+    return label[len(label.rstrip("0123456789")) :]

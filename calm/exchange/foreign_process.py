@@ -1,0 +1,86 @@
+"""Run the readers of foreign binary files in a process of their own.
+
+Libraries that read MATLAB files and workbooks are written in C and Rust: on a damaged file they may
+end the process, panic, or ask for all memory. Here that ends the child alone, and is an error.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable
+from contextlib import suppress
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import Any, ParamSpec, TypeVar
+
+_Given = ParamSpec("_Given")
+_Found = TypeVar("_Found")
+
+MOST_MEMORY = 3_000_000_000
+"""Bytes that a reader may take beside what the program has; on Linux alone."""
+
+MOST_SECONDS = 120.0
+"""Time that a reader may take."""
+
+
+def read_apart(
+    reader: Callable[_Given, _Found], *given: _Given.args, **named: _Given.kwargs
+) -> _Found:
+    """Return what a reader makes of a file.
+
+    Parameters
+    ----------
+    reader : of a module, so that another process finds it
+
+    Raises
+    ------
+    ValueError
+        The reader failed, crashed, or took too much time or memory.
+    """
+    from multiprocessing import Pipe, Process
+
+    here, there = Pipe(duplex=False)
+    child = Process(target=_read, args=(there, reader, given, named), daemon=True)
+    child.start()
+    there.close()
+    try:
+        if not here.poll(MOST_SECONDS):
+            raise ValueError(f"its reader takes longer than {MOST_SECONDS:g} s")
+        answer: tuple[_Found, str] = here.recv()
+    except EOFError:
+        child.join()
+        raise ValueError(f"its reader ended with {child.exitcode}") from None
+    finally:
+        child.kill()
+        child.join()
+        here.close()
+    found, wrong = answer
+    if wrong:
+        raise ValueError(wrong)
+    return found
+
+
+def _read(
+    pipe: Connection, reader: Callable[..., Any], given: tuple[Any, ...], named: dict[str, Any]
+) -> None:
+    """Send what a reader finds, or what is wrong; what it prints is not for people."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+    _limit_memory()
+    try:
+        pipe.send((reader(*given, **named), ""))
+    except MemoryError:
+        pipe.send((None, f"it needs more than {MOST_MEMORY / 1e9:g} GB"))
+    except BaseException as error:  # a panic of Rust is none of `Exception`
+        pipe.send((None, " ".join(str(error).split()) or type(error).__name__))
+
+
+def _limit_memory() -> None:
+    if sys.platform != "linux":
+        return
+    import resource
+
+    with suppress(OSError, ValueError):
+        pages = int(Path("/proc/self/statm").read_text("ascii").split()[0])
+        most = pages * resource.getpagesize() + MOST_MEMORY
+        resource.setrlimit(resource.RLIMIT_AS, (most, most))
