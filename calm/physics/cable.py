@@ -15,7 +15,9 @@ from calm.physics.stretch import Knot, curve_strain, mean_curve_strain
 from calm.physics.strumming import Vibration, amplified_share, strummed
 from calm.physics.track import CableStretch
 
-PASSES = 200
+PASSES, STALLED = 200, 50
+"""The most passes of a segment, and those after which they go half the way: one that nothing pulls
+would hang plumb and trail by turns where the current begins."""
 LITTLE_TURN = 1e-6
 """How much the last of a few steps may turn a segment, squared [rad²], and be good enough where it
 need not settle to the last digits."""
@@ -110,7 +112,7 @@ def pass_segment(
     settled = max(near / half, 1e-12) if half > 0.0 else inf
     qx = qy = qz = 0.0
     earlier = inf
-    for _ in range(PASSES):
+    for turn in range(PASSES):
         u, v, w, density, level = water_at(sea, -z - half * rise, level)
         area = segment_area(cable, cut, density, strain)
         lift = segment_lift(cable, cut, density, gravity)
@@ -141,8 +143,9 @@ def pass_segment(
             bx, by, bz = fx + qx, fy + qy, fz + qz
             growth = sqrt(bx * bx + by * by + bz * bz) - tension
             strain = mean_curve_strain(knots, first_knot, end_knot, middle, 0.5 * growth)
-        change = abs(tz * (1.0 + strain) - rise)
-        rise = tz * (1.0 + strain)
+        found = tz * (1.0 + strain)
+        change = abs(found - rise)
+        rise = found if turn < STALLED else 0.5 * (rise + found)
         if change < settled or change * change < 1e-12 * earlier < inf:
             break
         earlier = change

@@ -21,6 +21,9 @@ SURFACE_BAND = 1e-7
 """Thickness of the band from water to air, as a share of the line out."""
 SCAN = 16
 """Depths tried where the flow changes with depth: how finely separate equilibria are told apart."""
+FARTHER = 1.05
+"""In an even current, how far up the other side of the root is tried, in misses: where levels cut a
+line a march is not quite the same at every depth."""
 FREQUENCY_TOLERANCE = 1e-8
 PAY_OUT = "Pay out more line."
 NEARLY_OUT = 2e-3
@@ -195,7 +198,7 @@ def _upwards(tow: Towed, depth: float, low: float, shallowest: float) -> list[fl
     if any(np.ptp(column) for column in (water.u, water.v, water.w, water.density)):
         steps: list[float] = np.linspace(depth, shallowest, SCAN + 1)[1:].tolist()
         return steps
-    return [max(depth + low - tow.allowed, shallowest)]
+    return [max(depth + FARTHER * low - tow.allowed, shallowest)]
 
 
 def _set_frequency(tow: Towed) -> None:

@@ -12,10 +12,10 @@ from calm.files.components import KINDS
 from calm.tui.actions import bindings, hints
 from calm.tui.bars import KeyBar
 from calm.tui.catalogue.catalogue_pane import CataloguePane
+from calm.tui.cell_editor import CellEditor
 from calm.tui.key_table import Place
 from calm.tui.line.advising import Advising
 from calm.tui.line.body import LineBody
-from calm.tui.line.cell_editor import CellEditor
 from calm.tui.line.comparing import Comparing
 from calm.tui.line.line_pane import LinePane
 from calm.tui.messages import Workspace

@@ -7,30 +7,32 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from textual import on
-from textual.app import ComposeResult
 from textual.binding import BindingType
-from textual.containers import Vertical
 from textual.message import Message
 
 from calm.files import Place
 from calm.tui.actions import bindings
 from calm.tui.catalogue.catalogue_pane import Purpose
-from calm.tui.line.cell_editor import CellEditor
+from calm.tui.cell_editor import CellEditor
+from calm.tui.checking import Reading
 from calm.tui.line.findings_on_rows import RowFindings
-from calm.tui.line.line_cells import LineCells
+from calm.tui.line.line_cell import LineCell
 from calm.tui.line.mooring_sheet import equipment_changes, equipment_sheet, naming
 from calm.tui.line.rows import table_rows
-from calm.tui.line.table import Column, LineTable
+from calm.tui.line.table import EDITABLE, Column, LineTable
 from calm.tui.messages import Workspace
+from calm.tui.table import EditableTable
 
+_LEAST_WIDTHS: dict[Column, int] = {"length": 16}
+_LEAST_WIDTH = 6
 _MIXED = "Pieces are marked, and clamps of other pieces; mark pieces only, or clamps only"
 
 
-class LinePane(Vertical):
-    """The table of the line with the line of input that edits its cells."""
+class LinePane(EditableTable):
+    """Edit the line: its cells, its rows and their order."""
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings("line")]
-    DEFAULT_CSS = "LinePane { width: 3fr; height: 1fr; layers: table over; }"
+    DEFAULT_CSS = "LinePane { width: 3fr; height: 1fr; }"
 
     @dataclass
     class ComponentWanted(Message):
@@ -48,17 +50,12 @@ class LinePane(Vertical):
         id: str
 
     def __init__(self, workspace: Workspace) -> None:
-        super().__init__(id="line-pane")
+        self.table: LineTable = LineTable(id="line")
+        super().__init__(self.table, editor_id="cell", id="line-pane")
         self.workspace, self.session = workspace, workspace.session
-        self.table, self.editor = LineTable(id="line"), CellEditor(id="cell")
-        self.cells = LineCells(workspace, self.table, self.editor, self._show_edited)
         self.found = RowFindings(workspace, self.table)
         self.came_from_verdict = False
-
-    def compose(self) -> ComposeResult:
-        """The rows, and over them what is edited."""
-        yield self.table
-        yield self.editor
+        self._cell: LineCell | None = None  # what is edited, or was last
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """The keys of the rows are not those of a value that is typed."""
@@ -81,7 +78,7 @@ class LinePane(Vertical):
 
     def forget(self) -> None:
         """The piece that is marked or edited may be another one now."""
-        self.cells.leave()
+        self.leave_cell()
         self.table.mark(frozenset())
 
     def attempt(self, change: Callable[[], object], message: str = "") -> bool:
@@ -269,31 +266,65 @@ class LinePane(Vertical):
         """Edit the value under the cursor."""
         self.action_edit_column(self.table.cell)
 
-    @on(LineTable.Activated)
+    @on(LineTable.Pressed)
     def _pressed(self) -> None:
         self.action_edit()
 
     def action_edit_column(self, column: Column) -> None:
         """Edit a value of the row under the cursor."""
-        if self.table.spot is None:
+        spot = self.table.spot
+        if spot is None:
             self.action_add(1)
         elif column == "component":
             self.action_replace()
         else:
-            self.cells.edit(column)
+            self._edit(LineCell(self.workspace, spot, column))
 
-    @on(CellEditor.Judged)
-    def _tell_reading(self, event: CellEditor.Judged) -> None:
-        self.cells.tell(event)
-
-    @on(CellEditor.Done)
-    def _take_value(self, event: CellEditor.Done) -> None:
-        self.cells.take(event)
-
-    @on(CellEditor.Abandoned)
-    def _abandon(self, event: CellEditor.Abandoned) -> None:
-        self.cells.abandon(event)
+    def _edit(self, cell: LineCell) -> None:
+        """Edit a value, after what is typed in another is taken."""
+        if refused := cell.refused:
+            self.workspace.tell(refused)
+        if refused or not self.settle():
+            return
+        self.table.column = EDITABLE.index(cell.column)
+        self._cell = cell
+        least = _LEAST_WIDTHS.get(cell.column, _LEAST_WIDTH)
+        self.open_editor(cell.text, cell.check, least_width=least)
 
     def settle(self) -> bool:
         """Take what is typed in a cell; a bad value stays to be corrected."""
-        return self.cells.settle()
+        reading = self.settle_cell()
+        if not reading.is_good:
+            self.tell_refusal(f"Not taken yet: {reading.note}")
+        return reading.is_good
+
+    def write(self, text: str) -> None:
+        """Write a good text into the draft."""
+        cell, before = self._cell, self.session.draft
+        is_put = cell is not None and self.workspace.attempt(lambda: cell.put(text))[0]
+        if is_put and self.session.draft is not before:
+            self._show_edited()
+
+    def leave_cell(self) -> None:
+        """Edit nothing any more; what is typed is not taken."""
+        if self.editor.is_open:
+            super().leave_cell()
+            self.workspace.tell("")
+
+    def tell_reading(self, reading: Reading) -> None:
+        """Tell what the text typed so far comes to."""
+        completed = reading.text if reading.text != self.editor.value.strip() else ""
+        note = reading.note or (f"= {completed}" if completed and reading.is_good else "")
+        self.workspace.tell(note, wrong=not reading.is_good)
+
+    def tell_refusal(self, reason: str) -> None:
+        """Tell why something is not done."""
+        self.workspace.tell(reason, wrong=True)
+
+    def go_on(self, done: CellEditor.Done) -> None:
+        """Go to the next value of the row, or to another row."""
+        onward = self._cell.onward() if self._cell and done.then == "edit next" else None
+        if onward is not None:
+            self._edit(onward)
+        self.table.column += done.then == "right"
+        self.table.cursor += (done.then == "down") - (done.then == "up")

@@ -6,19 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
-from rich.cells import cell_len, set_cell_size
+from rich.cells import cell_len
 from rich.segment import Segment
 from rich.style import Style
-from textual import events
-from textual.geometry import Region
-from textual.message import Message
-from textual.reactive import reactive
-from textual.strip import Strip
 
 from calm.checks.finding import State
 from calm.files import Place
-from calm.tui.scrolled import RowList
-from calm.tui.theme import CURSOR, ELLIPSIS, LOOKS, MARK
+from calm.tui.table import TableCells, TableColumn
+from calm.tui.theme import CURSOR, LOOKS, MARK
 
 _TAIL = 4
 _EMPTY = (
@@ -28,15 +23,13 @@ _EMPTY = (
 )
 
 
-class LineTable(RowList, can_focus=True):
-    """Rows of the line with a cursor on one cell of them."""
+class LineTable(TableCells, can_focus=True):
+    """Show the rows of the line with a cursor on one cell of them."""
 
     COMPONENT_CLASSES: ClassVar[set[str]] = {
-        "line-table--heading",
         "line-table--row",
         "line-table--clamp",
         "line-table--under-cursor",
-        "line-table--cursor",
         "line-table--marked",
         "line-table--wrong",
         "line-table--old",
@@ -46,13 +39,11 @@ class LineTable(RowList, can_focus=True):
     }
     DEFAULT_CSS = """
     LineTable {
-        height: 1fr; width: 1fr; overflow-x: hidden; overflow-y: auto; scrollbar-size-vertical: 1;
         background: $background; color: $foreground;
-        & > .line-table--heading { color: $text-muted; background: $background; }
+        & > .table--heading { color: $text-muted; background: $background; text-style: none; }
         & > .line-table--row { color: $foreground; background: $background; }
         & > .line-table--clamp { color: $text-muted; background: $background; }
         & > .line-table--under-cursor { background: $surface; text-style: bold; }
-        & > .line-table--cursor { text-style: reverse bold; }
         & > .line-table--marked { color: $text-accent; text-style: bold; }
         & > .line-table--wrong { color: $text-error; }
         & > .line-table--old { text-style: dim; }
@@ -62,25 +53,20 @@ class LineTable(RowList, can_focus=True):
     }
     """
 
-    HEADING, BEYOND = 1, 2
+    BEYOND = 2
 
-    column: reactive[int] = reactive(0, init=False, repaint=False)
-
-    class Moved(RowList.Moved):
-        """The cursor is on another cell."""
-
-    class Activated(Message):
-        """A cell was pressed with the mouse while the cursor was on it."""
+    class Moved(TableCells.Moved):
+        """The cursor is on another cell of the line."""
 
     def __init__(self, *, id: str | None = None) -> None:
         super().__init__(id=id)
         self.rows: tuple[TableRow, ...] = ()
         self.marked: frozenset[Place] = frozenset()
         self.old = False
-        self._arranged: tuple[int, TableLayout] = (0, layout_for(80))
+        self._arranged: tuple[int, tuple[TableColumn, ...]] = (0, layout_for(80))
 
     @property
-    def arrangement(self) -> TableLayout:
+    def columns(self) -> tuple[TableColumn, ...]:
         """The columns as wide as they are now."""
         width = self.scrollable_content_region.width
         if self._arranged[0] != width:
@@ -90,6 +76,11 @@ class LineTable(RowList, can_focus=True):
 
     def _longest(self, column: str) -> int:
         return max((cell_len(row.texts.get(column, "")) for row in self.rows), default=0)
+
+    @property
+    def editable(self) -> Sequence[str]:
+        """The names of the columns that a person fills."""
+        return EDITABLE
 
     @property
     def row(self) -> TableRow | None:
@@ -132,101 +123,50 @@ class LineTable(RowList, can_focus=True):
         self.marked = spots
         self.refresh()
 
-    def cell_region(self, column: str) -> Region:
-        """Return where a cell of the row under the cursor is, within the widget."""
-        start, width = self.arrangement.place(column)
-        return Region(start, self.cursor + 1 - self.scroll_offset.y, width, 1)
-
-    def validate_column(self, column: int) -> int:
-        """Keep it on the columns that a person fills and that are shown."""
-        return max(0, min(column, len(EDITABLE) - 1))
-
-    def watch_column(self) -> None:
-        """Show it."""
-        self.refresh_rows(self.cursor)
-        self.post_message(self.Moved())
-
     def on_resize(self) -> None:
         """Keep the cursor in sight as the window changes."""
         self.follow()
 
-    def on_click(self, event: events.Click) -> None:
-        """Put the cursor where the mouse is; a press on the cursor itself edits."""
-        place = event.get_content_offset(self)
-        number = None if place is None else self.row_at(place.y)
-        if place is None or number is None:
-            return
-        name = self.arrangement.at(place.x)
-        column = next((i for i, each in enumerate(EDITABLE) if each == name), self.column)
-        if (number, column) == (self.cursor, self.column):
-            self.post_message(self.Activated())
-        else:
-            self.cursor, self.column = number, column
+    def below(self, y: int) -> list[Segment]:
+        """Return what an empty line says of how it is begun."""
+        if self.rows or not 1 < y < len(_EMPTY) + 2:
+            return []
+        return [Segment(_EMPTY[y - 2], self.get_component_rich_style("line-table--clamp"))]
 
-    def render_line(self, y: int) -> Strip:
-        """A row of the screen."""
-        width = self.scrollable_content_region.width
-        number = self.row_at(y)
-        segments = self._heading() if y == 0 else [] if number is None else self._row(number)
-        if not self.rows and 1 < y < len(_EMPTY) + 2:
-            segments = [Segment(_EMPTY[y - 2], self.get_component_rich_style("line-table--clamp"))]
-        ground = self.get_component_rich_style("line-table--row")
-        if number == self.cursor and self.has_focus:
-            ground += self.get_component_rich_style("line-table--under-cursor", partial=True)
-        return Strip(segments).adjust_cell_length(width, ground).crop(0, width)
+    def text_of(self, number: int, column: TableColumn) -> str:
+        """Return what stands in a cell of a row."""
+        return self.rows[number].texts.get(column.name, "")
 
-    def _heading(self) -> list[Segment]:
-        style = self.get_component_rich_style("line-table--heading")
-        segments = [Segment(" " * self.arrangement.columns[0][1], style)]
-        for name, _, width in self.arrangement.columns:
-            segments.append(Segment(_fitted(HEADINGS[name], width, name) + " ", style))
-        return segments
-
-    def _row(self, number: int) -> list[Segment]:
-        row = self.rows[number]
-        look = self.get_component_rich_style
+    def row_style(self, number: int) -> Style:
+        """Return how a row looks: clamped, under the cursor, wrong or marked."""
+        row, look = self.rows[number], self.get_component_rich_style
         style = look("line-table--clamp" if row.spot.is_clamp else "line-table--row")
-        here = number == self.cursor and self.has_focus
-        if here:
-            style += look("line-table--under-cursor", partial=True)
-        if row.wrong:
-            style += look("line-table--wrong", partial=True)
-        is_marked = row.spot in self.marked
-        if is_marked:
-            style += look("line-table--marked", partial=True)
-        segments = [
-            Segment(CURSOR if number == self.cursor else " ", style),
-            *self._state(row, is_marked, style),
-            Segment(f"{row.sign} ", style),
-        ]
-        for name, _, width in self.arrangement.columns:
-            own = style
-            if here and name == self.cell:
-                own += look("line-table--cursor", partial=True)
-            elif name not in EDITABLE and self.old:
-                own += look("line-table--old", partial=True)
-            segments.append(Segment(_fitted(row.texts.get(name, ""), width, name), own))
-            segments.append(Segment(" ", style))
-        return segments
+        for part, is_so in (
+            ("under-cursor", number == self.cursor and self.has_focus),
+            ("wrong", row.wrong),
+            ("marked", row.spot in self.marked),
+        ):
+            if is_so:
+                style += look(f"line-table--{part}", partial=True)
+        return style
 
-    def _state(self, row: TableRow, is_marked: bool, style: Style) -> list[Segment]:
-        if is_marked:
-            return [Segment(MARK, style)]
-        if row.state is None or row.state.value in ("pass", "accepted"):
-            return [Segment(" ", style)]
-        colour = self.get_component_rich_style(f"line-table--{row.state.value}", partial=True)
-        return [Segment(LOOKS[row.state].sign, style + colour)]
+    def cell_style(self, number: int, column: TableColumn, style: Style) -> Style:
+        """Return how a cell looks: a figure of an earlier line is dimmed."""
+        if self.old and column.name not in EDITABLE:
+            style += self.get_component_rich_style("line-table--old", partial=True)
+        return style
 
-
-def _fitted(text: str, width: int, column: str) -> str:
-    """A text as wide as its column; one that is too long ends in an ellipsis."""
-    if cell_len(text) > width and column == "component":  # its size stands at its end
-        return set_cell_size(text, width - 1 - _TAIL) + ELLIPSIS + text[-_TAIL:]
-    if cell_len(text) > width:
-        return set_cell_size(set_cell_size(text, width - 1).rstrip() + ELLIPSIS, width)
-    if column in RIGHT_ALIGNED:
-        return " " * (width - cell_len(text)) + text
-    return set_cell_size(text, width)
+    def lead(self, number: int, style: Style) -> list[Segment]:
+        """Return the cursor, the mark or the state, and the sign of a row."""
+        row = self.rows[number]
+        sign = Segment(" ", style)
+        if row.spot in self.marked:
+            sign = Segment(MARK, style)
+        elif row.state is not None and row.state.value not in ("pass", "accepted"):
+            colour = self.get_component_rich_style(f"line-table--{row.state.value}", partial=True)
+            sign = Segment(LOOKS[row.state].sign, style + colour)
+        cursor = CURSOR if number == self.cursor else " "
+        return [Segment(cursor, style), sign, Segment(f"{row.sign} ", style)]
 
 
 Column = Literal["component", "label", "count", "length"]
@@ -267,31 +207,9 @@ class TableRow:
     wrong: bool = False
 
 
-@dataclass(frozen=True)
-class TableLayout:
-    """The columns that fit a width: name, first cell, and width."""
-
-    columns: tuple[tuple[str, int, int], ...]
-
-    def place(self, name: str) -> tuple[int, int]:
-        """First cell and width of a column; of the first one where it is not shown."""
-        for column, start, width in self.columns:
-            if column == name:
-                return start, width
-        return self.columns[0][1:]
-
-    def at(self, x: int) -> str:
-        """The column at a cell."""
-        found = self.columns[0][0]
-        for column, start, _ in self.columns:
-            if x >= start:
-                found = column
-        return found
-
-
 def layout_for(
     width: int, component: int = _MOST_COMPONENT, label: int = _MOST_LABEL, length: int = 0
-) -> TableLayout:
+) -> tuple[TableColumn, ...]:
     """The columns of a table as wide as this, those least needed left out where it is narrow.
 
     Parameters
@@ -311,9 +229,11 @@ def layout_for(
     widths = fixed | {"component": component, "label": min(room - component, _MOST_LABEL)}
     columns, start = [], LEAD
     for name in shown:
-        columns.append((name, start, widths[name]))
+        tail = _TAIL if name == "component" else 0  # its size stands at its end
+        is_right = name in RIGHT_ALIGNED
+        columns.append(TableColumn(name, HEADINGS[name], start, widths[name], is_right, tail))
         start += widths[name] + 1
-    return TableLayout(tuple(columns))
+    return tuple(columns)
 
 
 def _text_room(shown: list[str], width: int, fixed: dict[str, int]) -> int:

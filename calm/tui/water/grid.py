@@ -1,4 +1,4 @@
-"""A small table of numbers whose columns carry their units: rows are edited, added, taken out."""
+"""A small table of numbers whose columns carry their units: edited, pasted, filled row by row."""
 
 from __future__ import annotations
 
@@ -6,14 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from textual import events, on
-from textual.app import ComposeResult
-from textual.containers import Vertical
 from textual.message import Message
 
 from calm.records.delimited import CopiedTable, NoTableError, copied_table
-from calm.tui.checking import Check, Reading
+from calm.tui.cell_editor import CellEditor
+from calm.tui.checking import Reading
 from calm.tui.dialogs import Asked, InputSheet
-from calm.tui.line.cell_editor import CellEditor
+from calm.tui.table import EditableTable
 from calm.tui.water.grid_cells import GridCells
 from calm.tui.water.pasted import (
     NoRows,
@@ -26,15 +25,15 @@ from calm.tui.water.pasted import (
 )
 
 
-class Grid(Vertical):
-    """The cells with the line of input that edits them.
+class Grid(EditableTable):
+    """Edit the cells of a table of the water.
 
     Values are texts as the file has them: numbers where the heading of their column has a unit,
     else quantities with their own. Without columns nothing is shown and nothing can be edited.
     """
 
     DEFAULT_CSS = """
-    Grid { height: auto; min-height: 3; max-height: 16; layers: table over; }
+    Grid { height: auto; min-height: 3; max-height: 16; }
     Grid GridCells { height: auto; min-height: 3; max-height: 16; }
     """
 
@@ -53,25 +52,11 @@ class Grid(Vertical):
         reason: str
 
     def __init__(self, *, id: str | None = None) -> None:
-        super().__init__(id=id)
+        self.cells = GridCells()
+        super().__init__(self.cells, id=id)
         self._place = 0, 0  # row and column that are edited
         self._new = -1  # the row that was added last and is being filled
         self._before: Rows | None = None  # the rows without the one that Enter has added
-
-    def compose(self) -> ComposeResult:
-        """The rows, and over them what is edited."""
-        yield GridCells()
-        yield CellEditor()
-
-    @property
-    def cells(self) -> GridCells:
-        """The rows."""
-        return self.query_one(GridCells)
-
-    @property
-    def editor(self) -> CellEditor:
-        """Return what is edited."""
-        return self.query_one(CellEditor)
 
     def show(
         self, columns: Sequence[str], rows: Sequence[Sequence[str]], seabed: float | None = None
@@ -81,35 +66,14 @@ class Grid(Vertical):
         self.cells.show(columns, rows)
         self.cells.styles.height = len(rows) + 1
 
-    @property
-    def is_typing(self) -> bool:
-        """Return whether a value is typed that is not in the rows yet."""
-        return self.editor.is_typing
-
     def settle(self) -> Reading:
         """Put what is typed into the rows, telling nobody; a bad value stays to be corrected."""
-        reading = self.editor.settle()
-        if not reading.is_good:
-            self.editor.focus()
-        elif self.editor.is_open:
-            with self.cells.prevent(GridCells.Changed):
-                self._put()
-        return reading
+        with self.cells.prevent(GridCells.Changed):
+            return self.settle_cell()
 
-    def _put(self) -> None:
-        """Put the good text that is typed, if any, where it was typed."""
-        text = self.editor.text
-        self.drop()
-        if text is not None:
-            self.cells.put(text, *self._place)
-
-    def drop(self) -> None:
-        """End editing; the value stays as it was."""
-        if self.editor.is_open:
-            had_focus = self.editor.has_focus
-            self.editor.close()
-            if had_focus:
-                self.cells.focus()
+    def write(self, text: str) -> None:
+        """Put a good text where it was typed."""
+        self.cells.put(text, *self._place)
 
     def on_paste(self, event: events.Paste) -> None:
         """Rows from a spreadsheet or a text take the place of all rows."""
@@ -121,7 +85,7 @@ class Grid(Vertical):
 
         They are read by their headings, and shown with their columns before they are taken.
         """
-        columns = self.cells.columns
+        columns = self.cells.headings
         try:
             copied = copied_table(text)
             headings = offered_headings(copied.headings, columns)
@@ -129,13 +93,13 @@ class Grid(Vertical):
         except UnknownColumns:
             pass  # the person says what they are
         except (NoTableError, NoRows) as error:
-            self.post_message(self.Refused(f"Nothing is pasted: {error}"))
+            self.tell_refusal(f"Nothing is pasted: {error}")
             return
         self._preview(copied, headings)
 
     def _preview(self, copied: CopiedTable, headings: Sequence[str]) -> None:
         """Show what would be taken, under which columns; these can be corrected."""
-        columns = self.cells.columns
+        columns = self.cells.headings
 
         def taken(text: str) -> Rows:
             return rows_in(columns, [one.strip() for one in text.split(",")], copied.rows)
@@ -160,42 +124,40 @@ class Grid(Vertical):
         asked = Asked("columns", "Columns", ", ".join(headings), check)
         self.app.push_screen(InputSheet("A table is pasted", text, [asked]), take)
 
+    @on(GridCells.Pressed)
+    def _edit_pressed(self) -> None:
+        self.cells.action_edit()
+
     @on(GridCells.Wanted)
     def _edit(self, event: GridCells.Wanted) -> None:
         event.stop()
         cells = self.cells
-        if self.editor.is_typing and self.editor.settle().is_good:
-            self._put()
+        if self.editor.is_typing:
+            self.settle_cell()
         self._place = cells.cursor, cells.column
         self._new = cells.cursor if event.new else self._new
-        begun = event.begin is not None
-        text = event.begin or cells.cell
-        region = cells.cell_region()
-        self.editor.open(text, self._check(), region, least_width=12, begun=begun)
+        text, check = event.begin or cells.cell, check_of(cells.headings[cells.column])
+        self.open_editor(text, check, least_width=12, begun=event.begin is not None)
 
-    def _check(self) -> Check:
-        return check_of(self.cells.columns[self.cells.column])
+    def tell_reading(self, reading: Reading) -> None:
+        """Tell what is wrong with the text typed so far."""
+        if not reading.is_good:
+            self.tell_refusal(reading.note)
 
-    @on(CellEditor.Judged)
-    def _tell_reading(self, event: CellEditor.Judged) -> None:
-        event.stop()
-        if self.editor.is_open and not event.reading.is_good:
-            self.post_message(self.Refused(event.reading.note))
+    def tell_refusal(self, reason: str) -> None:
+        """Tell why something is not done."""
+        self.post_message(self.Refused(reason))
 
-    @on(CellEditor.Done)
-    def _take(self, event: CellEditor.Done) -> None:
-        event.stop()
-        cells, is_here = self.cells, self.editor.has_focus
-        self._put()
-        if not is_here:
-            return  # it was left for another place
-        if event.text is not None:
+    def go_on(self, done: CellEditor.Done) -> None:
+        """Go up or down, or to the next value; add a row below one that was added and is filled."""
+        cells = self.cells
+        if done.text is not None:
             self._before = None  # it is filled
-        if event.then in ("up", "down"):
-            cells.cursor += 1 if event.then == "down" else -1
-        elif event.then == "right":
+        if done.then in ("up", "down"):
+            cells.cursor += 1 if done.then == "down" else -1
+        elif done.then == "right":
             cells.column += 1
-        elif event.then == "edit next":
+        elif done.then == "edit next":
             if cells.go_on(1):
                 cells.action_edit()
         elif not cells.is_at_the_end:
@@ -205,20 +167,16 @@ class Grid(Vertical):
             cells.action_add_row(1)
             self._before = before
 
-    @on(CellEditor.Abandoned)
-    def _abandon(self, event: CellEditor.Abandoned) -> None:
-        event.stop()
-        self.drop()
+    def abandoned(self) -> None:
+        """Take out a row that was added and not filled."""
         if self._before is not None:
             self.cells.change(self._before, "a row less")
             self.cells.cursor -= 1
         self._new, self._before = -1, None
-        if event.reason:
-            self.post_message(self.Refused(event.reason))
 
     @on(GridCells.AtTheEnd)
     def _tell_the_end(self) -> None:
-        self.post_message(self.Refused("The table ends here: a adds a row, ↓ leaves it"))
+        self.tell_refusal("The table ends here: a adds a row, ↓ leaves it")
 
     @on(GridCells.Changed)
     def _changed(self, event: GridCells.Changed) -> None:

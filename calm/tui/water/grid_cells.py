@@ -6,17 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
-from rich.cells import set_cell_size
 from rich.segment import Segment
+from rich.style import Style
 from textual import events
 from textual.binding import BindingType
-from textual.geometry import Region
 from textual.message import Message
-from textual.reactive import reactive
-from textual.strip import Strip
 
 from calm.tui.actions import bindings
-from calm.tui.scrolled import RowList
+from calm.tui.table import TableCells, TableColumn
 from calm.tui.theme import CURSOR
 from calm.tui.water.pasted import Rows, half_way
 
@@ -28,22 +25,11 @@ _STEP = 10.0
 """How much deeper [m] a row below the last is."""
 
 
-class GridCells(RowList, can_focus=True):
-    """The rows with a cursor on one cell."""
+class GridCells(TableCells, can_focus=True):
+    """Show the rows with a cursor on one cell, and add and take out rows."""
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings("grid")]
-    COMPONENT_CLASSES: ClassVar[set[str]] = {"cells--heading", "cells--row", "cells--cursor"}
-    DEFAULT_CSS = """
-    GridCells {
-        height: 1fr; width: 1fr; overflow-x: hidden; scrollbar-size-vertical: 1;
-        & > .cells--heading { text-style: dim; }
-        & > .cells--cursor { text-style: reverse bold; }
-    }
-    """
-
-    HEADING = 1
-
-    column: reactive[int] = reactive(0, init=False, repaint=False)
+    GAP = 2
 
     @dataclass
     class Wanted(Message):
@@ -64,37 +50,47 @@ class GridCells(RowList, can_focus=True):
 
     def __init__(self) -> None:
         super().__init__()
-        self.columns: tuple[str, ...] = ()
+        self.headings: tuple[str, ...] = ()
         self.rows: Rows = ()
         self.seabed: float | None = None
 
-    def show(self, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
-        """Show other rows, the cursor where it was if there is such a cell."""
-        self.columns = tuple(columns)
-        self.set_reactive(GridCells.column, self.validate_column(self.column))
+    def show(self, headings: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+        """Other rows, the cursor where it was if there is such a cell."""
+        self.headings = tuple(headings)
+        self.set_reactive(TableCells.column, self.validate_column(self.column))
         self.take_rows(tuple(tuple(row) for row in rows))
 
-    def validate_column(self, column: int) -> int:
-        """Keep it on the columns."""
-        return max(0, min(column, len(self.columns) - 1))
+    @property
+    def columns(self) -> list[TableColumn]:
+        """The columns, named by their numbers: a file may have two of one heading."""
+        width = _WIDTH - self.GAP
+        return [
+            TableColumn(str(number), heading, _LEAD + number * _WIDTH, width)
+            for number, heading in enumerate(self.headings)
+        ] or [TableColumn("", _AS_TEXT, _LEAD, len(_AS_TEXT))]
 
-    def watch_column(self) -> None:
-        """Show it."""
-        self.refresh()
+    @property
+    def editable(self) -> Sequence[str]:
+        """All columns, where there are any."""
+        return [str(number) for number in range(len(self.headings))]
+
+    def text_of(self, number: int, column: TableColumn) -> str:
+        """Return what stands in a cell of a row."""
+        return self.rows[number][int(column.name)]
+
+    def lead(self, number: int, style: Style) -> list[Segment]:
+        """Return the cursor, where the table has the focus."""
+        here = number == self.cursor and self.has_focus
+        return [Segment(f"{CURSOR} " if here else "  ", style)]
 
     @property
     def cell(self) -> str:
         """The text under the cursor."""
         return self.rows[self.cursor][self.column] if self.rows else ""
 
-    def cell_region(self) -> Region:
-        """Return where it is, within the widget."""
-        y = self.cursor + 1 - self.scroll_offset.y
-        return Region(_LEAD + self.column * _WIDTH, y, _WIDTH - 2, 1)
-
     def put(self, text: str, row: int, column: int) -> None:
         """Another text in a cell; nothing where there is none any more."""
-        if row < len(self.rows) and column < len(self.columns):
+        if row < len(self.rows) and column < len(self.headings):
             values = [*self.rows[row]]
             values[column] = text
             self.change([*self.rows[:row], tuple(values), *self.rows[row + 1 :]], "a value")
@@ -102,11 +98,13 @@ class GridCells(RowList, can_focus=True):
     def change(self, rows: Sequence[tuple[str, ...]], label: str) -> None:
         """Other rows, and what was done to them."""
         self.post_message(self.Changed(tuple(rows), label))
-        self.show(self.columns, rows)
+        self.show(self.headings, rows)
 
     def go_on(self, by: int) -> bool:
         """Go to the next value or the one before, over the rows; whether there is one."""
-        row, column = divmod(self.cursor * len(self.columns) + self.column + by, len(self.columns))
+        row, column = divmod(
+            self.cursor * len(self.headings) + self.column + by, len(self.headings)
+        )
         if is_there := 0 <= row < len(self.rows):
             self.cursor, self.column = row, column
         return is_there
@@ -122,11 +120,11 @@ class GridCells(RowList, can_focus=True):
 
     def action_move_cell(self, by: int) -> None:
         """Go to the next value; what is typed after the last goes into no other field."""
-        if self.columns and self.go_on(by):
+        if self.headings and self.go_on(by):
             return
         if by < 0:
             self.screen.focus_previous()
-        elif self.columns:
+        elif self.headings:
             self.post_message(self.AtTheEnd())
         else:
             self.screen.focus_next()
@@ -142,11 +140,11 @@ class GridCells(RowList, can_focus=True):
 
     def action_add_row(self, below: int) -> None:
         """A row beside this one, its values between those of its neighbours."""
-        if not self.columns:
+        if not self.headings:
             return
         at = self.cursor + below if self.rows else 0
         at = min(at, len(self.rows) - 1) if self._ends_at_the_seabed(at) else at
-        new = _between(self.columns, self.rows, at, self.seabed)
+        new = _between(self.headings, self.rows, at, self.seabed)
         self.change([*self.rows[:at], new, *self.rows[at:]], "a row more")
         self.cursor, self.column = at, 0
         self.post_message(self.Wanted(new=True))
@@ -154,7 +152,7 @@ class GridCells(RowList, can_focus=True):
     @property
     def is_at_the_end(self) -> bool:
         """Return whether the cursor is on the last value of its row."""
-        return self.column == len(self.columns) - 1
+        return self.column == len(self.headings) - 1
 
     @property
     def has_room_below(self) -> bool:
@@ -182,41 +180,6 @@ class GridCells(RowList, can_focus=True):
         if event.character in _DIGITS and event.is_printable and self.rows:
             event.stop()
             self.post_message(self.Wanted(event.character))
-
-    def on_mouse_down(self, event: events.MouseDown) -> None:
-        """Go where the mouse is; edit where the cursor was already.
-
-        At once, as what is typed elsewhere is taken now, and the table is laid out anew.
-        """
-        place = event.get_content_offset(self)
-        row = None if place is None else self.row_at(place.y)
-        if place is None or row is None:
-            return
-        column = (place.x - _LEAD) // _WIDTH
-        if (row, column) == (self.cursor, self.column):
-            self.action_edit()
-        else:
-            self.cursor, self.column = row, column
-
-    def render_line(self, y: int) -> Strip:
-        """A row of the screen."""
-        width = self.scrollable_content_region.width
-        number_of_row = self.row_at(y)
-        style = self.rich_style
-        if y == 0:
-            heading = style + self.get_component_rich_style("cells--heading", partial=True)
-            text = "".join(set_cell_size(name, _WIDTH) for name in self.columns) or _AS_TEXT
-            return Strip([Segment(" " * _LEAD + text, heading)]).adjust_cell_length(width, style)
-        if number_of_row is None:
-            return Strip.blank(width, style)
-        here = number_of_row == self.cursor and self.has_focus
-        segments = [Segment(f"{CURSOR} " if here else "  ", style)]
-        cursor = style + self.get_component_rich_style("cells--cursor", partial=True)
-        for column, text in enumerate(self.rows[number_of_row]):
-            own = cursor if here and column == self.column else style
-            segments.append(Segment(set_cell_size(text, _WIDTH - 2), own))
-            segments.append(Segment("  ", style))
-        return Strip(segments).adjust_cell_length(width, style)
 
 
 def _between(columns: Sequence[str], rows: Rows, at: int, seabed: float | None) -> tuple[str, ...]:

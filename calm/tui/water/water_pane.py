@@ -257,7 +257,7 @@ class WaterPane(Horizontal):
         for field in self.query(Field):
             field.reset(field.begun)
         for grid in self.query(Grid):
-            grid.drop()
+            grid.leave_cell()
 
     @on(Field.Committed)
     def _commit(self, event: Field.Committed) -> None:
@@ -277,7 +277,7 @@ class WaterPane(Horizontal):
 
     def _take_rows(self, grid: Grid, label: str) -> None:
         place, cells = _place(grid), grid.cells
-        self.change(lambda water: water.put_rows(place, cells.columns, cells.rows), label)
+        self.change(lambda water: water.put_rows(place, cells.headings, cells.rows), label)
 
     @on(Grid.Refused)
     def _tell_refusal(self, event: Grid.Refused) -> None:

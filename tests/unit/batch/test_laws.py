@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from calm.batch.profiles import solve_profiles
+from calm.batch.profiles import Batch, solve_profiles
 from tests.unit.batch.alike import assert_as_run
 from tests.unit.batch.drawn_profiles import CHARACTERS, drawn
 from tests.unit.batch.made import made_mooring
@@ -77,3 +77,28 @@ def test_a_case_without_a_result_has_no_number(tmp_path: Path) -> None:
             else:
                 assert np.isfinite(values[~failed]).all(), name
     assert (found.used_buoyancy[~failed] < 1.0).any()  # it floats in some
+
+
+CHAIN = "  - {use: rope, length: LENGTH m}\n  - {use: chain, length: 60 m}"
+
+
+@pytest.mark.parametrize("chain", [False, True], ids=["hanging", "with 60 m of chain"])
+@pytest.mark.parametrize("law", LAWS.values(), ids=LAWS.keys())
+def test_a_profile_is_solved_alike_alone_and_in_any_company(
+    tmp_path: Path, law: tuple[str, str], chain: bool
+) -> None:
+    """Byte for byte: what a profile leaves behind is nothing to the next."""
+    solver, stretch = law
+    text = MOORING.replace("SOLVER", solver).replace("STRETCH", stretch)
+    if chain:
+        text = text.replace("  - {use: rope, length: LENGTH m}", CHAIN)
+        text = text.replace("\nline:", "\n  chain: {kind: chain, diameter: 13 mm}\nline:")
+    batch = Batch(made_mooring(tmp_path, text.replace("LENGTH", "60")))
+    depth, u, v, w = drawn(5, CHARACTERS, batch.water.depth)
+    together = batch.solve(u, v, depth, w)
+    order = np.random.default_rng(1).permutation(len(u))
+    for few in [order, *([case] for case in order)]:
+        others = vars(batch.solve(u[few], v[few], depth if depth.ndim == 1 else depth[few], w[few]))
+        for name, values in vars(together).items():
+            if isinstance(values, np.ndarray):
+                assert others[name].tobytes() == values[few].tobytes(), name

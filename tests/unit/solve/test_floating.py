@@ -216,3 +216,12 @@ def test_the_offset_of_a_slack_line_does_not_leap_with_a_breath_of_wind():
         assert degrees(atan2(solution.force[-1, 0], abs(solution.force[-1, 2]) + 1e-9)) > 0
     assert radii[0] > radii[1] > radii[2] > 0
     assert radii[0] < sqrt(109.0**2 - 99.0**2)
+
+
+def test_a_rope_without_weight_where_the_current_begins_below_the_surface():
+    """Nothing pulls its upper end where none of the float's buoyancy is in use."""
+    moored = line(rigid(1.0, 3000.0, drag=100.0), rope(120.0, ct=0.01))
+    solution = solve_mooring(moored, water(100.0, (0, 0, 0, 0), (100, 0.3, 0, 0)))
+    assert solution.riding is not None or solution.afloat == (0,)
+    assert solution.position[0, 2] == pytest.approx(0.0, abs=0.01)
+    assert solution.closure < 1e-6

@@ -1,6 +1,6 @@
 """Tows that cannot be: each is told with its own status and what to do."""
 
-from math import inf
+from math import inf, pi
 
 import numpy as np
 import pytest
@@ -8,6 +8,7 @@ import pytest
 from calm.errors import NoEquilibrium
 from calm.physics.line import Line, Water
 from calm.solve import Settings, Towing, fit_tow_length, solve_tow
+from tests.unit.solve import simple
 
 DEEP = Water(inf, [0.0], [0.0], [0.0], [0.0], [1025.0])
 
@@ -87,3 +88,16 @@ def test_a_ship_that_drifts_with_the_water():
     solution = solve_tow(line(100.0, 2.5, 500.0), drifting, Towing(1.0, 0.0))
     assert solution.position[0] == pytest.approx([0.0, 0.0, -100.0], abs=1e-4)
     assert solution.tension[-1] == pytest.approx(750.0, rel=1e-6)
+
+
+def test_an_even_current_given_at_levels_is_even():
+    """The levels cut the line, so that the march is not quite as deep as it is long."""
+    kn = 0.5 * 1025.0 * 0.5 * pi * 0.4**2 / 4
+    wire = simple.rope(150.0, weight=2.0, diameter=0.008)
+    towed = simple.line(wire, simple.rigid(0.4, -1500.0, drag=kn))
+    even = solve_tow(towed, simple.water(500.0, (0, -0.2, 0, 0)), Towing(1.0, 0.0))
+    for levels in ([0, 40, 90], [0, 10, 139], [0, 33, 66]):
+        sea = simple.water(500.0, *((depth, -0.2, 0, 0) for depth in levels))
+        solution = solve_tow(towed, sea, Towing(1.0, 0.0))
+        assert solution.position[0, 2] == pytest.approx(even.position[0, 2], abs=0.01)
+    assert -even.position[0, 2] == pytest.approx(139.5, abs=0.5)

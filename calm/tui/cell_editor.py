@@ -1,4 +1,4 @@
-"""One value of the line, edited where it stands."""
+"""One value of a table, edited where it stands."""
 
 from __future__ import annotations
 
