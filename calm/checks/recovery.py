@@ -14,7 +14,7 @@ it in the line, and that floats which have come up are half out of the water. In
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import ceil, isnan, nan
 from typing import TYPE_CHECKING, Any
 
@@ -55,6 +55,8 @@ class Recovery:
     tangles : the pieces that have, or part of which has, overtaken what was above in the rise
     in_still_water : whether the rise is that in still water, because a line that doubles back
         finds no steady motion in this current
+    length : (m,) stretched lengths of the pieces that rise [m]; none where the line does not
+    seabed : depth of the water [m]
     """
 
     released: int
@@ -68,6 +70,22 @@ class Recovery:
     order: tuple[int, ...]
     tangles: tuple[int, ...]
     in_still_water: bool = False
+    length: Floats = field(default_factory=lambda: np.zeros(0))
+    seabed: float = np.inf
+
+    def depth_at(self, piece: int, share: float) -> float:
+        """Return the depth of a place on a piece when all is up [m]; nan where it is not known.
+
+        Parameters
+        ----------
+        piece : its index
+        share : of the piece's length, from its upper end
+        """
+        up = np.isfinite(self.arrival[: len(self.length)])
+        if piece >= len(up) or up[piece]:
+            return float(self.hangs_at[piece])
+        at = float(self.length[:piece].sum() + share * self.length[piece])
+        return min(_way_to_what_is_up(self.length, up, at), self.seabed)
 
     def components(self) -> list[dict[str, Any]]:
         """The pieces above the anchor, by name of figure; None where there is none."""
@@ -113,9 +131,10 @@ def recovery_of(mooring: Mooring, result: Result) -> Recovery:
     head = head_count(line)
     for piece, time in risers.items():
         arrival[0 if piece < head else piece : piece + 1] = time
-    hangs_at[: released + 1] = np.minimum(
-        _hanging(length, np.isfinite(arrival[: released + 1])), water.depth
-    )
+    up = np.isfinite(arrival[: released + 1])
+    for piece, begin in enumerate(np.cumsum(length) - length):
+        way = 0.0 if up[piece] else _way_to_what_is_up(length, up, float(begin))
+        hangs_at[piece] = min(way, water.depth)
     tension_top, tension_bottom = none.copy(), none.copy()
     first, last = motion.solution.piece_nodes.T
     tension_top[: released + 1] = motion.solution.tension[first]
@@ -132,6 +151,8 @@ def recovery_of(mooring: Mooring, result: Result) -> Recovery:
         order=tuple(risers),
         tangles=motion.tangles,
         in_still_water=still,
+        length=length,
+        seabed=water.depth,
     )
 
 
@@ -188,13 +209,14 @@ def _risers(
         up = piece + 1
 
 
-def _hanging(length: Floats, up: Booleans) -> Floats:
-    """(n,) depth of the upper ends of the pieces when some are up [m].
+def _way_to_what_is_up(length: Floats, up: Booleans, at: float) -> float:
+    """Return the shorter way along the line to a piece that is up, above a place or below it [m].
 
-    A piece hangs by the shorter way along the line to one that is up, above it or below.
+    Parameters
+    ----------
+    length, up : (n,) lengths of the pieces [m], and which are up
+    at : distance of the place from the upper end of the first [m]
     """
     ends = np.concatenate([[0.0], np.cumsum(length)])
-    upper, lower = ends[:-1], ends[1:]
-    above = np.maximum.accumulate(np.where(up, lower, -np.inf))
-    below = np.minimum.accumulate(np.where(up, upper, np.inf)[::-1])[::-1]
-    return np.where(up, 0.0, np.minimum(upper - above, below - upper))
+    ways = np.concatenate([at - ends[1:][up], ends[:-1][up] - at])
+    return float(ways[ways >= 0.0].min(initial=np.inf))

@@ -23,7 +23,7 @@ DECK_EXAMPLES = """Examples:
   calm deck mooring.yaml -o cruise/
   calm deck mooring.yaml -o cruise/ --page a3 --environment storm
   calm deck north.yaml south.yaml -o cruise/
-  calm deck mooring.yaml -o cruise/ --ship-speed "2 knot" --streamed "900 m" --course "245 deg"
+  calm deck mooring.yaml -o cruise/ --ship-speed "2 knot" --course "245 deg" --deck-time "3 min"
   calm deck shallow.yaml -o cruise/ --order anchor-first"""
 
 
@@ -38,6 +38,7 @@ def deck(
     ship_speed: str = "1 m/s",
     streamed: str | None = None,
     course: str | None = None,
+    deck_time: str | None = None,
     catalog: list[Path] | None = None,
 ) -> ExitCode:
     """Draw the diagram and write the lists for the deployment of moorings.
@@ -68,6 +69,10 @@ def deck(
     course
         Of the ship over the ground as it tows the line out; against the current at the surface
         unless given.
+    deck_time
+        Of handling each piece and clamp before it goes over, such as "3 min", shackles and rings
+        apart; by role in the file's `document: deck_time:` unless given. Without either the plan
+        has no start of the run.
     catalog
         A catalogue of your own; its components hide others of the same id. Repeatable.
     """
@@ -84,6 +89,7 @@ def deck(
             "ship_speed": (ship_speed, "speed"),
             "streamed": (streamed, "length"),
             "course": (course, "angle"),
+            "deck_time": (deck_time, "time"),
         }
     )
     designs, tows = read_designs(files, environment, catalog or [], None, "calm deck")
@@ -105,8 +111,11 @@ def deck(
 
 
 def _write(folder: Path, path: Path, deck: Deck, paper: Paper) -> None:
+    from calm.report.check_summary import SIGNS, verdict_of
     from calm.report.folder import write_report
 
+    state, words = verdict_of(deck.assessment.all_findings())
+    narrate(f"{path}: {SIGNS[state]} {words}: calm check {path}")
     notes = _signs_that_are_lacking(deck)
     for note in (*deck.notes, *notes):
         narrate(f"{path}: {note}")
@@ -121,7 +130,7 @@ def _contents(deck: Deck, paper: Paper, notes: tuple[str, ...]) -> Mapping[str, 
     from calm.report.result_json import to_json
 
     texts = {"diagram.svg": diagram_svg(deck, paper), **deck_csvs(deck)}
-    texts["plan.json"] = to_json([_plan(deck)])
+    texts["plan.json"] = to_json([_plan(deck) | {"verdict": _verdict(deck)}])
     return {
         "deck.pdf": printed(deck_report(deck, paper, notes), paper, least=7.5),
         "diagram.pdf": printed(diagram_report(deck, paper), paper, least=7.5),
@@ -138,6 +147,16 @@ def _plan(deck: Deck) -> dict[str, Any]:
     if isinstance(deck.plan, NoEquilibrium):
         return failure_document(deck.file.name, deck.plan)
     return deck.plan.to_dict()
+
+
+def _verdict(deck: Deck) -> dict[str, Any]:
+    """What the design check says of the mooring that is laid."""
+    from calm.checks.finding import State
+    from calm.report.check_summary import counted_states
+
+    counts = counted_states(deck.assessment.all_findings())
+    state = str(deck.assessment.state)
+    return {"state": state, "fails": counts[State.FAIL], "unknown": counts[State.UNKNOWN]}
 
 
 def _signs_that_are_lacking(deck: Deck) -> tuple[str, ...]:

@@ -194,7 +194,8 @@ class RecoveredItem:
     ----------
     item : which
     time : after the release [s]; None of what does not come up by itself
-    hangs_at : depth of its upper end when all is up that comes up [m]; None where not known
+    hangs_at : depth of the upper end of a piece, or of a clamp where it is on one, when all is up
+        that comes up [m]; None where not known
     by_itself : whether it is buoyant enough to come up without what is above it
     """
 
@@ -233,7 +234,8 @@ def surfacing(parts: Sequence[DeckItem], recovery: Recovery | None) -> tuple[Rec
 
 def _surfacing(one: DeckItem, recovery: Recovery) -> RecoveredItem:
     time = float(recovery.arrival[one.index])
-    hangs_at = float(recovery.hangs_at[one.index])
+    share = one.at / one.of_length if one.at is not None and one.of_length else 0.0
+    hangs_at = recovery.depth_at(one.index, share)
     return RecoveredItem(
         one,
         None if isnan(time) else time,

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from calm.case import Mooring
+from calm.checks.assess import check
 from calm.checks.finding import OWN
 from calm.checks.inventory import inventory_of
 from calm.checks.recovery import recovery_of
@@ -31,9 +32,12 @@ from calm.solve import Status
 
 if TYPE_CHECKING:
     from calm.case import Result
+    from calm.checks.assessment import Assessment
     from calm.checks.recovery import Recovery
     from calm.files import MooringFile
 
+HANDLED = ("float", "instrument", "release", "line")
+"""Roles of what takes time on deck by itself; what joins pieces is shackled on with them."""
 FAINT = 0.1
 """Current in which a line is drawn that still water leaves slack [m/s]."""
 
@@ -53,6 +57,7 @@ class Deck:
     cuts, hardware, shipped, lifts, instruments : what the sheets of these names say
     plan : of the anchor drop, or why it could not be solved; None where the anchor goes first
     notes : what is not known, and why
+    assessment : what the design check says of the mooring
     """
 
     result: Result
@@ -69,6 +74,7 @@ class Deck:
     instruments: tuple[DeckInstrument, ...]
     environments: tuple[str, ...]
     notes: tuple[str, ...]
+    assessment: Assessment
     plan: DropPlan | NoEquilibrium | None = None
 
     @property
@@ -83,6 +89,7 @@ def deck_of(
     ship_speed: float = SHIP_SPEED,
     streamed: float | None = None,
     course: float | None = None,
+    deck_time: float | None = None,
 ) -> Deck:
     """The sheets of a mooring.
 
@@ -91,6 +98,8 @@ def deck_of(
     moorings : the same one in each environment, that of the sheets first, and cut alike in all
     ship_speed, streamed, course : of the anchor drop, see `calm.drop.drop_plan` [m/s], [m],
         [degrees]
+    deck_time : of handling a piece on deck, but what joins pieces [s]; by role in the file's
+        `document` where not given
 
     Raises
     ------
@@ -102,6 +111,7 @@ def deck_of(
     first = moorings[0]
     notes: list[str] = []
     result = _standing(first, notes)
+    notes += result.warnings
     results = [(_name(first), result)]
     for other in moorings[1:]:
         try:
@@ -121,7 +131,8 @@ def deck_of(
     if order is Order.ANCHOR_LAST:
         try:
             stands = result if result.mooring is first else None
-            plan = drop_plan(first, ship_speed, streamed, course, result=stands)
+            times = _deck_times(first.file, deck_time)
+            plan = drop_plan(first, ship_speed, streamed, course, result=stands, deck_time=times)
         except NoEquilibrium as failure:
             plan = failure
             notes.append(f"The anchor drop is not planned: {failure}")
@@ -141,8 +152,17 @@ def deck_of(
         instruments=instruments_of(parts, results),
         environments=tuple(name for name, _ in results),
         notes=tuple(notes),
+        assessment=check(*moorings),
         plan=plan,
     )
+
+
+def _deck_times(file: MooringFile, each: float | None) -> Mapping[str, float] | None:
+    """Return the time of handling a piece by its role [s]; None where nobody gives it."""
+    if each is not None:
+        return dict.fromkeys(HANDLED, each)
+    given = None if file.document is None else file.document.deck_time
+    return None if given is None else {str(role): time for role, time in given.items()}
 
 
 def _standing(mooring: Mooring, notes: list[str]) -> Result:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from math import cos, radians, sin
 from typing import Any
@@ -32,7 +33,7 @@ from calm.drop.motion import ChainState
 from calm.errors import NoEquilibrium
 from calm.files import Position
 from calm.physics.ellipsoid import Frame
-from calm.physics.line import Floats, Water
+from calm.physics.line import Floats
 from calm.quantities import bearing_of
 from calm.solve import Status
 
@@ -42,6 +43,22 @@ nothing of what comes after the touchdown is shown."""
 
 BRIEF = 60.0
 """Fall time below which what is left out, inertia, shows in the figures [s]."""
+
+
+@dataclass(frozen=True)
+class RunStart:
+    """Where the first piece goes over the side, and how long the run is.
+
+    Attributes
+    ----------
+    distance : before the target, along the ship's course; negative beyond it [m]
+    time : until the anchor is let go [s]
+    place : east and north of the target [m]
+    """
+
+    distance: float
+    time: float
+    place: tuple[float, float]
 
 
 @dataclass(frozen=True)
@@ -66,10 +83,9 @@ class DropPlan:
     touchdown_speed : of the anchor as it meets the seabed
     greatest_tension : in the line, from letting go to the touchdown
     tow_past : how far along its course the ship tows beyond the target before it lets go
-    run_in : how far before the target the run begins, with the float put out first
-    run_time : from the float over the side to the anchor let go
-    let_go, start : where the anchor is let go and where the run begins, east and north of the
-        target
+    let_go : where the anchor is let go, east and north of the target
+    deck_time : of handling a piece, by its role [s]; None where it is not given
+    start : of the run, with the float put out first; None without a deck time
     anchor_drag : K of the anchor [N/(m/s)²]; `drag_known` is False where it is that of a cube,
         since the file gives none
     path, moments, depths, pulls : over time; shapes; of floats, instruments and releases, empty
@@ -93,10 +109,9 @@ class DropPlan:
     touchdown_speed: float
     greatest_tension: float
     tow_past: float
-    run_in: float
-    run_time: float
     let_go: tuple[float, float]
-    start: tuple[float, float]
+    deck_time: Mapping[str, float] | None
+    start: RunStart | None
     anchor_drag: float
     drag_known: bool
     path: FallPath = field(repr=False)
@@ -156,7 +171,8 @@ class DropPlan:
     def to_dict(self) -> dict[str, Any]:
         """The plan as JSON; figures in SI."""
         path = self.path
-        let_go, start = self.position(self.let_go), self.position(self.start)
+        let_go, start = self.position(self.let_go), self.start
+        first = None if start is None else self.position(start.place)
         return {
             "fall_time": self.fall_time,
             "fall_back": self.fall_back,
@@ -164,7 +180,7 @@ class DropPlan:
             "touchdown_speed": self.touchdown_speed,
             "greatest_tension": self.greatest_tension,
             "tow_past": self.tow_past,
-            "run_in": self.run_in,
+            "run_in": None if start is None else start.distance,
             "path": {
                 "time": path.time.tolist(),
                 "anchor_depth": path.anchor_depth.tolist(),
@@ -181,11 +197,11 @@ class DropPlan:
             "ship_speed": self.ship_speed,
             "course": self.course,
             "astern": self.astern,
-            "run_time": self.run_time,
+            "deck_time": _one_or_all(self.deck_time),
             "let_go": list(self.let_go),
-            "start": list(self.start),
+            "start": None if start is None else {"distance": start.distance, "time": start.time},
             "let_go_position": None if let_go is None else let_go.model_dump(),
-            "start_position": None if start is None else start.model_dump(),
+            "start_position": None if first is None else first.model_dump(),
             "anchor_drag": self.anchor_drag,
             "anchor_drag_known": self.drag_known,
             "rest_difference": self.rest_difference,
@@ -225,6 +241,7 @@ def drop_plan(
     course: float | None = None,
     result: Result | None = None,
     fineness: Fineness = FINE,
+    deck_time: Mapping[str, float] | None = None,
 ) -> DropPlan:
     """The drop of a mooring's anchor from a ship that streams the line, the anchor last.
 
@@ -237,6 +254,8 @@ def drop_plan(
         given, and north where there is none
     result : of the mooring in the same environment, where it is solved already
     fineness : of the chain and its steps
+    deck_time : of handling a piece before it goes over, by its role [s]; without it no start of the
+        run is given, since most of the time goes there
 
     Raises
     ------
@@ -296,7 +315,6 @@ def drop_plan(
     times = [other.time - late.time + landed.time for other in others]
     way = np.array([sin(radians(course)), cos(radians(course))])
     released = -landed.node[-1, :2]
-    run, run_time = _run(water, way, ship_speed, float(np.linalg.norm(start.node[0, :2])))
     past = float(released @ way)
     pulls = pulls_of(mooring.file.pieces, drop)
     return DropPlan(
@@ -315,10 +333,9 @@ def drop_plan(
         touchdown_speed=-float(landed.velocity[-1, 2]),
         greatest_tension=max(pull.tension for pull in pulls),
         tow_past=past,
-        run_in=run - past,
-        run_time=run_time,
         let_go=(float(released[0]), float(released[1])),
-        start=(float(released[0] - run * way[0]), float(released[1] - run * way[1])),
+        deck_time=deck_time,
+        start=None if deck_time is None else _run_start(mooring, way, ship_speed, past, deck_time),
         anchor_drag=anchor.drag,
         drag_known=mooring.file.anchor.kt is not None,
         path=path_of(drop, toward, mooring.line.anchor_height),
@@ -327,6 +344,12 @@ def drop_plan(
         pulls=pulls,
         rest_difference=difference,
     )
+
+
+def _one_or_all(times: Mapping[str, float] | None) -> float | dict[str, float] | None:
+    """Return the time of a piece where it is the same for all, else that by role."""
+    once = set((times or {}).values())
+    return once.pop() if len(once) == 1 else None if times is None else dict(times)
 
 
 def _equilibrium(mooring: Mooring) -> Result | None:
@@ -345,13 +368,23 @@ def _split(state: ChainState, toward: Floats) -> tuple[float, float]:
     return east * x + north * y, east * y - north * x
 
 
-def _run(water: Water, way: Floats, speed: float, streamed: float) -> tuple[float, float]:
-    """Return how far the ship goes while it leaves its float behind [m], and how long that takes
-    [s].
+def _run_start(
+    mooring: Mooring, way: Floats, speed: float, past: float, deck_time: Mapping[str, float]
+) -> RunStart:
+    """Return where the run begins, at the ship's speed, with the cables paid out as fast.
 
-    The float drifts with the water at the surface from where it is put out.
+    Parameters
+    ----------
+    way : (2,) direction of the ship
+    speed : of the ship over the ground [m/s]
+    past : how far beyond the target the anchor is let go, along the course [m]
+    deck_time : see `drop_plan`
     """
-    current, _ = water.at(np.zeros(()))
-    leaving = speed * way - current[:2]
-    duration = streamed / float(np.linalg.norm(leaving))
-    return speed * duration, duration
+    pieces = mooring.file.pieces[:-1]
+    roles = [piece.component.role for piece in pieces]
+    roles += [clamp.component.role for piece in pieces for clamp in piece.clamps]
+    handled = sum(deck_time.get(role, 0.0) for role in roles)
+    cables = sum(mooring.line.length[: len(pieces)][mooring.line.flexible[: len(pieces)]])
+    time = handled + cables / speed
+    distance = speed * time - past
+    return RunStart(distance, time, (float(-distance * way[0]), float(-distance * way[1])))

@@ -10,7 +10,7 @@ from pydantic import AfterValidator, Field, WithJsonSchema
 from calm.errors import Problem
 from calm.files.check_limits import Day
 from calm.files.environment import Position
-from calm.files.fields import POSITIVE_LENGTH, Model, QuantityField, Text
+from calm.files.fields import POSITIVE_LENGTH, Model, QuantityField, Role, Text
 from calm.files.mistakes import validate
 from calm.files.yaml_document import SourceMapping
 from calm.records.times import TimeChoiceError, parse_time
@@ -64,6 +64,11 @@ class DocumentKeys(Model):
         default=None, description="the ship that deploys the mooring", examples=["RV Example"]
     )
     cruise: Text | None = Field(default=None, description="its name or number", examples=["EX-142"])
+    deck_time: dict[Role, Annotated[float, QuantityField("time", at_least=0)]] | None = Field(
+        default=None,
+        description="time that a piece takes on deck before it goes over, by its role",
+        examples=[{"float": "5 min", "instrument": "3 min", "line": "2 min"}],
+    )
     history: tuple[Revision, ...] = Field(
         default=(),
         description="the revisions, and what each changed",

@@ -225,15 +225,20 @@ SIGNS = {
 """What stands before a verdict."""
 
 
-def verdict_of(findings: Iterable[Finding]) -> tuple[State, str]:
-    """The worst state of one or several moorings, and the verdict in words.
+def counted_states(findings: Iterable[Finding]) -> Counter[State]:
+    """How many parts of one or several moorings each state is the worst of, rule by rule.
 
     A missing figure of a component is counted once.
     """
     by_mooring: dict[str, list[Finding]] = {}
     for finding in findings:
         by_mooring.setdefault(finding.mooring, []).append(finding)
-    counts = Counter(one.state for each in by_mooring.values() for one in worst_by_part(each))
+    return Counter(one.state for each in by_mooring.values() for one in worst_by_part(each))
+
+
+def verdict_of(findings: Iterable[Finding]) -> tuple[State, str]:
+    """The worst state of one or several moorings, and the verdict in words."""
+    counts = counted_states(findings)
     state = worst_state(counts)
     words = [
         _counted(counts[State.FAIL], "failure") if counts[State.FAIL] else "nothing fails",

@@ -9,6 +9,7 @@ from calm.checks.finding import State
 from calm.drop import DropPlan
 from calm.records.csv_writer import table_csv
 from calm.report.blocks import PageBreak, Plate, Prose, Report, ReportPart, Section
+from calm.report.check_summary import verdict_prose
 from calm.report.deck_lists import (
     cutting_part,
     hardware_part,
@@ -149,7 +150,10 @@ def deck_report(deck: Deck, paper: Paper, notes: tuple[str, ...] = ()) -> Report
     if said:
         parts.append(ReportPart("To be known", (Prose(said, State.WARN),)))
     parts.append(ReportPart("Inputs", (origin([deck.file]),)))
-    parts += (ReportPart(part.title, (*part.blocks, PageBreak())) for part in _sheets(deck))
+    verdict = verdict_prose(deck.assessment.all_findings())
+    parts += (
+        ReportPart(part.title, (verdict, *part.blocks, PageBreak())) for part in _sheets(deck)
+    )
     subtitle = f"{deck.order}, environment: {deck.environment}"
     section = Section(deck.file.name, tuple(parts))
     return Report(deck.file.name, subtitle, (), (section,), date(), plates(deck, paper))

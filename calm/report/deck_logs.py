@@ -136,7 +136,8 @@ def _positions(deck: Deck) -> Table:
     plan = deck.plan
     start = let_go = ""
     if isinstance(plan, DropPlan):
-        start, let_go = whereabouts(plan, plan.start), whereabouts(plan, plan.let_go)
+        let_go = whereabouts(plan, plan.let_go)
+        start = "" if plan.start is None else whereabouts(plan, plan.start.place)
     rows = (
         (Cell("Target"), Cell(), Cell(target), Cell(depth), Cell()),
         (Cell("Fall-back target"), Cell(), Cell(), Cell(), Cell()),

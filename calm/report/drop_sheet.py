@@ -24,6 +24,7 @@ from calm.report.blocks import (
     table_of,
 )
 from calm.report.provenance import position_text
+from calm.units import KNOT
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -53,17 +54,30 @@ def drop_part(plan: DropPlan) -> ReportPart:
 def _instructions(plan: DropPlan) -> Prose:
     """Return what the ship does."""
     beyond = "beyond" if plan.tow_past >= 0.0 else "before"
-    behind = "before" if plan.run_in >= 0.0 else "beyond"
-    return Prose(
-        (
-            f"Steam towards {bearing_text(plan.course)} at {say('speed', plan.ship_speed)} over "
-            f"the ground. Put the float over the side {_metres(abs(plan.run_in))} {behind} the "
-            "target and pay out the line as fast as the ship steams; that takes some "
-            f"{_minutes(plan.run_time)}.",
-            f"Let the anchor go {_metres(abs(plan.tow_past))} {beyond} the target, "
-            f"with the float {_metres(plan.streamed)} behind it.",
+    said = [
+        f"Steam towards {bearing_text(plan.course)} true at {_speed(plan.ship_speed)} over the "
+        "ground, and pay out the line, the float first."
+    ]
+    if plan.start is None:
+        said.append(
+            "How long that takes, and so where the run begins, follows from the time that a piece "
+            "takes on deck: give it (--deck-time)."
         )
+    else:
+        behind = "before" if plan.start.distance >= 0.0 else "beyond"
+        said.append(
+            f"Put the float over the side {_metres(abs(plan.start.distance))} {behind} the target: "
+            f"the run takes some {_minutes(plan.start.time)}."
+        )
+    said.append(
+        f"Let the anchor go {_metres(abs(plan.tow_past))} {beyond} the target, with the float "
+        f"{_metres(plan.streamed)} behind it."
     )
+    return Prose(tuple(said))
+
+
+def _speed(speed: float) -> str:
+    return f"{say('speed', speed)} ({speed / KNOT:.1f} kn)"
 
 
 def _figures(plan: DropPlan) -> tuple[tuple[str, str], ...]:
@@ -92,10 +106,13 @@ def _figures(plan: DropPlan) -> tuple[tuple[str, str], ...]:
         ),
         (
             "Float behind the ship when let go",
-            f"{plan.streamed:.0f} m, towards {bearing_text(plan.astern)}",
+            f"{plan.streamed:.0f} m, towards {bearing_text(plan.astern)} true",
         ),
         ("Let go, from the target", whereabouts(plan, plan.let_go)),
-        ("Start of the run, from the target", whereabouts(plan, plan.start)),
+        (
+            "Start of the run, from the target",
+            "unknown" if plan.start is None else whereabouts(plan, plan.start.place),
+        ),
         ("Speed at touchdown", say("speed", plan.touchdown_speed)),
         ("Greatest tension in the fall", _greatest(plan)),
         ("Drag of the anchor at 1 m/s", f"{plan.anchor_drag:.0f} N, {given}"),
@@ -199,7 +216,8 @@ def _metres(distance: float) -> str:
 
 
 def _minutes(seconds: float) -> str:
-    return f"{seconds / 60.0:.0f} min" if seconds >= 90.0 else f"{seconds:.0f} s"
+    hours, minutes = divmod(round(seconds / 60.0), 60)
+    return f"{hours} h {minutes:02d} min" if hours else f"{minutes} min"
 
 
 def _error(value: float) -> str:

@@ -150,7 +150,8 @@ def test_the_anchor_drop_is_planned_for_the_ship(deck):
     text = text.replace("weight: 40 kN", "weight: 8 kN, kt: 300 N/(m/s)^2")
     plans = []
     text = text.replace("line:", "position: {latitude: 48 deg, longitude: -5 deg}\nline:", 1)
-    for words in ((), ("--ship-speed", "1.5 m/s", "--streamed", "50 m", "--course", "90 deg")):
+    given = ("--ship-speed", "1.5 m/s", "--streamed", "50 m", "--course", "90 deg")
+    for words in ((), (*given, "--deck-time", "3 min")):
         out, _ = deck(text, *words)
         plans.append(json.loads((out / "plan.json").read_text()))
         assert packed("Anchor drop plan") in "".join(pages_of((out / "deck.pdf").read_bytes())[0])
@@ -163,6 +164,14 @@ def test_the_anchor_drop_is_planned_for_the_ship(deck):
     assert let_go["longitude"] == pytest.approx(-5.0 + east / 74_625.0, abs=1e-6)
     assert let_go["latitude"] == pytest.approx(48.0 + north / 111_190.0, abs=1e-6)
     assert plans[1]["streamed"] == pytest.approx(50.0, abs=0.1) != plans[0]["streamed"]
+    # float, rope, logger, pack and release take 3 min each; 60 m of rope go out as it steams
+    assert plans[0]["start"] is plans[0]["deck_time"] is plans[0]["start_position"] is None
+    assert plans[1]["deck_time"] == 180.0
+    assert plans[1]["start"]["time"] == pytest.approx(5 * 180.0 + 60.0 / 1.5)
+    assert plans[1]["start"]["distance"] == pytest.approx(
+        1.5 * plans[1]["start"]["time"] - plans[1]["tow_past"]
+    )
+    assert plans[1]["verdict"]["state"] in ("unknown", "fail")
     assert {"fall_time", "fall_back", "fall_back_band", "tow_past", "run_in", "path"} <= set(
         plans[0]
     )

@@ -68,6 +68,12 @@ def test_floats_arrive_one_after_the_other(recovered):
     assert recovery.arrival == pytest.approx(expected, nan_ok=True)
     assert recovery.order == (0, 2)
     assert recovery.hangs_at == pytest.approx([0.0, 0.0, 0.0, 0.0, 100.0, 500.0])
+    # a place on a rope hangs by the shorter way: the first rope is a bight between two floats
+    assert [recovery.depth_at(1, share) for share in (0.25, 0.5, 0.75)] == pytest.approx(
+        [50.0, 100.0, 50.0]
+    )
+    assert recovery.depth_at(3, 0.25) == pytest.approx(25.0)
+    assert recovery.depth_at(5, 0.5) == pytest.approx(500.0)
 
 
 def test_what_is_not_buoyant_by_itself_hangs_below_the_top_float(recovered):
