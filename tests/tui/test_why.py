@@ -88,7 +88,7 @@ def test_unknown_figures_lead_to_one_row_after_the_other(drive, small):
         ]
         assert len(places) > 1
         await driver.press("G")
-        while "figures missing" not in driver.app.focused.said_here:
+        while "figures missing of logger, deep logger" not in driver.app.focused.said_here:
             await driver.press("down")
         seen = []
         for _ in places:
