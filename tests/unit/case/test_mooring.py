@@ -219,7 +219,7 @@ def test_the_watch_circle_is_that_of_the_line_above_the_anchor(solve):
     with pytest.raises(calm.NoEquilibrium) as caught:
         solve(text, speed="0 m/s")
     assert "watch circle has a radius of 15.5 m" in caught.value.message
-    verdict = next(watch_circle(solve(text, speed="0.3 m/s")))
+    verdict = next(watch_circle.judge(solve(text, speed="0.3 m/s")))
     assert verdict.value == pytest.approx((100.2**2 - 99.0**2) ** 0.5, abs=0.02)
 
 
