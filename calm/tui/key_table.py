@@ -24,7 +24,7 @@ class Action:
     title : two or three words, for the palette and the line of keys
     meaning : a sentence for the help
     hint : its rank in the line of keys, 0 the first; None where it is not among them
-    palette : whether the command palette offers it
+    palette : whether the command palette offers it, where it is of the line or works anywhere
     """
 
     place: Place
@@ -49,11 +49,7 @@ BUILDER: tuple[Action, ...] = (
     Action("anywhere", "redo", "U,ctrl+y", "redo", "Redo what was undone."),
     Action("anywhere", "water", "w", "water", "Depth, density, current, wind; environments.", 4),
     Action(
-        "anywhere",
-        "next_environment",
-        "e",
-        "environment",
-        "Show the line in the next environment.",
+        "anywhere", "next_environment", "e", "environment", "Show the line in the next environment."
     ),
     Action(
         "anywhere",
@@ -162,8 +158,8 @@ SCREENS: tuple[Action, ...] = (
     Action("water", "drop_environment", "f7", "drop it", "Remove the named environment."),
     Action("water", "preset", "ctrl+t", "presets", "Typical currents to start from.", 2),
     Action("water", "load_current", "ctrl+o", "read a file", "A current from CSV or NetCDF.", 1),
-    Action("water", "app.focus_next", "down", "next", "To what is below.", palette=False),
-    Action("water", "app.focus_previous", "up", "last", "To what is above.", palette=False),
+    Action("water", "app.focus_next", "down", "next", "To what is below."),
+    Action("water", "app.focus_previous", "up", "last", "To what is above."),
     Action("water", "undo", "ctrl+z", "undo", "Undo the last change."),
     Action("water", "redo", "ctrl+y", "redo", "Do it again."),
     Action("water", "app.save", "ctrl+s", "save", "Save the file."),
@@ -175,7 +171,6 @@ SCREENS: tuple[Action, ...] = (
         "up",
         "up",
         "To the row above; from the first one to what is before.",
-        palette=False,
     ),
     Action(
         "grid",
@@ -183,28 +178,15 @@ SCREENS: tuple[Action, ...] = (
         "down",
         "down",
         "To the row below; from the last one on to what follows.",
-        palette=False,
     ),
-    Action(
-        "grid", "move_cell(1)", "tab", "next cell", "To the next value of the table.", palette=False
-    ),
-    Action("grid", "move_cell(-1)", "shift+tab", "last cell", "To the one before.", palette=False),
-    Action("grid", "move_column(-1)", "left", "left", "To the left.", palette=False),
-    Action("grid", "move_column(1)", "right", "right", "To the right.", palette=False),
-    Action(
-        "grid",
-        "edit",
-        "enter,f2",
-        "edit",
-        "Edit the number; typing begins at once.",
-        0,
-        palette=False,
-    ),
-    Action("grid", "add_row(1)", "a,insert", "add row", "Add a row below.", 1, palette=False),
-    Action("grid", "add_row(0)", "A", "add above", "Add a row above.", palette=False),
-    Action(
-        "grid", "drop_row", "delete,backspace", "delete row", "Delete the row.", 2, palette=False
-    ),
+    Action("grid", "move_cell(1)", "tab", "next cell", "To the next value of the table."),
+    Action("grid", "move_cell(-1)", "shift+tab", "last cell", "To the one before."),
+    Action("grid", "move_column(-1)", "left", "left", "To the left."),
+    Action("grid", "move_column(1)", "right", "right", "To the right."),
+    Action("grid", "edit", "enter,f2", "edit", "Edit the number; typing begins at once.", 0),
+    Action("grid", "add_row(1)", "a,insert", "add row", "Add a row below.", 1),
+    Action("grid", "add_row(0)", "A", "add above", "Add a row above."),
+    Action("grid", "drop_row", "delete,backspace", "delete row", "Delete the row.", 2),
     # the text
     Action("text", "app.save", "ctrl+s", "save", "Save the file as it stands.", 1),
     Action("text", "find", "ctrl+f", "find", "Find words in the text.", 4),
@@ -212,37 +194,26 @@ SCREENS: tuple[Action, ...] = (
     Action("text", "next_problem", "f8", "next mistake", "To the next mistake.", 2),
     Action("text", "back", "escape", "to the line", "To the line, once the text can be read.", 0),
     Action("text", "app.help", "f1", "help", "All keys.", 3),
-    Action("area", "end(-1)", "ctrl+home", "top", "To the beginning of the text.", palette=False),
-    Action("area", "end(1)", "ctrl+end", "bottom", "To the end of the text.", palette=False),
-    Action("area", "indent", "tab", "indent", "Blanks to the next even column.", palette=False),
+    Action("area", "end(-1)", "ctrl+home", "top", "To the beginning of the text."),
+    Action("area", "end(1)", "ctrl+end", "bottom", "To the end of the text."),
+    Action("area", "indent", "tab", "indent", "Blanks to the next even column."),
     # a component of one's own
     Action("form", "accept", "ctrl+s", "keep it", "Write the component into the file.", 0),
     Action("form", "cancel", "escape", "leave", "Leave without it.", 1),
     Action("form", "app.help", "f1", "help", "All keys.", 2),
-    Action("form", "app.focus_next", "down", "next", "To the next figure.", palette=False),
-    Action("form", "app.focus_previous", "up", "last", "To the one before.", palette=False),
+    Action("form", "app.focus_next", "down", "next", "To the next figure."),
+    Action("form", "app.focus_previous", "up", "last", "To the one before."),
     # what is put over a screen, or beside a name
-    Action("choice", "turn(-1)", "left", "last", "The word before.", palette=False),
-    Action("choice", "turn(1)", "right,space", "next", "The next word.", palette=False),
-    Action("choice", "app.focus_next", "enter", "go on", "To what is below.", palette=False),
-    Action(
-        "given",
-        "take",
-        "enter",
-        "take it",
-        "Choose the form shown, and go on.",
-        palette=False,
-    ),
-    Action("sheet", "take", "ctrl+s", "done", "Accept all values.", palette=False),
-    Action("sheet", "leave", "escape", "leave", "Leave everything as it was.", palette=False),
-    Action("sheet", "app.focus_next", "down", "next", "To the next value.", palette=False),
-    Action("sheet", "app.focus_previous", "up", "last", "To the one before.", palette=False),
-    Action(
-        "question", "answer('')", "escape", "go back", "Go back, where possible.", palette=False
-    ),
-    Action(
-        "help", "dismiss", "escape,q,enter,question_mark,f1", "close", "Close it.", palette=False
-    ),
+    Action("choice", "turn(-1)", "left", "last", "The word before."),
+    Action("choice", "turn(1)", "right,space", "next", "The next word."),
+    Action("choice", "app.focus_next", "enter", "go on", "To what is below."),
+    Action("given", "take", "enter", "take it", "Choose the form shown, and go on."),
+    Action("sheet", "take", "ctrl+s", "done", "Accept all values."),
+    Action("sheet", "leave", "escape", "leave", "Leave everything as it was."),
+    Action("sheet", "app.focus_next", "down", "next", "To the next value."),
+    Action("sheet", "app.focus_previous", "up", "last", "To the one before."),
+    Action("question", "answer('')", "escape", "go back", "Go back, where possible."),
+    Action("help", "dismiss", "escape,q,enter,question_mark,f1", "close", "Close it."),
 )
 
 
@@ -325,47 +296,28 @@ LINE: tuple[Action, ...] = (
         palette=False,
     ),
     # the verdict
-    Action(
-        "verdict", "move(-1)", "up", "up", "To the line above that leads to a row.", palette=False
-    ),
-    Action("verdict", "move(1)", "down", "down", "To the one below.", palette=False),
-    Action(
-        "verdict",
-        "go",
-        "enter",
-        "its row",
-        "To the row it is about; Esc leads back.",
-        0,
-        palette=False,
-    ),
-    Action("verdict", "leave", "escape", "line", "To the line.", 1, palette=False),
+    Action("verdict", "move(-1)", "up", "up", "To the line above that leads to a row."),
+    Action("verdict", "move(1)", "down", "down", "To the one below."),
+    Action("verdict", "go", "enter", "its row", "To the row it is about; Esc leads back.", 0),
+    Action("verdict", "leave", "escape", "line", "To the line.", 1),
     # a value in place
-    Action("cell", "done", "enter", "done", "Accept the value.", 0, palette=False),
-    Action(
-        "cell",
-        "done('edit next')",
-        "tab",
-        "next",
-        "Accept it and edit the next value.",
-        1,
-        palette=False,
-    ),
-    Action("cell", "done('up')", "up", "take, up", "Accept it and go up.", palette=False),
-    Action("cell", "done('down')", "down", "take, down", "Accept it and go down.", palette=False),
+    Action("cell", "done", "enter", "done", "Accept the value.", 0),
+    Action("cell", "done('edit next')", "tab", "next", "Accept it and edit the next value.", 1),
+    Action("cell", "done('up')", "up", "take, up", "Accept it and go up."),
+    Action("cell", "done('down')", "down", "take, down", "Accept it and go down."),
     Action(
         "cell",
         "right",
         "right",
         "take, right",
         "At the end of the text: accept it and go to the right.",
-        palette=False,
     ),
-    Action("cell", "abandon", "escape", "leave it", "Leave the value as it was.", 2, palette=False),
+    Action("cell", "abandon", "escape", "leave it", "Leave the value as it was.", 2),
     # the catalogue
-    Action("catalogue", "choose(-1)", "up", "up", "To the one above.", palette=False),
-    Action("catalogue", "choose(1)", "down", "down", "To the one below.", palette=False),
-    Action("catalogue", "choose(-10)", "pageup", "page up", "Ten up.", palette=False),
-    Action("catalogue", "choose(10)", "pagedown", "page down", "Ten down.", palette=False),
+    Action("catalogue", "choose(-1)", "up", "up", "To the one above."),
+    Action("catalogue", "choose(1)", "down", "down", "To the one below."),
+    Action("catalogue", "choose(-10)", "pageup", "page up", "Ten up."),
+    Action("catalogue", "choose(10)", "pagedown", "page down", "Ten down."),
     Action(
         "catalogue",
         "sort",
@@ -373,7 +325,6 @@ LINE: tuple[Action, ...] = (
         "sort",
         "Sort by net force, loads, depth rating, drag or mass.",
         1,
-        palette=False,
     ),
     Action(
         "catalogue",
@@ -382,10 +333,9 @@ LINE: tuple[Action, ...] = (
         "favourite",
         "Make it a favourite, or not; favourites come first, in every file.",
         2,
-        palette=False,
     ),
-    Action("catalogue", "take", "enter", "insert", "Put it into the line.", 0, palette=False),
-    Action("catalogue", "close", "escape", "close", "Back to the line.", 3, palette=False),
+    Action("catalogue", "take", "enter", "insert", "Put it into the line.", 0),
+    Action("catalogue", "close", "escape", "close", "Back to the line.", 3),
 )
 
 

@@ -1,4 +1,4 @@
-"""The line in pictures: from the side, with the current; from above; its tension; its parts."""
+"""The line in pictures: from the side, from above, its tension, its parts; the current alone."""
 
 from __future__ import annotations
 
@@ -53,7 +53,39 @@ class Tabs(Static):
         self.update("".join(parts) + (f"  [italic]{note}[/]" if note else ""), layout=False)
 
 
-class Picture(ScrollView, can_focus=True):
+class DrawnRows(ScrollView, can_focus=False):
+    """Show rows that are drawn for the cells there are, anew where these are others."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._view: View | None = None
+        self._drawn: Size | None = None  # the size that the rows are for
+        self._rows: list[Text] = []
+
+    def rows_for(self, size: Size) -> list[Text]:
+        """Draw the rows for a size."""
+        raise NotImplementedError
+
+    def draw_again(self) -> None:
+        """Draw what is shown now."""
+        self._drawn = None
+        self.refresh()
+
+    def render_line(self, y: int) -> Strip:
+        """A row of the screen."""
+        size = self.scrollable_content_region.size
+        if size != self._drawn:
+            self._drawn = size
+            self._rows = self.rows_for(size)
+        number, left = y + self.scroll_offset.y, self.scroll_offset.x
+        if number >= len(self._rows):
+            return Strip.blank(size.width, self.rich_style)
+        strip = Strip(self._rows[number].render(self.app.console)).apply_style(self.rich_style)
+        strip = strip.adjust_cell_length(left + size.width, self.rich_style)
+        return strip.crop(left, left + size.width)
+
+
+class Picture(DrawnRows, can_focus=True):
     """One picture, drawn for the cells it has."""
 
     DEFAULT_CSS = """
@@ -65,42 +97,21 @@ class Picture(ScrollView, can_focus=True):
     def __init__(self) -> None:
         super().__init__()
         self.tab: Tab = "elevation"
-        self._view: View | None = None
         self._beside: Sequence[Shape] = ()
-        self._drawn: Size | None = None  # the size that the rows are for
-        self._rows: list[Text] = []
 
     def show(self, view: View | None, tab: Tab, beside: Sequence[Shape] = ()) -> None:
         """Draw a line as judged, other shapes beside it."""
         if tab != self.tab:
             self.scroll_to(0, 0, animate=False)
         self._view, self.tab, self._beside = view, tab, beside
-        self._drawn = None
-        self.refresh()
+        self.draw_again()
 
-    def render_line(self, y: int) -> Strip:
-        """A row of the screen."""
-        self._draw()
-        width = self.scrollable_content_region.width
-        number = y + self.scroll_offset.y
-        if number >= len(self._rows):
-            return Strip.blank(width, self.rich_style)
-        segments = self._rows[number].render(self.app.console)
-        left = self.scroll_offset.x
-        strip = Strip(segments).apply_style(self.rich_style)
-        return strip.adjust_cell_length(left + width, self.rich_style).crop(left, left + width)
-
-    def _draw(self) -> None:
-        size = self.scrollable_content_region.size
-        if size == self._drawn:
-            return
-        self._drawn = size
-        self._rows = self._picture(size)
-        if self.tab == "schematic":
-            widest = max((row.cell_len for row in self._rows), default=0)
-            self.virtual_size = Size(widest, len(self._rows))
-        else:
-            self.virtual_size = Size(0, 0)
+    def rows_for(self, size: Size) -> list[Text]:
+        """Draw the picture; one that is not to scale is as large as it needs."""
+        rows = self._picture(size)
+        widest = max((row.cell_len for row in rows), default=0)
+        self.virtual_size = Size(widest, len(rows)) if self.tab == "schematic" else Size(0, 0)
+        return rows
 
     def _picture(self, size: Size) -> list[Text]:
         result = None if self._view is None else self._view.result
@@ -245,3 +256,36 @@ class Pictures(Vertical):
     def on_click(self, event: events.Click) -> None:
         """Give the picture the focus."""
         self.query_one(Picture).focus()
+
+
+_LEAST = (20, 6)
+
+
+class ProfilePicture(DrawnRows, can_focus=False):
+    """Speed and direction over depth, of the environment that the line was judged in."""
+
+    DEFAULT_CSS = """
+    ProfilePicture { height: 1fr; overflow: hidden; }
+    ProfilePicture.-old { text-style: dim; }
+    """
+
+    def show(self, view: View | None, *, old: bool = False) -> None:
+        """Draw another one, dimmed where it is `old`; one that cannot be read dims the last."""
+        if view is not None and view.file is not None:
+            self._view = view
+            self.draw_again()
+        else:
+            old = True
+        self.set_class(old, "-old")
+
+    def rows_for(self, size: Size) -> list[Text]:
+        """Draw the profile; nothing where there is no room, or no environment yet."""
+        width, height = size
+        if width < _LEAST[0] or height < _LEAST[1] or self._view is None or self._view.file is None:
+            return []
+        from calm.assemble import assemble_water
+        from calm.drawing.sketch import current_profile
+
+        if self._view.file.environment.depth is None:
+            return [Text("No depth is given: the water is deep.", style="dim")]
+        return current_profile(assemble_water(self._view.file.environment), width, height)

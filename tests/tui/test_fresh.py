@@ -7,9 +7,8 @@ import pytest
 
 from calm.tui import live
 from calm.tui.bars import TitleBar
-from calm.tui.pictures import Picture
+from calm.tui.pictures import Picture, ProfilePicture
 from calm.tui.verdict_pane import VerdictPane
-from calm.tui.water.profile_picture import ProfilePicture
 from tests.tui.conftest import MOORING
 
 STORM = "environments: {storm: {current: {speed: 2 m/s, toward: 0 deg}}}\n"
@@ -57,7 +56,7 @@ def much_less(now, before):
 
 def figure_is_dimmed(driver):
     """Whether the depth of the first row is."""
-    start, _ = driver.table.arrangement.place("depth")
+    start = next(each.start for each in driver.table.columns if each.name == "depth")
     line = driver.table.render_line(1)
     return bool(line.crop(start, start + 8)._segments[0].style.dim)
 

@@ -10,18 +10,20 @@ from textual import on
 from textual.binding import BindingType
 from textual.message import Message
 
+from calm.checks.finding import State
 from calm.files import Place
 from calm.tui.actions import bindings
 from calm.tui.catalogue.catalogue_pane import Purpose
 from calm.tui.cell_editor import CellEditor
 from calm.tui.checking import Reading
-from calm.tui.line.findings_on_rows import RowFindings
+from calm.tui.dialogs import Answer, Question
 from calm.tui.line.line_cell import LineCell
 from calm.tui.line.mooring_sheet import equipment_changes, equipment_sheet, naming
 from calm.tui.line.rows import table_rows
 from calm.tui.line.table import EDITABLE, Column, LineTable
 from calm.tui.messages import Workspace
 from calm.tui.table import EditableTable
+from calm.tui.verdict_text import Saying, why
 
 _LEAST_WIDTHS: dict[Column, int] = {"length": 16}
 _LEAST_WIDTH = 6
@@ -53,7 +55,6 @@ class LinePane(EditableTable):
         self.table: LineTable = LineTable(id="line")
         super().__init__(self.table, editor_id="cell", id="line-pane")
         self.workspace, self.session = workspace, workspace.session
-        self.found = RowFindings(workspace, self.table)
         self.came_from_verdict = False
         self._cell: LineCell | None = None  # what is edited, or was last
 
@@ -131,8 +132,23 @@ class LinePane(EditableTable):
     # what was found
 
     def action_next_finding(self) -> None:
-        """Go to the next row that a failure, a warning or a missing figure is found of."""
-        self.found.go_to_next()
+        """Go to the next row that a failure, else a warning, else a missing figure is found of."""
+        rows, here = self.table.rows, self.table.cursor
+        around = [*range(here + 1, len(rows)), *range(here + 1)]
+        for state in (State.FAIL, State.WARN, State.UNKNOWN):
+            number = next((each for each in around if rows[each].state is state), None)
+            if number is not None:
+                self.table.cursor = number
+                for gravest in self._found_of(rows[number].spot)[:1]:
+                    message = f"{gravest.sign} {gravest.heading}: {gravest.text}"
+                    self.workspace.tell(message, wrong=gravest.state is State.FAIL)
+                return
+        self.workspace.tell("There are no findings")
+
+    def _found_of(self, spot: Place) -> list[Saying]:
+        """Return what is known now of a row, the gravest first."""
+        view = self.workspace.view
+        return why(view, spot) if view is not None and self.workspace.is_fresh else []
 
     def action_back(self) -> None:
         """Back to the verdict, where it has led here."""
@@ -142,9 +158,16 @@ class LinePane(EditableTable):
 
     def action_why(self) -> None:
         """Show all that was found of the row under the cursor."""
-        question = self.found.of_row()
-        if question is not None:
-            self.app.push_screen(question)
+        row = self.table.row
+        if row is None:
+            return
+        found = self._found_of(row.spot)
+        if not found:
+            self.workspace.tell("There are no findings for this row, or it is not judged yet")
+            return
+        text = "\n".join(f"{each.sign} {each.heading}  {each.text}" for each in found)
+        called = row.texts.get("label") or row.texts["component"]
+        self.app.push_screen(Question(called, text, [Answer("b", "back to the row", "back")]))
 
     # rows
 

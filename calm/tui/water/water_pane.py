@@ -20,6 +20,7 @@ from calm.records.profile_tables import DIRECTION, SALINITY, TEMPERATURE, WATER_
 from calm.tui.checking import needed, quantity
 from calm.tui.field import Field
 from calm.tui.messages import Workspace, said
+from calm.tui.pictures import ProfilePicture
 from calm.tui.verdict_pane import state_word
 from calm.tui.water.form import (
     CURRENT_COLUMNS,
@@ -32,7 +33,6 @@ from calm.tui.water.form import (
     WaterForm,
 )
 from calm.tui.water.grid import Grid
-from calm.tui.water.profile_picture import ProfilePicture
 
 if TYPE_CHECKING:
     from calm.errors import Problem
