@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import partial
-from math import isnan, sqrt
+from math import isnan
 from typing import TYPE_CHECKING
 
 from calm.checks.criterion import (
@@ -18,6 +18,7 @@ from calm.checks.criterion import (
 )
 from calm.checks.finding import State, Verdict, at_least, at_most, reported, rule, unknown
 from calm.quantities import say
+from calm.solve.finish import watch_circle_radius
 
 if TYPE_CHECKING:
     from calm.case import Mooring, Result
@@ -231,7 +232,9 @@ def freeboard(result: Result) -> Iterator[Verdict]:
 
 @rule("watch-circle")
 def watch_circle(result: Result) -> Iterator[Verdict]:
-    """Radius √(L² - depth²) within which a surface float can be found, with the line stretched.
+    """Radius √(L² - h²) within which a surface float can be found, with the line stretched.
+
+    L is the line from the float to the anchor, h the height of the surface above the anchor's top.
 
     Worst case of a slack line, e.g. PacIOOS: 1.73 times the depth at a scope of 2. Judged by
     `maximum_excursion`, where the design gives it.
@@ -239,8 +242,9 @@ def watch_circle(result: Result) -> Iterator[Verdict]:
     limit = result.file.checks.maximum_excursion
     if not meant_for_the_surface(result):
         return
-    length, depth = float(result.components.length.sum()), result.mooring.water.depth
-    radius = sqrt(max(length**2 - depth**2, 0.0))
+    anchor = result.mooring.line.anchor_height
+    length = float(result.components.length.sum()) - anchor
+    radius = watch_circle_radius(length, result.mooring.water.depth - anchor)
     top = result.file.pieces[0]
     message = f"The watch circle has a radius of {say('offset', radius)}"
     if limit is None:

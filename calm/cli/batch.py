@@ -275,7 +275,7 @@ class ProgressTeller:
     def note(self, text: str) -> None:
         """Write a line of its own."""
         self.clear()
-        print(text, file=sys.stderr, flush=True)
+        narrate(text)
 
     def __call__(self, progress: Progress) -> None:
         """Report it, unless something was reported a moment ago."""

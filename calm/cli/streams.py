@@ -12,6 +12,7 @@ from enum import IntEnum
 from time import monotonic
 from typing import TYPE_CHECKING, TypeVar
 
+from calm.drawing.signs import encodable, printable
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
@@ -41,8 +42,11 @@ def _written_out(error: UnicodeError) -> tuple[str, int]:
     return text.encode("ascii", "replace").decode(), error.end
 
 
-def show(text: str) -> None:
+def show(text: str, *, styled: bool = False) -> None:
     """Write data to the standard output, at once.
+
+    Nothing in it steers a terminal, unless it is `styled` by CALM; a file or a pipe gets it as it
+    is.
 
     A reader that has seen enough (``calm run m.yaml | head``) is no error.
 
@@ -52,7 +56,7 @@ def show(text: str) -> None:
         The output cannot be written, e.g. because the disk is full.
     """
     try:
-        print(text, end="", flush=True)
+        print(text if styled or not _on_terminal() else printable(text), end="", flush=True)
     except BrokenPipeError:
         _abandon_output()
     except OSError as error:
@@ -64,13 +68,11 @@ def show_parts(*parts: Shows) -> None:
     """Write to the standard output as the terminal allows, a blank line between two things."""
     from rich.console import Console
 
-    from calm.drawing.signs import encodable
     from calm.report.blocks import ReportPart
     from calm.report.terminal import shown
 
     text = io.StringIO()
-    terminal = sys.stdout is not None and sys.stdout.isatty()
-    console = Console(file=text, force_terminal=terminal or None, highlight=False)
+    console = Console(file=text, force_terminal=_on_terminal() or None, highlight=False)
     console.width = max(console.width, _NARROWEST)
     plain = not encodable(getattr(sys.stdout, "encoding", None), _SIGNS)
     for number, part in enumerate(parts):
@@ -78,12 +80,16 @@ def show_parts(*parts: Shows) -> None:
             console.print()
         console.print(shown(part, plain=plain) if isinstance(part, ReportPart) else part)
     # Tables are padded to full width, which only clutters a text that is kept.
-    show(re.sub(" +$", "", text.getvalue(), flags=re.MULTILINE))
+    show(re.sub(" +$", "", text.getvalue(), flags=re.MULTILINE), styled=True)
+
+
+def _on_terminal() -> bool:
+    return sys.stdout is not None and sys.stdout.isatty()
 
 
 def narrate(text: str) -> None:
-    """Write a line to the standard error."""
-    print(text, file=sys.stderr)
+    """Write a line to the standard error, and nothing in it that steers a terminal."""
+    print(printable(text), file=sys.stderr, flush=True)
 
 
 def progress(items: Iterable[_Item], what: str, total: int | None = None) -> Iterator[_Item]:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
-from math import pi, sqrt
+from math import atan2, degrees, hypot, pi, sqrt
 
 from calm.exchange.exported_parts import ExportedLine, ExportedPart, PartLoad, unique_name
 from calm.exchange.part_names import is_chain
@@ -17,6 +17,7 @@ _LEAST_MASS = 0.01  # kg per metre: what weighs and drags nothing still moves
 _LEAST_WEIGHT = 1e-6  # N per metre: a weight of 0 is worked out from the mass there
 _FINEST, _COARSEST = 3, 401  # nodes of a segment
 _APART = 0.5  # m between nodes, where that many suffice
+_CALM = 1e-6  # m/s: less than this across the heading is no current
 _LEAST = 1e-3  # m of diameter, kg of mass
 
 
@@ -69,6 +70,8 @@ class _Problem:
 def cbl_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
     """Return the content of the file, and what it cannot hold."""
     lost: list[str] = []
+    if design.tow is not None:
+        design = _along_the_heading(design, lost)
     density = design.mean_density
     problem = _Problem(density)
     if max(row[4] for row in design.levels) - min(row[4] for row in design.levels) > 1e-9:
@@ -109,6 +112,27 @@ def cbl_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
     head = [f"{design.name}, by CALM; lost:", *(f"- {each}" for each in losses)]
     comment = "\n   ".join(line.replace("*/", "* /") for line in head)
     return f"/* {comment} */\n{text}".encode(), losses
+
+
+def _along_the_heading(design: ExportedLine, lost: list[str]) -> ExportedLine:
+    """Return a tow in axes of its ship, x ahead and y to port; the statics know x and z alone."""
+    assert design.tow is not None
+    speed = hypot(design.tow.east, design.tow.north)
+    if not speed:
+        return design
+    ahead, port = design.tow.east / speed, design.tow.north / speed
+    levels = []
+    for depth, east, north, *rest in design.levels:
+        along, across = east * ahead + north * port, north * ahead - east * port
+        # rounding alone leaves a current from ahead or astern something across
+        across = 0.0 if abs(across) < _CALM else across
+        levels.append((depth, along, across, *rest))
+    heading = degrees(atan2(design.tow.east, design.tow.north)) % 360.0
+    lost.append(f"the heading, {heading:.4g} deg true: there x points ahead of the ship")
+    if any(level[2] for level in levels):
+        lost.append("currents across the heading: the statics there know x and z alone")
+    tow = replace(design.tow, east=speed, north=0.0)
+    return replace(design, tow=tow, levels=tuple(levels))
 
 
 def _lay(problem: _Problem, part: ExportedPart, lost: list[str]) -> None:

@@ -177,9 +177,9 @@ RULES = {
     "watch-circle": RuleText(
         "Watch circle",
         "offset",
-        "√(L² − depth²) with the line as stretched",
+        "√(L² − h²): the line as stretched, the water above the anchor's top",
         "`maximum_excursion`; reported where that is not given",
-        "Worst case √(L² - depth²), against the design's own `maximum_excursion`",
+        "Worst case √(L² - h²), h above the anchor, against the design's own `maximum_excursion`",
         "the result does not hold the stretched length of the line",
     ),
     "scope": RuleText(

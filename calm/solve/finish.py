@@ -244,11 +244,11 @@ def refusal_of(found: FoundShape, line: Line, water: Water) -> NoEquilibrium:
         return too_heavy(standing_lift(line, water))
     if ending == SLACK_AT_REST:
         length = float(line.length.sum())
-        radius = np.sqrt(max(length**2 - water.depth**2, 0.0))
+        radius = watch_circle_radius(length, water.depth - line.anchor_height)
         return Status.SLACK.because(
             f"There is no current and the line, {length:.1f} m uncut, is longer than the "
             "water is deep: it has no unique shape. Its watch circle has a radius of "
-            f"{radius:.0f} m."
+            f"{radius:.{0 if radius >= 100.0 else 1}f} m."
         )
     if ending == TOO_MANY_AFLOAT:
         return Status.ABOVE_SURFACE.because(
@@ -268,6 +268,17 @@ def refusal_of(found: FoundShape, line: Line, water: Water) -> NoEquilibrium:
     if ending == ABOVE_SURFACE:
         return risen(piece, value)
     return audit_refusal(ending, value)
+
+
+def watch_circle_radius(length: float, height: float) -> float:
+    """Return how far a surface float can be from its anchor, √(length² − height²) [m].
+
+    Parameters
+    ----------
+    length : of the line from the float to the anchor [m]
+    height : of the surface above the top of the anchor [m]
+    """
+    return float(np.sqrt(max(length**2 - height**2, 0.0)))
 
 
 def refuse_out_of_the_water(solution: Solution) -> None:

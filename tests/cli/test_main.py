@@ -8,7 +8,7 @@ import pytest
 
 import calm as package
 from calm import version
-from calm.cli.streams import ExitCode, gravest
+from calm.cli.streams import ExitCode, gravest, narrate, show
 from calm.errors import UsageError
 
 
@@ -187,3 +187,17 @@ def test_texts_of_options_are_set_to_the_width_of_the_terminal(calm, monkeypatch
         room = 78 - len("│ --environment STR  ")
         for above, below in itertools.pairwise(cells[1:]):
             assert len(above) + 1 + len(below.split()[0]) > room
+
+
+@pytest.mark.parametrize("sign", ["\x1b", "\x07", "\x08", "\r", "\x9b", "\u202e"])
+def test_no_text_of_a_file_steers_the_terminal(sign, capsys, monkeypatch):
+    """A record's title may hold what clears a screen or writes a window's title: it is shown."""
+    text = f"title {sign}]0;x{sign}[2J of a record\n"
+    narrate(text)
+    show(text)
+    printed = capsys.readouterr()
+    assert sign not in printed.err
+    assert printed.out == text, "data in a pipe are what they are"
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True, raising=False)
+    show(text)
+    assert sign not in capsys.readouterr().out

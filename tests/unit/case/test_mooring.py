@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import calm
+from calm.checks.posture import watch_circle
 
 FILE = """
 name: By hand
@@ -203,6 +204,23 @@ def test_a_slack_line_at_rest_tells_its_watch_circle(solve):
     assert caught.value.status == "slack"
     assert "935 m" in caught.value.message
     assert caught.value.advice
+
+
+def test_the_watch_circle_is_that_of_the_line_above_the_anchor(solve):
+    """100.2 m of line on an anchor 1 m high in 100 m: √(100.2² − 99²) = 15.46 m, not 6.3 m."""
+    text = (
+        "environment: {depth: 100 m, current: {speed: SPEED, toward: 90 deg}}\n"
+        "line: [{use: ball}, {use: rope, length: 99.2 m}, {use: block}]\n"
+        "components:\n"
+        "  ball: {kind: sphere, diameter: 1 m, buoyancy: 3000 N, cx: 0.6, role: float}\n"
+        "  rope: {kind: cable, diameter: 12 mm, weight: 0.5 N/m}\n"
+        "  block: {kind: anchor, weight: 9 kN, length: 1 m}\n"
+    )
+    with pytest.raises(calm.NoEquilibrium) as caught:
+        solve(text, speed="0 m/s")
+    assert "watch circle has a radius of 15.5 m" in caught.value.message
+    verdict = next(watch_circle.judge(solve(text, speed="0.3 m/s")))
+    assert verdict.value == pytest.approx((100.2**2 - 99.0**2) ** 0.5, abs=0.02)
 
 
 def test_a_refusal_names_the_piece(solve):

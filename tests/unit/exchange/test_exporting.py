@@ -1,5 +1,6 @@
 """Moorings given to other programs, and read back: the same equilibrium."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -126,6 +127,33 @@ def test_a_tow_comes_back(to, tmp_path):
     assert back.body.depth == pytest.approx(one.body.depth, abs=0.02)
     assert back.body.layback == pytest.approx(one.body.layback, abs=0.02)
     assert back.tow_point.tension == pytest.approx(one.tow_point.tension, rel=2e-4)
+
+
+@pytest.mark.parametrize(("toward", "speed"), [(0, 1.0), (60, 2.0), (225, 1.3), (270, 0.5)])
+def test_a_tow_for_whoi_cable_heads_along_x(toward, speed, tmp_path):
+    """Its statics know x and z alone: u ahead is 0.3 cos 30 deg, v to port -0.3 sin 30 deg."""
+    source = tmp_path / "tow.yaml"
+    tow = (
+        f"tow: {{speed: {speed} m/s, toward: {toward} deg}}\n"
+        "environment: {current: {speed: 0.3 m/s, toward: CURRENT deg}}\n"
+        "line: [{use: wire, length: 100 m}, {use: ball}]\n"
+        "components:\n"
+        "  wire: {kind: cable, diameter: 10 mm, weight: 2.5 N/m, cn: 1.5}\n"
+        "  ball: {kind: sphere, diameter: 0.5 m, length: 0 m, buoyancy: -2 kN, cx: 0.5}\n"
+    )
+    source.write_text(tow.replace("CURRENT", str(toward)))
+    ahead = export_file(source, "cbl")
+    text = ahead.content.decode()
+    assert f"x-speed = {speed:.9g}  y-speed = 0 " in text
+    assert "y-current" not in text
+    assert any(f"the heading, {toward} deg true" in each for each in ahead.lost)
+    assert not any("across" in each for each in ahead.lost)
+    source.write_text(tow.replace("CURRENT", str(toward + 30)))
+    across = export_file(source, "cbl")
+    rows = dict(re.findall(r"([xy])-current = \(0, ([-0-9.e]+)\)", across.content.decode()))
+    assert float(rows["x"]) == pytest.approx(0.3 * 3**0.5 / 2, abs=1e-6)
+    assert float(rows["y"]) == pytest.approx(-0.15, abs=1e-6)
+    assert any("currents across the heading" in each for each in across.lost)
 
 
 def test_the_clamps_of_a_list_come_back(tmp_path):
