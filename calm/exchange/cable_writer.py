@@ -122,11 +122,11 @@ def _along_the_heading(design: ExportedLine, lost: list[str]) -> ExportedLine:
         return design
     ahead, port = design.tow.east / speed, design.tow.north / speed
     levels = []
-    for depth, east, north, *rest in design.levels:
+    for depth, east, north, up, density in design.levels:
         along, across = east * ahead + north * port, north * ahead - east * port
         # rounding alone leaves a current from ahead or astern something across
         across = 0.0 if abs(across) < _CALM else across
-        levels.append((depth, along, across, *rest))
+        levels.append((depth, along, across, up, density))
     heading = degrees(atan2(design.tow.east, design.tow.north)) % 360.0
     lost.append(f"the heading, {heading:.4g} deg true: there x points ahead of the ship")
     if any(level[2] for level in levels):
