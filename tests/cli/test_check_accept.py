@@ -20,7 +20,8 @@ def accepting(write_mooring, folder):
         file = folder / write_mooring("accepting.yaml", **figures)
         text = file.read_text(encoding="utf-8")
         balls = "".join(f"  - {{use: ball, label: {json.dumps(label)}}}\n" for label in labels)
-        crown = "  - {use: ball, label: crown, diameter: 10 mm, buoyancy: 1 N}\n"  # asked no load
+        # the top piece is asked for no load
+        crown = "  - {use: ball, label: crown, diameter: 10 mm, buoyancy: 0.001 N}\n"
         text = text.replace("  - {use: ball, label: top float}\n", crown + balls)
         items = "".join(f"    - {accept}\n" for accept in accepts)
         file.write_text(f"{text}checks:\n{more}  accept:\n{items}", encoding="utf-8")
