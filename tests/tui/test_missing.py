@@ -47,16 +47,15 @@ def test_of_a_component_of_the_catalogue_the_rows_that_lack_it_get_the_figure():
 def test_what_is_filled_in_is_known_then_with_its_source():
     draft = Draft(UNKNOWN)
     missing = missing_figures(judge(UNKNOWN), draft)
-    texts = {("ball", "depth_rating"): "500 m", ("ball", "breaking_load"): "90 kN"}
+    texts = {("ball", "depth_rating"): "500 m", ("releaser", "breaking_load"): "90 kN"}
     made = filled(draft, missing, texts, "test certificate 12")
     assert "depth_rating: 500 m" in made.text and "# carries all" in made.text
     view = judge(made.text)
-    component = next(each.component for each in view.file.pieces if each.use == "ball")
-    assert component.depth_rating == pytest.approx(500.0)
-    assert component.sources == {
-        "depth_rating": "test certificate 12",
-        "breaking_load": "test certificate 12",
-    }
+    hung = {each.use: each.component for each in view.file.pieces}
+    assert hung["ball"].depth_rating == pytest.approx(500.0)
+    assert hung["ball"].sources == {"depth_rating": "test certificate 12"}
+    assert hung["releaser"].breaking_load == pytest.approx(90e3)
+    assert hung["releaser"].sources == {"breaking_load": "test certificate 12"}
     of_ball = [each for each in view.findings if each.component == "top float"]
     assert of_ball
     assert State.UNKNOWN not in {e.state for e in of_ball if e.rule in ("strength", "depth-rating")}
