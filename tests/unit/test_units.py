@@ -17,13 +17,13 @@ TABLE = [
 ]
 
 
-OTHERWISE = {"fathom": "2 yard"}
+OTHERWISE = {"fathom": (2.0, "yard")}
 """What pint has of the US survey foot; charts are in international feet."""
 
 
 @pytest.mark.parametrize(("dimension", "unit"), TABLE)
 def test_table_agrees_with_pint(dimension: str, unit: str) -> None:
-    expected = REGISTRY.Quantity(OTHERWISE.get(unit, f"1 {unit}")).to(DIMENSIONS[dimension].unit).magnitude
+    expected = REGISTRY.Quantity(*OTHERWISE.get(unit, (1.0, unit))).to(DIMENSIONS[dimension].unit).magnitude
     # pint reaches its factors through chains of definitions: a few rounding errors.
     assert unit_factor(unit, dimension) == pytest.approx(expected, rel=1e-14)
 
