@@ -34,7 +34,7 @@ def test_shares_of_limits_and_rules_by_hand(mooring):
     assert failing.time == np.datetime64("2001-01-05T03:00")
     assert warning.share == 0.90
     assert rules["strength"].fails == 0.05
-    assert rules["strength"].unknown == 3  # sphere, meter and anchor give no load
+    assert rules["strength"].unknown == 1  # the meter; sphere and anchor are asked for no load
     assert rules["knockdown"].fails == 0.03
     # 119 + 0.02 k beyond 150 - 30 from the 51st on; of the loggers and the meter nothing is known
     assert rules["depth-rating"].fails == 0.50

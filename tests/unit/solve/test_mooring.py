@@ -149,7 +149,7 @@ def test_a_slack_surface_line_without_current():
     assert error.status == "slack"
     # the length is 121 m in 100 m of water: √(121² − 100²) = 68.1
     assert "121.0 m uncut" in error.message
-    assert "radius of 68 m" in error.message
+    assert "radius of 68.1 m" in error.message
 
 
 def test_a_line_that_hangs_on_a_lower_float_at_rest():
