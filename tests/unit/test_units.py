@@ -23,7 +23,8 @@ OTHERWISE = {"fathom": (2.0, "yard")}
 
 @pytest.mark.parametrize(("dimension", "unit"), TABLE)
 def test_table_agrees_with_pint(dimension: str, unit: str) -> None:
-    expected = REGISTRY.Quantity(*OTHERWISE.get(unit, (1.0, unit))).to(DIMENSIONS[dimension].unit).magnitude
+    one = REGISTRY.Quantity(*OTHERWISE.get(unit, (1.0, unit)))
+    expected = one.to(DIMENSIONS[dimension].unit).magnitude
     # pint reaches its factors through chains of definitions: a few rounding errors.
     assert unit_factor(unit, dimension) == pytest.approx(expected, rel=1e-14)
 
