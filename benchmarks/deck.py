@@ -19,7 +19,7 @@ import calm
 from calm.checks.comparison import comparison_of
 from calm.deck import deck_of
 from calm.deck.cutting import cuts_of
-from calm.deck.deck_items import Order, hung_of
+from calm.deck.deck_items import Order, deck_items_of
 from calm.drop import drop_plan
 from calm.report.deck_files import deck_report
 from calm.report.diagram_layout import Paper
@@ -66,7 +66,7 @@ def main(counts: list[int], times: int) -> None:
         for count in counts:
             line, more = (mooring(Path(folder), number) for number in (count, count + 1))
             result = line.solve()
-            parts = hung_of(result)
+            parts = deck_items_of(result)
             deck = deck_of([line], Order.ANCHOR_FIRST)
             works: list[Callable[[], object]] = [
                 line.solve,
