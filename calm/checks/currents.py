@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from calm.checks.finding import State, Verdict, rule, verdict_on
+from calm.checks.finding import State, Verdict, at_least, rule, verdict_on
 from calm.files.environment import Environment
 from calm.quantities import say
 
@@ -48,20 +48,13 @@ def currents(moorings: Sequence[Mooring]) -> Iterator[tuple[Mooring, Verdict]]:
     speed = speeds[strongest]
     if speed < LEAST_CURRENT:
         return
-    said = f"The strongest current judged is {say('speed', speed)}"
-    if speed >= USUAL_CURRENT:
-        yield (
-            moorings[strongest],
-            verdict_on(
-                None, State.PASS, f"{said}.", None, speed, USUAL_CURRENT, speed - USUAL_CURRENT
-            ),
-        )
-        return
-    message = f"{said}; a wind of 7 m/s alone drives {say('speed', USUAL_CURRENT)} at the surface."
+    message = f"The strongest current judged is {say('speed', speed)}"
+    if speed < USUAL_CURRENT:
+        message += f"; a wind of 7 m/s alone drives {say('speed', USUAL_CURRENT)} at the surface"
     remedy = "Add an environment with the strongest current of the site."
     yield (
         moorings[strongest],
-        verdict_on(None, State.WARN, message, remedy, speed, USUAL_CURRENT, speed - USUAL_CURRENT),
+        at_least(None, speed, USUAL_CURRENT, f"{message}.", remedy, State.WARN),
     )
 
 

@@ -22,7 +22,7 @@ import numpy as np
 
 from calm.assemble import with_axial_clamps
 from calm.errors import NoEquilibrium
-from calm.physics.line import Booleans, Floats, Line, Water
+from calm.physics.line import Floats, Line, Water
 from calm.physics.reference import REFERENCE_DENSITY
 from calm.physics.track import head_count
 from calm.solve import FreeMotion, Settings, part_of, solve_rise
@@ -49,14 +49,12 @@ class Recovery:
     tension_top, tension_bottom : (n,) of every piece above the anchor, in the rise [N]; nan of one
         that does not rise
     arrival : (n,) when each piece is at the surface [s]; nan of one that hangs below, or stays
-    hangs_at : (n,) depth of its upper end when all is up [m], at most that of the seabed; nan of
-        a line that does not rise
     order : the pieces that come up by themselves, in their order
     tangles : the pieces that have, or part of which has, overtaken what was above in the rise
     in_still_water : whether the rise is that in still water, because a line that doubles back
         finds no steady motion in this current
     length : (m,) stretched lengths of the pieces that rise [m]; none where the line does not
-    seabed : depth of the water [m]
+    seabed : depth of the water [m]; nan of a line that does not rise
     """
 
     released: int
@@ -66,15 +64,21 @@ class Recovery:
     tension_top: Floats
     tension_bottom: Floats
     arrival: Floats
-    hangs_at: Floats
     order: tuple[int, ...]
     tangles: tuple[int, ...]
     in_still_water: bool = False
     length: Floats = field(default_factory=lambda: np.zeros(0))
-    seabed: float = np.inf
+    seabed: float = nan
+
+    @property
+    def hangs_at(self) -> Floats:
+        """Return (n,) depths of the upper ends of the pieces when all is up [m]."""
+        return np.array([self.depth_at(piece, 0.0) for piece in range(len(self.arrival))])
 
     def depth_at(self, piece: int, share: float) -> float:
         """Return the depth of a place on a piece when all is up [m]; nan where it is not known.
+
+        It hangs by the shorter way along the line to a piece that is up, above it or below.
 
         Parameters
         ----------
@@ -82,10 +86,15 @@ class Recovery:
         share : of the piece's length, from its upper end
         """
         up = np.isfinite(self.arrival[: len(self.length)])
-        if piece >= len(up) or up[piece]:
-            return float(self.hangs_at[piece])
-        at = float(self.length[:piece].sum() + share * self.length[piece])
-        return min(_way_to_what_is_up(self.length, up, at), self.seabed)
+        if piece >= len(up):
+            return self.seabed
+        if up[piece]:
+            return 0.0
+        ends = np.concatenate([[0.0], np.cumsum(self.length)])
+        at = ends[piece] + share * self.length[piece]
+        above = at - ends[1 : piece + 1][up[:piece]]
+        below = ends[piece + 1 : -1][up[piece + 1 :]] - at
+        return float(np.concatenate([above, below, [self.seabed]]).min())
 
     def components(self) -> list[dict[str, Any]]:
         """The pieces above the anchor, by name of figure; None where there is none."""
@@ -117,7 +126,7 @@ def recovery_of(mooring: Mooring, result: Result) -> Recovery:
     line = part_of(whole, 0, released + 1)
     lifts = _lifts(line, water, result)
     none = np.full(count, nan)
-    at_rest = Recovery(released, 0.0, float(lifts.sum()), None, none, none, none, none, (), ())
+    at_rest = Recovery(released, 0.0, float(lifts.sum()), None, none, none, none, (), ())
     if not lifts.sum() > 0.0:
         return at_rest
     top = max(result.top.depth, 0.0)
@@ -127,14 +136,10 @@ def recovery_of(mooring: Mooring, result: Result) -> Recovery:
         return at_rest
     length = result.components.length[: released + 1]
     risers = dict(_risers(line, water.still(), length, lifts, top, speed, mooring.settings))
-    arrival, hangs_at = none.copy(), np.full(count, water.depth)
+    arrival = none.copy()
     head = head_count(line)
     for piece, time in risers.items():
         arrival[0 if piece < head else piece : piece + 1] = time
-    up = np.isfinite(arrival[: released + 1])
-    for piece, begin in enumerate(np.cumsum(length) - length):
-        way = 0.0 if up[piece] else _way_to_what_is_up(length, up, float(begin))
-        hangs_at[piece] = min(way, water.depth)
     tension_top, tension_bottom = none.copy(), none.copy()
     first, last = motion.solution.piece_nodes.T
     tension_top[: released + 1] = motion.solution.tension[first]
@@ -147,7 +152,6 @@ def recovery_of(mooring: Mooring, result: Result) -> Recovery:
         tension_top=tension_top,
         tension_bottom=tension_bottom,
         arrival=arrival,
-        hangs_at=hangs_at,
         order=tuple(risers),
         tangles=motion.tangles,
         in_still_water=still,
@@ -207,16 +211,3 @@ def _risers(
         time += way / speed
         yield piece, time
         up = piece + 1
-
-
-def _way_to_what_is_up(length: Floats, up: Booleans, at: float) -> float:
-    """Return the shorter way along the line to a piece that is up, above a place or below it [m].
-
-    Parameters
-    ----------
-    length, up : (n,) lengths of the pieces [m], and which are up
-    at : distance of the place from the upper end of the first [m]
-    """
-    ends = np.concatenate([[0.0], np.cumsum(length)])
-    ways = np.concatenate([at - ends[1:][up], ends[:-1][up] - at])
-    return float(ways[ways >= 0.0].min(initial=np.inf))

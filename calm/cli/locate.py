@@ -85,7 +85,7 @@ def locate(
     from calm.drawing.picture import check_format, image
     from calm.locate import locate as found_at
     from calm.locate import read_ranges
-    from calm.locate.deployed import planned_in, with_deployed
+    from calm.locate.deployed import located_mooring, with_deployed
     from calm.records.record import parse_place
     from calm.report.folder import check_destination, write_file
     from calm.report.located_anchor import located_figure, located_part
@@ -118,12 +118,15 @@ def locate(
     if output is not None:
         narrate("-o is spelt --update from now on: the file is edited in place")
         update = update or output
-    planned = None if update is None else planned_in(update)
-    located = found_at(survey, sound, answering, planned if near is None else parse_place(near))
+    mooring = None if update is None else located_mooring(update)
+    about = None if near is None else parse_place(near)
+    if about is None and mooring is not None and mooring.position is not None:
+        about = mooring.position.latitude, mooring.position.longitude
+    located = found_at(survey, sound, answering, about)
     water_depth = located.depth + height
     doubts, edited = located.doubts, None
-    if update is not None:
-        working, text, beside, far = with_deployed(update, located, water_depth)
+    if update is not None and mooring is not None:
+        working, text, beside, far = with_deployed(update, mooring, located, water_depth)
         edited, doubts = (working, text), (*doubts, *far)
         for line in beside:
             narrate(f"{update}: {line}")

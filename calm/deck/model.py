@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 from calm.case import Mooring
 from calm.checks.assess import check
 from calm.checks.finding import OWN
-from calm.checks.inventory import inventory_of
 from calm.checks.recovery import recovery_of
 from calm.deck.cutting import Cut, cuts_of
 from calm.deck.deck_items import (
@@ -121,7 +120,8 @@ def deck_of(
             continue
         results.append((_name(other), there))
     parts = deck_items_of(result)
-    inventory = inventory_of(first)
+    assessment = check(*moorings)
+    inventory = assessment.inventory
     rise: Recovery | None = None
     try:
         rise = recovery_of(first, result)
@@ -152,7 +152,7 @@ def deck_of(
         instruments=instruments_of(parts, results),
         environments=tuple(name for name, _ in results),
         notes=tuple(notes),
-        assessment=check(*moorings),
+        assessment=assessment,
         plan=plan,
     )
 

@@ -283,31 +283,30 @@ def decimal_sign(cells: Iterable[tuple[str, str]]) -> tuple[str, str]:
         Two signs are used, or nothing tells what `1,250` is.
     """
     seen: dict[str, str] = {}
-    doubtful: dict[str, str] = {}
+    doubtful: dict[str, tuple[str, str]] = {}  # where, and the digits
     for place, cell in cells:
         found = None if isinstance(cell, WorkbookNumber) else _NUMERAL.match(_BEFORE.sub("", cell))
         if found is None or _RATIO.match(_BEFORE.sub("", cell)):
             continue
-        sure, doubt = _signs(found["digits"].rstrip(".,'’"))
+        digits = found["digits"].rstrip(".,'’")
+        sure, doubt = _signs(digits)
         if sure:
             seen.setdefault(sure, f"`{cell}` ({place})")
         if doubt:
-            doubtful.setdefault(doubt, f"`{cell}` ({place})")
+            doubtful.setdefault(doubt, (f"`{cell}` ({place})", digits))
     if len(seen) == 2:
         raise ValueError(f"has decimal points, {seen['.']}, and decimal commas, {seen[',']}")
     if not seen and doubtful:
-        sign, first = next(iter(doubtful.items()))
-        one = first[1:].partition("`")[0]
-        found = _NUMERAL.match(_BEFORE.sub("", one))
-        assert found is not None
+        sign, (first, digits) = next(iter(doubtful.items()))
         what = "points" if sign == "." else "commas"
-        either = _either(found["digits"])
-        raise ValueError(f"{first} is {either}: no number of the file tells what its {what} are")
+        raise ValueError(
+            f"{first} is {_either(digits)}: no number of the file tells what its {what} are"
+        )
     decimal = next(iter(seen), ".")
     if decimal == ",":
         return decimal, f"commas are decimal signs, as in {seen[',']}"
     if "," in doubtful:
-        return decimal, f"commas part thousands, as in {doubtful[',']}; decimals have points"
+        return decimal, f"commas part thousands, as in {doubtful[','][0]}; decimals have points"
     return decimal, ""
 
 

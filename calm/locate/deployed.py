@@ -23,20 +23,24 @@ DEEPER = 0.05
 """Share by which the depth may differ from the planned one without a word of doubt."""
 
 
-def planned_in(path: Path) -> tuple[float, float] | None:
-    """Return the planned latitude and longitude of a mooring file [degrees]; None without one.
+def located_mooring(path: Path) -> MooringFile:
+    """Return the mooring file that a place is for.
 
     Raises
     ------
     InputError
         The file has mistakes.
+    UsageError
+        It is a tow.
     """
-    position = read_mooring(path).position
-    return None if position is None else (position.latitude, position.longitude)
+    file = read_mooring(path)
+    if file.tow is not None:
+        raise UsageError(f"{path} is a tow; what is deployed is a mooring")
+    return file
 
 
 def with_deployed(
-    path: Path, located: Located, water_depth: float
+    path: Path, before: MooringFile, located: Located, water_depth: float
 ) -> tuple[WorkingFile, str, tuple[str, ...], tuple[str, ...]]:
     """Return a mooring file, its text with the place in its `deployed`, how far that is from the
     plan, and what of that is in doubt.
@@ -45,19 +49,17 @@ def with_deployed(
 
     Parameters
     ----------
+    before : the file as read, see `located_mooring`
     water_depth : at the anchor [m]
 
     Raises
     ------
     InputError
-        The file has mistakes.
+        The file has mistakes with the place in it.
     UsageError
-        It is a tow, written in a way that does not allow this change, or planned to stand where
+        It is written in a way that does not allow this change, or planned to stand where
         latitude and longitude are exchanged.
     """
-    before = read_mooring(path)
-    if before.tow is not None:
-        raise UsageError(f"{path} is a tow; what is deployed is a mooring")
     said, doubts = _beside_the_plan(before, located, water_depth)
     file = WorkingFile(path)
     position = {

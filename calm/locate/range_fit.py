@@ -185,9 +185,14 @@ def locate(
     )
     second = None if other is None else _second(model, x, other, used)
     doubts = []
+    if rms > SCATTERED + SCATTERED_SHARE * reach:
+        doubts.append(f"the ranges scatter by {rms:.0f} m, more than ranging does")
+    if (~used).sum() > MOST_REJECTED * count:
+        doubts.append(f"{int((~used).sum())} of {count} ranges do not fit the others")
     warnings = [
         *inconsistent,
         *geometry_warnings(ships[used], place, found - survey.transducer, depth is not None),
+        *(f"{doubt[0].upper()}{doubt[1:]}." for doubt in doubts),
     ]
     if second is not None:
         warnings.append(
@@ -201,11 +206,6 @@ def locate(
             "There are no more ranges than unknowns: nothing tells how well they fit, and no "
             "interval can be given."
         )
-    if rms > SCATTERED + SCATTERED_SHARE * reach:
-        doubts.append(f"the ranges scatter by {rms:.0f} m, more than ranging does")
-    if (~used).sum() > MOST_REJECTED * count:
-        doubts.append(f"{int((~used).sum())} of {count} ranges do not fit the others")
-    warnings += [f"{doubt[0].upper()}{doubt[1:]}." for doubt in doubts if "two places" not in doubt]
     return Located(
         survey=survey,
         latitude=latitude,

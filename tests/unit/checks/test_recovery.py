@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import calm
-from calm.checks.recovery import recovery_of
+from calm.checks.recovery import Recovery, recovery_of
 from calm.shipped import shipped_folder
 from calm.solve import Status, solve_rise
 
@@ -165,3 +165,14 @@ def test_floats_at_the_surface_are_there_at_once():
     recovery = recovery_of(mooring, mooring.solve())
     assert recovery.time_to_surface == 0.0
     assert recovery.order[0] == 0
+
+
+def test_what_hangs_right_below_a_float_hangs_there_whatever_the_rounding():
+    length = np.array([0.7, 0.1, 0.2, 50.0])  # whose sums and differences do not come out even
+    none = np.full(5, np.nan)
+    arrival = np.array([1.0, 1.0, 1.0, np.nan, np.nan])
+    recovery = Recovery(
+        3, 1.0, 1.0, 1.0, none, none, arrival, (0,), (), length=length, seabed=100.0
+    )
+    assert recovery.hangs_at == pytest.approx([0.0, 0.0, 0.0, 0.0, 100.0])
+    assert recovery.depth_at(3, 0.5) == pytest.approx(25.0)
