@@ -465,6 +465,7 @@ FLAWS = (
                 "label: chain above the anchor}\n",
                 "",
             ),
+            ("release-pair-ar861, label: releases}", "release-ar861-double, label: releases pair}"),
         ),
         "release-present",
         "releases pair",
