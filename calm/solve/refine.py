@@ -172,7 +172,7 @@ def closed_between(search: Search, root: Root) -> tuple[Closed, Closed]:
         return none, none
     high, near, halved = limits.span, 0.5, 1.0
     if unknown.sought != BELOW:  # a slack line swings far by little of its buoyancy
-        high, near, halved = 1.0, 0.05, 0.3
+        high, near, halved = 1.0, 0.05, 0.1
     before, last, x = work.left[LAST], root.miss, root.x
     for _ in range(MOST_ROUNDS):
         if not 0.0 < x < high or x == before:
@@ -190,7 +190,10 @@ def closed_between(search: Search, root: Root) -> tuple[Closed, Closed]:
         before, last, x = x, miss, x - miss / slope
     closing = -miss / slope
     off = search.miss(About(problem, unknown, limits.angle_step, HALVED, True, FINE), x)
-    if not abs(off) <= min(halved * abs(miss - last), FAR * limits.span):
+    moved = abs(off) + abs(miss - last)
+    if not abs(off) <= min(20.0 * abs(miss - last), FAR * limits.span):
+        return none, none
+    if abs(off) * moved > halved * LINEAR * limits.span * limits.span:
         return none, none
     change = x - before
     coarse_root = Root(True, unknown, x + closing, 0.0, slope)
