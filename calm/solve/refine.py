@@ -107,7 +107,8 @@ def refine(search: Search, root: Root, hangs: bool) -> Refined:
         if excess <= 1.0 or segments > MOST_SEGMENTS:
             break
         root, step = fine.root, step * max(0.8 / sqrt(excess), 0.2)
-    return with_bends(problem, refined)
+    # of one of many the errors are not told
+    return refined if problem.limits.near > 0.0 else with_bends(problem, refined)
 
 
 def excess_of(problem: LineProblem, errors: Errors, landed: bool) -> float:
