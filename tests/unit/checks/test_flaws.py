@@ -470,7 +470,7 @@ FLAWS = (
         "release-present",
         "releases pair",
         "warn",
-        "releases pair stands 0.0 m above the anchor; 1 m keep it out of the mud",
+        "releases pair stands 0.1 m above the anchor; 1 m keep it out of the mud",
     ),
     Flaw(
         "a release above every float",
