@@ -114,10 +114,14 @@ line:
   - {use: ball, label: top float}
   - {use: rope, length: 100 m}
   - {use: ball, label: back-up float}
-  - {use: hook}
+  - {use: link}
+  - {use: hook, label: release pair}
+  - {use: rope, length: 5 m}
   - {use: weight}
 components:
-  ball: {kind: sphere, role: float, diameter: 0.8 m, buoyancy: 2000 N, depth_rating: 1000 m,
+  link: {kind: body, role: connector, length: 0 m, buoyancy: -5 N, kn: 0 N/(m/s)^2,
+         inclination: insensitive, working_load: 20 kN}
+  ball: {kind: sphere, role: float, diameter: 0.8 m, buoyancy: 1200 N, depth_rating: 1000 m,
          breaking_load: 100 kN}
   rope: {kind: cable, diameter: 10 mm, weight: 0.2 N/m, breaking_load: 60 kN}
   hook: {kind: cylinder, role: release, diameter: 0.1 m, length: 0.8 m, buoyancy: -200 N,
