@@ -11,7 +11,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from calm.errors import InputError, Problem
+from calm.records.current_notices import current_notices
 from calm.records.current_terms import Terms
 from calm.records.delimited import (
     GAPS,
@@ -119,7 +122,9 @@ def read_current_csv(path: Path, time: str | None, terms: Terms) -> tuple[Curren
     current = header.profile(rows, problems, terms)
     if current is None:
         raise InputError(abridged(problems))
-    return current, [*notices, *turned_notices(header.columns, terms)]
+    notices += turned_notices(header.columns, terms)
+    arrays = np.array(current.depth), np.array([current.u]), np.array([current.v])
+    return current, [*notices, *current_notices(("u", "v"), arrays, None, terms.water_depth)]
 
 
 def _rows_of(rows: list[CellRow], time: str | None, path: Path) -> tuple[list[CellRow], list[str]]:

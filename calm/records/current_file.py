@@ -48,6 +48,7 @@ def open_record(
     declination: float | None = None,
     time: Period | None = None,
     every: int = 1,
+    on_the_line: bool = False,
 ) -> Record:
     """Return a record in NetCDF, in zarr, or in CSV.
 
@@ -58,6 +59,7 @@ def open_record(
     declination : turns what the record says is relative to magnetic north [degrees], east positive
     time : first and last time, see `parse_period`
     every : take one profile in so many
+    on_the_line : see `Terms`
 
     Raises
     ------
@@ -70,7 +72,7 @@ def open_record(
         raise InputError([Problem(str(path), 0, 0, "no such file")])
     if not (path.is_file() or path.is_dir()):
         raise InputError([Problem(str(path), 0, 0, "is not a regular file")])
-    terms = Terms(water_depth=seabed, place=at, declination=declination)
+    terms = Terms(seabed, at, declination, on_the_line=on_the_line)
     if holds_arrays(path):
         return ArrayRecord(path, terms, time, every)
     return CsvRecord(path, terms, time, every)
@@ -121,7 +123,9 @@ def read_current_netcdf(
             notices = [*([notice] if notice else []), *notices]
         elif time is not None:
             raise TimeChoiceError("the file has no times")
-        return _profile(current.read(slice(index, index + 1)), terms, notices), notices
+        chosen = slice(index, index + 1)
+        table = _profile(current.read(chosen), terms, notices)
+        return table, [*notices, *current.remarks(chosen)]
 
 
 def _profile(arrays: CurrentArrays, terms: Terms, notices: list[str]) -> CurrentTable:

@@ -30,12 +30,15 @@ class Terms:
     declination : of magnetic north from true north, positive to the east [degrees]; turns what
         the file says is magnetic
     maximum_speed : a faster current is a mistake of the file [m/s]
+    on_the_line : whether levels may be parts of a line by their labels, and currents that the file
+        flags as bad are kept with their flags; these are left out otherwise
     """
 
     water_depth: float = inf
     place: Place | None = None
     declination: float | None = None
     maximum_speed: float = inf
+    on_the_line: bool = False
 
 
 def too_fast(u: float, v: float, w: float, maximum_speed: float) -> str | None:

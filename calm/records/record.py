@@ -56,11 +56,13 @@ class Record(ABC):
     time : (n,) to the nanosecond, rising
     notes : the rules by which it was read, and what to know before trusting it
     source : its file, its variables and its place, by name
+    labels : of the parts of a line that its levels hang at, which have no depth then; else empty
     """
 
     time: NDArray[np.datetime64]
     notes: tuple[str, ...]
     source: dict[str, str]
+    labels: tuple[str, ...] = ()
 
     @property
     def count(self) -> int:

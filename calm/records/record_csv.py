@@ -13,8 +13,10 @@ import numpy as np
 from calm.errors import InputError, Problem, UsageError
 from calm.physics.line import Floats
 from calm.records.current_csv import EXAMPLE, CurrentHeader
+from calm.records.current_notices import current_notices
 from calm.records.current_terms import DEEPEST, Terms
 from calm.records.delimited import (
+    COMMENT,
     GAPS,
     MOST_PROBLEMS,
     CellRow,
@@ -55,14 +57,17 @@ class CsvRecord(Record):
             self._kept.close()
             raise
         self.time = self._times[self._index]
-        self.notes = (*chosen, *self._turned, *RULES)
+        depth, u, v, _ = self.profiles(0, min(self.count, AT_ONCE))
+        odd = current_notices(("u", "v"), (depth, u, v), self.time[:AT_ONCE], terms.water_depth)
+        self.notes = (*chosen, *self._turned, *odd, *RULES)
         self.source = {"file": path.name, "columns": ", ".join(header.columns)}
 
     def _read(self, path: Path) -> CurrentHeader:
         """Return every profile of the file into the temporary one."""
         try:
-            with path.open(encoding="utf-8-sig") as file:
-                lines = ((i, line.rstrip("\n")) for i, line in enumerate(file, 1))
+            with path.open("rb") as file:
+                plain = (COMMENT.sub(rb"\1", line).decode("utf-8-sig") for line in file)
+                lines = ((i, line.rstrip("\r\n")) for i, line in enumerate(plain, 1))
                 return self._keep(path, *table_lines(path, lines, f"time,{EXAMPLE}"))
         except UnicodeDecodeError:
             raise InputError([Problem(str(path), 0, 0, "is not UTF-8 text")]) from None
