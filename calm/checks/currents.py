@@ -10,7 +10,7 @@ import numpy as np
 from calm.checks.finding import State, Verdict, at_least, rule, verdict_on
 from calm.files.environment import Environment
 from calm.quantities import say
-from calm.records.current_notices import left_out
+from calm.records.current_terms import left_out
 
 if TYPE_CHECKING:
     from calm.case import Mooring

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.errors import CalmError, InputError, Problem
-from calm.records.times import ZONES_OF_UTC, TimeChoiceError
+from calm.records.current_terms import ZONES_OF_UTC, TimeChoiceError
 from calm.units import QuantityError, unit_factor
 
 if TYPE_CHECKING:

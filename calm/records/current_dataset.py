@@ -28,8 +28,7 @@ from calm.records.cf_files import (
     valid_range,
     zone_notices,
 )
-from calm.records.current_notices import current_notices
-from calm.records.current_terms import Terms
+from calm.records.current_terms import Terms, current_notices
 from calm.records.level_depths import LevelDepths, find_levels
 from calm.records.record import RULES, Levels, Period, Record, choose_profiles, part
 from calm.records.velocity import Velocity, find_velocity, refuse_ragged, with_components

@@ -9,13 +9,11 @@ import numpy as np
 
 from calm.errors import InputError, Problem
 from calm.records.cf_files import UnreadableError, is_netcdf, is_zarr, open_current, reading
-from calm.records.current_csv import read_current_csv
 from calm.records.current_dataset import ArrayRecord, CurrentArrays, understand
-from calm.records.current_terms import Terms, too_deep, too_fast
+from calm.records.current_terms import Terms, TimeChoiceError, choose_time, too_deep, too_fast
 from calm.records.profile_tables import CurrentTable
 from calm.records.record import Period, Record
-from calm.records.record_csv import CsvRecord
-from calm.records.times import TimeChoiceError, choose_time
+from calm.records.record_csv import CsvRecord, read_current_csv
 from calm.records.water_column import Place
 
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from calm.errors import InputError, Problem, UsageError
 from calm.physics.line import Floats
 from calm.positions import plain_degrees
-from calm.records.times import TimeChoiceError, parse_time
+from calm.records.current_terms import TimeChoiceError, parse_time
 from calm.records.water_column import Place
 
 Times = NDArray[np.datetime64]

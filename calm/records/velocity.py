@@ -31,48 +31,16 @@ class _Sought:
 
 _EAST = _Sought(
     ("eastward_sea_water_velocity",),
-    (
-        "uo",
-        "UCUR",
-        "EWCT",
-        "water_u",
-        "u",
-        "U",
-        "u_eastward",
-        "u_1205",
-        "U_320",
-        "LCEWAP01",
-        "LCEWZZ01",
-        "vozocrtx",
-        "ucur",
-        "u_vel",
-        "east_vel",
-        "UCUR_MAG",
-    ),
+    ("uo", "UCUR", "EWCT", "water_u", "u", "U", "u_eastward", "u_1205", "U_320", "LCEWAP01",
+     "LCEWZZ01", "vozocrtx", "ucur", "u_vel", "east_vel", "UCUR_MAG"),
     "east",
-)
+)  # fmt: skip
 _NORTH = _Sought(
     ("northward_sea_water_velocity",),
-    (
-        "vo",
-        "VCUR",
-        "NSCT",
-        "water_v",
-        "v",
-        "V",
-        "v_northward",
-        "v_1206",
-        "V_321",
-        "LCNSAP01",
-        "LCNSZZ01",
-        "vomecrty",
-        "vcur",
-        "v_vel",
-        "north_vel",
-        "VCUR_MAG",
-    ),
+    ("vo", "VCUR", "NSCT", "water_v", "v", "V", "v_northward", "v_1206", "V_321", "LCNSAP01",
+     "LCNSZZ01", "vomecrty", "vcur", "v_vel", "north_vel", "VCUR_MAG"),
     "north",
-)
+)  # fmt: skip
 _UP = _Sought(
     ("upward_sea_water_velocity",),
     ("wo", "WCUR", "water_w", "w", "W", "w_1204", "LRZAAP01", "LRZAZZ01", "WCUR_MAG"),

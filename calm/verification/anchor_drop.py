@@ -15,8 +15,16 @@ from calm.physics.hull import Floating, spherical_hull
 from calm.physics.line import Line, Water
 from calm.physics.reference import REFERENCE_DENSITY
 from calm.solve import FallingAnchor, solve_fall
-from calm.verification.case_lines import GRAVITY, LinePiece, cable, line_of, sphere_drag
-from calm.verification.published_case import Case, Kind, Source
+from calm.verification.published_case import (
+    GRAVITY,
+    Case,
+    Kind,
+    LinePiece,
+    Source,
+    cable,
+    line_of,
+    sphere_drag,
+)
 
 _FINE = Fineness(bars=100, steps=100)
 _DENSITY, _DEPTH = 1027.0, 1000.0

@@ -16,17 +16,22 @@ from calm.analytic.catenary import Catenary, between
 from calm.errors import NoEquilibrium
 from calm.physics.line import Line
 from calm.solve import Solution, solve_mooring
-from calm.verification.case_lines import (
+from calm.verification.published_case import (
     FINE,
+    PRINTED,
+    Case,
+    CaseColumn,
     Ends,
+    Kind,
     LinePiece,
+    Source,
     cable,
     ends_of,
     line_of,
     point,
     stream,
+    table,
 )
-from calm.verification.published_case import PRINTED, Case, CaseColumn, Kind, Source, table
 
 _MARCH = (
     "1e-6 of the line's length or of the pull; the float pulls with the printed forces, and the "

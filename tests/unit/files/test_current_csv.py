@@ -8,9 +8,8 @@ import pytest
 from calm.errors import InputError
 from calm.files import CurrentTable, MooringFile
 from calm.records.current_file import read_current_file
-from calm.records.current_terms import Terms
+from calm.records.current_terms import Terms, TimeChoiceError
 from calm.records.delimited import MOST_PROBLEMS
-from calm.records.times import TimeChoiceError
 
 from .conftest import GOOD, Place
 

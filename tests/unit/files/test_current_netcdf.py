@@ -11,8 +11,7 @@ import xarray as xr
 from calm.errors import InputError
 from calm.files import CurrentTable, MooringFile
 from calm.records.current_file import read_current_file
-from calm.records.current_terms import Terms
-from calm.records.times import TimeChoiceError
+from calm.records.current_terms import Terms, TimeChoiceError
 
 from .conftest import GOOD
 
