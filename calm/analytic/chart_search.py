@@ -14,7 +14,7 @@ is straight to rounding; changes of sign are refined, dips towards zero examined
 Of length and distance, the mean of cos ψ over the piece is D/L. For a given λ_A it falls as λ_B
 grows, except where the piece begins far enough before the apex of the second branch: there it rises
 first. So D/L gives λ_B, on up to two sheets over λ_A, and the third size is a residual along them.
-Its changes of sign are finished by Newton's method on both equations, which knows nothing of sheets.
+Its changes of sign are finished by Newton's method on both equations, which knows of no sheets.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Results as NetCDF 4 files.
+"""Results by the CF conventions: their dimensions and variables, and the NetCDF 4 files of them.
 
 HDF5 ends the process where a write fails, as on a full disk. So it never meets one: what is small
 is made in memory, and room for the rest is taken on the disk before it is asked to write there.

@@ -1,4 +1,4 @@
-"""Remarks on sensors and currents that measured depths show to be doubtful."""
+"""How well depths are computed, and remarks on sensors and currents that are doubtful by that."""
 
 from __future__ import annotations
 

@@ -50,10 +50,6 @@ _OTHER_QUANTITIES = (
 )
 _NOT_A_CURRENT = [re.compile(text) for text in _OTHER_DIRECTIONS + _OTHER_QUANTITIES]
 
-_SAID_IN_COMMENTS = re.compile(
-    r"\brelative to (the )?(instrument|ship|vessel|vehicle|platform|glider|float|drifter)\b|"
-    r"\brotated\b(?!.*\b(earth|true|geograph\w*|enu|east|declination|magnetic|variation)\b)"
-)
 _ROTATION = re.compile(
     r"(?i)((coord\w*|grid|frame|axis|axes|velocity)_)?rotation(_angle)?(_deg(rees)?)?"
 )
@@ -102,10 +98,6 @@ def not_a_current(variable: xr.DataArray) -> str | None:
     methods = str(variable.attrs.get("cell_methods", ""))
     if _SPREADS.search(methods):
         return f"is `cell_methods: {methods}`, which is not a measured or modelled current"
-    for name in ("comment", "note", "notes"):
-        said = words_of(variable, name)
-        if _SAID_IN_COMMENTS.search(said):
-            return f"is in other coordinates by its {name}: {said[:80]}"
     if variable.encoding.get("scale_factor") == 0:
         return "has `scale_factor: 0`, which makes every value the same"
     return other_frame(variable.attrs) or part_in_texts(variable.attrs)
@@ -221,16 +213,14 @@ _LONG_MEANS = (
     r"\b(means?|averaged?) over (19|20)\d\d( to)? (19|20)\d\d\b|\b(time|record) mean\b|"
     r"\b(y(day|mon|seas)|tim|multi ?year)mean\b|\b(day|mon|seas|year|tim)(max|min|std|pctl)\b"
 )
-_OTHER_FRAMES = (
-    r"\b(velocit|current|speed|u and v)\w*( \w+){0,2} relative to (the |a )?(moving )?"
-    r"(instrument|ship|vessel|vehicle|platform|glider|float|drifter|bottom of the profile)\b|"
+_OTHER_FRAMES = re.compile(
+    r"\brelative to (the |a )?(moving )?"
+    r"(instrument|ship|vessel|vehicle|platform|glider|float|drifter)\b|"
     r"\b(ship|vessel|glider|platform|vehicle|drifter) relative\b|\bshear only\b|"
     r"\bunreferenced\b|\brotated\b(?!.*\b(earth|true|geograph\w*|enu|east|declination|"
-    r"magnetic|variation|back)\b)(?= .*\b(shore|shelf|slope|channel|axis|isobath|major))"
+    r"magnetic|variation|back)\b)"
 )
-_IN_TEXTS = re.compile(
-    "|".join((_FILTERED, _WITHOUT_TIDES, _TIDES_ALONE, _LONG_MEANS, _OTHER_FRAMES))
-)
+_IN_TEXTS = re.compile("|".join((_FILTERED, _WITHOUT_TIDES, _TIDES_ALONE, _LONG_MEANS)))
 _IN_NAMES = re.compile(
     r"\bclimatolog\w+\b|\b(perturbation|fluctuat\w+|turbulen\w+|orbital|ekman|(near )?inertial|"
     r"increments?|tendency|trend|spread|skewness|kurtosis|normali[sz]ed|non ?dimensional|squared|"
@@ -272,7 +262,7 @@ _TITLES = re.compile(r"(?i)title|summary|abstract|description|data_type|subject|
 _SENTENCE = re.compile(r"[.;()\n]")
 _OF_OTHERS = re.compile(
     r"\b(temperatures?|salinit\w+|pressures?|sea level|elevations?|conductivit\w+|headings?|"
-    r"pitch|roll|not|no|never|against|before|elsewhere|see|also|forc\w+|boundar(y|ies)|depths?)\b"
+    r"pitch|roll|not|no|never|against|before|elsewhere|see|also|forc\w+|boundar(y|ies)|depths?|heights?)\b"
 )
 """What speaks of another variable, or against itself."""
 
@@ -304,6 +294,8 @@ def part_in_texts(attributes: Mapping[Any, Any]) -> str | None:
     attributes : those of a dataset or of a variable
     """
     for name, words, said in _sentences(attributes):
+        if _OTHER_FRAMES.search(words):
+            return f"is in other coordinates by its {name}: {said}"
         found = _IN_TEXTS.search(words)
         if found is None and _TITLES.fullmatch(name):
             found = _IN_TITLES.search(words)

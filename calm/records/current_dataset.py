@@ -30,6 +30,7 @@ from calm.records.cf_files import (
 )
 from calm.records.current_terms import Terms, current_notices
 from calm.records.level_depths import LevelDepths, find_levels
+from calm.records.profile_tables import turned_by
 from calm.records.record import RULES, Levels, Period, Record, choose_profiles, part
 from calm.records.velocity import Velocity, find_velocity, refuse_ragged, with_components
 from calm.records.water_column import GridColumn, choose_column, is_regular
@@ -125,12 +126,8 @@ class CurrentDataset:
             first, second = first * np.sin(angle), first * np.cos(angle)
             first[impossible] = second[impossible] = np.inf  # to be refused by whoever asked
         if self._terms.declination:
-            angle = np.radians(self._terms.declination)
             with np.errstate(invalid="ignore"):  # of what is infinite
-                first, second = (
-                    first * np.cos(angle) + second * np.sin(angle),
-                    second * np.cos(angle) - first * np.sin(angle),
-                )
+                first, second = turned_by(self._terms.declination, first, second)
         depth = np.full(first.shape[1], np.nan)
         if self._levels is not None:
             depth = self._levels.depths(self._time, index)
@@ -178,7 +175,7 @@ class CurrentDataset:
         if self._turn is not None:
             names = "u", "v"
         levels = arrays.depth, arrays.u, arrays.v
-        return said + current_notices(names, levels, times, self._terms.water_depth)
+        return [*said, *current_notices(names, levels, times, self._terms.water_depth)]
 
     def _along(
         self, variable: xr.DataArray, index: Any, read: Callable[[xr.DataArray], Any]

@@ -34,7 +34,7 @@ def read_current_file(path: Path, time: str | None, terms: Terms) -> tuple[Curre
         The time is not in the file, or is needed to choose one of several.
     """
     if holds_arrays(path):
-        return read_current_netcdf(path, time, terms)
+        return _from_arrays(path, time, terms)
     return read_current_csv(path, time, terms)
 
 
@@ -92,24 +92,7 @@ def holds_arrays(path: Path) -> bool:
     return True
 
 
-def read_current_netcdf(
-    path: Path, time: str | None, terms: Terms
-) -> tuple[CurrentTable, list[str]]:
-    """Return the profile of a time, and notices; `time` may be None where there is only one.
-
-    Parameters
-    ----------
-    path : NetCDF or zarr
-    time : in ISO 8601; None where there is only one
-    terms : how the current is to be taken
-
-    Raises
-    ------
-    InputError
-        The file holds no current profile that can be understood.
-    TimeChoiceError
-        The time is not in the file.
-    """
+def _from_arrays(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable, list[str]]:
     with reading(path), open_current(path) as dataset:
         current = understand(dataset, terms)
         notices = [*current.notices, *current.turned]

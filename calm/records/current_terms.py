@@ -145,8 +145,8 @@ def current_notices(
     levels: tuple[Floats, Floats, Floats],
     times: NDArray[np.datetime64] | None,
     water_depth: float,
-) -> list[str]:
-    """Return what is odd about currents, in sentences.
+) -> Iterator[str]:
+    """Yield what is odd about currents, in sentences.
 
     Parameters
     ----------
@@ -157,16 +157,9 @@ def current_notices(
     water_depth : [m]; inf where it is not known
     """
     depth, u, v = levels
-    said = [*_odd(names, u, v, times)]
     there = depth[np.isfinite(depth) & (depth >= 0.0)]
     if there.size and (missing := left_out(there.min(), there.max(), water_depth)):
-        said.append(missing)
-    return said
-
-
-def _odd(
-    names: tuple[str, str], u: Floats, v: Floats, times: NDArray[np.datetime64] | None
-) -> Iterator[str]:
+        yield missing
     known = np.isfinite(u) & np.isfinite(v)
     count, still = int(known.sum()), known & (u == 0.0) & (v == 0.0)
     moving = known & ~still

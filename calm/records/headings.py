@@ -1,4 +1,4 @@
-"""Headings of columns: a name and its unit, as people and programs write them.
+"""Columns of tables in text, and their headings: a name and its unit, as people write them.
 
 ``depth[m]``, ``Depth (m)``, ``depth m``, ``toward[deg magnetic]``, ``time (UTC)``. A name of
 several words needs brackets around its unit, or a unit that is known.

@@ -37,7 +37,7 @@ from calm.records.delimited import (
     table_lines,
 )
 from calm.records.headings import heading, is_time, magnetic_columns, zone_complaint
-from calm.records.profile_tables import CurrentTable, read_current, turned_notices
+from calm.records.profile_tables import CurrentTable, read_current, turned_by, turned_notices
 from calm.records.record import RULES, Levels, Period, Record, choose_profiles, part
 from calm.units import QuantityError, unit_factor
 
@@ -296,8 +296,7 @@ def _components(values: dict[str, Floats], turn: float) -> Floats:
     if "u" in values:
         u, v = values["u"], values["v"]
         if turn:
-            sine, cosine = np.sin(np.radians(turn)), np.cos(np.radians(turn))
-            u, v = u * cosine + v * sine, v * cosine - u * sine
+            u, v = turned_by(turn, u, v)
         return np.column_stack([values["depth"], u, v, w])
     direction = values["from"] + 180.0 if "from" in values else values["toward"]
     angle = np.radians(direction + turn)
@@ -385,20 +384,9 @@ class CurrentHeader:
 
 
 def read_current_csv(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable, list[str]]:
-    """Return the profile of a time, and notices.
+    """Return the profile of a time, and notices; see `calm.records.current_file`.
 
-    Parameters
-    ----------
-    path : of the table
-    time : in ISO 8601; None where there is only one
-    terms : how the current is to be taken
-
-    Raises
-    ------
-    InputError
-        With the mistakes of the file.
-    TimeChoiceError
-        The time is not in the file.
+    Parameters and errors are those of `read_current_file`.
     """
     table = read_table(path, EXAMPLE)
     header, rows = CurrentHeader(path, table.header), list(table.rows)
