@@ -321,46 +321,27 @@ class LengthSearch:
         return [(float(start[place]), float(end[place])) for place in np.unique(places.astype(int))]
 
     def _polished(self, start: float, end: float) -> Piece | None:
-        """The root Newton's method reaches, or None."""
-        if end <= abs(start) * _LEAST_RISE:
-            return None
-        place = np.array([start, end])
-        value, slope = self._equations(place)
-        farthest = 3.0 * reach(self.branch)
-        for _ in range(40):
-            if np.abs(value).max() < 1e-15:
-                break
-            try:
-                step = np.linalg.solve(slope, value)
-            except np.linalg.LinAlgError:
-                return None
-            for _ in range(30):
-                trial = place - step
-                if abs(trial[0]) * _LEAST_RISE < trial[1] < farthest:
-                    reached, onward = self._equations(trial)
-                    if np.abs(reached).max() < np.abs(value).max():
-                        break
-                step = step / 2.0
-            else:
-                break
-            place, value, slope = trial, reached, onward
-        return (float(place[0]), float(place[1])) if np.abs(value).max() < 1e-12 else None
+        """The root that Powell's method reaches from a place, or None."""
+        from scipy.optimize import root
 
-    def _equations(self, place: Floats) -> tuple[Floats, Floats]:
-        """Mean cosine and logarithm of the third share, less what is wanted; and their slopes."""
-        branch = self.branch
-        arc, distance = (float(size) for size in branch.span(place[0], place[1]))
-        rate, cosine = branch.rates(place)
-        rate = rate * np.array([-1.0, 1.0]) / arc
-        mean = distance / arc
-        third = float(size_of(branch, self.third, place[0], place[1]))
-        tension = np.exp(branch.log_tension(place))
-        growth = branch.exponent * np.tanh(place) * tension / third
-        growth *= {"tension_a": (1.0, 0.0), "tension_b": (0.0, 1.0), "height": (-1.0, 1.0)}[
-            self.third
-        ]
-        value = np.array([mean - self.cosine, np.log(third / (arc * self.share))])
-        return value, np.array([rate * (cosine - mean), growth - rate])
+        least, farthest = abs(start) * _LEAST_RISE, 3.0 * reach(self.branch)
+        if end <= least:
+            return None
+
+        def piece(at: Floats) -> tuple[float, float]:
+            first = float(np.clip(at[0], -farthest, farthest))
+            return first, abs(first) * _LEAST_RISE + float(np.exp(min(at[1], np.log(farthest))))
+
+        def miss(at: Floats) -> Floats:
+            """Mean cosine and logarithm of the third share, less what is wanted."""
+            place = piece(at)
+            arc, distance = (float(size) for size in self.branch.span(*place))
+            third = float(size_of(self.branch, self.third, *place))
+            return np.array([distance / arc - self.cosine, np.log(third / (arc * self.share))])
+
+        with np.errstate(all="ignore"):
+            found = root(miss, [start, np.log(end - least)], options={"xtol": 1e-15})
+        return piece(found.x) if np.abs(found.fun).max() < 1e-12 else None
 
 
 def last_positive(

@@ -115,7 +115,7 @@ class CurrentDataset:
         All profiles where there is no time.
         """
         first, second, *up = (
-            self._values(variable, index) * factor for variable, factor in self._parts
+            self._along(variable, index, known_values) * factor for variable, factor in self._parts
         )
         if not self._terms.on_the_line:
             for variable in self._flags:
@@ -147,21 +147,22 @@ class CurrentDataset:
         """Return what is odd about the currents of some times, with counts; of a part where they
         are many.
         """
-        times = self.times
+        said, times = [], self.times
         if times is not None:
-            count = len(np.arange(len(times))[index])
-            step = -(-count * self.size // LOOKED_AT)
-            index = np.arange(len(times))[index][:: max(step, 1)]
+            sparse = max(len(times[index]) * self.size // LOOKED_AT, 1)
+            if isinstance(index, slice):
+                index = slice(index.start, index.stop, (index.step or 1) * sparse)
+            else:
+                index = index[::sparse]
             times = times[index]
-        said = []
         for variable, _ in self._parts[:2]:
-            bounds = valid_range(variable)
-            whole = self._along(variable, index, lambda one: np.asarray(one.values, np.float64))
-            outside = int(((whole < bounds[0]) | (whole > bounds[1])).sum())
-            if outside:
+            whole = np.isfinite(self._along(variable, index, lambda one: one.values))
+            outside = whole & np.isnan(self._along(variable, index, known_values))
+            if outside.any():
+                low, high = valid_range(variable)
                 said.append(
-                    f"{outside} of {np.isfinite(whole).sum()} values of `{variable.name}` are "
-                    f"outside its valid range, {bounds[0]:g} to {bounds[1]:g}, and left out"
+                    f"{outside.sum()} of {whole.sum()} values of `{variable.name}` are left out, "
+                    f"outside its valid range, {low:g} to {high:g}"
                 )
         for variable in () if self._terms.on_the_line else self._flags:
             bad = self._along(variable, index, marked_bad)
@@ -171,30 +172,22 @@ class CurrentDataset:
                     "them as bad"
                 )
         arrays = self.read(index)
-        names = str(self._parts[0][0].name), str(self._parts[1][0].name)
-        if self._turn is not None:
-            names = "u", "v"
         levels = arrays.depth, arrays.u, arrays.v
-        return [*said, *current_notices(names, levels, times, self._terms.water_depth)]
+        return [*said, *current_notices(levels, times, self._terms.water_depth)]
 
     def _along(
         self, variable: xr.DataArray, index: Any, read: Callable[[xr.DataArray], Any]
     ) -> Any:
-        """Return what is read of a variable as times by levels, like the current."""
-        like = self._parts[0][0]
-        if self._time is None:
-            return read(variable.broadcast_like(like)).reshape(1, -1)
-        own = variable.broadcast_like(like).isel({self._time: index})
-        values = read(own.transpose(self._time, *(dim for dim in like.dims if dim != self._time)))
-        return values.reshape(len(values), -1)
-
-    def _values(self, variable: xr.DataArray, index: Any) -> NDArray[np.float64]:
         """Return times by levels, contiguous, so that equal values give equal results in any
         company.
         """
+        like = self._parts[0][0]
+        if set(variable.dims) != set(like.dims):
+            variable = variable.broadcast_like(like)
         if self._time is None:
-            return known_values(variable).reshape(1, -1)
-        values = known_values(variable.isel({self._time: index}).transpose(self._time, ...))
+            return read(variable).reshape(1, -1)
+        levels = [dim for dim in like.dims if dim != self._time]
+        values = read(variable.isel({self._time: index}).transpose(self._time, *levels))
         return values.reshape(len(values), -1)
 
 

@@ -133,6 +133,7 @@ FAR_APART = np.timedelta64(12, "h")
 """Between profiles so far apart the tide and its peaks are lost."""
 
 _FEWEST = 4  # values of which it is no chance that they are alike
+_MANY = 200  # currents of which one component is not 0 by chance
 _MOST = 0.5  # share of zeros, and of profiles like the one before, that is said
 _ALIKE = 0.9  # share of values that are the same in both components
 _WEAK = 0.01  # m/s that no sea stays below for many profiles
@@ -141,7 +142,6 @@ _FEW = 25.0  # m of that
 
 
 def current_notices(
-    names: tuple[str, str],
     levels: tuple[Floats, Floats, Floats],
     times: NDArray[np.datetime64] | None,
     water_depth: float,
@@ -150,7 +150,6 @@ def current_notices(
 
     Parameters
     ----------
-    names : of the components
     levels : depth, of any shape [m], and u, v (n, k) to the east and to the north, gaps as NaN
         [m/s]
     times : (n,) in their order; None of one profile
@@ -163,19 +162,15 @@ def current_notices(
     known = np.isfinite(u) & np.isfinite(v)
     count, still = int(known.sum()), known & (u == 0.0) & (v == 0.0)
     moving = known & ~still
-    first, second = names
     if count and still.sum() > _MOST * count:
         yield f"{still.sum()} of {count} currents are exactly 0: nothing was measured there?"
     if moving.sum() >= _FEWEST:
         alike = moving & (np.abs(u) == np.abs(v))
         if alike.sum() > _ALIKE * moving.sum():
             yield (
-                f"`{first}` and `{second}` are the same in {alike.sum()} of {moving.sum()} "
-                "currents: one of them is a copy of the other?"
+                f"the currents to the east and to the north are the same in {alike.sum()} of "
+                f"{moving.sum()} values: one of them is a copy of the other?"
             )
-        for name, values, other in ((first, u, second), (second, v, first)):
-            if not values[moving].any():
-                yield f"`{name}` is 0 in all {moving.sum()} currents that `{other}` has"
     if times is None or not len(times):
         return
     if len(times) > 1:
@@ -190,6 +185,8 @@ def current_notices(
         same &= moving[1:].any(axis=1)
         if same.sum() > _MOST * (len(times) - 1):
             yield f"{same.sum()} of {len(times)} profiles are the same as the one before"
+        if moving.sum() > _MANY and not (u[moving].any() and v[moving].any()):
+            yield f"all {moving.sum()} currents are along one axis, their other component 0"
         strongest = float(np.hypot(u[moving], v[moving]).max())
         if strongest < _WEAK:
             yield (

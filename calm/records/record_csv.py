@@ -68,7 +68,7 @@ class CsvRecord(Record):
             raise
         self.time = self._times[self._index]
         depth, u, v, _ = self.profiles(0, min(self.count, AT_ONCE))
-        odd = current_notices(("u", "v"), (depth, u, v), self.time[:AT_ONCE], terms.water_depth)
+        odd = current_notices((depth, u, v), self.time[:AT_ONCE], terms.water_depth)
         self.notes = (*chosen, *self._turned, *odd, *RULES)
         self.source = {"file": path.name, "columns": ", ".join(header.columns)}
 
@@ -408,7 +408,7 @@ def read_current_csv(path: Path, time: str | None, terms: Terms) -> tuple[Curren
         raise InputError(abridged(problems))
     notices += turned_notices(header.columns, terms)
     arrays = np.array(current.depth), np.array([current.u]), np.array([current.v])
-    return current, [*notices, *current_notices(("u", "v"), arrays, None, terms.water_depth)]
+    return current, [*notices, *current_notices(arrays, None, terms.water_depth)]
 
 
 def _rows_of(rows: list[CellRow], time: str | None, path: Path) -> tuple[list[CellRow], list[str]]:
