@@ -259,7 +259,7 @@ _TEXTS = re.compile(
     r"(\w+_)?filter(ing|ed|s)?(_\w+)?|data_type|subject|purpose"
 )
 _TITLES = re.compile(r"(?i)title|summary|abstract|description|data_type|subject|purpose")
-_SENTENCE = re.compile(r"[.;()\n]")
+_SENTENCE = re.compile(r"\.(?!\d)|[;()\n]")
 _OF_OTHERS = re.compile(
     r"\b(temperatures?|salinit\w+|pressures?|sea level|elevations?|conductivit\w+|headings?|"
     r"pitch|roll|not|no|never|against|before|elsewhere|see|also|forc\w+|boundar(y|ies)|depths?|heights?)\b"

@@ -28,7 +28,6 @@ if TYPE_CHECKING:
 _TIME_NAMES = ("time", "TIME", "Time", "time_counter", "ocean_time", "MT")
 _CALENDARS = ("standard", "gregorian", "proleptic_gregorian")
 _FIRST, _LAST = "1678-01-01", "2262-01-01"
-_AT_ONCE = 50_000
 _ZONE = re.compile(r" since .*\d\s*([A-Za-z]{2,}(/[A-Za-z_]+)?)\s*$")
 _ZONED = ("time_zone", "timezone", "tz", "time_reference")
 _SAID_IN = re.compile(r"(?i)long_name|title|summary|(time_)?(comments?|notes?|description)|history")
@@ -43,13 +42,10 @@ _LABELS = ("instrument", "label", "instrument_label", "labels", "instruments")
 _HEIGHTS = ("hab", "height_above_bottom", "height_above_seabed", "DIST_SEABED")
 _DEPTHS = ("nominal_depth", "NOMINAL_DEPTH", "InstrDepth", "DEPTH", "depth", "instrument_depth")
 
-
 MISSING = 9
 _ENDINGS = ("_qc", "_QC", "_quality_control", "_flag", "_SEADATANET_QC")
 _BAD = re.compile(r"bad|fail|suspect|spike|erroneous|wrong|missing|reject|doubtful|invalid")
 
-
-_ZARR = ("zarr.json", ".zgroup", ".zmetadata")
 _KINDS = {
     b"MATLAB": "a .mat file of MATLAB; write its times, depths and currents with `ncwrite`",
     b"GRIB": "a GRIB file; turn it into NetCDF (`cdo -f nc copy`)",
@@ -65,11 +61,6 @@ _KINDS = {
 
 class UnreadableError(Exception):
     """The file does not hold a current that can be understood; the text says why."""
-
-
-def is_zarr(path: Path) -> bool:
-    """Return whether a folder is a zarr store."""
-    return any((path / name).is_file() for name in _ZARR)
 
 
 def is_netcdf(path: Path) -> bool:
@@ -253,9 +244,9 @@ def flags_of(variable: xr.DataArray) -> NDArray[np.int8]:
 def marked_bad(variable: xr.DataArray) -> NDArray[np.bool_]:
     """Return which flags say that a value is bad, by their meanings; without, 3, 4 and 9 do."""
     bad, told = ["3", "4", "9"], str(variable.attrs.get("flag_meanings", "")).lower().split()
-    values = np.atleast_1d(variable.attrs.get("flag_values", []))
+    values = np.atleast_1d(variable.attrs.get("flag_values", [])).tolist()
     if told and len(told) == len(values):
-        pairs = zip(values.tolist(), told, strict=True)
+        pairs = zip(values, told, strict=True)
         bad = [_flag(value) for value, meaning in pairs if _BAD.search(meaning)]
     flags = np.asarray(variable.values)
     kinds, which = np.unique(flags.astype(object).astype(str), return_inverse=True)
@@ -339,9 +330,7 @@ def read_times(dataset: xr.Dataset, name: str) -> NDArray[np.datetime64]:
     if times.ndim > 1:
         raise UnreadableError(f"the times in `{name}` have {times.ndim} dimensions")
     read = np.empty(times.size, "datetime64[ns]")
-    for start in range(0, times.size, _AT_ONCE):
-        piece = slice(start, start + _AT_ONCE)
-        read[piece] = _decoded(times[piece] if times.ndim else times)
+    read[:] = _decoded(times)
     missing = int(np.isnat(read).sum())
     if missing:
         raise UnreadableError(f"{missing} of the {read.size} times in `{name}` have no value")

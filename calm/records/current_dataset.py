@@ -139,7 +139,7 @@ class CurrentDataset:
         """
         if not self._flags:
             return None
-        every = [self._along(variable, index, flags_of) for variable in self._flags]
+        every = [self._along(one, index, flags_of) for one in self._flags]
         worst: NDArray[np.int8] = np.maximum.reduce(every)
         return worst
 

@@ -8,13 +8,24 @@ from pathlib import Path
 import numpy as np
 
 from calm.errors import InputError, Problem
-from calm.records.cf_files import UnreadableError, is_netcdf, is_zarr, open_current, reading
+from calm.records.cf_files import UnreadableError, is_netcdf, open_current, reading
 from calm.records.current_dataset import ArrayRecord, CurrentArrays, understand
-from calm.records.current_terms import Terms, TimeChoiceError, choose_time, too_deep, too_fast
-from calm.records.profile_tables import CurrentTable
+from calm.records.current_terms import (
+    Terms,
+    TimeChoiceError,
+    choose_time,
+    current_notices,
+    parse_time,
+    too_deep,
+    too_fast,
+)
+from calm.records.delimited import CellRow, abridged, read_table
+from calm.records.profile_tables import CurrentTable, turned_notices
 from calm.records.record import Period, Record
-from calm.records.record_csv import CsvRecord, read_current_csv
+from calm.records.record_csv import EXAMPLE, CsvRecord, CurrentHeader
 from calm.records.water_column import Place
+
+_ZARR = ("zarr.json", ".zgroup", ".zmetadata")
 
 
 def read_current_file(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable, list[str]]:
@@ -35,7 +46,7 @@ def read_current_file(path: Path, time: str | None, terms: Terms) -> tuple[Curre
     """
     if holds_arrays(path):
         return _from_arrays(path, time, terms)
-    return read_current_csv(path, time, terms)
+    return _from_text(path, time, terms)
 
 
 def open_record(
@@ -86,7 +97,7 @@ def holds_arrays(path: Path) -> bool:
     """
     if not path.is_dir():
         return is_netcdf(path)
-    if not is_zarr(path):
+    if not any((path / name).is_file() for name in _ZARR):
         message = "is a folder, and not a zarr store; join its files into one first"
         raise InputError([Problem(str(path), 0, 0, message)])
     return True
@@ -115,8 +126,9 @@ def _profile(arrays: CurrentArrays, terms: Terms, notices: list[str]) -> Current
     w = np.zeros_like(u) if arrays.w is None else arrays.w.ravel()
     known = ~np.isnan(u + v + w) & np.isfinite(depth)
     below = known & (depth >= 0)
-    _tell(notices, int(np.sum(~known)), "without a value")
-    _tell(notices, int(np.sum(known & ~below)), "above the surface")
+    for left, what in ((~known, "without a value"), (known & ~below, "above the surface")):
+        if count := int(left.sum()):
+            notices.append(f"{count} level{'s' * (count > 1)} {what} left out of the current")
     if not below.any():
         raise UnreadableError("no level below the surface has a value")
     for level, east, north, up in zip(*(one[below] for one in (depth, u, v, w)), strict=True):
@@ -131,6 +143,42 @@ def _profile(arrays: CurrentArrays, terms: Terms, notices: list[str]) -> Current
     return CurrentTable(*(tuple(values.tolist()) for values in (depth, u, v, w)))
 
 
-def _tell(notices: list[str], count: int, what: str) -> None:
-    if count:
-        notices.append(f"{count} level{'s' * (count > 1)} {what} left out of the current")
+def _from_text(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable, list[str]]:
+    table = read_table(path, EXAMPLE)
+    header, rows = CurrentHeader(path, table.header), list(table.rows)
+    notices: list[str] = []
+    if header.timed:
+        rows, notices = _rows_of(rows, time, path)
+        known = header.without_gaps(rows)
+        if rows and not known:
+            raise InputError([Problem(str(path), rows[0].number, 1, "no level has a value")])
+        if left_out := len(rows) - len(known):
+            levels = f"{left_out} level{'s' * (left_out > 1)}"
+            notices.append(f"{levels} without a value left out of the current")
+        rows = known
+    elif time is not None:
+        raise TimeChoiceError("the file has no column `time`")
+    problems: list[Problem] = []
+    current = header.profile(rows, problems, terms)
+    if current is None:
+        raise InputError(abridged(problems))
+    notices += turned_notices(header.columns, terms)
+    arrays = np.array(current.depth), np.array([current.u]), np.array([current.v])
+    return current, [*notices, *current_notices(arrays, None, terms.water_depth)]
+
+
+def _rows_of(rows: list[CellRow], time: str | None, path: Path) -> tuple[list[CellRow], list[str]]:
+    """Return the rows of the time nearest to the one wanted, and the notice that says so."""
+    problems = []
+    moments = []
+    for row in rows:
+        try:
+            moments.append(parse_time(row.cells[0]))
+        except TimeChoiceError as error:
+            problems.append(Problem(str(path), row.number, row.column(0), str(error)))
+    if problems:
+        raise InputError(abridged(problems))
+    times = sorted(set(moments))
+    index, notice = choose_time(times, time)
+    chosen = [row for row, moment in zip(rows, moments, strict=True) if moment == times[index]]
+    return chosen, [notice] if notice else []

@@ -235,7 +235,7 @@ def _by_depth(
     report: Report,
     problems: list[Problem],
 ) -> dict[str, DepthTable] | None:
-    """Return what a table says of the water by its names; None, with its mistakes, if it has any."""
+    """Return what a table says of the water by its names; None, with mistakes, if it has any."""
     before = len(problems)
     values = _read_columns(columns, rows, known, report, problems)
     given = values.keys() - {"depth"}

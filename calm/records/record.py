@@ -177,7 +177,7 @@ def choose_profiles(
         raise InputError([Problem(str(path), 0, 0, "has no times")])
     notes = []
     order: NDArray[np.intp] | None = None
-    if not _rises(times):
+    if np.any(times[1:] < times[:-1]):
         order = np.argsort(times, kind="stable")
         notes.append("the profiles were not in the order of time, and have been sorted")
         times = times[order]
@@ -244,10 +244,6 @@ def _in_reach(moment: np.datetime64) -> np.datetime64:
     first, last = (np.datetime64(end, "us") for end in REACH)
     near: Any = min(max(moment, first), last)
     return np.datetime64(near, "ns")
-
-
-def _rises(times: Times) -> bool:
-    return bool(np.all(times[1:] >= times[:-1]))
 
 
 def _refuse_repeats(times: Times, path: Path) -> None:

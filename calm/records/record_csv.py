@@ -21,7 +21,6 @@ from calm.records.current_terms import (
     DEEPEST,
     Terms,
     TimeChoiceError,
-    choose_time,
     current_notices,
     parse_time,
 )
@@ -32,7 +31,6 @@ from calm.records.delimited import (
     CellRow,
     NumberedLine,
     abridged,
-    read_table,
     row_below,
     table_lines,
 )
@@ -47,6 +45,7 @@ AT_ONCE = 50_000
 COLUMNS = 4
 """Depth [m], u, v and w [m/s]."""
 
+EXAMPLE = "depth[m],u[m/s],v[m/s]"
 _DIMENSIONS = {"depth": "length", "toward": "angle", "from": "angle"}
 _PLAIN = ({"depth", "u", "v"}, {"depth", "speed", "toward"}, {"depth", "speed", "from"})
 
@@ -321,9 +320,6 @@ def _possible(values: dict[str, Floats], rows: Floats, counts: list[int]) -> boo
     return bool((np.diff(depth[known])[same] > 0).all())
 
 
-EXAMPLE = "depth[m],u[m/s],v[m/s]"
-
-
 @dataclass(frozen=True)
 class CurrentHeader:
     """Know the columns of a table of currents after its time, if it has one."""
@@ -381,48 +377,3 @@ class CurrentHeader:
             if len(row.cells) != len(names)
             or not any(row.cells[j].lower() in GAPS for j in current)
         ]
-
-
-def read_current_csv(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable, list[str]]:
-    """Return the profile of a time, and notices; see `calm.records.current_file`.
-
-    Parameters and errors are those of `read_current_file`.
-    """
-    table = read_table(path, EXAMPLE)
-    header, rows = CurrentHeader(path, table.header), list(table.rows)
-    notices: list[str] = []
-    if header.timed:
-        rows, notices = _rows_of(rows, time, path)
-        known = header.without_gaps(rows)
-        if rows and not known:
-            raise InputError([Problem(str(path), rows[0].number, 1, "no level has a value")])
-        if left_out := len(rows) - len(known):
-            levels = f"{left_out} level{'s' * (left_out > 1)}"
-            notices.append(f"{levels} without a value left out of the current")
-        rows = known
-    elif time is not None:
-        raise TimeChoiceError("the file has no column `time`")
-    problems: list[Problem] = []
-    current = header.profile(rows, problems, terms)
-    if current is None:
-        raise InputError(abridged(problems))
-    notices += turned_notices(header.columns, terms)
-    arrays = np.array(current.depth), np.array([current.u]), np.array([current.v])
-    return current, [*notices, *current_notices(arrays, None, terms.water_depth)]
-
-
-def _rows_of(rows: list[CellRow], time: str | None, path: Path) -> tuple[list[CellRow], list[str]]:
-    """Return the rows of the time nearest to the one wanted, and the notice that says so."""
-    problems = []
-    moments = []
-    for row in rows:
-        try:
-            moments.append(parse_time(row.cells[0]))
-        except TimeChoiceError as error:
-            problems.append(Problem(str(path), row.number, row.column(0), str(error)))
-    if problems:
-        raise InputError(abridged(problems))
-    times = sorted(set(moments))
-    index, notice = choose_time(times, time)
-    chosen = [row for row, moment in zip(rows, moments, strict=True) if moment == times[index]]
-    return chosen, [notice] if notice else []

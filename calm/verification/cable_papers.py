@@ -178,10 +178,7 @@ against the march as well.""",
             Kind.INDEPENDENT,
         ),
         *table(
-            [
-                CaseColumn[ChartSolution]("length L", "m", 5.5e-3, lambda cable: cable.length),
-                CaseColumn[ChartSolution]("distance D", "m", 5.5e-3, lambda cable: cable.distance),
-            ],
+            [_figures(5.5e-3, 0.0, 0.0)[name] for name in ("L", "D")],
             [("buoy at its true K, 2.7", partial(_buoy, 2.7), (30.71, 21.50))],
             PRINTED,
             Kind.INDEPENDENT,
