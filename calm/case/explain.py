@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from calm.case.attribution import FAIR, Attribution, SolverPart, attribute, with_drag
+from calm.case.draws import Draw, drawn_water
 from calm.case.mooring import Mooring
 from calm.case.parts import TOP, clamps_in, one_part
 from calm.case.result_tables import ColumnTable
@@ -250,8 +251,8 @@ def _variations(mooring: Mooring) -> Iterator[tuple[str, Mooring]]:
     line, water, percent = mooring.line, mooring.water, f"{CHANGE:.0%}".replace("%", " %")
     yield f"buoyancy +{percent}", _with(mooring, line=_with_buoyancy(line, 1.0 + CHANGE))
     yield f"drag −{percent}", _with(mooring, line=with_drag(line, 1.0 - CHANGE))
-    yield f"current +{percent}", _with(mooring, water=_with_current(water, 1.0 + CHANGE))
-    yield f"current −{percent}", _with(mooring, water=_with_current(water, 1.0 - CHANGE))
+    yield f"current +{percent}", _with(mooring, water=drawn_water(water, Draw(1.0 + CHANGE)))
+    yield f"current −{percent}", _with(mooring, water=drawn_water(water, Draw(1.0 - CHANGE)))
 
 
 def _with(mooring: Mooring, line: Line | None = None, water: Water | None = None) -> Mooring:
@@ -271,10 +272,6 @@ def _with_buoyancy(line: Line, factor: float) -> Line:
         buoyancy=np.where(line.buoyancy > 0.0, factor, 1.0) * line.buoyancy,
         clamp_buoyancy=np.where(line.clamp_buoyancy > 0.0, factor, 1.0) * line.clamp_buoyancy,
     )
-
-
-def _with_current(water: Water, factor: float) -> Water:
-    return replace(water, u=factor * water.u, v=factor * water.v, w=factor * water.w)
 
 
 def _changed(name: str, mooring: Mooring, place: Place) -> WhatIf:

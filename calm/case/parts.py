@@ -5,10 +5,17 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from calm.errors import NoEquilibrium
 from calm.files import Clamp, Piece
 from calm.suggestions import unknown
+
+if TYPE_CHECKING:
+    from calm.case.mooring import Mooring
+    from calm.case.tow import Tow
+    from calm.files import MooringFile
 
 TOP = "top"
 """The free end of the line, whatever its label."""
@@ -30,6 +37,28 @@ def clamps_in(pieces: Sequence[Piece]) -> list[Clamp]:
 def clamps_down(pieces: Sequence[Piece]) -> list[Clamp]:
     """List the clamps of a mooring's line from its top to its anchor, the order of its results."""
     return [clamp for piece in pieces for clamp in sorted(piece.clamps, key=lambda clamp: clamp.at)]
+
+
+def cut_like(file: MooringFile, case: Mooring | Tow) -> MooringFile:
+    """Return a file with the piece that is cut to fit at the length that it has in a case.
+
+    Raises
+    ------
+    NoEquilibrium
+        No length fits there.
+    """
+    pieces = tuple(
+        piece
+        if piece.fit_top_depth is piece.fit_body_depth is None
+        else replace(
+            piece,
+            length=float(case.line.length[piece.index]),
+            fit_top_depth=None,
+            fit_body_depth=None,
+        )
+        for piece in file.pieces
+    )
+    return replace(file, pieces=pieces)
 
 
 def one_part(pieces: Sequence[Piece], text: str) -> Piece | Clamp:

@@ -37,14 +37,11 @@ def document_of(result: Result | TowResult, ends: dict[str, Any]) -> dict[str, A
         "calm": __version__,
         "name": result.name,
         **({} if document is None else {"document": document.to_dict()}),
-        "type": result.type,
-        "status": result.status,
-        "iterations": result.iterations,
-        "segments": result.segments,
-        "miss": result.miss,
-        "closure": result.closure,
+        **{name: getattr(result, name) for name in _AS_THEY_ARE},
         "accuracy": {k: v for k, v in asdict(result.accuracy).items() if v is not None},
         **ends,
+        "strumming": _known(result.strumming),
+        "strumming_band": _known(result.strumming_band),
         "other_equilibrium": result.other_equilibrium,
         "components": components,
         "clamps": clamps,
@@ -53,7 +50,10 @@ def document_of(result: Result | TowResult, ends: dict[str, Any]) -> dict[str, A
     }
 
 
-def known(part: Strumming | StrummingBand | None) -> dict[str, Any] | None:
+_AS_THEY_ARE = ("type", "status", "iterations", "segments", "miss", "closure")
+
+
+def _known(part: Strumming | StrummingBand | None) -> dict[str, Any] | None:
     """A part of a result as a dictionary; None where there is none."""
     return None if part is None else asdict(part)
 
@@ -109,13 +109,30 @@ class AnchorLoad:
     grounded_length: float
 
 
+@dataclass(frozen=True, kw_only=True)
 class Solved:
-    """Describe how a result shows its table, whatever was solved.
+    """Hold what every result has, whatever was solved. Depths [m], forces [N].
 
-    `notebook_form` makes HTML of a result; the rooms above set it.
+    `iterations` counts marches, `segments` the cuts of the final one, `miss` is the height
+    of the line's end above the anchor's top, `closure` the relative force residual recomputed
+    from the final coordinates. `other_depth` is that of the free end in another equilibrium that
+    was found. `notebook_form` makes HTML of a result; the rooms above set it.
     """
 
-    components: Components
+    name: str
+    type: str
+    status: str
+    iterations: int
+    segments: int
+    miss: float
+    closure: float
+    accuracy: Accuracy
+    strumming: Strumming | None
+    components: Components = field(repr=False)
+    clamps: Clamps = field(repr=False)
+    shape: Shape = field(repr=False)
+    other_depth: float | None = None
+    warnings: tuple[str, ...] = ()
     notebook_form: ClassVar[Callable[[Any], str] | None] = None
 
     def to_dataframe(self) -> Any:
@@ -128,36 +145,19 @@ class Solved:
         return None if form is None else form(self)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Result(Solved):
     """A converged mooring. Lengths and depths [m], forces [N], angles [degrees].
 
-    `iterations` counts marches, `segments` the cuts of the final one, `miss` is the height
-    of the line's end above the anchor's top, `closure` the relative force residual recomputed
-    from the final coordinates. `still_shape` is the same line without current, None where that
-    has no unique shape. `other_depth` is that of the free end in another equilibrium that was
-    found, `other_grounded_length` what lies on the seabed there.
+    `still_shape` is the same line without current, None where that has no unique shape,
+    `other_grounded_length` what lies on the seabed in another equilibrium.
     """
 
     mooring: Mooring = field(repr=False)
-    name: str
-    type: str
-    status: str
-    iterations: int
-    segments: int
-    miss: float
-    closure: float
-    accuracy: Accuracy
     top: Top
     anchor: AnchorLoad
-    strumming: Strumming | None
-    components: Components = field(repr=False)
-    clamps: Clamps = field(repr=False)
-    shape: Shape = field(repr=False)
     still_shape: Shape | None = field(repr=False)
-    other_depth: float | None = None
     other_grounded_length: float = 0.0
-    warnings: tuple[str, ...] = ()
 
     @property
     def other_equilibrium(self) -> dict[str, float] | None:
@@ -181,10 +181,4 @@ class Result(Solved):
 
     def to_dict(self) -> dict[str, Any]:
         """The JSON object of the result format; None stands where a figure is unknown."""
-        ends = {
-            "top": asdict(self.top),
-            "anchor": asdict(self.anchor),
-            "strumming": known(self.strumming),
-            "strumming_band": known(self.strumming_band),
-        }
-        return document_of(self, ends)
+        return document_of(self, {"top": asdict(self.top), "anchor": asdict(self.anchor)})

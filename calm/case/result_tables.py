@@ -242,6 +242,11 @@ class WithClamps(Protocol):
         """Return what is clamped on them."""
 
 
+def rows_by_place(result: WithClamps) -> dict[Place, ComponentRow | ClampRow]:
+    """Return every row of a result by the place of its piece or clamp."""
+    return {row.place: row for row in (*result.components, *result.clamps)}
+
+
 def rows_down(result: WithClamps) -> Iterator[tuple[ComponentRow, list[ClampRow]]]:
     """Yield the pieces of a result, each with what is clamped on it."""
     on: dict[int, list[ClampRow]] = {}

@@ -9,7 +9,7 @@ from math import hypot
 from typing import TYPE_CHECKING, Any
 
 from calm.case.parts import TOP, one_part, parts_of
-from calm.case.result_tables import ClampRow, ComponentRow
+from calm.case.result_tables import ClampRow, ComponentRow, rows_by_place
 from calm.errors import UsageError
 from calm.files import Piece, Place
 from calm.suggestions import unknown
@@ -76,14 +76,8 @@ class Target:
 
     def to_dict(self) -> dict[str, Any]:
         """The target in JSON."""
-        return {
-            "text": self.text,
-            "quantity": self.quantity,
-            "label": self.label,
-            "relation": self.relation,
-            "limit": self.limit,
-            "unit": self.unit,
-        }
+        names = ("text", "quantity", "label", "relation", "limit", "unit")
+        return {name: getattr(self, name) for name in names}
 
 
 def parse_target(text: str, pieces: Sequence[Piece]) -> Target:
@@ -158,7 +152,7 @@ def spot_of(result: Result, place: Place | None = None) -> Spot:
     """
     row: ComponentRow | ClampRow = result.components[0]
     if place is not None:
-        row = next(row for row in (*result.components, *result.clamps) if row.place == place)
+        row = rows_by_place(result)[place]
     if isinstance(row, ComponentRow):
         depth, x, y = row.depth_top, row.x_top, row.y_top
     else:
@@ -190,14 +184,8 @@ class Figures:
 
 def figures_of(result: Result, place: Place | None = None) -> Figures:
     """The figures of a result; those of the line are of the part at a place, by default the top."""
-    spot = spot_of(result, place)
+    spot, anchor = spot_of(result, place), result.anchor
     return Figures(
-        depth=spot.depth,
-        knockdown=spot.knockdown,
-        excursion=spot.excursion,
-        used_buoyancy=result.top.used_buoyancy,
-        tension=result.anchor.tension,
-        vertical=result.anchor.vertical,
-        horizontal=result.anchor.horizontal,
-        required_weight=result.anchor.required_weight,
+        *(spot.depth, spot.knockdown, spot.excursion, result.top.used_buoyancy),
+        *(anchor.tension, anchor.vertical, anchor.horizontal, anchor.required_weight),
     )

@@ -11,10 +11,9 @@ from typing import Any
 from calm.assemble import assemble_line, assemble_water
 from calm.case.measure import clamps_of, components_of, shape_of
 from calm.case.memory import Forgetful, Memory
-from calm.case.parts import naming_the_piece
-from calm.case.result import Accuracy, Solved, document_of, known
-from calm.case.result_tables import Clamps, Components, Shape
-from calm.case.strumming import Strumming, StrummingBand, strumming_of, tow_band
+from calm.case.parts import cut_like, naming_the_piece
+from calm.case.result import Accuracy, Solved, document_of
+from calm.case.strumming import StrummingBand, strumming_of, tow_band
 from calm.case.warnings import tow_warnings_of
 from calm.errors import NoEquilibrium, UsageError
 from calm.files import MooringFile, TowKeys
@@ -51,7 +50,7 @@ class TowedBody:
     angle: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class TowResult(Solved):
     """A converged tow. Lengths and depths [m], forces [N], angles [degrees], speed [m/s].
 
@@ -61,24 +60,10 @@ class TowResult(Solved):
     """
 
     tow: Tow = field(repr=False)
-    name: str
-    type: str
-    status: str
-    iterations: int
-    segments: int
-    miss: float
-    closure: float
-    accuracy: Accuracy
     speed: float
     toward: float
     tow_point: TowPoint
     body: TowedBody
-    strumming: Strumming | None
-    components: Components = field(repr=False)
-    clamps: Clamps = field(repr=False)
-    shape: Shape = field(repr=False)
-    other_depth: float | None = None
-    warnings: tuple[str, ...] = ()
 
     @property
     def other_equilibrium(self) -> dict[str, float] | None:
@@ -102,8 +87,6 @@ class TowResult(Solved):
             "toward": self.toward,
             "tow_point": asdict(self.tow_point),
             "body": asdict(self.body),
-            "strumming": known(self.strumming),
-            "strumming_band": known(self.strumming_band),
         }
         return document_of(self, ends)
 
@@ -332,11 +315,5 @@ def _attempt(tow: Tow) -> TowResult | NoEquilibrium:
 
 def _with_strumming(tow: Tow, keys: BourgetMarichalKeys) -> Tow:
     """Return the same tow, a fitted cable as long as it is, with other coefficients."""
-    pieces = tuple(
-        replace(piece, length=float(tow.line.length[piece.index]), fit_body_depth=None)
-        if piece.fit_body_depth is not None
-        else piece
-        for piece in tow.file.pieces
-    )
     solver = tow.file.solver.model_copy(update={"strumming": keys})
-    return Tow(replace(tow.file, pieces=pieces, solver=solver))
+    return Tow(replace(cut_like(tow.file, tow), solver=solver))

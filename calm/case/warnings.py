@@ -25,9 +25,13 @@ LARGEST_STRAIN = 0.25
 
 
 def is_synthetic(component: Component) -> bool:
-    """Return whether a component is a rope of a synthetic fibre, by its `material`."""
+    """Return whether a component is a rope of a synthetic fibre, by its `material`.
+
+    Steel in a jacket of plastic is none.
+    """
     material = (component.material or "").lower()
-    return component.kind == "cable" and any(fibre in material for fibre in FIBRES)
+    fibrous = component.kind == "cable" and any(fibre in material for fibre in FIBRES)
+    return fibrous and "steel" not in material
 
 
 def warnings_of(result: Result, solution: Solution) -> tuple[str, ...]:

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from calm.assemble import axial_drag_of, drag_of, net_buoyancy
+from calm.case.parts import clamps_in
+from calm.case.parts import parts_of as every_part
 from calm.case.warnings import is_synthetic
 from calm.checks.criterion import JudgedPart, parts_of
 from calm.checks.finding import State, Verdict, at_most, reported, rule, unknown, verdict_on
@@ -48,35 +50,73 @@ _UNBALANCED = re.compile(
 )
 _STEEL = re.compile(r"\b(steel|galv\w*|stainless|nilspin)\b")
 _NO_RELEASE = re.compile(r"\b(shackle|swivel|sling|chain|rope|wire|thimble|pear[- ]?link)s?\b")
+_TWICE = re.compile(r"\b(double|dual|pair|twin|tandem|two|releases)\b")
 _INSULATED = ("plastic", "jacket", "sheath", "coated", "insulat")
+
+
+LEAST_BELOW_RELEASE = 1.0
+"""How far above its anchor a release should stand [m]."""
 
 
 @rule("release-present", once=True)
 def release_present(handling: Handling) -> Iterator[Verdict]:
-    """Return whether a sub-surface line says what lets go of its anchor."""
+    """Return whether a line says what lets go of its anchor, and whether that frees it."""
     mooring = handling.mooring
-    if reaches_the_surface(mooring):
-        return
-    release = mooring.file.release
+    release, pieces = mooring.file.release, mooring.file.pieces
+    for clamp in clamps_in(pieces):
+        if clamp.component.role == "release":
+            message = f"{clamp.label} has the role of a release, and is clamped: it frees nothing."
+            yield unknown(clamp, message, "Put it into the line, or give it another role.")
     if release is None:
-        yield unknown(
-            None,
-            "No piece has the role of a release: how the line is freed from its anchor is not "
-            "known.",
-            "Give the release `role: release`.",
-        )
+        if not reaches_the_surface(mooring):
+            yield unknown(
+                None,
+                "No piece has the role of a release: how the line is freed from its anchor is not "
+                "known.",
+                "Give the release `role: release`.",
+            )
         return
-    piece = mooring.file.pieces[release]
+    piece = pieces[release]
     if _NO_RELEASE.search(_words(piece.use, piece.component.name)):
         message = f"{piece.label} has the role of a release, and is called what opens nothing."
         yield unknown(piece, message, "Give `role: release` to the release alone.")
         return
-    for below in mooring.file.pieces[release + 1 :]:
-        if net_buoyancy(below.component, mooring.water.gravity) > 0.0:
-            message = f"{below.label} floats below the release, and stays on the anchor."
-            remedy = "Put it above the release, or take what sinks."
-            yield verdict_on(below, State.WARN, message, remedy)
-    yield verdict_on(piece, State.PASS, f"{piece.label} frees the line from everything below it.")
+    above = [part.component for part in every_part(pieces[: release + 1])]
+    if not any(component.net_buoyancy > 0.0 for component in above):
+        message = f"Nothing floats above {piece.label}: freed, it stays down."
+        yield verdict_on(piece, State.FAIL, message, "Put the floats above the release.")
+        return
+    doubts = []
+    below = pieces[release + 1 : -1]
+    length = sum(one.length or 0.0 for one in below)
+    if length < LEAST_BELOW_RELEASE and all(one.fit_top_depth is None for one in below):
+        message = (
+            f"{piece.label} stands {say('depth', length)} above the anchor; "
+            f"{LEAST_BELOW_RELEASE:g} m keep it out of the mud and clear of what falls on it."
+        )
+        doubts.append((piece, message, "Hang it higher, on a rope or chain."))
+    said = _words(piece.use, piece.component.name, piece.label)
+    if sum(component.role == "release" for component in above) == 1 and not _TWICE.search(said):
+        message = f"{piece.label} is the only release: where it fails, nothing else frees the line."
+        doubts.append((piece, message, "Hang two side by side, and call them a `pair`."))
+    for one in below:
+        if net_buoyancy(one.component, mooring.water.gravity) > 0.0:
+            message = f"{one.label} floats below the release, and stays on the anchor."
+            doubts.append((one, message, "Put it above the release, or take what sinks."))
+    for part, message, remedy in doubts:
+        yield verdict_on(part, State.WARN, message, remedy)
+    if not doubts:
+        message = f"{piece.label} frees the line from everything below it."
+        yield verdict_on(piece, State.PASS, message)
+
+
+@rule("hardware", once=True)
+def hardware(handling: Handling) -> Iterator[Verdict]:
+    """Return whether the line has any shackle, link or swivel at all, with weight and strength."""
+    pieces = handling.mooring.file.pieces
+    if not any(piece.component.role == "connector" for piece in pieces):
+        message = "No shackle, link or swivel is in the line: what joins its pieces is not judged."
+        yield verdict_on(None, State.WARN, message, "Put what joins the pieces into the line.")
 
 
 @rule("swivel", once=True)

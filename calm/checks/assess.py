@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from datetime import date
+from typing import ParamSpec, TypeVar
 
 import numpy as np
 
@@ -17,13 +18,16 @@ from calm.checks.finding import AS_GIVEN, OWN, Finding, State
 from calm.checks.handling import Handling
 from calm.checks.inventory import inventory_of
 from calm.checks.posture import reaches_the_surface
-from calm.checks.recovery import Recovery, recovery_of
+from calm.checks.recovery import recovery_of
 from calm.checks.rules import ONCE, STANDING, STILL_ONLY, equilibrium
 from calm.checks.situations import SOLVES, STRUMMING, situations_of
-from calm.drop.launch import Launch, launch_of
+from calm.drop.launch import launch_of
 from calm.errors import NoEquilibrium
 from calm.files import MooringFile, Place
 from calm.solve import expect_many
+
+P = ParamSpec("P")
+T = TypeVar("T")
 
 
 def check(mooring: Mooring, /, *others: Mooring, day: date | None = None) -> Assessment:
@@ -171,17 +175,16 @@ def _worst_of_each_rule(findings: Sequence[Finding]) -> list[Finding]:
 
 def handled(mooring: Mooring, result: Result) -> Handling:
     """Launch, recovery and breaks of a mooring that stands, or why one of them is not known."""
-    launch: Launch | NoEquilibrium
-    recovery: Recovery | NoEquilibrium
-    try:
-        launch = launch_of(mooring)
-    except NoEquilibrium as failure:
-        launch = failure
-    try:
-        recovery = recovery_of(mooring, result)
-    except NoEquilibrium as failure:
-        recovery = failure
+    launch = _or_why_not(launch_of, mooring)
+    recovery = _or_why_not(recovery_of, mooring, result)
     return Handling(mooring, launch, recovery, breaks_of(mooring), losses_of(mooring))
+
+
+def _or_why_not(solve: Callable[P, T], *given: P.args, **named: P.kwargs) -> T | NoEquilibrium:
+    try:
+        return solve(*given, **named)
+    except NoEquilibrium as failure:
+        return failure
 
 
 def _handled(stand: MooringInEnvironment) -> Handling:

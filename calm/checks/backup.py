@@ -136,14 +136,17 @@ def breaks_of(mooring: Mooring) -> tuple[Break, ...]:
     Floats that follow one another, with at most connectors and chain between them, are a cluster.
     What breaks inside the lowest one, or in the connectors and chain that lead from it to the
     release, leaves the release on the seabed in any design, and is not judged. Where that is the
-    whole line, the last break is.
+    whole line, chain parts clusters too; one that is compact even so is judged by its losses alone.
     """
     lift = _lift_to_the_release(mooring)
     if not lift.size:
         return ()
     release = lift.size - 1
-    beyond_help = _beyond_help(mooring.file.pieces[:release], lift[:release])
-    judged = set(range(release)) - set(beyond_help) or {release - 1}
+    above = mooring.file.pieces[:release]
+    beyond_help = _beyond_help(above, lift[:release], "connector", "chain")
+    if len(beyond_help) == release:
+        beyond_help = _beyond_help(above, lift[:release], "connector")
+    judged = set(range(release)) - set(beyond_help)
     breaks = []
     for piece in mooring.file.pieces[:release]:
         left = lift[piece.index + 1 :]
@@ -161,12 +164,13 @@ def breaks_of(mooring: Mooring) -> tuple[Break, ...]:
     return tuple(breaks)
 
 
-def _beyond_help(above: Sequence[Piece], lift: Floats) -> range:
+def _beyond_help(above: Sequence[Piece], lift: Floats, *between: str) -> range:
     """The breaks inside the lowest cluster of floats, and below it down to a cable or instrument.
 
     Parameters
     ----------
     above, lift : the pieces above the release, and their net forces [N]
+    between : kinds and roles of what may stand between the floats of a cluster
     """
     floats = [
         force > 0.0 and not _is(piece, "cable") for piece, force in zip(above, lift, strict=True)
@@ -175,9 +179,9 @@ def _beyond_help(above: Sequence[Piece], lift: Floats) -> range:
     while end and not floats[end - 1]:
         end -= 1
     first = end
-    while first and (floats[first - 1] or _is(above[first - 1], "connector", "chain")):
+    while first and (floats[first - 1] or _is(above[first - 1], *between)):
         first -= 1
-    leads_to_the_release = all(_is(piece, "connector", "chain") for piece in above[end:])
+    leads_to_the_release = all(_is(one, "connector", "chain", "release") for one in above[end:])
     return range(first, len(above) if leads_to_the_release else end - 1)
 
 

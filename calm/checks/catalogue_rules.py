@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from math import pi
 from typing import TYPE_CHECKING
 
+from calm.case.parts import parts_of
 from calm.checks.finding import State, Verdict, rule, verdict_on
 from calm.files import Cable, Chain, Component, Cylinder, Flexible, Sphere
 from calm.files.catalogue import Assembly
@@ -18,7 +19,6 @@ from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY, STEEL_DEN
 
 if TYPE_CHECKING:
     from calm.checks.handling import Handling
-    from calm.files import Clamp, Piece
 
 ROUNDING = 1.05
 """Excess that rounded figures of a data sheet may show: 5 %, or 1.7 % of a sphere's diameter."""
@@ -293,13 +293,11 @@ def figures(handling: Handling) -> Iterator[Verdict]:
     What hangs several times on the line is named once.
     """
     named: set[tuple[str, str]] = set()
-    for piece in handling.mooring.file.pieces:
-        parts: tuple[Piece | Clamp, ...] = (piece, *piece.clamps)
-        for part in parts:
-            for impossible in IMPOSSIBLE:
-                said = impossible(part.component)
-                if said is not None and (part.use, said) not in named:
-                    named.add((part.use, said))
-                    remedy = "Look at its figures, and at their units."
-                    state = State.WARN if impossible is warns_after_limit else State.FAIL
-                    yield verdict_on(part, state, f"{part.label} {said}.", remedy)
+    for part in parts_of(handling.mooring.file.pieces):
+        for impossible in IMPOSSIBLE:
+            said = impossible(part.component)
+            if said is not None and (part.use, said) not in named:
+                named.add((part.use, said))
+                remedy = "Look at its figures, and at their units."
+                state = State.WARN if impossible is warns_after_limit else State.FAIL
+                yield verdict_on(part, state, f"{part.label} {said}.", remedy)

@@ -9,14 +9,14 @@ from math import hypot
 from typing import Any
 
 from calm.case import Mooring, Result, Tow, TowResult
-from calm.case.result_tables import ClampRow, ComponentRow
+from calm.case.result_tables import ClampRow, ComponentRow, rows_by_place
 from calm.checks.assess import check
 from calm.checks.assessment import Assessment
 from calm.checks.finding import State
 from calm.checks.inventory import total_of
 from calm.checks.rules import RULES
 from calm.errors import NoEquilibrium
-from calm.files import Flexible, Place
+from calm.files import Flexible
 from calm.files.file_differences import Change, Differences, differences
 from calm.quantities import QUANTITIES
 
@@ -185,7 +185,7 @@ def _figures_of(design: _Design) -> _Figures:
 
 def _parts(found: Differences, designs: tuple[_Design, _Design]) -> Iterator[Compared]:
     """Of what measures or is cut: where it is, and how long it was cut."""
-    first, second = (_rows(design) for design in designs)
+    first, second = ({} if each.result is None else rows_by_place(each.result) for each in designs)
     for before, after in found.pairs:
         if before.place not in first or after.place not in second:
             continue
@@ -202,13 +202,6 @@ def _parts(found: Differences, designs: tuple[_Design, _Design]) -> Iterator[Com
             title = f"{QUANTITIES[name].heading} of {label}"
             before_it, after_it = values
             yield Compared(f"{label}.{name}", title, name, before_it, after_it, of_a_part=True)
-
-
-def _rows(design: _Design) -> dict[Place, ComponentRow | ClampRow]:
-    if design.result is None:
-        return {}
-    rows: list[ComponentRow | ClampRow] = [*design.result.components, *design.result.clamps]
-    return {row.place: row for row in rows}
 
 
 def _margins(designs: tuple[_Design, _Design]) -> Iterator[Compared]:

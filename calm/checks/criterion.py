@@ -13,7 +13,7 @@ from math import hypot, isnan, nan
 from typing import TYPE_CHECKING
 
 from calm.case.parts import clamps_down
-from calm.checks.finding import Rule, State, Verdict, rule, unknown, verdict_on
+from calm.checks.finding import Rule, State, Verdict, at_least, at_most, rule, unknown
 from calm.files.check_limits import LimitKey, limit_keys
 
 if TYPE_CHECKING:
@@ -97,12 +97,10 @@ class Criterion:
         message, remedy = self.words(value, result)
         if isnan(value) or self.limit is None:
             return unknown(self.part, message, remedy, None if isnan(value) else value)
-        margin = value - self.limit if self.least else self.limit - value
-        kept = margin >= 0.0
         shown, limit = (value, self.limit) if self.stated is None else self.stated(value, result)
-        state = State.PASS if kept else self.beyond
-        said = None if kept else remedy
-        return verdict_on(self.part, state, message, said, shown, limit, margin, self.source)
+        judge = at_least if self.least else at_most
+        found = judge(self.part, value, self.limit, message, remedy, self.beyond, self.source)
+        return replace(found, value=shown, limit=limit)
 
 
 def verdicts(criteria: Iterable[Criterion], result: Result) -> Iterator[Verdict]:

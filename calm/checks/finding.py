@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, fields
 from enum import StrEnum
+from functools import partial
 from math import inf
 from typing import Any
 
@@ -91,22 +92,20 @@ def at_most(
     remedy: str,
     beyond: State = State.FAIL,
     source: str = "",
+    *,
+    least: bool = False,
 ) -> Verdict:
-    """The verdict on a value that may not pass a limit; `beyond` is its state where it does."""
-    return _verdict(part, value, limit, limit - value, message, remedy, beyond, source)
+    """The verdict on a value that may not pass a limit; `beyond` is its state where it does.
+
+    With `least` it may not fall short of it.
+    """
+    margin = value - limit if least else limit - value
+    state, said = (State.PASS, None) if margin >= 0.0 else (beyond, remedy)
+    return verdict_on(part, state, message, said, value, limit, margin, source)
 
 
-def at_least(
-    part: LinePart | None,
-    value: float,
-    limit: float,
-    message: str,
-    remedy: str,
-    beyond: State = State.FAIL,
-    source: str = "",
-) -> Verdict:
-    """The verdict on a value that may not fall short of a limit."""
-    return _verdict(part, value, limit, value - limit, message, remedy, beyond, source)
+at_least = partial(at_most, least=True)
+"""The verdict on a value that may not fall short of a limit."""
 
 
 def reported(part: LinePart | None, value: float, message: str) -> Verdict:
@@ -134,22 +133,6 @@ def verdict_on(
     """The verdict on a part of the line; None for the mooring as a whole."""
     label, place = (None, None) if part is None else (part.label, part.place)
     return Verdict(label, value, limit, margin, state, message, remedy, place, source)
-
-
-def _verdict(
-    part: LinePart | None,
-    value: float,
-    limit: float,
-    margin: float,
-    message: str,
-    remedy: str,
-    beyond: State,
-    source: str,
-) -> Verdict:
-    kept = margin >= 0.0
-    state = State.PASS if kept else beyond
-    said = None if kept else remedy
-    return verdict_on(part, state, message, said, value, limit, margin, source)
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from math import isnan
 from typing import TYPE_CHECKING
 
+from calm.checks.backup import Loss
 from calm.checks.criterion import Citing
 from calm.checks.finding import (
     State,
@@ -18,6 +19,7 @@ from calm.checks.finding import (
     unknown,
     verdict_on,
 )
+from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Recovery
 from calm.checks.strength import lesser_load, passes_load_on
 from calm.drop.launch import Launch
@@ -27,13 +29,14 @@ from calm.quantities import QUANTITIES, say
 
 if TYPE_CHECKING:
     from calm.case import Mooring
-    from calm.checks.backup import Break, Loss
-    from calm.files import LinePart
+    from calm.checks.backup import Break
 
 GREATEST_TOUCHDOWN_SPEED = 2.5
 """Speed above which an anchor may bury itself or break what is on it [m/s]."""
 USUAL_RISE_SPEED = 0.7
 """A rise slower than this is warned of: it takes hours from the deep sea, and drifts away [m/s]."""
+FAST_RISE_SPEED = 3.0
+"""A rise faster than this is warned of: the floats leap beside the ship, the line loops [m/s]."""
 
 
 @dataclass(frozen=True)
@@ -56,6 +59,10 @@ def backup(handling: Handling) -> Iterator[Verdict]:
     """
     cite = Citing.of(handling.mooring.file)
     if handling.mooring.file.release is None:
+        if reaches_the_surface(handling.mooring):
+            message = "Without a release the line is hauled in; what is below a break stays there."
+            yield verdict_on(None, State.PASS, message)
+            return
         yield unknown(
             None,
             "There is no release in the line: nothing can be brought up after a break.",
@@ -67,15 +74,16 @@ def backup(handling: Handling) -> Iterator[Verdict]:
             None, "The load on the release is not known.", "First give the line an equilibrium."
         )
         return
-    worst_break = min((one for one in handling.backup if one.judged), key=_room)
-    worst_loss = min(handling.losses, key=_room, default=None)
-    if worst_loss is not None and _room(worst_loss) < _room(worst_break):
-        worst: Break | Loss = worst_loss
-        part: LinePart = worst_loss
+    breaks = [one for one in handling.backup if one.judged]
+    judged: list[Break | Loss] = [*breaks, *handling.losses]
+    worst = min(judged, key=_room, default=handling.backup[-1])
+    if isinstance(worst, Loss):
+        part: LinePart = worst
         after = f"After the loss of {worst.label}"
     else:
-        worst, part = worst_break, handling.mooring.file.pieces[worst_break.break_after]
+        part = handling.mooring.file.pieces[worst.break_after]
         after = f"After a break below {worst.label}"
+    alone = not breaks and len(handling.losses) == 1
     yield at_least(
         part,
         worst.margin,
@@ -83,6 +91,7 @@ def backup(handling: Handling) -> Iterator[Verdict]:
         f"{after} the part that holds the release has a buoyancy of "
         f"{say('tension', worst.margin)}; {say('tension', worst.required)} bring it up.",
         f"Add {say('tension', worst.required - worst.margin)} of buoyancy above the release.",
+        State.WARN if alone else State.FAIL,
         source=cite("backup_margin"),
     )
 
@@ -189,6 +198,10 @@ def recovery(handling: Handling) -> Iterator[Verdict]:
     verdict = at_least(lowest, rise.rise_speed, limit, message, remedy, source=source)
     if verdict.state is State.PASS and rise.rise_speed < USUAL_RISE_SPEED:
         verdict = replace(verdict, state=State.WARN, remedy=remedy)
+    elif rise.rise_speed > FAST_RISE_SPEED:
+        message += f" Beyond {FAST_RISE_SPEED:g} m/s floats leap and the line below them loops."
+        remedy = "Take buoyancy off, or keep the ship clear."
+        verdict = replace(verdict, state=State.WARN, message=message, remedy=remedy)
     yield verdict
 
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from calm.assemble import net_buoyancy
 from calm.errors import NoEquilibrium
-from calm.files import Anchor, Chain, Component, Flexible, Piece
+from calm.files import Anchor, Chain, Clamp, Component, Flexible, Piece
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY, STEEL_DENSITY
 
 if TYPE_CHECKING:
@@ -96,38 +96,28 @@ def inventory_of(mooring: Mooring) -> tuple[InventoryItem, ...]:
 
 
 def _items(piece: Piece, length: float | None, gravity: float) -> Iterator[InventoryItem]:
-    clamped = [_dry_mass(clamp.component, 0.0) for clamp in piece.clamps]
-    masses = [_dry_mass(piece.component, length), *clamped]
-    known = [mass for mass in masses if mass is not None]
-    yield InventoryItem(
-        index=piece.index,
-        use=piece.use,
-        label=piece.label,
-        role=piece.component.role,
-        kind=piece.component.kind,
-        name=piece.component.name,
-        clamped_on=None,
-        cut_length=length,
-        dry_mass=masses[0],
-        wet_weight=_wet_weight(piece.component, length, gravity),
-        lift_mass=sum(known) if len(known) == len(masses) else None,
-    )
-    for clamp, mass in zip(piece.clamps, clamped, strict=True):
-        along = getattr(clamp.component, "length", 0.0)
-        yield InventoryItem(
+    parts: list[tuple[Piece | Clamp, float | None]] = [(piece, length)]
+    parts += [(clamp, getattr(clamp.component, "length", 0.0)) for clamp in piece.clamps]
+    found = [
+        InventoryItem(
             index=piece.index,
-            use=clamp.use,
-            label=clamp.label,
-            role=clamp.component.role,
-            kind=clamp.component.kind,
-            name=clamp.component.name,
-            clamped_on=piece.label,
+            use=part.use,
+            label=part.label,
+            role=part.component.role,
+            kind=part.component.kind,
+            name=part.component.name,
+            clamped_on=None if part is piece else piece.label,
             cut_length=along,
-            dry_mass=mass,
-            wet_weight=_wet_weight(clamp.component, along, gravity),
+            dry_mass=_dry_mass(part.component, along),
+            wet_weight=_wet_weight(part.component, along, gravity),
             lift_mass=None,
-            at=clamp.at,
+            at=getattr(part, "at", None),
         )
+        for part, along in parts
+    ]
+    masses = [item.dry_mass for item in found if item.dry_mass is not None]
+    yield replace(found[0], lift_mass=sum(masses) if len(masses) == len(found) else None)
+    yield from found[1:]
 
 
 def _wet_weight(component: Component, length: float | None, gravity: float) -> float | None:

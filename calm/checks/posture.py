@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import partial
 from math import isnan
 from typing import TYPE_CHECKING
 
+from calm.case.warnings import is_synthetic
 from calm.checks.criterion import (
     AT_SURFACE,
     Citing,
@@ -142,43 +143,71 @@ def top_depth(mooring: Mooring) -> Iterator[Criterion]:
     yield Criterion(top, "top_depth", limit, words, least=True, beyond=beyond, source=source)
 
 
+_SHELF = 200.0
+"""Depth of water up to which no fish bite is asked after: the bites are those of the deep sea [m].
+"""
+
+
+@rule("fish-bite")
+def fish_bite(result: Result) -> Iterator[Verdict]:
+    """Judge the least depth of every synthetic rope against that down to which fish bite."""
+    limit = result.file.checks.fishbite_depth
+    if result.mooring.water.depth <= _SHELF:
+        return
+    for piece, row in zip(result.file.pieces, result.components, strict=True):
+        if is_synthetic(piece.component):
+            highest = min(row.depth_top, row.depth_bottom)
+            message = (
+                f"{piece.label} reaches up to {say('depth', highest)}; down to "
+                f"{say('depth', limit)} fish bite through rope."
+            )
+            remedy = "Take jacketed wire there; `fishbite_depth` tells how deep they bite."
+            source = Citing.of(result.file)("fishbite_depth")
+            yield at_least(piece, highest, limit, message, remedy, State.WARN, source)
+
+
 @criteria("knockdown")
 def knockdown(mooring: Mooring) -> Iterator[Criterion]:
     """Knockdown of the top against the design's limit, where it gives one."""
-    limit = mooring.file.checks.maximum_knockdown
-    if limit is None:
-        return
 
-    def words(sunk: float, _: Result) -> tuple[str, str]:
+    def words(sunk: float, allowed: str) -> tuple[str, str]:
         if isnan(sunk):
             return (
                 "The line has no unique shape in still water to measure a knockdown from.",
                 "Judge a slack line by its excursion: `maximum_excursion`.",
             )
         return (
-            f"The top is knocked down by {say('knockdown', sunk)}; "
-            f"{say('knockdown', limit)} are allowed.",
+            f"The top is knocked down by {say('knockdown', sunk)}; {allowed} are allowed.",
             "Add buoyancy at the top, or take drag off: `calm run --explain` shows which.",
         )
 
-    yield Criterion(pieces_of(mooring)[0], "knockdown", limit, words)
+    yield from _of_the_top(mooring, "knockdown", mooring.file.checks.maximum_knockdown, words)
 
 
 @criteria("excursion")
 def excursion(mooring: Mooring) -> Iterator[Criterion]:
     """Horizontal offset of the top against the design's limit, where it gives one."""
-    limit = mooring.file.checks.maximum_excursion
-    if limit is None:
-        return
 
-    def words(offset: float, _: Result) -> tuple[str, str]:
+    def words(offset: float, allowed: str) -> tuple[str, str]:
         return (
-            f"The top is {say('offset', offset)} off the anchor; "
-            f"{say('offset', limit)} are allowed.",
+            f"The top is {say('offset', offset)} off the anchor; {allowed} are allowed.",
             "Add buoyancy, take drag off, or shorten the line.",
         )
 
-    yield Criterion(pieces_of(mooring)[0], "offset", limit, words)
+    yield from _of_the_top(mooring, "offset", mooring.file.checks.maximum_excursion, words)
+
+
+def _of_the_top(
+    mooring: Mooring,
+    quantity: str,
+    limit: float | None,
+    words: Callable[[float, str], tuple[str, str]],
+) -> Iterator[Criterion]:
+    """Yield what the design itself allows the top, where it does."""
+    if limit is not None:
+        allowed = say(quantity, limit)
+        top = pieces_of(mooring)[0]
+        yield Criterion(top, quantity, limit, lambda value, _: words(value, allowed))
 
 
 @criteria("reserve")

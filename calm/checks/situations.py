@@ -8,13 +8,14 @@ from math import hypot
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from calm.case import Mooring, Result
+from calm.case.parts import cut_like
 from calm.case.strumming import FACTOR
 from calm.checks.assessment import Situation
 from calm.checks.finding import AS_GIVEN, State, Verdict, at_most, rule, unknown
 from calm.checks.growth import grown
 from calm.checks.posture import meant_for_the_surface, reaches_the_surface
 from calm.errors import NoEquilibrium, UsageError
-from calm.files import Cable, Clamp, CurrentTable, MooringFile, Piece, StrummingFactor
+from calm.files import Cable, Clamp, CurrentTable, Piece, StrummingFactor
 from calm.files.logbook import DeployedItem
 from calm.quantities import say
 from calm.records.water_column import kilometres_from
@@ -137,23 +138,6 @@ def differs(mooring: Mooring, deployed: Mooring) -> bool:
         piece.length is not None and piece.length != length
         for piece, length in zip(deployed.file.pieces, mooring.line.length.tolist(), strict=False)
     )
-
-
-def cut_like(file: MooringFile, mooring: Mooring) -> MooringFile:
-    """A file with the piece that is cut to fit at the length that it has in a mooring.
-
-    Raises
-    ------
-    NoEquilibrium
-        No length fits there.
-    """
-    pieces = tuple(
-        piece
-        if piece.fit_top_depth is None
-        else replace(piece, length=float(mooring.line.length[piece.index]), fit_top_depth=None)
-        for piece in file.pieces
-    )
-    return replace(file, pieces=pieces)
 
 
 @rule("as-deployed", once=True)

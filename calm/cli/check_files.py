@@ -86,7 +86,7 @@ def _cut_alike(moorings: Sequence[Mooring]) -> tuple[Mooring, ...]:
     """
     from calm.case import Mooring
     from calm.case.memory import Memory
-    from calm.checks.situations import cut_like
+    from calm.case.parts import cut_like
 
     memory = Memory()
     first, *others = (Mooring(each.file, memory=memory) for each in moorings)

@@ -9,14 +9,14 @@ from itertools import groupby
 from math import inf, isnan
 from typing import TYPE_CHECKING
 
-from calm.case.result_tables import ClampRow, ComponentRow, rows_down
+from calm.case.result_tables import ClampRow, rows_by_place, rows_down
 from calm.files import Flexible
 
 if TYPE_CHECKING:
     from calm.case import Result
-    from calm.case.result_tables import ClampRow, ComponentRow
+    from calm.case.result_tables import ComponentRow
     from calm.checks.recovery import Recovery
-    from calm.files import Clamp, Piece, Place
+    from calm.files import Clamp, Piece
     from calm.files.logbook import DeployedItem
 
 
@@ -153,7 +153,7 @@ def instruments_of(
     ----------
     results : of each environment by its name, that of the sheets first
     """
-    rows = [(name, _rows(result)) for name, result in results]
+    rows = [(name, rows_by_place(result)) for name, result in results]
     found = []
     for one in parts:
         if one.role not in ("instrument", "release"):
@@ -172,11 +172,6 @@ def instruments_of(
             )
         )
     return tuple(found)
-
-
-def _rows(result: Result) -> dict[Place, ComponentRow | ClampRow]:
-    every: list[ComponentRow | ClampRow] = [*result.components, *result.clamps]
-    return {row.place: row for row in every}
 
 
 class Order(StrEnum):

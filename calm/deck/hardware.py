@@ -45,7 +45,6 @@ class Stock:
     kind : of `ORDER`
     use, name : id and name of the component; of what belongs to others only the name
     count : in the line
-    spares : to bring along beside them
     length : of chains, in all [m]
     basis : what the count follows from, where it is not a piece of the line
     """
@@ -54,9 +53,13 @@ class Stock:
     use: str
     name: str
     count: int
-    spares: int
     length: float | None = None
     basis: str = ""
+
+    @property
+    def spares(self) -> int:
+        """A tenth, rounded up, and of what is small and easily lost at least two."""
+        return max(ceil(SPARE_SHARE * self.count), 2 if self.kind in _SMALL else 1)
 
     @property
     def total(self) -> int:
@@ -83,11 +86,6 @@ def hardware_of(parts: Sequence[DeckItem]) -> tuple[Stock, ...]:
     return tuple(sorted(found, key=lambda stock: ORDER.index(stock.kind)))
 
 
-def spares_of(kind: str, count: int) -> int:
-    """A tenth, rounded up, and of what is small and easily lost at least two."""
-    return max(ceil(SPARE_SHARE * count), 2 if kind in _SMALL else 1)
-
-
 def kind_of(words: str) -> str | None:
     """The kind of hardware that some words tell of."""
     found = (kind for kind, word in _KINDS.items() if re.search(word, words.lower()))
@@ -108,15 +106,8 @@ def _kind(one: DeckItem) -> str | None:
 
 def _stock(kind: str, use: str, group: Sequence[DeckItem]) -> Stock:
     lengths = [one.cut_length for one in group if one.cut_length is not None]
-    count = len(group)
-    return Stock(
-        kind=kind,
-        use=use,
-        name=group[0].name,
-        count=count,
-        spares=spares_of(kind, count),
-        length=sum(lengths) if kind == _CHAIN else None,
-    )
+    length = sum(lengths) if kind == _CHAIN else None
+    return Stock(kind, use, group[0].name, len(group), length)
 
 
 def _pins(groups: dict[tuple[str, str], list[DeckItem]]) -> Iterator[Stock]:
@@ -126,15 +117,11 @@ def _pins(groups: dict[tuple[str, str], list[DeckItem]]) -> Iterator[Stock]:
         component, count = group[0].part.component, len(group)
         pin = "bolt and nut" if _is_bolted(component) else "screw pin"
         name = f"{pin} of {group[0].name}"
-        yield Stock(
-            "pins", use, name, count, spares_of("pins", count), basis="one for each shackle"
-        )
+        yield Stock("pins", use, name, count, basis="one for each shackle")
         if _is_bolted(component):
             name = f"cotter pin of {group[0].name}"
-            spares = spares_of("cotter pins", count)
-            yield Stock(
-                "cotter pins", use, name, count, spares, basis="one for each shackle with bolt"
-            )
+            basis = "one for each shackle with bolt"
+            yield Stock("cotter pins", use, name, count, basis=basis)
 
 
 def _is_bolted(component: Component) -> bool:
@@ -147,15 +134,11 @@ def _against_corrosion(parts: Sequence[DeckItem]) -> Iterator[Stock]:
     contacts = [(base, noble) for base, noble, _ in unlike_metals(pieces)]
     names = Counter(tuple(sorted((base.use, noble.use))) for base, noble in contacts)
     for (one, other), count in names.items():
-        yield Stock(
-            "isolators", "", f"isolator between {one} and {other}", count,
-            spares_of("isolators", count), basis="one for each contact of unlike metals",
-        )  # fmt: skip
+        name, basis = f"isolator between {one} and {other}", "one for each contact of unlike metals"
+        yield Stock("isolators", "", name, count, basis=basis)
     for use, count in Counter({base.label: base.use for base, _ in contacts}.values()).items():
-        yield Stock(
-            "anodes", use, f"anode on {use}", count, spares_of("anodes", count),
-            basis="one for each piece of the baser metal",
-        )  # fmt: skip
+        basis = "one for each piece of the baser metal"
+        yield Stock("anodes", use, f"anode on {use}", count, basis=basis)
 
 
 def _thimbles(parts: Sequence[DeckItem]) -> Iterator[Stock]:
@@ -166,12 +149,5 @@ def _thimbles(parts: Sequence[DeckItem]) -> Iterator[Stock]:
         if isinstance(part, Piece) and "thimble" in made.lower():
             ends[part.use, one.name] = ends.get((part.use, one.name), 0) + 2
     for (use, name), count in ends.items():
-        spares = spares_of("thimbles", count)
-        yield Stock(
-            "thimbles",
-            use,
-            f"thimble for {name}",
-            count,
-            spares,
-            basis="two for each cable, by its termination",
-        )
+        basis = "two for each cable, by its termination"
+        yield Stock("thimbles", use, f"thimble for {name}", count, basis=basis)

@@ -55,13 +55,12 @@ def total_of(shipped: Sequence[ShippedComponent]) -> ShippedComponent:
     return ShippedComponent(
         use="",
         name="Total",
-        count=sum(one.count for one in shipped),
         length=None,
-        mass=sum(one.mass for one in shipped),
-        volume=sum(one.volume for one in shipped),
-        missing_masses=sum(one.missing_masses for one in shipped),
-        missing_volumes=sum(one.missing_volumes for one in shipped),
+        **{name: sum(getattr(one, name) for one in shipped) for name in _SUMMED},
     )
+
+
+_SUMMED = ("count", "mass", "volume", "missing_masses", "missing_volumes")
 
 
 def volume_of(component: Component, length: float | None) -> float | None:

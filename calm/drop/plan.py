@@ -170,41 +170,21 @@ class DropPlan:
 
     def to_dict(self) -> dict[str, Any]:
         """The plan as JSON; figures in SI."""
-        path = self.path
         let_go, start = self.position(self.let_go), self.start
         first = None if start is None else self.position(start.place)
         return {
-            "fall_time": self.fall_time,
-            "fall_back": self.fall_back,
+            **{name: getattr(self, name) for name in _AS_THEY_ARE},
             "fall_back_band": list(self.fall_back_band),
-            "touchdown_speed": self.touchdown_speed,
-            "greatest_tension": self.greatest_tension,
-            "tow_past": self.tow_past,
             "run_in": None if start is None else start.distance,
-            "path": {
-                "time": path.time.tolist(),
-                "anchor_depth": path.anchor_depth.tolist(),
-                "anchor_x": path.anchor_x.tolist(),
-                "float_x": path.float_x.tolist(),
-                "anchor_speed": path.anchor_speed.tolist(),
-                "float_depth": path.float_depth.tolist(),
-                "anchor_tension": path.anchor_tension.tolist(),
-            },
+            "path": {name: column.tolist() for name, column in vars(self.path).items()},
             "accuracy": {"fall_time": self.time_error, "fall_back": self.distance_error},
             "fall_time_band": list(self.fall_time_band),
-            "aside": self.aside,
-            "streamed": self.streamed,
-            "ship_speed": self.ship_speed,
-            "course": self.course,
-            "astern": self.astern,
             "deck_time": _one_or_all(self.deck_time),
             "let_go": list(self.let_go),
             "start": None if start is None else {"distance": start.distance, "time": start.time},
             "let_go_position": None if let_go is None else let_go.model_dump(),
             "start_position": None if first is None else first.model_dump(),
-            "anchor_drag": self.anchor_drag,
             "anchor_drag_known": self.drag_known,
-            "rest_difference": self.rest_difference,
             "warnings": list(self.warnings),
             "depths": [
                 {
@@ -222,6 +202,12 @@ class DropPlan:
             ],
         }
 
+
+_AS_THEY_ARE = (
+    *("fall_time", "fall_back", "touchdown_speed", "greatest_tension", "tow_past", "aside"),
+    *("streamed", "ship_speed", "course", "astern", "anchor_drag", "rest_difference"),
+)
+"""Figures of a plan that its JSON has under their own names."""
 
 FINE = Fineness(bars=100, steps=100)
 FINEST = 4

@@ -51,6 +51,7 @@ _UFC = "UFC 4-159-03, table 3-7: 3 on new breaking strength of chain and wire"
 _PRACTICE = "oceanographic practice: a third to a fifth of the breaking load"
 _DEWEY = "Dewey, Mooring Design & Dynamics: weight in water ≥ 1.5 (V + H/0.6)"
 _NO_FIGURE = "practice of mooring groups, 50 to 100 kgf above the release; no figure is published"
+_BERTEAUX = "Berteaux, Prindle & May, OCEANS '87: fish bite from the surface to 1000 m and more"
 _URI = "URI GSO mooring program"
 
 
@@ -148,6 +149,11 @@ class Checks(Model):
         default=None,
         description="least depth of the top of a sub-surface line, at low water too",
         examples=["10 m"],
+    )
+    fishbite_depth: Annotated[float, LENGTH, Limit(_BERTEAUX)] = Field(
+        default=1000.0,
+        description="down to which fish bite synthetic rope; 0 m where none do",
+        examples=["1500 m"],
     )
     accept: tuple[AcceptKeys, ...] = Field(
         default=(),

@@ -112,6 +112,15 @@ RULES = {
         "`minimum_top_depth`: a failure; where it is not given, 10 m: a warning",
         "A default of this program: clear of waves, hulls and nets",
     ),
+    "fish-bite": RuleText(
+        "Fish bite",
+        "depth",
+        "least depth of every synthetic rope, in more than 200 m of water",
+        "`fishbite_depth`, 1000 m: a warning",
+        "Berteaux, Prindle & May, OCEANS '87: far from the shores fish bite from the surface to "
+        "1000 m and more",
+        "ropes are bitten where they stand for months, not in one profile",
+    ),
     "knockdown": RuleText(
         "Knockdown",
         "knockdown",
@@ -211,10 +220,20 @@ RULES = {
     "release-present": RuleText(
         "Release",
         "",
-        "whether a piece of a sub-surface line has `role: release`",
-        "unknown where none has, or one that is called a shackle, swivel, rope or the like; a "
-        "warning where something below it floats",
+        "whether a piece of a sub-surface line has `role: release`, and whether that frees it",
+        "unknown where none has, one that is clamped, or is called a shackle, swivel, rope or the "
+        "like; a failure where nothing floats above it; a warning of a single one (none is called "
+        "double, dual, twin or a pair), of less than 1 m between it and the anchor, and where "
+        "something below it floats",
         "Defaults of this program: a line to be recovered names its release",
+        _ONCE,
+    ),
+    "hardware": RuleText(
+        "Hardware",
+        "",
+        "whether any piece of the line has `role: connector`",
+        "a warning where none has",
+        "A default of this program: what joins the pieces has weight, drag and a strength",
         _ONCE,
     ),
     "clamp-place": RuleText(
@@ -248,7 +267,8 @@ RULES = {
         "tension",
         "net buoyancy of the part that still holds the release after the worst break that is "
         "judged (below)",
-        "`backup_margin`, 0.1 of the weight lifted, and 250 N",
+        "`backup_margin`, 0.1 of the weight lifted, and 250 N; a warning of a compact line of one "
+        "float",
         "URI GSO mooring program: if any one link breaks, everything above the release still "
         "floats",
         _ONCE,
@@ -277,8 +297,9 @@ RULES = {
         "Rise",
         "speed",
         "speed of the rise without the anchor",
-        "`minimum_rise_speed`, 0.3 m/s; a warning below 0.7 m/s",
-        "Defaults of this program: below 0.3 m/s a rise is in doubt, below 0.7 m/s it takes long",
+        "`minimum_rise_speed`, 0.3 m/s; a warning below 0.7 m/s and above 3 m/s",
+        "Defaults of this program: below 0.3 m/s a rise is in doubt, below 0.7 m/s it takes long; "
+        "above 3 m/s floats leap and the line loops",
         _ONCE,
     ),
     "tangling": RuleText(

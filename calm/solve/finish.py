@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 
 from calm.errors import NoEquilibrium
-from calm.physics.compiled import compiled as compiled_law
 from calm.physics.line import Line, Water
 from calm.physics.state import FAILURES, Trace
 from calm.physics.track import Load
@@ -31,15 +29,12 @@ from calm.solve.endings import (
     TOO_MANY_AFLOAT,
     UNSUPPORTED,
 )
-from calm.solve.problem import BELOW, CHANGED, FINE, MARCHES, MOST_AFLOAT, LineProblem, Search
+from calm.solve.problem import BELOW, CHANGED, FINE, MARCHES, MOST_AFLOAT, LineProblem
 from calm.solve.refine import Errors, Refined
 from calm.solve.search import (
     NO_OTHER,
     FoundShape,
-    Referee,
-    audit_shape,
     ending_of_audit,
-    stated_errors,
 )
 from calm.solve.solution import Settings, Solution
 from calm.solve.standing import standing_lift, too_heavy
@@ -164,33 +159,26 @@ def _carried(line: Line, problem: LineProblem) -> Line:
     return replace(line, **columns)
 
 
-def finished(
-    search: Search,
-    referee: Referee,
-    line: Line,
-    water: Water,
-    settings: Settings,
-    refined: Refined,
-    check: Callable[[Solution], None],
-    *,
-    compiled: bool,
-    frequency: float = 0.0,
+def solution_found(
+    found: FoundShape, problem: LineProblem, line: Line, water: Water, settings: Settings
 ) -> Solution:
-    """The solution of a closed line that passes a check, and the audit.
+    """The solution of an audited shape in the record `FINE`.
 
     Raises
     ------
     NoEquilibrium
-        Where a check fails, that of the place or one of the audit.
+        There is none.
     """
-    state = compiled_law(stated_errors) if compiled else stated_errors
-    errors = state(search.problem, refined)
-    solution = solution_of(search.problem, line, water, settings, refined, errors, frequency)
-    check(solution)
-    audit = compiled_law(audit_shape) if compiled else audit_shape
-    closure, moment = audit(search.problem, referee, refined.closed)
-    refuse_unbalanced(closure, moment)
-    return replace(solution, closure=closure, moment_residual=moment)
+    if found.ending != FOUND:
+        raise refusal_of(found, line, water)
+    other = None if found.other_depth == NO_OTHER else found.other_depth
+    return replace(
+        solution_of(problem, line, water, settings, found.refined, found.errors),
+        closure=found.closure,
+        moment_residual=found.moment,
+        other_depth=other,
+        other_grounded_length=found.other_grounded,
+    )
 
 
 def refuse_unbalanced(closure: float, moment: float) -> None:
@@ -281,26 +269,6 @@ def watch_circle_radius(length: float, height: float) -> float:
     return float(np.sqrt(max(length**2 - height**2, 0.0)))
 
 
-def refuse_out_of_the_water(solution: Solution) -> None:
-    """Refuse a shape that comes below the seabed or above the surface.
-
-    Raises
-    ------
-    NoEquilibrium
-    """
-    height, depth = solution.position[:, 2], solution.water.depth
-    margin = max(solution.depth_error, 1e-6 * depth)
-    # a float at the surface may stand out of it, however it is turned
-    standing = float(solution.line.length[list(solution.afloat)].sum())
-    if solution.riding is not None:
-        standing = float(solution.line.length[: max(solution.afloat) + 1].sum())
-    lowest, highest = int(np.argmin(height)), int(np.argmax(height))
-    if height[lowest] < -depth - margin:
-        raise touching(solution.piece_at(lowest), -depth - height[lowest])
-    if height[highest] > margin + standing:
-        raise risen(solution.piece_at(highest), height[highest])
-
-
 def risen(piece: int, above: float) -> NoEquilibrium:
     """A line that would rise out of the water."""
     return Status.ABOVE_SURFACE.because(
@@ -314,9 +282,3 @@ def touching(piece: int, below: float) -> NoEquilibrium:
     return Status.GROUNDED.because(
         f"The line would touch the seabed: {{piece}} comes {below:.2f} m below it.", piece
     )
-
-
-def other_of(found: FoundShape) -> tuple[float | None, float]:
-    """Depth of the free end in another equilibrium, and its length on the seabed [m]."""
-    depth = None if found.other_depth == NO_OTHER else found.other_depth
-    return depth, found.other_grounded

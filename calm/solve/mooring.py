@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from calm.physics.compiled import by_address, entry
 from calm.physics.line import Line, Water
 from calm.physics.passing import FAILURE
@@ -11,8 +9,7 @@ from calm.physics.state import NO_ROOM
 from calm.solve.asking import AskedSearch, as_told, find_asked, find_now
 from calm.solve.audit import referee_of
 from calm.solve.closing import miss_at, whole_line
-from calm.solve.endings import FOUND
-from calm.solve.finish import other_of, refusal_of, solution_of
+from calm.solve.finish import solution_found
 from calm.solve.problem import CHOSEN, NOT_RECORDED, ROOM, About, LineProblem, Search, problem_of
 from calm.solve.search import FoundShape, Referee, find_shape
 from calm.solve.solution import Settings, Solution
@@ -57,17 +54,7 @@ def solve_mooring(line: Line, water: Water, settings: Settings | None = None) ->
         if not lacks_room(problem):
             break
         room *= MORE_ROOM
-    if found.ending != FOUND:
-        raise refusal_of(found, line, water)
-    solution = solution_of(problem, line, water, settings, found.refined, found.errors)
-    other, grounded = other_of(found)
-    return replace(
-        solution,
-        closure=found.closure,
-        moment_residual=found.moment,
-        other_depth=other,
-        other_grounded_length=grounded,
-    )
+    return solution_found(found, problem, line, water, settings)
 
 
 def find_compiled(search: Search, referee: Referee) -> FoundShape:

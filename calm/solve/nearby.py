@@ -19,11 +19,12 @@ from calm.physics.track import Track
 from calm.solve.audit import referee_of
 from calm.solve.closing import Closed, Root, not_closed, planned, polish
 from calm.solve.endings import FOUND, MARCH_STOPPED
-from calm.solve.finish import closing_refusal, finished, refuse_out_of_the_water
+from calm.solve.finish import closing_refusal, solution_found
 from calm.solve.locate import locate
 from calm.solve.mooring import search_of, solve_mooring
 from calm.solve.problem import BELOW, CHOSEN, FINE, LineProblem, Search, Unknown, problem_of
 from calm.solve.refine import Errors, Refined
+from calm.solve.search import audited
 from calm.solve.solution import Settings, Solution
 from calm.solve.speed import runs_compiled
 from calm.solve.status import Status
@@ -110,10 +111,11 @@ class Nearby:
         errors = Errors(base.depth_error, base.tension_error, 0.0, base.lift_error, base.pull_error)
         referee = referee_of(line, water, 0.0, compiled)
         refined = Refined(closed, len(self._cuts), errors)
-        return finished(
-            search, referee, line, water, self._settings, refined, refuse_out_of_the_water,
-            compiled=compiled,
-        )  # fmt: skip
+        problem = search.problem
+        audit = entry(audited, problem, referee, refined) if compiled else audited
+        return solution_found(
+            audit(problem, referee, refined), problem, line, water, self._settings
+        )
 
     def _closed(self, line: Line, water: Water, track: Track | None) -> tuple[Search, Closed]:
         compiled = self._compiled

@@ -11,13 +11,16 @@ neighbours, and that is added.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import degrees, isnan, sqrt
 from typing import Any, NamedTuple
 
 from calm.physics.element import Vector
+from calm.physics.friction import CONSTANT
 from calm.physics.passing import FAILURE, NODES
 from calm.physics.profile import interval_at
 from calm.physics.state import Record
+from calm.physics.track import CableStretch
 from calm.solve.closing import Closed, Root, halve, not_closed, planned, polish
 from calm.solve.endings import BELOW_SEABED, FOUND, MARCH_STOPPED, NO_SHAPE_NEAR
 from calm.solve.problem import (
@@ -38,7 +41,7 @@ TENSION_TARGET = 1.6e-4
 """Error estimates, relative to the span and to the tension, above which the step is taken
 smaller, at an angle step of 1°; they follow its square."""
 AS_FOUND = 0.25
-"""Share of these that the tensions of one of many may have, and its places where it lies."""
+"""Share of these that one of many may have where it is not extrapolated."""
 MOST_ROUNDS = 6
 MOST_SEGMENTS = 20_000
 AT_A_LEVEL = 0.05
@@ -104,21 +107,31 @@ def refine(search: Search, root: Root, hangs: bool) -> Refined:
         if excess <= 1.0 or segments > MOST_SEGMENTS:
             break
         root, step = fine.root, step * max(0.8 / sqrt(excess), 0.2)
-    return with_bends(problem, refined)
+    # of one of many the errors are not told
+    return refined if problem.limits.near > 0.0 else with_bends(problem, refined)
 
 
 def excess_of(problem: LineProblem, errors: Errors, landed: bool) -> float:
     """Return how many times the errors of a shape are what is aimed at.
 
-    That is less for one of many, the places of which are extrapolated where it has not landed.
+    That is less for one of many that lands, which is not extrapolated, and for the tensions under a
+    law of friction that jumps, which cannot be.
     """
     target = degrees(problem.limits.angle_step)
     target *= target
     place, tension = DEPTH_TARGET * target, TENSION_TARGET * target
     if problem.limits.near > 0.0:
         place *= AS_FOUND if landed else 1.0
-        tension *= AS_FOUND
+        tension *= AS_FOUND if landed or jumps(problem.course.cables) else 1.0
     return max(errors.depth / (place * problem.limits.span), errors.relative / tension)
+
+
+def jumps(cables: Sequence[CableStretch]) -> bool:
+    """Return whether the friction along a cable jumps where the flow along it turns round."""
+    jump = False
+    for k in range(len(cables)):
+        jump |= cables[k].friction == CONSTANT
+    return jump
 
 
 def with_bends(problem: LineProblem, refined: Refined) -> Refined:
@@ -172,7 +185,7 @@ def closed_between(search: Search, root: Root) -> tuple[Closed, Closed]:
         return none, none
     high, near, halved = limits.span, 0.5, 1.0
     if unknown.sought != BELOW:  # a slack line swings far by little of its buoyancy
-        high, near, halved = 1.0, 0.05, 0.3
+        high, near, halved = 1.0, 0.05, 0.1
     before, last, x = work.left[LAST], root.miss, root.x
     for _ in range(MOST_ROUNDS):
         if not 0.0 < x < high or x == before:
@@ -190,7 +203,10 @@ def closed_between(search: Search, root: Root) -> tuple[Closed, Closed]:
         before, last, x = x, miss, x - miss / slope
     closing = -miss / slope
     off = search.miss(About(problem, unknown, limits.angle_step, HALVED, True, FINE), x)
-    if not abs(off) <= min(halved * abs(miss - last), FAR * limits.span):
+    moved = abs(off) + abs(miss - last)
+    if not abs(off) <= min(20.0 * abs(miss - last), FAR * limits.span):
+        return none, none
+    if abs(off) * moved > halved * LINEAR * limits.span * limits.span:
         return none, none
     change = x - before
     coarse_root = Root(True, unknown, x + closing, 0.0, slope)

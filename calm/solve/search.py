@@ -23,12 +23,13 @@ from calm.physics.referee import (
     worst_moment,
 )
 from calm.physics.track import Load
-from calm.solve.closing import Closed, Root, not_closed, place, planned, whole_line
+from calm.solve.closing import Closed, Root, coarse_miss, not_closed, place, planned, whole_line
 from calm.solve.endings import (
     ABOVE_SURFACE,
     BELOW_SEABED,
     FOUND,
     MARCH_STOPPED,
+    NO_SHAPE_NEAR,
     NOT_CLOSED,
     NOT_LYING,
     OUT_OF_BALANCE,
@@ -114,6 +115,10 @@ def find_shape(search: Search, referee: Referee) -> FoundShape:
     limits = problem.limits
     may_land = problem.course.landing < len(problem.course.stages)
     lands_first = may_land and limits.length > limits.depth
+    if lands_first and limits.near > 0.0:
+        at_once = rising(search, referee)
+        if at_once.ending == FOUND:
+            return at_once
     first = highest(search, referee, lands_first)
     if first.ending == FOUND or first.ending == MARCH_STOPPED or not may_land:
         return first
@@ -125,6 +130,29 @@ def find_shape(search: Search, referee: Referee) -> FoundShape:
     if is_slack(second):
         return second
     return second if lands_first else first
+
+
+def rising(search: Search, referee: Referee) -> FoundShape:
+    """One of many that could lie on the seabed, and clearly rises from its anchor.
+
+    It is looked for where the line does not come down from its start on. A line that sags, or any
+    other, is refused: it could lie on the seabed as well.
+    """
+    problem = search.problem
+    lying, start = start_of(search, True), start_of(search, False)
+    found = refused(NO_SHAPE_NEAR, 0.0, -1, start)
+    if not lying.found or not start.found:
+        return found
+    miss = coarse_miss(search, lying.unknown, lying.x)
+    if isnan(miss) or problem.work.left[CAME_DOWN] >= 0.0:
+        return found
+    found = shape_near(search, referee, start, False)
+    if found.ending != FOUND or not is_highest(problem, found.refined.closed.root):
+        return refused(NO_SHAPE_NEAR, 0.0, -1, start)
+    last, heights = found.refined.closed.nodes - 1, problem.work.records[FINE][2]
+    if heights[last - 1] <= heights[last]:
+        return refused(NO_SHAPE_NEAR, 0.0, -1, start)
+    return found
 
 
 def is_slack(found: FoundShape) -> bool:

@@ -7,11 +7,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from calm.errors import NoEquilibrium
+from calm.physics.compiled import compiled
 from calm.physics.hull import AIR_DENSITY
 from calm.physics.line import Floats, Line, Water
 from calm.physics.state import MarchError
-from calm.solve.finish import finished
+from calm.solve.finish import refuse_unbalanced, solution_of
 from calm.solve.root import bracketed_root
+from calm.solve.search import audit_shape, stated_errors
 from calm.solve.solution import Settings, Solution
 from calm.solve.status import Status
 from calm.solve.towing import Towed
@@ -97,12 +99,15 @@ def solve_tow(
         if found and towing.height > 0.0 and not towing.in_air:
             raise half_out(tow) or failure from failure
         raise
-    solution = finished(
-        tow.search, tow.referee, towed, water, tow.settings, refined,
-        lambda solution: _refuse_misplaced(solution, towing),
-        compiled=tow.compiled, frequency=tow.frequency,
-    )  # fmt: skip
-    return replace(solution, other_depth=other_depth)
+    problem = tow.search.problem
+    state = compiled(stated_errors) if tow.compiled else stated_errors
+    audit = compiled(audit_shape) if tow.compiled else audit_shape
+    errors = state(problem, refined)
+    solution = solution_of(problem, towed, water, tow.settings, refined, errors, tow.frequency)
+    _refuse_misplaced(solution, towing)
+    closure, moment = audit(problem, tow.referee, refined.closed)
+    refuse_unbalanced(closure, moment)
+    return replace(solution, closure=closure, moment_residual=moment, other_depth=other_depth)
 
 
 def _refuse_limp(towed: Line) -> None:

@@ -15,10 +15,10 @@ from pathlib import Path
 
 from calm.case import Mooring, Result, Tow, TowResult
 from calm.case.memory import Memory
+from calm.case.parts import cut_like
 from calm.checks.assess import assessment_of, findings_of, stand_of
 from calm.checks.assessment import MooringInEnvironment, Situation
 from calm.checks.finding import AS_GIVEN, OWN, Finding
-from calm.checks.situations import cut_like
 from calm.errors import InputError, NoEquilibrium, Problem, internal_failure
 from calm.files import MooringFile, read_mooring
 from calm.files.editing import Draft, LineItem

@@ -146,14 +146,53 @@ def test_a_float_above_the_only_floats_is_no_back_up(breaks):
     assert worst.label == "back-up" and worst.margin < 0.0
 
 
-def test_where_all_floats_are_above_the_release_the_last_break_is_judged(breaks):
+def test_a_compact_line_of_one_float_has_no_break_to_judge(breaks):
     text = FILE[: FILE.index("  - {use: thin, label: wire")]
     text += "  - {use: link}\n" + FILE[FILE.index("  - {use: opener, label: release}") :]
     text = text.replace("components:\n", f"components:\n  {LINK}\n")
     found = breaks(text.replace("length: 50 m", "length: 400 m"))
-    assert [each.judged for each in found] == [False, True]
+    assert [each.judged for each in found] == [False, False]
 
 
+def test_a_compact_line_of_one_float_is_warned_of_its_loss(tmp_path):
+    text = FILE[: FILE.index("  - {use: thin, label: wire")]
+    text += FILE[FILE.index("  - {use: opener, label: release}") :].replace("50 m", "400 m")
+    (found,) = backup_of(tmp_path, text)
+    assert (found.state, found.component) == ("warn", "top")
+    assert found.message.startswith("After the loss of top the part that holds the release has")
+
+
+def test_a_compact_line_with_glass_below_its_chain_passes(tmp_path):
+    """Where float, chain and glass are all one cluster, chain parts it in two."""
+    wire = FILE.index("  - {use: thin, label: wire")
+    text = FILE[:wire] + "  - {use: links, label: chain, length: 2 m}\n"
+    text += "  - {use: ball, label: glass}\n" + FILE[FILE.index("  - {use: opener") :]
+    text = text.replace("50 m", "400 m").replace("components:\n", f"components:\n  {LINKS}\n")
+    (found,) = backup_of(tmp_path, text)
+    assert found.state == "pass"
+
+
+def test_releases_that_follow_one_another_are_no_break_that_a_design_can_mend(breaks):
+    text = FILE.replace("  - {use: thin, label: tail, length: 100 m}\n", "")
+    twice = text.replace("label: release}", "label: release, count: 2}")
+    assert [each.judged for each in breaks(twice)] == [True, True, False, False]
+
+
+def test_a_line_hauled_in_from_its_buoy_needs_no_release(tmp_path):
+    text = FILE.replace("  - {use: opener, label: release}\n", "").replace("500 m", "340 m")
+    text = text.replace("buoyancy: 2000 N", "buoyancy: 30 kN").replace("15 kN", "60 kN")
+    (found,) = backup_of(tmp_path, text)
+    assert (found.state, found.value) == ("pass", None)
+    assert "the line is hauled in" in found.message
+
+
+def backup_of(folder, text):
+    path = folder / "m.yaml"
+    path.write_text(text)
+    return [one for one in check(calm.load(path)).findings if one.rule == "backup"]
+
+
+LINKS = "links: {kind: chain, diameter: 10 mm, weight: 17 N/m}"
 LINK = (
     "link: {kind: body, role: connector, length: 0 m, buoyancy: -5 N, kn: 0 N/(m/s)^2,"
     " inclination: insensitive}"

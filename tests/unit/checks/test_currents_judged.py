@@ -123,8 +123,8 @@ def test_a_rope_that_floats_below_the_release_is_told(tmp_path):
     )
     mooring = load(tmp_path / "m.yaml", text=text.replace("CURRENT", HALF))
     found = assessment_of("m", [stand_of(mooring, "m")]).findings
-    assert next(one.message for one in found if one.rule == "release-present") == (
-        "tail floats below the release, and stays on the anchor."
+    assert "tail floats below the release, and stays on the anchor." in (
+        one.message for one in found if one.rule == "release-present"
     )
 
 

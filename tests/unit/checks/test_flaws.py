@@ -39,6 +39,7 @@ AT_LEAST = (
     "backup",
     "recovery",
     "top-depth",
+    "fish-bite",
 )
 """Rules whose values may not fall short of their limits; those of the others may not pass them."""
 TOLD = ("scope",)
@@ -444,6 +445,83 @@ FLAWS = (
         None,
         "unknown",
         "how the line is freed from its anchor is not known",
+    ),
+    Flaw(
+        "a release with no other beside it",
+        FIT,
+        (),
+        "release-present",
+        "release",
+        "warn",
+        "release is the only release: where it fails, nothing else frees the line.",
+    ),
+    Flaw(
+        "a release on its anchor",
+        SLOPE,
+        (
+            (
+                "  - {use: polyester-19-dewey, length: 15 m, label: drop line, "
+                "breaking_load: 49.8 kN}\n  - {use: chain-buoy-16, length: 5 m, "
+                "label: chain above the anchor}\n",
+                "",
+            ),
+            ("release-pair-ar861, label: releases}", "release-ar861-double, label: releases pair}"),
+        ),
+        "release-present",
+        "releases pair",
+        "warn",
+        "releases pair stands 0.1 m above the anchor; 1 m keep it out of the mud",
+    ),
+    Flaw(
+        "a release above every float",
+        CDMS,
+        (
+            ("  - {use: sphere}\n", "  - {use: release}\n"),
+            ("  - {use: glass, count: 10}\n  - {use: release}\n", "  - {use: sphere}\n"),
+        ),
+        "release-present",
+        "release",
+        "fail",
+        "Nothing floats above release: freed, it stays down.",
+    ),
+    Flaw(
+        "a release that is clamped",
+        SLOPE,
+        (("at: 399 m, label: CTD 900 m}", "at: 399 m, label: CTD 900 m, role: release}"),),
+        "release-present",
+        "CTD 900 m",
+        "unknown",
+        "CTD 900 m has the role of a release, and is clamped: it frees nothing.",
+    ),
+    Flaw(
+        "a line without any shackle",
+        CDMS,
+        (),
+        "hardware",
+        None,
+        "warn",
+        "what joins its pieces is not judged",
+    ),
+    Flaw(
+        "a rope where fish bite",
+        FIT,
+        (),
+        "fish-bite",
+        "polyester",
+        "warn",
+        "down to 1000.0 m fish bite through rope",
+    ),
+    Flaw(
+        "a float that leaps",
+        SLOPE,
+        (
+            ("label: ADCP float}", "label: ADCP float, buoyancy: 30 kN}"),
+            ("label: four wheels}", "label: four wheels, weight: 90 kN}"),
+        ),
+        "recovery",
+        None,
+        "warn",
+        "Beyond 3 m/s floats leap and the line below them loops.",
     ),
     Flaw(
         "a clamp that slips",

@@ -7,7 +7,7 @@ import pytest
 import calm
 from calm.deck import Deck, deck_of
 from calm.deck.deck_items import Order
-from calm.deck.hardware import spares_of
+from calm.deck.hardware import Stock
 from calm.deck.shipping import total_of
 
 MOORING = """\
@@ -114,8 +114,8 @@ def test_hardware_is_counted_with_its_pins_and_thimbles(deck):
         ("rings", "ring-22-102"): (1, 1),
         ("thimbles", "wire"): (2, 2),
     }
-    assert [spares_of("shackles", count) for count in (1, 20, 21)] == [2, 2, 3]
-    assert [spares_of("rings", count) for count in (1, 10, 11)] == [1, 1, 2]
+    assert [Stock("shackles", "", "", count).spares for count in (1, 20, 21)] == [2, 2, 3]
+    assert [Stock("rings", "", "", count).spares for count in (1, 10, 11)] == [1, 1, 2]
 
 
 def test_unlike_metals_have_isolators_and_anodes(tmp_path):
