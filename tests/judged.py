@@ -43,10 +43,10 @@ def judged(path: Path, *environments: str) -> Assessment:
 
 
 def unaccepting(name: str, folder: Path) -> Path:
-    """A line of `lines/` without what it accepts: some of it fails, some is unknown."""
+    """A line of `lines/` that accepts nothing and may not move: some fails, some is unknown."""
     path = folder / name
     text, _, _ = (LINES / name).read_text(encoding="utf-8").partition("\nchecks:\n")
-    path.write_text(text + "\n", encoding="utf-8")
+    path.write_text(f"{text}\nchecks: {{maximum_excursion: 1 cm}}\n", encoding="utf-8")
     return path
 
 

@@ -14,7 +14,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from calm.analytic.chart_branch import Branch, check_k
-from calm.analytic.chart_length import LengthSearch
 from calm.analytic.chart_reasons import (
     ChartRefusal,
     contradiction,
@@ -23,7 +22,7 @@ from calm.analytic.chart_reasons import (
     reason,
     straight,
 )
-from calm.analytic.chart_search import ChartSearch, Piece, size_of
+from calm.analytic.chart_search import ChartSearch, LengthSearch, Piece, size_of
 from calm.errors import UsageError
 
 

@@ -21,6 +21,7 @@ distance and height follow from the tension by one smooth quadrature in m.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -169,8 +170,6 @@ class Hodograph:
         return xi, eta
 
     def _integral(self, start: float, step: float, share: int | None, floor: float) -> float:
-        from scipy.integrate import quad
-
         reference = float(self.log_tension(start))
 
         def part(after: float) -> float:
@@ -178,10 +177,7 @@ class Hodograph:
             projection = 1.0 if share is None else self.direction(m)[share]
             return float(np.exp(self.log_tension(m) - reference) * projection * self.slope(m))
 
-        return sum(
-            float(quad(part, low, high, epsabs=floor, epsrel=1e-12, limit=400)[0])
-            for low, high in pairwise(self._panels(start, step))
-        )
+        return integrated(part, self._panels(start, step), floor)
 
     def _panels(self, start: float, step: float) -> list[float]:
         """A step cut at the kink of the friction and, each way from it, by factors of 4 in m.
@@ -230,6 +226,23 @@ class Hodograph:
 
 
 Floats = NDArray[np.float64]
+
+
+def integrated(part: Callable[[float], float], edges: Sequence[float], floor: float) -> float:
+    """Return the integral of a function over panels, to 1e-12 of it or to `floor`.
+
+    Parameters
+    ----------
+    part : the function
+    edges : of the panels, rising or falling
+    floor : error that does not matter
+    """
+    from scipy.integrate import quad
+
+    return sum(
+        float(quad(part, low, high, epsabs=floor, epsrel=1e-12, limit=400)[0])
+        for low, high in pairwise(edges)
+    )
 
 
 class Station(NamedTuple):

@@ -11,13 +11,12 @@ and the shape takes one quadrature.
 
 from __future__ import annotations
 
-from itertools import pairwise
 from math import hypot, pi
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from calm.analytic.hodograph import Floats, Station
+from calm.analytic.hodograph import Floats, Station, integrated
 from calm.analytic.villain_guillot import check_arc, straight_angle, straight_cable
 
 
@@ -72,25 +71,13 @@ def unequal_cable(
 ) -> Station:
     """Shape of a towed cable with D = 1, k_t ≠ k_n: elementary tension, the rest by quadrature.
 
-    Parameters
-    ----------
-    arc : s ≥ 0 from the body, of any shape [m]
-    tension : T₀ ≥ 0 at the body [N]; 0 for a free end
-    angle : α₀ at the body, within π of α_d; of no effect at a free end [rad]
-    weight : μg > 0 [N/m]
-    normal_drag : k_n V > 0 [N/m]
-    tangential_drag : k_t V ≥ 0 [N/m]
-
-    Raises
-    ------
-    ValueError
-        Where a parameter is outside its range.
+    Parameters, V in place of V², and errors are those of `villain_guillot.quadratic_cable`; the
+    angle lies within π of α_d.
 
     Notes
     -----
     With |α − α_d| = 2 arctan e^(−m) the arc is ∫ T dm/√((μg)² + (k_n V)²), m from −∞ to ∞.
     """
-    from scipy.integrate import quad
     from scipy.optimize import brentq
 
     arcs = np.asarray(arc, float)
@@ -120,12 +107,7 @@ def unequal_cable(
         # the cable turns where m is near 0; a long step as a whole would hide that
         cuts = [m - start for m in (-16.0, -4.0, -1.0, 1.0, 4.0, 16.0, 64.0)]
         ends = [0.0, *(cut for cut in cuts if 0.0 < cut < step), step]
-        absolute = floor * load / tension
-        whole = sum(
-            float(quad(part, low, high, epsabs=absolute, epsrel=1e-12, limit=400)[0])
-            for low, high in pairwise(ends)
-        )
-        return whole * tension / load
+        return integrated(part, ends, floor * load / tension) * tension / load
 
     def follow(s: float) -> tuple[float, float, float, float]:
         def miss(step: float) -> float:

@@ -14,7 +14,7 @@ from calm.batch.shape import ShapeNodes
 from calm.batch.statuses import STATUSES
 from calm.case import Mooring
 from calm.case.parts import clamps_down
-from calm.dataset.variables import (
+from calm.dataset.netcdf import (
     CLAMPS,
     OF_CLAMP,
     OF_COMPONENT,

@@ -1,13 +1,13 @@
-"""Figures of a component that cannot be true: one small rule each, and all of them together.
+"""Figures of a component that cannot be true, in a catalogue and in a design.
 
-A rule is given a component and returns what is wrong with it, or None. It judges only figures that
-the definition gives; a missing figure is no fault, except a missing source.
+Only figures that a definition gives are judged; a missing one is no fault, except a missing source.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from itertools import chain
 from math import pi
 from typing import TYPE_CHECKING
 
@@ -76,7 +76,9 @@ def check_catalogue(
         if isinstance(definition, Assembly):
             messages = _unknown_parts(definition, known)
         else:
-            messages = (message for rule in RULES if (message := rule(definition)) is not None)
+            messages = chain(
+                _sources(definition), impossible(definition), _late_warning(definition)
+            )
         findings += [CatalogueFinding(identifier, message) for message in messages]
         if definition.prefer is not None:
             other = definitions.get(definition.prefer)
@@ -89,137 +91,72 @@ def check_catalogue(
     return findings
 
 
-def no_source(component: Component) -> str | None:
-    """Figures whose origin nobody can look up."""
-    return None if component.source else _NO_SOURCE
-
-
-def source_of_nothing(component: Component) -> str | None:
-    """A source of a figure that is missing, or a figure given though searched for in vain."""
-    given = {name for name in type(component).model_fields if getattr(component, name) is not None}
-    if absent := [name for name in component.sources or () if name not in given]:
-        return f"names a source of {_listed(absent)}, which it does not give"
-    if found := [name for name in component.searched or () if name in given]:
-        return f"lists under `searched` {_listed(found)}, which it gives"
+def _sources(component: Component) -> Iterator[str]:
+    """Yield what is wrong with the sources: none, one of a figure that is missing, or of a figure
+    that is given though it was searched for in vain.
+    """
     known = type(component).model_fields
-    if strange := [name for name in component.searched or () if name not in known]:
-        return f"lists under `searched` {_listed(strange)}, which a {component.kind} does not have"
-    return None
+    given = {name for name in known if getattr(component, name) is not None}
+    if not component.source:
+        yield _NO_SOURCE
+    if absent := [name for name in component.sources or () if name not in given]:
+        yield f"names a source of {_listed(absent)}, which it does not give"
+    searched = component.searched or ()
+    if found := [name for name in searched if name in given]:
+        yield f"lists under `searched` {_listed(found)}, which it gives"
+    if strange := [name for name in searched if name not in known]:
+        yield f"lists under `searched` {_listed(strange)}, which a {component.kind} does not have"
 
 
-def warns_after_limit(component: Component) -> str | None:
-    """A tilt warned of only after the greatest tilt."""
-    if component.max_tilt is None or component.warn_tilt is None:
-        return None
-    if component.warn_tilt <= component.max_tilt:
-        return None
-    return f"warns at {component.warn_tilt:g}°, after its greatest tilt of {component.max_tilt:g}°"
+def impossible(component: Component) -> Iterator[str]:
+    """Yield what no component of its kind, size and material can be, bear or weigh."""
+    mass, volume, rating = component.mass, component.displaced_volume, component.depth_rating
+    if mass is not None and volume is not None and mass > ROUNDING * LEAD_DENSITY * volume:
+        yield f"has a mass of {mass:.4g} kg in {volume:.3g} m³, denser than lead"
+    if rating is not None and rating > DEEPEST_WATER:
+        yield f"is rated to {rating:.5g} m; no water is deeper than {DEEPEST_WATER:g} m"
+    if isinstance(component, Cable):
+        yield from _of_a_rope(component)
+    elif isinstance(component, Chain) and component.density is None:
+        steel = (STEEL_DENSITY - CATALOGUE_DENSITY) * STANDARD_GRAVITY
+        bars = -component.net_buoyancy / (steel * _section(component))
+        if not 2.0 <= bars <= 5.0:  # open links weigh three to four bars, long ones two and a half
+            yield f"weighs as much as {bars:.2g} steel bars of its diameter; a steel chain 2 to 5"
+    elif (envelope := _envelope(component)) is not None:
+        lift = CATALOGUE_DENSITY * STANDARD_GRAVITY * envelope
+        if component.net_buoyancy > lift:
+            yield f"lifts {component.net_buoyancy:.4g} N; water of its size weighs {lift:.4g} N"
+        elif volume is not None and volume > ROUNDING * envelope:
+            yield f"displaces {volume:.3g} m³; its size is {envelope:.3g} m³"
+    yield from _drags_out_of_range(component)
 
 
-def displaces_more_than_its_size(component: Component) -> str | None:
-    """A sphere or cylinder that displaces, or lifts, more water than it has room for."""
-    envelope = _envelope(component)
-    if envelope is None:
-        return None
-    lift = CATALOGUE_DENSITY * STANDARD_GRAVITY * envelope
-    if component.net_buoyancy > lift:
-        return f"lifts {component.net_buoyancy:.4g} N; water of its size weighs {lift:.4g} N"
-    volume = component.displaced_volume
-    if volume is not None and volume > ROUNDING * envelope:
-        return f"displaces {volume:.3g} m³; its size is {envelope:.3g} m³"
-    return None
+def _of_a_rope(rope: Cable) -> Iterator[str]:
+    """Yield what makes a rope heavier, stiffer, stronger or more buoyant than its section allows.
 
-
-def is_denser_than_lead(component: Component) -> str | None:
-    """A mass in air that leaves, with the weight in water, hardly any volume."""
-    mass, volume = component.mass, component.displaced_volume
-    if mass is None or volume is None or mass <= ROUNDING * LEAD_DENSITY * volume:
-        return None
-    return f"has a mass of {mass:.4g} kg in {volume:.3g} m³, denser than lead"
-
-
-def is_heavier_than_a_bar(component: Component) -> str | None:
-    """A rope heavier, in air or in water, than a solid bar of its diameter and material.
-
-    The `density` of the definition counts, else that of its `material` where `DENSITIES` has it,
-    else that of steel.
+    Its weight is held against a solid bar: of its `density`, else of that of its `material` where
+    `DENSITIES` has it, else of steel.
     """
-    if not isinstance(component, Cable):
-        return None
-    density = component.density or DENSITIES.get(component.material or "", STEEL_DENSITY)
-    section = pi / 4 * component.diameter**2
+    section = _section(rope)
+    density = rope.density or DENSITIES.get(rope.material or "", STEEL_DENSITY)
     bar = ROPE_ROUNDING * density * section
-    if component.mass is not None and component.mass > bar:
-        return f"has {component.mass:.4g} kg/m; a solid bar of its diameter has {bar:.4g} kg/m"
     weight = max(bar - CATALOGUE_DENSITY * section, 0.0) * STANDARD_GRAVITY
-    if -component.net_buoyancy > weight:
-        return (
-            f"weighs {-component.net_buoyancy:.4g} N/m in water; a solid bar of its diameter "
-            f"weighs {weight:.4g} N/m"
+    lift = ROPE_ROUNDING * CATALOGUE_DENSITY * STANDARD_GRAVITY * section
+    stiff, strong = ROUNDING * STEEL_MODULUS * section, GREATEST_STRENGTH * section
+    net, breaking = rope.net_buoyancy, rope.breaking_load
+    if rope.mass is not None and rope.mass > bar:
+        yield f"has {rope.mass:.4g} kg/m; a solid bar of its diameter has {bar:.4g} kg/m"
+    elif -net > weight:
+        yield (
+            f"weighs {-net:.4g} N/m in water; a solid bar of its diameter weighs {weight:.4g} N/m"
         )
-    return None
-
-
-def lifts_more_than_its_section(component: Component) -> str | None:
-    """A rope more buoyant than the water it takes the place of."""
-    if not isinstance(component, Cable):
-        return None
-    lift = ROPE_ROUNDING * CATALOGUE_DENSITY * STANDARD_GRAVITY * pi / 4 * component.diameter**2
-    if component.net_buoyancy <= lift:
-        return None
-    return f"lifts {component.net_buoyancy:.4g} N/m; water of its diameter weighs {lift:.4g} N/m"
-
-
-def is_no_chain(component: Component) -> str | None:
-    """A chain outside two to five solid steel bars of its diameter side by side.
-
-    Open links weigh three to four bars, long links two and a half.
-    """
-    if not isinstance(component, Chain) or component.density is not None:
-        return None
-    bar = (STEEL_DENSITY - CATALOGUE_DENSITY) * STANDARD_GRAVITY * pi / 4 * component.diameter**2
-    bars = -component.net_buoyancy / bar
-    if 2.0 <= bars <= 5.0:
-        return None
-    return f"weighs as much as {bars:.2g} steel bars of its diameter; a steel chain 2 to 5"
-
-
-def is_stiffer_than_steel(component: Component) -> str | None:
-    """A cable stiffer than a solid steel bar of its diameter."""
-    if not isinstance(component, Cable) or component.stiffness is None:
-        return None
-    bar = ROUNDING * STEEL_MODULUS * pi / 4 * component.diameter**2
-    if component.stiffness <= bar:
-        return None
-    return (
-        f"has a stiffness of {component.stiffness:.4g} N; a steel bar of its diameter {bar:.4g} N"
-    )
-
-
-def is_rated_below_the_ocean(component: Component) -> str | None:
-    """A depth rating deeper than any water."""
-    if component.depth_rating is None or component.depth_rating <= DEEPEST_WATER:
-        return None
-    return (
-        f"is rated to {component.depth_rating:.5g} m; no water is deeper than {DEEPEST_WATER:g} m"
-    )
-
-
-def is_too_strong(component: Component) -> str | None:
-    """A cable stronger than any fibre or wire of its diameter."""
-    if not isinstance(component, Cable) or component.breaking_load is None:
-        return None
-    strongest = GREATEST_STRENGTH * pi / 4 * component.diameter**2
-    if component.breaking_load <= strongest:
-        return None
-    return f"breaks at {component.breaking_load:.4g} N; no cable of its diameter at {strongest:.4g}"
-
-
-def has_no_drag(component: Component) -> str | None:
-    """A cable or chain that the current does not push."""
-    if not isinstance(component, Flexible) or component.cn != 0.0:
-        return None
-    return "has no drag across it (`cn: 0`)"
+    if net > lift:
+        yield f"lifts {net:.4g} N/m; water of its diameter weighs {lift:.4g} N/m"
+    if rope.stiffness is not None and rope.stiffness > stiff:
+        stiffness = f"has a stiffness of {rope.stiffness:.4g} N"
+        yield f"{stiffness}; a steel bar of its diameter {stiff:.4g} N"
+    if breaking is not None and breaking > strong:
+        yield f"breaks at {breaking:.4g} N; no cable of its diameter at {strong:.4g}"
 
 
 LEAST_DRAG = {"sphere": 0.06, "cylinder": 0.2, "cable": 0.05, "chain": 1.0}
@@ -233,35 +170,26 @@ MOST_DRAG = 10.0
 """No piece of a mooring has a greater coefficient, whatever vibrates."""
 
 
-def drags_out_of_range(component: Component) -> str | None:
-    """A coefficient of drag that no piece of its kind has."""
+def _drags_out_of_range(component: Component) -> Iterator[str]:
+    """Yield a coefficient of drag that no piece of its kind has."""
     name = "cx" if isinstance(component, Sphere) else "cn"
-    value = getattr(component, name, None)
-    least = LEAST_DRAG.get(component.kind)
-    if value is None or least is None or value == 0.0 or least <= value <= MOST_DRAG:
-        return None
-    return (
-        f"has `{name}: {value:g}`; a {component.kind} has {least:g} at least, {MOST_DRAG:g} at most"
-    )
+    value, least = getattr(component, name, None), LEAST_DRAG.get(component.kind)
+    if value == 0.0 and isinstance(component, Flexible):
+        yield "has no drag across it (`cn: 0`)"
+    elif value and least is not None and not least <= value <= MOST_DRAG:
+        kind = f"a {component.kind} has {least:g} at least, {MOST_DRAG:g} at most"
+        yield f"has `{name}: {value:g}`; {kind}"
 
 
-IMPOSSIBLE: tuple[Callable[[Component], str | None], ...] = (
-    warns_after_limit,
-    displaces_more_than_its_size,
-    is_denser_than_lead,
-    is_heavier_than_a_bar,
-    lifts_more_than_its_section,
-    is_no_chain,
-    is_stiffer_than_steel,
-    is_too_strong,
-    is_rated_below_the_ocean,
-    has_no_drag,
-    drags_out_of_range,
-)
-"""Rules on the figures themselves, of a catalogue and of a design."""
+def _section(component: Flexible) -> float:
+    """Return the area of a bar of its diameter [m²]."""
+    return pi / 4 * component.diameter**2
 
-RULES = (no_source, source_of_nothing, *IMPOSSIBLE)
-"""Every rule of a catalogue, in the order their findings are reported."""
+
+def _late_warning(component: Component) -> Iterator[str]:
+    warned, limit = component.warn_tilt, component.max_tilt
+    if warned is not None and limit is not None and warned > limit:
+        yield f"warns at {warned:g}°, after its greatest tilt of {limit:g}°"
 
 
 def _listed(names: Iterable[str]) -> str:
@@ -293,11 +221,10 @@ def figures(handling: Handling) -> Iterator[Verdict]:
     What hangs several times on the line is named once.
     """
     named: set[tuple[str, str]] = set()
+    remedy = "Look at its figures, and at their units."
     for part in parts_of(handling.mooring.file.pieces):
-        for impossible in IMPOSSIBLE:
-            said = impossible(part.component)
-            if said is not None and (part.use, said) not in named:
-                named.add((part.use, said))
-                remedy = "Look at its figures, and at their units."
-                state = State.WARN if impossible is warns_after_limit else State.FAIL
-                yield verdict_on(part, state, f"{part.label} {said}.", remedy)
+        for state, found in ((State.FAIL, impossible), (State.WARN, _late_warning)):
+            for said in found(part.component):
+                if (part.use, said) not in named:
+                    named.add((part.use, said))
+                    yield verdict_on(part, state, f"{part.label} {said}.", remedy)

@@ -10,6 +10,7 @@ import numpy as np
 from calm.checks.finding import State, Verdict, at_least, rule, verdict_on
 from calm.files.environment import Environment
 from calm.quantities import say
+from calm.records.current_terms import left_out
 
 if TYPE_CHECKING:
     from calm.case import Mooring
@@ -22,9 +23,6 @@ USUAL_CURRENT = 0.2
 
 WEAK_BESIDE_OTHERS = 0.02
 """Share of the strongest current below which another was typed in another unit: 1/100 is cm/s."""
-
-_UNCOVERED = 0.1  # share of the depth that a profile may leave out at either end
-_FEW = 25.0  # m of that
 
 
 @rule("current")
@@ -68,19 +66,8 @@ def _left_out(mooring: Mooring) -> str:
     One speed at the surface is taken for a current that is the same everywhere.
     """
     environment: Environment = mooring.file.environment
-    levels, depth = environment.current.depth, mooring.water.depth
+    levels = environment.current.depth
     if levels == (0.0,):
         return ""
-    allowed = max(_UNCOVERED * depth, _FEW)
-    top, bottom = levels[0], levels[-1]
-    gaps = []
-    if top > allowed:
-        gaps.append(f"above {say('depth', top)}")
-    if depth - bottom > allowed:
-        gaps.append(f"below {say('depth', bottom)}")
-    if not gaps:
-        return ""
-    return (
-        f"The current is not given {' and '.join(gaps)}: that of the nearest level is used there, "
-        f"in {say('depth', depth)} of water."
-    )
+    left = left_out(levels[0], levels[-1], mooring.water.depth)
+    return left and f"{left[0].upper()}{left[1:]}."

@@ -208,21 +208,14 @@ def recovery(handling: Handling) -> Iterator[Verdict]:
 @rule("tangling", once=True)
 def tangling(handling: Handling) -> Iterator[Verdict]:
     """Return whether the line doubles back on itself as it falls or rises."""
-    launch, rise = handling.launch, handling.recovery
-    if isinstance(launch, Launch) and launch.tangles:
-        yield _tangled(
-            handling,
-            launch.tangles,
-            "In the fall the parts above overtake",
-            "Pay the line out under tension, or lower the anchor.",
-        )
-    if isinstance(rise, Recovery) and rise.tangles:
-        yield _tangled(
-            handling,
-            rise.tangles,
-            "In the rise the parts below overtake",
-            "Put more of the buoyancy at the top.",
-        )
+    fall, rise = "In the fall the parts above overtake", "In the rise the parts below overtake"
+    lower = "Pay the line out under tension, or lower the anchor."
+    for motion, what, remedy in (
+        (handling.launch, fall, lower),
+        (handling.recovery, rise, "Put more of the buoyancy at the top."),
+    ):
+        if not isinstance(motion, NoEquilibrium) and motion.tangles:
+            yield _tangled(handling, motion.tangles, what, remedy)
 
 
 def _hauled_in(lowest: LinePart, arrival: float, rise: Recovery) -> Verdict:

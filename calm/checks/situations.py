@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from math import cos, hypot, radians
+from math import hypot
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from calm.case import Mooring, Result
@@ -18,6 +18,7 @@ from calm.errors import NoEquilibrium, UsageError
 from calm.files import Cable, Clamp, CurrentTable, Piece, StrummingFactor
 from calm.files.logbook import DeployedItem
 from calm.quantities import say
+from calm.records.water_column import kilometres_from
 from calm.solve import Status
 
 if TYPE_CHECKING:
@@ -173,10 +174,9 @@ def deployed_depth(handling: Handling) -> Iterator[Verdict]:
     yield at_most(None, abs(moved), limit, message, remedy, State.WARN)
 
 
-_EARTH = 6371e3  # m, its radius
-_ANOTHER_SITE = 20e3
+_ANOTHER_SITE = 20.0
 """Distance from the planned position beyond which the currents of the design are of elsewhere
-[m]."""
+[km]."""
 
 
 def _far_away(mooring: Mooring) -> Verdict | None:
@@ -186,14 +186,12 @@ def _far_away(mooring: Mooring) -> Verdict | None:
     there = mooring.file.deployed.position
     if planned is None or there is None:
         return None
-    north = radians(there.latitude - planned.latitude)
-    east = radians((there.longitude - planned.longitude + 180.0) % 360.0 - 180.0)
-    mean = radians((there.latitude + planned.latitude) / 2.0)
-    away = _EARTH * hypot(north, east * cos(mean))
+    place = planned.latitude, planned.longitude
+    away = float(kilometres_from(there.latitude, there.longitude, place))
     if away <= _ANOTHER_SITE:
         return None
     message = (
-        f"Deployed {away / 1e3:.0f} km from the planned position: the water and the currents of "
+        f"Deployed {away:.0f} km from the planned position: the water and the currents of "
         "this design are those of another place."
     )
     return unknown(None, message, "Look at both positions, or give the environment of the site.")

@@ -114,11 +114,10 @@ def motion(
     from calm.batch.compiling import compile_solver
     from calm.batch.profiles import Batch
     from calm.batch.stored_result import open_result, readable
-    from calm.motion.correction import run_motion
+    from calm.motion.correction import MeasuredRecord, run_motion
     from calm.motion.instrument_file import read_instruments, write_depths
     from calm.motion.matching import labels_of
     from calm.motion.study import cross_validated, judged, prepare, series_of, several
-    from calm.motion.task import MeasuredRecord
     from calm.report.folder import check_folder, write_report
     from calm.report.motion_report import motion_files
     from calm.report.motion_tables import motion_document, motion_part
@@ -246,6 +245,7 @@ def read_measured(
     """What was measured, on common times; what is said of it, and its source."""
     import numpy as np
 
+    from calm.motion.correction import without
     from calm.motion.line_response import Forward
     from calm.motion.matching import (
         instruments_of,
@@ -255,10 +255,8 @@ def read_measured(
         plausible,
         unusable,
     )
-    from calm.motion.measured_currents import read_currents
-    from calm.motion.measurements import joined
+    from calm.motion.measurements import joined, read_currents
     from calm.motion.sensors import parse_flags, read_sea_level, read_sensors
-    from calm.motion.task import without
     from calm.suggestions import not_among
 
     if match not in _MATCHES:

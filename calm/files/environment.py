@@ -24,7 +24,7 @@ from calm.files.density import (
 from calm.files.fields import POSITIVE_LENGTH, Model, QuantityField, Text
 from calm.files.mistakes import validate
 from calm.files.yaml_document import SourceMapping
-from calm.records.current_terms import DEEPEST, Terms, too_fast
+from calm.records.current_terms import DEEPEST, Terms, TimeChoiceError, too_fast
 from calm.records.profile_tables import (
     DIRECTION,
     CurrentTable,
@@ -33,7 +33,6 @@ from calm.records.profile_tables import (
     components,
     read_current,
 )
-from calm.records.times import TimeChoiceError
 from calm.suggestions import shown
 from calm.units import QuantityError
 

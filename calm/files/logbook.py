@@ -13,7 +13,7 @@ from calm.files.environment import Position
 from calm.files.fields import POSITIVE_LENGTH, Model, QuantityField, Role, Text
 from calm.files.mistakes import validate
 from calm.files.yaml_document import SourceMapping
-from calm.records.times import TimeChoiceError, parse_time
+from calm.records.current_terms import TimeChoiceError, parse_time
 from calm.suggestions import shown, unknown
 
 

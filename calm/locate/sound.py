@@ -9,8 +9,8 @@ import numpy as np
 
 from calm.errors import InputError, Problem
 from calm.physics.line import Floats
-from calm.records.columns import read_named_columns
 from calm.records.delimited import abridged, no_number
+from calm.records.headings import read_named_columns
 from calm.suggestions import shown
 from calm.units import DIMENSIONS
 

@@ -15,6 +15,8 @@ from calm.motion.measurements import interpolated
 from calm.motion.study import depths_at
 from calm.records.cf_files import (
     UnreadableError,
+    engine_of,
+    groups_of,
     holdings,
     is_netcdf,
     labels_along,
@@ -72,8 +74,11 @@ def read_instruments(path: Path, labels: Sequence[str], *, replace: bool) -> Ins
     if not is_netcdf(path):
         raise InputError([Problem(str(path), 0, 0, "is not a NetCDF file")])
     with reading(path), open_current(path) as dataset:
-        if _engine(path) == "h5netcdf":
-            _refuse_groups(path)
+        if groups := groups_of(path):
+            raise UnreadableError(
+                f"has groups, which a copy would lack: {', '.join(groups)}; give the variables of "
+                "its instruments as a file of their own"
+            )
         counted = [name for name in ADDED if name in dataset.sizes]
         if counted:
             raise UsageError(
@@ -144,7 +149,7 @@ def write_depths(
     # values as they stand, but for texts: kept as characters they would be split once more
     with xr.open_dataset(
         instruments.path,
-        engine=_engine(instruments.path),
+        engine=engine_of(instruments.path),
         mask_and_scale=False,
         decode_times=False,
         decode_coords=False,
@@ -158,20 +163,3 @@ def write_depths(
     with beside(output) as part:
         copy.to_netcdf(part, engine="h5netcdf")
     return lost
-
-
-def _engine(path: Path) -> str:
-    with path.open("rb") as file:
-        return "scipy" if file.read(3) == b"CDF" else "h5netcdf"
-
-
-def _refuse_groups(path: Path) -> None:
-    import h5netcdf
-
-    with h5netcdf.File(path, "r") as file:
-        groups = list(file.groups)
-    if groups:
-        raise UnreadableError(
-            f"has groups, which a copy would lack: {', '.join(groups)}; give the variables of its "
-            "instruments as a file of their own"
-        )

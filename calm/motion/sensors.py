@@ -29,8 +29,8 @@ from calm.records.cf_files import (
     read_times,
     reading,
 )
-from calm.records.columns import read_time_columns
 from calm.records.current_file import holds_arrays
+from calm.records.headings import read_time_columns
 from calm.records.velocity import refuse_ragged
 
 if TYPE_CHECKING:

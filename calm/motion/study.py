@@ -11,22 +11,24 @@ from numpy.typing import NDArray
 
 from calm.case import Mooring
 from calm.errors import UsageError
-from calm.motion.agreement import (
+from calm.motion.correction import Task, estimate_in_memory, without
+from calm.motion.line_response import Forward
+from calm.motion.matching import labels_of
+from calm.motion.measurements import MooringMeasurements, level_names
+from calm.motion.remarks import (
     BAND,
     Agreement,
     agreement,
     calm_times,
     coverage,
+    current_remarks,
+    datum_remarks,
     difference,
+    false_current_times,
     linear,
     rms,
+    sensor_remarks,
 )
-from calm.motion.correction import estimate_in_memory
-from calm.motion.line_response import Forward
-from calm.motion.matching import labels_of
-from calm.motion.measurements import MooringMeasurements, level_names
-from calm.motion.remarks import current_remarks, datum_remarks, false_current_times, sensor_remarks
-from calm.motion.task import Task, without
 from calm.motion.whole_record import estimate_common
 from calm.physics.line import Floats
 from calm.suggestions import unknown

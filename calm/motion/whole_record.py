@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from calm.case import Mooring
 from calm.motion import prior
 from calm.motion.common_unknowns import Common, Evidence, first_time, fits, hanging_sensors
+from calm.motion.estimate import best_state
 from calm.motion.line_response import STEP, Forward, LineResponse, gap_errors
 from calm.motion.measurements import MooringMeasurements
-from calm.motion.posterior import best_state
 from calm.physics.line import Floats, Integers
 from calm.solve import expect_many
 

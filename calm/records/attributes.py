@@ -7,7 +7,7 @@ Where they name another frame or quantity than the name suggests, they are belie
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -50,10 +50,6 @@ _OTHER_QUANTITIES = (
 )
 _NOT_A_CURRENT = [re.compile(text) for text in _OTHER_DIRECTIONS + _OTHER_QUANTITIES]
 
-_SAID_IN_COMMENTS = re.compile(
-    r"\brelative to (the )?(instrument|ship|vessel|vehicle|platform|glider|float|drifter)\b|"
-    r"\brotated\b(?!.*\b(earth|true|geograph\w*|enu|east|declination|magnetic|variation)\b)"
-)
 _ROTATION = re.compile(
     r"(?i)((coord\w*|grid|frame|axis|axes|velocity)_)?rotation(_angle)?(_deg(rees)?)?"
 )
@@ -102,10 +98,6 @@ def not_a_current(variable: xr.DataArray) -> str | None:
     methods = str(variable.attrs.get("cell_methods", ""))
     if _SPREADS.search(methods):
         return f"is `cell_methods: {methods}`, which is not a measured or modelled current"
-    for name in ("comment", "note", "notes"):
-        said = words_of(variable, name)
-        if _SAID_IN_COMMENTS.search(said):
-            return f"is in other coordinates by its {name}: {said[:80]}"
     if variable.encoding.get("scale_factor") == 0:
         return "has `scale_factor: 0`, which makes every value the same"
     return other_frame(variable.attrs) or part_in_texts(variable.attrs)
@@ -209,13 +201,24 @@ _WITHOUT_TIDES = (
 _TIDES_ALONE = (
     r"\b(only|purely|just) (the )?tid(al|es?)\b|\btid(al|es?)( \w+){0,2} (only|alone)\b|"
     r"\btidal (constituents?|harmonics?|predictions?|ellips\w+)\b|\bpredicted tid(al|es?)\b|"
-    r"\b(baroclinic|barotropic|internal) tides?\b"
+    r"\b(baroclinic|barotropic|internal) tides?\b|\bharmonic (constituents?|predictions?)\b|"
+    r"\b(predict\w+|reconstruct\w+)( \w+){0,3} tid(al|es?)\b|"
+    r"\b(tid(al|es?)( \w+){0,2}|t tide|utide) (predict|reconstruct|hindcast)\w*\b"
 )
 _LONG_MEANS = (
     r"\bclimatological (mean|average|current|velocit\w+|month|year|value)\w*\b|"
     r"\b(mean|monthly|annual|seasonal|daily) climatolog(y|ies)\b|\bclimatology of\b|"
     r"\b(annual|seasonal|decadal|long term|multi ?year) (mean|average)\b|"
-    r"\b(mean|averaged?) over \d+ years\b|\b\d+ years? (mean|average)\b"
+    r"\b(mean|averaged?) over \d+ years\b|\b\d+ years? (mean|average)\b|"
+    r"\b(means?|averaged?) over (19|20)\d\d( to)? (19|20)\d\d\b|\b(time|record) mean\b|"
+    r"\b(y(day|mon|seas)|tim|multi ?year)mean\b|\b(day|mon|seas|year|tim)(max|min|std|pctl)\b"
+)
+_OTHER_FRAMES = re.compile(
+    r"\brelative to (the |a )?(moving )?"
+    r"(instrument|ship|vessel|vehicle|platform|glider|float|drifter)\b|"
+    r"\b(ship|vessel|glider|platform|vehicle|drifter) relative\b|\bshear only\b|"
+    r"\bunreferenced\b|\brotated\b(?!.*\b(earth|true|geograph\w*|enu|east|declination|"
+    r"magnetic|variation|back)\b)"
 )
 _IN_TEXTS = re.compile("|".join((_FILTERED, _WITHOUT_TIDES, _TIDES_ALONE, _LONG_MEANS)))
 _IN_NAMES = re.compile(
@@ -226,20 +229,40 @@ _IN_NAMES = re.compile(
 )
 _IN_TITLES = re.compile(
     r"\bclimatolog(y|ies)\b|"
-    r"\b(residual|geostrophic|ekman|stokes) (currents?|velocit\w+|flow|drift)\b"
+    r"\b(residual|geostrophic|ekman|stokes) (currents?|velocit\w+|flow|drift)\b|"
+    r"\b(percent|quant)iles?\b|\banomal(y|ies)\b|\b(tpxo|fes ?20|eot ?[12]|got ?4)\w*\b|"
+    r"\b(standard deviation|std|variance|rms|maxim(a|um)|minim(a|um)) (of|current|velocit|speed)"
 )
+_REMARKABLE = (
+    (
+        r"\b(daily|weekly|monthly|seasonal|annual|yearly) (mean|average|current)[ds]?\b|"
+        r"\b(day|mon|seas|year)(mean|avg)\b|\b(mean|averaged?) (current|velocit)\w*\b",
+        "the peaks are higher than the means",
+    ),
+    (
+        r"\breturn (values?|periods?|levels?)\b|\bextreme (values?|currents?|profiles?)\b|"
+        r"\b\d+ ?(year|yr)s? (return|extreme|storm|event|current)",
+        "extremes by statistics are no currents of one time",
+    ),
+    (
+        r"^(the )?tid(al|es?)\b(?!.*\b(observ|measur|adcp|adp|moor|meter|record|channel|inlet)\w*)",
+        "where it is the tide alone, the rest of the current is missing",
+    ),
+)
+"""Words of a title or a history, and what is said of a current that is read all the same."""
+
 _TIDAL = re.compile(r"\btid(al|es?)\b")
 _WITH_TIDES = re.compile(r"\b(total|includ\w+|with|and|plus|waves?|not removed)\b")
 
 _TEXTS = re.compile(
-    r"(?i)title|summary|abstract|comments?|notes?|description|(data_)?processing(_\w+)?|"
-    r"(\w+_)?filter(ing|ed|s)?(_\w+)?"
+    r"(?i)title|summary|abstract|comments?|notes?|description|history|(data_)?processing(_\w+)?|"
+    r"(\w+_)?filter(ing|ed|s)?(_\w+)?|data_type|subject|purpose"
 )
-_TITLES = ("title", "Title", "data_type")
-_SENTENCE = re.compile(r"[.;\n]")
+_TITLES = re.compile(r"(?i)title|summary|abstract|description|data_type|subject|purpose")
+_SENTENCE = re.compile(r"\.(?!\d)|[;()\n]")
 _OF_OTHERS = re.compile(
     r"\b(temperatures?|salinit\w+|pressures?|sea level|elevations?|conductivit\w+|headings?|"
-    r"pitch|roll|not|no|never|against|before|elsewhere|see|also)\b"
+    r"pitch|roll|not|no|never|against|before|elsewhere|see|also|forc\w+|boundar(y|ies)|depths?|heights?)\b"
 )
 """What speaks of another variable, or against itself."""
 
@@ -270,17 +293,35 @@ def part_in_texts(attributes: Mapping[Any, Any]) -> str | None:
     ----------
     attributes : those of a dataset or of a variable
     """
-    for name, said in attributes.items():
-        if not isinstance(said, str) or (not _TEXTS.fullmatch(str(name)) and name not in _TITLES):
-            continue
-        for sentence in _SENTENCE.split(said.lower()):
-            words = re.sub(r"[\W_]+", " ", sentence).strip()
-            found = _IN_TEXTS.search(words)
-            if found is None and name in _TITLES:
-                found = _IN_TITLES.search(words)
-            if found is not None and not _OF_OTHERS.search(words):
-                return f"is not the whole current by its {name}: {said.strip()[:80]}"
+    for name, words, said in _sentences(attributes):
+        if _OTHER_FRAMES.search(words):
+            return f"is in other coordinates by its {name}: {said}"
+        found = _IN_TEXTS.search(words)
+        if found is None and _TITLES.fullmatch(name):
+            found = _IN_TITLES.search(words)
+        if found is not None:
+            return f"is not the whole current by its {name}: {said}"
     methods = str(attributes.get("cell_methods", ""))
     if _OVER_YEARS.search(methods):
         return f"is a mean of many years, `cell_methods: {methods}`, not a current at one time"
     return None
+
+
+def remarks_in_texts(attributes: Mapping[Any, Any]) -> list[str]:
+    """Return what titles and histories say that a person should know of a current that is read."""
+    return [
+        f"its {name} says `{said}`: {meaning}"
+        for name, words, said in _sentences(attributes)
+        for pattern, meaning in _REMARKABLE
+        if (_TITLES.fullmatch(name) or name == "history") and re.search(pattern, words)
+    ]
+
+
+def _sentences(attributes: Mapping[Any, Any]) -> Iterator[tuple[str, str, str]]:
+    """Yield the name, the plain words and the text of the sentences that speak of the current."""
+    for name, said in attributes.items():
+        if isinstance(said, str) and _TEXTS.fullmatch(str(name)):
+            for sentence in _SENTENCE.split(said.lower()):
+                words = re.sub(r"[\W_]+", " ", sentence).strip()
+                if not _OF_OTHERS.search(words):
+                    yield str(name), words, said.strip()[:80]

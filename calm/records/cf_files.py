@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.errors import CalmError, InputError, Problem
-from calm.records.times import ZONES_OF_UTC, TimeChoiceError
+from calm.records.current_terms import ZONES_OF_UTC, TimeChoiceError
 from calm.units import QuantityError, unit_factor
 
 if TYPE_CHECKING:
@@ -28,9 +28,11 @@ if TYPE_CHECKING:
 _TIME_NAMES = ("time", "TIME", "Time", "time_counter", "ocean_time", "MT")
 _CALENDARS = ("standard", "gregorian", "proleptic_gregorian")
 _FIRST, _LAST = "1678-01-01", "2262-01-01"
-_AT_ONCE = 50_000
 _ZONE = re.compile(r" since .*\d\s*([A-Za-z]{2,}(/[A-Za-z_]+)?)\s*$")
-_ZONED = ("time_zone", "timezone", "tz")
+_ZONED = ("time_zone", "timezone", "tz", "time_reference")
+_SAID_IN = re.compile(r"(?i)long_name|title|summary|(time_)?(comments?|notes?|description)|history")
+_LOCAL = re.compile(r"(?i)\b(local (\w+ )?times?|times? (is|are) (in )?local|times? in local)\b")
+_IN_UTC = re.compile(r"(?i)\b(convert|correct|transform|shift)\w*\b|\bto (utc|gmt)\b|\bnot\b")
 
 _MOST_LISTED = 24
 _NORTH_NAMED = re.compile(
@@ -40,28 +42,41 @@ _LABELS = ("instrument", "label", "instrument_label", "labels", "instruments")
 _HEIGHTS = ("hab", "height_above_bottom", "height_above_seabed", "DIST_SEABED")
 _DEPTHS = ("nominal_depth", "NOMINAL_DEPTH", "InstrDepth", "DEPTH", "depth", "instrument_depth")
 
-
 MISSING = 9
-_ENDINGS = ("_qc", "_QC", "_quality_control", "_flag")
+_ENDINGS = ("_qc", "_QC", "_quality_control", "_flag", "_SEADATANET_QC")
+_BAD = re.compile(r"bad|fail|suspect|spike|erroneous|wrong|missing|reject|doubtful|invalid")
 
-
-_ZARR = ("zarr.json", ".zgroup", ".zmetadata")
+_KINDS = {
+    b"MATLAB": "a .mat file of MATLAB; write its times, depths and currents with `ncwrite`",
+    b"GRIB": "a GRIB file; turn it into NetCDF (`cdo -f nc copy`)",
+    b"\x0e\x03\x13\x01": "an HDF 4 file; turn it into NetCDF",
+    b"PK\x03\x04": "a packed file or a spreadsheet; unpack it, or save the sheet as CSV",
+    b"\xd0\xcf\x11\xe0": "a spreadsheet; save it as CSV",
+    b"\x1f\x8b": "a packed file; unpack it first (`gunzip`)",
+    b"\x7f\x7f": "a raw file of a Teledyne ADCP; let its software or MHKiT turn it into NetCDF",
+    b"\xa5": "a raw file of a Nortek instrument; let its software or MHKiT turn it into NetCDF",
+}
+"""What files begin with that hold currents, and are of a kind that is not read."""
 
 
 class UnreadableError(Exception):
     """The file does not hold a current that can be understood; the text says why."""
 
 
-def is_zarr(path: Path) -> bool:
-    """Return whether a folder is a zarr store."""
-    return any((path / name).is_file() for name in _ZARR)
-
-
 def is_netcdf(path: Path) -> bool:
-    """Return whether a file is NetCDF, by its first bytes."""
+    """Return whether a file is NetCDF, by its first bytes.
+
+    Raises
+    ------
+    InputError
+        It is of a kind that is known, and not read.
+    """
     with path.open("rb") as file:
-        signature = file.read(4)
-    return signature == b"\x89HDF" or signature[:3] == b"CDF"
+        signature = file.read(8)
+    for begin, kind in _KINDS.items():
+        if signature.startswith(begin):
+            raise InputError([Problem(str(path), 0, 0, f"is {kind}; NetCDF, zarr or CSV is read")])
+    return signature[:4] == b"\x89HDF" or signature[:3] == b"CDF"
 
 
 @contextmanager
@@ -90,9 +105,13 @@ def open_current(path: Path) -> xr.Dataset:
         return xr.open_dataset(
             path, engine="zarr", decode_times=False, cache=False, consolidated=False
         )
+    return xr.open_dataset(path, engine=engine_of(path), decode_times=False, cache=False)
+
+
+def engine_of(path: Path) -> str:
+    """Return what reads a NetCDF file, by its first bytes."""
     with path.open("rb") as file:
-        engine = "scipy" if file.read(3) == b"CDF" else "h5netcdf"
-    return xr.open_dataset(path, engine=engine, decode_times=False, cache=False)
+        return "scipy" if file.read(3) == b"CDF" else "h5netcdf"
 
 
 def holdings(dataset: xr.Dataset) -> str:
@@ -108,7 +127,22 @@ def holdings(dataset: xr.Dataset) -> str:
         listed.append(" ".join(words)[:120])
     hidden = len(listed) - _MOST_LISTED
     more = [f"and {hidden} more"] if hidden > 0 else []
+    if groups := groups_of(Path(dataset.encoding.get("source", ""))):
+        more.append(
+            f"and the groups {', '.join(groups)}, which are not read: make one a file of its own "
+            f"(`ncks -G : -g {groups[0]} in.nc out.nc`)"
+        )
     return "; ".join([*listed[:_MOST_LISTED], *more]) or "nothing"
+
+
+def groups_of(path: Path) -> list[str]:
+    """Return the names of the groups of a NetCDF 4 file; of any other file it has none."""
+    import h5netcdf
+
+    if not path.is_file() or engine_of(path) != "h5netcdf":
+        return []
+    with h5netcdf.File(path, "r") as file:
+        return list(file.groups)
 
 
 def factor_of(variable: xr.DataArray, dimension: str) -> float:
@@ -123,8 +157,8 @@ def factor_of(variable: xr.DataArray, dimension: str) -> float:
     plain = _NORTH_NAMED.sub("", unit.strip())
     if not plain:
         raise UnreadableError(f"`{variable.name}` has no `units`")
-    if plain.istitle() and len(plain) > 1:  # `Meter`
-        plain = plain.lower()
+    if (plain.istitle() or plain.isupper()) and len(plain) > 1:  # `Meter`, `METER/SEC`
+        plain = plain.lower().replace("/sec", "/s")
     try:
         return unit_factor(plain, dimension)
     except QuantityError as error:
@@ -144,13 +178,13 @@ def known_values(variable: xr.DataArray) -> NDArray[np.float64]:
     values where they are of the packed kind.
     """
     values = np.array(variable.values, np.float64)
-    low, high = _valid_range(variable)
+    low, high = valid_range(variable)
     if low > -inf or high < inf:
         values[(values < low) | (values > high)] = np.nan
     return values
 
 
-def _valid_range(variable: xr.DataArray) -> tuple[float, float]:
+def valid_range(variable: xr.DataArray) -> tuple[float, float]:
     """Return the least and the greatest valid value, unpacked."""
     attributes = variable.attrs
     low, high = attributes.get("valid_min"), attributes.get("valid_max")
@@ -205,6 +239,26 @@ def flags_of(variable: xr.DataArray) -> NDArray[np.int8]:
         values = np.where(values.astype(str) == "", "9", values.astype(str)).astype(float)
     numbers = np.asarray(values, np.float64)
     return np.where(np.isfinite(numbers), numbers, MISSING).astype(np.int8)
+
+
+def marked_bad(variable: xr.DataArray) -> NDArray[np.bool_]:
+    """Return which flags say that a value is bad, by their meanings; without, 3, 4 and 9 do."""
+    bad, told = ["3", "4", "9"], str(variable.attrs.get("flag_meanings", "")).lower().split()
+    values = np.atleast_1d(variable.attrs.get("flag_values", [])).tolist()
+    if told and len(told) == len(values):
+        pairs = zip(values, told, strict=True)
+        bad = [_flag(value) for value, meaning in pairs if _BAD.search(meaning)]
+    flags = np.asarray(variable.values)
+    kinds, which = np.unique(flags.astype(object).astype(str), return_inverse=True)
+    marks: NDArray[np.bool_] = np.array([_flag(kind) in bad for kind in kinds])
+    return marks[which].reshape(flags.shape)
+
+
+def _flag(value: Any) -> str:
+    """Return a flag, be it a number or a character, in one spelling."""
+    text = value.decode() if isinstance(value, bytes) else str(value)
+    text = text.removeprefix("b'").removesuffix("'").removesuffix(".0")
+    return chr(int(text)) if re.fullmatch(r"4[89]|5[0-7]|6[56]|81", text) else text
 
 
 def labels_along(dataset: xr.Dataset, dimension: str) -> tuple[str, ...] | None:
@@ -276,9 +330,7 @@ def read_times(dataset: xr.Dataset, name: str) -> NDArray[np.datetime64]:
     if times.ndim > 1:
         raise UnreadableError(f"the times in `{name}` have {times.ndim} dimensions")
     read = np.empty(times.size, "datetime64[ns]")
-    for start in range(0, times.size, _AT_ONCE):
-        piece = slice(start, start + _AT_ONCE)
-        read[piece] = _decoded(times[piece] if times.ndim else times)
+    read[:] = _decoded(times)
     missing = int(np.isnat(read).sum())
     if missing:
         raise UnreadableError(f"{missing} of the {read.size} times in `{name}` have no value")
@@ -286,13 +338,17 @@ def read_times(dataset: xr.Dataset, name: str) -> NDArray[np.datetime64]:
 
 
 def zone_notices(dataset: xr.Dataset, name: str) -> list[str]:
-    """Return what is said where the attributes of the times name another zone than UTC."""
-    attributes = dataset[name].attrs
-    zones = [str(attributes.get(one, "")) for one in _ZONED]
-    zone = next((one for one in zones if one and one.strip().upper() not in ZONES_OF_UTC), None)
-    if zone is None and "local time" in str(attributes.get("long_name", "")).lower():
-        zone = str(attributes["long_name"])
-    return [f"`{name}` says `{zone}`; its times are taken as they stand"] if zone else []
+    """Return what is said where the times, or the file, name another zone than UTC."""
+    for attributes in (dataset[name].attrs, dataset.attrs):
+        for key, said in attributes.items():
+            zone, comment = str(said).strip(), _SAID_IN.fullmatch(str(key))
+            another = key in _ZONED and zone and zone.upper() not in ZONES_OF_UTC
+            if another or (comment and _LOCAL.search(zone) and not _IN_UTC.search(zone)):
+                return [
+                    f"`{name}` says `{zone[:80]}`: all {dataset[name].size} times are taken as "
+                    "they stand, in UTC"
+                ]
+    return []
 
 
 def _decoded(times: xr.DataArray) -> NDArray[Any]:

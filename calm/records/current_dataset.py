@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.errors import InputError, Problem
+from calm.records.attributes import remarks_in_texts
 from calm.records.cf_files import (
     UnreadableError,
     factor_of,
@@ -18,16 +20,20 @@ from calm.records.cf_files import (
     flags_of,
     holdings,
     known_values,
+    labels_along,
+    marked_bad,
     open_current,
     read_times,
     reading,
+    valid_range,
     zone_notices,
 )
-from calm.records.current_terms import Terms
+from calm.records.current_terms import Terms, current_notices
 from calm.records.level_depths import LevelDepths, find_levels
+from calm.records.profile_tables import turned_by
 from calm.records.record import RULES, Levels, Period, Record, choose_profiles, part
 from calm.records.velocity import Velocity, find_velocity, refuse_ragged, with_components
-from calm.records.water_column import choose_column, is_regular
+from calm.records.water_column import GridColumn, choose_column, is_regular
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -35,7 +41,8 @@ if TYPE_CHECKING:
 AHEAD = 16_000_000
 """Bytes that are read together where a file has compressed them together."""
 
-FLAGS = "the quality flags of the current are ignored"
+LOOKED_AT = 64_000_000
+"""Bytes of a record that are looked at for what is odd, spread over it where it has more."""
 
 
 @dataclass(frozen=True)
@@ -67,6 +74,7 @@ class CurrentDataset:
     turned : angle by which a current relative to magnetic north was turned
     rules : what was understood beyond doubt, and how
     source : names of the variables, and the place
+    labels : see `Record`
     """
 
     times: NDArray[np.datetime64] | None
@@ -74,17 +82,18 @@ class CurrentDataset:
     turned: tuple[str, ...]
     rules: tuple[str, ...]
     source: dict[str, str]
+    labels: tuple[str, ...]
     _parts: tuple[tuple[xr.DataArray, float], ...]
     _flags: tuple[xr.DataArray, ...]
     _turn: float | None
-    _declination: float
-    _levels: LevelDepths
+    _terms: Terms
+    _levels: LevelDepths | None
     _time: str | None
 
     @property
     def moves(self) -> bool:
         """Return whether the levels move with time."""
-        return self._levels.vary_in(self._time)
+        return self._levels is not None and self._levels.vary_in(self._time)
 
     @property
     def chunk(self) -> int:
@@ -106,43 +115,79 @@ class CurrentDataset:
         All profiles where there is no time.
         """
         first, second, *up = (
-            self._values(variable, index) * factor for variable, factor in self._parts
+            self._along(variable, index, known_values) * factor for variable, factor in self._parts
         )
+        if not self._terms.on_the_line:
+            for variable in self._flags:
+                first[self._along(variable, index, marked_bad)] = np.nan
         if self._turn is not None:
             angle = np.radians(second + self._turn)
             impossible = (first < 0.0) | (np.abs(second) > 360.0)
             first, second = first * np.sin(angle), first * np.cos(angle)
             first[impossible] = second[impossible] = np.inf  # to be refused by whoever asked
-        if self._declination:
-            angle = np.radians(self._declination)
+        if self._terms.declination:
             with np.errstate(invalid="ignore"):  # of what is infinite
-                first, second = (
-                    first * np.cos(angle) + second * np.sin(angle),
-                    second * np.cos(angle) - first * np.sin(angle),
-                )
-        depth = self._levels.depths(self._time, index)
+                first, second = turned_by(self._terms.declination, first, second)
+        depth = np.full(first.shape[1], np.nan)
+        if self._levels is not None:
+            depth = self._levels.depths(self._time, index)
         return CurrentArrays(depth, first, second, up[0] if up else None)
 
     def flags(self, index: slice | NDArray[np.intp]) -> NDArray[np.int8] | None:
         """Return (n, k) the worse quality flags of both components at some times; None without
         flags.
         """
-        if self._time is None or not self._flags:
+        if not self._flags:
             return None
-        first = self._parts[0][0].isel({self._time: index}).transpose(self._time, ...)
-        worst = np.zeros(first.shape, np.int8)
-        for variable in self._flags:
-            own = variable.broadcast_like(self._parts[0][0]).isel({self._time: index})
-            worst = np.maximum(worst, flags_of(own.transpose(*first.dims)))
-        return worst.reshape(len(worst), -1)
+        every = [self._along(one, index, flags_of) for one in self._flags]
+        worst: NDArray[np.int8] = np.maximum.reduce(every)
+        return worst
 
-    def _values(self, variable: xr.DataArray, index: Any) -> NDArray[np.float64]:
+    def remarks(self, index: slice | NDArray[np.intp]) -> list[str]:
+        """Return what is odd about the currents of some times, with counts; of a part where they
+        are many.
+        """
+        said, times = [], self.times
+        if times is not None:
+            sparse = max(len(times[index]) * self.size // LOOKED_AT, 1)
+            if isinstance(index, slice):
+                index = slice(index.start, index.stop, (index.step or 1) * sparse)
+            else:
+                index = index[::sparse]
+            times = times[index]
+        for variable, _ in self._parts[:2]:
+            whole = np.isfinite(self._along(variable, index, lambda one: one.values))
+            outside = whole & np.isnan(self._along(variable, index, known_values))
+            if outside.any():
+                low, high = valid_range(variable)
+                said.append(
+                    f"{outside.sum()} of {whole.sum()} values of `{variable.name}` are left out, "
+                    f"outside its valid range, {low:g} to {high:g}"
+                )
+        for variable in () if self._terms.on_the_line else self._flags:
+            bad = self._along(variable, index, marked_bad)
+            if bad.any():
+                said.append(
+                    f"{bad.sum()} of {bad.size} currents are left out, as `{variable.name}` marks "
+                    "them as bad"
+                )
+        arrays = self.read(index)
+        levels = arrays.depth, arrays.u, arrays.v
+        return [*said, *current_notices(levels, times, self._terms.water_depth)]
+
+    def _along(
+        self, variable: xr.DataArray, index: Any, read: Callable[[xr.DataArray], Any]
+    ) -> Any:
         """Return times by levels, contiguous, so that equal values give equal results in any
         company.
         """
+        like = self._parts[0][0]
+        if set(variable.dims) != set(like.dims):
+            variable = variable.broadcast_like(like)
         if self._time is None:
-            return known_values(variable).reshape(1, -1)
-        values = known_values(variable.isel({self._time: index}).transpose(self._time, ...))
+            return read(variable).reshape(1, -1)
+        levels = [dim for dim in like.dims if dim != self._time]
+        values = read(variable.isel({self._time: index}).transpose(self._time, *levels))
         return values.reshape(len(values), -1)
 
 
@@ -173,10 +218,15 @@ def _understood(dataset: xr.Dataset, terms: Terms) -> CurrentDataset:
     name_of_time = find_times(dataset, velocity.names[0])
     times = None if name_of_time is None else read_times(dataset, name_of_time)
     time = _dimension(dataset, name_of_time)
-    column = choose_column(dataset, velocity.names, time, terms.place)
-    level, dataset = _single_levels(dataset.isel(column.index), velocity, time)
-    levels = find_levels(dataset, level, time, terms.water_depth)
-    source = {"velocity": ", ".join(velocity.all_names), "levels": str(levels.variable.name)}
+    labels = _labels(dataset, velocity.names[0], time) if terms.on_the_line else ()
+    column, levels = GridColumn({}, None), None
+    if not labels:
+        column = choose_column(dataset, velocity.names, time, terms.place)
+        level, dataset = _single_levels(dataset.isel(column.index), velocity, time)
+        levels = find_levels(dataset, level, time, terms.water_depth)
+    source = {"velocity": ", ".join(velocity.all_names)}
+    if levels is not None:
+        source["levels"] = str(levels.variable.name)
     if name_of_time is not None:
         source["time"] = name_of_time
     if column.place is not None:
@@ -187,22 +237,27 @@ def _understood(dataset: xr.Dataset, terms: Terms) -> CurrentDataset:
     if name_of_time is not None:
         notices += zone_notices(dataset, name_of_time)
     flags = (flag_variable(dataset, name) for name in velocity.names)
-    flags_beside = tuple(one for one in flags if one is not None)
-    if flags_beside:
-        notices.append(FLAGS)
+    notices += remarks_in_texts(dataset.attrs)
     return CurrentDataset(
         times=times,
         notices=tuple(notices),
         turned=turned,
-        rules=(*velocity.notes, *levels.notes),
+        rules=(*velocity.notes, *(() if levels is None else levels.notes)),
         source=source,
+        labels=labels,
         _parts=tuple(_parts(dataset, velocity)),
-        _flags=flags_beside,
+        _flags=tuple(one for one in flags if one is not None),
         _turn=velocity.turn,
-        _declination=terms.declination or 0.0,
+        _terms=terms,
         _levels=levels,
         _time=time,
     )
+
+
+def _labels(dataset: xr.Dataset, name: str, time: str | None) -> tuple[str, ...]:
+    """Return the labels of the parts of a line that the levels of a velocity hang at."""
+    along = [str(dim) for dim in dataset[name].dims if dim != time]
+    return (len(along) == 1 and labels_along(dataset, along[0])) or ()
 
 
 def _turned(velocity: Velocity, declination: float | None) -> tuple[str, ...]:
@@ -283,14 +338,17 @@ class ArrayRecord(Record):
                 message = "has no times: it is one profile, for `calm run`"
                 raise InputError([Problem(str(path), 0, 0, message)])
             self._index, chosen = choose_profiles(times, period, every, path)
+            with reading(path):
+                remarks = self._current.remarks(self._index)
         except BaseException:
             self._dataset.close()
             raise
-        self.time = times[self._index]
+        self.time, self.labels = times[self._index], self._current.labels
         self.notes = (
             *chosen,
             *self._current.notices,
             *self._current.turned,
+            *remarks,
             *self._current.rules,
             *RULES,
         )

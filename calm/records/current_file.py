@@ -8,15 +8,24 @@ from pathlib import Path
 import numpy as np
 
 from calm.errors import InputError, Problem
-from calm.records.cf_files import UnreadableError, is_netcdf, is_zarr, open_current, reading
-from calm.records.current_csv import read_current_csv
+from calm.records.cf_files import UnreadableError, is_netcdf, open_current, reading
 from calm.records.current_dataset import ArrayRecord, CurrentArrays, understand
-from calm.records.current_terms import Terms, too_deep, too_fast
-from calm.records.profile_tables import CurrentTable
+from calm.records.current_terms import (
+    Terms,
+    TimeChoiceError,
+    choose_time,
+    current_notices,
+    parse_time,
+    too_deep,
+    too_fast,
+)
+from calm.records.delimited import CellRow, abridged, read_table
+from calm.records.profile_tables import CurrentTable, turned_notices
 from calm.records.record import Period, Record
-from calm.records.record_csv import CsvRecord
-from calm.records.times import TimeChoiceError, choose_time
+from calm.records.record_csv import EXAMPLE, CsvRecord, CurrentHeader
 from calm.records.water_column import Place
+
+_ZARR = ("zarr.json", ".zgroup", ".zmetadata")
 
 
 def read_current_file(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable, list[str]]:
@@ -36,8 +45,8 @@ def read_current_file(path: Path, time: str | None, terms: Terms) -> tuple[Curre
         The time is not in the file, or is needed to choose one of several.
     """
     if holds_arrays(path):
-        return read_current_netcdf(path, time, terms)
-    return read_current_csv(path, time, terms)
+        return _from_arrays(path, time, terms)
+    return _from_text(path, time, terms)
 
 
 def open_record(
@@ -48,6 +57,7 @@ def open_record(
     declination: float | None = None,
     time: Period | None = None,
     every: int = 1,
+    on_the_line: bool = False,
 ) -> Record:
     """Return a record in NetCDF, in zarr, or in CSV.
 
@@ -58,6 +68,7 @@ def open_record(
     declination : turns what the record says is relative to magnetic north [degrees], east positive
     time : first and last time, see `parse_period`
     every : take one profile in so many
+    on_the_line : see `Terms`
 
     Raises
     ------
@@ -70,7 +81,7 @@ def open_record(
         raise InputError([Problem(str(path), 0, 0, "no such file")])
     if not (path.is_file() or path.is_dir()):
         raise InputError([Problem(str(path), 0, 0, "is not a regular file")])
-    terms = Terms(water_depth=seabed, place=at, declination=declination)
+    terms = Terms(seabed, at, declination, on_the_line=on_the_line)
     if holds_arrays(path):
         return ArrayRecord(path, terms, time, every)
     return CsvRecord(path, terms, time, every)
@@ -86,30 +97,13 @@ def holds_arrays(path: Path) -> bool:
     """
     if not path.is_dir():
         return is_netcdf(path)
-    if not is_zarr(path):
+    if not any((path / name).is_file() for name in _ZARR):
         message = "is a folder, and not a zarr store; join its files into one first"
         raise InputError([Problem(str(path), 0, 0, message)])
     return True
 
 
-def read_current_netcdf(
-    path: Path, time: str | None, terms: Terms
-) -> tuple[CurrentTable, list[str]]:
-    """Return the profile of a time, and notices; `time` may be None where there is only one.
-
-    Parameters
-    ----------
-    path : NetCDF or zarr
-    time : in ISO 8601; None where there is only one
-    terms : how the current is to be taken
-
-    Raises
-    ------
-    InputError
-        The file holds no current profile that can be understood.
-    TimeChoiceError
-        The time is not in the file.
-    """
+def _from_arrays(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable, list[str]]:
     with reading(path), open_current(path) as dataset:
         current = understand(dataset, terms)
         notices = [*current.notices, *current.turned]
@@ -121,7 +115,9 @@ def read_current_netcdf(
             notices = [*([notice] if notice else []), *notices]
         elif time is not None:
             raise TimeChoiceError("the file has no times")
-        return _profile(current.read(slice(index, index + 1)), terms, notices), notices
+        chosen = slice(index, index + 1)
+        table = _profile(current.read(chosen), terms, notices)
+        return table, [*notices, *current.remarks(chosen)]
 
 
 def _profile(arrays: CurrentArrays, terms: Terms, notices: list[str]) -> CurrentTable:
@@ -130,8 +126,9 @@ def _profile(arrays: CurrentArrays, terms: Terms, notices: list[str]) -> Current
     w = np.zeros_like(u) if arrays.w is None else arrays.w.ravel()
     known = ~np.isnan(u + v + w) & np.isfinite(depth)
     below = known & (depth >= 0)
-    _tell(notices, int(np.sum(~known)), "without a value")
-    _tell(notices, int(np.sum(known & ~below)), "above the surface")
+    for left, what in ((~known, "without a value"), (known & ~below, "above the surface")):
+        if count := int(left.sum()):
+            notices.append(f"{count} level{'s' * (count > 1)} {what} left out of the current")
     if not below.any():
         raise UnreadableError("no level below the surface has a value")
     for level, east, north, up in zip(*(one[below] for one in (depth, u, v, w)), strict=True):
@@ -146,6 +143,42 @@ def _profile(arrays: CurrentArrays, terms: Terms, notices: list[str]) -> Current
     return CurrentTable(*(tuple(values.tolist()) for values in (depth, u, v, w)))
 
 
-def _tell(notices: list[str], count: int, what: str) -> None:
-    if count:
-        notices.append(f"{count} level{'s' * (count > 1)} {what} left out of the current")
+def _from_text(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable, list[str]]:
+    table = read_table(path, EXAMPLE)
+    header, rows = CurrentHeader(path, table.header), list(table.rows)
+    notices: list[str] = []
+    if header.timed:
+        rows, notices = _rows_of(rows, time, path)
+        known = header.without_gaps(rows)
+        if rows and not known:
+            raise InputError([Problem(str(path), rows[0].number, 1, "no level has a value")])
+        if left_out := len(rows) - len(known):
+            levels = f"{left_out} level{'s' * (left_out > 1)}"
+            notices.append(f"{levels} without a value left out of the current")
+        rows = known
+    elif time is not None:
+        raise TimeChoiceError("the file has no column `time`")
+    problems: list[Problem] = []
+    current = header.profile(rows, problems, terms)
+    if current is None:
+        raise InputError(abridged(problems))
+    notices += turned_notices(header.columns, terms)
+    arrays = np.array(current.depth), np.array([current.u]), np.array([current.v])
+    return current, [*notices, *current_notices(arrays, None, terms.water_depth)]
+
+
+def _rows_of(rows: list[CellRow], time: str | None, path: Path) -> tuple[list[CellRow], list[str]]:
+    """Return the rows of the time nearest to the one wanted, and the notice that says so."""
+    problems = []
+    moments = []
+    for row in rows:
+        try:
+            moments.append(parse_time(row.cells[0]))
+        except TimeChoiceError as error:
+            problems.append(Problem(str(path), row.number, row.column(0), str(error)))
+    if problems:
+        raise InputError(abridged(problems))
+    times = sorted(set(moments))
+    index, notice = choose_time(times, time)
+    chosen = [row for row, moment in zip(rows, moments, strict=True) if moment == times[index]]
+    return chosen, [notice] if notice else []

@@ -1,10 +1,18 @@
-"""How a person wants the currents of a file taken, and which currents and depths cannot be."""
+"""How a person wants the currents of a file taken, at which time, and which of them cannot be."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from math import hypot, inf, isinf
 from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calm.physics.line import Floats
+from calm.quantities import say
 
 if TYPE_CHECKING:
     from calm.records.water_column import Place
@@ -30,12 +38,15 @@ class Terms:
     declination : of magnetic north from true north, positive to the east [degrees]; turns what
         the file says is magnetic
     maximum_speed : a faster current is a mistake of the file [m/s]
+    on_the_line : whether levels may be parts of a line by their labels, and currents that the file
+        flags as bad are kept with their flags; these are left out otherwise
     """
 
     water_depth: float = inf
     place: Place | None = None
     declination: float | None = None
     maximum_speed: float = inf
+    on_the_line: bool = False
 
 
 def too_fast(u: float, v: float, w: float, maximum_speed: float) -> str | None:
@@ -62,3 +73,143 @@ def too_deep(depth: float) -> str | None:
     if not depth > DEEPEST:
         return None
     return f"depth {depth:g} m is deeper than any sea, {DEEPEST:g} m"
+
+
+ZONES_OF_UTC = ("UTC", "GMT", "Z", "ZULU", "UTC+0", "UTC+00:00", "+00:00", "ETC/UTC")
+"""What a zone is called that is no other than UTC, in capitals."""
+
+
+class TimeChoiceError(ValueError):
+    """The time asked for is none, is not in the record, or is needed and not given."""
+
+
+def parse_time(text: str) -> datetime:
+    """Return an ISO 8601 time, in UTC where it names no zone.
+
+    Raises
+    ------
+    TimeChoiceError
+        The text is no such time.
+    """
+    try:
+        time = datetime.fromisoformat(text.strip())
+    except ValueError:
+        raise TimeChoiceError(f"`{text[:40]}` is not a time; write 2026-03-01T06:00") from None
+    return time.replace(tzinfo=UTC) if time.tzinfo is None else time.astimezone(UTC)
+
+
+def choose_time(times: Sequence[datetime], wanted: str | None) -> tuple[int, str | None]:
+    """Return the index of the time nearest to the one wanted, and a notice where it is not that
+    very time.
+
+    Raises
+    ------
+    TimeChoiceError
+        There is no time to choose from, several and none is wanted, or all lie to one side.
+    """
+    if not times:
+        raise TimeChoiceError("the file has no times")
+    first, last = min(times), max(times)
+    span = f"{_short(first)} to {_short(last)}"
+    if wanted is None:
+        if len(times) == 1:
+            return 0, None
+        raise TimeChoiceError(f"the file has {len(times)} times, {span}; give `time:`")
+    moment = parse_time(wanted)
+    if not first.replace(microsecond=0) <= moment <= last:
+        raise TimeChoiceError(f"{_short(moment)} is outside the record, {span}")
+    index = min(range(len(times)), key=lambda i: abs(times[i] - moment))
+    if times[index] == moment:
+        return index, None
+    return index, f"the current is that of {_short(times[index])}, nearest to {_short(moment)}"
+
+
+def _short(time: datetime) -> str:
+    text = time.strftime("%Y-%m-%dT%H:%M:%S")
+    return text.removesuffix(":00")
+
+
+FAR_APART = np.timedelta64(12, "h")
+"""Between profiles so far apart the tide and its peaks are lost."""
+
+_FEWEST = 4  # values of which it is no chance that they are alike
+_MANY = 200  # currents of which one component is not 0 by chance
+_MOST = 0.5  # share of zeros, and of profiles like the one before, that is said
+_ALIKE = 0.9  # share of values that are the same in both components
+_WEAK = 0.01  # m/s that no sea stays below for many profiles
+_UNCOVERED = 0.1  # share of the depth that a profile may leave out at either end
+_FEW = 25.0  # m of that
+
+
+def current_notices(
+    levels: tuple[Floats, Floats, Floats],
+    times: NDArray[np.datetime64] | None,
+    water_depth: float,
+) -> Iterator[str]:
+    """Yield what is odd about currents, in sentences.
+
+    Parameters
+    ----------
+    levels : depth, of any shape [m], and u, v (n, k) to the east and to the north, gaps as NaN
+        [m/s]
+    times : (n,) in their order; None of one profile
+    water_depth : [m]; inf where it is not known
+    """
+    depth, u, v = levels
+    there = depth[np.isfinite(depth) & (depth >= 0.0)]
+    if there.size and (missing := left_out(there.min(), there.max(), water_depth)):
+        yield missing
+    known = np.isfinite(u) & np.isfinite(v)
+    count, still = int(known.sum()), known & (u == 0.0) & (v == 0.0)
+    moving = known & ~still
+    if count and still.sum() > _MOST * count:
+        yield f"{still.sum()} of {count} currents are exactly 0: nothing was measured there?"
+    if moving.sum() >= _FEWEST:
+        alike = moving & (np.abs(u) == np.abs(v))
+        if alike.sum() > _ALIKE * moving.sum():
+            yield (
+                f"the currents to the east and to the north are the same in {alike.sum()} of "
+                f"{moving.sum()} values: one of them is a copy of the other?"
+            )
+    if times is None or not len(times):
+        return
+    if len(times) > 1:
+        step = np.median(np.diff(np.sort(times)))
+        if step >= FAR_APART:
+            yield (
+                f"its {len(times)} profiles are {step / np.timedelta64(1, 'h'):.4g} h apart, means "
+                "or samples: tides and peaks between them are missing"
+            )
+    if len(times) >= _FEWEST and moving.any():
+        same = ((u[1:] == u[:-1]) & (v[1:] == v[:-1]) | ~known[1:] & ~known[:-1]).all(axis=1)
+        same &= moving[1:].any(axis=1)
+        if same.sum() > _MOST * (len(times) - 1):
+            yield f"{same.sum()} of {len(times)} profiles are the same as the one before"
+        if moving.sum() > _MANY and not (u[moving].any() and v[moving].any()):
+            yield f"all {moving.sum()} currents are along one axis, their other component 0"
+        strongest = float(np.hypot(u[moving], v[moving]).max())
+        if strongest < _WEAK:
+            yield (
+                f"the strongest of {count} currents is {strongest:.2g} m/s: cm/s or another unit, "
+                "taken for m/s?"
+            )
+
+
+def left_out(top: float, bottom: float, water_depth: float) -> str:
+    """Return which part of the water a current says nothing of; "" where it covers it.
+
+    Parameters
+    ----------
+    top, bottom : its first and its last level [m]
+    water_depth : [m]; inf where it is not known
+    """
+    allowed = max(_UNCOVERED * water_depth, _FEW)
+    gaps = [f"above {say('depth', top)}"] if top > allowed else []
+    if allowed < water_depth - bottom < inf:
+        gaps.append(f"below {say('depth', bottom)}")
+    if not gaps:
+        return ""
+    return (
+        f"the current is not given {' and '.join(gaps)}: that of the nearest level is used there, "
+        f"in {say('depth', water_depth)} of water"
+    )

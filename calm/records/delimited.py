@@ -15,7 +15,7 @@ from pathlib import Path
 
 from calm.errors import InputError, Problem
 from calm.suggestions import shown
-from calm.whole_file import read_text
+from calm.whole_file import decoded, read_content
 
 LARGEST_CSV = 50_000_000
 """Largest table that is read whole [bytes]."""
@@ -25,6 +25,9 @@ MOST_PROBLEMS = 20
 
 GAPS = frozenset({"", "nan", "na", "n/a", "-", "none", "null"})
 """Cells, in small letters, that say that nothing was measured."""
+
+COMMENT = re.compile(rb"(?m)^([ \t]*#).*")
+"""A comment, whose letters may be of any encoding."""
 
 NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 _SAMPLE = 200  # lines that tell how a table is written
@@ -170,8 +173,10 @@ def read_table(path: Path, example: str) -> TextTable:
     InputError
         It cannot be read, is empty, or has no header.
     """
-    text = read_text(path, largest=LARGEST_CSV)
-    header, lines = table_lines(path, enumerate(text.splitlines(), 1), example)
+    text = decoded(path, COMMENT.sub(rb"\1", read_content(path, largest=LARGEST_CSV)))
+    header, lines = table_lines(
+        path, enumerate(text.removeprefix("\ufeff").splitlines(), 1), example
+    )
     return TextTable(path, header, [row_below(header, *line) for line in lines])
 
 

@@ -30,6 +30,7 @@ _COUNTED = re.compile(
     r"\b(bin|cell|layer|level|grid) (number|index|count)\b|"
     r"\b(number|index) of (the )?(bin|cell|layer|level)s?\b"
 )
+_ALONG_BEAM = re.compile(r"\balong (\w+ ){0,2}beams?\b|\bslant (range|distance)|\bbeam range\b")
 _UPWARDS = re.compile(r"\b(z ?)?up(wards?)?\b")
 _DOWNWARDS = re.compile(r"\b(z ?)?down(wards?)?\b")
 _MODEL_COORDINATE = re.compile(r"ocean_\w*(sigma|s)_\w*coordinate\w*|ocean_sigma\w*")
@@ -146,6 +147,11 @@ def _placed(
         said = levels.attrs.get("long_name", levels.name)
         raise UnreadableError(
             f"`{levels.name}` counts its levels (`{said}`) and does not say how deep they are"
+        )
+    if _ALONG_BEAM.search(f"{words} {words_of(levels, 'comment')}"):
+        raise UnreadableError(
+            f"`{levels.name}` is the distance along the beam, which is longer than the height: "
+            "multiply it by the cosine of the beam's angle, 20° or 25° for most instruments"
         )
     if _ABOVE_SEABED.search(words):
         return _above_seabed(levels, factor, water_depth)

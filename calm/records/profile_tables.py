@@ -6,8 +6,10 @@ import math
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 from calm.errors import Problem
+from calm.physics.line import Floats
 from calm.quantities import bearing_of
 from calm.records.current_terms import Terms, too_deep, too_fast
 from calm.records.headings import column_unit, heading, magnetic_columns
@@ -18,6 +20,8 @@ Report = Callable[[Sequence[str | int], str], Problem]
 """Makes a problem of a message, at ``("columns", j)`` or ``("rows", i, j)``."""
 
 _AS_THEY_STAND = Terms()
+Speed = TypeVar("Speed", float, Floats)
+
 _BARE_NUMBER = re.compile(r"[-+.,/\deE ]*")
 
 TEMPERATURE = QuantityRange("temperature", at_least=-6, at_most=40)
@@ -196,17 +200,12 @@ def read_water(
     problems : to add to
     density : the plausible range of the fluid
     """
-    before = len(problems)
-    values = _read_columns(columns, rows, {**_WATER, "density": density}, report, problems)
-    given = values.keys() - {"depth"}
-    if len(values) == len(columns) and given not in ({"density"}, {"temperature", "salinity"}):
-        message = "needs `density`, or `temperature` and `salinity`; the columns are "
-        problems.append(report(("columns",), f"a density {message}{', '.join(values)}"))
-    _check_depths(values, report, problems)
-    if len(problems) > before:
+    values = _by_depth(columns, rows, {**_WATER, "density": density}, report, problems)
+    if values is None:
         return None
-    tables = {name: DepthTable(tuple(values["depth"]), tuple(values[name])) for name in given}
-    return tables["density"] if "density" in given else SeaWater(**tables)
+    if "density" in values:
+        return values["density"]
+    return SeaWater(values["temperature"], values["salinity"])
 
 
 def read_profile(
@@ -224,15 +223,33 @@ def read_profile(
     columns, rows, report : as for `read_current`
     problems : to add to
     """
-    before = len(problems)
     known = {"depth": _DEPTH, name: _WATER[name]}
+    values = _by_depth(columns, rows, known, report, problems)
+    return None if values is None else values[name]
+
+
+def _by_depth(
+    columns: Sequence[str],
+    rows: Sequence[Sequence[str | None]],
+    known: Mapping[str, QuantityRange],
+    report: Report,
+    problems: list[Problem],
+) -> dict[str, DepthTable] | None:
+    """Return what a table says of the water by its names; None, with mistakes, if it has any."""
+    before = len(problems)
     values = _read_columns(columns, rows, known, report, problems)
-    if len(values) == len(columns) and name not in values:
-        problems.append(report(("columns",), f"the table has no `{name}` column"))
+    given = values.keys() - {"depth"}
+    if len(values) == len(columns):
+        alone = [name for name in known if name != "depth"]
+        if len(alone) == 1 and not given:
+            problems.append(report(("columns",), f"the table has no `{alone[0]}` column"))
+        elif len(alone) > 1 and given not in ({"density"}, {"temperature", "salinity"}):
+            message = "needs `density`, or `temperature` and `salinity`; the columns are "
+            problems.append(report(("columns",), f"a density {message}{', '.join(values)}"))
     _check_depths(values, report, problems)
     if len(problems) > before:
         return None
-    return DepthTable(tuple(values["depth"]), tuple(values[name]))
+    return {name: DepthTable(tuple(values["depth"]), tuple(values[name])) for name in given}
 
 
 def components(speed: float, toward: float) -> tuple[float, float]:
@@ -241,7 +258,7 @@ def components(speed: float, toward: float) -> tuple[float, float]:
     return speed * math.sin(angle), speed * math.cos(angle)
 
 
-def turned_by(angle: float, u: float, v: float) -> tuple[float, float]:
+def turned_by(angle: float, u: Speed, v: Speed) -> tuple[Speed, Speed]:
     """Return a flow u to the east, v to the north, turned clockwise by an angle [degrees].
 
     Parameters

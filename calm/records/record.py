@@ -7,7 +7,6 @@ import re
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from pathlib import Path
-from types import TracebackType
 from typing import Any
 
 import numpy as np
@@ -16,7 +15,7 @@ from numpy.typing import NDArray
 from calm.errors import InputError, Problem, UsageError
 from calm.physics.line import Floats
 from calm.positions import plain_degrees
-from calm.records.times import TimeChoiceError, parse_time
+from calm.records.current_terms import TimeChoiceError, parse_time
 from calm.records.water_column import Place
 
 Times = NDArray[np.datetime64]
@@ -56,11 +55,13 @@ class Record(ABC):
     time : (n,) to the nanosecond, rising
     notes : the rules by which it was read, and what to know before trusting it
     source : its file, its variables and its place, by name
+    labels : of the parts of a line that its levels hang at, which have no depth then; else empty
     """
 
     time: NDArray[np.datetime64]
     notes: tuple[str, ...]
     source: dict[str, str]
+    labels: tuple[str, ...] = ()
 
     @property
     def count(self) -> int:
@@ -107,12 +108,7 @@ class Record(ABC):
     def __enter__(self) -> Record:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         self.close()
 
 
@@ -181,7 +177,7 @@ def choose_profiles(
         raise InputError([Problem(str(path), 0, 0, "has no times")])
     notes = []
     order: NDArray[np.intp] | None = None
-    if not _rises(times):
+    if np.any(times[1:] < times[:-1]):
         order = np.argsort(times, kind="stable")
         notes.append("the profiles were not in the order of time, and have been sorted")
         times = times[order]
@@ -248,10 +244,6 @@ def _in_reach(moment: np.datetime64) -> np.datetime64:
     first, last = (np.datetime64(end, "us") for end in REACH)
     near: Any = min(max(moment, first), last)
     return np.datetime64(near, "ns")
-
-
-def _rises(times: Times) -> bool:
-    return bool(np.all(times[1:] >= times[:-1]))
 
 
 def _refuse_repeats(times: Times, path: Path) -> None:

@@ -1,4 +1,9 @@
-"""Records of currents in tables of text: read once, their numbers kept in a temporary file."""
+"""Currents in tables of text: `depth[m],u[m/s],v[m/s]` or `depth[m],speed[m/s],toward[deg]`.
+
+A record has the column `time` first and a row for every time and depth, the levels of one time in
+lines that follow. It is read once, its numbers kept in a temporary file. A level of a record may
+have no value, its cell blank, `nan` or `NA`: it is left out.
+"""
 
 from __future__ import annotations
 
@@ -12,9 +17,15 @@ import numpy as np
 
 from calm.errors import InputError, Problem, UsageError
 from calm.physics.line import Floats
-from calm.records.current_csv import EXAMPLE, CurrentHeader
-from calm.records.current_terms import DEEPEST, Terms
+from calm.records.current_terms import (
+    DEEPEST,
+    Terms,
+    TimeChoiceError,
+    current_notices,
+    parse_time,
+)
 from calm.records.delimited import (
+    COMMENT,
     GAPS,
     MOST_PROBLEMS,
     CellRow,
@@ -23,10 +34,9 @@ from calm.records.delimited import (
     row_below,
     table_lines,
 )
-from calm.records.headings import heading, magnetic_columns
-from calm.records.profile_tables import turned_notices
+from calm.records.headings import heading, is_time, magnetic_columns, zone_complaint
+from calm.records.profile_tables import CurrentTable, read_current, turned_by, turned_notices
 from calm.records.record import RULES, Levels, Period, Record, choose_profiles, part
-from calm.records.times import TimeChoiceError, parse_time
 from calm.units import QuantityError, unit_factor
 
 AT_ONCE = 50_000
@@ -35,6 +45,7 @@ AT_ONCE = 50_000
 COLUMNS = 4
 """Depth [m], u, v and w [m/s]."""
 
+EXAMPLE = "depth[m],u[m/s],v[m/s]"
 _DIMENSIONS = {"depth": "length", "toward": "angle", "from": "angle"}
 _PLAIN = ({"depth", "u", "v"}, {"depth", "speed", "toward"}, {"depth", "speed", "from"})
 
@@ -55,14 +66,17 @@ class CsvRecord(Record):
             self._kept.close()
             raise
         self.time = self._times[self._index]
-        self.notes = (*chosen, *self._turned, *RULES)
+        depth, u, v, _ = self.profiles(0, min(self.count, AT_ONCE))
+        odd = current_notices((depth, u, v), self.time[:AT_ONCE], terms.water_depth)
+        self.notes = (*chosen, *self._turned, *odd, *RULES)
         self.source = {"file": path.name, "columns": ", ".join(header.columns)}
 
     def _read(self, path: Path) -> CurrentHeader:
         """Return every profile of the file into the temporary one."""
         try:
-            with path.open(encoding="utf-8-sig") as file:
-                lines = ((i, line.rstrip("\n")) for i, line in enumerate(file, 1))
+            with path.open("rb") as file:
+                plain = (COMMENT.sub(rb"\1", line).decode("utf-8-sig") for line in file)
+                lines = ((i, line.rstrip("\r\n")) for i, line in enumerate(plain, 1))
                 return self._keep(path, *table_lines(path, lines, f"time,{EXAMPLE}"))
         except UnicodeDecodeError:
             raise InputError([Problem(str(path), 0, 0, "is not UTF-8 text")]) from None
@@ -281,8 +295,7 @@ def _components(values: dict[str, Floats], turn: float) -> Floats:
     if "u" in values:
         u, v = values["u"], values["v"]
         if turn:
-            sine, cosine = np.sin(np.radians(turn)), np.cos(np.radians(turn))
-            u, v = u * cosine + v * sine, v * cosine - u * sine
+            u, v = turned_by(turn, u, v)
         return np.column_stack([values["depth"], u, v, w])
     direction = values["from"] + 180.0 if "from" in values else values["toward"]
     angle = np.radians(direction + turn)
@@ -305,3 +318,62 @@ def _possible(values: dict[str, Floats], rows: Floats, counts: list[int]) -> boo
     profile = np.repeat(np.arange(len(counts)), counts)[known]
     same = profile[1:] == profile[:-1]
     return bool((np.diff(depth[known])[same] > 0).all())
+
+
+@dataclass(frozen=True)
+class CurrentHeader:
+    """Know the columns of a table of currents after its time, if it has one."""
+
+    path: Path
+    row: CellRow
+
+    def __post_init__(self) -> None:
+        complaint = zone_complaint(self.row.cells[0]) if self.timed else None
+        if complaint:
+            column = self.row.column(0)
+            raise InputError([Problem(str(self.path), self.row.number, column, complaint)])
+
+    @property
+    def timed(self) -> bool:
+        """Return whether the file is a record."""
+        return is_time(self.row.cells[0])
+
+    @property
+    def columns(self) -> list[str]:
+        """Return the names with their units, without that of the time."""
+        return list(self.row.cells[int(self.timed) :])
+
+    def profile(
+        self, rows: Sequence[CellRow], problems: list[Problem], terms: Terms
+    ) -> CurrentTable | None:
+        """Return the current of the rows of one time; None, with mistakes added, if it has any.
+
+        Parameters
+        ----------
+        rows : of one time, or all where there is none
+        problems : to add to
+        terms : how the current is to be taken
+        """
+        first = int(self.timed)
+
+        def report(location: Sequence[str | int], message: str) -> Problem:
+            place = [int(part) for part in location[1:]]
+            row = rows[place.pop(0)] if location[0] == "rows" and place else self.row
+            column = row.column(place[0] + first if place else 0)
+            return Problem(str(self.path), row.number, column, message)
+
+        for row in rows:
+            problems += row.mixed_decimals(self.path)
+        values = [[cell or None for cell in row.cells[first:]] for row in rows]
+        return read_current(self.columns, values, report, problems, terms)
+
+    def without_gaps(self, rows: Sequence[CellRow]) -> list[CellRow]:
+        """Return the rows of a record that give a current."""
+        names = [heading(cell)[0].lower() for cell in self.row.cells]
+        current = [j for j, name in enumerate(names) if name not in ("time", "depth")]
+        return [
+            row
+            for row in rows
+            if len(row.cells) != len(names)
+            or not any(row.cells[j].lower() in GAPS for j in current)
+        ]

@@ -14,7 +14,7 @@ from calm.records.attributes import (
     part_in_texts,
     way_of,
 )
-from calm.records.cf_files import UnreadableError
+from calm.records.cf_files import UnreadableError, first_present
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -31,26 +31,30 @@ class _Sought:
 
 _EAST = _Sought(
     ("eastward_sea_water_velocity",),
-    ("uo", "UCUR", "EWCT", "water_u", "u", "U", "u_eastward", "u_1205", "UCUR_MAG"),
+    ("uo", "UCUR", "EWCT", "water_u", "u", "U", "u_eastward", "u_1205", "U_320", "LCEWAP01",
+     "LCEWZZ01", "vozocrtx", "ucur", "u_vel", "east_vel", "UCUR_MAG"),
     "east",
-)
+)  # fmt: skip
 _NORTH = _Sought(
     ("northward_sea_water_velocity",),
-    ("vo", "VCUR", "NSCT", "water_v", "v", "V", "v_northward", "v_1206", "VCUR_MAG"),
+    ("vo", "VCUR", "NSCT", "water_v", "v", "V", "v_northward", "v_1206", "V_321", "LCNSAP01",
+     "LCNSZZ01", "vomecrty", "vcur", "v_vel", "north_vel", "VCUR_MAG"),
     "north",
-)
+)  # fmt: skip
 _UP = _Sought(
     ("upward_sea_water_velocity",),
-    ("wo", "WCUR", "water_w", "w", "W", "w_1204", "WCUR_MAG"),
+    ("wo", "WCUR", "water_w", "w", "W", "w_1204", "LRZAAP01", "LRZAZZ01", "WCUR_MAG"),
     "up",
 )
-_SPEED = _Sought(("sea_water_speed",), ("HCSP", "speed", "CSPD"))
+_SPEED = _Sought(("sea_water_speed",), ("HCSP", "speed", "CSPD", "CS_300", "LCSAAP01"))
 _TOWARD = _Sought(
-    ("sea_water_velocity_to_direction", "direction_of_sea_water_velocity"), ("HCDT", "toward")
+    ("sea_water_velocity_to_direction", "direction_of_sea_water_velocity"),
+    ("HCDT", "toward", "CD_310", "LCDAAP01"),
 )
 _FROM = _Sought(("sea_water_velocity_from_direction",), ())
 
 _ALONG_THE_GRID = {"sea_water_x_velocity": _EAST, "sea_water_y_velocity": _NORTH}
+_OF_NEMO = {"vozocrtx": "sea_water_x_velocity", "vomecrty": "sea_water_y_velocity"}
 _AMBIGUOUS = (
     "direction", "DIR", "dir", "CDIR", "current_direction", "cdir", "CDIR_MAG", "HCDT_MAG",
 )  # fmt: skip
@@ -162,6 +166,10 @@ def _find(dataset: xr.Dataset, sought: _Sought, regular: bool, notes: list[str])
     if name is None:
         return None
     own = str(dataset[name].attrs.get("standard_name", ""))
+    if name in _OF_NEMO and not own:
+        own = _OF_NEMO[name]
+        places = first_present(dataset, ("nav_lat", "lat", "latitude"))
+        regular = regular or not any(dataset[one].ndim == 2 for one in places)
     if regular and _ALONG_THE_GRID.get(own) is sought:
         way = "east" if sought is _EAST else "north"
         notes.append(f"`{name}`, {own}, is {way}ward: the grid runs along latitudes")

@@ -97,7 +97,7 @@ def choose_column(
     lat, lon = (
         np.broadcast_to(_spread(one, horizontal), shape).astype(np.float64) for one in where
     )
-    distance = _distance(lat, lon, wanted)
+    distance = kilometres_from(lat, lon, wanted)
     nearest = np.unravel_index(np.nanargmin(distance), distance.shape)
     if len(horizontal) > 1 and distance[nearest] > _spacing(lat, lon, nearest):
         raise UnreadableError(
@@ -207,8 +207,14 @@ def _wet(
     return np.asarray(moving.any(others).transpose(*horizontal).values)
 
 
-def _distance(latitude: NDArray[Any], longitude: NDArray[Any], place: Place) -> NDArray[Any]:
-    """Return Along great circles [km]."""
+def kilometres_from(latitude: Any, longitude: Any, place: Place) -> NDArray[Any]:
+    """Return how far places are from another, along great circles [km].
+
+    Parameters
+    ----------
+    latitude, longitude : of the places [degrees]
+    place : the other one
+    """
     first, second = np.radians(latitude), np.radians(place[0])
     east = np.radians(longitude - place[1])
     chord = (
@@ -221,7 +227,7 @@ def _spacing(latitude: NDArray[Any], longitude: NDArray[Any], at: tuple[Any, ...
     """Return distance from a column to the farthest of those next to it [km]."""
     around = tuple(slice(max(i - 1, 0), i + 2) for i in at)
     place = float(latitude[at]), float(longitude[at])
-    return float(np.nanmax(_distance(latitude[around], longitude[around], place)))
+    return float(np.nanmax(kilometres_from(latitude[around], longitude[around], place)))
 
 
 def _drift(dataset: xr.Dataset, time: str | None, wanted: Place | None) -> tuple[str, ...]:
@@ -239,7 +245,7 @@ def _drift(dataset: xr.Dataset, time: str | None, wanted: Place | None) -> tuple
         return ()
     latitude, longitude = (values[known] for values in found)
     first = float(latitude[0]), float(longitude[0])
-    away = float(_distance(latitude, longitude, first).max())
+    away = float(kilometres_from(latitude, longitude, first).max())
     moved = (
         (f"its place changes with time, by up to {away:.0f} km; all profiles are taken",)
         if away > FAR
@@ -251,7 +257,7 @@ def _drift(dataset: xr.Dataset, time: str | None, wanted: Place | None) -> tuple
 def _far(place: Place, wanted: Place | None) -> tuple[str, ...]:
     if wanted is None:
         return ()
-    distance = float(_distance(np.array(place[0]), np.array(place[1]), wanted))
+    distance = float(kilometres_from(np.array(place[0]), np.array(place[1]), wanted))
     if not distance > FAR:
         return ()
     return (f"its only place, {written(place)}, is {distance:.0f} km from {written(wanted)}",)

@@ -12,7 +12,7 @@ from calm.report.blocks import Block, Column, Heading, Prose, ReportPart, Table,
 from calm.report.result_json import members
 
 if TYPE_CHECKING:
-    from calm.motion.agreement import Agreement
+    from calm.motion.remarks import Agreement
     from calm.motion.study import HeldOut, Study
 
 TITLES = {

@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.case import Result
-from calm.dataset.netcdf import netcdf_of
-from calm.dataset.variables import (
+from calm.dataset.netcdf import (
     CLAMPS,
     OF_CLAMP,
     OF_COMPONENT,
@@ -21,6 +20,7 @@ from calm.dataset.variables import (
     Attributes,
     ResultLayout,
     labels,
+    netcdf_of,
     numbers,
     origin,
     station,

@@ -10,7 +10,7 @@ from datetime import date
 from calm.files.editing import Value
 from calm.files.fields import LENGTH, POSITIVE_LENGTH, QuantityField
 from calm.files.logbook import LOAD
-from calm.records.times import TimeChoiceError, parse_time
+from calm.records.current_terms import TimeChoiceError, parse_time
 from calm.units import QuantityError, QuantityRange
 
 COUNT = QuantityField("number", at_least=1, at_most=10_000)

@@ -4,7 +4,6 @@ A `Source` holds the cases that come from one place; figures are inlined, so tha
 from a file. `calm.verification.published_case` defines a case.
 """
 
-from calm.verification.anchor_drop import ANCHOR_DROP
 from calm.verification.cable_papers import BOURGET_MARICHAL, BRACONNOT, VILLAIN_GUILLOT
 from calm.verification.drag_and_sea_water import (
     CALM_PAPER,
@@ -18,7 +17,7 @@ from calm.verification.published_case import CaseOutcome as CaseOutcome
 from calm.verification.published_case import Kind as Kind
 from calm.verification.published_case import Source as Source
 from calm.verification.solved_moorings import CDMS_1, S1000
-from calm.verification.still_water import CATENARIES, ELASTIC_HANG, WATCH_CIRCLE
+from calm.verification.still_water import ANCHOR_DROP, CATENARIES, ELASTIC_HANG, WATCH_CIRCLE
 from calm.verification.uniform_current import PODE, TOWED_CABLES, UNIFORM_CURRENT
 
 SOURCES: tuple[Source, ...] = (

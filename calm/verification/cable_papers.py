@@ -19,12 +19,17 @@ from calm.analytic.villain_guillot import linear_cable
 from calm.physics.line import Line, Water
 from calm.physics.strumming import BourgetMarichal
 from calm.solve import Settings, Solution, solve_mooring
-from calm.verification.case_lines import (
+from calm.verification.published_case import (
     FINE,
     GRAVITY,
     HALF_DENSITY,
+    PRINTED,
+    Case,
+    CaseColumn,
     Ends,
+    Kind,
     LinePiece,
+    Source,
     Wake,
     deep_water,
     finely,
@@ -32,9 +37,9 @@ from calm.verification.case_lines import (
     point,
     sphere_drag,
     stream,
+    table,
     towed,
 )
-from calm.verification.published_case import PRINTED, Case, CaseColumn, Kind, Source, table
 
 _K = 2.4
 _BUOY_WEIGHT, _TOW_WEIGHT = 5.0, 0.5
@@ -173,10 +178,7 @@ against the march as well.""",
             Kind.INDEPENDENT,
         ),
         *table(
-            [
-                CaseColumn[ChartSolution]("length L", "m", 5.5e-3, lambda cable: cable.length),
-                CaseColumn[ChartSolution]("distance D", "m", 5.5e-3, lambda cable: cable.distance),
-            ],
+            [_figures(5.5e-3, 0.0, 0.0)[name] for name in ("L", "D")],
             [("buoy at its true K, 2.7", partial(_buoy, 2.7), (30.71, 21.50))],
             PRINTED,
             Kind.INDEPENDENT,

@@ -15,11 +15,14 @@ from calm.physics.line import Floats, Water
 from calm.physics.reference import REFERENCE_DENSITY
 from calm.solve import Settings, Solution, solve_mooring
 from calm.verification import solved_moorings
-from calm.verification.case_lines import (
+from calm.verification.published_case import (
     FINE,
     GRAVITY,
     HALF_DENSITY,
+    Case,
+    Kind,
     LinePiece,
+    Source,
     cable,
     deep_water,
     line_of,
@@ -29,7 +32,6 @@ from calm.verification.case_lines import (
     stream,
     towed,
 )
-from calm.verification.published_case import Case, Kind, Source
 
 _TIGHT = Settings(tolerance=1e-9)
 _DRAG = sphere_drag(1.25, 0.6)

@@ -13,17 +13,21 @@ import numpy as np
 
 from calm.physics.line import Floats, Integers, Line, Water
 from calm.solve import Settings, Solution, solve_mooring
-from calm.verification.case_lines import (
+from calm.verification.published_case import (
     GRAVITY,
     HALF_DENSITY,
+    Case,
+    CaseColumn,
+    Kind,
     LinePiece,
+    Source,
     cable,
     line_of,
     point,
     profile,
     sphere_drag,
+    table,
 )
-from calm.verification.published_case import Case, CaseColumn, Kind, Source, table
 
 S1000_SEA = profile(1100.0, [(0.0, 1.0), (200.0, 0.6), (500.0, 0.2), (1100.0, 0.05)])
 

@@ -15,10 +15,15 @@ from calm.analytic.uniform import critical_angle, critical_weight_ratio, tension
 from calm.physics.friction import Friction
 from calm.physics.line import Line, Water
 from calm.solve import Settings
-from calm.verification.case_lines import (
+from calm.verification.published_case import (
     HALF_DENSITY,
+    PRINTED,
+    Case,
+    CaseColumn,
     Ends,
+    Kind,
     LinePiece,
+    Source,
     Wake,
     cable,
     deep_water,
@@ -27,9 +32,9 @@ from calm.verification.case_lines import (
     point,
     sphere_drag,
     stream,
+    table,
     towed,
 )
-from calm.verification.published_case import PRINTED, Case, CaseColumn, Kind, Source, table
 
 _FLOAT = point(4905.0, sphere_drag(1.0, 0.65))
 _LENGTH = 1000.0

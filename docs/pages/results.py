@@ -7,7 +7,7 @@ from typing import Any
 import xarray as xr
 
 import calm
-from calm.dataset.variables import OF_CLAMP, OF_COMPONENT, OF_ENDS, OF_NODE
+from calm.dataset.netcdf import OF_CLAMP, OF_COMPONENT, OF_ENDS, OF_NODE
 from calm.motion.correction import OF_MOTION
 from calm.quantities import QUANTITIES
 from calm.report.csv import HEADER

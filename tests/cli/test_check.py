@@ -114,22 +114,26 @@ line:
   - {use: ball, label: top float}
   - {use: rope, length: 100 m}
   - {use: ball, label: back-up float}
-  - {use: hook}
+  - {use: link}
+  - {use: hook, label: release pair}
+  - {use: rope, length: 5 m}
   - {use: weight}
 components:
-  ball: {kind: sphere, role: float, diameter: 0.8 m, buoyancy: 2000 N, depth_rating: 1000 m,
+  link: {kind: body, role: connector, length: 0 m, buoyancy: -5 N, kn: 0 N/(m/s)^2,
+         inclination: insensitive, working_load: 20 kN}
+  ball: {kind: sphere, role: float, diameter: 0.8 m, buoyancy: 1200 N, depth_rating: 1000 m,
          breaking_load: 100 kN}
   rope: {kind: cable, diameter: 10 mm, weight: 0.2 N/m, breaking_load: 60 kN}
   hook: {kind: cylinder, role: release, diameter: 0.1 m, length: 0.8 m, buoyancy: -200 N,
          depth_rating: 1000 m, max_tilt: 45 deg, breaking_load: 60 kN}
-  weight: {kind: anchor, weight: 10000 N, kt: 900 N/(m/s)^2, breaking_load: 100 kN}
+  weight: {kind: anchor, weight: 8000 N, kt: 900 N/(m/s)^2, breaking_load: 100 kN}
 """
     )
     done = calm("check", "sound.yaml", "--json", "-")
     assert done.code == 0
     assert json.loads(done.out)["state"] == "pass"
     assert {finding["state"] for finding in findings(done)} == {"pass"}
-    assert len({finding["rule"] for finding in findings(done)}) == 15
+    assert len({finding["rule"] for finding in findings(done)}) == 16
 
 
 def test_what_is_unknown_ends_with_1_unless_it_is_allowed(calm, write_mooring, heavy):

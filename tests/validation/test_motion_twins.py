@@ -11,12 +11,12 @@ import pytest
 
 import calm
 from calm.motion import prior
+from calm.motion.correction import Task
 from calm.motion.line_response import Forward, points
 from calm.motion.matching import labels_of
 from calm.motion.measurements import MooringMeasurements
 from calm.motion.remarks import sensor_remarks
 from calm.motion.study import knockdown
-from calm.motion.task import Task
 from calm.motion.whole_record import estimate_common
 
 FIELD = Path(__file__).parents[2] / "docs" / "field" / "dune2"

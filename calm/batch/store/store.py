@@ -23,8 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.batch.store.identity import differences, sha256_of
-from calm.dataset.netcdf import LEVEL, Chunk, chunk_shape
-from calm.dataset.variables import ResultLayout
+from calm.dataset.netcdf import LEVEL, Chunk, ResultLayout, chunk_shape
 from calm.errors import UsageError
 from calm.whole_file import flush_to_disk, put
 

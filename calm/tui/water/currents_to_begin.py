@@ -185,8 +185,7 @@ def imported(path: Path, time: str, depth: float) -> tuple[Sequence[str], Sequen
         The file, or the time, cannot be used.
     """
     from calm.records.current_file import read_current_file
-    from calm.records.current_terms import Terms
-    from calm.records.times import TimeChoiceError
+    from calm.records.current_terms import Terms, TimeChoiceError
 
     try:
         table, _ = read_current_file(path, time or None, Terms(water_depth=depth))

@@ -8,9 +8,8 @@ import pytest
 from calm.errors import InputError
 from calm.files import CurrentTable, MooringFile
 from calm.records.current_file import read_current_file
-from calm.records.current_terms import Terms
+from calm.records.current_terms import Terms, TimeChoiceError
 from calm.records.delimited import MOST_PROBLEMS
-from calm.records.times import TimeChoiceError
 
 from .conftest import GOOD, Place
 
@@ -31,7 +30,7 @@ def csv(tmp_path: Path) -> Path:
 
 def profile(path: Path, text: str, time: str | None = None) -> tuple[CurrentTable, list[str]]:
     path.write_text(text)
-    return read_current_file(path, time, Terms(1000.0))
+    return read_current_file(path, time, Terms(60.0))
 
 
 def problems(path: Path, text: str) -> list[Place]:
@@ -62,9 +61,9 @@ def test_profile_of_a_time(csv: Path) -> None:
 def test_levels_of_a_record_without_a_value_are_left_out(csv: Path) -> None:
     text = RECORD.replace("50,0.3,0.0", "50,,0.0").replace("0,-0.5,0.1", "0,-0.5, NaN")
     table, notices = profile(csv, text, "2026-03-01T06:00")
-    assert (table.depth, notices) == (
+    assert (table.depth, notices[0]) == (
         (0.0,),
-        ["1 level without a value left out of the current"],
+        "1 level without a value left out of the current",
     )
     assert profile(csv, text, "2026-03-01T12:00")[0].depth == (50.0,)
     gap = text.replace("0,0.5,0.1", "0,,")
@@ -180,6 +179,8 @@ def test_file_named_by_a_mooring(read: Callable[..., MooringFile], csv: Path) ->
     assert mooring.environment.current.u == (0.5, 0.3)
     assert mooring.notices == (
         "the current is that of 2026-03-01T06:00, nearest to 2026-03-01T07:30",
+        "the current is not given below 50.0 m: that of the nearest level is used there, in "
+        "1100.0 m of water",
     )
 
 

@@ -11,8 +11,7 @@ import xarray as xr
 from calm.errors import InputError
 from calm.files import CurrentTable, MooringFile
 from calm.records.current_file import read_current_file
-from calm.records.current_terms import Terms
-from calm.records.times import TimeChoiceError
+from calm.records.current_terms import Terms, TimeChoiceError
 
 from .conftest import GOOD
 
@@ -37,7 +36,7 @@ def read(
 ) -> tuple[CurrentTable, list[str]]:
     path = folder / "current.nc"
     dataset.to_netcdf(path, engine=engine)
-    return read_current_file(path, time, Terms(1000.0))
+    return read_current_file(path, time, Terms(220.0))
 
 
 def problem(dataset: xr.Dataset, folder: Path) -> str:
@@ -142,7 +141,7 @@ def test_levels_above_the_surface_are_left_out(tmp_path: Path) -> None:
     dataset = profile().assign_coords(depth=("depth", [-3.0, 4.0, 11.0], DEPTH[2]))
     table, notices = read(dataset, tmp_path)
     assert table.depth == (4.0, 11.0)
-    assert notices == ["1 level above the surface left out of the current"]
+    assert notices[0] == "1 level above the surface left out of the current"
 
 
 @pytest.mark.parametrize(
@@ -154,7 +153,7 @@ def test_levels_above_the_surface_are_left_out(tmp_path: Path) -> None:
         (
             [10.0, 20.0, 30.0],
             {"positive": "up", "standard_name": "height_above_sea_floor"},
-            (970.0, 980.0, 990.0),
+            (190.0, 200.0, 210.0),
             True,
         ),
     ],
@@ -179,9 +178,18 @@ def test_one_current_meter_is_a_profile_of_one_level(tmp_path: Path) -> None:
     assert table == CurrentTable((50.0,), (0.25,), (-0.25,), (0.0,))
 
 
-def test_quality_flags_are_not_looked_at_and_that_is_said(tmp_path: Path) -> None:
-    _, notices = read(profile(uo_QC=("depth", [1, 1, 4])), tmp_path)
-    assert notices == ["the quality flags of the current are ignored"]
+@pytest.mark.parametrize(("flags", "told", "left"), [
+    ([1, 0, 4], {}, (5.0, 50.0)), ([9, 2, 8], {}, (50.0, 200.0)), ([1, 1, 3], {}, (5.0, 50.0)),
+    ([48, 49, 52], {}, (5.0, 50.0)),
+    (["1", "A", "4"], {"standard_name": "status_flag"}, (5.0, 50.0)),
+    ([0, 1, 0], {"flag_values": [0, 1], "flag_meanings": "good bad"}, (5.0, 200.0)),
+    ([3, 4, 9], {"flag_values": [3, 4, 9], "flag_meanings": "raw seen fine"}, (5.0, 50.0, 200.0)),
+])  # fmt: skip
+def test_currents_that_are_flagged_as_bad_are_left_out(tmp_path, flags, told, left) -> None:
+    table, notices = read(profile(uo_QC=("depth", flags, told)), tmp_path)
+    assert table.depth == left
+    said = "1 of 3 currents are left out, as `uo_QC` marks them as bad"
+    assert (said in notices) == (len(left) < 3)
 
 
 def test_no_current_in_the_file(tmp_path: Path) -> None:
@@ -233,7 +241,7 @@ def grid() -> xr.Dataset:
 def test_column_of_a_place(tmp_path: Path) -> None:
     path = tmp_path / "current.nc"
     grid().to_netcdf(path, engine="h5netcdf")
-    table, notices = read_current_file(path, None, Terms(1000.0, (48.28, -5.31)))
+    table, notices = read_current_file(path, None, Terms(220.0, (48.28, -5.31)))
     assert table.u == pytest.approx([1.1 * u for u in U])
     assert notices == [
         "the column nearest to 48.28° N 5.31° W is that at 48.3° N 5.3° W, 2.3 km away"
@@ -268,4 +276,4 @@ def test_damaged_files(tmp_path: Path, signature: bytes) -> None:
     path = tmp_path / "current.nc"
     path.write_bytes(signature + b"nothing that makes sense" * 9)
     with pytest.raises(InputError, match=r"current.nc: cannot be read as NetCDF: "):
-        read_current_file(path, None, Terms(1000.0))
+        read_current_file(path, None, Terms(220.0))

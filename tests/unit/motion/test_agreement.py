@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from calm.motion.agreement import agreement, calm_times, coverage, difference, linear, rms
+from calm.motion.remarks import agreement, calm_times, coverage, difference, linear, rms
 
 EVERY = np.ones(20, bool)
 

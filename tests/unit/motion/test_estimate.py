@@ -9,10 +9,9 @@ import pytest
 
 import calm.motion.estimate as module
 from calm.motion.common_unknowns import Common
-from calm.motion.estimate import _tried, estimated
+from calm.motion.estimate import Linear, _tried, best_state, estimated, posterior
 from calm.motion.line_response import LineResponse
 from calm.motion.measurements import MooringMeasurements
-from calm.motion.posterior import Linear, best_state, posterior
 
 STILL = np.array([50.0, 100.0, 180.0])  # of three points; the first and the last have sensors
 GAIN = np.array([[30.0, 20.0, 8.0], [12.0, 14.0, 9.0], [1.0, 4.0, 6.0]])

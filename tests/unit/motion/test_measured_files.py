@@ -5,7 +5,7 @@ import pytest
 import xarray
 
 from calm.errors import InputError, UsageError
-from calm.motion.measured_currents import read_currents
+from calm.motion.measurements import read_currents
 from calm.motion.sensors import depth_of, read_sensors
 
 TIMES = 6

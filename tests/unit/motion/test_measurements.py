@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from calm.errors import UsageError
-from calm.motion.measured_currents import CurrentMeasurements
-from calm.motion.measurements import common_times, interpolated, joined
+from calm.motion.measurements import CurrentMeasurements, common_times, interpolated, joined
 from calm.motion.sensors import Sensor
 
 START = np.datetime64("2026-03-01", "ns")

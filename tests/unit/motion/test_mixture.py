@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from calm.motion import prior
-from calm.motion.estimate import Mixture, _odds, _sets
+from calm.motion.estimate import Mixture, Posterior, _odds, _sets
 from calm.motion.line_response import ReadCurrents
-from calm.motion.posterior import Posterior
 
 GROUP = np.array([0, 1])
 

@@ -8,9 +8,9 @@ import pytest
 
 from calm.motion import prior
 from calm.motion.common_unknowns import Common
+from calm.motion.estimate import Linear, between, posterior
 from calm.motion.line_response import LineResponse
 from calm.motion.measurements import MooringMeasurements
-from calm.motion.posterior import Linear, between, posterior
 
 STILL = np.array([50.0, 100.0, 180.0])  # of three points; the first and the last have sensors
 THERE = np.array([80.0, 120.0, 185.0])

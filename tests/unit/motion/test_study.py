@@ -10,6 +10,7 @@ import xarray
 import calm.motion.study as module
 from calm.errors import UsageError
 from calm.motion.common_unknowns import Common
+from calm.motion.correction import Task, without
 from calm.motion.measurements import MooringMeasurements
 from calm.motion.study import (
     cross_validated,
@@ -20,7 +21,6 @@ from calm.motion.study import (
     prepare,
     several,
 )
-from calm.motion.task import Task, without
 
 TIMES = 40
 STILL = np.array([60.0, 150.0, 250.0])  # three clamps with a sensor each

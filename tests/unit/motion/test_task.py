@@ -6,13 +6,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-import calm.motion.task as module
+import calm.motion.correction as module
 from calm.batch.statuses import STATUSES
 from calm.motion.common_unknowns import Common
+from calm.motion.correction import MeasuredRecord, Task, plain, without
 from calm.motion.estimate import Estimate
 from calm.motion.line_response import ReadCurrents
 from calm.motion.measurements import MooringMeasurements
-from calm.motion.task import MeasuredRecord, Task, plain, without
 
 STILL = np.array([60.0, 150.0, 40.0, 250.0])  # two clamps, then two components
 U = np.array([[0.3, 0.4], [0.5, 0.2], [np.nan, np.nan], [0.1, 0.1]])
