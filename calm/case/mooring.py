@@ -191,12 +191,16 @@ class Mooring:
         """Return why a sub-surface line is refused where more of it than chain lies on the
         seabed.
         """
-        lift = standing_lift(self.line, self.water)
-        if float(lift.sum()) <= 0.0:
+        lift, length = standing_lift(self.line, self.water), np.cumsum(self.line.length)
+        height = self.water.depth - self.line.anchor_height
+        hung = float(np.interp(height, length, np.cumsum(lift)))
+        floats_at_rest = length[-1] > height and hung > 0.0
+        if float(lift.sum()) <= 0.0 and not floats_at_rest:
             return too_heavy(lift)
+        pulls = "pulls the line's top under water and " if floats_at_rest else ""
         return Status.GROUNDED.because(
-            f"The current lays {label} on the seabed: of a line below the surface nothing but "
-            "chain may lie there."
+            f"The current {pulls}lays {label} on the seabed: of a line below the surface nothing "
+            "but chain may lie there."
         )
 
     def still_beside(self, solution: Solution) -> Solution | None:

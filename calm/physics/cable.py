@@ -18,6 +18,9 @@ from calm.physics.track import CableStretch
 PASSES, STALLED = 200, 50
 """The most passes of a segment, and those after which they go half the way: one that nothing pulls
 would hang plumb and trail by turns where the current begins."""
+NEAR_A_TURN, SHORTEST = 1e-6, 1e-3
+"""How exactly it is found where the flow along a segment turns round, and the shortest segment that
+ends there, as shares of the segment: a turn nearer to its top is at its top."""
 LITTLE_TURN = 1e-6
 """How much the last of a few steps may turn a segment, squared [rad²], and be good enough where it
 need not settle to the last digits."""
@@ -226,6 +229,46 @@ def touchdown(
         following = hanging * carried / (carried - fz)
         hanging = following if low < following < high else 0.5 * (low + high)
     return hanging
+
+
+def until_turn(
+    cable: CableStretch,
+    knots: Sequence[Knot],
+    vibration: Vibration,
+    sea: Sea,
+    state: State,
+    cut: float,
+    near: float,
+    expected: Vector,
+) -> float:
+    """Return how much of a segment there is before the flow along it turns round [m].
+
+    There a friction of constant size jumps from one direction to the other. At most `cut`; `near`
+    and `expected` are as in `pass_segment`. By regula falsi, whose end that stays is halved.
+    """
+    below, _ = pass_segment(cable, knots, vibration, sea, state, cut, near, expected)
+    low, high = 0.0, cut
+    at_low, at_high = flow_along(sea, state), flow_along(sea, below)
+    if not at_low * at_high < 0.0:
+        return cut
+    for _ in range(PASSES):
+        length = low + (high - low) * at_low / (at_low - at_high)
+        below, _ = pass_segment(cable, knots, vibration, sea, state, length, near, expected)
+        here = flow_along(sea, below)
+        if here * at_low > 0.0:
+            low, at_low, at_high = length, here, 0.5 * at_high
+        else:
+            high, at_high, at_low = length, here, 0.5 * at_low
+        if here == 0.0 or high - low <= NEAR_A_TURN * cut:
+            break
+    return high if high > SHORTEST * cut else cut
+
+
+def flow_along(sea: Sea, state: State) -> float:
+    """Current along a cable at a node times the tension there, + down the line [N m/s]."""
+    _, _, z, fx, fy, fz, _, level = state
+    u, v, w, _, _ = water_at(sea, -z, level)
+    return -(u * fx + v * fy + w * fz)
 
 
 @within

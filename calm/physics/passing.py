@@ -16,7 +16,8 @@ from collections.abc import MutableSequence
 from math import isfinite
 from typing import NamedTuple
 
-from calm.physics.cable import pass_segment, segment_length, touchdown
+from calm.physics.cable import pass_segment, segment_length, touchdown, until_turn
+from calm.physics.friction import CONSTANT
 from calm.physics.profile import Sea, interval_at
 from calm.physics.rod import floating_depth, pass_clamp, pass_rod
 from calm.physics.state import (
@@ -172,6 +173,8 @@ def pass_cable(
             cut = min(left, cut)
             if left - cut < 0.01 * cut:
                 cut = left
+            if cable.friction == CONSTANT:
+                cut = until_turn(cable, knots, vibration, sea, state, cut, near, expected)
             cuts[used] = cut
         used += 1
         hung = cut

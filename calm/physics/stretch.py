@@ -138,11 +138,6 @@ class ElongationCurve:
             zip(loads, strains, strict=True), self.breaking_load, self.permanent / factor
         )
 
-    def mean_strain(self, tension: float, half: float) -> float:
-        """Mean strain where the tension goes evenly from `tension` - `half` to `tension` + `half`,
-        permanent elongation included [-]."""
-        return mean_curve_strain(self.knots, 0, len(self.knots), tension, half)
-
 
 def _checked(points: Iterable[tuple[float, float]]) -> tuple[list[float], list[float]]:
     """Loads and strains of a table that can be a rope's, (0, 0) in front."""

@@ -12,7 +12,6 @@ from typing import Any
 
 import numpy as np
 
-from calm.physics.closure import closure
 from calm.physics.compiled import record_type
 from calm.physics.line import Floats, Line, Water
 from calm.physics.referee import (
@@ -21,9 +20,7 @@ from calm.physics.referee import (
     RefereeShape,
     element_loads,
     strumming,
-    worst_moment,
 )
-from calm.physics.reference import REFERENCE_DENSITY
 from calm.physics.stretch import Knot
 from calm.physics.strumming import AT_REST
 from calm.physics.track import head_count
@@ -31,37 +28,12 @@ from calm.solve.search import Referee
 from calm.solve.solution import Solution, sizes
 
 
-class Audit:
-    """A solution laid out once, as it is loaded, for all its checks.
-
-    Attributes
-    ----------
-    loads : (k, 3) buoyancy and drag of every element [N]; a rigid piece's at its own middle
-    """
-
-    def __init__(self, solution: Solution) -> None:
-        self._solution = solution
-        self._moored = moored_of(solution.carried, solution.water, solution.frequency, False)
-        self._shape = _shape(solution)
-        self._written: list[list[float]] = [[0.0] * len(solution.cut) for _ in range(3)]
-        element_loads(self._moored, self._shape, self._written)
-        self.loads: Floats = np.array(self._written).T
-
-    def closure(self) -> float:
-        """Relative departure of the sum of the loads from the force at the line's end."""
-        solution = self._solution
-        excess = 0.0
-        if solution.landed:
-            _, density = solution.water.at(np.array(solution.water.depth))
-            excess = (float(density) - REFERENCE_DENSITY) * solution.water.gravity
-        return closure(
-            self._moored, self._shape, self._written, solution.landed,
-            solution.settings.seabed_friction, excess,
-        )  # fmt: skip
-
-    def moment_residual(self) -> float:
-        """Largest angle between an element's axis and the mean of the forces at its ends [rad]."""
-        return worst_moment(self._moored, self._shape, self._written)
+def loads_of(solution: Solution) -> Floats:
+    """Buoyancy and drag (k, 3) of every element [N]; a rigid piece's at its own middle."""
+    moored = moored_of(solution.carried, solution.water, solution.frequency, False)
+    written: list[list[float]] = [[0.0] * len(solution.cut) for _ in range(3)]
+    element_loads(moored, shape_of(solution), written)
+    return np.array(written).T
 
 
 def moored_of(line: Line, water: Water, frequency: float, compiled: bool) -> Moored:
@@ -143,7 +115,8 @@ _OF_CLAMP = {
 }
 
 
-def _shape(solution: Solution) -> RefereeShape:
+def shape_of(solution: Solution) -> RefereeShape:
+    """The shape of a solution as the referee takes it."""
     nodes = len(solution.position)
     none = np.zeros(1)
     columns = (

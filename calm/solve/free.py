@@ -24,7 +24,7 @@ from calm.physics.line import Floats, Line, Water
 from calm.physics.march import Cuts
 from calm.physics.state import MarchError
 from calm.physics.track import head_count
-from calm.solve.audit import Audit
+from calm.solve.audit import loads_of
 from calm.solve.free_march import Falling, FallingAnchor, Moving, Rising
 from calm.solve.free_search import FreePlace, terminal
 from calm.solve.search import LARGEST_CLOSURE
@@ -144,7 +144,7 @@ def _recorded(moving: Moving, place: FreePlace, cuts: Cuts, settings: Settings) 
         lift_error=nan,
         pull_error=nan,
     )
-    left = Audit(solution).loads.sum(axis=0) + moving.anchor_force(flow)
+    left = loads_of(solution).sum(axis=0) + moving.anchor_force(flow)
     closure = float(np.linalg.norm(left)) / moving.weight
     if not closure <= LARGEST_CLOSURE:
         raise Status.NOT_CONVERGED.because(

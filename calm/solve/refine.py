@@ -11,16 +11,13 @@ neighbours, and that is added.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from math import degrees, isnan, sqrt
 from typing import Any, NamedTuple
 
 from calm.physics.element import Vector
-from calm.physics.friction import CONSTANT
 from calm.physics.passing import FAILURE, NODES
 from calm.physics.profile import interval_at
 from calm.physics.state import Record
-from calm.physics.track import CableStretch
 from calm.solve.closing import Closed, Root, halve, not_closed, planned, polish
 from calm.solve.endings import BELOW_SEABED, FOUND, MARCH_STOPPED, NO_SHAPE_NEAR
 from calm.solve.problem import (
@@ -114,24 +111,14 @@ def refine(search: Search, root: Root, hangs: bool) -> Refined:
 def excess_of(problem: LineProblem, errors: Errors, landed: bool) -> float:
     """Return how many times the errors of a shape are what is aimed at.
 
-    That is less for one of many that lands, which is not extrapolated, and for the tensions under a
-    law of friction that jumps, which cannot be.
+    That is less for one of many that lands, which is not extrapolated.
     """
     target = degrees(problem.limits.angle_step)
     target *= target
     place, tension = DEPTH_TARGET * target, TENSION_TARGET * target
-    if problem.limits.near > 0.0:
-        place *= AS_FOUND if landed else 1.0
-        tension *= AS_FOUND if landed or jumps(problem.course.cables) else 1.0
+    if problem.limits.near > 0.0 and landed:
+        place, tension = AS_FOUND * place, AS_FOUND * tension
     return max(errors.depth / (place * problem.limits.span), errors.relative / tension)
-
-
-def jumps(cables: Sequence[CableStretch]) -> bool:
-    """Return whether the friction along a cable jumps where the flow along it turns round."""
-    jump = False
-    for k in range(len(cables)):
-        jump |= cables[k].friction == CONSTANT
-    return jump
 
 
 def with_bends(problem: LineProblem, refined: Refined) -> Refined:

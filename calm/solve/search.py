@@ -61,7 +61,8 @@ UNSEEN = 1e-9
 of rounding, of a share of buoyancy, of a node that should be at a level and is just beside it."""
 BARELY_LANDED = 4.0
 """Length on the seabed, in heights of the anchor, up to which a line that can as well hang between
-the seabed and the top of its anchor is taken to hang there."""
+the seabed and the top of its anchor is taken to hang there; beyond it does so where that is higher.
+"""
 PERHAPS_LANDED = 20.0
 """The same, up to which it is looked whether it could hang: the other shape is then reported."""
 
@@ -251,9 +252,11 @@ def shape_near(search: Search, referee: Referee, root: Root, lands: bool) -> Fou
     hanging = audited(problem, referee, refine(search, clear, True))
     if hanging.ending == MARCH_STOPPED:
         return hanging
-    if hanging.ending == FOUND and closed.grounded <= BARELY_LANDED * limits.anchor_height:
-        return beside(hanging, depth, closed.grounded)
     other = -problem.work.records[FINE][2][0]
+    if hanging.ending == FOUND:
+        barely = closed.grounded <= BARELY_LANDED * limits.anchor_height
+        if barely or other < depth - hanging.errors.depth - landed.errors.depth:
+            return beside(hanging, depth, closed.grounded)
     keep(problem, FINE, KEPT, landed)
     load_again(problem, landed)
     if hanging.ending != FOUND:

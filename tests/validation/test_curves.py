@@ -19,10 +19,10 @@ from calm.physics.line import Line
 from calm.physics.reynolds import DragCurve
 from calm.physics.stretch import ElongationCurve
 from calm.solve import Settings, Solution, solve_mooring
-from calm.solve.audit import Audit
 from calm.solve.search import LARGEST_CLOSURE, LARGEST_MOMENT
 from tests.property.strategies import draws, mooring
 from tests.validation.agreement import closure, difference
+from tests.validation.audited import closure_of, moment_of
 from tests.validation.cables import Folded, NoContinuousSolution
 from tests.validation.closing import solve_continuous
 from tests.validation.pieces import Piece, cable, line_of, point, sphere_drag, stream
@@ -209,8 +209,8 @@ def solution() -> Solution:
 
 
 def test_the_audit_takes_drag_and_stretch_from_the_curves(solution) -> None:
-    assert Audit(solution).closure() <= 1e-10
-    assert Audit(solution).moment_residual() <= LARGEST_MOMENT
+    assert closure_of(solution) <= 1e-10
+    assert moment_of(solution) <= LARGEST_MOMENT
     assert closure(solution) <= 1e-10
 
 
@@ -225,14 +225,14 @@ def test_the_audit_takes_drag_and_stretch_from_the_curves(solution) -> None:
 )
 def test_the_audit_sees_a_march_on_another_drag_curve(solution, wrong) -> None:
     other = replace(solution, carried=replace(solution.carried, **wrong))
-    assert Audit(other).closure() > LARGEST_CLOSURE
+    assert closure_of(other) > LARGEST_CLOSURE
 
 
 @pytest.mark.parametrize(("breaking_load", "permanent"), [(20.01e3, 0.03), (20e3, 0.03001)])
 def test_the_audit_sees_a_march_on_another_table(solution, breaking_load, permanent) -> None:
     curve = ElongationCurve(TABLE, breaking_load, permanent)
     other = replace(solution, carried=replace(solution.line, elongation=(None, None, curve)))
-    assert Audit(other).moment_residual() > LARGEST_MOMENT
+    assert moment_of(other) > LARGEST_MOMENT
 
 
 def test_what_lies_on_the_seabed_stretches_by_the_table_too() -> None:

@@ -19,9 +19,9 @@ import pytest
 
 from calm.errors import NoEquilibrium
 from calm.solve import Settings, solve_tow
-from calm.solve.audit import Audit
 from calm.solve.search import LARGEST_MOMENT
 from tests.validation.agreement import closure, difference
+from tests.validation.audited import moment_of
 from tests.validation.cables import Folded, NoContinuousSolution
 from tests.validation.random_tows import tow
 from tests.validation.towed import HalfOut, Passing, solve_continuous_tow
@@ -84,7 +84,7 @@ def test_a_line_that_would_fly_from_the_surface_hangs_below_it() -> None:
         assert -solution.position[0, 2] == pytest.approx(6.12827, abs=1e-4)
     # at its limp end the rounding of places a tenth of a millimetre apart turns a force of 1e-8 of
     # the greatest by 5e-8; as much is a fault elsewhere, and there a thousandth is one
-    assert Audit(solution).moment_residual() <= LARGEST_MOMENT
+    assert moment_of(solution) <= LARGEST_MOMENT
     segments = np.diff(solution.position, axis=0)
     pulled = int(np.argmax(solution.tension > 0.01 * solution.tension.max()))
     for segment, angle in ((pulled, 5e-8), (len(segments) - 2, 5e-8), (2, 1e-3)):
@@ -92,4 +92,4 @@ def test_a_line_that_would_fly_from_the_surface_hangs_below_it() -> None:
         position = solution.position.copy()
         position[segment + 1 :] += angle * across
         turned = replace(solution, position=position)
-        assert Audit(turned).moment_residual() > LARGEST_MOMENT, segment
+        assert moment_of(turned) > LARGEST_MOMENT, segment

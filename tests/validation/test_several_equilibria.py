@@ -128,3 +128,36 @@ def test_both_are_in_the_result_and_in_its_warnings() -> None:
     assert other == {"depth": pytest.approx(deepest, abs=NEAR * 110.0), "grounded_length": 0.0}
     said = f"Another equilibrium exists, with the free end at a depth of {deepest:.1f} m."
     assert said in result.warnings
+
+
+CLEAR = """
+environment:
+  depth: 136 m
+  current: {columns: [depth m, u m/s, v m/s], rows: [[0, 0, 0], [136, 1.3, 0]]}
+components:
+  ball: {kind: sphere, diameter: 0.8 m, buoyancy: 800 N}
+  rope: {kind: cable, diameter: 18 mm, weight: 3.6 N/m, cn: 1.7, ct: 0.01}
+  block: {kind: anchor, weight: 9000 N, length: 1 m}
+line: [{use: ball}, {use: rope, length: 136 m}, {use: block}]
+"""
+
+
+def test_a_line_that_hangs_higher_than_it_lies_hangs() -> None:
+    """With 11 m of it on the seabed it lies lower; rope may not, which it was refused for."""
+    result = calm.load("clear.yaml", text=CLEAR).solve()
+    assert result.top.depth == pytest.approx(68.72, abs=0.01)
+    other = result.to_dict()["other_equilibrium"]
+    assert other == {
+        "depth": pytest.approx(70.32, abs=0.01),
+        "grounded_length": pytest.approx(11.2, abs=0.1),
+    }
+    heights = 136.0 + result.solution.position[:-1, 2]
+    assert heights.min() == pytest.approx(0.58, abs=0.01)
+
+
+def test_a_surface_float_pulled_under_is_said_to_be() -> None:
+    """It carries what hangs at rest; that all of the line weighs more is not why."""
+    text = CLEAR.replace("length: 136 m", "length: 300 m").replace("1.3, 0]", "2.5, 0]")
+    with pytest.raises(calm.NoEquilibrium, match="pulls the line's top under water") as refusal:
+        calm.load("pulled.yaml", text=text.replace("800 N", "1000 N")).solve()
+    assert refusal.value.status == "grounded"
