@@ -12,7 +12,8 @@ from math import pi
 from typing import TYPE_CHECKING
 
 from calm.case.parts import parts_of
-from calm.checks.finding import State, Verdict, rule, verdict_on
+from calm.checks.criterion import said
+from calm.checks.finding import State, Verdict, rule, unknown, verdict_on
 from calm.files import Cable, Chain, Component, Cylinder, Flexible, Sphere
 from calm.files.catalogue import Assembly
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY, STEEL_DENSITY
@@ -221,10 +222,15 @@ def figures(handling: Handling) -> Iterator[Verdict]:
     What hangs several times on the line is named once.
     """
     named: set[tuple[str, str]] = set()
+    for key in handling.mooring.file.looser:
+        if not key.backed:
+            told = f"The line gives {key.name} as {said(key, key.value)}; {key.source} has"
+            message = f"{told} {said(key, key.default)}, and nothing says where the other is from."
+            yield unknown(None, message, "Give its `source` beside it, or leave it out.")
     remedy = "Look at its figures, and at their units."
     for part in parts_of(handling.mooring.file.pieces):
         for state, found in ((State.FAIL, impossible), (State.WARN, _late_warning)):
-            for said in found(part.component):
-                if (part.use, said) not in named:
-                    named.add((part.use, said))
-                    yield verdict_on(part, state, f"{part.label} {said}.", remedy)
+            for fault in found(part.component):
+                if (part.use, fault) not in named:
+                    named.add((part.use, fault))
+                    yield verdict_on(part, state, f"{part.label} {fault}.", remedy)

@@ -13,8 +13,11 @@ from math import hypot, isnan, nan
 from typing import TYPE_CHECKING
 
 from calm.case.parts import clamps_down
+from calm.case.strumming import FACTOR
 from calm.checks.finding import Rule, State, Verdict, at_least, at_most, rule, unknown
+from calm.files import StrummingFactor
 from calm.files.check_limits import LimitKey, limit_keys
+from calm.units import DIMENSIONS
 
 if TYPE_CHECKING:
     from calm.case import Mooring, Result
@@ -165,15 +168,13 @@ READINGS: dict[str, Callable[[Result, JudgedPart], float]] = {
 least tension leaves out what lies on the seabed, a slide is H + friction × V."""
 
 
-_SAID = {"length": "m", "force": "N", "speed": "m/s", "angle": "°", "number": ""}
-
-
 def limits_used(file: MooringFile, surface: bool) -> tuple[LimitKey, ...]:
     """Every limit that the design check judges a mooring by.
 
     One that the design does not give has its default; one that has none and is not given is not
     used. The friction of an anchor that gives its own stands for `anchor_friction`. What the line
-    lets a component bear beyond its own definition is a limit that departs from it.
+    lets a component bear beyond its own definition is a limit that departs from it; so is every
+    other setting that only flatters.
 
     Parameters
     ----------
@@ -185,7 +186,22 @@ def limits_used(file: MooringFile, surface: bool) -> tuple[LimitKey, ...]:
         for key in _keys(file)
         if key.value is not None and (key.name != "minimum_top_depth" or given or not surface)
     )
-    return (*used, *file.looser)
+    return (*used, *file.looser, *_flattering(file))
+
+
+def _flattering(file: MooringFile) -> Iterator[LimitKey]:
+    """Yield the settings of the solver and of pieces by which a design is judged more kindly."""
+    solver, wire = file.solver, file.checks.minimum_tension.wire
+    if isinstance(solver.strumming, StrummingFactor) and solver.strumming.factor < FACTOR:
+        factor, source = solver.strumming.factor, "about what is measured on lines that strum"
+        yield LimitKey("solver.strumming.factor", "number", factor, FACTOR, source)
+    if solver.seabed_friction > 0.0:
+        source = "the whole pull of the line is held by the anchor"
+        yield LimitKey("solver.seabed_friction", "number", solver.seabed_friction, 0.0, source)
+    for piece in file.pieces:
+        if piece.component.slack == "allowed":
+            name = f"minimum_tension of {piece.label}"
+            yield LimitKey(name, "force", 0.0, wire, "`slack: allowed` exempts it")
 
 
 def _keys(file: MooringFile) -> Iterator[LimitKey]:
@@ -220,4 +236,5 @@ def said(key: LimitKey, value: float | None) -> str:
     """A value or a default of a limit with its unit; a dash for none."""
     if value is None:
         return "-"
-    return f"{value:.10g} {_SAID[key.dimension]}".strip().replace(" °", "°")
+    unit = DIMENSIONS[key.dimension].unit.replace("deg", "°")
+    return f"{value:.10g} {unit}".strip().replace(" °", "°")

@@ -173,6 +173,7 @@ class LimitKey:
     value : in use [SI, degrees]; None where it is not judged
     default : None where there is none
     source : of the default
+    backed : whether the design says where its own value comes from
     """
 
     name: str
@@ -180,6 +181,7 @@ class LimitKey:
     value: float | None
     default: float | None
     source: str
+    backed: bool = True
 
     @property
     def departs(self) -> bool:

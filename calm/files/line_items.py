@@ -9,7 +9,7 @@ from dataclasses import replace
 from calm.errors import Problem
 from calm.files.catalogue import Assembly, Catalogue, CatalogueEntry, define
 from calm.files.check_limits import LimitKey
-from calm.files.components import Cable, Component, contradicted
+from calm.files.components import Anchor, Cable, Component, contradicted
 from calm.files.definition import IN_AIR
 from calm.files.fields import LENGTH, POSITIVE_LENGTH, QuantityField, quantity_of
 from calm.files.flexible import Flexible, strain_under
@@ -33,9 +33,11 @@ _CLAMP_KEYS = EQUIPMENT_KEYS | {"use", "label", "at"}
 _WORDS = {"at": "place", "top_depth": "top depth", "body_depth": "body depth"}
 _LIMITS = (
     *("breaking_load", "working_load", "opening_load", "grip"),
-    *("depth_rating", "max_tilt", "warn_tilt"),
+    *("depth_rating", "max_tilt", "warn_tilt", "buoyancy"),
 )
-"""Limits by which a component is judged, each looser the greater it is."""
+"""Limits by which a component is judged, and its lift: each flatters the greater it is."""
+_LOADS = ("weight", "diameter", "cn", "ct", "cx", "cd", "drag_area", "kn", "kt")
+"""Weight and drag of a component, each of which flatters the less it is; an anchor's do not."""
 
 
 class LineReader:
@@ -303,13 +305,19 @@ class LineReader:
         definition: Component,
         component: Component,
     ) -> None:
-        """Keep what the line lets a component bear beyond its own definition."""
-        for key in _LIMITS:
-            before, after = (getattr(each, key) for each in (definition, component))
+        """Keep what the line lets a component bear, lift, weigh or resist beyond its definition."""
+        loads = () if isinstance(definition, Anchor) else _LOADS
+        sourced = item.data.get("sources")
+        for key in (*_LIMITS, *loads):
+            before, after = (getattr(each, key, None) for each in (definition, component))
+            if before is None or after is None:
+                continue
             quantity = quantity_of(type(definition).model_fields[key])
-            if quantity and before is not None and after is not None and after > before:
+            if quantity and (after < before if key in loads else after > before):
                 name, source = f"{key} of {self._label(item)}", f"the definition of {entry.id}"
-                self.looser.append(LimitKey(name, quantity.dimension, after, before, source))
+                backed = "source" in item.data or (isinstance(sourced, dict) and key in sourced)
+                limit = LimitKey(name, quantity.dimension, after, before, source, backed)
+                self.looser.append(limit)
 
     def _define(
         self, entry: CatalogueEntry, section: SourceMapping, *, also_allowed: Iterable[str] = ()

@@ -213,7 +213,8 @@ RULES = {
         "",
         "figures of pieces and clamps that are impossible for their size and material: lift, "
         "mass, stiffness, strength, depth rating, coefficients of drag",
-        "a failure; of a tilt warned of after the limit a warning",
+        "a failure; of a tilt warned of after the limit a warning; unknown where the line gives a "
+        "figure that flatters more than its component's, without a `source`",
         "The rules of `calm catalog check`",
         _ONCE,
     ),

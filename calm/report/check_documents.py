@@ -11,6 +11,7 @@ from calm.checks.inventory import total_of
 from calm.checks.rules import RULES
 from calm.quantities import QUANTITIES
 from calm.records.csv_writer import table_csv
+from calm.report.provenance import UNJUDGED
 from calm.report.result_json import members
 
 if TYPE_CHECKING:
@@ -52,6 +53,7 @@ def check_document(assessments: Sequence[Assessment]) -> dict[str, Any]:
             for each in assessments
             for key in each.limits
         ],
+        "not_judged": list(UNJUDGED),
         "findings": [
             _finding(each, finding) for each in assessments for finding in each.all_findings()
         ],

@@ -141,6 +141,8 @@ def failures(sections: Sequence[Section]) -> Table | Prose:
         )
     ]
     if not failed:
+        if _failing_accepted(each.finding for section in sections for each in section.worst):
+            return Prose(("No rule fails but what is accepted.",), State.ACCEPTED)
         return Prose(("No rule fails.",), State.PASS)
     return table_of(
         "Failures",
@@ -238,15 +240,24 @@ def counted_states(findings: Iterable[Finding]) -> Counter[State]:
 
 def verdict_of(findings: Iterable[Finding]) -> tuple[State, str]:
     """The worst state of one or several moorings, and the verdict in words."""
+    findings = list(findings)
     counts = counted_states(findings)
+    unsigned = [one for one in findings if one.accept is not None and one.accept.by is None]
+    nobody, other = len(worst_by_part(unsigned)), "else " if _failing_accepted(findings) else ""
     state = worst_state(counts)
     words = [
-        _counted(counts[State.FAIL], "failure") if counts[State.FAIL] else "nothing fails",
+        _counted(counts[State.FAIL], "failure") if counts[State.FAIL] else f"nothing {other}fails",
         _counted(counts[State.UNKNOWN], "figure") + " unknown" if counts[State.UNKNOWN] else "",
         _counted(counts[State.WARN], "warning") if counts[State.WARN] else "",
         f"{counts[State.ACCEPTED]} accepted" if counts[State.ACCEPTED] else "",
+        f"{nobody} of them by nobody" if nobody else "",
     ]
     return state, ", ".join(word for word in words if word)
+
+
+def _failing_accepted(findings: Iterable[Finding]) -> bool:
+    """Return whether what is accepted is a failure, and not only unknown."""
+    return any(one.accept is not None and (one.margin or 0.0) < 0.0 for one in findings)
 
 
 def verdict_prose(findings: Iterable[Finding]) -> Prose:

@@ -98,14 +98,27 @@ def _members(value: Any) -> dict[str, Any]:
     return value.model_dump() if isinstance(value, BaseModel) else vars(value)
 
 
+_BESIDE = (
+    "what the beams of a current profiler meet, such as its own line or float",
+    "growth where no `fouling` is given", "the soil below the anchor", "trawls, ice and ships",
+    "terminations and splices", "batteries and memory",
+)  # fmt: skip
+
 UNSEEN = (
     "A static calculation does not see waves and the tensions they cause; snap loads on a line "
     "that falls slack; fatigue, by waves and by vortices; creep, corrosion and wear; the jerk at "
     "the end of the launch and the swing of the line before it; hauling and lifts on recovery.",
     "No margin in this report covers them. They decide the life of surface moorings in harsh "
     "weather, and no factor on a static tension replaces looking at them.",
+    f"Nor does it judge {'; '.join(_BESIDE)}.",
 )
 """What is printed in every report."""
+
+UNJUDGED = (
+    "waves", "snap loads", "fatigue", "creep, corrosion and wear",
+    "the jerk and the swing of a launch", "hauling and lifts on recovery", *_BESIDE,
+)  # fmt: skip
+"""What no rule judges, in the JSON of a check."""
 
 NOT_JUDGED = ReportPart("What is not judged", (Prose(UNSEEN, State.UNKNOWN),))
 """The part of every report that says so."""

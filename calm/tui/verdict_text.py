@@ -81,6 +81,8 @@ def _judged(findings: Sequence[Finding]) -> Saying:
     unknown = f"{missing} figure{'s' * (missing != 1)} unknown"
     if state is State.UNKNOWN:
         return Saying(f"nothing fails, {unknown}", state=state)
+    if not phrases and counts[State.ACCEPTED]:
+        return Saying(f"passes but for {counts[State.ACCEPTED]} accepted", state=state)
     if not phrases:
         return Saying("passes every check", state=State.PASS)
     return Saying(", ".join([*phrases, *([unknown] if missing else [])]), state=state)

@@ -227,3 +227,18 @@ def test_a_warning_cannot_be_accepted(calm, accepting, folder):
 def test_no_equilibrium_cannot_be_accepted_away(calm, accepting):
     file = accepting("{rule: strength, reason: x}", buoyancy="10 N")
     assert calm("check", file, "--allow-unknown").code == 3
+
+
+def test_a_failure_accepted_by_nobody_is_said_in_the_verdict(calm, accepting):
+    more = "  maximum_knockdown: 1 mm\n"
+    nobody = accepting("{rule: knockdown, reason: deep enough}", more=more)
+    assert "nothing else fails" in calm("check", nobody).out
+    assert "1 accepted, 1 of them by nobody" in calm("check", nobody).out
+    signed = accepting("{rule: knockdown, reason: deep enough, by: A. Martin}", more=more)
+    assert "by nobody" not in calm("check", signed).out
+
+
+def test_what_is_not_judged_is_listed(calm, accepting):
+    _, document, _ = checked(calm, accepting("{rule: knockdown, reason: deep enough}"))
+    assert "waves" in document["not_judged"]
+    assert any("beams of a current profiler" in each for each in document["not_judged"])

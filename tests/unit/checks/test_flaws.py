@@ -603,6 +603,29 @@ FLAWS = (
         "wire has `cn: 0.001`; a cable has 0.05 at least, 10 at most",
     ),
     Flaw(
+        "a load that a catalogue's piece does not bear",
+        FIT,
+        (
+            (
+                "  - {use: shackle-13}\n  - {use: rcm11",
+                "  - {use: shackle-13, working_load: 90 kN}\n  - {use: rcm11",
+            ),
+        ),
+        "figures",
+        None,
+        "unknown",
+        "The line gives working_load of shackle-13 as 90000 N; the definition of shackle-13 has",
+    ),
+    Flaw(
+        "a rope that no current pushes",
+        FIT,
+        (("label: polyester,", "label: polyester, cn: 0.2,"),),
+        "figures",
+        None,
+        "unknown",
+        "The line gives cn of polyester as 0.2; the definition of polyester-19-dewey has 1.3, and",
+    ),
+    Flaw(
         "a noble shackle on steel",
         FIT,
         (

@@ -3,7 +3,7 @@
 import pytest
 
 import calm
-from calm.checks.criterion import limits_used
+from calm.checks.criterion import limits_used, said
 
 LINE = """
 environment: {{depth: 100 m}}
@@ -32,6 +32,30 @@ def test_what_a_component_may_bear_beyond_its_definition_departs():
     rating, tilt = departing(clamp="depth_rating: 1 km, max_tilt: 45 deg")
     assert (rating.name, rating.value, rating.default) == ("depth_rating of probe", 1000.0, 300.0)
     assert (tilt.name, tilt.value, tilt.default) == ("max_tilt of probe", 45.0, 20.0)
+
+
+def test_what_flatters_departs():
+    (lift,) = departing(float="buoyancy: 5 kN")
+    assert (lift.name, lift.value, lift.default) == ("buoyancy of float", 5e3, 4e3)
+    (drag,) = departing(clamp="kn: 0.5 N/(m/s)^2")
+    assert (drag.name, drag.value, drag.default) == ("kn of probe", 0.5, 1.0)
+    assert not lift.backed and not drag.backed
+    (told,) = departing(float="buoyancy: 5 kN, sources: {buoyancy: weighed}")
+    assert told.backed
+
+
+def test_settings_that_flatter_depart():
+    text = LINE.format(float="", clamp="").replace("length: 50 m", "length: 50 m, slack: allowed")
+    text += "solver: {strumming: {factor: 1.2}, seabed_friction: 0.3}\n"
+    file = calm.load("line.yaml", text=text).file
+    keys = {key.name: key for key in limits_used(file, surface=False) if key.departs}
+    strumming = keys.pop("solver.strumming.factor")
+    assert (strumming.value, strumming.default) == (1.2, 1.5)
+    assert said(strumming, strumming.value) == "1.2"
+    assert keys.pop("solver.seabed_friction").value == 0.3
+    tension = keys.pop("minimum_tension of thread")
+    assert (tension.value, tension.default) == (0.0, 500.0)
+    assert not keys
 
 
 @pytest.mark.parametrize(
