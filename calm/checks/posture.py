@@ -34,11 +34,6 @@ JUDGED_ROLES = ("float", "instrument", "release")
 """What is made for a depth; of line and connectors only those that give a rating are judged."""
 
 
-def meant_for_the_surface(result: Result) -> bool:
-    """Return whether the float is at the surface but for the current, the wind or the tide."""
-    return reaches_the_surface(result.mooring)
-
-
 def reaches_the_surface(mooring: Mooring) -> bool:
     """Return whether a line is meant to have its float at the surface: whether it has in still
     water.
@@ -238,7 +233,7 @@ def reserve(mooring: Mooring) -> Iterator[Criterion]:
 @rule("freeboard")
 def freeboard(result: Result) -> Iterator[Verdict]:
     """A float meant for the surface stands out of the water."""
-    if not meant_for_the_surface(result):
+    if not reaches_the_surface(result.mooring):
         return
     top, height = result.file.pieces[0], result.top.freeboard
     if result.type != "surface":
@@ -269,7 +264,7 @@ def watch_circle(result: Result) -> Iterator[Verdict]:
     `maximum_excursion`, where the design gives it.
     """
     limit = result.file.checks.maximum_excursion
-    if not meant_for_the_surface(result):
+    if not reaches_the_surface(result.mooring):
         return
     anchor = result.mooring.line.anchor_height
     length = float(result.components.length.sum()) - anchor
@@ -286,7 +281,7 @@ def watch_circle(result: Result) -> Iterator[Verdict]:
 @rule("scope")
 def scope(result: Result) -> Iterator[Verdict]:
     """Cut length over water depth of a line to the surface; it is reported, and has no limit."""
-    if not meant_for_the_surface(result):
+    if not reaches_the_surface(result.mooring):
         return
     depth = result.mooring.water.depth
     ratio = float(result.components.cut_length.sum()) / depth

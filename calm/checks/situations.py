@@ -13,7 +13,7 @@ from calm.case.strumming import FACTOR
 from calm.checks.assessment import Situation
 from calm.checks.finding import AS_GIVEN, State, Verdict, at_most, rule, unknown
 from calm.checks.growth import grown
-from calm.checks.posture import meant_for_the_surface, reaches_the_surface
+from calm.checks.posture import reaches_the_surface
 from calm.errors import NoEquilibrium, UsageError
 from calm.files import Cable, Clamp, CurrentTable, Piece, StrummingFactor
 from calm.files.logbook import DeployedItem
@@ -47,7 +47,7 @@ def situations_of(mooring: Mooring) -> tuple[Situation, ...]:
     given = solved(AS_GIVEN, mooring)
     if given.result is None:
         return (given,)
-    surface = meant_for_the_surface(given.result)
+    surface = reaches_the_surface(given.result.mooring)
     changed = [solved(name, each) for name, each in _changed(mooring, given.result)]
     return (given, *(each for each in changed if not (surface and _shapeless(each))))
 
@@ -61,7 +61,7 @@ def solved(name: str, mooring: Mooring) -> Situation:
 
 
 def _changed(mooring: Mooring, given: Result) -> Iterator[tuple[str, Mooring]]:
-    file, surface = cut_like(mooring.file, mooring), meant_for_the_surface(given)
+    file, surface = cut_like(mooring.file, mooring), reaches_the_surface(given.mooring)
     environment = file.environment
 
     def changed(depth: float | None = None, **what: Any) -> Mooring:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from calm.case.warnings import is_synthetic
 from calm.checks.criterion import Citing, Criterion, JudgedPart, criteria, pieces_of
 from calm.checks.finding import State, Verdict, at_least, rule
-from calm.checks.posture import meant_for_the_surface, reaches_the_surface
+from calm.checks.posture import reaches_the_surface
 from calm.files import Cable, Component, Piece
 from calm.quantities import say
 
@@ -154,7 +154,7 @@ def strength_steps(result: Result) -> Iterator[Verdict]:
     is none, the piece nearest to one is reported. Chain is left out of the comparison: it is
     heavier than its load asks for, against wear.
     """
-    factors, surface = result.file.checks.safety_factor, meant_for_the_surface(result)
+    factors, surface = result.file.checks.safety_factor, reaches_the_surface(result.mooring)
     loads = [allowable_load(piece.component, factors, surface) for piece in result.file.pieces[:-1]]
     steps = sorted(_steps(result, loads), key=lambda step: (step[0], step[1].label))
     weak = [step for step in steps if step[0] < WEAK_LINK]

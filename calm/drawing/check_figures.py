@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.checks.posture import meant_for_the_surface
+from calm.checks.posture import reaches_the_surface
 from calm.checks.strength import allowable_load
 from calm.drawing.graph import (
     Graph,
@@ -155,7 +155,7 @@ def _draw_tension(graph: Graph, place: Place, solved: Solved) -> None:
     greatest = max(float(result.shape.tension.max()) for _, result in solved)
     _, first = solved[0]
     ends = np.concatenate([[0.0], np.cumsum(first.components.length[:-1])])
-    factors, surface = first.file.checks.safety_factor, meant_for_the_surface(first)
+    factors, surface = first.file.checks.safety_factor, reaches_the_surface(first.mooring)
     loads = [
         allowable_load(piece.component, factors, surface) or np.nan
         for piece in first.file.pieces[:-1]

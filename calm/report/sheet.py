@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from calm.case import Result, TowResult
 from calm.case.result_tables import rows_down
 from calm.checks.finding import State
-from calm.checks.posture import meant_for_the_surface
+from calm.checks.posture import reaches_the_surface
 from calm.checks.strength import safety_factor
 from calm.drawing.schematic.shown_parts import place_text
 from calm.files.strumming_keys import BourgetMarichalKeys
@@ -288,7 +288,7 @@ def safety_mark(result: Result | TowResult, record: ComponentRow) -> FigureMark:
     The factor asked on the breaking load is the file's `checks.safety_factor`, for a surface
     mooring, for a synthetic cable, or for steel. What is not known, NaN, is not marked.
     """
-    meant = isinstance(result, Result) and meant_for_the_surface(result)
+    meant = isinstance(result, Result) and reaches_the_surface(result.mooring)
     surface = meant or result.type == "surface"
     least = safety_factor(record.part.component, result.file.checks.safety_factor, surface)
     beyond = record.safety_factor < least or record.utilisation > 1.0

@@ -10,7 +10,7 @@ import numpy as np
 from rich.text import Text
 
 from calm.case import Result
-from calm.checks.posture import meant_for_the_surface
+from calm.checks.posture import reaches_the_surface
 from calm.checks.strength import allowable_load
 from calm.drawing.graph.scale import number, round_numbers
 from calm.drawing.line_picture import along_the_line, current_between, plan_of
@@ -90,7 +90,7 @@ def tension(result: Result | TowResult, width: int, height: int) -> list[Text]:
 def _allowable(result: Result | TowResult) -> list[tuple[float, float, float]]:
     """Start and end along the line [m] of each piece with a known limit, and that [N]."""
     factors = result.file.checks.safety_factor
-    surface = isinstance(result, Result) and meant_for_the_surface(result)
+    surface = isinstance(result, Result) and reaches_the_surface(result.mooring)
     found, start = [], 0.0
     for piece, length in zip(result.file.pieces, result.components.length.tolist(), strict=True):
         load = allowable_load(piece.component, factors, surface)
