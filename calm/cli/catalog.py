@@ -5,12 +5,12 @@ from __future__ import annotations
 import json as json_module
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
-from cyclopts import App
+from cyclopts import App, Parameter
 
 from calm.cli.streams import ExitCode, narrate, show, show_parts
-from calm.errors import UsageError
+from calm.errors import InputError, UsageError
 
 if TYPE_CHECKING:
     from calm.files import Catalogue
@@ -18,12 +18,14 @@ if TYPE_CHECKING:
 
 catalog = App(
     name="catalog",
-    help="Search, show and check the component catalogue.",
+    help="Search, show, add to and check the component catalogue.",
     help_epilogue="""Examples:
 
   calm catalog list --kind chain
   calm catalog search steel sphere
+  calm catalog search 8mm wire "breaking>30kN"
   calm catalog show glass-17in
+  calm catalog add our-glass kind=sphere role=float "diameter=432 mm" "buoyancy=250 N" source=tank
   calm catalog check mine.yaml""",
 )
 
@@ -52,20 +54,31 @@ def list_components(*, kind: Kind | None = None, json: bool = False) -> ExitCode
 
 @catalog.command(usage="Usage: calm catalog search [OPTIONS] WORD...")
 def search(words: list[str], /, *, json: bool = False) -> ExitCode:
-    """List the components whose definition holds every word, in any case.
+    """List the components that have every word, those most used first.
+
+    Favourites and what was taken last in the line builder come first, then what the shipped lines
+    use. A misspelt word is read as the one most like it.
 
     Parameters
     ----------
     words
-        Words or parts of words: of the id, the name, the maker, the material, the source.
+        Words or parts of words: of the id, the name, the maker, the trade, the material, the
+        source. Sizes in millimetres or inches (`8mm wire`, `17in glass`), limits of figures
+        (`breaking>50kN`, `net<-100`, `depth>=6000`).
     json
         As JSON: objects with every field, in SI units and degrees.
     """
-    catalogue = _load()
-    chosen = {identifier: catalogue.get(identifier) for identifier in catalogue.search(words)}
-    if not chosen:
+    from calm.assemble.catalogue_search import Index, Remembered
+
+    catalogue, text = _load(), " ".join(words)
+    index, remembered = Index(catalogue), Remembered()
+    spelt = index.spelt(text)
+    if spelt != text:
+        narrate(f"no component has `{text}`; searched for `{spelt}`")
+    found = index.search(spelt, first=[*remembered.favourites, *remembered.recent])
+    if not found:
         narrate(f"no component has {' and '.join(words)}")
-    return _show(catalogue, chosen, json)
+    return _show(catalogue, {each.id: catalogue.get(each.id) for each in found}, json)
 
 
 @catalog.command(name="show", usage="Usage: calm catalog show [OPTIONS] ID...")
@@ -97,6 +110,68 @@ def show_components(ids: list[str], /, *, json: bool = False) -> ExitCode:
     from calm.report.component_cards import to_card
 
     show_parts(*(to_card(each, definition, catalogue) for each, definition in chosen.items()))
+    return ExitCode.DONE
+
+
+@catalog.command(usage="Usage: calm catalog add [OPTIONS] ID KEY=VALUE...")
+def add(
+    id: str, figures: list[str], /, *, output: Annotated[Path | None, Parameter(alias="-o")] = None
+) -> ExitCode:
+    """Add a component to your own catalogue, which every command reads, and show its card.
+
+    It is judged as by `calm catalog check` first: what is impossible or has no source is refused,
+    what a design check lacks is listed.
+
+    Parameters
+    ----------
+    id
+        Its id: small letters, figures and hyphens. One of the catalogue's is replaced by it.
+    figures
+        Its `kind` and its figures with their units, as `diameter=432 mm`, each in quotes where it
+        has a blank. The manual's page on components lists the keys of each kind.
+    output
+        The catalogue file that it is added to; your own when not given.
+    """
+    from calm.checks.catalogue_rules import check_catalogue
+    from calm.checks.missing import missing_figures
+    from calm.errors import Problem
+    from calm.files.catalogue import defined, read_level, tidy_id, user_folder
+    from calm.report.component_cards import in_words, to_card
+    from calm.report.folder import check_destination, write_file
+    from calm.whole_file import read_text
+
+    if tidy_id(id) != id:
+        raise UsageError(
+            f"an id has small letters, figures and hyphens; did you mean `{tidy_id(id)}`?"
+        )
+    pairs = [figure.partition("=") for figure in figures]
+    if bare := [key for key, equals, _ in pairs if not equals]:
+        raise UsageError(f"not KEY=VALUE: {', '.join(bare)}; quote a value that has blanks")
+    values = {key.strip(): value.strip() for key, _, value in pairs}
+    path = output or user_folder() / "own.yaml"
+    if output is None:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    check_destination(path)
+    catalogue, problems = _load(), list[Problem]()
+    own = read_level([path], problems) if path.exists() else {}
+    if id in own:
+        raise UsageError(f"`{id}` is defined already, in {own[id].place}; change it there")
+    component, wrong = defined(id, values)
+    definitions = {} if component is None else {id: component}
+    messages = [each.message for each in wrong]
+    messages += [each.message for each in check_catalogue(definitions, [*catalogue.ids(), id])]
+    problems += [Problem(id, 0, 0, message) for message in messages]
+    if problems or component is None:
+        raise InputError(problems)
+    before = f"{read_text(path).rstrip()}\n\n" if own else ""
+    lines = [
+        f"  {key}: {json_module.dumps(each, ensure_ascii=False)}" for key, each in values.items()
+    ]
+    write_file(path, "\n".join([f"{before}{id}:", *lines, ""]).encode())
+    narrate(f"{id} added to {path}" + (", in place of the catalogue's" * bool(catalogue.entry(id))))
+    for each in missing_figures(definitions):
+        narrate(f"{each.id}: {in_words(each)}")
+    show_parts(to_card(id, component, catalogue))
     return ExitCode.DONE
 
 

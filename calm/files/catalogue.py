@@ -159,15 +159,6 @@ class Catalogue:
         first = preferred.get(id) or id
         return [first, *(each for each, other in preferred.items() if other == first)]
 
-    def search(self, words: Iterable[str]) -> list[str]:
-        """Return the ids whose definition (or family) holds every one of the words."""
-        wanted = [word.casefold() for word in words]
-        return [
-            id
-            for id, entry in self._all().items()
-            if all(word in _searchable(entry) for word in wanted)
-        ]
-
 
 def _shipped_files() -> list[Path]:
     return sorted(shipped_folder("catalog").glob("*.yaml"))
@@ -221,11 +212,6 @@ def define(
 
 def _kinds() -> str:
     return ", ".join([*KINDS, "assembly"])
-
-
-def _searchable(entry: CatalogueEntry) -> str:
-    texts = [value for value in entry.section.data.values() if isinstance(value, str)]
-    return " ".join([entry.id, entry.family or "", *texts]).casefold()
 
 
 @dataclass(frozen=True)
@@ -364,3 +350,18 @@ def _cuts(path: Path) -> list[tuple[str | None, _Cut]]:
 
 
 _LOADED: FileCache[Catalogue] = FileCache()
+
+
+def defined(id: str, values: Mapping[str, Any]) -> tuple[Component | None, tuple[Problem, ...]]:
+    """Return the component that values define, None where they do not, and what is wrong."""
+    section = SourceMapping.of(Document(id, {id: dict(values)}), (id,), dict(values))
+    problems: list[Problem] = []
+    definition = define(CatalogueEntry(id, None, section), section, problems)
+    if definition is None or definition.kind == "assembly":
+        return None, tuple(problems)
+    return definition, tuple(problems)
+
+
+def tidy_id(text: str) -> str:
+    """Return a text as the id of a component: small letters, figures and hyphens."""
+    return re.sub(r"[^a-z0-9]+", "-", text.casefold()).strip("-")

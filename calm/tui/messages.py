@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, Protocol
 from textual.content import Content
 from textual.message import Message
 
+from calm.assemble.catalogue_search import Index
 from calm.errors import CalmError
 from calm.files import Place
-from calm.tui.catalogue.index import Index
 from calm.tui.session import Session
 
 if TYPE_CHECKING:

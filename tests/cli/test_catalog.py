@@ -1,10 +1,13 @@
 import json
+import re
+from collections import Counter
 from typing import get_args
 
 import pytest
 
 from calm.cli.catalog import Kind
 from calm.files.components import KINDS
+from calm.shipped import shipped_folder
 
 MINE = """\
 good: {{kind: sphere, diameter: 1 m, buoyancy: 2000 N, source: me}}
@@ -171,3 +174,62 @@ def test_catalogue_of_ones_own_is_listed_last(calm, tmp_path):
     (own / "mine.yaml").write_text(MINE.format(more=""))
     assert calm("catalog", "list").out.splitlines()[-2].strip() == "OTHER"
     assert calm("catalog", "show", "good").code == 0
+
+
+def test_search_says_how_it_read_a_misspelt_word(calm):
+    done = calm("catalog", "search", "releese", "ar861", "--json")
+    assert done.err == "no component has `releese ar861`; searched for `release ar861`\n"
+    assert "release-ar861" in [each["id"] for each in json.loads(done.out)]
+
+
+def test_search_keeps_limits_and_puts_what_is_used_first(calm):
+    found = json.loads(calm("catalog", "search", "wire", "breaking>40kN", "--json").out)
+    assert found and all(each["breaking_load"] > 40e3 for each in found)
+    shackles = json.loads(calm("catalog", "search", "bow shackle", "--json").out)
+    uses = Counter(
+        id
+        for file in shipped_folder("lines").glob("*.yaml")
+        for id in re.findall(r"\buse: *([\w-]+)", file.read_text("utf-8"))
+    )
+    counts = [uses[each["id"]] for each in shackles]
+    assert counts[0] > 0 and counts == sorted(counts, reverse=True)
+
+
+GLASS = ("kind=sphere", "role=float", "diameter=432 mm", "buoyancy=250 N", "source=tank: 2026")
+
+
+def test_add_puts_a_component_where_every_command_finds_it(calm, folder, monkeypatch):
+    monkeypatch.setenv("CALM_CATALOG_DIR", str(folder / "own"))
+    done = calm("catalog", "add", "our-glass", *GLASS)
+    assert done.code == 0
+    assert "gives no mass, working load, breaking load, depth rating" in done.err
+    (shown,) = json.loads(calm("catalog", "show", "our-glass", "--json").out)
+    assert (shown["diameter"], shown["buoyancy"], shown["source"]) == (0.432, 250, "tank: 2026")
+    assert calm("catalog", "add", "our-ball", *GLASS).code == 0
+    assert calm("catalog", "show", "our-glass", "our-ball").code == 0
+    again = calm("catalog", "add", "our-glass", *GLASS)
+    assert (again.code, again.out) == (2, "")
+    assert "is defined already, in" in again.err
+    assert "in place of the catalogue's" in calm("catalog", "add", "glass-17in", *GLASS).err
+
+
+@pytest.mark.parametrize(
+    ("id", "figures", "said"),
+    [
+        ("Bad_Glass", GLASS, "did you mean `bad-glass`?"),
+        ("glass", ("kind=sphere", "diameter"), "not KEY=VALUE: diameter"),
+        ("glass", ("kind=spere", *GLASS[1:]), "did you mean `kind: sphere`?"),
+        ("glass", (*GLASS[:2], "diametr=432 mm", "buoyancy=250"), "did you mean `diameter`?"),
+        (
+            "glass",
+            (*GLASS[:3], "buoyancy=2500 N"),
+            "lifts 2500 N; water of its size weighs 424.3 N",
+        ),
+        ("glass", GLASS[:4], "does not say where its figures come from (`source`)"),
+    ],
+)
+def test_add_refuses_and_writes_nothing(calm, folder, id, figures, said):
+    done = calm("catalog", "add", id, *figures, "-o", "mine.yaml")
+    assert (done.code, done.out) == (2, "")
+    assert said in done.err
+    assert not (folder / "mine.yaml").exists()

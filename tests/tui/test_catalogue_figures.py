@@ -2,8 +2,8 @@
 
 import pytest
 
+from calm.assemble.catalogue_search import COLUMNS, Index, wanted
 from calm.files import Catalogue
-from calm.tui.catalogue.index import COLUMNS, Index, wanted
 
 INDEX = Index(Catalogue.load())
 

@@ -2,10 +2,11 @@
 
 import pytest
 
+from calm.assemble.catalogue_search import Index
+from calm.files import Catalogue
 from calm.files.fields import QuantityField
 from calm.tui import checking
 from calm.tui.catalogue.component_screen import defined, form_fields
-from calm.tui.catalogue.index import Index
 
 
 @pytest.mark.parametrize(
@@ -62,8 +63,6 @@ def test_a_mass_where_a_force_is_wanted_offers_the_force():
 
 
 def test_an_id_comes_before_what_only_mentions_it():
-    from calm.files import Catalogue
-
     index = Index(Catalogue.shipped())
     assert index.search("rcm4")[0].id == "rcm4"
     assert index.search("wire jacketed 8")[0].id == "wire-jacketed-8"
@@ -71,10 +70,38 @@ def test_an_id_comes_before_what_only_mentions_it():
     assert {each.kind for each in index.search("", {"anchor"})} == {"anchor"}
 
 
+@pytest.mark.parametrize(
+    ("text", "first"),
+    [
+        ("seabird 37", "sbe37"),
+        ("8mm wire jacketed", "wire-jacketed-8"),
+        ("8 mm jacketed wire", "wire-jacketed-8"),
+        ("17 inch glass benthos", "glass-17in"),
+        ("432mm vitrovex cluster", "glass-cluster-4"),
+        ("7/16 nylon", "nylon-11"),
+        ("1-1/4in nylon", "nylon-32"),
+        ("vinyl 16in", "viny-16in"),
+        ("shackel 16", "shackle-16"),
+        ("releese ar861", "release-ar861"),
+    ],
+)
+def test_maker_size_and_misspelt_words_find(text, first):
+    index = Index(Catalogue.shipped())
+    found = [each.id for each in index.search(index.spelt(text))]
+    assert first in found[:2]
+
+
+def test_a_size_is_the_same_in_millimetres_and_inches_and_no_other():
+    index = Index(Catalogue.shipped())
+    found = {each.id for each in index.search("glass 432 mm")}
+    assert found == {each.id for each in index.search('glass 17"')}
+    assert "glass-17in" in found
+    assert not found & {each.id for each in index.search("glass 10in")}
+    assert index.spelt("wire breaking>50kN xyzzyqq") == "wire breaking>50kN xyzzyqq"
+
+
 @pytest.mark.parametrize("text", ["sbe-37", "sbe 37", "SBE_37", "sbe  -37-"])
 def test_hyphens_part_words_as_blanks_do(text):
-    from calm.files import Catalogue
-
     index = Index(Catalogue.shipped())
     found = index.search(text)
     assert found[0].id == "sbe37"

@@ -9,7 +9,7 @@ from rich.cells import cell_len
 from rich.segment import Segment
 from rich.style import Style
 
-from calm.tui.catalogue.index import COLUMNS, Index, Listed
+from calm.assemble.catalogue_search import COLUMNS, Index, Listed
 from calm.tui.table import TableCells, TableColumn
 from calm.tui.theme import CURSOR, FAVOURITE, ROLES
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from types import UnionType
 from typing import Any, ClassVar, Literal, Union, get_args, get_origin
@@ -15,11 +14,9 @@ from textual.containers import Horizontal, Vertical, VerticalScroll
 from textual.screen import Screen
 from textual.widgets import Static
 
-from calm.errors import Problem
-from calm.files.catalogue import CatalogueEntry, define
-from calm.files.components import KINDS, Component
+from calm.files.catalogue import defined, tidy_id
+from calm.files.components import KINDS
 from calm.files.fields import QuantityField
-from calm.files.yaml_document import Document, SourceMapping
 from calm.tui.actions import bindings, hints
 from calm.tui.bars import KeyBar, TitleBar
 from calm.tui.checking import Check, Reading, anything, quantity
@@ -179,9 +176,6 @@ class ComponentScreen(Screen[Defined | None]):
 
 _FIRST = ("name", "manufacturer", "role")
 _LAST = ("material", "part_number", "note", "source", "date")
-_PATH = "the form"
-_ID = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
-_WORDS = re.compile(r"[^a-z0-9]+")
 
 
 @dataclass(frozen=True)
@@ -261,21 +255,10 @@ def id_check(own: Collection[str]) -> Check:
         tidy = text.strip()
         if not tidy:
             return Reading("", "an id is needed")
-        if not _ID.fullmatch(tidy):
-            offer = _WORDS.sub("-", tidy.casefold()).strip("-")
-            return Reading(tidy, "small letters, figures and hyphens", offer or None)
+        if tidy_id(tidy) != tidy:
+            return Reading(tidy, "small letters, figures and hyphens", tidy_id(tidy) or None)
         if tidy in own:
             return Reading(tidy, "is defined in this file already")
         return Reading(tidy)
 
     return check
-
-
-def defined(id: str, values: Mapping[str, Any]) -> tuple[Component | None, tuple[Problem, ...]]:
-    """The component that values define, and what is wrong with them."""
-    section = SourceMapping.of(Document(_PATH, {id: dict(values)}), (id,), dict(values))
-    problems: list[Problem] = []
-    definition = define(CatalogueEntry(id, None, section), section, problems)
-    if definition is None or definition.kind == "assembly":
-        return None, tuple(problems)
-    return definition, tuple(problems)

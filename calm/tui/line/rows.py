@@ -6,11 +6,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from calm.assemble.catalogue_search import Index
 from calm.checks.finding import State
 from calm.files import Place
 from calm.files.editing import Draft, LineItem
 from calm.quantities import QUANTITIES
-from calm.tui.catalogue.index import Index
 from calm.tui.checking import length_text
 from calm.tui.line.table import TableRow
 from calm.tui.theme import CLAMP, ROLES, UNKNOWN_MARGIN, UNKNOWN_ROLE, worst

@@ -54,13 +54,9 @@ def test_the_nearer_level_wins(shipped: Path, users: Path, tmp_path: Path) -> No
     assert catalogue.hidden("own") is None
 
 
-def test_ids_and_search(shipped: Path) -> None:
+def test_ids_and_the_nearest(shipped: Path) -> None:
     catalogue = Catalogue.shipped()
     assert catalogue.ids() == ["ball", "glass-17in", "rope-12"]
-    assert catalogue.search(["BIG"]) == ["ball", "glass-17in"]
-    assert catalogue.search(["big", "17"]) == ["glass-17in"]
-    assert catalogue.search(["ropes"]) == ["rope-12"]
-    assert catalogue.search(["none"]) == []
     assert catalogue.nearest("glas-17") == "glass-17in"
     assert catalogue.nearest("zzz") is None
     entry = catalogue.entry("rope-12")

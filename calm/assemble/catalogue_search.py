@@ -1,12 +1,15 @@
-"""The catalogue as it is searched: by id, name, maker and kind, and what each component is for."""
+"""The catalogue as it is searched: by id, name, maker, size and kind, and what each one is for."""
 
 from __future__ import annotations
 
+import difflib
 import json
 import re
+from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from fractions import Fraction
+from functools import cache, cached_property
 from math import inf
 
 from calm import whole_file
@@ -14,12 +17,23 @@ from calm.errors import CalmError, InputError
 from calm.files.catalogue import FAMILY_ROLES, Catalogue, CatalogueEntry
 from calm.files.editing import state_folder
 from calm.files.yaml_document import SourceMapping, compose
+from calm.shipped import shipped_folder
 from calm.units import QuantityError, parse_quantity
 
 _ROLES = {"cable": "line", "chain": "line", "anchor": "anchor"}
 _ELSEWHERE = 4
 """The rank of a component whose id does not have all words."""
 _BETWEEN = re.compile(r"[\s_-]+")
+_SIZE = re.compile(
+    r"(?<![\w.,/])((?:\d+[ -])?\d+/\d+|\d+(?:[.,]\d+)?)[ -]?(mm|cm|inch(?:es)?|in|\"|″)(?!\w)"
+)
+_OF_A_SIZE = 0.02
+"""Share by which sizes differ that are the same in millimetres and inches, rounded."""
+_USED = re.compile(r"\buse: *([\w-]+)")
+_ALIKE = 0.8
+"""Likeness from which on a word is taken for a misspelt one: `releese` and `release` have 0.86."""
+_SHORT = 5
+"""Letters below which a word that nothing has is not taken for a misspelt one."""
 
 
 @dataclass(frozen=True)
@@ -32,12 +46,31 @@ class Listed:
     kind: str
     role: str
     own: bool
+    more: str
+    diameter: float | None
+
+    @cached_property
+    def own_words(self) -> str:
+        """What is written of it, hyphens as they are and as nothing."""
+        own = " ".join((self.id, self.name, self.maker, self.kind, self.role, self.more)).casefold()
+        return f"{own} {own.replace('-', '')}"
 
     @cached_property
     def searched(self) -> str:
         """The text in which words are looked for."""
-        own = " ".join((self.id, self.name, self.maker, self.kind, self.role)).casefold()
-        return with_synonyms(own.replace("-", " ")) + f" {own}"
+        return f"{with_synonyms(self.own_words.replace('-', ' '))} {self.own_words}"
+
+    @cached_property
+    def sizes(self) -> tuple[float, ...]:
+        """The diameter and the sizes that the name tells [m]."""
+        told = tuple(
+            _metres(*found) for found in _SIZE.findall(f"{self.name} {self.id}".casefold())
+        )
+        return told if self.diameter is None else (*told, self.diameter)
+
+    def has_size(self, size: float) -> bool:
+        """Return whether it has a size, in metres, to 2 %."""
+        return any(abs(each - size) <= _OF_A_SIZE * size for each in self.sizes)
 
 
 class Index:
@@ -85,45 +118,95 @@ class Index:
         """Return those that have every word of a text and keep every limit in it, as
         ``breaking>50kN``.
 
-        Hyphens part words as blanks do: makers, catalogues and people set them differently.
+        Hyphens part words as blanks do: makers, catalogues and people set them differently. A size
+        as ``8mm`` or ``17 in`` is looked for in either unit. Of components that fit alike, those
+        that the shipped lines use most come first.
 
         Parameters
         ----------
         first : ids, in their order, that come before all others but the one that is typed whole
         by : the key of a column: the greatest first, what is not known last
         """
-        asked = [(word.casefold(), wanted(word)) for word in text.split()]
-        limits = [limit for _, limit in asked if limit is not None]
-        plain = " ".join(word for word, limit in asked if limit is None)
-        words = [word for word in _BETWEEN.split(plain) if word]
+        plain, limits = _asked(text)
+        words = _words(plain)
+        sizes = [(_words(found[0]), _metres(*found.groups())) for found in _SIZE.finditer(plain)]
+        others = _words(_SIZE.sub(" ", plain))
         only = None if kinds is None else frozenset(kinds)
         hits = [
             each
             for each in self._listed.values()
             if (only is None or each.kind in only)
-            and all(word in each.searched for word in words)
+            and all(word in each.searched for word in others)
+            and all(
+                each.has_size(size) or all(word in each.searched for word in parts)
+                for parts, size in sizes
+            )
             and all(limit.holds(self.figures(each.id)) for limit in limits)
         ]
         if by is not None:
             return sorted(hits, key=lambda each: self._least_first(each.id, by))
         places = {id: number for number, id in enumerate(first)}
 
-        def order(each: Listed) -> tuple[bool, int, int]:
-            rank = _rank(each, words)
+        def order(each: Listed) -> tuple[bool, int, int, int]:
+            rank = _rank(each, words, others)
             place = places.get(each.id, len(places)) if rank < _ELSEWHERE else len(places)
-            return rank > 0, place, rank
+            return rank > 0, place, rank, -_uses()[each.id]
 
         return sorted(hits, key=order)
+
+    def spelt(self, text: str) -> str:
+        """Return a text with each word that no component has as the one most like it that some
+        has.
+        """
+        every = " ".join(each.searched for each in self._listed.values())
+        known = {
+            word for word in _BETWEEN.split(every) if word.isalpha() and len(word) >= _SHORT - 1
+        }
+        for word in _words(_SIZE.sub(" ", _asked(text)[0])):
+            if len(word) >= _SHORT and word.isalpha() and word not in every:
+                near = difflib.get_close_matches(word, known, 1, _ALIKE)
+                text = re.sub(re.escape(word), near[0] if near else word, text, flags=re.I)
+        return text
 
     def _least_first(self, id: str, by: str) -> float:
         value = self.figures(id).get(by)
         return inf if value is None else -abs(value)
 
 
-def _rank(each: Listed, words: Sequence[str]) -> int:
-    """Return how well a component fits: its id, the beginning of it, all words in it, elsewhere.
+def _asked(text: str) -> tuple[str, list[Wanted]]:
+    """Return the plain words of a text in small letters, and the limits in it."""
+    asked = [(word.casefold(), wanted(word)) for word in text.split()]
+    limits = [limit for _, limit in asked if limit is not None]
+    return " ".join(word for word, limit in asked if limit is None), limits
+
+
+def _words(text: str) -> list[str]:
+    return [word for word in _BETWEEN.split(text) if word]
+
+
+def _metres(number: str, unit: str) -> float:
+    """Return a size in metres: `1 1/4` or `1-1/4` inches are one and a quarter."""
+    value = sum(float(Fraction(each.replace(",", "."))) for each in _words(number))
+    return value * {"mm": 1e-3, "cm": 1e-2}.get(unit, 0.0254)
+
+
+@cache
+def _uses() -> Counter[str]:
+    """Return how often the shipped lines use each component."""
+    files = sorted(shipped_folder("lines").glob("*.yaml"))
+    return Counter(id for file in files for id in _USED.findall(file.read_text("utf-8")))
+
+
+def _rank(each: Listed, words: Sequence[str], others: Sequence[str]) -> int:
+    """Return how well a component fits: its id, the beginning of it, all words in it, in what is
+    written of it, in synonyms.
 
     Of ids that have all words, one that begins with the first of them is nearer.
+
+    Parameters
+    ----------
+    words : small letters
+    others : those that are no sizes
     """
     if not words:
         return 0
@@ -134,7 +217,7 @@ def _rank(each: Listed, words: Sequence[str]) -> int:
         return 1
     if all(word in each.id for word in words):
         return 2 if id.startswith(words[0]) else 3
-    return _ELSEWHERE
+    return _ELSEWHERE + any(word not in each.own_words for word in others)
 
 
 def _listed(entry: CatalogueEntry, shipped: object) -> Listed:
@@ -153,7 +236,16 @@ def _listed(entry: CatalogueEntry, shipped: object) -> Listed:
         kind=text("kind"),
         role=role or _ROLES.get(text("kind"), "instrument"),
         own=own,
+        more=" ".join((text("material"), text("source"), entry.family or "")),
+        diameter=_diameter(text("diameter")),
     )
+
+
+def _diameter(text: str) -> float | None:
+    try:
+        return parse_quantity(text, "length")
+    except QuantityError:
+        return None
 
 
 _GROUPS = (
