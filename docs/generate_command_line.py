@@ -30,7 +30,7 @@ def commands(parent: App, words: tuple[str, ...] = ()) -> Iterator[tuple[str, ..
     """The words of every command, a group before its members."""
     yield words
     for name in parent:
-        if not name.startswith("-"):
+        if not name.startswith("-") and parent[name].show:
             yield from commands(parent[name], (*words, name))
 
 

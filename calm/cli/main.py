@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import gc
 import os
+import re
 import sys
 import traceback
 import warnings
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from cyclopts import App, CycloptsError, Parameter, UnusedCliTokensError
+from cyclopts import App, CycloptsError, Group, Parameter, UnusedCliTokensError
 
 from calm.cli.batch import BATCH_EXAMPLES, batch
 from calm.cli.build import BUILD_EXAMPLES, build
@@ -50,25 +51,73 @@ _SELDOM = 100_000
 tenth of its time: what it imports is all looked through again and again."""
 
 
+_VALUES = {
+    "FILE|-": "json csv netcdf",
+    "FILE": "html pdf plot catalog currents pressures sea-level onto against update elements",
+    "DIR": "report",
+    "NAME": "environment",
+    "LABEL,...": "hold-out",
+    "LAT,LON": "at near",
+    "LENGTH": "diameter streamed",
+    "DEPTH": "depth transducer",
+    "HEIGHT": "above-seabed height",
+    "ANGLE": "angle course declination toward",
+    "SPEED": "speed ship-speed",
+    "RANGE": "speeds",
+    "CONDITION": "target",
+    "CHANGE": "change",
+    "FLAGS": "flags",
+    "WORD": "match format to",
+    "WORD,...": "fit",
+    "VALUE": "between",
+    "SPEED|FILE": "sound-speed",
+    "COLUMNS": "columns",
+    "HOST": "allow-host",
+    "NUMBER": "port",
+    "MINUTES": "idle-timeout",
+    "A/B": "time",
+    "TIME": "deck-time gap",
+    "COUNT": "samples workers",
+    "N": "every seed",
+    "ADDRESS": "scheduler",
+    "DENSITY": "density solid-density",
+    "N/m": "weight",
+}
+"""What stands for the value of an option in `--help`; an option not listed tells its type."""
+
+_VALUE_OF = {f"--{name}": value for value, names in _VALUES.items() for name in names.split()}
+
+
+def _with_values(text: str) -> str:
+    """Return a line of usage with what each option wants in place of its type."""
+    return re.sub(
+        r"(--[\w-]+) ([A-Z]+)", lambda m: f"{m[1]} {_VALUE_OF.get(m[1], m[2])}", text
+    )
+
+
 class HelpAtWidth:
-    """Sets `--help` to the width of the terminal: texts of options lose their line breaks."""
+    """Sets `--help` to the width of the terminal, and says what the value of each option is."""
 
     def __call__(self, console: Console, options: ConsoleOptions, panel: HelpPanel) -> None:
-        """Print a panel."""
+        """Print a panel; texts of options lose their line breaks."""
         from cyclopts.help import DefaultFormatter
         from rich.text import Text
 
-        for entry in panel.entries:
+        for place, entry in enumerate(panel.entries):
             written = getattr(entry.description, "primary_renderable", None)
             if isinstance(written, Text):
                 entry.description.primary_renderable = Text(" ".join(written.plain.split()))
+            value = next((_VALUE_OF[name] for name in entry.names if name in _VALUE_OF), None)
+            if value and entry.metavar:
+                several = "..." if entry.metavar.endswith("...") else ""
+                panel.entries[place] = entry.copy(metavar=f"{value}{several}")
         DefaultFormatter()(console, options, panel)
 
     def render_usage(self, console: Console, options: ConsoleOptions, usage: Any) -> None:
         """Print the line of usage."""
         from cyclopts.help import DefaultFormatter
 
-        DefaultFormatter().render_usage(console, options, usage)
+        DefaultFormatter().render_usage(console, options, _with_values(str(usage)))
 
 
 def _version() -> str:
@@ -118,31 +167,70 @@ app = App(
     suppress_keyboard_interrupt=False,
     result_action="return_value",
 )
-app.command(run, usage="Usage: calm run [OPTIONS] FILE...", help_epilogue=RUN_EXAMPLES)
-app.command(check, usage="Usage: calm check [OPTIONS] FILE...", help_epilogue=CHECK_EXAMPLES)
-app.command(deck, usage="Usage: calm deck [OPTIONS] FILE...", help_epilogue=DECK_EXAMPLES)
-app.command(diff, usage="Usage: calm diff [OPTIONS] FILE [FILE]", help_epilogue=DIFF_EXAMPLES)
-app.command(batch, help_epilogue=BATCH_EXAMPLES)
-app.command(motion, help_epilogue=MOTION_EXAMPLES)
-app.command(locate, usage="Usage: calm locate [OPTIONS] FILE", help_epilogue=LOCATE_EXAMPLES)
-app.command(build, help_epilogue=BUILD_EXAMPLES)
-app.command(tow, usage="Usage: calm tow [OPTIONS] FILE...", help_epilogue=TOW_EXAMPLES)
-app.command(size, help_epilogue=SIZE_EXAMPLES)
-app.command(
-    import_,
-    name="import",
-    usage="Usage: calm import [OPTIONS] FILE...",
-    help_epilogue=IMPORT_EXAMPLES,
+_TOW = App(
+    name="tow",
+    usage="Usage: calm tow [OPTIONS] FILE...\n       calm tow strumming [OPTIONS]",
+    help_epilogue=TOW_EXAMPLES,
 )
-app.command(export, help_epilogue=EXPORT_EXAMPLES)
-app.command(strumming, help_epilogue=STRUMMING_EXAMPLES)
-app.command(catalog)
-app.command(chart)
-app.command(verify, usage="Usage: calm verify [OPTIONS] [WORD...]", help_epilogue=VERIFY_EXAMPLES)
-app.command(new, help_epilogue=NEW_EXAMPLES)
-app.command(schema, help_epilogue=SCHEMA_EXAMPLES)
-app.command(completion, usage="Usage: calm completion SHELL", help_epilogue=COMPLETION_EXAMPLES)
-app.command(docs, usage="Usage: calm docs [OPTIONS] [PAGE]", help_epilogue=DOCS_EXAMPLES)
+_TOW.default(tow)
+_TOW.command(strumming, help_epilogue=STRUMMING_EXAMPLES)
+
+_GROUPS: dict[str, tuple[tuple[Any, str, str], ...]] = {
+    "Design": (
+        (new, "", NEW_EXAMPLES),
+        (build, "", BUILD_EXAMPLES),
+        (run, "[OPTIONS] FILE...", RUN_EXAMPLES),
+        (size, "", SIZE_EXAMPLES),
+        (check, "[OPTIONS] FILE...", CHECK_EXAMPLES),
+        (diff, "[OPTIONS] FILE [FILE]", DIFF_EXAMPLES),
+    ),
+    "At sea": (
+        (deck, "[OPTIONS] FILE...", DECK_EXAMPLES),
+        (locate, "[OPTIONS] FILE", LOCATE_EXAMPLES),
+    ),
+    "Records": ((batch, "", BATCH_EXAMPLES), (motion, "", MOTION_EXAMPLES)),
+    "Files": (
+        (import_, "[OPTIONS] FILE...", IMPORT_EXAMPLES),
+        (export, "", EXPORT_EXAMPLES),
+        (catalog, "", ""),
+        (schema, "", SCHEMA_EXAMPLES),
+    ),
+    "More": (
+        (_TOW, "", ""),
+        (chart, "", ""),
+        (verify, "[OPTIONS] [WORD...]", VERIFY_EXAMPLES),
+        (docs, "[OPTIONS] [PAGE]", DOCS_EXAMPLES),
+        (completion, "SHELL", COMPLETION_EXAMPLES),
+    ),
+}
+"""The commands by what they are for, in the order of `--help`: each with its usage, where that is
+not the one made from its options, and its examples."""
+
+for _number, (_name, _commands) in enumerate(_GROUPS.items()):
+    _group = Group(_name, sort_key=_number)
+    for _place, (_command, _usage, _examples) in enumerate(_commands):
+        if isinstance(_command, App):
+            _command.group, _command.sort_key = _group, _place
+            app.command(_command)
+            continue
+        _called = _command.__name__.rstrip("_")
+        _how = {"usage": f"Usage: calm {_called} {_usage}"} if _usage else {}
+        app.command(
+            _command,
+            name=_called,
+            group=_group,
+            sort_key=_place,
+            help_epilogue=_examples,
+            **_how,
+        )
+app["--help"].group = app["--version"].group = Group("Options", sort_key=len(_GROUPS))
+
+
+@app.command(name="strumming", show=False)
+def _strumming(*words: Annotated[str, Parameter(allow_leading_hyphen=True)]) -> Any:
+    """Run `calm tow strumming`, which was `calm strumming` before."""
+    narrate("calm strumming is now calm tow strumming; the old name goes with the next version")
+    return app(["tow", "strumming", *words], exit_on_error=False, print_error=False)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -1,4 +1,4 @@
-"""``calm tow`` and ``calm strumming``: towed lines at one speed or many, and a bare cable."""
+"""``calm tow`` and ``calm tow strumming``: towed lines at one speed or many, and a bare cable."""
 
 from __future__ import annotations
 
@@ -183,9 +183,9 @@ def _tabulate(
 
 STRUMMING_EXAMPLES = """Examples:
 
-  calm strumming --angle "30 deg" --speed "1 m/s" --diameter "17 mm" \\
+  calm tow strumming --angle "30 deg" --speed "1 m/s" --diameter "17 mm" \\
       --weight "3.1 N/m"
-  calm strumming --angle "18 deg" --speed "1.3 m/s" --diameter "17 mm" \\
+  calm tow strumming --angle "18 deg" --speed "1.3 m/s" --diameter "17 mm" \\
       --solid-density "2383 kg/m^3" --density "1000 kg/m^3" --json -"""
 
 _Given = Annotated[str | None, Parameter(allow_leading_hyphen=True)]

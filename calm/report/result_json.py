@@ -11,6 +11,17 @@ from typing import Any
 from calm.errors import NoEquilibrium
 
 
+UNITS = {
+    "length": "m",
+    "force": "N",
+    "angle": "deg",
+    "mass": "kg",
+    "speed": "m/s",
+    "time": "s",
+}
+"""The units of every JSON document."""
+
+
 def failure_document(name: str, failure: NoEquilibrium) -> dict[str, Any]:
     """The object that takes a result's place where a mooring has no equilibrium.
 
@@ -30,12 +41,14 @@ def failure_document(name: str, failure: NoEquilibrium) -> dict[str, Any]:
 
 
 def to_json(documents: list[dict[str, Any]]) -> str:
-    """JSON text: one document as an object, several as an array in the order given.
+    """Return JSON text: one document as an object, several as an array in the order given.
 
-    A number that is not finite becomes null, since JSON has none. The text is plain ASCII, so that
-    no terminal or pipe can spoil it.
+    Results, which name the `calm` that made them, say their units. A number that is not finite
+    becomes null, since JSON has none. The text is plain ASCII, so that no terminal or pipe can
+    spoil it.
     """
-    content = documents[0] if len(documents) == 1 else documents
+    told = [{**each, "units": UNITS} if "calm" in each else each for each in documents]
+    content = told[0] if len(told) == 1 else told
     return _indented(content, "\n") + "\n"
 
 

@@ -45,7 +45,7 @@ def test_no_words_show_the_help(calm):
     [
         "run",
         "tow",
-        "strumming",
+        "tow strumming",
         "new",
         "schema",
         "docs",
@@ -53,6 +53,7 @@ def test_no_words_show_the_help(calm):
         "catalog list",
         "catalog show",
         "catalog search",
+        "catalog add",
         "catalog check",
     ],
 )

@@ -1,4 +1,4 @@
-"""`calm strumming` as a user runs it."""
+"""`calm tow strumming` as a user runs it."""
 
 import json
 import math
@@ -9,7 +9,7 @@ CABLE = ("--speed", "1.30 m/s", "--diameter", "17 mm", "--density", "1000 kg/m^3
 
 
 def ask(calm, angle, *words):
-    done = calm("strumming", "--angle", angle, *CABLE, *words, "--json", "-")
+    done = calm("tow", "strumming", "--angle", angle, *CABLE, *words, "--json", "-")
     assert (done.code, done.err) == (0, "")
     return json.loads(done.out)
 
@@ -38,7 +38,7 @@ def test_a_bare_cable_that_is_towed_has_the_amplitude_its_angle_tells(calm, fold
     (folder / "bare.yaml").write_text(BARE)
     towed = json.loads(calm("tow", "bare.yaml", "--json", "-").out)
     words = ("--speed", "0.6 m/s", "--diameter", "17 mm", "--density", "1000 kg/m^3")
-    done = calm("strumming", "--angle", f"{towed['body']['angle']} deg", *words,
+    done = calm("tow", "strumming", "--angle", f"{towed['body']['angle']} deg", *words,
                 "--weight", "3.0795 N/m", "--json", "-")  # fmt: skip
     answer = json.loads(done.out)
     # The cable is straight: the march adds rounding only. The paper prints a/D of 0.9 at 0.6 m/s.
@@ -56,7 +56,7 @@ def test_small_angles_are_warned_of(calm):
     assert ask(calm, "15.1 deg", "--weight", "1.5 N/m")["notes"] == []
     (note, *_) = ask(calm, "14.9 deg", "--weight", "1.5 N/m")["notes"]
     assert note.startswith("Below 15°")
-    done = calm("strumming", "--angle", "14.9 deg", *CABLE, "--weight", "1.5 N/m")
+    done = calm("tow", "strumming", "--angle", "14.9 deg", *CABLE, "--weight", "1.5 N/m")
     assert "! Below 15°" in done.out
 
 
@@ -65,7 +65,7 @@ def test_a_cable_at_rest_does_not_vibrate(calm):
     assert answer["cn"] < 1.2
     assert (answer["amplitude"], answer["frequency"]) == (0.0, None)
     assert "does not vibrate" in answer["notes"][0]
-    done = calm("strumming", "--angle", "60 deg", *CABLE, "--weight", "3.0795 N/m")
+    done = calm("tow", "strumming", "--angle", "60 deg", *CABLE, "--weight", "3.0795 N/m")
     assert "Hz" not in done.out
 
 
@@ -75,8 +75,8 @@ def test_more_than_the_method_explains(calm):
 
 def test_sea_water_when_no_density_is_given(calm):
     words = ("--angle", "30 deg", "--speed", "1 m/s", "--diameter", "17 mm", "--weight", "3.1 N/m")
-    assert json.loads(calm("strumming", *words, "--json", "-").out)["density"] == 1025.0
-    table = calm("strumming", *words)
+    assert json.loads(calm("tow", "strumming", *words, "--json", "-").out)["density"] == 1025.0
+    table = calm("tow", "strumming", *words)
     assert table.code == 0
     assert "drag coefficient C*" in table.out and "amplitude a/D" in table.out
 
@@ -95,7 +95,14 @@ def test_sea_water_when_no_density_is_given(calm):
     ],
 )
 def test_bad_questions_are_refused_and_nothing_is_written(calm, folder, words, told):
-    done = calm("strumming", *words, *CABLE, "--json", "answer.json")
+    done = calm("tow", "strumming", *words, *CABLE, "--json", "answer.json")
     assert (done.code, done.out) == (2, "")
     assert told in done.err
     assert not list(folder.iterdir())
+
+
+def test_the_old_name_does_the_same_and_says_the_new_one(calm):
+    words = ("--angle", "20 deg", *CABLE, "--weight", "3.0795 N/m")
+    new, old = calm("tow", "strumming", *words), calm("strumming", *words)
+    assert (old.code, old.out) == (0, new.out)
+    assert old.err.startswith("calm strumming is now calm tow strumming")

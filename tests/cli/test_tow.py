@@ -82,7 +82,8 @@ def test_speeds_have_both_ends_and_what_a_tow_at_that_speed_has(calm, write_tow)
     done = calm("tow", write_tow(), "--speeds", "1 knot:2 m/s:0.5 m/s", "--json", "-")
     assert done.code == 0
     document = json.loads(done.out)
-    assert list(document) == ["calm", "name", "type", "speeds"]
+    assert list(document) == ["calm", "name", "type", "speeds", "units"]
+    assert document["units"]["speed"] == "m/s"
     assert (document["name"], document["type"]) == ("Test tow", "tow")
     speeds = [row["speed"] for row in document["speeds"]]
     knot = 1852.0 / 3600.0

@@ -3,7 +3,7 @@ import json
 import pytest
 
 from calm.errors import NoEquilibrium
-from calm.report.result_json import failure_document, to_json
+from calm.report.result_json import UNITS, failure_document, to_json
 
 
 def test_one_document_is_an_object_and_several_an_array():
@@ -36,6 +36,13 @@ def test_text_is_as_it_was():
 )
 def test_it_is_indented_as_the_library_does(value):
     assert to_json([value]) == json.dumps(value, indent=2) + "\n"
+
+
+def test_a_result_says_its_units_once():
+    result = {"calm": "1.0", "anchor": {"tension": 3.0}}
+    told = json.loads(to_json([result, {"name": "m", "status": "slack"}]))
+    assert told[0] == result | {"units": UNITS} and "units" not in told[1]
+    assert {"length": "m", "force": "N", "angle": "deg"}.items() <= UNITS.items()
 
 
 def test_failure_tells_status_message_and_advice():
