@@ -11,10 +11,8 @@ length) have a ratio that does not depend on H₀. That leaves
 A residual is scanned on a grid that is fine where pieces are short and reaches to where the curve
 is straight to rounding; changes of sign are refined, dips towards zero examined for a pair.
 
-Of length and distance, the mean of cos ψ over the piece is D/L. For a given λ_A it falls as λ_B
-grows, except where the piece begins far enough before the apex of the second branch: there it rises
-first. So D/L gives λ_B, on up to two sheets over λ_A, and the third size is a residual along them.
-Its changes of sign are finished by Newton's method on both equations, which knows of no sheets.
+Of length, distance and one more, the mean of cos ψ over the piece is D/L, and the third is a share
+of the length. Where a grid of both ends shows that both may be met, Powell's method finishes it.
 """
 
 from __future__ import annotations
@@ -173,19 +171,12 @@ def size_of(branch: Branch, name: str, start: ArrayLike, end: ArrayLike) -> Floa
     return arc if name == "length" else distance
 
 
-def refine(function: Callable[..., Floats], left: Floats, right: Floats, *beside: Floats) -> Floats:
-    """The zeros of a vectorised function between places where its signs differ, to rounding.
-
-    Parameters
-    ----------
-    function : of the places, and of what is given beside each of them
-    left, right : the places
-    """
+def refine(function: Callable[[Floats], Floats], left: Floats, right: Floats) -> Floats:
+    """The zeros of a vectorised function between places where its signs differ, to rounding."""
     from scipy.optimize.elementwise import find_root
 
-    if not left.size:
-        return left
-    return np.asarray(find_root(function, (left, right), args=beside).x)
+    found = np.asarray(find_root(function, (left, right)).x) if left.size else left
+    return found[np.isfinite(found)]
 
 
 def steps_with_zero(value: Floats) -> NDArray[np.intp]:
@@ -207,8 +198,7 @@ def dips(value: Floats) -> NDArray[np.intp]:
     return np.flatnonzero(dip) + 1
 
 
-_SHEET_POINTS = 60
-_NEAR_ZERO = 0.05
+_POINTS_OF_ENDS = 24
 # Nearer to level than this the height of a piece is lost in rounding.
 _LEAST_RISE = 1.0 + 1e-13
 
@@ -236,89 +226,21 @@ class LengthSearch:
         """Every piece that fits."""
         if not -1.0 < self.cosine < 1.0:
             return []
-        candidates: list[Piece] = []
-        for margin, end in (
-            (self._falling_margin, self._falling),
-            (self._rising_margin, self._rising),
-        ):
-            for grid in self._stretches(margin):
-                candidates += self._candidates(grid, end(grid))
-        found = (self._polished(*candidate) for candidate in candidates)
-        return [piece for piece in found if piece is not None]
-
-    def _excess(self, start: Floats, end: Floats) -> Floats:
-        """Mean cosine of pieces, less what is wanted."""
+        outward = graded(reach(self.branch), _POINTS_OF_ENDS)
+        start = np.concatenate([-outward[::-1], [0.0], outward])[:, np.newaxis]
+        end = np.abs(start) * _LEAST_RISE + outward
         arc, distance = self.branch.span(start, end)
-        # A piece of no length has the direction of its point.
-        mean = np.where(arc > 0.0, distance / np.where(arc > 0.0, arc, 1.0), self._cosine(end))
-        return np.asarray(mean - self.cosine)
-
-    def _cosine(self, place: Floats) -> Floats:
-        return self.branch.rates(place)[1]
-
-    def _peak(self, start: Floats) -> Floats:
-        """The λ_B ≥ |λ_A| of the greatest mean."""
-        low = np.abs(start)
-        if self.branch.sign > 0:
-            return low
-        before = start < 0.0
-        peak = low.copy()
-        first = start[before]
-        peak[before] = last_positive(
-            lambda end, first: self._cosine(end) - self.cosine - self._excess(first, end),
-            low[before],
-            low[before] + reach(self.branch),
-            first,
-        )
-        return peak
-
-    def _falling_margin(self, start: Floats) -> Floats:
-        """Positive where λ_B exists beyond the greatest mean."""
-        if self.cosine <= self.branch.limit:
-            return np.full_like(start, -1.0)
-        return self._excess(start, self._peak(start))
-
-    def _falling(self, start: Floats) -> Floats:
-        far = np.abs(start) + reach(self.branch)
-        return last_positive(lambda end, s: self._excess(s, end), self._peak(start), far, start)
-
-    def _rising_margin(self, start: Floats) -> Floats:
-        """Positive where λ_B exists before the greatest mean."""
-        if self.branch.sign > 0:
-            return np.full_like(start, -1.0)
-        low, peak = np.abs(start), self._peak(start)
-        return np.minimum(-self._excess(start, low), self._excess(start, peak))
-
-    def _rising(self, start: Floats) -> Floats:
-        low, peak = np.abs(start), self._peak(start)
-        return last_positive(lambda end, first: -self._excess(first, end), low, peak, start)
-
-    def _stretches(self, margin: Callable[[Floats], Floats]) -> list[Floats]:
-        """Grids of λ_A, fine at both ends, for each stretch on which there is a λ_B."""
-        outward = graded(reach(self.branch), _SHEET_POINTS)
-        places = np.concatenate([-outward[::-1], [0.0], outward])
-        value = margin(places)
-        exists = value > 0.0
-        edges = np.flatnonzero(exists[1:] != exists[:-1])
-        bounds = refine(margin, places[edges], places[edges + 1])
-        ends = np.concatenate([places[:1][exists[:1]], bounds, places[-1:][exists[-1:]]])
-        stretches = []
-        for low, high in ends.reshape(-1, 2):
-            steps = graded(high - low, _SHEET_POINTS)[:-1]
-            own = places[(places > low) & (places < high)]
-            grid = merged(low + steps, high - steps, own)
-            stretches.append(grid[(grid > low) & (grid < high)])
-        return stretches
-
-    def _candidates(self, start: Floats, end: Floats) -> list[Piece]:
-        """Places next to a change of sign of the residual, to a dip of it, and to the edges."""
-        arc, _ = self.branch.span(start, end)
-        size = size_of(self.branch, self.third, start, end)
-        value = (size - self.share * arc) / (size + self.share * arc)
-        steps, low_points = steps_with_zero(value), dips(value)
-        edges = [place for place in (0, value.size - 1) if abs(value[place]) < _NEAR_ZERO]
-        places = np.concatenate([steps, steps + 1, low_points - 1, low_points + 1, edges])
-        return [(float(start[place]), float(end[place])) for place in np.unique(places.astype(int))]
+        third = size_of(self.branch, self.third, start, end)
+        misses = distance / arc - self.cosine, np.log(third / (arc * self.share))
+        around = np.lib.stride_tricks.sliding_window_view
+        size = np.hypot(*misses)
+        near = around(np.pad(size, 1, mode="edge"), (3, 3)).min(axis=(2, 3))
+        far = around(np.pad(size, _AROUND, mode="edge"), (_WINDOW, _WINDOW)).max(axis=(2, 3))
+        here = (size <= near) & (size < 0.5 * far) & (size < 1.0)
+        change = (around(np.signbit(miss), (2, 2)).sum(axis=(2, 3)) % 4 > 0 for miss in misses)
+        here[:-1, :-1] |= np.logical_and(*change)
+        found = (self._polished(float(start[i, 0]), float(end[i, j])) for i, j in np.argwhere(here))
+        return [piece for piece in found if piece is not None]
 
     def _polished(self, start: float, end: float) -> Piece | None:
         """The root that Powell's method reaches from a place, or None."""
@@ -329,35 +251,17 @@ class LengthSearch:
             return None
 
         def piece(at: Floats) -> tuple[float, float]:
-            first = float(np.clip(at[0], -farthest, farthest))
-            return first, abs(first) * _LEAST_RISE + float(np.exp(min(at[1], np.log(farthest))))
+            first = float(np.nan_to_num(np.clip(at[0], -farthest, farthest)))
+            above = np.exp(np.nan_to_num(min(at[1], np.log(farthest))))
+            return first, abs(first) * _LEAST_RISE + float(above)
 
         def miss(at: Floats) -> Floats:
             """Mean cosine and logarithm of the third share, less what is wanted."""
             place = piece(at)
-            arc, distance = (float(size) for size in self.branch.span(*place))
-            third = float(size_of(self.branch, self.third, *place))
+            arc, distance = self.branch.span(*place)
+            third = size_of(self.branch, self.third, *place)
             return np.array([distance / arc - self.cosine, np.log(third / (arc * self.share))])
 
         with np.errstate(all="ignore"):
             found = root(miss, [start, np.log(end - least)], options={"xtol": 1e-15})
         return piece(found.x) if np.abs(found.fun).max() < 1e-12 else None
-
-
-def last_positive(
-    function: Callable[..., Floats], low: Floats, high: Floats, start: Floats
-) -> Floats:
-    """Return where a function positive at `low` changes sign; `high` where it does not up to
-    there.
-
-    Parameters
-    ----------
-    function : of the place, and of the start beside it
-    low, high : between which it is looked for
-    start : of each
-    """
-    begin, end = function(low, start), function(high, start)
-    crosses = (begin > 0.0) & (end < 0.0)
-    found = np.where(begin > 0.0, high, low)
-    found[crosses] = refine(function, low[crosses], high[crosses], start[crosses])
-    return found

@@ -43,6 +43,7 @@ class Common:
     scale : of the errors of the currents, on those of `calm.motion.prior`
     gap : (g, g) error of the logarithm of the factor on a group of levels whose currents are taken
         from the others, another group left out besides; see `calm.motion.line_response.gap_errors`
+    widened : factor on the deviations of depths, where the pressures miss by more than all errors
     """
 
     factors: Mapping[str, float]
@@ -54,6 +55,7 @@ class Common:
     covariance: Floats
     scale: float
     gap: Floats
+    widened: float = 1.0
 
     @property
     def value(self) -> Floats:

@@ -207,9 +207,10 @@ class Task:
             status = np.where(lost, STATUSES.index("implausible-current"), likely.status)
             profiles = replace(profiles, status=status.astype(np.int8))
         known = np.where(likely.status == 0, 1.0, np.nan)
+        deviation = found.deviation * self.common.widened * known[:, None]
         return profiles, {
-            "clamp_depth_sd": found.deviation[:, :clamps] * known[:, None],
-            "depth_sd": found.deviation[:, clamps:] * known[:, None],
+            "clamp_depth_sd": deviation[:, :clamps],
+            "depth_sd": deviation[:, clamps:],
             "current_factor": found.current * known,
             "current_doubt": found.doubt * known[:, None],
             "residual": one.depth - self.common.offset - found.depth[:, one.point],

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 
@@ -139,6 +140,10 @@ CONSTANT = 1e-6
 MISPLACED = 20.0
 """How far from its place in still water a sensor may be at its least depth [m], where that is
 not within a factor of two either."""
+UNITS = {"psi for dbar?": 1.45038, "dbar for psi?": 0.68948}
+"""How many times too great pressures are whose unit was taken for another."""
+ALIKE, APART = 0.03, 3.0
+"""How alike that is, twice as much for several; how far apart exchanged sensors are [m]."""
 BELOW = 1.1
 """No reading is deeper than the seabed by this factor, and by `MISPLACED`."""
 
@@ -188,6 +193,9 @@ def unusable(measured: MooringMeasurements, still: Floats) -> dict[str, str]:
         A sensor is nowhere near its place on the line, so that its unit or its label is wrong.
     """
     reasons, complaints = {}, []
+    least = np.array([_least(column) for column in measured.depth.T])
+    complaints += _exchanged(measured.label, least, still[measured.point])
+    units = _other_unit(least, still[measured.point])
     for j, label in enumerate(measured.label):
         depth = measured.depth[:, j][np.isfinite(measured.depth[:, j])]
         if not depth.size:
@@ -196,12 +204,41 @@ def unusable(measured: MooringMeasurements, still: Floats) -> dict[str, str]:
         if depth.size > 2 and np.ptp(depth) <= CONSTANT:
             reasons[label] = f"is constant at {depth[0]:.1f} m: it is left out"
             continue
-        least, place = float(np.percentile(depth, 5.0)), float(still[measured.point[j]])
-        if abs(least - place) > MISPLACED and not 0.5 < least / place < 2.0:
+        place = float(still[measured.point[j]])
+        far = abs(least[j] - place) > MISPLACED and not 0.5 < least[j] / place < 2.0
+        if (far or units) and not any(f"`{label}`" in one for one in complaints):
             complaints.append(
-                f"`{label}` is at {least:.1f} m at its least, where the line has it at "
-                f"{place:.1f} m: its unit (bar, kPa?) or its label is wrong"
+                f"`{label}` is at {least[j]:.1f} m at its least, where the line has it at "
+                f"{place:.1f} m: its unit ({units or 'bar, kPa?'}) or its label is wrong"
             )
     if complaints:
         raise UsageError("--pressures: " + "; ".join(complaints))
     return reasons
+
+
+def _least(depth: Floats) -> float:
+    known = depth[np.isfinite(depth)]
+    return float(np.percentile(known, 5.0)) if known.size else float("nan")
+
+
+def _exchanged(labels: Sequence[str], least: Floats, place: Floats) -> list[str]:
+    """Return sentences on pairs of sensors that hang the other way round, as deep as each other."""
+    return [
+        f"`{labels[i]}` is at {least[i]:.1f} m at its least and `{labels[j]}` at {least[j]:.1f} m, "
+        f"where the line has them at {place[i]:.1f} m and {place[j]:.1f} m: their labels are "
+        "exchanged"
+        for i, j in combinations(range(len(labels)), 2)
+        if abs(place[j] - place[i]) > APART
+        and -1.5 < (least[j] - least[i]) / (place[j] - place[i]) < -0.6
+    ]
+
+
+def _other_unit(least: Floats, place: Floats) -> str:
+    """Return which unit was taken for another, where all depths are so many times too great."""
+    known = np.isfinite(least)
+    for unit, ratio in UNITS.items():
+        meant = ratio * place[known]
+        near = np.abs(least[known] - meant) < ALIKE * min(known.sum(), 2) * meant
+        if known.any() and near.all() and (np.abs(meant - place[known]) > MISPLACED).any():
+            return unit
+    return ""

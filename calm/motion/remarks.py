@@ -28,6 +28,12 @@ CERTAIN, LIKELY = 0.95, 0.5
 """Probabilities that a sensor hangs elsewhere from which it is named alone, and named at all."""
 FAR_OFFSET = 2.5
 """Offsets of a sensor, or of all alike, that are named, in deviations of what is expected."""
+FURTHEST_CLOCK, FEWEST_TOGETHER, EXPLAINED, AS_WELL = 13.0, 40, 0.5, 0.02
+"""Hours by which clocks are compared, and times for that; the share of the variance that is left
+where the shift explains the rest; how much less a shorter shift may explain."""
+LEAST_SHARE, CLEARER = 0.01, 0.2
+"""Share of the depth that is named as a gain, and how much better it explains what is off than the
+same for all."""
 AIR = 10.1
 """What the weight of the air adds to depths by pressure [m]: 1013 hPa."""
 
@@ -157,6 +163,81 @@ def current_remarks(false: Mapping[str, Times], count: int) -> list[str]:
         f"current at {name}: its direction or speed looks false at {len(when)} of {count} times, "
         f"first at {np.datetime_as_string(when[0], 'm')}"
         for name, when in false.items()
+    ]
+
+
+def clock_remarks(labels: Sequence[str], time: Times, depth: Floats, plain: Floats) -> list[str]:
+    """Return sentences where the currents explain the depths better some hours earlier or later.
+
+    Below the lowest sensor's depths the height of the sea surface is taken off.
+
+    Parameters
+    ----------
+    labels : of the sensors, from the top down
+    time : (n,)
+    depth, plain : (n, s) measured, and by the currents alone [m]
+    """
+    if len(time) < FEWEST_TOGETHER:
+        return []
+    step = float(np.median(np.diff(time)) / np.timedelta64(1, "h"))
+    if len(labels) > 1:
+        labels, depth, plain = labels[:-1], depth - depth[:, -1:], plain - plain[:, -1:]
+    reach = int(FURTHEST_CLOCK / step) if step > 0.0 else 0
+    found: dict[int, list[tuple[str, float, float]]] = {}
+    for j, label in enumerate(labels):
+        lags = sorted(range(-reach, reach + 1), key=abs)  # of a tide, many do
+        alike = [_alike(depth[:, j], plain[:, j], lag) for lag in lags]
+        now, most = alike[0], max(alike)
+        best = next(lag for lag, r in zip(lags, alike, strict=True) if r > most - AS_WELL)
+        if best and 1.0 - most**2 < EXPLAINED * (1.0 - max(now, 0.0) ** 2) and most > now + 0.1:
+            found.setdefault(best, []).append((label, now, most))
+    said = []
+    for lag, sensors in found.items():
+        whose = ", ".join(label for label, *_ in sensors)
+        which = "the pressures" if len(sensors) == len(labels) else whose
+        _, now, most = max(sensors, key=lambda one: one[2])
+        said.append(
+            f"clocks: {which} some {abs(lag) * step:.3g} h {'behind' if lag > 0 else 'ahead of'} "
+            f"the currents: shifted so, r = {most:.2f} in place of {now:.2f}"
+        )
+    return said
+
+
+def _alike(depth: Floats, plain: Floats, lag: int) -> float:
+    """Return the correlation of depths with those computed so many times before; 0 of few, or of
+    such as differ in size.
+    """
+    count = len(depth) - abs(lag)
+    one, other = depth[max(lag, 0) :][:count], plain[max(-lag, 0) :][:count]
+    both = np.isfinite(one) & np.isfinite(other)
+    if both.sum() < FEWEST_TOGETHER:
+        return 0.0
+    sizes = float(one[both].std()), float(other[both].std())
+    if min(sizes) < LEAST or not 0.5 < sizes[0] / sizes[1] < 2.0:
+        return 0.0
+    return float(np.corrcoef(one[both], other[both])[0, 1])
+
+
+def gain_remarks(labels: Sequence[str], depth: Floats, plain: Floats) -> list[str]:
+    """Return a sentence where all pressures are too great, or too small, by the same share.
+
+    Parameters
+    ----------
+    labels : of the sensors
+    depth, plain : (n, s) measured, and by the currents alone, at calm times [m]
+    """
+    place, off = np.nanmedian(plain, axis=0), np.nanmedian(depth - plain, axis=0)
+    if len(labels) < 2 or not np.isfinite(off).all():
+        return []
+    law = np.stack([place, np.ones_like(place)], axis=1)[:, : 1 + (len(labels) > 2)]
+    found = np.linalg.lstsq(law, off)[0]
+    share = float(found[0])
+    by_share, alike = ((left**2).sum() for left in (off - law @ found, off - off.mean()))
+    if abs(share) < LEAST_SHARE or alike < (2.0 * LEAST) ** 2 or by_share > CLEARER * alike:
+        return []
+    return [
+        f"all sensors: {100.0 * share:+.1f} % of their depth off: the gain of the pressures, or "
+        "their unit, is wrong"
     ]
 
 

@@ -20,11 +20,13 @@ from calm.motion.remarks import (
     Agreement,
     agreement,
     calm_times,
+    clock_remarks,
     coverage,
     current_remarks,
     datum_remarks,
     difference,
     false_current_times,
+    gain_remarks,
     linear,
     rms,
     sensor_remarks,
@@ -147,7 +149,15 @@ def judged(task: Task, measured: MooringMeasurements, result: Dataset) -> Study:
     names = level_names(used, labels_of(task.mooring))
     false = false_current_times(names, used.time, np.asarray(result["current_doubt"].values))
     said += current_remarks(false, len(used.time))
-    said += datum_remarks(task.common, float(task.mooring.water.depth))
+    calm = calm_times(down, every)
+    gain = gain_remarks(used.label, used.depth[calm], plain[calm])
+    said += gain or datum_remarks(task.common, float(task.mooring.water.depth))
+    said += clock_remarks(used.label, used.time, used.depth, plain)
+    if task.common.widened > 1.0:
+        said.append(
+            "the pressures miss the computed depths by more than all errors that are allowed "
+            f"for: the bands are widened {task.common.widened:.2g} times"
+        )
     return Study(task, intervals(task), fit_of, plain_of, tuple(held), tuple(said), false)
 
 

@@ -30,6 +30,9 @@ FURTHEST = 1.0
 """Of the logarithm of a factor, at most."""
 SCALES = (0.5, 2.5)
 """Least and greatest factor on the errors of the currents."""
+USUAL, MISSED = (0.8, 0.95), 1.5
+"""Shares of the times, the first of which miss usually, and by so much more than is expected where
+bands are widened, by what the second share misses."""
 SCALE_KNOWN = 0.15
 """Standard deviation of its logarithm beforehand."""
 LONGEST_MEMORY = 25
@@ -132,7 +135,8 @@ def estimate_common(
         evidence = _evidence(raw, left, fixed, expected, there)
         alike = _alike(evidence.pulls(fixed, left)[:, 0]) if names else 1.0
         before = common.value
-        common = _placed(replace(begun, scale=scale), evidence, fall, time, alike)
+        begun = replace(begun, scale=scale, widened=_widened(left, expected, there))
+        common = _placed(begun, evidence, fall, time, alike)
         deviation = np.sqrt(np.diag(common.covariance))
         if (np.abs(common.value - before) <= ENOUGH * deviation).all():
             break
@@ -147,6 +151,19 @@ def _evidence(
     misfit = np.einsum("ns,nst,nt->n", left, inverse, left)
     weight = (ROBUST + known.sum(axis=1)) / (ROBUST + misfit)
     return Evidence(raw, seen, inverse, weight, known)
+
+
+def _widened(left: Floats, expected: Floats, known: NDArray[np.bool_]) -> float:
+    """Return by how much the pressures miss more than is expected; 1 where the usual time does not.
+
+    A few times of large misfit are false currents, which are weighed at each time.
+    """
+    from scipy.stats import chi2
+
+    solved = np.linalg.solve(expected, left[:, :, None])[:, :, 0]
+    misfit, count = (left * solved).sum(axis=1), np.maximum(known.sum(axis=1), 1)
+    usual, large = (np.quantile(misfit / chi2.ppf(one, count), one) for one in USUAL)
+    return float(np.sqrt(max(large, 1.0))) if usual > MISSED else 1.0
 
 
 def _unmoved(known: Common) -> tuple[Floats, Floats]:
