@@ -90,9 +90,7 @@ _VALUE_OF = {f"--{name}": value for value, names in _VALUES.items() for name in 
 
 def _with_values(text: str) -> str:
     """Return a line of usage with what each option wants in place of its type."""
-    return re.sub(
-        r"(--[\w-]+) ([A-Z]+)", lambda m: f"{m[1]} {_VALUE_OF.get(m[1], m[2])}", text
-    )
+    return re.sub(r"(--[\w-]+) ([A-Z]+)", lambda m: f"{m[1]} {_VALUE_OF.get(m[1], m[2])}", text)
 
 
 class HelpAtWidth:

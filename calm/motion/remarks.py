@@ -28,9 +28,10 @@ CERTAIN, LIKELY = 0.95, 0.5
 """Probabilities that a sensor hangs elsewhere from which it is named alone, and named at all."""
 FAR_OFFSET = 2.5
 """Offsets of a sensor, or of all alike, that are named, in deviations of what is expected."""
-FURTHEST_CLOCK, FEWEST_TOGETHER, EXPLAINED, AS_WELL = 13.0, 40, 0.5, 0.02
-"""Hours by which clocks are compared, and times for that; the share of the variance that is left
-where the shift explains the rest; how much less a shorter shift may explain."""
+FURTHEST_CLOCK, FEWEST_TOGETHER, EXPLAINED, SHARED, AS_WELL = 13.0, 40, 0.5, 0.85, 0.02
+"""Hours by which clocks are compared, and times for that; the share of the variance that a shift
+leaves of one sensor, and of each of several that agree; how much less a shorter shift may
+explain."""
 LEAST_SHARE, CLEARER = 0.01, 0.2
 """Share of the depth that is named as a gain, and how much better it explains what is off than the
 same for all."""
@@ -183,19 +184,27 @@ def clock_remarks(labels: Sequence[str], time: Times, depth: Floats, plain: Floa
     if len(labels) > 1:
         labels, depth, plain = labels[:-1], depth - depth[:, -1:], plain - plain[:, -1:]
     reach = int(FURTHEST_CLOCK / step) if step > 0.0 else 0
-    found: dict[int, list[tuple[str, float, float]]] = {}
+    lags = range(-reach, reach + 1)
+    found: dict[int, list[tuple[str, float, float, bool]]] = {}
     for j, label in enumerate(labels):
-        lags = sorted(range(-reach, reach + 1), key=abs)  # of a tide, many do
-        alike = [_alike(depth[:, j], plain[:, j], lag) for lag in lags]
-        now, most = alike[0], max(alike)
-        best = next(lag for lag, r in zip(lags, alike, strict=True) if r > most - AS_WELL)
-        if best and 1.0 - most**2 < EXPLAINED * (1.0 - max(now, 0.0) ** 2) and most > now + 0.1:
-            found.setdefault(best, []).append((label, now, most))
+        alike = np.array([_alike(depth[:, j], plain[:, j], lag) for lag in lags])
+        peaks = np.flatnonzero(
+            (alike >= np.append(alike[1:], 0)) & (alike > np.append(0, alike[:-1]))
+        )
+        near = [at for at in peaks if alike[at] > alike.max() - AS_WELL]  # of a tide, many are
+        best = min(near, key=lambda at: abs(lags[at]), default=reach)
+        now, most = float(alike[reach]), float(alike[best])
+        left = (1.0 - most**2) / (1.0 - max(now, 0.0) ** 2) if now < 1.0 else 1.0
+        if best != reach and left < SHARED:
+            clear = left < EXPLAINED and most > now + 0.1
+            found.setdefault(lags[best], []).append((label, now, most, clear))
     said = []
     for lag, sensors in found.items():
+        if not any(clear for *_, clear in sensors) and len(sensors) < max(2, len(labels) / 2):
+            continue
         whose = ", ".join(label for label, *_ in sensors)
         which = "the pressures" if len(sensors) == len(labels) else whose
-        _, now, most = max(sensors, key=lambda one: one[2])
+        _, now, most, _ = max(sensors, key=lambda one: one[2])
         said.append(
             f"clocks: {which} some {abs(lag) * step:.3g} h {'behind' if lag > 0 else 'ahead of'} "
             f"the currents: shifted so, r = {most:.2f} in place of {now:.2f}"
