@@ -1,6 +1,6 @@
 """From the models of a file and its environment to the arrays that the march takes."""
 
-from calm.assemble.floating import assemble_floating as assemble_floating
+from calm.assemble.line_arrays import assemble_floating as assemble_floating
 from calm.assemble.line_arrays import assemble_line as assemble_line
 from calm.assemble.line_arrays import axial_drag_of as axial_drag_of
 from calm.assemble.line_arrays import drag_of as drag_of

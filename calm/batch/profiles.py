@@ -34,13 +34,12 @@ from calm.physics.compiled import by_address, entry, record_type
 from calm.physics.line import Floats, Integers, Water
 from calm.physics.profile import Interval
 from calm.solve import Status
-from calm.solve.asking import AskedSearch, find_asked
 from calm.solve.audit import referee_of
-from calm.solve.endings import FOUND
 from calm.solve.finish import STATUS_OF
-from calm.solve.mooring import MORE_ROOM, search_of
+from calm.solve.mooring import MORE_ROOM, AskedSearch, find_asked, search_of
 from calm.solve.problem import MANY_ROOM, problem_of
 from calm.solve.starts import fill_starts
+from calm.solve.status import FOUND
 
 BLOCK = 1024
 """Profiles that a worker takes at a time."""

@@ -20,7 +20,7 @@ from calm.files import MooringFile, read_mooring
 from calm.files.definition import STEEL_DENSITY
 from calm.physics.drag import BLOCK_CD, area_drag
 from calm.physics.line import Line, Water
-from calm.physics.reference import REFERENCE_DENSITY
+from calm.physics.seawater import REFERENCE_DENSITY
 from calm.solve import Settings, Solution, Status, fit_length, solve_mooring
 from calm.solve.problem import COARSE_STEP
 from calm.solve.standing import standing_lift, too_heavy

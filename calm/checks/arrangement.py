@@ -19,7 +19,7 @@ from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Recovery
 from calm.drop.launch import Launch
 from calm.files import Cable, Component, Flexible
-from calm.physics.reference import REFERENCE_DENSITY
+from calm.physics.seawater import REFERENCE_DENSITY
 from calm.quantities import say
 
 if TYPE_CHECKING:

@@ -32,7 +32,7 @@ from calm.files import (
 from calm.files.components import FlexibleComponent, RigidComponent
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
 from calm.physics import drag
-from calm.physics.reference import REFERENCE_DENSITY
+from calm.physics.seawater import REFERENCE_DENSITY
 
 CHAIN_BREADTH = 1.8
 """Diameter of the cylinder that displaces what a chain does, over that of its bar: OrcaFlex."""

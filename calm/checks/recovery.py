@@ -23,7 +23,7 @@ import numpy as np
 from calm.assemble import with_axial_clamps
 from calm.errors import NoEquilibrium
 from calm.physics.line import Floats, Line, Water
-from calm.physics.reference import REFERENCE_DENSITY
+from calm.physics.seawater import REFERENCE_DENSITY
 from calm.physics.track import head_count
 from calm.solve import FreeMotion, Settings, part_of, solve_rise
 

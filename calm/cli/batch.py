@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from calm.cli.options import quantities
+from calm.cli.options import CatalogFiles, Declination, EnvironmentName, Threads, quantities
 from calm.cli.streams import ExitCode, narrate, show_parts
 from calm.errors import UsageError
 
@@ -41,13 +41,13 @@ def batch(
     time: str | None = None,
     every: int = 1,
     at: Annotated[str | None, Parameter(allow_leading_hyphen=True)] = None,
-    declination: Annotated[str | None, Parameter(allow_leading_hyphen=True)] = None,
-    workers: int | None = None,
+    declination: Declination = None,
+    workers: Threads = None,
     scheduler: str | None = None,
     shape: bool = False,
     no_statistics: bool = False,
-    environment: str | None = None,
-    catalog: list[Path] | None = None,
+    environment: EnvironmentName = None,
+    catalog: CatalogFiles = None,
 ) -> ExitCode:
     """Solve a mooring in every profile of a record or a hindcast.
 
@@ -74,21 +74,12 @@ def batch(
     at
         Latitude and longitude [degrees] of the column to take from a grid, as LAT,LON;
         the `position` of the mooring file unless given.
-    declination
-        Of magnetic north from true north, such as "12.5 deg", positive to the east: turns
-        the currents that the record says are relative to magnetic north.
-    workers
-        How many threads; one for each processor unless given.
     scheduler
         Address of a dask scheduler whose workers solve the profiles.
     shape
         Store the shape of the line too.
     no_statistics
         Leave the statistics out, for a part of a longer record.
-    environment
-        An environment named in the file, or an environment file, in place of its own.
-    catalog
-        A catalogue of your own; its components hide others of the same id. Repeatable.
     """
     if every < 1:
         raise UsageError(f"--every: {every} is not 1 or more")

@@ -8,6 +8,7 @@ from importlib.util import find_spec
 from math import inf
 from pathlib import Path
 
+from calm.cli.options import CatalogFiles
 from calm.cli.streams import ExitCode, narrate
 from calm.errors import UsageError
 
@@ -35,7 +36,7 @@ def build(
     /,
     *,
     environment: str | None = None,
-    catalog: list[Path] | None = None,
+    catalog: CatalogFiles = None,
     serve: bool = False,
     port: int = PORT,
     allow_host: list[str] | None = None,
@@ -54,8 +55,6 @@ def build(
         A mooring file, old or new. Without it, a new file that is named when you save.
     environment
         An environment named in the file, or an environment file, to begin with.
-    catalog
-        A catalogue of your own; its components hide others of the same id. Repeatable.
     serve
         Open it in a browser of this machine; other machines cannot reach it.
     port

@@ -68,7 +68,8 @@ def search(words: list[str], /, *, json: bool = False) -> ExitCode:
     json
         As JSON: objects with every field, in SI units and degrees.
     """
-    from calm.assemble.catalogue_search import Index, Remembered
+    from calm.assemble.catalogue_search import Index
+    from calm.tui.catalogue.remembered import Remembered
 
     catalogue, text = _load(), " ".join(words)
     index, remembered = Index(catalogue), Remembered()
@@ -132,8 +133,7 @@ def add(
     output
         The catalogue file that it is added to; your own when not given.
     """
-    from calm.checks.catalogue_rules import check_catalogue
-    from calm.checks.missing import missing_figures
+    from calm.checks.catalogue_rules import check_catalogue, missing_figures
     from calm.errors import Problem
     from calm.files.catalogue import defined, read_level, tidy_id, user_folder
     from calm.report.component_cards import in_words, to_card
@@ -195,8 +195,7 @@ def check(file: Path | None = None, /, *, json: bool = False) -> ExitCode:
         As JSON: a list of objects with `id`, `finding` (true or false), `message`, `missing` and
         `searched`.
     """
-    from calm.checks.catalogue_rules import check_catalogue
-    from calm.checks.missing import missing_figures
+    from calm.checks.catalogue_rules import check_catalogue, missing_figures
     from calm.files import Catalogue
     from calm.report.component_cards import in_words, summarised, to_objects
 

@@ -170,7 +170,7 @@ _CABLE = ("weight", "k", "diameter", "cd", "speed", "density")
 
 def _drag_over_weight(cable: dict[str, float]) -> float:
     """K as given, or of the cable and the current."""
-    from calm.physics.reference import REFERENCE_DENSITY
+    from calm.physics.seawater import REFERENCE_DENSITY
 
     parts = ("diameter", "cd", "speed")
     if "k" in cable:

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from calm.cli.check_files import DesignFile, read_designs
+from calm.cli.options import CatalogFiles, Samples, Seed
 from calm.cli.outputs import OutputPath, Outputs
 from calm.cli.run import draws_of
 from calm.cli.streams import ExitCode, gravest, narrate
@@ -38,14 +39,14 @@ def check(
     /,
     *,
     environment: list[str] | None = None,
-    catalog: list[Path] | None = None,
+    catalog: CatalogFiles = None,
     json: OutputPath = None,
     report: Path | None = None,
     against: Path | None = None,
     allow_unknown: bool = False,
     uncertainty: bool = False,
-    samples: int = 2048,
-    seed: int = 0,
+    samples: Samples = 2048,
+    seed: Seed = 0,
     workers: int | None = None,
 ) -> ExitCode:
     """Check designs: solve every mooring in every environment, and judge it by rule.
@@ -63,8 +64,6 @@ def check(
     environment
         An environment named in the files, or an environment file. Repeatable. By default, every
         environment of each file.
-    catalog
-        A catalogue of your own; its components hide others of the same id. Repeatable.
     json
         Write every finding as JSON, - to print it.
     report
@@ -76,10 +75,6 @@ def check(
     uncertainty
         Give every finding the probability that its limit is broken, with inputs as uncertain as
         the file's `uncertainty` says, and list the designs by it.
-    samples
-        How many draws, a power of two.
-    seed
-        Of the draws; the same seed gives the same figures.
     workers
         How many processes share the work; by default one on each core.
     """

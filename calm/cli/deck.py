@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from cyclopts import Parameter
 
 from calm.cli.check_files import DesignFile, read_designs
-from calm.cli.options import quantities
+from calm.cli.options import CatalogFiles, quantities
 from calm.cli.streams import ExitCode, narrate
 from calm.errors import NoEquilibrium, UsageError
 
@@ -39,7 +39,7 @@ def deck(
     streamed: str | None = None,
     course: str | None = None,
     deck_time: str | None = None,
-    catalog: list[Path] | None = None,
+    catalog: CatalogFiles = None,
 ) -> ExitCode:
     """Draw the diagram and write the lists for the deployment of moorings.
 
@@ -73,8 +73,6 @@ def deck(
         Of handling each piece and clamp before it goes over, such as "3 min", shackles and rings
         apart; by role in the file's `document: deck_time:` unless given. Without either the plan
         has no start of the run.
-    catalog
-        A catalogue of your own; its components hide others of the same id. Repeatable.
     """
     from calm.deck import deck_of
     from calm.deck.deck_items import Order

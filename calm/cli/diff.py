@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from calm.cli.options import CatalogFiles
 from calm.cli.outputs import OutputPath, Outputs
 from calm.cli.run import read_files
 from calm.cli.streams import ExitCode, narrate
@@ -29,7 +30,7 @@ def diff(
     /,
     *,
     environment: str | None = None,
-    catalog: list[Path] | None = None,
+    catalog: CatalogFiles = None,
     json: OutputPath = None,
 ) -> ExitCode:
     """Compare two designs piece by piece, and say what the change does.
@@ -48,8 +49,6 @@ def diff(
         Another; without it, the `deployed:` of the first is compared with its design.
     environment
         An environment named in both files, or an environment file, in place of their own.
-    catalog
-        A catalogue of your own; its components hide others of the same id. Repeatable.
     json
         Write the differences as JSON, - to print it.
     """

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
+from calm.cli.options import CatalogFiles, EnvironmentName
 from calm.cli.outputs import STDOUT, OutputPath
 from calm.cli.streams import ExitCode, narrate, show
 from calm.errors import InputError, Problem, UsageError
@@ -211,8 +212,8 @@ def export(
     *,
     to: str,
     output: Annotated[Path, Parameter(name=["--output", "-o"])],
-    environment: str | None = None,
-    catalog: list[Path] | None = None,
+    environment: EnvironmentName = None,
+    catalog: CatalogFiles = None,
 ) -> ExitCode:
     """Write a mooring or a tow for another program.
 
@@ -228,10 +229,6 @@ def export(
         with the current in a file beside it) or csv (a list).
     output
         The file to write.
-    environment
-        An environment named in the file, or an environment file, in place of its own.
-    catalog
-        A catalogue of your own; its components hide others of the same id. Repeatable.
     """
     from calm.exchange.exporting import export_file
     from calm.report.folder import check_destination, write_file

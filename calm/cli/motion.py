@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from calm.cli.batch import ProgressTeller, check_output, ended, mooring_of, stopped_by_a_signal
-from calm.cli.options import quantities
+from calm.cli.options import CatalogFiles, Declination, EnvironmentName, Threads, quantities
 from calm.cli.outputs import OutputPath, Outputs
 from calm.cli.streams import ExitCode, narrate
 from calm.errors import UsageError
@@ -44,14 +44,14 @@ def motion(
     sea_level: Path | None = None,
     flags: str = "1,2",
     gap: str = "2 h",
-    declination: Annotated[str | None, Parameter(allow_leading_hyphen=True)] = None,
+    declination: Declination = None,
     onto: Path | None = None,
     replace_depth: Annotated[bool, Parameter(name="--replace")] = False,
     json: OutputPath = None,
     report: Path | None = None,
-    workers: int | None = None,
-    environment: str | None = None,
-    catalog: list[Path] | None = None,
+    workers: Threads = None,
+    environment: EnvironmentName = None,
+    catalog: CatalogFiles = None,
 ) -> ExitCode:
     """Estimate the depth of every instrument at every time from currents and pressures.
 
@@ -89,9 +89,6 @@ def motion(
         Quality flags of the pressures that count as measured.
     gap
         Interpolate in time between values no further apart than this.
-    declination
-        Of magnetic north from true north, such as "12.5 deg", positive to the east: turns
-        the currents that the record says are relative to magnetic north.
     onto
         A NetCDF file of instruments, found by label: OUTPUT is then a copy of it with
         `depth` and `depth_sd` added, and the result stands beside it as
@@ -102,12 +99,6 @@ def motion(
         Write a page and a PDF, motion.html and motion.pdf, in this folder.
     json
         Write the factors and how well depths agree as JSON, - to print it.
-    workers
-        How many threads; one for each processor unless given.
-    environment
-        An environment named in the file, or an environment file, in place of its own.
-    catalog
-        A catalogue of your own; its components hide others of the same id. Repeatable.
     """
     import numpy as np
 

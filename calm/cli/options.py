@@ -1,11 +1,41 @@
-"""Quantities given as options, and the range of speeds of a sweep."""
+"""Options of several commands, quantities given as options, the range of speeds of a sweep."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
 
 from calm.errors import UsageError
+
+CatalogFiles = Annotated[
+    list[Path] | None,
+    Parameter(
+        help="A catalogue of your own; its components hide others of the same id. Repeatable."
+    ),
+]
+EnvironmentName = Annotated[
+    str | None,
+    Parameter(
+        help="An environment named in the file, or an environment file, in place of its own."
+    ),
+]
+Samples = Annotated[int, Parameter(help="How many draws, a power of two.")]
+Seed = Annotated[int, Parameter(help="Of the draws; the same seed gives the same figures.")]
+Threads = Annotated[
+    int | None, Parameter(help="How many threads; one for each processor unless given.")
+]
+Declination = Annotated[
+    str | None,
+    Parameter(
+        help="Of magnetic north from true north, such as 12.5 deg, positive to the east: turns "
+        "the currents that the record says are relative to magnetic north.",
+        allow_leading_hyphen=True,
+    ),
+]
 
 MOST_SPEEDS = 10_000
 """No more speeds than this in one sweep."""

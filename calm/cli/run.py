@@ -9,6 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from calm.cli.options import CatalogFiles, EnvironmentName, Samples, Seed
 from calm.cli.outputs import FileOutcome, OutputPath, Outputs
 from calm.cli.streams import ExitCode, gravest, narrate
 from calm.errors import InputError, NoEquilibrium, Problem, UsageError
@@ -32,8 +33,8 @@ def run(
     files: list[Path],
     /,
     *,
-    environment: str | None = None,
-    catalog: list[Path] | None = None,
+    environment: EnvironmentName = None,
+    catalog: CatalogFiles = None,
     json: OutputPath = None,
     csv: OutputPath = None,
     netcdf: Path | None = None,
@@ -43,8 +44,8 @@ def run(
     explain: bool = False,
     schematic: bool = False,
     uncertainty: bool = False,
-    samples: int = 2048,
-    seed: int = 0,
+    samples: Samples = 2048,
+    seed: Seed = 0,
 ) -> ExitCode:
     """Solve moorings and tows, and print the table of each line.
 
@@ -56,10 +57,6 @@ def run(
     ----------
     files
         Mooring files; one with `tow:` is a tow.
-    environment
-        An environment named in the files, or an environment file, in place of their own.
-    catalog
-        A catalogue of your own; its components hide others of the same id. Repeatable.
     json
         Write the result as JSON, - to print it; several files give an array.
     csv
@@ -84,10 +81,6 @@ def run(
         Solve each mooring for many draws of what its file gives under uncertainty (current,
         drags, buoyancy, lengths, depth), and show the 5, 50 and 95 % of its figures and
         where their spread comes from; in the JSON, the picture and the reports too.
-    samples
-        How many draws, a power of two.
-    seed
-        Of the draws; the same seed gives the same figures.
     """
     outputs = Outputs(tuple(files), json, csv, plot, html, pdf, netcdf)
     outputs.check()

@@ -7,6 +7,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from calm.cli.options import CatalogFiles, EnvironmentName
 from calm.cli.outputs import OutputPath, Outputs
 from calm.cli.streams import ExitCode, narrate
 from calm.errors import UsageError
@@ -33,8 +34,8 @@ def size(
     target: str,
     change: str,
     between: Annotated[tuple[str, str] | None, Parameter(allow_leading_hyphen=True)] = None,
-    environment: str | None = None,
-    catalog: list[Path] | None = None,
+    environment: EnvironmentName = None,
+    catalog: CatalogFiles = None,
     json: OutputPath = None,
 ) -> ExitCode:
     """Find the smallest change of a mooring that meets a target.
@@ -55,10 +56,6 @@ def size(
     between
         The least and the greatest value, with units; when not given, a buoyancy goes from 0
         to 100 times itself, a length to twice the water depth, a count to 1000.
-    environment
-        An environment named in the file, or an environment file, in place of its own.
-    catalog
-        A catalogue of your own; its components hide others of the same id. Repeatable.
     json
         Write the answer as JSON, - to print it.
     """

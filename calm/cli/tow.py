@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from calm.cli.options import option, quantities, speed_range
+from calm.cli.options import CatalogFiles, EnvironmentName, option, quantities, speed_range
 from calm.cli.outputs import FileOutcome, OutputPath, Outputs
 from calm.cli.run import read_files, solve_and_show
 from calm.cli.streams import ExitCode, gravest, narrate, progress
@@ -34,8 +34,8 @@ def tow(
     files: list[Path],
     /,
     *,
-    environment: str | None = None,
-    catalog: list[Path] | None = None,
+    environment: EnvironmentName = None,
+    catalog: CatalogFiles = None,
     json: OutputPath = None,
     csv: OutputPath = None,
     plot: Path | None = None,
@@ -53,10 +53,6 @@ def tow(
     ----------
     files
         Mooring files with `tow:`.
-    environment
-        An environment named in the files, or an environment file, in place of their own.
-    catalog
-        A catalogue of your own; its components hide others of the same id. Repeatable.
     json
         Write the result as JSON, - to print it; several files give an array.
     csv

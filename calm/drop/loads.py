@@ -10,7 +10,7 @@ import numpy as np
 from calm.drop.chain import BarChain
 from calm.physics.friction import Friction
 from calm.physics.line import Floats, Water
-from calm.physics.reference import REFERENCE_DENSITY
+from calm.physics.seawater import REFERENCE_DENSITY
 
 SLOWEST = 1e-3
 """Speed below which drag goes with the speed and not with its square [m/s]; else a line at rest

@@ -16,8 +16,8 @@ import numpy as np
 from calm.drop.chain import BarChain
 from calm.drop.loads import SLOWEST, Loads, WaterColumn, loads_on
 from calm.physics.line import Floats, Integers
-from calm.physics.reference import REFERENCE_DENSITY
 from calm.physics.reynolds import Smooth, drag_variation
+from calm.physics.seawater import REFERENCE_DENSITY
 from calm.solve import FallingAnchor
 
 MOST_ROUNDS = 16

@@ -13,7 +13,7 @@ from calm.errors import NoEquilibrium
 from calm.files import Anchor, Component, Sphere
 from calm.files.definition import STANDARD_GRAVITY
 from calm.files.rigid import Displacement
-from calm.physics.reference import REFERENCE_DENSITY
+from calm.physics.seawater import REFERENCE_DENSITY
 
 _LEAST_MASS = 0.1  # of what its net force weighs
 

@@ -16,8 +16,8 @@ from calm.exchange.exported_parts import ExportedLine, ExportedPart, ExportedTow
 from calm.exchange.mdd_writer import mdd_file
 from calm.exchange.moordyn_writer import CURRENTS, current_profile, moordyn_file
 from calm.physics.line import Line, Water
-from calm.physics.reference import REFERENCE_DENSITY
-from calm.records.csv_writer import table_csv
+from calm.physics.seawater import REFERENCE_DENSITY
+from calm.records.delimited import table_csv
 from calm.suggestions import unknown
 
 _HEADER = (

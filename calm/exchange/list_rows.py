@@ -22,7 +22,7 @@ from calm.exchange.part_names import (
     role_of,
     size_in,
 )
-from calm.physics.reference import REFERENCE_DENSITY
+from calm.physics.seawater import REFERENCE_DENSITY
 from calm.units import KILOGRAM_FORCE
 
 _TOTAL = re.compile(r"^(sub-?)?(total|totaux|sum|somme|ensemble)\b", re.I)

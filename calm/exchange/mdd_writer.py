@@ -9,7 +9,7 @@ import numpy as np
 
 from calm.exchange.exported_parts import ExportedLine, ExportedPart
 from calm.files import Chain, Cylinder, Sphere
-from calm.physics.reference import REFERENCE_DENSITY
+from calm.physics.seawater import REFERENCE_DENSITY
 from calm.units import KILOGRAM_FORCE
 
 _HALF_DENSITY = 0.5 * REFERENCE_DENSITY

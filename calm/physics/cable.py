@@ -9,7 +9,7 @@ from calm.physics.compiled import within
 from calm.physics.element import Vector, axis_along, drag_force, drag_share, few_steps_share
 from calm.physics.friction import BERTEAUX, HOERNER, friction_force, turning_friction
 from calm.physics.profile import Sea, distance_to_level, water_at
-from calm.physics.reference import REFERENCE_DENSITY
+from calm.physics.seawater import REFERENCE_DENSITY
 from calm.physics.state import NO_BALANCE, State
 from calm.physics.stretch import Knot, curve_strain, mean_curve_strain
 from calm.physics.strumming import Vibration, amplified_share, strummed

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import log, pi
 
-from calm.physics.reference import REFERENCE_DENSITY
+from calm.physics.seawater import REFERENCE_DENSITY
 
 SPHERE_CX = 0.5
 LONG_CYLINDER_CN = 1.2

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from calm.physics.friction import Friction
 from calm.physics.hull import Floating
-from calm.physics.reference import REFERENCE_VISCOSITY as REFERENCE_VISCOSITY
+from calm.physics.seawater import REFERENCE_VISCOSITY as REFERENCE_VISCOSITY
 from calm.physics.strumming import BourgetMarichal
 
 if TYPE_CHECKING:

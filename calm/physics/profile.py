@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from calm.physics.compiled import packed, within
 from calm.physics.line import Floats, Water
-from calm.physics.reference import REFERENCE_DENSITY
+from calm.physics.seawater import REFERENCE_DENSITY
 
 
 class Interval(NamedTuple):

@@ -14,8 +14,8 @@ from typing import NamedTuple
 from calm.physics.drag import interpolated
 from calm.physics.element import Vector
 from calm.physics.friction import BERTEAUX, CONSTANT
-from calm.physics.reference import REFERENCE_DENSITY
 from calm.physics.reynolds import Smooth, drag_variation
+from calm.physics.seawater import REFERENCE_DENSITY
 from calm.physics.state import Record
 from calm.physics.stretch import Knot, mean_curve_strain
 from calm.physics.strumming import Vibration, strummed

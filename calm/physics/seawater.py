@@ -6,11 +6,19 @@ Positions are geographic, in degrees north and east, as TEOS-10 takes them.
 from __future__ import annotations
 
 from math import radians, sin
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from calm.physics.line import Floats
+if TYPE_CHECKING:
+    from calm.physics.line import Floats
+
+REFERENCE_DENSITY = 1025.0
+"""Density of the sea water [kg/m³] for which buoyancies and drags are given."""
+
+REFERENCE_VISCOSITY = 1.36e-6
+"""Kinematic viscosity of sea water of 10 °C and 35 [m²/s], where nothing else is known."""
 
 MID_LATITUDE = 45.0
 """Where no position is given [degrees]. Latitude only turns depth into pressure: between the

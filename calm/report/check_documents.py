@@ -10,7 +10,7 @@ from calm.checks.finding import Finding, worst_state
 from calm.checks.inventory import total_of
 from calm.checks.rules import RULES
 from calm.quantities import QUANTITIES
-from calm.records.csv_writer import table_csv
+from calm.records.delimited import table_csv
 from calm.report.provenance import UNJUDGED
 from calm.report.result_json import members
 

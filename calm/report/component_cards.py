@@ -16,8 +16,7 @@ from calm.quantities import QUANTITIES
 from calm.report.blocks import Cell, Column, Heading, Pairs, ReportPart, Table
 
 if TYPE_CHECKING:
-    from calm.checks.catalogue_rules import CatalogueFinding
-    from calm.checks.missing import MissingFigures
+    from calm.checks.catalogue_rules import CatalogueFinding, MissingFigures
     from calm.files import Catalogue, Component
     from calm.files.catalogue import Assembly
 

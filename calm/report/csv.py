@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from calm.case.result_tables import Components, rows_down
 from calm.quantities import QUANTITIES
-from calm.records.csv_writer import table_csv
+from calm.records.delimited import table_csv
 
 if TYPE_CHECKING:
     from calm.case import Result, TowResult

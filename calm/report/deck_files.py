@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from calm.checks.finding import State
 from calm.drop import DropPlan
-from calm.records.csv_writer import table_csv
+from calm.records.delimited import table_csv
 from calm.report.blocks import PageBreak, Plate, Prose, Report, ReportPart, Section
 from calm.report.check_summary import verdict_prose
 from calm.report.deck_lists import (

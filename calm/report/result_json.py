@@ -10,7 +10,6 @@ from typing import Any
 
 from calm.errors import NoEquilibrium
 
-
 UNITS = {
     "length": "m",
     "force": "N",

@@ -12,7 +12,7 @@ from calm.checks.finding import State
 from calm.errors import NoEquilibrium
 from calm.physics.strumming import BourgetMarichal
 from calm.quantities import QUANTITIES, Quantity
-from calm.records.csv_writer import table_csv
+from calm.records.delimited import table_csv
 from calm.report.blocks import Cell, Column, Pairs, Prose, ReportPart, Span, Table
 from calm.units import KNOT
 

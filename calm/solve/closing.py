@@ -13,17 +13,10 @@ from typing import NamedTuple
 from calm.physics.compiled import set_row
 from calm.physics.hull import Riding, riding_of
 from calm.physics.passing import FAILURE, FX, FY, HANGING, LANDED, NODES, How, Z, pass_line
-from calm.physics.reference import REFERENCE_DENSITY
 from calm.physics.seabed import lay_line
+from calm.physics.seawater import REFERENCE_DENSITY
 from calm.physics.state import GOES_ON
 from calm.physics.track import Load
-from calm.solve.endings import (
-    FOUND,
-    MARCH_STOPPED,
-    MISSES,
-    NO_SHAPE_NEAR,
-    SLACK_ON_DIGITS,
-)
 from calm.solve.problem import (
     BELOW,
     CHANGED,
@@ -40,6 +33,13 @@ from calm.solve.problem import (
     reach_of,
 )
 from calm.solve.root import bracketed_root, root_near
+from calm.solve.status import (
+    FOUND,
+    MARCH_STOPPED,
+    MISSES,
+    NO_SHAPE_NEAR,
+    SLACK_ON_DIGITS,
+)
 
 OF_A_PART = 0.01
 """Miss of a part of a line, which is light and slack, as a share of that of the whole."""
@@ -68,7 +68,7 @@ class Root(NamedTuple):
 
 
 class Closed(NamedTuple):
-    """A closed line, or how it ended: see `calm.solve.endings`.
+    """A closed line, or how it ended: see `calm.solve.status`.
 
     Attributes
     ----------

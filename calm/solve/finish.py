@@ -11,7 +11,16 @@ from calm.physics.line import Line, Water
 from calm.physics.state import FAILURES, Trace
 from calm.physics.track import Load
 from calm.solve.closing import Closed
-from calm.solve.endings import (
+from calm.solve.problem import BELOW, CHANGED, FINE, MARCHES, MOST_AFLOAT, LineProblem
+from calm.solve.refine import Errors, Refined
+from calm.solve.search import (
+    NO_OTHER,
+    FoundShape,
+    ending_of_audit,
+)
+from calm.solve.solution import Settings, Solution
+from calm.solve.standing import standing_lift, too_heavy
+from calm.solve.status import (
     ABOVE_SURFACE,
     BELOW_SEABED,
     DRAGGED_DOWN,
@@ -28,17 +37,8 @@ from calm.solve.endings import (
     SLACK_ON_DIGITS,
     TOO_MANY_AFLOAT,
     UNSUPPORTED,
+    Status,
 )
-from calm.solve.problem import BELOW, CHANGED, FINE, MARCHES, MOST_AFLOAT, LineProblem
-from calm.solve.refine import Errors, Refined
-from calm.solve.search import (
-    NO_OTHER,
-    FoundShape,
-    ending_of_audit,
-)
-from calm.solve.solution import Settings, Solution
-from calm.solve.standing import standing_lift, too_heavy
-from calm.solve.status import Status
 
 STATUS_OF = {
     FOUND: Status.CONVERGED,

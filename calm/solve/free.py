@@ -15,8 +15,10 @@ doubles back: the balance holds there as elsewhere, but the line may tangle.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
+from itertools import compress
 from math import nan
+from typing import Any
 
 import numpy as np
 
@@ -162,3 +164,21 @@ def _tangles(solution: Solution) -> tuple[int, ...]:
     back[piece[np.diff(solution.position[:, 2]) > 0.0]] = True
     back[: head_count(line)] = False  # nothing is ahead of the free end
     return tuple(np.flatnonzero(back).tolist())
+
+
+def part_of(line: Line, first: int, stop: int) -> Line:
+    """The pieces from `first` up to, not including, `stop`, with their clamps."""
+    index = np.arange(len(line.length))
+    pieces = (first <= index) & (index < stop)
+    clamps = pieces[line.clamp_piece]
+    columns: dict[str, Any] = {}
+    for field in fields(line):
+        column, kept = getattr(line, field.name), pieces
+        if field.name.startswith("clamp_"):
+            kept = clamps
+        if isinstance(column, np.ndarray):
+            columns[field.name] = column[kept]
+        elif isinstance(column, tuple):
+            columns[field.name] = tuple(compress(column, kept))
+    columns["clamp_piece"] = columns["clamp_piece"] - first
+    return replace(line, **columns)

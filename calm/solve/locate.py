@@ -18,7 +18,8 @@ from calm.solve.closing import (
     whole_line,
     with_sought,
 )
-from calm.solve.endings import (
+from calm.solve.problem import BELOW, MOST_AFLOAT, About, LineProblem, Search, Unknown
+from calm.solve.status import (
     DRAGGED_DOWN,
     FOUND,
     MARCH_STOPPED,
@@ -26,7 +27,6 @@ from calm.solve.endings import (
     SLACK_AT_REST,
     TOO_MANY_AFLOAT,
 )
-from calm.solve.problem import BELOW, MOST_AFLOAT, About, LineProblem, Search, Unknown
 
 SCAN = 16
 """Depths tried between the upright line and its deepest conceivable knockdown where the current
@@ -51,7 +51,7 @@ class CoarseRoots(NamedTuple):
 
     Attributes
     ----------
-    ending, value : FOUND, or why there is none: see `calm.solve.endings`
+    ending, value : FOUND, or why there is none: see `calm.solve.status`
     root : the highest
     deeper : the deepest that the scan came upon; not `found` where that is the same
     """

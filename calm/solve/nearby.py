@@ -18,7 +18,6 @@ from calm.physics.state import Trace
 from calm.physics.track import Track
 from calm.solve.audit import referee_of
 from calm.solve.closing import Closed, Root, not_closed, planned, polish
-from calm.solve.endings import FOUND, MARCH_STOPPED
 from calm.solve.finish import closing_refusal, solution_found
 from calm.solve.locate import locate
 from calm.solve.mooring import search_of, solve_mooring
@@ -27,7 +26,7 @@ from calm.solve.refine import Errors, Refined
 from calm.solve.search import audited
 from calm.solve.solution import Settings, Solution
 from calm.solve.speed import runs_compiled
-from calm.solve.status import Status
+from calm.solve.status import FOUND, MARCH_STOPPED, Status
 
 
 class Nearby:

@@ -19,7 +19,6 @@ from calm.physics.passing import FAILURE, NODES
 from calm.physics.profile import interval_at
 from calm.physics.state import Record
 from calm.solve.closing import Closed, Root, halve, not_closed, planned, polish
-from calm.solve.endings import BELOW_SEABED, FOUND, MARCH_STOPPED, NO_SHAPE_NEAR
 from calm.solve.problem import (
     BELOW,
     CHOSEN,
@@ -32,6 +31,7 @@ from calm.solve.problem import (
     LineProblem,
     Search,
 )
+from calm.solve.status import BELOW_SEABED, FOUND, MARCH_STOPPED, NO_SHAPE_NEAR
 
 DEPTH_TARGET = 4e-5
 TENSION_TARGET = 1.6e-4

@@ -24,19 +24,6 @@ from calm.physics.referee import (
 )
 from calm.physics.track import Load
 from calm.solve.closing import Closed, Root, coarse_miss, not_closed, place, planned, whole_line
-from calm.solve.endings import (
-    ABOVE_SURFACE,
-    BELOW_SEABED,
-    FOUND,
-    MARCH_STOPPED,
-    NO_SHAPE_NEAR,
-    NOT_CLOSED,
-    NOT_LYING,
-    OUT_OF_BALANCE,
-    SLACK_AT_REST,
-    SLACK_ON_DIGITS,
-    UNSUPPORTED,
-)
 from calm.solve.locate import locate
 from calm.solve.problem import (
     BELOW,
@@ -53,6 +40,19 @@ from calm.solve.problem import (
 )
 from calm.solve.refine import UNKNOWN_ERRORS, Errors, Refined, refine, tension_at
 from calm.solve.starts import is_highest, start_of
+from calm.solve.status import (
+    ABOVE_SURFACE,
+    BELOW_SEABED,
+    FOUND,
+    MARCH_STOPPED,
+    NO_SHAPE_NEAR,
+    NOT_CLOSED,
+    NOT_LYING,
+    OUT_OF_BALANCE,
+    SLACK_AT_REST,
+    SLACK_ON_DIGITS,
+    UNSUPPORTED,
+)
 
 LARGEST_CLOSURE = 1e-6
 LARGEST_MOMENT = 1e-8
@@ -88,7 +88,7 @@ class FoundShape(NamedTuple):
 
     Attributes
     ----------
-    ending, value, piece : see `calm.solve.endings`
+    ending, value, piece : see `calm.solve.status`
     refined : the closed line
     errors : of the shape, with what no halving shows
     closure, moment : what the audit found

@@ -6,7 +6,7 @@ import numpy as np
 
 from calm.errors import NoEquilibrium
 from calm.physics.line import Floats, Line, Water
-from calm.physics.reference import REFERENCE_DENSITY
+from calm.physics.seawater import REFERENCE_DENSITY
 from calm.solve.status import Status
 
 

@@ -24,7 +24,6 @@ from calm.solve.closing import (
     polish,
     whole_line,
 )
-from calm.solve.endings import FOUND, MARCH_STOPPED
 from calm.solve.finish import closing_refusal
 from calm.solve.mooring import MORE_ROOM, search_of
 from calm.solve.problem import (
@@ -51,6 +50,7 @@ from calm.solve.refine import (
 from calm.solve.search import Referee
 from calm.solve.solution import Settings
 from calm.solve.speed import runs_compiled
+from calm.solve.status import FOUND, MARCH_STOPPED
 
 
 class Towed:

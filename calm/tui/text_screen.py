@@ -14,7 +14,7 @@ from textual.content import Content
 from textual.widgets import Static, TextArea
 
 from calm.errors import Problem
-from calm.files.editing.retyped import retyped
+from calm.files.editing.changes import retyped
 from calm.tui.actions import bindings, hints
 from calm.tui.bars import KeyBar
 from calm.tui.dialogs import Asked, InputSheet

@@ -12,7 +12,7 @@ import numpy as np
 from calm.analytic.uniform import heavy_line
 from calm.physics.friction import Friction
 from calm.physics.line import Floats, Water
-from calm.physics.reference import REFERENCE_DENSITY
+from calm.physics.seawater import REFERENCE_DENSITY
 from calm.solve import Settings, Solution, solve_mooring
 from calm.verification import solved_moorings
 from calm.verification.published_case import (

@@ -14,7 +14,7 @@ from typing import Generic, TypeVar
 import numpy as np
 
 from calm.physics.line import Floats, Line, Water
-from calm.physics.reference import REFERENCE_DENSITY
+from calm.physics.seawater import REFERENCE_DENSITY
 from calm.solve import Settings, Solution, Towing, solve_mooring, solve_tow
 
 Solved = TypeVar("Solved")

@@ -20,7 +20,7 @@ from calm.drop.motion import ChainState
 from calm.errors import NoEquilibrium
 from calm.physics.hull import Floating, spherical_hull
 from calm.physics.line import Line, Water
-from calm.physics.reference import REFERENCE_DENSITY
+from calm.physics.seawater import REFERENCE_DENSITY
 from calm.solve import FallingAnchor, Solution, solve_fall, solve_mooring
 from calm.verification.published_case import (
     FINE,

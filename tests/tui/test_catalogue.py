@@ -1,9 +1,10 @@
 """The catalogue beside the line: what is chosen, replaced and defined."""
 
-from calm.assemble.catalogue_search import Index, Remembered
+from calm.assemble.catalogue_search import Index
 from calm.files.catalogue import Catalogue
 from calm.tui.catalogue.component_list import ComponentList
 from calm.tui.catalogue.component_screen import ComponentScreen
+from calm.tui.catalogue.remembered import Remembered
 from calm.tui.field import Field
 from tests.tui.conftest import MOORING
 

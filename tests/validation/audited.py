@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from calm.physics.closure import closure
 from calm.physics.referee import worst_moment
-from calm.physics.reference import REFERENCE_DENSITY
+from calm.physics.seawater import REFERENCE_DENSITY
 from calm.solve import Solution
 from calm.solve.audit import loads_of, moored_of, shape_of
+from calm.solve.search import closure
 
 
 def closure_of(solution: Solution) -> float:

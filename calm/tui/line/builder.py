@@ -2,30 +2,40 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar
+from collections.abc import Callable, Mapping
+from typing import Any, ClassVar
 
 from textual import on
 from textual.binding import BindingType
 from textual.events import DescendantFocus, Key
 
 from calm.files.components import KINDS
+from calm.files.editing import Draft
 from calm.tui.actions import bindings, hints
 from calm.tui.bars import KeyBar
 from calm.tui.catalogue.catalogue_pane import CataloguePane
 from calm.tui.cell_editor import CellEditor
+from calm.tui.dialogs import InputSheet
 from calm.tui.key_table import Place
 from calm.tui.line.advising import Advising
 from calm.tui.line.body import LineBody
 from calm.tui.line.comparing import Comparing
 from calm.tui.line.line_pane import LinePane
+from calm.tui.line.mooring_sheet import (
+    as_deployed,
+    deployed_sheet,
+    document_sheet,
+    documented,
+    hung_at,
+    mooring_sheet,
+    tow_sheet,
+    written,
+)
 from calm.tui.messages import Workspace
 from calm.tui.pictures import Picture, Tab
 from calm.tui.screen import DraftScreen
 from calm.tui.session import Location
 from calm.tui.verdict_pane import VerdictPane
-
-if TYPE_CHECKING:
-    from calm.tui.line.sheets import Sheets
 
 
 class BuilderScreen(DraftScreen):
@@ -271,24 +281,40 @@ class BuilderScreen(DraftScreen):
         self.tell("")
         self.workspace.edited()
 
-    @property
-    def _sheets(self) -> Sheets:
-        from calm.tui.line.sheets import Sheets
-
-        return Sheets(self.app, self.body.line)
-
     def action_mooring(self) -> None:
-        """Name, description, position."""
-        self._sheets.mooring()
+        """Ask for name, description and position."""
+        self._ask(mooring_sheet(self._draft), "name and place", written)
 
     def action_document(self) -> None:
-        """Do what the title block of the drawings says, and what the revision changed."""
-        self._sheets.document()
+        """Ask for what the title block of the drawings says, and what the revision changed."""
+        self._ask(document_sheet(self._draft), "the document", documented)
 
     def action_deployed(self) -> None:
-        """When and where the mooring was deployed, and what of it at the row."""
-        self._sheets.deployed()
+        """Ask when and where the mooring was deployed, and what of it hangs at the row."""
+        view = self.workspace.view if self.workspace.is_fresh else None
+        hung = hung_at(None if view is None else view.file, self.body.line.table.spot)
+
+        def deployed(draft: Draft, texts: Mapping[str, str]) -> Draft:
+            return as_deployed(draft, hung, texts)
+
+        self._ask(deployed_sheet(self._draft, hung), "the deployment", deployed)
 
     def action_tow(self) -> None:
-        """Speed and course of a tow; a mooring becomes one."""
-        self._sheets.tow()
+        """Ask for speed and course of a tow; a mooring becomes one."""
+        self._ask(tow_sheet(self._draft), "the tow", written)
+
+    @property
+    def _draft(self) -> Draft:
+        return self.workspace.session.draft
+
+    def _ask(
+        self, sheet: InputSheet, label: str, changed: Callable[[Draft, Mapping[str, str]], Draft]
+    ) -> None:
+        """Show a sheet, and write what is entered."""
+        session = self.workspace.session
+
+        def take(texts: dict[str, str] | None) -> None:
+            if texts is not None:
+                self.body.line.attempt(lambda: session.do(changed(session.draft, texts), label))
+
+        self.app.push_screen(sheet, take)

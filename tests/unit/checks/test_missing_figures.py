@@ -2,7 +2,7 @@
 
 import pytest
 
-from calm.checks.missing import missing_figures
+from calm.checks.catalogue_rules import missing_figures
 from calm.files import Anchor, Assembly, Cable, Chain, Cylinder, Sphere
 
 SPHERE = {"kind": "sphere", "diameter": "1 m", "buoyancy": "2000 N"}

@@ -10,7 +10,7 @@ from calm.files.catalogue import Assembly, CatalogueEntry, define
 from calm.files.components import Component
 from calm.files.definition import CATALOGUE_DENSITY
 from calm.files.yaml_document import Document, SourceMapping
-from calm.physics.reference import REFERENCE_DENSITY
+from calm.physics.seawater import REFERENCE_DENSITY
 
 G = 9.80665
 

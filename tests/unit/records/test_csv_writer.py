@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from calm.records.csv_writer import table_csv
+from calm.records.delimited import table_csv
 
 
 @pytest.mark.parametrize(

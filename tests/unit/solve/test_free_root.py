@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from calm.physics.state import MarchError
-from calm.solve.free_root import system_root
+from calm.solve.free_search import system_root
 
 
 def circle_and_line(x):

@@ -5,7 +5,7 @@ import random
 import pytest
 from textual.document._document import Document
 
-from calm.files.editing.retyped import lines_of, retyped
+from calm.files.editing.changes import lines_of, retyped
 
 MIXED = "name: a\r\n# one\u2028two\x0cthree\nline: []\r\n\nb: 'c'\rd: e"
 BREAKS = ("\n", "\n", "\r\n", "\r", "\u2028", "\x0c", "a", "# x", "")
