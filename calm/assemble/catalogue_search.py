@@ -195,7 +195,7 @@ def _uses() -> Counter[str]:
 
 
 def _rank(each: Listed, words: Sequence[str], others: Sequence[str]) -> int:
-    """Return how well a component fits: its id, the beginning of it, all words in it, in what is
+    """Return how well a component fits: its id, beginning or end of it, all words in it, in what is
     written of it, in synonyms.
 
     Of ids that have all words, one that begins with the first of them is nearer.
@@ -210,7 +210,7 @@ def _rank(each: Listed, words: Sequence[str], others: Sequence[str]) -> int:
     joined, id = "".join(words), _BETWEEN.sub("", each.id)
     if id == joined:
         return 0
-    if id.startswith(joined):
+    if id.startswith(joined) or id.endswith(joined):
         return 1
     if all(word in each.id for word in words):
         return 2 if id.startswith(words[0]) else 3
