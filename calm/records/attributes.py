@@ -245,7 +245,8 @@ _REMARKABLE = (
         "extremes by statistics are no currents of one time",
     ),
     (
-        r"^(the )?tid(al|es?)\b(?!.*\b(obser[v]|measur|adcp|adp|moor|meter|record|channel|inlet)\w*)",
+        r"^(the )?tid(al|es?)\b"
+        r"(?!.*\b(obser[v]|measur|adcp|adp|moor|meter|record|channel|inlet)\w*)",
         "where it is the tide alone, the rest of the current is missing",
     ),
 )
