@@ -101,7 +101,7 @@ class FileOutcome:
 
             parts.append(explanation_part(self.explanation))
         if self.uncertain is not None:
-            from calm.report.uncertainty import uncertainty_part
+            from calm.report.result_report import uncertainty_part
 
             parts.append(uncertainty_part(self.uncertain))
         return parts

@@ -82,7 +82,7 @@ def summary_report(summary: Summary) -> Report:
             (
                 limits_table(summary),
                 _not_judged(summary),
-                limits_used_table([(summary.name, summary.limits_used)]),
+                limits_used_table(summary.limits_used),
             ),
         ),
         ReportPart("Distributions", (*_left_out(summary), *statistics_tables(summary))),

@@ -3,16 +3,28 @@
 from __future__ import annotations
 
 import math
+import re
 from collections import Counter
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
+from itertools import groupby
 from typing import TYPE_CHECKING
 
 from calm.checks.criterion import said
-from calm.checks.finding import AS_GIVEN, Finding, State, worst_state
+from calm.checks.finding import AS_GIVEN, OWN, Finding, State, worst_state
 from calm.checks.rules import RULES
 from calm.files.check_limits import LimitKey
 from calm.quantities import QUANTITIES
-from calm.report.blocks import ON_THE_WAY, Cell, Column, Prose, Section, Table, Worst, table_of
+from calm.report.blocks import (
+    ON_THE_WAY,
+    Cell,
+    Column,
+    Prose,
+    Section,
+    Span,
+    Table,
+    Worst,
+    table_of,
+)
 
 if TYPE_CHECKING:
     from calm.checks.assessment import Assessment
@@ -50,22 +62,22 @@ def worst_by_rule(assessment: Assessment) -> tuple[Worst, ...]:
     ]
     columns.append((ON_THE_WAY, assessment.findings))
     return tuple(
-        Worst(column, min(group, key=_rank), unknown_count(group))
+        Worst(column, min(group, key=_rank), _unknown_count(group))
         for column, findings in columns
-        for group in _groups(findings, lambda each: each.rule)
+        for group in grouped(findings, lambda each: each.rule)
     )
 
 
 def worst_by_part(findings: Iterable[Finding]) -> list[Finding]:
     """The worst finding of each rule on each component, the gravest first."""
-    groups = _groups(findings, lambda each: (each.rule, each.place))
+    groups = grouped(findings, lambda each: (each.rule, each.place))
     return sorted((min(group, key=_rank) for group in groups), key=_rank)
 
 
 def rules_tables(columns: Sequence[str], found: Sequence[Worst]) -> Iterator[Table]:
     """Rules by environments: state, margin and component of the worst finding of each."""
     cells = {(each.column, each.finding.rule): each for each in found}
-    for beside in abreast(columns):
+    for beside in _abreast(columns):
         rules = [
             rule for rule in RULES.values() if any((one, rule.name) in cells for one in beside)
         ]
@@ -80,7 +92,7 @@ def matrix_tables(sections: Sequence[Section]) -> Iterator[Table]:
     """Moorings by environments: the worst state in each, the rule that makes it, and its margin."""
     every = dict.fromkeys(column for section in sections for column in section.columns)
     every.pop(ON_THE_WAY, None)
-    for beside in abreast([*every, ON_THE_WAY]):
+    for beside in _abreast([*every, ON_THE_WAY]):
         rows = tuple(
             (Cell(section.name), *(_of_column(section, column) for column in beside))
             for section in sections
@@ -90,74 +102,54 @@ def matrix_tables(sections: Sequence[Section]) -> Iterator[Table]:
 
 def worst_table(sections: Sequence[Section]) -> Table:
     """Each rule with the worst of all its findings, and in how many moorings it fails or warns."""
-    found: dict[str, list[tuple[Section, Finding]]] = {}
-    missing: Counter[str] = Counter()
+    several = len(sections) > 1
+    found: dict[str, list[tuple[Section, Worst]]] = {name: [] for name in RULES}
     for section in sections:
         for each in section.worst:
-            found.setdefault(each.finding.rule, []).append((section, each.finding))
-            missing[each.finding.rule] += each.unknown
-    rows = []
-    for rule in RULES.values():
-        if rule.name not in found:
-            continue
-        section, finding = min(found[rule.name], key=lambda pair: pair[1].rank)
-        rows.append(
-            (
-                Cell(finding.state.value, state=finding.state),
-                Cell(rule.title),
-                Cell(say_in_unit(finding, finding.value)),
-                Cell(say_in_unit(finding, finding.limit)),
-                Cell(margin_of(finding)),
-                Cell(section.name, finding.component or ""),
-                Cell(place_of(finding)),
-                Cell(_moorings(found[rule.name], State.FAIL)),
-                Cell(_moorings(found[rule.name], State.WARN)),
-                Cell(str(missing[rule.name])),
-            )
-        )
-    columns = (
-        Column("state", share=0.0),
-        Column("rule"),
-        Column("value", numeric=True),
-        Column("limit", numeric=True),
-        Column("margin", numeric=True),
-        Column("mooring, component"),
-        Column("environment"),
-        Column("moorings that fail", numeric=True),
-        Column("that warn", numeric=True),
-        Column("figures unknown", numeric=True),
-    )
-    return Table("Worst finding of each rule", columns, tuple(rows), sortable=True)
+            found[each.finding.rule].append((section, each))
+    rules = [pairs for pairs in found.values() if pairs]
 
+    def worst(pairs: Sequence[tuple[Section, Worst]]) -> Finding:
+        return min((each.finding for _, each in pairs), key=_rank)
 
-def failures(sections: Sequence[Section]) -> Table | Prose:
-    """Every rule that a mooring fails, with its worst finding and the remedy."""
-    failed = [
-        (section.name, min(group, key=_rank), len(group) - 1)
-        for section in sections
-        for group in _groups(
-            (each.finding for each in section.worst if each.finding.state is State.FAIL),
-            lambda each: each.rule,
-        )
-    ]
-    if not failed:
-        if _failing_accepted(each.finding for section in sections for each in section.worst):
-            return Prose(("No rule fails but what is accepted.",), State.ACCEPTED)
-        return Prose(("No rule fails.",), State.PASS)
+    def figure(pairs: Sequence[tuple[Section, Worst]], name: str) -> str:
+        return say_in_unit(worst(pairs), getattr(worst(pairs), name))
+
+    def moorings(pairs: Sequence[tuple[Section, Worst]], state: State) -> str:
+        count = len({section.name for section, each in pairs if each.finding.state is state})
+        return str(count) if count and several else ""
+
     return table_of(
-        "Failures",
-        failed,
-        (Column("mooring"), lambda one: one[0]),
-        (Column("rule"), lambda one: RULES[one[1].rule].title),
+        "Worst finding of each rule",
+        rules,
+        (Column("rule", share=0.0), lambda pairs: worst(pairs).rule),
+        (Column("state", share=0.0), lambda pairs: state_cell(worst(pairs))),
+        (Column("value", numeric=True), lambda pairs: figure(pairs, "value")),
+        (Column("limit", numeric=True), lambda pairs: figure(pairs, "limit")),
+        (Column("margin", numeric=True), lambda pairs: margin_of(worst(pairs))),
         (
-            Column("environment"),
-            lambda one: Cell(place_of(one[1]), f"and {one[2]} more" if one[2] else ""),
+            Column("unknown", numeric=True),
+            lambda pairs: str(sum(each.unknown for _, each in pairs) or ""),
         ),
         (
-            Column("finding and remedy", share=2.5),
-            lambda one: Cell(one[1].message, one[1].remedy or ""),
+            Column("moorings that fail", numeric=True, narrow=False),
+            lambda pairs: moorings(pairs, State.FAIL),
         ),
+        (
+            Column("that warn", numeric=True, narrow=False),
+            lambda pairs: moorings(pairs, State.WARN),
+        ),
+        (Column("where"), lambda pairs: _where(worst(pairs), several)),
+        sortable=True,
     )
+
+
+def _where(finding: Finding, several: bool) -> str:
+    """The component, with mooring, environment and situation where they are not plain."""
+    places = [finding.component, finding.mooring if several else None]
+    if several or finding.environment != OWN or finding.situation != AS_GIVEN:
+        places.append(place_of(finding))
+    return ", ".join(filter(None, places))
 
 
 _RULES_NOTE = "Under each state: the least margin, the component that has it, and what is unknown."
@@ -193,16 +185,12 @@ def _with_unknown(detail: str, count: int) -> str:
     return "; ".join(filter(None, (detail, f"{count} unknown" if count else "")))
 
 
-def unknown_count(findings: Iterable[Finding]) -> int:
+def _unknown_count(findings: Iterable[Finding]) -> int:
     """Return how many of the findings are unknown."""
     return sum(finding.state is State.UNKNOWN for finding in findings)
 
 
-def _moorings(found: Sequence[tuple[Section, Finding]], state: State) -> str:
-    return str(len({section.name for section, finding in found if finding.state is state}))
-
-
-def abreast(columns: Sequence[str]) -> Iterator[Sequence[str]]:
+def _abreast(columns: Sequence[str]) -> Iterator[Sequence[str]]:
     """The columns in groups of about the same size that fit the width of a page."""
     groups = math.ceil(len(columns) / _ABREAST)
     size = math.ceil(len(columns) / groups)
@@ -210,11 +198,76 @@ def abreast(columns: Sequence[str]) -> Iterator[Sequence[str]]:
         yield columns[start : start + size]
 
 
-def _groups(findings: Iterable[Finding], key: Callable[[Finding], Hashable]) -> list[list[Finding]]:
+def grouped(findings: Iterable[Finding], key: Callable[[Finding], Hashable]) -> list[list[Finding]]:
+    """Return the findings of each key together, in the order in which the keys come."""
     groups: dict[Hashable, list[Finding]] = {}
     for finding in findings:
         groups.setdefault(key(finding), []).append(finding)
     return list(groups.values())
+
+
+def joined(findings: Iterable[Finding]) -> list[list[Finding]]:
+    """Return together the findings of one rule that say the same of several components."""
+    return grouped(findings, lambda one: (one.rule, one.state, _wording(one)))
+
+
+def _wording(finding: Finding) -> str:
+    """What a finding says and advises, without its component and figures."""
+    text = f"{finding.message} {finding.remedy or ''}"
+    if finding.component is not None:
+        text = text.replace(finding.component, "")
+    return re.sub(r"\d[\d.]*", "#", text)
+
+
+def rules_of(findings: Iterable[Finding]) -> list[str]:
+    """The titles of the rules of some findings, each once."""
+    return list(dict.fromkeys(RULES[one.rule].title for one in findings))
+
+
+def named(labels: Iterable[str], most: int = 3) -> str:
+    """Name labels, each once, such as ``glass 1 to 4, cable``.
+
+    Parameters
+    ----------
+    most : names shown, successive numbers as one; how many labels are left is said
+    """
+    numbered: dict[str, list[int]] = {}
+    for label in labels:
+        match = re.fullmatch(r"(.+ )([1-9]\d{0,5})", label)
+        stem, number = match.groups() if match else (label, "0")
+        numbered.setdefault(stem, []).append(int(number))
+    runs = [run for stem, numbers in numbered.items() for run in _runs(stem, numbers)]
+    left = sum(count for _, count in runs[most:])
+    return ", ".join(name for name, _ in runs[:most]) + (f" and {left} more" if left else "")
+
+
+def _runs(stem: str, numbers: Iterable[int]) -> Iterator[tuple[str, int]]:
+    """Name each run of successive numbers, and count what it stands for."""
+    each = sorted(set(numbers))
+    for _, group in groupby(enumerate(each), lambda pair: pair[1] - pair[0]):
+        run = [number for _, number in group]
+        last = f" to {run[-1]}" if len(run) > 1 else ""
+        yield f"{stem}{run[0] or ''}{last}", len(run)
+
+
+def named_components(findings: Iterable[Finding]) -> str:
+    """Name the components of some findings."""
+    return named(one.component or "whole line" for one in findings)
+
+
+def state_cell(finding: Finding) -> Cell:
+    """The state of a finding, in its colour and word."""
+    return Cell(finding.state.value, state=finding.state)
+
+
+def said_of(finding: Finding) -> Cell:
+    """Return what was found and what to do; the figures of a pass say it all, and so does a remedy
+    that names the figure missing."""
+    if finding.state is State.PASS:
+        return Cell()
+    if finding.state is State.UNKNOWN and finding.remedy:
+        return Cell(finding.remedy)
+    return Cell(finding.message, finding.remedy or "")
 
 
 SIGNS = {
@@ -263,53 +316,20 @@ def _failing_accepted(findings: Iterable[Finding]) -> bool:
 def verdict_prose(findings: Iterable[Finding]) -> Prose:
     """The verdict with its sign, such as ``? nothing fails, 34 figures unknown``."""
     state, words = verdict_of(findings)
-    return Prose((f"{SIGNS[state]} {words}",), state)
+    return Prose(((Span(f"{SIGNS[state]} {words}", state),),), state)
 
 
-def accepted_table(moorings: Sequence[tuple[str, Sequence[Finding]]]) -> Table | None:
-    """Return what is accepted of each mooring, with its reason; None where nothing is."""
-    accepted = [
-        (name, finding, accept)
-        for name, findings in moorings
-        for finding in findings
-        if (accept := finding.accept) is not None
-    ]
-    if not accepted:
-        return None
-    state = Cell(State.ACCEPTED.value, state=State.ACCEPTED)
-    return table_of(
-        "Accepted with a reason",
-        accepted,
-        (Column("state", share=0.0), lambda one: state),
-        (Column("mooring"), lambda one: one[0]),
-        (
-            Column("rule, component"),
-            lambda one: Cell(RULES[one[1].rule].title, one[1].component or "whole line"),
-        ),
-        (Column("finding", share=1.5), lambda one: one[1].message),
-        (Column("reason", share=1.5), lambda one: one[2].reason),
-        (Column("by, on"), lambda one: Cell(one[2].by or "-", one[2].date or "")),
-        (Column("until", share=0.0), lambda one: one[2].until or "for good"),
-    )
-
-
-def limits_table(moorings: Sequence[tuple[str, Sequence[LimitKey]]]) -> Table:
-    """The limits as used, with their defaults and the sources of those; departures come first."""
-    limits = [
-        (name, key)
-        for name, keys in moorings
-        for key in sorted(keys, key=lambda key: not key.departs)
-    ]
+def limits_table(limits: Iterable[LimitKey], title: str = "Limits as used") -> Table:
+    """Limits with their defaults and the sources of those; departures come first."""
     departs = Cell("departs", state=State.WARN)
     return table_of(
-        "Limits as used",
-        limits,
-        (Column("", share=0.0), lambda one: departs if one[1].departs else ""),
-        (Column("mooring"), lambda one: one[0]),
-        (Column("limit"), lambda one: one[1].name),
-        (Column("as used", numeric=True), lambda one: said(one[1], one[1].value)),
-        (Column("default", numeric=True), lambda one: said(one[1], one[1].default)),
-        (Column("source of the default", share=2.0), lambda one: one[1].source),
+        title,
+        sorted(limits, key=lambda key: not key.departs),
+        (Column("", share=0.0), lambda key: departs if key.departs else ""),
+        (Column("limit", share=1.2), lambda key: key.name),
+        (Column("as used", numeric=True), lambda key: said(key, key.value)),
+        (Column("default", numeric=True), lambda key: said(key, key.default)),
+        (Column("source of the default", share=2.0), lambda key: key.source),
         note="A limit that departs from its default is the design's own; no source stands for it.",
     )
 
@@ -321,19 +341,23 @@ def unknown_table(findings: Iterable[Finding]) -> Table | None:
     unknown = [each for each in worst_by_part(findings) if each.state is State.UNKNOWN]
     if not unknown:
         return None
+    by_part = grouped(unknown, lambda each: each.component)
+    alike: dict[Hashable, list[list[Finding]]] = {}
+    for found in by_part:
+        alike.setdefault(tuple((one.rule, _wording(one)) for one in found), []).append(found)
     return table_of(
         "Unknown, piece by piece",
-        _groups(unknown, lambda each: each.component),
-        (Column("component"), lambda found: found[0].component or "whole line"),
-        (
-            Column("not judged by"),
-            lambda found: ", ".join(RULES[one.rule].title for one in found),
-        ),
+        alike.values(),
+        (Column("component"), lambda parts: named_components(part[0] for part in parts)),
+        (Column("not judged by"), lambda parts: ", ".join(rules_of(parts[0]))),
         (
             Column("what would settle it", share=1.5),
-            lambda found: " ".join(dict.fromkeys(one.remedy for one in found if one.remedy)),
+            lambda parts: " ".join(dict.fromkeys(one.remedy for one in parts[0] if one.remedy)),
         ),
-        (Column("what it bears or stands there", share=1.5), _known_values),
+        (
+            Column("greatest figures found", share=1.5),
+            lambda parts: ", ".join(_greatest_values(parts)),
+        ),
         sortable=True,
     )
 
@@ -342,7 +366,10 @@ def _counted(count: int, word: str) -> str:
     return f"{count} {word}{'s' * (count != 1)}"
 
 
-def _known_values(found: Iterable[Finding]) -> str:
-    """The values of some findings with where they are."""
-    known = (one for one in found if one.value is not None)
-    return ", ".join(f"{say_in_unit(one, one.value)} ({place_of(one)})" for one in known)
+def _greatest_values(parts: Sequence[Sequence[Finding]]) -> Iterator[str]:
+    """The greatest value by each rule of some parts, and where it is."""
+    for found in grouped((one for part in parts for one in part), lambda one: one.rule):
+        known = [(one.value, one) for one in found if one.value is not None]
+        if known:
+            value, greatest = max(known, key=lambda pair: pair[0])
+            yield f"{say_in_unit(greatest, value)} ({place_of(greatest)})"

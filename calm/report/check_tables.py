@@ -12,7 +12,16 @@ from calm.drawing.schematic.shown_parts import place_text
 from calm.files.components import FLEXIBLE_KINDS
 from calm.quantities import QUANTITIES, say
 from calm.report.blocks import Cell, Column, Prose, Table, table_of
-from calm.report.check_summary import margin_of, place_of, say_in_unit, worst_by_part
+from calm.report.check_summary import (
+    joined,
+    margin_of,
+    named_components,
+    place_of,
+    said_of,
+    say_in_unit,
+    state_cell,
+    worst_by_part,
+)
 from calm.report.sheet import figure_cell, quantity_column
 
 if TYPE_CHECKING:
@@ -67,30 +76,30 @@ def checks_table(findings: Iterable[Finding]) -> Iterator[Table | Prose]:
     sources = list(dict.fromkeys(finding.source for finding in kept))
     yield table_of(
         "Worst finding of each rule on each component",
-        kept,
-        (Column("state", share=0.0), lambda one: Cell(one.state.value, state=one.state)),
-        (Column("rule", share=1.3), lambda one: RULES[one.rule].title),
-        (Column("component"), lambda one: one.component or "whole line"),
-        (Column("value", numeric=True), lambda one: say_in_unit(one, one.value)),
-        (Column("limit", numeric=True), lambda one: say_in_unit(one, one.limit)),
-        (Column("margin", numeric=True), margin_of),
-        (Column("environment, situation"), place_of),
-        (Column("finding and remedy", share=2.5), _said),
-        (Column("source", numeric=True), lambda one: str(sources.index(one.source) + 1)),
-        note="Each component where it is worst; every finding is in checks.csv and report.json.",
+        joined(kept),
+        (Column("state", share=0.0), lambda found: state_cell(found[0])),
+        (Column("rule"), lambda found: _with_source(found, sources)),
+        (Column("component", share=1.8), _placed),
+        (Column("value", numeric=True), lambda found: say_in_unit(found[0], found[0].value)),
+        (Column("limit", numeric=True), lambda found: say_in_unit(found[0], found[0].limit)),
+        (Column("margin", numeric=True), lambda found: margin_of(found[0])),
+        (Column("finding and remedy", share=2.5), lambda found: said_of(found[0])),
+        note="Components of which a rule says the same share a row, which shows the worst of them; "
+        "every finding is in checks.csv and report.json. [1] is the first source below the table.",
         sortable=True,
     )
-    yield Prose(tuple(f"{number}. {source}" for number, source in enumerate(sources, 1)))
+    yield Prose(tuple(f"[{number}] {source}" for number, source in enumerate(sources, 1)))
 
 
-def _said(finding: Finding) -> Cell:
-    """Return what was found and what to do; the figures of a pass say it all, and so does a remedy
-    that names the figure missing."""
-    if finding.state is State.PASS:
-        return Cell()
-    if finding.state is State.UNKNOWN and finding.remedy:
-        return Cell(finding.remedy)
-    return Cell(finding.message, finding.remedy or "")
+def _with_source(found: Sequence[Finding], sources: Sequence[str]) -> Cell:
+    return Cell(RULES[found[0].rule].title, f"[{sources.index(found[0].source) + 1}]")
+
+
+def _placed(found: Sequence[Finding]) -> Cell:
+    """The components, and where the first, the worst, has its figures."""
+    place = place_of(found[0])
+    where = f"{found[0].component}, {place}" if len(found) > 1 else place
+    return Cell(named_components(found), where)
 
 
 def breaks_table(backup: Sequence[Break]) -> Table:

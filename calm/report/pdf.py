@@ -39,7 +39,7 @@ def pdf_leaf(section: Section) -> str:
 
 def result_pdf(result: Result | TowResult, uncertain: Uncertain | None = None) -> bytes:
     """The report of one solved mooring or tow, and of how sure its figures are."""
-    from calm.report.result_section import result_report
+    from calm.report.result_report import result_report
 
     return printed(result_report(result, uncertain))
 

@@ -42,7 +42,7 @@ def leaf(section: Section, number: int) -> str:
 
 def result_html(result: Result | TowResult, uncertain: Uncertain | None = None) -> str:
     """The report of one solved mooring or tow, and of how sure its figures are."""
-    from calm.report.result_section import result_report
+    from calm.report.result_report import result_report
 
     return page(result_report(result, uncertain))
 
