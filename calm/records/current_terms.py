@@ -195,13 +195,14 @@ def current_notices(
             )
 
 
-def left_out(top: float, bottom: float, water_depth: float) -> str:
-    """Return which part of the water a current says nothing of; "" where it covers it.
+def left_out(top: float, bottom: float, water_depth: float, what: str = "current") -> str:
+    """Return which part of the water a profile says nothing of; "" where it covers it.
 
     Parameters
     ----------
     top, bottom : its first and its last level [m]
     water_depth : [m]; inf where it is not known
+    what : it is a profile of
     """
     allowed = max(_UNCOVERED * water_depth, _FEW)
     gaps = [f"above {say('depth', top)}"] if top > allowed else []
@@ -210,6 +211,6 @@ def left_out(top: float, bottom: float, water_depth: float) -> str:
     if not gaps:
         return ""
     return (
-        f"the current is not given {' and '.join(gaps)}: that of the nearest level is used there, "
+        f"the {what} is not given {' and '.join(gaps)}: that of the nearest level is used there, "
         f"in {say('depth', water_depth)} of water"
     )
