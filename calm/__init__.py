@@ -17,7 +17,10 @@ from calm.version import __version__ as __version__
 if TYPE_CHECKING:
     from calm.batch.profiles import Profiles, solve_profiles
     from calm.case import Mooring, Result, Tow, TowResult, load
+    from calm.case.explain import explain
+    from calm.case.size import size
     from calm.checks.assess import check
+    from calm.drop.plan import drop_plan
     from calm.errors import CalmError, InputError, NoEquilibrium, UsageError
 
 __all__ = [
@@ -32,13 +35,19 @@ __all__ = [
     "UsageError",
     "__version__",
     "check",
+    "drop_plan",
+    "explain",
     "load",
+    "size",
     "solve_profiles",
 ]
 
 _HOMES = {
     "load": "calm.case",
     "check": "calm.checks.assess",
+    "drop_plan": "calm.drop.plan",
+    "explain": "calm.case.explain",
+    "size": "calm.case.size",
     "Profiles": "calm.batch.profiles",
     "solve_profiles": "calm.batch.profiles",
     "Mooring": "calm.case",

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -15,8 +16,9 @@ from calm.case.memory import Forgetful, Memory
 from calm.case.parts import naming_the_piece, parts_of
 from calm.case.result import Result
 from calm.case.tow import Tow
-from calm.errors import NoEquilibrium
-from calm.files import MooringFile, read_mooring
+from calm.case.variant import Origin
+from calm.errors import NoEquilibrium, UsageError
+from calm.files import MooringFile
 from calm.files.definition import STEEL_DENSITY
 from calm.physics.drag import BLOCK_CD, area_drag
 from calm.physics.line import Line, Water
@@ -46,9 +48,15 @@ def load(
     InputError
         With every mistake of the file, each with its line and column.
     """
-    nearer = [Path(each) for each in catalogs]
-    file = read_mooring(path, environment=environment, catalogs=nearer, text=text)
-    return Mooring(file) if file.tow is None else Tow(file)
+    origin = Origin(path, environment, tuple(Path(each) for each in catalogs), text)
+    return _read(origin)
+
+
+def _read(origin: Origin) -> Mooring | Tow:
+    file = origin.read()
+    read = Mooring(file) if file.tow is None else Tow(file)
+    vars(read)["origin"] = origin
+    return read
 
 
 @dataclass(frozen=True, init=False)
@@ -66,6 +74,7 @@ class Mooring:
     memory: Memory = field(repr=False, compare=False)
     _line: Line | None = field(repr=False, compare=False)
     _water: Water | None = field(repr=False, compare=False)
+    origin: Origin | None = field(default=None, repr=False, compare=False)
 
     def __init__(
         self,
@@ -146,14 +155,41 @@ class Mooring:
             volume = self.anchor_weight / ((density - REFERENCE_DENSITY) * self.water.gravity)
         return area_drag(max(volume, 0.0) ** (2.0 / 3.0), BLOCK_CD)
 
-    def solve(self) -> Result:
-        """Find the static equilibrium.
+    def with_(
+        self, label: str | None = None, /, environment: str | Path | None = None, **keys: Any
+    ) -> Mooring:
+        """Return the same mooring with some values of its file changed, as `Origin.with_values`.
+
+        Parameters
+        ----------
+        label : of the piece or clamp that has the keys; the keys are the file's where it is not
+            given: ``mooring.with_("wire 1", length="480 m")``, ``mooring.with_(solver={…})``
+        environment : name of one of its `environments`, or an environment file
+
+        Raises
+        ------
+        InputError
+            With the mistakes that the values make.
+        UsageError
+            No piece has the label, or the mooring was not loaded from a file.
+        """
+        if self.origin is None:
+            raise UsageError("a mooring that was not loaded from a file has no values to change")
+        origin = self.origin.with_values(self.file, label, keys)
+        changed = _read(replace(origin, environment=environment or origin.environment))
+        assert isinstance(changed, Mooring)
+        return changed
+
+    def solve(self, environment: str | Path | None = None) -> Result:
+        """Find the static equilibrium, in another of its environments where one is given.
 
         Raises
         ------
         NoEquilibrium
             With status, message and advice, where there is none that passes every check.
         """
+        if environment is not None:
+            return self.with_(environment=environment).solve()
         solution = self.equilibrium(self.water)
         return result_of(self, solution, self.still_beside(solution))
 

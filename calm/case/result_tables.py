@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from math import isfinite
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, Protocol, Self, TypeVar
@@ -12,6 +12,7 @@ import numpy as np
 
 from calm.files import Clamp, Piece, Place
 from calm.physics.line import Floats, Integers
+from calm.suggestions import unknown
 
 if TYPE_CHECKING:
     import pandas
@@ -26,16 +27,32 @@ class ColumnTable(Generic[Row]):
     """A table whose dataclass fields are its columns, all of one length, as those of `record`."""
 
     record: ClassVar[type[Any]]
+    label: list[str]
 
     def _names(self) -> list[str]:
-        return [field.name for field in fields(self)]  # type: ignore[arg-type]
+        return [each.name for each in fields(self)]  # type: ignore[arg-type]
+
+    def __repr__(self) -> str:
+        """Return how many rows there are, and the labels at both ends."""
+        shown = self.label if len(self) < 6 else [*self.label[:3], "…", self.label[-1]]
+        return f"{type(self).__name__}({len(self)} rows: {', '.join(shown)})"
 
     def __len__(self) -> int:
         return len(getattr(self, self._names()[0]))
 
-    def __getitem__(self, row: int) -> Row:
-        """One row as a record with the columns' names."""
-        return self._records[row]
+    def __getitem__(self, row: int | str) -> Row:
+        """Return a row by its number or its label, as a record with the columns' names.
+
+        Raises
+        ------
+        KeyError
+            No row has the label; the one most like it is named.
+        """
+        if isinstance(row, int):
+            return self._records[row]
+        if row not in self.label:
+            raise KeyError(unknown(f"no row is labelled {row!r}", row, self.label))
+        return self._records[self.label.index(row)]
 
     def __iter__(self) -> Iterator[Row]:
         return iter(self._records)
@@ -83,7 +100,7 @@ def _known(value: Any) -> Any:
 class ComponentRow:
     """A piece of a solved line: a row of `Components`, which says what the figures are."""
 
-    part: Piece
+    part: Piece = field(repr=False)
     index: int
     use: str
     label: str
@@ -117,7 +134,7 @@ class ComponentRow:
 class ClampRow:
     """An instrument clamped on a solved line: a row of `Clamps`."""
 
-    part: Clamp
+    part: Clamp = field(repr=False)
     index: int
     use: str
     label: str
@@ -134,7 +151,7 @@ class ClampRow:
         return self.part.place
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Components(ColumnTable[ComponentRow]):
     """The n pieces of the line in file order; NaN where a figure is unknown.
 
@@ -183,7 +200,7 @@ class Components(ColumnTable[ComponentRow]):
     reynolds: Floats
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Clamps(ColumnTable[ClampRow]):
     """The m instruments clamped on the line, in file order.
 
@@ -212,7 +229,7 @@ class Clamps(ColumnTable[ClampRow]):
     knockdown: Floats
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Shape:
     """The line node by node, free end first; a clamp's point twice (above, below).
 
@@ -228,6 +245,10 @@ class Shape:
     y: Floats
     tension: Floats
     tilt: Floats
+
+    def __repr__(self) -> str:
+        """Return how many nodes there are."""
+        return f"Shape({len(self.depth)} nodes)"
 
 
 class WithClamps(Protocol):

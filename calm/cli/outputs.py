@@ -119,7 +119,7 @@ class FileOutcome:
 
             return result_pdf(self.result, self.uncertain)
         if suffix == ".nc":
-            from calm.report.result_netcdf import result_netcdf
+            from calm.report.result_files import result_netcdf
 
             return result_netcdf(self.result)
         from calm.drawing.plot import picture

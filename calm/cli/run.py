@@ -159,7 +159,7 @@ def solve_and_show(
         outcomes = [_drawn(*pair) for pair in zip(outcomes, lines, strict=True)]
 
     def to_csv() -> str:
-        from calm.report.csv import to_csv
+        from calm.report.result_files import to_csv
 
         return to_csv([outcome.result for outcome in outcomes if outcome.result is not None])
 

@@ -113,6 +113,17 @@ class Catalogue:
         """Return the id most like a text."""
         return nearest(id, self.ids())
 
+    def of_a_sort(self, word: str) -> list[str]:
+        """Return the first ids of a family, role or kind, none where the word is none of these."""
+        sort = word.casefold().rstrip("s")
+        return [
+            id
+            for id, entry in self._all().items()
+            if "prefer" not in entry.section.data
+            and sort
+            in {(entry.family or "").rstrip("s"), *map(entry.section.data.get, ("role", "kind"))}
+        ][:6]
+
     def get(self, id: str) -> Component | Assembly:
         """Return a component or assembly, validated.
 

@@ -9,12 +9,12 @@ from dataclasses import replace
 from calm.errors import Problem
 from calm.files.catalogue import Assembly, Catalogue, CatalogueEntry, define
 from calm.files.check_limits import LimitKey
-from calm.files.components import Anchor, Cable, Component, contradicted
+from calm.files.components import KINDS, Anchor, Cable, Component, contradicted
 from calm.files.definition import IN_AIR
 from calm.files.fields import LENGTH, POSITIVE_LENGTH, QuantityField, quantity_of
 from calm.files.flexible import Flexible, strain_under
 from calm.files.logbook import EQUIPMENT_KEYS, LengthAt, check_serials, read_equipment
-from calm.files.mistakes import validate
+from calm.files.mistakes import unknown_key, validate
 from calm.files.mooring_file import Clamp, Piece, Place, placed
 from calm.files.rigid import Rigid
 from calm.files.yaml_document import SourceMapping
@@ -106,6 +106,7 @@ class LineReader:
         entry = self._entry(item)
         definition = self._definition(entry, item, _ITEM_KEYS) if entry else None
         if entry is None or definition is None:
+            self._unknown_kind(item, judged=entry is not None)
             self._clamps(item, None)
             return ()
         if isinstance(definition, Assembly):
@@ -124,6 +125,23 @@ class LineReader:
             for repeat in range(count)
             for part, piece in enumerate(once, first)
         )
+
+    def _unknown_kind(self, item: SourceMapping, *, judged: bool) -> None:
+        """Judge the keys of an item without a component: the length, and by what they are of every
+        kind, unless they are `judged`, those that no component gives.
+        """
+        if item.data.get("length", "fit") != "fit":
+            self._quantity(item, "length", POSITIVE_LENGTH, "")
+        for key in () if judged else item.data.keys() - _ITEM_KEYS - {"kind"}:
+            fields = [kind.model_fields[key] for kind in KINDS.values() if key in kind.model_fields]
+            quantities = {quantity_of(field) for field in fields}
+            if not fields:
+                known = {name for kind in KINDS.values() for name in kind.model_fields} | _ITEM_KEYS
+                message = unknown_key(key, sorted(known))
+                self._refuse(item, (key,), message, key=True)
+            elif len({each and each.dimension for each in quantities}) == 1:
+                for quantity in filter(None, [quantities.pop()]):
+                    self._quantity(item, key, QuantityField(quantity.dimension), "")
 
     def _piece(self, component: Component, item: SourceMapping) -> Piece:
         length: float | None
@@ -251,6 +269,10 @@ class LineReader:
         if entry is None:
             near = self._catalogue.nearest(use)
             offer = f"; did you mean {near}?" if near else " (`calm catalog list` shows all)"
+            if some := self._catalogue.of_a_sort(use):
+                offer = (
+                    f"; {use.rstrip('s')}s are {', '.join(some)} … (`calm catalog search {use}`)"
+                )
             self._refuse(item, ("use",), f"`use: {shown(use)}`: no such component{offer}")
             return None
         hidden = self._catalogue.hidden(use)

@@ -60,7 +60,7 @@ def _explain(
             keys = [*_keys(model, details["loc"][:-1]), *also_allowed]
             if also_allowed:
                 keys.remove("kind")
-            near = nearest(name, keys)
+            near = _meant(name, keys)
             if near:
                 misspelt.add((location[:-1], near))
             kind = _tag(model) if len(details["loc"]) == 1 else None
@@ -97,8 +97,33 @@ def _existing(data: Any, loc: tuple[int | str, ...]) -> tuple[Location, Any]:
 def _about_key(name: str, value: object, keys: list[str], kind: str | None) -> str:
     if value is None and name[:1].isdigit():
         return f"`{shown(name)}` is not a key; a decimal comma? (write 0.8, not 0,8)"
-    owner = f" for kind {kind}" if kind else ""
-    return unknown(f"unknown key `{shown(name)}`{owner}", name, keys)
+    return unknown_key(name, keys, f" for kind {kind}" if kind else "")
+
+
+_OTHER_NAMES = {
+    "clamps": "instruments instrument sensors clamp loggers",
+    "label": "name id title",
+    "count": "number quantity times",
+    "use": "component type",
+    "latitude": "lat",
+    "longitude": "lon long lng",
+    "toward": "direction heading to",
+    "weight": "weight_in_water wet_weight",
+    "mass": "weight_in_air",
+    "breaking_load": "mbl breaking_strength strength",
+    "working_load": "wll swl",
+}
+"""What people call a key that has another name."""
+
+
+def unknown_key(name: str, keys: list[str], owner: str = "") -> str:
+    """Return that a key does not exist, and the one that is meant."""
+    return unknown(f"unknown key `{shown(name)}`{owner}", _meant(name, keys) or name, keys)
+
+
+def _meant(name: str, keys: list[str]) -> str | None:
+    others = (key for key, names in _OTHER_NAMES.items() if name in names.split() and key in keys)
+    return next(others, None) or nearest(name, keys)
 
 
 def _about_value(details: Any, field: str, value: object, model: type[BaseModel]) -> str:
@@ -117,7 +142,8 @@ def _about_value(details: Any, field: str, value: object, model: type[BaseModel]
         return not_among("kind", shown(value.get("kind")), kinds)
     if kind == "literal_error":
         return not_among(field, shown(value), _values_in(form))
-    return f"`{field}` {_SHAPES.get(kind, details['msg'])}"
+    example = _example(model, details["loc"]) if kind.endswith("_type") else ""
+    return f"`{field}` {_SHAPES.get(kind, details['msg'])}{example}"
 
 
 _SHAPES: Mapping[str, str] = {
@@ -131,6 +157,21 @@ _SHAPES: Mapping[str, str] = {
     "missing": "has a row with too few values",
     "too_long": "has a row with too many values",
 }
+
+
+def _example(model: type[BaseModel], loc: tuple[int | str, ...]) -> str:
+    """Return how the value of a key looks, where it holds others and has an example."""
+    field = model.model_fields.get(str(loc[0])) if len(loc) == 1 else None
+    shape = field.examples[0] if field is not None and field.examples else None
+    shape = shape[:1] if isinstance(shape, list) else shape
+    return f", as `{loc[0]}: {_flow(shape)}`" if isinstance(shape, (dict, list)) else ""
+
+
+def _flow(value: object) -> str:
+    """Return a value as YAML writes it in a line."""
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{key}: {_flow(each)}" for key, each in value.items()) + "}"
+    return f"[{', '.join(map(_flow, value))}]" if isinstance(value, list) else str(value)
 
 
 def _keys(model: type[BaseModel], loc: tuple[int | str, ...]) -> list[str]:

@@ -218,6 +218,10 @@ class MooringFile:
     releases: tuple[ReleaseKeys, ...] = field(default=(), hash=False)
     deployed: Deployed | None = None
 
+    def __repr__(self) -> str:
+        """Return its name, where it is, and how many pieces it has."""
+        return f"MooringFile({self.path!r}, {self.name!r}, {len(self.pieces)} pieces)"
+
     @property
     def release(self) -> int | None:
         """Return the index of the lowest release in line, or None: what is above it comes up."""

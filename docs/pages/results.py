@@ -10,8 +10,7 @@ import calm
 from calm.dataset.netcdf import OF_CLAMP, OF_COMPONENT, OF_ENDS, OF_NODE
 from calm.motion.correction import OF_MOTION
 from calm.quantities import QUANTITIES
-from calm.report.csv import HEADER
-from calm.report.result_netcdf import result_netcdf
+from calm.report.result_files import HEADER, result_netcdf
 from calm.shipped import shipped_folder
 from pages.markdown import code, plain, table
 

@@ -274,6 +274,7 @@ def test_what_is_compressed_together_is_read_once(
         CurrentDataset, "read", lambda self, index: reads.append(index) or read(self, index)
     )
     with opened(path, **choice) as record, opened(write("adcp", tmp_path), **choice) as plain:
+        reads.clear()  # of the part that is looked at for what is odd
         for start in range(record.count):
             for got, expected in zip(
                 record.profiles(start, start + 1), plain.profiles(start, start + 1), strict=True

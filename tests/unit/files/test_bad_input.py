@@ -258,7 +258,7 @@ ONE_MISTAKE = {
     ),
     "text for a mapping": (
         re.sub(r"environment:\n(  .*\n)+", "environment: deep\n", GOOD),
-        (2, 14, "`environment` must hold `key: value` entries"),
+        (2, 14, "`environment` must hold `key: value` entries, as `environment: {depth: 1100 m}`"),
     ),
     "item that is text": (
         changed("{use: plate}", "plate"),
@@ -352,7 +352,7 @@ ONE_MISTAKE = {
     ),
     "elongation that is no table": (
         changed("length: 480 m", "length: 480 m, elongation: 3 %"),
-        (11, 47, "`elongation` must be a list"),
+        (11, 47, "`elongation` must be a list, as `elongation: [[0.05, 0.05]]`"),
     ),
     "elongation of a chain": (
         changed("use: rope-12", "use: chain-13").replace(
@@ -473,6 +473,7 @@ checks: {maximum_tilt: 30}
         (13, 66),
         (14, 5),
         (14, 46),
+        (15, 24),
         (17, 32),
         (17, 47),
         (18, 18),
@@ -482,6 +483,40 @@ checks: {maximum_tilt: 30}
         (22, 36),
         (23, 24),
     ]
+
+
+@pytest.mark.parametrize(
+    ("line", "messages"),
+    [
+        (
+            "  - {use: nosuch, lenght: 3 m, length: 3 N, depth_rating: 4 kg}",
+            ["no such component", "did you mean `length`?", "is a force", "is a mass"],
+        ),
+        ("  - {use: anchor}", ["anchors are anchor-"]),
+        ("  - {use: shackles}", ["did you mean shackle-"]),
+        ("  - {use: rope-12, length: 9 m, instruments: []}", ["did you mean `clamps`?"]),
+        ("  - {use: rope-12, length: 9 m, wll: 3 kN}", ["did you mean `working_load`?"]),
+    ],
+)
+def test_all_is_said_behind_what_is_not_known(
+    mistakes: Mistakes, line: str, messages: list[str]
+) -> None:
+    text = GOOD.replace("line:\n", f"line:\n{line}\n", 1)
+    found = [message for *_, message in mistakes(text)]
+    assert len(found) == len(messages)
+    assert all(any(part in message for message in found) for part in messages)
+
+
+@pytest.mark.parametrize(
+    ("line", "form"),
+    [
+        ("position: 48.5", "as `position: {latitude: 48.3 deg, longitude: -5.2 deg}`"),
+        ("checks: [1]", "as `checks: {anchor_factor: 1.5, maximum_knockdown: 50 m}`"),
+        ("releases: x", "as `releases: [{serial: 1729, codes: {enable: 0A51, release: 0A55}}]`"),
+    ],
+)
+def test_a_message_shows_the_form_that_is_wanted(mistakes: Mistakes, line: str, form: str) -> None:
+    assert mistakes(f"{GOOD}{line}\n")[0][2].endswith(form)
 
 
 def test_tabs_are_all_shown(mistakes: Mistakes) -> None:

@@ -201,7 +201,11 @@ def test_body_gives_its_drag_in_one_way(drag: dict[str, Any]) -> None:
             "`role: …` must be one of float, instrument, release, connector, line, anchor",
         ),
         ({"made_of": [{"diameter": "1 m"}]}, "`made_of` needs a `kind`"),
-        ({"made_of": "sphere"}, "`made_of` must be a list"),
+        (
+            {"made_of": "sphere"},
+            "`made_of` must be a list, as "
+            "`made_of: [{kind: cylinder, diameter: 80 mm, length: 1 m}]`",
+        ),
         (
             {"made_of": [{"kind": "sphere", "diametre": "1 m"}]},
             "unknown key `diametre`; did you mean `diameter`?",

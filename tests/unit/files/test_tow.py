@@ -134,7 +134,7 @@ ONE_MISTAKE = {
     ),
     "a speed alone": (
         changed("{speed: 2 knot, toward: 90 deg, height: 4 m}", "2 knot"),
-        (2, 6, "`tow` must hold `key: value` entries"),
+        (2, 6, "`tow` must hold `key: value` entries, as `tow: {speed: 4 knot, toward: 90 deg}`"),
     ),
     "an anchor": (
         TOW + "  - {use: deadweight}\n",

@@ -2,7 +2,7 @@ import csv
 import io
 from pathlib import Path
 
-from calm.report.csv import HEADER, to_csv
+from calm.report.result_files import HEADER, to_csv
 
 GOLDEN = Path(__file__).parent / "golden" / "components.csv"
 

@@ -10,8 +10,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from calm.case.strumming import StrummingBand
 from calm.drawing.plot import draw, picture
-from calm.report.csv import to_csv
 from calm.report.notebook import to_html
+from calm.report.result_files import to_csv
 from calm.report.sheet import result_part
 from calm.report.terminal import shown
 
