@@ -171,8 +171,8 @@ def _sea_water_notices(water: SeaWater) -> Iterator[str]:
     given = (water.temperature, water.salinity)
     if all(len(each.depth) > 1 for each in given):
         depth = np.union1d(*(each.depth for each in given))
-        levels = (np.interp(depth, each.depth, each.value) for each in given)
-        raised = seawater.potential_density(*levels, depth)
+        warmth, saltiness = (np.interp(depth, each.depth, each.value) for each in given)
+        raised = seawater.potential_density(warmth, saltiness, depth)
         yield from _falls(DepthTable(tuple(depth.tolist()), tuple(raised.tolist())))
 
 
