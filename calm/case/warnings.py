@@ -86,18 +86,25 @@ def _tilted(result: Result | TowResult, _: Solution) -> Iterator[str]:
 
 def _stiffness_unknown(result: Result | TowResult, _: Solution) -> Iterator[str]:
     for piece, tension in zip(result.file.pieces, result.components.tension, strict=True):
-        component = piece.component
-        if not isinstance(component, Cable) or not is_synthetic(component):
-            continue
-        if component.stiffness is None and component.elongation is None:
-            strains = [
-                tension / stiffness
-                for stiffness in published_stiffnesses(component.material or "", component.diameter)
-            ]
+        strains = unknown_stretch(piece.component, tension)
+        if strains is not None:
             yield (
-                f"{piece.label} is {component.material} of unknown stiffness, taken as "
+                f"{piece.label} is {piece.component.material} of unknown stiffness, taken as "
                 f"inextensible: {_published(strains)}"
             )
+
+
+def unknown_stretch(component: Component, tension: float) -> list[float] | None:
+    """Return the strains that published stiffnesses give a synthetic rope, the greatest first [-].
+
+    None where it is no synthetic rope, or gives its own stiffness; empty where none is published.
+    """
+    if not isinstance(component, Cable) or not is_synthetic(component):
+        return None
+    if component.stiffness is not None or component.elongation is not None:
+        return None
+    material, diameter = component.material or "", component.diameter
+    return [tension / stiffness for stiffness in published_stiffnesses(material, diameter)]
 
 
 def _published(strains: list[float]) -> str:
