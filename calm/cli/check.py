@@ -343,5 +343,7 @@ def _code(assessment: Assessment, allow_unknown: bool) -> ExitCode:
 
     if any(stand.result is None for stand in assessment.stands):
         return ExitCode.NO_EQUILIBRIUM
-    passes = {State.PASS, State.WARN} | ({State.UNKNOWN} if allow_unknown else set())
+    passes = {State.PASS, State.ESTIMATED, State.WARN} | (
+        {State.UNKNOWN} if allow_unknown else set()
+    )
     return ExitCode.DONE if assessment.state in passes else ExitCode.FINDING
