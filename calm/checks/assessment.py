@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from calm.drop.launch import Launch
     from calm.errors import NoEquilibrium
     from calm.files.check_limits import LimitKey
-    from calm.files.definition import Estimate
+    from calm.files.definition import EstimatedFigure
 
 
 @dataclass(frozen=True)
@@ -132,7 +132,7 @@ class Acceptance:
 
     accepts: tuple[Accept, ...]
     day: date
-    estimates: Mapping[str, Mapping[str, Estimate]]
+    estimates: Mapping[str, Mapping[str, EstimatedFigure]]
 
     def of(self, finding: Finding) -> Finding:
         """The finding, estimated where it rests on an estimate, accepted where the file does."""

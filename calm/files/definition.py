@@ -7,7 +7,7 @@ in sea water of `CATALOGUE_DENSITY` under standard gravity.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import (
     BeforeValidator,
@@ -101,7 +101,11 @@ def _estimated(quantity: str) -> QuantityField:
     return {"max_tilt": TILT, "depth_rating": POSITIVE_LENGTH}.get(quantity, POSITIVE_FORCE)
 
 
-class Estimate(Model):
+def _alone_or_listed(schema: dict[str, Any]) -> None:
+    schema["anyOf"] += [form["items"] for form in schema["anyOf"] if "items" in form]
+
+
+class EstimatedFigure(Model):
     """Say what a figure that nobody prints is taken as: of its class, and at least `low`."""
 
     quantity: Literal[
@@ -128,7 +132,7 @@ class Estimate(Model):
         return f"`{self.quantity}` is estimated: {low} at least, {value} ({self.source})"
 
     @model_validator(mode="after")
-    def _low_is_least(self) -> Estimate:
+    def _low_is_least(self) -> EstimatedFigure:
         if self.low > self.value:
             raise ValueError(f"`low` is {self.low:g}, above the `value` of {self.value:g}")
         return self
@@ -206,9 +210,10 @@ class Definition(Model):
     warn_tilt: Annotated[float | None, TILT] = Field(
         default=None, description="tilt to be warned of", examples=["15 deg"]
     )
-    estimate: Annotated[tuple[Estimate, ...] | None, BeforeValidator(_listed)] = Field(
+    estimate: Annotated[tuple[EstimatedFigure, ...] | None, BeforeValidator(_listed)] = Field(
         default=None,
         description="what a figure that is not given is taken as, where a rule asks for it",
+        json_schema_extra=_alone_or_listed,
         examples=[
             {
                 "quantity": "working_load",
@@ -225,7 +230,7 @@ class Definition(Model):
     )
 
     @property
-    def estimates(self) -> dict[str, Estimate]:
+    def estimates(self) -> dict[str, EstimatedFigure]:
         """Return the estimates of figures that are not given, by figure."""
         every = {one.quantity: one for one in self.estimate or ()}
         return {name: one for name, one in every.items() if getattr(self, name) is None}

@@ -162,7 +162,7 @@ class LineTable(TableCells, can_focus=True):
         sign = Segment(" ", style)
         if row.spot in self.marked:
             sign = Segment(MARK, style)
-        elif row.state is not None and row.state.value not in ("pass", "accepted"):
+        elif row.state is not None and row.state.value not in ("pass", "accepted", "estimated"):
             colour = self.get_component_rich_style(f"line-table--{row.state.value}", partial=True)
             sign = Segment(LOOKS[row.state].sign, style + colour)
         cursor = CURSOR if number == self.cursor else " "

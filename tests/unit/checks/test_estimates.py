@@ -1,4 +1,4 @@
-"""Figures that nobody prints, taken as those of their class: judged by their low bound, and said."""
+"""Figures that nobody prints, taken as those of their class: judged by their low bound."""
 
 from pathlib import Path
 
