@@ -10,8 +10,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from math import atan2, ceil, degrees, floor, log10
 
-from calm.units import DIMENSIONS
-
 
 @dataclass(frozen=True)
 class Quantity:
@@ -59,7 +57,7 @@ class Quantity:
         """How many of the unit displayed make one `unit`."""
         if not self._chosen:
             return self.usual_scale
-        return 1.0 / DIMENSIONS[_CHOICES[self.unit]].units[_UNITS.get(self._chosen, self._chosen)]
+        return 1.0 / SHOWN_UNITS[_CHOICES[self.unit]][self._chosen]
 
     @property
     def places(self) -> int:
@@ -290,15 +288,15 @@ QUANTITIES = {quantity.name: quantity for quantity in _TABLE}
 
 
 SHOWN_UNITS = {
-    "force": ("N", "kN", "kgf", "lbf"),
-    "length": ("m", "ft"),
-    "speed": ("m/s", "cm/s", "kn"),
-    "mass": ("kg", "lb"),
+    "force": {"N": 1.0, "kN": 1e3, "kgf": 9.80665, "lbf": 4.4482216152605},
+    "length": {"m": 1.0, "ft": 0.3048},
+    "speed": {"m/s": 1.0, "cm/s": 0.01, "kn": 1852 / 3600},
+    "mass": {"kg": 1.0, "lb": 0.45359237},
 }
-"""The units in which people may have each dimension shown; the first is that of the results."""
+"""The units in which people may have each dimension shown, and how many of the first they are;
+that is the unit of results."""
 
-_CHOICES = {units[0]: dimension for dimension, units in SHOWN_UNITS.items()}
-_UNITS = {"kn": "knot"}
+_CHOICES = {next(iter(units)): dimension for dimension, units in SHOWN_UNITS.items()}
 _shown: dict[str, str] = {}
 
 
@@ -313,7 +311,7 @@ def show_in(units: Mapping[str, str]) -> None:
     units : by dimension of `SHOWN_UNITS`, one of its units; what is not named is shown as usual
     """
     _shown.clear()
-    _shown.update({name: unit for name, unit in units.items() if unit != SHOWN_UNITS[name][0]})
+    _shown.update({name: unit for name, unit in units.items() if unit not in _CHOICES})
 
 
 def shown_units() -> dict[str, str]:

@@ -3,6 +3,7 @@ import math
 import pytest
 
 from calm.quantities import QUANTITIES, SHOWN_UNITS, say, show_in, shown_units
+from calm.units import unit_factor
 
 
 def test_header_of_a_column_carries_the_unit_of_results():
@@ -84,7 +85,15 @@ def test_programs_and_pictures_keep_theirs(shown):
     assert shown_units() == {"force": "lbf", "length": "ft", "speed": "kn", "mass": "lb"}
 
 
-@pytest.mark.parametrize("units", [{}, {name: units[0] for name, units in SHOWN_UNITS.items()}])
+def test_units_shown_are_as_long_as_those_read():
+    for dimension, units in SHOWN_UNITS.items():
+        for unit, factor in units.items():
+            assert factor == pytest.approx(unit_factor(unit, dimension), rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    "units", [{}, {name: next(iter(units)) for name, units in SHOWN_UNITS.items()}]
+)
 def test_the_units_of_results_are_the_usual_ones(shown, units):
     shown({"force": "kgf"})
     shown(units)
