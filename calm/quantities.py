@@ -6,6 +6,7 @@ the same and carries the same unit wherever it is shown.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import atan2, ceil, degrees, floor, log10
 
@@ -28,8 +29,8 @@ class Quantity:
         Digits after the point, in the unit displayed, that mean something to a reader.
     symbol : str
         The letter of formulas, where there is one.
-    display, scale : str, float
-        The unit people read, where it is another, and how many of it make one `unit`.
+    display, usual_scale : str, float
+        The unit people usually read, where it is another, and how many of it make one `unit`.
     """
 
     name: str
@@ -39,12 +40,38 @@ class Quantity:
     decimals: int = 1
     symbol: str = ""
     display: str = ""
-    scale: float = 1.0
+    usual_scale: float = 1.0
 
     @property
     def display_unit(self) -> str:
-        """The unit people read."""
+        """The unit people read: that chosen by `show_in`, else the usual one."""
+        return self._chosen or self.usual_unit
+
+    @property
+    def usual_unit(self) -> str:
+        """The unit people read where they choose none, and that of pictures."""
         return self.display or self.unit
+
+    @property
+    def scale(self) -> float:
+        """How many of the unit displayed make one `unit`."""
+        if not self._chosen:
+            return self.usual_scale
+        return 1.0 / SHOWN_UNITS[_CHOICES[self.unit]][self._chosen]
+
+    @property
+    def places(self) -> int:
+        """Digits after the point that mean as much in the unit displayed as in the usual one.
+
+        Feet have as many as metres.
+        """
+        return max(0, self.decimals - round(log10(0.95 * self.scale / self.usual_scale)))
+
+    @property
+    def _chosen(self) -> str:
+        """The unit chosen for what this is a kind of; none for what has a small unit of its own."""
+        own = self.display and _CHOICES.get(self.unit) != "force"
+        return "" if own else _shown.get(_CHOICES.get(self.unit, ""), "")
 
     @property
     def header(self) -> str:
@@ -53,8 +80,8 @@ class Quantity:
 
     @property
     def label(self) -> str:
-        """Title and unit as the label of an axis, e.g. ``depth [m]``."""
-        return f"{self.heading} [{self.display_unit}]" if self.display_unit else self.heading
+        """Title and usual unit as the label of an axis, e.g. ``depth [m]``."""
+        return f"{self.heading} [{self.usual_unit}]" if self.usual_unit else self.heading
 
     def format(self, value: float | None) -> str:
         """Digits of a value [`unit`] in the unit displayed; a dash when unknown.
@@ -63,7 +90,7 @@ class Quantity:
         """
         if value is None or value != value:
             return "-"
-        return f"{value * self.scale:z.{self.decimals}f}"
+        return f"{value * self.scale:z.{self.places}f}"
 
     def say(self, value: float | None) -> str:
         """A value [`unit`] with the unit displayed, for a sentence, e.g. ``113.2 m``."""
@@ -161,7 +188,7 @@ _TABLE = (
         "m",
         "Outside diameter; of a chain, its bar.",
         display="mm",
-        scale=1000.0,
+        usual_scale=1000.0,
     ),
     Quantity("mass", "mass", "kg", "Mass in air.", decimals=2),
     Quantity(
@@ -191,7 +218,9 @@ _TABLE = (
     Quantity("lift_mass", "mass of the lift", "kg", "Mass of a piece with its clamps."),
     Quantity("force", "force", "N", "Force measured.", decimals=0),
     Quantity("at", "at", "m", "Where a clamp sits, from the top of its piece.", decimals=2),
-    Quantity("volume", "volume", "m³", "Volume of water displaced.", display="l", scale=1000.0),
+    Quantity(
+        "volume", "volume", "m³", "Volume of water displaced.", display="l", usual_scale=1000.0
+    ),
     Quantity("density", "density", "kg/m³", "Density of the material.", decimals=0),
     Quantity(
         "stiffness",
@@ -199,15 +228,20 @@ _TABLE = (
         "N",
         "Pull over strain, EA.",
         display="kN",
-        scale=0.001,
+        usual_scale=0.001,
         decimals=0,
         symbol="EA",
     ),
     Quantity(
-        "breaking_load", "breaking load", "N", "Load at which it breaks.", display="kN", scale=0.001
+        "breaking_load",
+        "breaking load",
+        "N",
+        "Load at which it breaks.",
+        display="kN",
+        usual_scale=0.001,
     ),
     Quantity(
-        "working_load", "working load", "N", "Load it is made for.", display="kN", scale=0.001
+        "working_load", "working load", "N", "Load it is made for.", display="kN", usual_scale=0.001
     ),
     Quantity("depth_rating", "depth rating", "m", "Greatest depth it stands.", decimals=0),
     Quantity(
@@ -251,6 +285,38 @@ _TABLE = (
 
 QUANTITIES = {quantity.name: quantity for quantity in _TABLE}
 """Every quantity by its name."""
+
+
+SHOWN_UNITS = {
+    "force": {"N": 1.0, "kN": 1e3, "kgf": 9.80665, "lbf": 4.4482216152605},
+    "length": {"m": 1.0, "ft": 0.3048},
+    "speed": {"m/s": 1.0, "cm/s": 0.01, "kn": 1852 / 3600},
+    "mass": {"kg": 1.0, "lb": 0.45359237},
+}
+"""The units in which people may have each dimension shown, and how many of the first they are;
+that is the unit of results."""
+
+_CHOICES = {next(iter(units)): dimension for dimension, units in SHOWN_UNITS.items()}
+_shown: dict[str, str] = {}
+
+
+def show_in(units: Mapping[str, str]) -> None:
+    """Show quantities to people in these units from now on, in this process.
+
+    Files for programs stay in SI. Quantities with a small unit of their own (diameters in mm) keep
+    that.
+
+    Parameters
+    ----------
+    units : by dimension of `SHOWN_UNITS`, one of its units; what is not named is shown as usual
+    """
+    _shown.clear()
+    _shown.update({name: unit for name, unit in units.items() if unit not in _CHOICES})
+
+
+def shown_units() -> dict[str, str]:
+    """The units chosen by `show_in`, where they are not the usual ones."""
+    return dict(_shown)
 
 
 def say(name: str, value: float | None) -> str:

@@ -11,6 +11,7 @@ from calm.case.parts import clamps_in
 from calm.files import Cable, Component
 from calm.physics.line import Floats
 from calm.physics.stretch import FIBRES, published_stiffnesses
+from calm.quantities import say
 from calm.solve import Solution
 from calm.solve.audit import flow_across
 
@@ -51,17 +52,19 @@ def tow_warnings_of(result: TowResult, solution: Solution) -> tuple[str, ...]:
 def _overloaded(result: Result | TowResult, _: Solution) -> Iterator[str]:
     for row in result.components:
         if row.safety_factor < 1.0:
-            yield f"{row.label} breaks: {row.tension:.0f} N is above its breaking load."
+            pull = say("tension", row.tension)
+            yield f"{row.label} breaks: {pull} is above its breaking load."
         elif row.utilisation > 1.0:
-            yield f"{row.label} is overloaded: {row.tension:.0f} N is above its working load."
+            pull = say("tension", row.tension)
+            yield f"{row.label} is overloaded: {pull} is above its working load."
 
 
 def _anchor_too_light(result: Result, _: Solution) -> Iterator[str]:
     anchor = result.anchor
     if anchor.weight < anchor.required_weight:
         yield (
-            f"The anchor weighs {anchor.weight:.0f} N in water; {anchor.required_weight:.0f} N "
-            "are required to hold the line."
+            f"The anchor weighs {say('wet_weight', anchor.weight)} in water; "
+            f"{say('required_weight', anchor.required_weight)} are required to hold the line."
         )
 
 
@@ -86,18 +89,25 @@ def _tilted(result: Result | TowResult, _: Solution) -> Iterator[str]:
 
 def _stiffness_unknown(result: Result | TowResult, _: Solution) -> Iterator[str]:
     for piece, tension in zip(result.file.pieces, result.components.tension, strict=True):
-        component = piece.component
-        if not isinstance(component, Cable) or not is_synthetic(component):
-            continue
-        if component.stiffness is None and component.elongation is None:
-            strains = [
-                tension / stiffness
-                for stiffness in published_stiffnesses(component.material or "", component.diameter)
-            ]
+        strains = unknown_stretch(piece.component, tension)
+        if strains is not None:
             yield (
-                f"{piece.label} is {component.material} of unknown stiffness, taken as "
+                f"{piece.label} is {piece.component.material} of unknown stiffness, taken as "
                 f"inextensible: {_published(strains)}"
             )
+
+
+def unknown_stretch(component: Component, tension: float) -> list[float] | None:
+    """Return the strains that published stiffnesses give a synthetic rope, the greatest first [-].
+
+    None where it is no synthetic rope, or gives its own stiffness; empty where none is published.
+    """
+    if not isinstance(component, Cable) or not is_synthetic(component):
+        return None
+    if component.stiffness is not None or component.elongation is not None:
+        return None
+    material, diameter = component.material or "", component.diameter
+    return [tension / stiffness for stiffness in published_stiffnesses(material, diameter)]
 
 
 def _published(strains: list[float]) -> str:
@@ -139,8 +149,9 @@ def _beyond_the_table(result: Result | TowResult, solution: Solution) -> Iterato
     for row, curve in zip(result.components, line.elongation, strict=False):
         if curve is not None and row.tension > curve.limit:
             yield (
-                f"{row.label} is loaded beyond its elongation table: {row.tension:.0f} N, and it "
-                f"is trusted up to {curve.limit:.0f} N."
+                f"{row.label} is loaded beyond its elongation table: "
+                f"{say('tension', row.tension)}, and it is trusted up to "
+                f"{say('tension', curve.limit)}."
             )
 
 

@@ -82,7 +82,7 @@ def release_present(handling: Handling) -> Iterator[Verdict]:
         yield unknown(piece, message, "Give `role: release` to the release alone.")
         return
     above = [part.component for part in every_part(pieces[: release + 1])]
-    if not any(component.net_buoyancy > 0.0 for component in above):
+    if not _floats(pieces[: release + 1]):
         message = f"Nothing floats above {piece.label}: freed, it stays down."
         yield verdict_on(piece, State.FAIL, message, "Put the floats above the release.")
         return
@@ -99,6 +99,10 @@ def release_present(handling: Handling) -> Iterator[Verdict]:
     if sum(component.role == "release" for component in above) == 1 and not _TWICE.search(said):
         message = f"{piece.label} is the only release: where it fails, nothing else frees the line."
         doubts.append((piece, message, "Hang two side by side, and call them a `pair`."))
+    for index, one in enumerate(pieces[:release]):
+        if one.component.role == "release" and not _floats(pieces[: index + 1]):
+            message = f"Nothing floats above {one.label}, a release: freed there, nothing comes up."
+            doubts.append((one, message, "Put it below what floats, or give it another role."))
     for one in below:
         if net_buoyancy(one.component, mooring.water.gravity) > 0.0:
             message = f"{one.label} floats below the release, and stays on the anchor."
@@ -108,6 +112,10 @@ def release_present(handling: Handling) -> Iterator[Verdict]:
     if not doubts:
         message = f"{piece.label} frees the line from everything below it."
         yield verdict_on(piece, State.PASS, message)
+
+
+def _floats(pieces: Sequence[Piece]) -> bool:
+    return any(part.component.net_buoyancy > 0.0 for part in every_part(pieces))
 
 
 @rule("hardware", once=True)
@@ -140,15 +148,17 @@ def swivel(handling: Handling) -> Iterator[Verdict]:
                 yield verdict_on(piece, State.PASS, f"{ends}, with a swivel between them.")
             else:
                 message = f"{ends}, which leans in the current, without a swivel between them."
-                remedy = "Put a swivel there, or take torque-balanced wire and say so in its name."
+                remedy = "Put a swivel there, or take wire that is `torque_balanced`."
                 yield verdict_on(piece, State.WARN, message, remedy)
 
 
 def _bears_torque(component: Component) -> bool:
     if not isinstance(component, Cable) or is_synthetic(component):
         return False
-    said = _words(component.material, component.name, component.note)
-    balanced = _BALANCED.search(said) and not _UNBALANCED.search(said)
+    balanced = component.torque_balanced
+    if balanced is None:
+        said = _words(component.material, component.name, component.note)
+        balanced = bool(_BALANCED.search(said)) and not _UNBALANCED.search(said)
     return _STEEL.search(_words(component.material)) is not None and not balanced
 
 

@@ -10,6 +10,7 @@ from typing import ParamSpec, TypeVar
 import numpy as np
 
 from calm.case import Mooring, Result
+from calm.case.parts import parts_of
 from calm.checks.assessment import Acceptance, Assessment, MooringInEnvironment, Situation
 from calm.checks.backup import breaks_of, losses_of
 from calm.checks.criterion import limits_used
@@ -23,11 +24,12 @@ from calm.checks.rules import ONCE, STANDING, STILL_ONLY, equilibrium
 from calm.checks.situations import SOLVES, STRUMMING, situations_of
 from calm.drop.launch import launch_of
 from calm.errors import NoEquilibrium
-from calm.files import MooringFile, Place
+from calm.files import Clamp, MooringFile, Piece, Place
 from calm.solve import expect_many
 
 P = ParamSpec("P")
 T = TypeVar("T")
+_Part = TypeVar("_Part", Piece, Clamp)
 
 
 def check(mooring: Mooring, /, *others: Mooring, day: date | None = None) -> Assessment:
@@ -142,17 +144,41 @@ def findings_of(
         for verdict in equilibrium.judge(situation.failure):
             yield equilibrium.find(verdict, mooring, environment, situation.name)
     if situation.result is not None:
-        file = situation.result.file
+        file, result = situation.result.file, _estimated_result(situation.result)
         end, acceptance = file.pieces[-1].place, _acceptance(file, day)
         for rule in (each for each in STANDING if anchored or not each.of_anchor):
-            for verdict in rule.judge(situation.result):
+            for verdict in rule.judge(result):
                 if anchored or verdict.place != end:
                     finding = rule.find(verdict, mooring, environment, situation.name)
                     yield acceptance.of(finding)
 
 
 def _acceptance(file: MooringFile, day: date | None) -> Acceptance:
-    return Acceptance(file.accepts, day or date.today())
+    estimates = {part.label: part.component.estimates for part in parts_of(file.pieces)}
+    return Acceptance(file.accepts, day or date.today(), estimates)
+
+
+def _estimated(mooring: Mooring) -> Mooring:
+    """Return the mooring with the low bounds of estimates for figures that are not given."""
+    file = mooring.file
+    if not any(part.component.estimates for part in parts_of(file.pieces)):
+        return mooring
+    pieces = tuple(
+        replace(_filled(piece), clamps=tuple(_filled(clamp) for clamp in piece.clamps))
+        for piece in file.pieces
+    )
+    file = replace(file, pieces=pieces)
+    return Mooring(file, mooring.for_surface, mooring.memory, mooring.line, mooring.water)
+
+
+def _estimated_result(result: Result) -> Result:
+    judged = _estimated(result.mooring)
+    return result if judged is result.mooring else replace(result, mooring=judged)
+
+
+def _filled(part: _Part) -> _Part:
+    low = {name: one.low for name, one in part.component.estimates.items()}
+    return replace(part, component=part.component.model_copy(update=low)) if low else part
 
 
 def _of(finding: Finding) -> tuple[str, Place | None]:
@@ -191,7 +217,7 @@ def _handled(stand: MooringInEnvironment) -> Handling:
     """Return the same of a stand; of one that has no equilibrium, why not."""
     mooring, result = stand.mooring, stand.result
     if result is not None:
-        return handled(mooring, result)
+        return replace(handled(mooring, result), mooring=_estimated(mooring))
     failure = stand.situations[0].failure
     assert failure is not None
     return Handling(mooring, failure, failure, breaks_of(mooring), losses_of(mooring))

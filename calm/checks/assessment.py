@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from datetime import date
 from typing import TYPE_CHECKING
 
 from calm.checks.finding import Finding, State, worst_state
 from calm.files import Accept
+from calm.files.rule_texts import RULES
 
 if TYPE_CHECKING:
     from calm.case import Mooring, Result
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from calm.drop.launch import Launch
     from calm.errors import NoEquilibrium
     from calm.files.check_limits import LimitKey
+    from calm.files.definition import EstimatedFigure
 
 
 @dataclass(frozen=True)
@@ -123,19 +125,34 @@ class Assessment:
 
 @dataclass(frozen=True)
 class Acceptance:
-    """The accepts of a mooring file on a day; only failures and what is unknown are accepted."""
+    """The accepts of a mooring file on a day; only failures and what is unknown are accepted.
+
+    `estimates` are those in use, by the label of a part and the figure.
+    """
 
     accepts: tuple[Accept, ...]
     day: date
+    estimates: Mapping[str, Mapping[str, EstimatedFigure]]
 
     def of(self, finding: Finding) -> Finding:
-        """The finding, accepted where the file does."""
+        """The finding, estimated where it rests on an estimate, accepted where the file does."""
+        finding = self._estimated(finding)
         if finding.state not in (State.FAIL, State.UNKNOWN):
             return finding
         for accept in self.accepts:
             if accept.counts_on(self.day) and accept.covers(finding.rule, finding.component):
                 return replace(finding, state=State.ACCEPTED, accept=accept)
         return finding
+
+    def _estimated(self, finding: Finding) -> Finding:
+        """What passes by the least that a figure can be is estimated; what fails is unknown."""
+        own, figures = self.estimates.get(finding.component or "", {}), RULES[finding.rule].figures
+        used = [one for name, one in own.items() if name in figures]
+        if not used or finding.state not in (State.PASS, State.FAIL):
+            return finding
+        state = State.ESTIMATED if finding.state is State.PASS else State.UNKNOWN
+        said = " ".join(f"Its {one}." for one in used)
+        return replace(finding, state=state, message=f"{finding.message} {said}")
 
     def notices(self, accepted: Iterable[Finding]) -> Iterator[str]:
         """Notices of accepts that do not count, or that no finding needs.

@@ -29,6 +29,10 @@ ROUNDING = 1.05
 ROPE_ROUNDING = 1.12
 """The same for ropes, whose nominal diameter may be the next size below the true one."""
 
+NOMINAL = 1.25
+"""How much more a jacketed wire displaces than its nominal diameter, at most, by what is printed of
+its mass and its weight in water."""
+
 LEAD_DENSITY = 11340.0
 """Density of lead [kg/m³]; nothing on a mooring is denser."""
 
@@ -129,9 +133,19 @@ def impossible(component: Component) -> Iterator[str]:
         lift = CATALOGUE_DENSITY * STANDARD_GRAVITY * envelope
         if component.net_buoyancy > lift:
             yield f"lifts {component.net_buoyancy:.4g} N; water of its size weighs {lift:.4g} N"
+        elif mass is not None and _displaced(component, mass) > ROUNDING * lift:
+            yield (
+                f"weighs {mass:.4g} kg and has {component.net_buoyancy:.4g} N in water: with that "
+                f"it displaces more than water of its size weighs, {lift:.4g} N"
+            )
         elif volume is not None and volume > ROUNDING * envelope:
             yield f"displaces {volume:.3g} m³; its size is {envelope:.3g} m³"
     yield from _drags_out_of_range(component)
+
+
+def _displaced(component: Component, mass: float) -> float:
+    """Return the weight of the water that a net force and a mass say is displaced [N or N/m]."""
+    return component.net_buoyancy + mass * STANDARD_GRAVITY
 
 
 def _of_a_rope(rope: Cable) -> Iterator[str]:
@@ -155,6 +169,11 @@ def _of_a_rope(rope: Cable) -> Iterator[str]:
         )
     if net > lift:
         yield f"lifts {net:.4g} N/m; water of its diameter weighs {lift:.4g} N/m"
+    elif rope.mass is not None and _displaced(rope, rope.mass) > NOMINAL * lift:
+        yield (
+            f"weighs {rope.mass:.4g} kg/m and has {net:.4g} N/m in water: with that it displaces "
+            f"more than water of its diameter weighs, {lift / ROPE_ROUNDING:.4g} N/m"
+        )
     if rope.stiffness is not None and rope.stiffness > stiff:
         stiffness = f"has a stiffness of {rope.stiffness:.4g} N"
         yield f"{stiffness}; a steel bar of its diameter {stiff:.4g} N"

@@ -23,11 +23,13 @@ class State(StrEnum):
     """How a rule judges, the least grave first.
 
     Unknown, where a figure that the rule needs is missing, is graver than a warning: it may be a
-    failure. Accepted is a failure or an unknown that the design accepts with a reason.
+    failure. Accepted is a failure or an unknown that the design accepts with a reason; estimated
+    passes by the low bound of an `estimate`, and not by a figure that anyone prints.
     """
 
     PASS = "pass"
     ACCEPTED = "accepted"
+    ESTIMATED = "estimated"
     WARN = "warn"
     UNKNOWN = "unknown"
     FAIL = "fail"

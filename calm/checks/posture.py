@@ -7,7 +7,7 @@ from functools import partial
 from math import isnan
 from typing import TYPE_CHECKING
 
-from calm.case.warnings import is_synthetic
+from calm.case.warnings import is_synthetic, unknown_stretch
 from calm.checks.criterion import (
     AT_SURFACE,
     Citing,
@@ -17,7 +17,16 @@ from calm.checks.criterion import (
     parts_of,
     pieces_of,
 )
-from calm.checks.finding import State, Verdict, at_least, at_most, reported, rule, unknown
+from calm.checks.finding import (
+    State,
+    Verdict,
+    at_least,
+    at_most,
+    reported,
+    rule,
+    unknown,
+    verdict_on,
+)
 from calm.quantities import say
 from calm.solve.finish import watch_circle_radius
 
@@ -112,6 +121,44 @@ def _rating_words(
         f"{say('depth_rating', rating - limit)}.",
         "Take one with a greater depth rating, or add buoyancy against the knockdown.",
     )
+
+
+_STRETCH = 0.02
+"""Share of the water depth below which an unknown stretch is not asked after: what a sounding is
+worth."""
+
+_MEASURED = 0.2
+"""Share of its breaking load up to which a rope is measured, where it gives no working load."""
+
+
+@rule("stretch")
+def stretch(result: Result) -> Iterator[Verdict]:
+    """Judge what ropes of unknown stiffness may stretch by, and under what load ropes are cut."""
+    limit, lengths = _STRETCH * result.mooring.water.depth, result.mooring.line.length.tolist()
+    rows = zip(result.file.pieces, lengths, result.components.tension, strict=False)
+    for piece, length, tension in rows:
+        component = piece.component
+        strains = unknown_stretch(component, tension)
+        if strains is not None and (by := max(strains, default=1.0) * length) > limit:
+            could = (
+                f"could stretch by {say('length', by)}" if strains else "stretches by no one knows"
+            )
+            yield unknown(
+                piece,
+                f"{piece.label} is {component.material} of unknown stiffness, taken as "
+                f"inextensible: it {could}; depths above it are not known.",
+                "Give its `stiffness`, or its `elongation`.",
+                by,
+            )
+        breaking = component.breaking_load
+        bears = component.working_load or (breaking and _MEASURED * breaking)
+        if piece.measured_load and bears and piece.measured_load > bears:
+            message = (
+                f"{piece.label} is cut to its length under {say('force', piece.measured_load)}; "
+                f"in use it bears {say('force', bears)}."
+            )
+            remedy = "Look at the `load` of its `length_at`: ropes are measured under a small load."
+            yield verdict_on(piece, State.WARN, message, remedy)
 
 
 @criteria("top-depth")

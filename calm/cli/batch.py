@@ -14,7 +14,15 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from calm.cli.options import CatalogFiles, Declination, EnvironmentName, Threads, quantities
+from calm.cli.options import (
+    CatalogFiles,
+    Declination,
+    EnvironmentName,
+    Threads,
+    Units,
+    quantities,
+    show_units,
+)
 from calm.cli.streams import ExitCode, narrate, show_parts
 from calm.errors import UsageError
 
@@ -48,6 +56,7 @@ def batch(
     no_statistics: bool = False,
     environment: EnvironmentName = None,
     catalog: CatalogFiles = None,
+    units: Units = None,
 ) -> ExitCode:
     """Solve a mooring in every profile of a record or a hindcast.
 
@@ -92,6 +101,7 @@ def batch(
     period = None if time is None else parse_period(time)
     check_output(output, file, currents)
     mooring = mooring_of(file, environment, catalog or [], "batch")
+    show_units(units, [mooring.file])
     position = mooring.file.position
     own = None if position is None else (position.latitude, position.longitude)
     place = own if at is None else parse_place(at)

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from calm.cli.check_files import DesignFile, read_designs
-from calm.cli.options import CatalogFiles, Samples, Seed
+from calm.cli.options import CatalogFiles, Samples, Seed, Units, show_units
 from calm.cli.outputs import OutputPath, Outputs
 from calm.cli.run import draws_of
 from calm.cli.streams import ExitCode, gravest, narrate
@@ -48,6 +48,7 @@ def check(
     samples: Samples = 2048,
     seed: Seed = 0,
     workers: int | None = None,
+    units: Units = None,
 ) -> ExitCode:
     """Check designs: solve every mooring in every environment, and judge it by rule.
 
@@ -94,6 +95,7 @@ def check(
     designs, tows, earlier = _read(files, environment, catalog or [], workers, against, ready)
     if tows:
         narrate(f"not checked, because they are tows: {', '.join(map(str, tows))}")
+    show_units(units, [one.file for design in designs for one in design.moorings])
     judged = _judged(designs, workers, drawn, draws)
     assessments = [each.assessment for each in judged]
     for design, assessment in zip(designs, assessments, strict=True):
@@ -343,5 +345,7 @@ def _code(assessment: Assessment, allow_unknown: bool) -> ExitCode:
 
     if any(stand.result is None for stand in assessment.stands):
         return ExitCode.NO_EQUILIBRIUM
-    passes = {State.PASS, State.WARN} | ({State.UNKNOWN} if allow_unknown else set())
+    passes = {State.PASS, State.ESTIMATED, State.WARN} | (
+        {State.UNKNOWN} if allow_unknown else set()
+    )
     return ExitCode.DONE if assessment.state in passes else ExitCode.FINDING

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from cyclopts import Parameter
 
 from calm.cli.check_files import DesignFile, read_designs
-from calm.cli.options import CatalogFiles, quantities
+from calm.cli.options import CatalogFiles, Units, quantities, show_units
 from calm.cli.streams import ExitCode, narrate
 from calm.errors import NoEquilibrium, UsageError
 
@@ -40,6 +40,7 @@ def deck(
     course: str | None = None,
     deck_time: str | None = None,
     catalog: CatalogFiles = None,
+    units: Units = None,
 ) -> ExitCode:
     """Draw the diagram and write the lists for the deployment of moorings.
 
@@ -93,6 +94,7 @@ def deck(
     designs, tows = read_designs(files, environment, catalog or [], None, "calm deck")
     if tows:
         narrate(f"not drawn, because they are tows: {', '.join(map(str, tows))}")
+    show_units(units, [one.file for design in designs for one in design.moorings])
     folders = _folders(designs, output)
     decks: list[Deck] = []
     for design in designs:

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
 from calm.errors import UsageError
+
+if TYPE_CHECKING:
+    from calm.files import MooringFile
 
 CatalogFiles = Annotated[
     list[Path] | None,
@@ -36,6 +39,13 @@ Declination = Annotated[
         allow_leading_hyphen=True,
     ),
 ]
+Units = Annotated[
+    str | None,
+    Parameter(
+        help="Units that people read, as force=kgf,length=ft,speed=kn,mass=lb, in place of those "
+        "of the file; JSON, CSV and NetCDF stay in SI."
+    ),
+]
 
 MOST_SPEEDS = 10_000
 """No more speeds than this in one sweep."""
@@ -46,6 +56,30 @@ _ROUNDING = 1e-9  # of a step: what unit conversion may leave between the last s
 def option(name: str) -> str:
     """How a parameter is written on the command line."""
     return f"--{name.replace('_', '-')}"
+
+
+def show_units(given: str | None, files: Iterable[MooringFile] = ()) -> None:
+    """Show quantities to people in the units given, else in those that all files ask for.
+
+    Raises
+    ------
+    UsageError
+        Of a text that names no such dimension or unit.
+    """
+    from calm.quantities import SHOWN_UNITS, show_in
+
+    if given is None:
+        asked = [file.units for file in files]
+        show_in(asked[0] if asked and all(one == asked[0] for one in asked) else {})
+        return
+    chosen: dict[str, str] = {}
+    for part in given.split(","):
+        name, _, unit = (text.strip() for text in part.partition("="))
+        if unit not in SHOWN_UNITS.get(name, ()):
+            forms = (f"{each}={'|'.join(units)}" for each, units in SHOWN_UNITS.items())
+            raise UsageError(f"--units: `{part.strip()}` is none of {', '.join(forms)}")
+        chosen[name] = unit
+    show_in(chosen)
 
 
 def quantities(given: Mapping[str, tuple[str | None, str]]) -> dict[str, float]:

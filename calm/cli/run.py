@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from calm.cli.options import CatalogFiles, EnvironmentName, Samples, Seed
+from calm.cli.options import CatalogFiles, EnvironmentName, Samples, Seed, Units, show_units
 from calm.cli.outputs import FileOutcome, OutputPath, Outputs
 from calm.cli.streams import ExitCode, gravest, narrate
 from calm.errors import InputError, NoEquilibrium, Problem, UsageError
@@ -46,6 +46,7 @@ def run(
     uncertainty: bool = False,
     samples: Samples = 2048,
     seed: Seed = 0,
+    units: Units = None,
 ) -> ExitCode:
     """Solve moorings and tows, and print the table of each line.
 
@@ -86,6 +87,7 @@ def run(
     outputs.check()
     draws = draws_of(uncertainty, samples, seed)
     lines = read_files(files, environment, catalog or [])
+    show_units(units, [line.file for line in lines])
     for option, is_asked in (("--explain", explain), ("--uncertainty", uncertainty)):
         if is_asked:
             _refuse_tows(option, files, lines)

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from calm.cli.options import CatalogFiles, EnvironmentName
+from calm.cli.options import CatalogFiles, EnvironmentName, Units, show_units
 from calm.cli.outputs import OutputPath, Outputs
 from calm.cli.streams import ExitCode, narrate
 from calm.errors import UsageError
@@ -37,6 +37,7 @@ def size(
     environment: EnvironmentName = None,
     catalog: CatalogFiles = None,
     json: OutputPath = None,
+    units: Units = None,
 ) -> ExitCode:
     """Find the smallest change of a mooring that meets a target.
 
@@ -69,6 +70,7 @@ def size(
     mooring = calm.load(file, environment=environment, catalogs=catalog or [])
     if isinstance(mooring, Tow):
         raise UsageError(f"{file} is a tow; calm size changes moorings")
+    show_units(units, [mooring.file])
     sizing = sized(mooring, target, change, between)
     if sizing.after is not None:
         outputs.write_answer(sizing.to_dict, sizing_part(sizing))

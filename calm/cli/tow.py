@@ -10,7 +10,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from calm.cli.options import CatalogFiles, EnvironmentName, option, quantities, speed_range
+from calm.cli.options import (
+    CatalogFiles,
+    EnvironmentName,
+    Units,
+    option,
+    quantities,
+    show_units,
+    speed_range,
+)
 from calm.cli.outputs import FileOutcome, OutputPath, Outputs
 from calm.cli.run import read_files, solve_and_show
 from calm.cli.streams import ExitCode, gravest, narrate, progress
@@ -42,6 +50,7 @@ def tow(
     speeds: Annotated[str | None, Parameter(allow_leading_hyphen=True)] = None,
     sensitivity: bool = False,
     schematic: bool = False,
+    units: Units = None,
 ) -> ExitCode:
     """Solve towed lines, at the speed of their file or at many speeds.
 
@@ -76,6 +85,7 @@ def tow(
     outputs = Outputs(tuple(files), json, csv, plot)
     outputs.check()
     tows = _only_tows(files, environment, catalog or [])
+    show_units(units, [tow.file for tow in tows])
     if chosen is not None:
         return _tabulate(tows, outputs, lambda file, each: _sweep(file, each, chosen))
     if sensitivity:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import os
 import signal
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import ParamSpec, TypeVar
 
 from calm.cli.streams import progress
+from calm.quantities import show_in, shown_units
 
 _Task = TypeVar("_Task")
 _Done = TypeVar("_Done")
@@ -40,7 +41,7 @@ def mapped(
     from concurrent.futures import ProcessPoolExecutor
     from multiprocessing import active_children
 
-    pool = ProcessPoolExecutor(workers, initializer=_leave_interrupts_to_the_parent)
+    pool = ProcessPoolExecutor(workers, initializer=_as_parent, initargs=(shown_units(),))
     try:
         doing = pool.map(function, tasks)
         if meanwhile is not None:
@@ -70,7 +71,7 @@ def begun(
         return partial(function, *given, **named)
     from concurrent.futures import ProcessPoolExecutor
 
-    pool = ProcessPoolExecutor(1, initializer=_leave_interrupts_to_the_parent)
+    pool = ProcessPoolExecutor(1, initializer=_as_parent, initargs=(shown_units(),))
     made = pool.submit(function, *given, **named)
 
     def done() -> _Done:
@@ -80,5 +81,7 @@ def begun(
     return done
 
 
-def _leave_interrupts_to_the_parent() -> None:
+def _as_parent(shown: Mapping[str, str]) -> None:
+    """Show the units of the parent, and leave interrupts to it."""
+    show_in(shown)
     signal.signal(signal.SIGINT, signal.SIG_IGN)

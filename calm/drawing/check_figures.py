@@ -146,7 +146,7 @@ def _draw_current(graph: Graph, place: Place, solved: Solved, depths: Scale) -> 
         axes.line(speed, depth, _stroke(number))
     axes.frame(
         numbers(0.0, axes.across.high, 3), numbers(depths.low, depths.high, 9),
-        below=f"current [{QUANTITIES['speed'].display_unit}]", numbered=(True, False),
+        below=f"current [{QUANTITIES['speed'].usual_unit}]", numbered=(True, False),
     )  # fmt: skip
 
 

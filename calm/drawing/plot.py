@@ -165,7 +165,7 @@ def _draw_flow_of(axes: Axes, result: Result | TowResult, side: LinePicture, pla
     top = 0.0 if side.surface else side.top
     depth, u, v = current_between(result.tow.water, top, side.bottom)
     draw_flow(axes, depth, u + result.speed * plane[0], v + result.speed * plane[1], plane)
-    axes.set_xlabel(f"{speed.heading} past the line [{speed.display_unit}]")
+    axes.set_xlabel(f"{speed.heading} past the line [{speed.usual_unit}]")
 
 
 def draw_flow(axes: Axes, depth: Floats, u: Floats, v: Floats, plane: Floats) -> None:

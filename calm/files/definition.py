@@ -7,9 +7,16 @@ in sea water of `CATALOGUE_DENSITY` under standard gravity.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, ValidationInfo, model_validator
+from pydantic import (
+    BeforeValidator,
+    Field,
+    ValidationInfo,
+    WithJsonSchema,
+    field_validator,
+    model_validator,
+)
 
 from calm.files.fields import (
     COEFFICIENT,
@@ -24,7 +31,7 @@ from calm.files.fields import (
     Role,
     Text,
 )
-from calm.units import KILOGRAM_FORCE
+from calm.units import DIMENSIONS, KILOGRAM_FORCE, with_unit
 
 CATALOGUE_DENSITY = 1025.0
 """Density of the sea water in which net forces and drags are given [kg/m³]."""
@@ -63,6 +70,7 @@ Mass = Annotated[
     MASS,
     Field(description="in air (per metre of a cable or chain)", examples=["35 kg"]),
 ]
+_ANY_QUANTITY = {"type": "string", "description": "with its unit"}
 MaterialDensity = Annotated[
     float | None,
     DENSITY,
@@ -83,6 +91,51 @@ TangentialDrag = Annotated[
     DRAG,
     Field(description="drag along the axis at 1 m/s", examples=["9 N/(m/s)^2"]),
 ]
+
+
+def _listed(value: object) -> object:
+    return [value] if isinstance(value, dict) else value
+
+
+def _estimated(quantity: str) -> QuantityField:
+    return {"max_tilt": TILT, "depth_rating": POSITIVE_LENGTH}.get(quantity, POSITIVE_FORCE)
+
+
+def _alone_or_listed(schema: dict[str, Any]) -> None:
+    schema["anyOf"] += [form["items"] for form in schema["anyOf"] if "items" in form]
+
+
+class EstimatedFigure(Model):
+    """Say what a figure that nobody prints is taken as: of its class, and at least `low`."""
+
+    quantity: Literal[
+        "working_load", "breaking_load", "opening_load", "grip", "max_tilt", "depth_rating"
+    ] = Field(description="the figure that is estimated", examples=["working_load"])
+    value: Annotated[float, WithJsonSchema(_ANY_QUANTITY)] = Field(
+        description="what it is thought to be", examples=["20 kN"]
+    )
+    low: Annotated[float, WithJsonSchema(_ANY_QUANTITY)] = Field(
+        description="the least it can be, by which it is judged", examples=["12 kN"]
+    )
+    source: Text = Field(
+        description="where the figures come from", examples=["the chain it hangs on"]
+    )
+
+    @field_validator("value", "low", mode="plain")
+    @classmethod
+    def _quantity(cls, text: object, info: ValidationInfo) -> float:
+        return _estimated(info.data.get("quantity", "")).read(text)
+
+    def __str__(self) -> str:
+        unit = DIMENSIONS[_estimated(self.quantity).dimension].unit
+        low, value = with_unit(self.low, unit), with_unit(self.value, unit)
+        return f"`{self.quantity}` is estimated: {low} at least, {value} ({self.source})"
+
+    @model_validator(mode="after")
+    def _low_is_least(self) -> EstimatedFigure:
+        if self.low > self.value:
+            raise ValueError(f"`low` is {self.low:g}, above the `value` of {self.value:g}")
+        return self
 
 
 class Definition(Model):
@@ -157,11 +210,30 @@ class Definition(Model):
     warn_tilt: Annotated[float | None, TILT] = Field(
         default=None, description="tilt to be warned of", examples=["15 deg"]
     )
+    estimate: Annotated[tuple[EstimatedFigure, ...] | None, BeforeValidator(_listed)] = Field(
+        default=None,
+        description="what a figure that is not given is taken as, where a rule asks for it",
+        json_schema_extra=_alone_or_listed,
+        examples=[
+            {
+                "quantity": "working_load",
+                "value": "20 kN",
+                "low": "12 kN",
+                "source": "the chain it hangs on",
+            }
+        ],
+    )
     slack: Literal["allowed"] | None = Field(
         default=None,
         description="`allowed` exempts the piece from `minimum_tension`",
         examples=["allowed"],
     )
+
+    @property
+    def estimates(self) -> dict[str, EstimatedFigure]:
+        """Return the estimates of figures that are not given, by figure."""
+        every = {one.quantity: one for one in self.estimate or ()}
+        return {name: one for name, one in every.items() if getattr(self, name) is None}
 
     @model_validator(mode="after")
     def _works_below_breaking(self) -> Definition:

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Iterator, Mapping
 from typing import Annotated
 
+import numpy as np
 from pydantic import Discriminator, Field, Tag, ValidationError
 
 from calm.errors import Problem
 from calm.files.definition import CATALOGUE_DENSITY, DENSITY
 from calm.files.fields import Model, QuantityField, Text
 from calm.files.yaml_document import SourceMapping
+from calm.physics import seawater
+from calm.records.current_terms import left_out
 from calm.records.profile_tables import (
     SALINITY,
     TEMPERATURE,
@@ -78,6 +82,10 @@ Density = Annotated[
 _RANGES: Mapping[str, QuantityRange] = {"water": WATER_DENSITY, "air": DENSITY}
 _FALL = 0.1
 """Water that gets lighter by more than this with depth turns over [kg/m³]."""
+_RATIO = 0.05
+"""Below it a salinity is that of a lake, or a share of mass in place of g/kg."""
+_WARMEST_BELOW = 30.0
+"""No sea is warmer below its surface, and most are saltier than this number [°C]."""
 
 
 def read_density(
@@ -85,7 +93,6 @@ def read_density(
     fluid: str,
     section: SourceMapping,
     problems: list[Problem],
-    notices: list[str],
 ) -> float | DepthTable | SeaWater | None:
     """Read the density of an environment; None where it has mistakes.
 
@@ -94,15 +101,12 @@ def read_density(
     given : as the model has it
     fluid : "water" or "air"
     section : the environment
-    problems, notices : what is wrong, and worth knowing, is added to them
+    problems : what is wrong is added to them
     """
     density = _RANGES[fluid]
     if isinstance(given, TableKeys):
         report = report_at(section, "density")
-        table = read_water(given.columns, given.rows, report, problems, density)
-        if isinstance(table, DepthTable):
-            notices.extend(_falls(table))
-        return table
+        return read_water(given.columns, given.rows, report, problems, density)
     if not isinstance(given, SeaWaterKeys):
         try:
             return density.read(f"{given!r} kg/m^3")
@@ -128,18 +132,62 @@ def report_at(section: SourceMapping, *place: str) -> Report:
     return lambda location, message: section.problem((*place, *location), message)
 
 
-def _falls(table: DepthTable) -> list[str]:
-    """Return a notice where the density falls with depth."""
+def density_notices(density: float | DepthTable | SeaWater, depth: float | None) -> Iterator[str]:
+    """Yield what is odd about the density of the water, in sentences.
+
+    Parameters
+    ----------
+    density : as it was read
+    depth : of the water [m], None where it is not known
+    """
+    if isinstance(density, SeaWater):
+        profiles = {"temperature": density.temperature, "salinity": density.salinity}
+        yield from _sea_water_notices(density)
+    else:
+        profiles = {"density": density} if isinstance(density, DepthTable) else {}
+        for table in profiles.values():
+            yield from _falls(table)
+    for name, table in profiles.items():
+        if table.depth != (0.0,):  # one value is that of all depths
+            ends = table.depth[0], table.depth[-1]
+            missing = left_out(*ends, math.inf if depth is None else depth, name)
+            if missing:
+                yield f"{missing[0].upper()}{missing[1:]}."
+
+
+def _sea_water_notices(water: SeaWater) -> Iterator[str]:
+    """Yield what is odd about temperature and salinity beside each other."""
+    warm, salt = water.temperature.value, water.salinity.value
+    if max(salt) < _RATIO:
+        yield (
+            f"A salinity of {max(salt):g} is that of fresh water; 35 g in 1 kg, 0.035 as a share, "
+            "is written 35."
+        )
+    elif warm[-1] > _WARMEST_BELOW and salt[-1] < warm[-1]:
+        yield (
+            f"The lowest water has {warm[-1]:g} °C and a salinity of {salt[-1]:g}: temperature and "
+            "salinity exchanged?"
+        )
+    given = (water.temperature, water.salinity)
+    if all(len(each.depth) > 1 for each in given):
+        depth = np.union1d(*(each.depth for each in given))
+        warmth, saltiness = (np.interp(depth, each.depth, each.value) for each in given)
+        raised = seawater.potential_density(warmth, saltiness, depth)
+        yield from _falls(DepthTable(tuple(depth.tolist()), tuple(raised.tolist())))
+
+
+def _falls(table: DepthTable) -> Iterator[str]:
+    """Yield a notice where the density falls with depth."""
     greatest, depth = table.value[0], table.depth[0]
     for below, value in zip(table.depth, table.value, strict=True):
         if value < greatest - _FALL:
-            return [
-                f"The density falls from {greatest:g} kg/m^3 at {depth:g} m to {value:g} kg/m^3 "
-                f"at {below:g} m: heavy water over light does not stay."
-            ]
+            yield (
+                f"The density falls from {greatest:.6g} kg/m^3 at {depth:g} m to {value:.6g} "
+                f"kg/m^3 at {below:g} m: heavy water over light does not stay."
+            )
+            return
         if value >= greatest:
             greatest, depth = value, below
-    return []
 
 
 def check_density(section: SourceMapping, problems: list[Problem]) -> None:

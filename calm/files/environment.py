@@ -17,6 +17,7 @@ from calm.files.density import (
     Density,
     TableKeys,
     check_density,
+    density_notices,
     read_density,
     report_at,
     table_of,
@@ -285,7 +286,7 @@ def read_environment(
         return None
     before = len(problems)
     given = keys.density if "density" in keys.model_fields_set else USUAL_DENSITY[keys.fluid]
-    density = read_density(given, keys.fluid, section, problems, notices)
+    density = read_density(given, keys.fluid, section, problems)
     if isinstance(density, SeaWater) and keys.fluid == "air":
         message = "temperature and salinity are those of the sea, not of air"
         problems.append(section.problem(("density",), message))
@@ -295,6 +296,7 @@ def read_environment(
     current = _current(keys, section, problems, notices, open_files, position)
     if density is None or current is None or len(problems) > before:
         return None
+    notices.extend(density_notices(density, keys.depth))
     if isinstance(density, SeaWater) and position is None:
         notices.append(
             "Density from temperature and salinity without a `position`: taken at 45 degrees of "

@@ -84,6 +84,11 @@ class Cable(Flexible):
     finish: Literal["smooth", "rough", "very-rough"] | None = Field(
         default=None, description="of the surface of a cable", examples=["rough"]
     )
+    torque_balanced: bool | None = Field(
+        default=None,
+        description="of a wire rope: whether it does not turn under load",
+        examples=[True],
+    )
     elongation: Elongation | None = Field(
         default=None,
         description="rows of load over breaking load and strain, e.g. [[0.1, 0.03], [0.3, 0.08]]",

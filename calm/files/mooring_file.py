@@ -36,6 +36,28 @@ class TowKeys(Model):
     )
 
 
+class OutputUnits(Model):
+    """Say in which units people read tables, papers and the builder; files for programs are SI."""
+
+    force: Literal["N", "kN", "kgf", "lbf"] | None = Field(
+        default=None, description="of tensions, weights and loads", examples=["kgf"]
+    )
+    length: Literal["m", "ft"] | None = Field(
+        default=None, description="of lengths and depths", examples=["m"]
+    )
+    speed: Literal["m/s", "cm/s", "kn"] | None = Field(
+        default=None, description="of currents and ships", examples=["kn"]
+    )
+    mass: Literal["kg", "lb"] | None = Field(
+        default=None, description="of masses in air", examples=["kg"]
+    )
+
+    @property
+    def chosen(self) -> dict[str, str]:
+        """Return the units that are given, by dimension."""
+        return self.model_dump(exclude_none=True)
+
+
 class Solver(Model):
     """How the line is solved; `angle_step` in radians, `tolerance` as a share of the depth."""
 
@@ -197,7 +219,8 @@ class MooringFile:
     it gives besides its own, by name, as they are written, `accepts` what it accepts of the design
     check, `uncertainty` how uncertain its inputs are, `looser` the limits of components that its
     line sets beyond those of their definitions. `document` is what its title block says, `releases`
-    the codes of the releases, `deployed` what went over the side.
+    the codes of the releases, `deployed` what went over the side, `units` those in which people
+    read it.
     """
 
     path: str
@@ -217,6 +240,7 @@ class MooringFile:
     document: DocumentKeys | None = None
     releases: tuple[ReleaseKeys, ...] = field(default=(), hash=False)
     deployed: Deployed | None = None
+    units: Mapping[str, str] = field(default_factory=dict, hash=False)
 
     def __repr__(self) -> str:
         """Return its name, where it is, and how many pieces it has."""

@@ -21,7 +21,16 @@ from calm.files.flexible import Flexible
 from calm.files.line_items import LineReader
 from calm.files.logbook import Deployed, DocumentKeys, ReleaseKeys, check_deployed
 from calm.files.mistakes import validate
-from calm.files.mooring_file import Clamp, MooringFile, Piece, Place, Solver, TowKeys, numbered
+from calm.files.mooring_file import (
+    Clamp,
+    MooringFile,
+    OutputUnits,
+    Piece,
+    Place,
+    Solver,
+    TowKeys,
+    numbered,
+)
 from calm.files.uncertainty import Uncertainty
 from calm.files.yaml_document import SourceMapping, compose, read_document
 from calm.suggestions import unknown
@@ -78,6 +87,11 @@ class MooringKeys(Model):
         default=None,
         description="named variants, each overriding keys of `environment`",
         examples=[{"storm": {"current": {"speed": "1.2 m/s", "toward": "90 deg"}}}],
+    )
+    units: OutputUnits | None = Field(
+        default=None,
+        description="in which people read tables, papers and the builder",
+        examples=[{"force": "kgf", "speed": "kn"}],
     )
     solver: Solver | None = Field(
         default=None,
@@ -193,6 +207,7 @@ def read_mooring(
         document=keys.document,
         releases=keys.releases or (),
         deployed=keys.deployed,
+        units=keys.units.chosen if keys.units else {},
     )
 
 

@@ -112,6 +112,16 @@ RULES = {
         "`minimum_top_depth`: a failure; where it is not given, 10 m: a warning",
         "A default of this program: clear of waves, hulls and nets",
     ),
+    "stretch": RuleText(
+        "Stretch",
+        "length",
+        "synthetic ropes without `stiffness` or `elongation`; the load of a `length_at`",
+        "unknown where published stiffnesses of such ropes let it stretch by more than 2 % of the "
+        "depth of the water; a warning where it is measured under more than its working load, or "
+        "a fifth of its breaking load",
+        "A default of this program: a sounding is worth as much; ropes are measured under a small "
+        "load",
+    ),
     "fish-bite": RuleText(
         "Fish bite",
         "depth",
@@ -249,8 +259,8 @@ RULES = {
         "Swivel",
         "",
         "steel wire that ends at a float with no chain or rope between",
-        "a swivel between them, or wire that its name, material or note calls torque-balanced "
-        "(and not *not*): a warning",
+        "a swivel between them, or wire that is `torque_balanced`, or called so by its name, "
+        "material or note where it does not give that: a warning",
         "A default of this program: wire that twists under load kinks when the load goes",
         _ONCE,
     ),

@@ -16,9 +16,9 @@ from calm.batch.statuses import implausible
 from calm.errors import UsageError
 from calm.motion.sensors import Sensor
 from calm.physics.line import Floats, Integers
-from calm.records.cf_files import MISSING
 from calm.records.current_file import open_record
 from calm.records.record import RULES
+from calm.records.velocity import MISSING
 from calm.suggestions import unknown
 
 MOST_GROUPS = 8

@@ -15,12 +15,9 @@ from calm.errors import InputError, Problem, UsageError
 from calm.physics.line import Floats
 from calm.records.attributes import words_of
 from calm.records.cf_files import (
-    MISSING,
     UnreadableError,
     factor_of,
     find_times,
-    flag_variable,
-    flags_of,
     holdings,
     known_values,
     labels_along,
@@ -31,7 +28,7 @@ from calm.records.cf_files import (
 )
 from calm.records.current_file import holds_arrays
 from calm.records.headings import read_time_columns
-from calm.records.velocity import refuse_ragged
+from calm.records.velocity import MISSING, flag_variable, flags_of, refuse_ragged
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -103,6 +103,22 @@ def density(
     return absolute_density(absolute, conservative, depth, latitude)
 
 
+def potential_density(temperature: ArrayLike, salinity: ArrayLike, depth: ArrayLike) -> Floats:
+    """Density [kg/m³] of water raised to the surface without heat: what lies below is not less.
+
+    Parameters
+    ----------
+    temperature : (...) in situ, ITS-90 [°C]
+    salinity : (...) practical [-], of the reference composition
+    depth : (...) that it is raised from [m], at 45 degrees of latitude
+    """
+    import gsw
+
+    absolute = gsw.SR_from_SP(salinity)
+    pressure = gsw.p_from_z(-np.asarray(depth, dtype=float), MID_LATITUDE)
+    return absolute_density(absolute, gsw.CT_from_t(absolute, temperature, pressure), 0.0)
+
+
 def absolute_density(
     absolute_salinity: ArrayLike,
     conservative_temperature: ArrayLike,

@@ -7,7 +7,7 @@ Where they name another frame or quantity than the name suggests, they are belie
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -34,6 +34,7 @@ _OTHER_DIRECTIONS = (
     r"\b(anti|counter) ?clockwise\b|\bclockwise from (the )?(east|x)\b|\bmath(ematical)?\b",
     r"\b(adcp|adp|instrument|ship|vessel|platform|compass|sensor|glider) heading\b",
     r"\brotated\b(?!.*\b(to|into|in) (the )?(earth|true|geograph|enu|east))",
+    r"\bgrid [xyij]\b|\b[xyij] (axis|direction) of the (model )?grid\b",
 )
 _OTHER_QUANTITIES = (
     r"\b(standard|std) ?(deviation|dev|error)\b|\bstd ?(err)?\b|\bstd?dev\b|\b(rms|variance)\b",
@@ -150,8 +151,12 @@ def is_magnetic(variable: xr.DataArray, dataset: Mapping[Any, Any] = MappingProx
         return True
     if any(_says_so(variable.attrs.get(name), _MAGNETIC) for name in ("comment", "note", "notes")):
         return True
-    told = [*variable.attrs.items(), *dataset.items()]
-    return any(_counts_from_it(str(name), said) for name, said in told)
+    return is_magnetic_by(variable.attrs) or is_magnetic_by(dataset)
+
+
+def is_magnetic_by(attributes: Mapping[Any, Any]) -> bool:
+    """Return whether attributes say that directions are relative to magnetic north."""
+    return any(_counts_from_it(str(name), said) for name, said in attributes.items())
 
 
 def _counts_from_it(name: str, said: Any) -> bool:
@@ -191,7 +196,8 @@ def way_of(variable: xr.DataArray, *attributes: str) -> str | None:
 
 _FILTERED = (
     r"\b(low|high|band) ?pass(ed)?\b|\blanczos\b|\bbutterworth\b|\bdemerliac\b|"
-    r"\b(godin|doodson|pl ?(33|64|66)\w*) ?(tidal )?filter"
+    r"\b(godin|doodson|pl ?(33|64|66)\w*) ?(tidal )?filter|"
+    r"\b(2[5-9]|[3-9]\d) ?(h|hr|hours?|hourly) (running |moving )?(means?|average[ds]?|filter)\b"
 )
 _WITHOUT_TIDES = (
     r"\bde ?tided\b|\bsub ?tidal\b|\bnon ?tidal\b|"
@@ -210,6 +216,7 @@ _LONG_MEANS = (
     r"\b(mean|monthly|annual|seasonal|daily) climatolog(y|ies)\b|\bclimatology of\b|"
     r"\b(annual|seasonal|decadal|long term|multi ?year) (mean|average)\b|"
     r"\b(mean|averaged?) over \d+ years\b|\b\d+ years? (mean|average)\b|"
+    r"\bsubtract\w*( \w+){0,4} mean\b|\bmean (was |is )?subtracted\b|"
     r"\b(means?|averaged?) over (19|20)\d\d( to)? (19|20)\d\d\b|\b(time|record) mean\b|"
     r"\b(y(day|mon|seas)|tim|multi ?year)mean\b|\b(day|mon|seas|year|tim)(max|min|std|pctl)\b"
 )
@@ -217,7 +224,8 @@ _OTHER_FRAMES = re.compile(
     r"\brelative to (the |a )?(moving )?"
     r"(instrument|ship|vessel|vehicle|platform|glider|float|drifter)\b|"
     r"\b(ship|vessel|glider|platform|vehicle|drifter) relative\b|\bshear only\b|"
-    r"\bunreferenced\b|\brotated\b(?!.*\b(earth|true|geograph\w*|enu|east|declination|"
+    r"(?<!from )\b(beam|instrument|ship|xyz) (frame|coordinates?)\b"
+    r"(?!.*\b(earth|enu|true|transform\w*|convert\w*)\b)|\bunreferenced\b|\brotated\b(?!.*\b(earth|true|geograph\w*|enu|east|declination|"
     r"magnetic|variation|back)\b)"
 )
 _IN_TEXTS = re.compile("|".join((_FILTERED, _WITHOUT_TIDES, _TIDES_ALONE, _LONG_MEANS)))
@@ -229,14 +237,15 @@ _IN_NAMES = re.compile(
 )
 _IN_TITLES = re.compile(
     r"\bclimatolog(y|ies)\b|"
-    r"\b(residual|geostrophic|ekman|stokes) (currents?|velocit\w+|flow|drift)\b|"
+    r"\b(residual|geostrophic|ekman|stokes|baroclinic|barotropic) "
+    r"(currents?|velocit\w+|flow|drift|profiles?)\b|"
     r"\b(percent|quant)iles?\b|\banomal(y|ies)\b|\b(tpxo|fes ?20|eot ?[12]|got ?4)\w*\b|"
     r"\b(standard deviation|std|variance|rms|maxim(a|um)|minim(a|um)) (of|current|velocit|speed)"
 )
 _REMARKABLE = (
     (
         r"\b(daily|weekly|monthly|seasonal|annual|yearly) (mean|average|current)[ds]?\b|"
-        r"\b(day|mon|seas|year)(mean|avg)\b|\b(mean|averaged?) (current|velocit)\w*\b",
+        r"\b(day|mon|seas|year)(mean|avg)\b",
         "the peaks are higher than the means",
     ),
     (
@@ -244,20 +253,24 @@ _REMARKABLE = (
         r"\b\d+ ?(year|yr)s? (return|extreme|storm|event|current)",
         "extremes by statistics are no currents of one time",
     ),
+)
+"""Words of a text, and what is said of a current that is read all the same."""
+
+_REMARKABLE_IN_TITLES = (
+    *_REMARKABLE,
+    (r"\b(mean|averaged?) (current|velocit)\w*\b", "the peaks are higher than the means"),
     (
         r"^(the )?tid(al|es?)\b"
         r"(?!.*\b(obser[v]|measur|adcp|adp|moor|meter|record|channel|inlet)\w*)",
         "where it is the tide alone, the rest of the current is missing",
     ),
 )
-"""Words of a title or a history, and what is said of a current that is read all the same."""
-
 _TIDAL = re.compile(r"\btid(al|es?)\b")
 _WITH_TIDES = re.compile(r"\b(total|includ\w+|with|and|plus|waves?|not removed)\b")
 
 _TEXTS = re.compile(
     r"(?i)title|summary|abstract|comments?|notes?|description|history|(data_)?processing(_\w+)?|"
-    r"(\w+_)?filter(ing|ed|s)?(_\w+)?|data_type|subject|purpose"
+    r"source|keywords|id|(\w+_)?filter(ing|ed|s)?(_\w+)?|data_type|subject|purpose"
 )
 _TITLES = re.compile(r"(?i)title|summary|abstract|description|data_type|subject|purpose")
 _SENTENCE = re.compile(r"\.(?!\d)|[;()\n]")
@@ -297,7 +310,7 @@ def part_in_texts(attributes: Mapping[Any, Any]) -> str | None:
     for name, words, said in _sentences(attributes):
         if _OTHER_FRAMES.search(words):
             return f"is in other coordinates by its {name}: {said}"
-        found = _IN_TEXTS.search(words)
+        found = None if name == "keywords" else _IN_TEXTS.search(words)
         if found is None and _TITLES.fullmatch(name):
             found = _IN_TITLES.search(words)
         if found is not None:
@@ -309,13 +322,20 @@ def part_in_texts(attributes: Mapping[Any, Any]) -> str | None:
 
 
 def remarks_in_texts(attributes: Mapping[Any, Any]) -> list[str]:
-    """Return what titles and histories say that a person should know of a current that is read."""
-    return [
-        f"its {name} says `{said}`: {meaning}"
-        for name, words, said in _sentences(attributes)
-        for pattern, meaning in _REMARKABLE
-        if (_TITLES.fullmatch(name) or name == "history") and re.search(pattern, words)
-    ]
+    """Return what texts say that a person should know of a current that is read.
+
+    A title or a history counts wherever it says so, any other text where a sentence begins with it.
+    """
+    told = []
+    for name, words, said in _sentences(attributes):
+        titled = _TITLES.fullmatch(name) or name == "history"
+        for pattern, meaning in _REMARKABLE_IN_TITLES if titled else _REMARKABLE:
+            if (re.search if titled else re.match)(pattern, words):
+                told.append(f"its {name} says `{said}`: {meaning}")
+                break
+        if name == "keywords" and (_IN_TEXTS.search(words) or _IN_TITLES.search(words)):
+            told.append(f"its keywords say `{said}`: a part of the current, or the whole?")
+    return told
 
 
 def _sentences(attributes: Mapping[Any, Any]) -> Iterator[tuple[str, str, str]]:
@@ -326,3 +346,46 @@ def _sentences(attributes: Mapping[Any, Any]) -> Iterator[tuple[str, str, str]]:
                 words = re.sub(r"[\W_]+", " ", sentence).strip()
                 if not _OF_OTHERS.search(words):
                     yield str(name), words, said.strip()[:80]
+
+
+_LOCAL = re.compile(
+    r"(?i)\butc ?[+-] ?0?[1-9]|(?-i:\b(CES?T|EDT|PDT|JST|BST|MEZ|MESZ)\b)|"
+    r"\b(local (\w+ )?times?|times? (is|are) (in )?local|times? in local)\b|"
+    r"\b(daylight|standard|summer|winter) time\b(?! ?(series|scale|step))|"
+    r"\btimes?\W+((is|are|zone|in)\W+)*(c?e[sd]t|cet|bst|[cmp][sd]t|mesz?|mez|jst|hst|aest)\b"
+)
+_IN_UTC = re.compile(r"(?i)\b(convert|correct|transform|shift)\w*\b|\bto (utc|gmt)\b|\bnot\b")
+_UPWARDS = re.compile(
+    r"(?i)\b(depths?|levels?|bins?)\b.*"
+    r"\b(heights?|(above|up from|upwards? from) (the )?(sea ?bed|sea ?floor|bottom))\b"
+)
+
+
+def is_local(text: str) -> bool:
+    """Return whether a text says that times are of another zone than UTC."""
+    return bool(_LOCAL.search(text)) and not _IN_UTC.search(text)
+
+
+def refused_by_comments(comments: Sequence[str], *, magnetic: bool) -> str | None:
+    """Return why a table is not of the current, by its comments; None if it may be.
+
+    Parameters
+    ----------
+    comments : above the table
+    magnetic : whether its headings say that it is relative to magnetic north
+    """
+    said = {"comment": "\n".join(comments)}
+    if not magnetic and is_magnetic_by(said):
+        return "is relative to magnetic north by its comment: write `toward[deg magnetic]`"
+    return part_in_texts(said)
+
+
+def remarks_in_comments(comments: Sequence[str]) -> list[str]:
+    """Return what the comments above a table say that a person should know."""
+    notices = remarks_in_texts({"comment": "\n".join(comments)})
+    for comment in comments:
+        if is_local(comment):
+            notices.append(f"its comment says `{comment[:80]}`: the times are taken as UTC")
+        if _UPWARDS.search(comment):
+            notices.append(f"its comment says `{comment[:80]}`: the depths are taken as depths")
+    return notices

@@ -1,4 +1,4 @@
-"""Datasets by the CF conventions as they stand in files: opening, values, units, flags, labels.
+"""Datasets by the CF conventions as they stand in files: opening, values, units, times, labels.
 
 NetCDF 3 and 4 and zarr are opened by xarray, their times undecoded, their values read when asked
 for. What is wrong with a file is an `UnreadableError` inside, an `InputError` outside `reading`.
@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.errors import CalmError, InputError, Problem
+from calm.records.attributes import is_local
 from calm.records.current_terms import ZONES_OF_UTC, TimeChoiceError
 from calm.units import QuantityError, unit_factor
 
@@ -31,9 +32,6 @@ _FIRST, _LAST = "1678-01-01", "2262-01-01"
 _ZONE = re.compile(r" since .*\d\s*([A-Za-z]{2,}(/[A-Za-z_]+)?)\s*$")
 _ZONED = ("time_zone", "timezone", "tz", "time_reference")
 _SAID_IN = re.compile(r"(?i)long_name|title|summary|(time_)?(comments?|notes?|description)|history")
-_LOCAL = re.compile(r"(?i)\b(local (\w+ )?times?|times? (is|are) (in )?local|times? in local)\b")
-_IN_UTC = re.compile(r"(?i)\b(convert|correct|transform|shift)\w*\b|\bto (utc|gmt)\b|\bnot\b")
-
 _MOST_LISTED = 24
 _NORTH_NAMED = re.compile(
     r"(?i)[ _](true|t|magnetic)$|\s*\(?clockwise from ((true|magnetic) )?north\)?$"
@@ -41,10 +39,6 @@ _NORTH_NAMED = re.compile(
 _LABELS = ("instrument", "label", "instrument_label", "labels", "instruments")
 _HEIGHTS = ("hab", "height_above_bottom", "height_above_seabed", "DIST_SEABED")
 _DEPTHS = ("nominal_depth", "NOMINAL_DEPTH", "InstrDepth", "DEPTH", "depth", "instrument_depth")
-
-MISSING = 9
-_ENDINGS = ("_qc", "_QC", "_quality_control", "_flag", "_SEADATANET_QC")
-_BAD = re.compile(r"bad|fail|suspect|spike|erroneous|wrong|missing|reject|doubtful|invalid")
 
 _KINDS = {
     b"MATLAB": "a .mat file of MATLAB; write its times, depths and currents with `ncwrite`",
@@ -211,56 +205,6 @@ def _unpacked(limit: Any, variable: xr.DataArray, absent: float) -> float:
     return value * scale + offset
 
 
-def flag_variable(dataset: xr.Dataset, name: str) -> xr.DataArray | None:
-    """Return the flags of a variable: its ancillary variable, or the one called after it."""
-    beside = str(dataset[name].attrs.get("ancillary_variables", "")).split()
-    named = [*beside, *(f"{name}{ending}" for ending in _ENDINGS)]
-    for other in named:
-        if other not in dataset.variables or not _tells_flags(dataset[other]):
-            continue
-        if set(dataset[other].dims) <= set(dataset[name].dims):
-            return dataset[other]
-    return None
-
-
-def _tells_flags(variable: xr.DataArray) -> bool:
-    standard_name = str(variable.attrs.get("standard_name", ""))
-    return (
-        "status_flag" in standard_name
-        or "flag_values" in variable.attrs
-        or variable.dtype.kind in "iu"
-    )
-
-
-def flags_of(variable: xr.DataArray) -> NDArray[np.int8]:
-    """Return the flags as numbers; one without a value is 9, missing."""
-    values = np.asarray(variable.values)
-    if values.dtype.kind in "SU":
-        values = np.where(values.astype(str) == "", "9", values.astype(str)).astype(float)
-    numbers = np.asarray(values, np.float64)
-    return np.where(np.isfinite(numbers), numbers, MISSING).astype(np.int8)
-
-
-def marked_bad(variable: xr.DataArray) -> NDArray[np.bool_]:
-    """Return which flags say that a value is bad, by their meanings; without, 3, 4 and 9 do."""
-    bad, told = ["3", "4", "9"], str(variable.attrs.get("flag_meanings", "")).lower().split()
-    values = np.atleast_1d(variable.attrs.get("flag_values", [])).tolist()
-    if told and len(told) == len(values):
-        pairs = zip(values, told, strict=True)
-        bad = [_flag(value) for value, meaning in pairs if _BAD.search(meaning)]
-    flags = np.asarray(variable.values)
-    kinds, which = np.unique(flags.astype(object).astype(str), return_inverse=True)
-    marks: NDArray[np.bool_] = np.array([_flag(kind) in bad for kind in kinds])
-    return marks[which].reshape(flags.shape)
-
-
-def _flag(value: Any) -> str:
-    """Return a flag, be it a number or a character, in one spelling."""
-    text = value.decode() if isinstance(value, bytes) else str(value)
-    text = text.removeprefix("b'").removesuffix("'").removesuffix(".0")
-    return chr(int(text)) if re.fullmatch(r"4[89]|5[0-7]|6[56]|81", text) else text
-
-
 def labels_along(dataset: xr.Dataset, dimension: str) -> tuple[str, ...] | None:
     """Return the labels of what a dimension counts; None where it has none."""
     for name in (*_LABELS, dimension):
@@ -343,7 +287,7 @@ def zone_notices(dataset: xr.Dataset, name: str) -> list[str]:
         for key, said in attributes.items():
             zone, comment = str(said).strip(), _SAID_IN.fullmatch(str(key))
             another = key in _ZONED and zone and zone.upper() not in ZONES_OF_UTC
-            if another or (comment and _LOCAL.search(zone) and not _IN_UTC.search(zone)):
+            if another or (comment and is_local(zone)):
                 return [
                     f"`{name}` says `{zone[:80]}`: all {dataset[name].size} times are taken as "
                     "they stand, in UTC"

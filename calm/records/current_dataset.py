@@ -16,12 +16,9 @@ from calm.records.cf_files import (
     UnreadableError,
     factor_of,
     find_times,
-    flag_variable,
-    flags_of,
     holdings,
     known_values,
     labels_along,
-    marked_bad,
     open_current,
     read_times,
     reading,
@@ -32,7 +29,15 @@ from calm.records.current_terms import Terms, current_notices
 from calm.records.level_depths import LevelDepths, find_levels
 from calm.records.profile_tables import turned_by
 from calm.records.record import RULES, Levels, Period, Record, choose_profiles, part
-from calm.records.velocity import Velocity, find_velocity, refuse_ragged, with_components
+from calm.records.velocity import (
+    Velocity,
+    find_velocity,
+    flag_variable,
+    flags_of,
+    marked_bad,
+    refuse_ragged,
+    with_components,
+)
 from calm.records.water_column import GridColumn, choose_column, is_regular
 
 if TYPE_CHECKING:
@@ -236,7 +241,8 @@ def _understood(dataset: xr.Dataset, terms: Terms) -> CurrentDataset:
     notices = [*column.notes]
     if name_of_time is not None:
         notices += zone_notices(dataset, name_of_time)
-    flags = (flag_variable(dataset, name) for name in velocity.names)
+    found = (flag_variable(dataset, name) for name in velocity.names)
+    flags = {str(one.name): one for one in found if one is not None}
     notices += remarks_in_texts(dataset.attrs)
     return CurrentDataset(
         times=times,
@@ -246,7 +252,7 @@ def _understood(dataset: xr.Dataset, terms: Terms) -> CurrentDataset:
         source=source,
         labels=labels,
         _parts=tuple(_parts(dataset, velocity)),
-        _flags=tuple(one for one in flags if one is not None),
+        _flags=tuple(flags.values()),
         _turn=velocity.turn,
         _terms=terms,
         _levels=levels,
@@ -267,14 +273,12 @@ def _turned(velocity: Velocity, declination: float | None) -> tuple[str, ...]:
     if velocity.magnetic and declination is None:
         raise UnreadableError(
             f"{which} are relative to magnetic north; give the `declination` there, positive "
-            "to the "
-            "east (beside `file:`, or `--declination`)"
+            "to the east (beside `file:`, or `--declination`)"
         )
     if declination is not None and not velocity.magnetic:
         raise UnreadableError(
             f"{which} are not said to be relative to magnetic north, so no `declination` is "
-            "applied; "
-            "leave it out"
+            "applied; leave it out"
         )
     if declination is None:
         return ()

@@ -22,7 +22,7 @@ from calm.records.current_terms import (
 from calm.records.delimited import CellRow, abridged, read_table
 from calm.records.profile_tables import CurrentTable, turned_notices
 from calm.records.record import Period, Record
-from calm.records.record_csv import EXAMPLE, CsvRecord, CurrentHeader
+from calm.records.record_csv import EXAMPLE, CsvRecord, CurrentHeader, comment_notices
 from calm.records.water_column import Place
 
 _ZARR = ("zarr.json", ".zgroup", ".zmetadata")
@@ -162,7 +162,7 @@ def _from_text(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable
     current = header.profile(rows, problems, terms)
     if current is None:
         raise InputError(abridged(problems))
-    notices += turned_notices(header.columns, terms)
+    notices += [*comment_notices(path, header), *turned_notices(header.columns, terms)]
     arrays = np.array(current.depth), np.array([current.u]), np.array([current.v])
     return current, [*notices, *current_notices(arrays, None, terms.water_depth)]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from math import hypot, inf, isinf
+from math import hypot, inf, isinf, pi
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -133,8 +133,10 @@ FAR_APART = np.timedelta64(12, "h")
 """Between profiles so far apart the tide and its peaks are lost."""
 
 _FEWEST = 4  # values of which it is no chance that they are alike
-_MANY = 200  # currents of which one component is not 0 by chance
-_MOST = 0.5  # share of zeros, and of profiles like the one before, that is said
+_MANY = 50  # currents of which one component is not 0 by chance
+_MOST = 0.5  # share of profiles like the one before that is said
+_ZEROS = 0.25  # share of zeros that is said
+_TURN = 2.0 * pi  # in radians; no current stays within so many degrees of north
 _ALIKE = 0.9  # share of values that are the same in both components
 _WEAK = 0.01  # m/s that no sea stays below for many profiles
 _UNCOVERED = 0.1  # share of the depth that a profile may leave out at either end
@@ -162,7 +164,7 @@ def current_notices(
     known = np.isfinite(u) & np.isfinite(v)
     count, still = int(known.sum()), known & (u == 0.0) & (v == 0.0)
     moving = known & ~still
-    if count and still.sum() > _MOST * count:
+    if count and still.sum() > _ZEROS * count:
         yield f"{still.sum()} of {count} currents are exactly 0: nothing was measured there?"
     if moving.sum() >= _FEWEST:
         alike = moving & (np.abs(u) == np.abs(v))
@@ -185,6 +187,14 @@ def current_notices(
         same &= moving[1:].any(axis=1)
         if same.sum() > _MOST * (len(times) - 1):
             yield f"{same.sum()} of {len(times)} profiles are the same as the one before"
+        else:
+            yield from _stuck_levels(u, v)
+        towards = np.degrees(np.arctan2(u[moving], v[moving])) % 360.0
+        if moving.sum() > _MANY and 1.0 < towards.max() <= _TURN:
+            yield (
+                f"all {moving.sum()} currents flow towards {towards.min():.2g} to "
+                f"{towards.max():.2g} degrees: radians, taken for degrees?"
+            )
         if moving.sum() > _MANY and not (u[moving].any() and v[moving].any()):
             yield f"all {moving.sum()} currents are along one axis, their other component 0"
         strongest = float(np.hypot(u[moving], v[moving]).max())
@@ -195,13 +205,27 @@ def current_notices(
             )
 
 
-def left_out(top: float, bottom: float, water_depth: float) -> str:
-    """Return which part of the water a current says nothing of; "" where it covers it.
+def _stuck_levels(u: Floats, v: Floats) -> Iterator[str]:
+    """Yield how many levels, of several, have the same current at nearly all times."""
+    known = np.isfinite(u[1:]) & np.isfinite(v[1:])
+    same = (u[1:] == u[:-1]) & (v[1:] == v[:-1])
+    count = known.sum(axis=0)
+    stuck = (count >= _FEWEST) & (same.sum(axis=0) > _ALIKE * count)
+    if 0 < stuck.sum() < stuck.size:
+        yield (
+            f"{stuck.sum()} of {stuck.size} levels have the same current all the time: level "
+            f"{int(np.argmax(stuck)) + 1} from the first on"
+        )
+
+
+def left_out(top: float, bottom: float, water_depth: float, what: str = "current") -> str:
+    """Return which part of the water a profile says nothing of; "" where it covers it.
 
     Parameters
     ----------
     top, bottom : its first and its last level [m]
     water_depth : [m]; inf where it is not known
+    what : it is a profile of
     """
     allowed = max(_UNCOVERED * water_depth, _FEW)
     gaps = [f"above {say('depth', top)}"] if top > allowed else []
@@ -210,6 +234,6 @@ def left_out(top: float, bottom: float, water_depth: float) -> str:
     if not gaps:
         return ""
     return (
-        f"the current is not given {' and '.join(gaps)}: that of the nearest level is used there, "
+        f"the {what} is not given {' and '.join(gaps)}: that of the nearest level is used there, "
         f"in {say('depth', water_depth)} of water"
     )

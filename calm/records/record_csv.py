@@ -11,12 +11,14 @@ import re
 import tempfile
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
 
 from calm.errors import InputError, Problem, UsageError
 from calm.physics.line import Floats
+from calm.records.attributes import refused_by_comments, remarks_in_comments
 from calm.records.current_terms import (
     DEEPEST,
     Terms,
@@ -61,6 +63,7 @@ class CsvRecord(Record):
         self._kept = tempfile.TemporaryFile()  # noqa: SIM115 (until it is closed)
         try:
             header = self._read(path)
+            told = comment_notices(path, header)
             self._index, chosen = choose_profiles(self._times, period, every, path)
         except BaseException:
             self._kept.close()
@@ -68,7 +71,7 @@ class CsvRecord(Record):
         self.time = self._times[self._index]
         depth, u, v, _ = self.profiles(0, min(self.count, AT_ONCE))
         odd = current_notices((depth, u, v), self.time[:AT_ONCE], terms.water_depth)
-        self.notes = (*chosen, *self._turned, *odd, *RULES)
+        self.notes = (*chosen, *told, *self._turned, *odd, *RULES)
         self.source = {"file": path.name, "columns": ", ".join(header.columns)}
 
     def _read(self, path: Path) -> CurrentHeader:
@@ -138,6 +141,23 @@ class CsvRecord(Record):
         """See `Record`."""
         self._rows = np.empty((0, COLUMNS))
         self._kept.close()
+
+
+def comment_notices(path: Path, header: CurrentHeader) -> list[str]:
+    """Return what the comments above a table of currents say that a person should know.
+
+    Raises
+    ------
+    InputError
+        They say that it is a part of the current, or in other coordinates than its columns.
+    """
+    with path.open("rb") as file:
+        above = (line.decode(errors="replace").strip() for line in islice(file, header.row.number))
+        comments = [line.lstrip("# ") for line in above if line.startswith("#")]
+    magnetic = bool(magnetic_columns(header.columns)[1])
+    if reason := refused_by_comments(comments, magnetic=magnetic):
+        raise InputError([Problem(str(path), 1, 1, f"its current {reason}")])
+    return remarks_in_comments(comments)
 
 
 @dataclass(frozen=True)

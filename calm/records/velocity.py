@@ -1,10 +1,13 @@
-"""Which variables of a dataset are a current: by CF standard name, then by usual name."""
+"""Which variables of a dataset are a current, and its flags: by CF standard name or usual name."""
 
 from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from calm.records.attributes import (
     another_way,
@@ -14,7 +17,7 @@ from calm.records.attributes import (
     part_in_texts,
     way_of,
 )
-from calm.records.cf_files import UnreadableError, first_present
+from calm.records.cf_files import UnreadableError, factor_of, first_present
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -60,6 +63,16 @@ _AMBIGUOUS = (
 )  # fmt: skip
 
 
+MISSING = 9
+_ENDINGS = ("_qc", "_QC", "_quality_control", "_flag", "_SEADATANET_QC", "_FLAG_W", "_quality",
+            "_quality_flag", "_QF", "_qf", "_flags")  # fmt: skip
+_OF_ALL = ("quality", "quality_flag", "qc", "QC", "flag", "flags", "qc_flag", "status_flag")
+_OF_VELOCITY = re.compile(
+    r"(?i)(?=.*(velocity|current)).*(?<![a-z])(qc|flags?|quality)(?![a-z])(?!.*(temp|sal|pres))"
+)
+_BAD = re.compile(r"bad|fail|suspect|spike|erroneous|wrong|missing|reject|doubtful|invalid")
+
+
 @dataclass(frozen=True)
 class Velocity:
     """Names of the variables that make a current.
@@ -103,6 +116,10 @@ def find_velocity(dataset: xr.Dataset, *, regular: bool) -> Velocity:
         if len(magnetic) == 1:
             other = north if magnetic == [east] else east
             raise UnreadableError(f"`{magnetic[0]}` is to magnetic north, `{other}` is not")
+        units = {factor_of(dataset[name], "speed"): name for name in (east, north)}
+        if len(units) > 1:
+            said = " and ".join(f"`{dataset[name].attrs['units']}`" for name in (east, north))
+            notes.append(f"its components have different units, {said}")
         return Velocity((east, north), up, None, bool(magnetic), tuple(notes))
     speed = _find(dataset, _SPEED, regular, notes)
     direction, way = _direction(dataset, regular, notes)
@@ -263,3 +280,64 @@ def with_components(dataset: xr.Dataset) -> xr.Dataset:
             part.attrs = {"units": units, "standard_name": f"{way}ward_sea_water_velocity"}
             parts[f"{name}[{labels[place]}]"] = part
     return dataset.assign(parts)
+
+
+def flag_variable(dataset: xr.Dataset, name: str) -> xr.DataArray | None:
+    """Return the flags of a variable: its ancillary variable, one called after it, or of all."""
+    beside = str(dataset[name].attrs.get("ancillary_variables", "")).split()
+    told = (other for other in dataset.data_vars if _OF_VELOCITY.search(str(other)))
+    named = [*beside, *(f"{name}{ending}" for ending in _ENDINGS), *_OF_ALL, *map(str, told)]
+    for other in named:
+        if other not in dataset.variables or not _tells_flags(dataset[other]):
+            continue
+        if set(dataset[other].dims) <= set(dataset[name].dims):
+            return dataset[other]
+    return None
+
+
+def _tells_flags(variable: xr.DataArray) -> bool:
+    standard_name = str(variable.attrs.get("standard_name", ""))
+    return (
+        "status_flag" in standard_name
+        or "flag_values" in variable.attrs
+        or variable.dtype.kind in "iu"
+    )
+
+
+def flags_of(variable: xr.DataArray) -> NDArray[np.int8]:
+    """Return the flags as numbers; one without a value is 9, missing; of bits, 1 and 4."""
+    if "flag_masks" in variable.attrs:
+        return np.where(marked_bad(variable), 4, 1).astype(np.int8)
+    values = np.asarray(variable.values)
+    if values.dtype.kind in "SU":
+        values = np.where(values.astype(str) == "", "9", values.astype(str)).astype(float)
+    numbers = np.asarray(values, np.float64)
+    return np.where(np.isfinite(numbers), numbers, MISSING).astype(np.int8)
+
+
+def marked_bad(variable: xr.DataArray) -> NDArray[np.bool_]:
+    """Return which flags say that a value is bad, by their meanings; without, 3, 4 and 9 do."""
+    bad, told = ["3", "4", "9"], str(variable.attrs.get("flag_meanings", "")).lower().split()
+    masks = np.atleast_1d(variable.attrs.get("flag_masks", [])).tolist()
+    values = np.atleast_1d(variable.attrs.get("flag_values", masks)).tolist()
+    if told and len(told) == len(masks) == len(values) and variable.dtype.kind in "iu":
+        bits = zip(masks, values, told, strict=True)
+        bad_bits = [(mask, value) for mask, value, meaning in bits if _BAD.search(meaning)]
+        given = np.asarray(variable.values)
+        found = [(given & mask) == value for mask, value in bad_bits if mask]
+        bits_bad: NDArray[np.bool_] = np.logical_or.reduce([np.zeros(given.shape, bool), *found])
+        return bits_bad
+    if told and len(told) == len(values):
+        pairs = zip(values, told, strict=True)
+        bad = [_flag(value) for value, meaning in pairs if _BAD.search(meaning)]
+    flags = np.asarray(variable.values)
+    kinds, which = np.unique(flags.astype(object).astype(str), return_inverse=True)
+    marks: NDArray[np.bool_] = np.array([_flag(kind) in bad for kind in kinds])
+    return marks[which].reshape(flags.shape)
+
+
+def _flag(value: Any) -> str:
+    """Return a flag, be it a number or a character, in one spelling."""
+    text = value.decode() if isinstance(value, bytes) else str(value)
+    text = text.removeprefix("b'").removesuffix("'").removesuffix(".0")
+    return chr(int(text)) if re.fullmatch(r"4[89]|5[0-7]|6[56]|81", text) else text

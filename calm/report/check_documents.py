@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
-from calm.checks.finding import Finding, worst_state
+from calm.checks.finding import Finding, State, worst_state
 from calm.checks.inventory import total_of
 from calm.checks.rules import RULES
 from calm.quantities import QUANTITIES
@@ -28,11 +28,11 @@ def check_document(assessments: Sequence[Assessment]) -> dict[str, Any]:
     Returns
     -------
     dict
-        `state`, the worst there is; what is `accepted`, and why; `findings`, and as `tighter` those
-        of other situations that leave less margin; of each mooring by its name the `key_figures`
-        that page one of a report has; of each mooring by its name `launch`,
-        `recovery`, `backup`, `inventory` and its `totals`, and its `document` where files give any;
-        and `situations`, what was solved of each mooring in each environment.
+        `state`, the worst there is; how many findings are `estimated`; what is `accepted`, and why;
+        `findings`, and as `tighter` those of other situations that leave less margin; of each
+        mooring by its name the `key_figures` of page one, `launch`, `recovery`, `backup`,
+        `inventory` and its `totals`, and its `document` where files give any; and `situations`,
+        what was solved of each mooring in each environment.
     """
     from calm.version import __version__
 
@@ -45,6 +45,11 @@ def check_document(assessments: Sequence[Assessment]) -> dict[str, Any]:
         "calm": __version__,
         **({"document": documents} if documents else {}),
         "state": worst_state(each.state for each in assessments),
+        "estimated": sum(
+            finding.state is State.ESTIMATED
+            for each in assessments
+            for finding in each.all_findings()
+        ),
         "accepted": [
             _accepted(each.name, finding)
             for each in assessments

@@ -182,7 +182,7 @@ def key_pairs(facts: CheckFacts) -> Pairs:
         pairs.append(("anchor margin", f"{text} needed, environment {place_of(anchor)}"))
     pairs.append(("least factor of safety", _factor_text(factor)))
     counts = counted_states(facts.findings)
-    named = (State.FAIL, State.WARN, State.UNKNOWN, State.ACCEPTED)
+    named = (State.FAIL, State.WARN, State.UNKNOWN, State.ESTIMATED, State.ACCEPTED)
     pairs.append(("findings", ", ".join(f"{counts[state]} {state.value}" for state in named)))
     return Pairs(tuple(pairs))
 

@@ -275,6 +275,7 @@ SIGNS = {
     State.UNKNOWN: "?",
     State.WARN: "~",
     State.ACCEPTED: "◦",
+    State.ESTIMATED: "≈",
     State.PASS: "✓",
 }
 """What stands before a verdict."""
@@ -302,6 +303,7 @@ def verdict_of(findings: Iterable[Finding]) -> tuple[State, str]:
         _counted(counts[State.FAIL], "failure") if counts[State.FAIL] else f"nothing {other}fails",
         _counted(counts[State.UNKNOWN], "figure") + " unknown" if counts[State.UNKNOWN] else "",
         _counted(counts[State.WARN], "warning") if counts[State.WARN] else "",
+        f"{counts[State.ESTIMATED]} estimated" if counts[State.ESTIMATED] else "",
         f"{counts[State.ACCEPTED]} accepted" if counts[State.ACCEPTED] else "",
         f"{nobody} of them by nobody" if nobody else "",
     ]

@@ -110,15 +110,15 @@ def breaks_table(backup: Sequence[Break]) -> Table:
         (Column("no.", numeric=True), lambda one: str(one.break_after)),
         (Column("break below"), lambda one: one.label),
         (
-            Column("weight lifted", "N", numeric=True),
+            quantity_column("wet_weight", "weight lifted"),
             lambda one: figure_cell("wet_weight", one.weight_lifted),
         ),
         (
-            Column("buoyancy left over", "N", numeric=True),
+            quantity_column("net_buoyancy", "buoyancy left over"),
             lambda one: figure_cell("net_buoyancy", one.margin),
         ),
         (
-            Column("required", "N", numeric=True),
+            quantity_column("net_buoyancy", "required"),
             lambda one: figure_cell("net_buoyancy", one.required),
         ),
         (Column("judged"), lambda one: "yes" if one.judged else "no"),
@@ -179,13 +179,16 @@ def handling_table(assessment: Assessment) -> Table:
         rows.append(tuple(row))
     columns = [Column("no.", numeric=True), Column("piece")]
     if launch is not None:
-        columns += [Column("launch, upper end", "N", True), Column("launch, lower end", "N", True)]
+        columns += [
+            quantity_column("tension", "launch, upper end"),
+            quantity_column("tension", "launch, lower end"),
+        ]
     if recovery is not None:
         columns += [
-            Column("recovery, upper end", "N", True),
-            Column("recovery, lower end", "N", True),
+            quantity_column("tension", "recovery, upper end"),
+            quantity_column("tension", "recovery, lower end"),
             Column("at the surface after", "min", True),
-            Column("hangs at depth", "m", True),
+            quantity_column("depth", "hangs at depth"),
         ]
     return Table("Tensions on the way down and up", tuple(columns), tuple(rows))
 
@@ -226,7 +229,7 @@ def inventory_table(items: Sequence[InventoryItem]) -> Table:
         Column("component"),
         Column("id"),
         Column("pieces", numeric=True),
-        Column("cut length", "m", numeric=True),
+        quantity_column("cut_length"),
         quantity_column("dry_mass"),
         quantity_column("wet_weight"),
         Column("spares"),

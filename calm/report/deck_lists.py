@@ -9,7 +9,7 @@ from calm.deck.cutting import LENGTH_ERROR
 from calm.deck.shipping import total_of
 from calm.quantities import QUANTITIES, say
 from calm.report.blocks import Block, Cell, Column, Note, Prose, ReportPart, Table, table_of
-from calm.report.sheet import figure_cell
+from calm.report.sheet import figure_cell, quantity_column
 
 if TYPE_CHECKING:
     from calm.deck import Deck
@@ -123,7 +123,7 @@ def shipping_part(deck: Deck) -> ReportPart:
             lambda one: "" if one.length is None else f"{one.length:.1f}",
         ),
         (
-            Column("mass in air", "kg", numeric=True),
+            quantity_column("dry_mass", "mass in air"),
             lambda one: _at_least("dry_mass", one.mass, one.missing_masses, one.count),
         ),
         (
@@ -192,15 +192,15 @@ def _stages(title: str, lifts: Iterable[Lift]) -> Table:
         (Column("no.", numeric=True), lambda one: str(one.index)),
         (Column("at the rail", share=2.0), lambda one: one.label),
         (
-            Column("lift in\nair", "kg", numeric=True),
+            quantity_column("lift_mass", "lift in\nair"),
             lambda one: figure_cell("lift_mass", one.mass),
         ),
         (
-            Column("lift in\nwater", "N", numeric=True),
+            quantity_column("wet_weight", "lift in\nwater"),
             lambda one: figure_cell("wet_weight", one.weight),
         ),
         (
-            Column("hanging\nin water", "N", numeric=True),
+            quantity_column("wet_weight", "hanging\nin water"),
             lambda one: figure_cell("wet_weight", one.hanging),
         ),
     )
@@ -213,10 +213,10 @@ def instruments_part(deck: Deck) -> ReportPart:
     columns = (
         Column("instrument", share=1.4),
         Column("serial number", share=0.8),
-        Column("depth", "m", numeric=True),
-        Column("still\nwater", "m", numeric=True),
+        quantity_column("depth", "depth"),
+        quantity_column("depth", "still\nwater"),
         *(
-            (Column("least", "m", numeric=True), Column("greatest", "m", numeric=True))
+            (quantity_column("depth", "least"), quantity_column("depth", "greatest"))
             if several
             else ()
         ),

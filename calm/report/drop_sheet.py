@@ -24,6 +24,7 @@ from calm.report.blocks import (
     table_of,
 )
 from calm.report.provenance import position_text
+from calm.report.sheet import quantity_column
 from calm.units import KNOT
 
 if TYPE_CHECKING:
@@ -187,12 +188,12 @@ def _depth_blocks(plan: DropPlan) -> list[Block]:
         listed,
         (Column("piece or clamp"), lambda one: one.label),
         (
-            Column("greatest depth", "m", numeric=True),
+            quantity_column("depth", "greatest depth"),
             lambda one: Cell(depth.format(one.greatest), state=State.FAIL if one.beyond else None),
         ),
         (Column("after", "s", numeric=True), lambda one: f"{one.time:.0f}"),
-        (Column("at rest", "m", numeric=True), lambda one: depth.format(one.rest)),
-        (Column("rated to", "m", numeric=True), lambda one: depth.format(one.rating)),
+        (quantity_column("depth", "at rest"), lambda one: depth.format(one.rest)),
+        (quantity_column("depth", "rated to"), lambda one: depth.format(one.rating)),
     )
     return [table]
 

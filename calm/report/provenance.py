@@ -21,6 +21,7 @@ from calm.errors import InputError, UsageError
 from calm.files import MooringFile
 from calm.quantities import QUANTITIES, bearing_of, say
 from calm.report.blocks import Cell, Column, Listing, Pairs, Prose, ReportPart, Table, table_of
+from calm.report.sheet import quantity_column
 from calm.whole_file import read_text
 
 if TYPE_CHECKING:
@@ -145,10 +146,10 @@ def environments_table(names: Sequence[str], waters: Sequence[Water]) -> Table:
         )
     columns = (
         Column("environment"),
-        Column("water depth", "m", numeric=True),
+        quantity_column("depth", "water depth"),
         Column("density", "kg/m³", numeric=True),
-        Column("greatest current", "m/s", numeric=True),
-        Column("at depth", "m", numeric=True),
+        quantity_column("speed", "greatest current"),
+        quantity_column("depth", "at depth"),
         Column("levels", numeric=True),
     )
     return Table("Environments", columns, tuple(rows))

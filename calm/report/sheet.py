@@ -249,14 +249,14 @@ def line_table(
     return Table("", columns, tuple(_rows(result, names, places)), note, dense=True)
 
 
-def quantity_column(name: str) -> Column:
-    """The head of a column of a quantity in the unit that people read."""
+def quantity_column(name: str, heading: str | None = None) -> Column:
+    """The head of a column of a quantity, or another, with the unit that people read."""
     quantity = QUANTITIES[name]
     return Column(
-        quantity.heading,
+        heading or quantity.heading,
         quantity.display_unit,
         numeric=True,
-        short=_SHORT.get(name),
+        short=None if heading else _SHORT.get(name),
         marked=name in _MARKED,
     )
 

@@ -28,7 +28,7 @@ _HEADINGS = {"body_tension": "tension\nat body"}
 _NOTE = "Depth and layback: of the body. Tension and angle: at the tow point, from the horizontal."
 _DIGITS = 4
 _WARNED = "!: with warnings, which --json reports."
-_KNOTS = replace(QUANTITIES["speed"], display="knot", scale=1.0 / KNOT)
+_KNOTS = replace(QUANTITIES["speed"], display="knot", usual_scale=1.0 / KNOT)
 
 
 @dataclass(frozen=True)
@@ -108,7 +108,7 @@ def by_speed(
         name=tow.file.name,
         subject="speeds",
         title=f"{tow.file.name}: tow at {len(speeds)} speed{'s' if len(speeds) != 1 else ''}",
-        headings=(f"speed\n{speed.unit}", _KNOTS.display),
+        headings=(f"speed\n{speed.display_unit}", _KNOTS.display),
         rows=tuple(
             TabulationRow({"speed": value}, (speed.format(value), _KNOTS.format(value)), outcome)
             for value, outcome in zip(speeds, outcomes, strict=True)
@@ -219,7 +219,7 @@ def _fine(name: str, tabulation: Tabulation) -> Quantity:
     greatest = max((abs(row.figures[name] or 0.0) for row in tabulation.rows), default=0.0)
     if greatest == 0.0:
         return quantity
-    decimals = _DIGITS - 1 - floor(log10(greatest * quantity.scale))
+    decimals = _DIGITS - 1 - floor(log10(greatest * quantity.usual_scale))
     return replace(quantity, decimals=max(quantity.decimals, decimals))
 
 

@@ -30,6 +30,7 @@ from calm.report.blocks import (
 _STYLES = {
     State.PASS: "green",
     State.ACCEPTED: "",
+    State.ESTIMATED: "green",
     State.WARN: "yellow",
     State.UNKNOWN: "bold",
     State.FAIL: "bold red",

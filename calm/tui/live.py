@@ -24,6 +24,7 @@ from calm.files import MooringFile, read_mooring
 from calm.files.editing import Draft, LineItem
 from calm.files.reader import STAND_IN
 from calm.files.yaml_document import Document, compose
+from calm.quantities import show_in
 from calm.tui.row_findings import FoundRow, rows_of
 
 UNNAMED = "unnamed.yaml"
@@ -188,6 +189,7 @@ def _judged(view: View, catalogs: Sequence[str | Path]) -> View:
         )  # fmt: skip
     except InputError as error:
         return _wrong(view, error.problems)
+    show_in(file.units)
     view = replace(view, file=file, missing=tuple(_lacking(file)))
     if "no float" in view.missing:
         return replace(view, rows=tuple(rows_of(file, None)))

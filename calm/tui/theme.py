@@ -122,6 +122,7 @@ LOOKS = {
     State.FAIL: Look("!", "FAIL", "bold red"),
     State.WARN: Look("~", "warning", "yellow"),
     State.UNKNOWN: Look("?", "unknown", "dim"),
+    State.ESTIMATED: Look("≈", "estimated", "green"),
     State.ACCEPTED: Look("·", "accepted", "dim"),
     State.PASS: Look("✓", "pass", "green"),
 }

@@ -63,6 +63,9 @@ def headline(view: View | None) -> Saying:
     return Saying(f"{outcome} so far", pending=True)
 
 
+_NOT_PASSED = (State.ACCEPTED, State.ESTIMATED)
+
+
 def _judged(findings: Sequence[Finding]) -> Saying:
     """Return what is counted is a rule of a component in a situation, in whichever environments."""
     states: dict[tuple[str, str | None, str], State] = {}
@@ -81,8 +84,9 @@ def _judged(findings: Sequence[Finding]) -> Saying:
     unknown = f"{missing} figure{'s' * (missing != 1)} unknown"
     if state is State.UNKNOWN:
         return Saying(f"nothing fails, {unknown}", state=state)
-    if not phrases and counts[State.ACCEPTED]:
-        return Saying(f"passes but for {counts[State.ACCEPTED]} accepted", state=state)
+    lesser = [f"{counts[each]} {each}" for each in _NOT_PASSED if counts[each]]
+    if not phrases and lesser:
+        return Saying(f"passes but for {' and '.join(lesser)}", state=state)
     if not phrases:
         return Saying("passes every check", state=State.PASS)
     return Saying(", ".join([*phrases, *([unknown] if missing else [])]), state=state)

@@ -184,3 +184,44 @@ def test_pictures_of_one_name_are_refused(calm, write_mooring, folder):
     done = calm("run", write_mooring("a.yaml"), write_mooring("other/a.yaml"), "--plot", "p.png")
     assert done.code == 2
     assert "two outputs would go to p-a.png" in done.err
+
+
+def test_people_read_the_units_of_the_file_or_of_the_command(calm, write_mooring, folder):
+    path = folder / write_mooring()
+    plain, machine = calm("run", "m.yaml").out, calm("run", "m.yaml", "--json", "-").out
+    pull = json.loads(machine)["anchor"]["tension"]
+    assert f"Anchor pulled by {pull:.0f} N" in plain
+    path.write_text(path.read_text() + "units: {force: kgf}\n")
+    assert f"Anchor pulled by {pull / 9.80665:.1f} kgf" in calm("run", "m.yaml").out
+    feet = calm("run", "m.yaml", "--units", "length=ft, force=kN").out
+    assert f"Anchor pulled by {pull / 1e3:.3f} kN" in feet
+    assert "   ft" in feet
+    assert calm("run", "m.yaml", "--json", "-").out == machine
+    assert "[N]" in calm("run", "m.yaml", "--csv", "-").out
+
+
+def test_files_that_ask_for_other_units_are_shown_in_the_usual_ones(calm, write_mooring, folder):
+    for name, units in (("a.yaml", "kgf"), ("b.yaml", "lbf")):
+        path = folder / write_mooring(name)
+        path.write_text(path.read_text() + f"units: {{force: {units}}}\n")
+    both = calm("run", "a.yaml", "b.yaml").out
+    assert "kgf" not in both
+    assert "lbf" not in both
+    assert " N," in both
+
+
+@pytest.mark.parametrize("units", ["force=kg", "weight=N", "force", "force=kgf,,", ""])
+def test_units_that_are_none(calm, write_mooring, units):
+    done = calm("run", write_mooring(), "--units", units)
+    assert done.code == 2
+    assert done.out == ""
+    assert "is none of force=N|kN|kgf|lbf, length=m|ft, speed=m/s|cm/s|kn, mass=kg|lb" in done.err
+
+
+def test_units_of_a_file_that_are_none(calm, write_mooring, folder):
+    path = folder / write_mooring()
+    path.write_text(path.read_text() + "units: {force: kg, weight: N}\n")
+    done = calm("run", "m.yaml")
+    assert done.code == 2
+    assert "`force: kg` must be one of N, kN, kgf, lbf" in done.err
+    assert "unknown key `weight`" in done.err

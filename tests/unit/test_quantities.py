@@ -2,7 +2,8 @@ import math
 
 import pytest
 
-from calm.quantities import QUANTITIES, say
+from calm.quantities import QUANTITIES, SHOWN_UNITS, say, show_in, shown_units
+from calm.units import unit_factor
 
 
 def test_header_of_a_column_carries_the_unit_of_results():
@@ -46,3 +47,55 @@ def test_every_quantity_has_a_meaning_and_is_found_by_its_own_name():
         assert quantity.name == name
         assert quantity.heading
         assert quantity.meaning.endswith(".")
+
+
+@pytest.fixture
+def shown():
+    yield show_in
+    show_in({})
+
+
+# 1 kgf = 9.80665 N, 1 lbf = 4.4482216 N, 1 kn = 1852/3600 m/s, 1 lb = 0.45359237 kg
+@pytest.mark.parametrize(
+    ("dimension", "unit", "name", "value", "text"),
+    [
+        ("force", "kgf", "tension", 9806.65, "1000.0 kgf"),
+        ("force", "kN", "tension", 4003.49, "4.003 kN"),
+        ("force", "lbf", "tension", 4448.2216, "1000.0 lbf"),
+        ("force", "kgf", "breaking_load", 98066.5, "10000 kgf"),
+        ("force", "N", "breaking_load", 98066.5, "98.1 kN"),
+        ("length", "ft", "depth", 304.8, "1000.0 ft"),
+        ("length", "ft", "diameter", 0.0127, "12.7 mm"),
+        ("speed", "kn", "speed", 1852 / 3600, "1.00 kn"),
+        ("speed", "cm/s", "speed", 0.253, "25 cm/s"),
+        ("mass", "lb", "dry_mass", 45.359237, "100.0 lb"),
+        ("mass", "lb", "volume", 0.012, "12.0 l"),
+        ("force", "kgf", "tilt", 11.74, "11.7°"),
+    ],
+)
+def test_people_choose_their_units(shown, dimension, unit, name, value, text):
+    shown({dimension: unit})
+    assert say(name, value) == text
+
+
+def test_programs_and_pictures_keep_theirs(shown):
+    before = {name: (one.header, one.label) for name, one in QUANTITIES.items()}
+    shown({"force": "lbf", "length": "ft", "speed": "kn", "mass": "lb"})
+    assert {name: (one.header, one.label) for name, one in QUANTITIES.items()} == before
+    assert shown_units() == {"force": "lbf", "length": "ft", "speed": "kn", "mass": "lb"}
+
+
+def test_units_shown_are_as_long_as_those_read():
+    for dimension, units in SHOWN_UNITS.items():
+        for unit, factor in units.items():
+            assert factor == pytest.approx(unit_factor(unit, dimension), rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    "units", [{}, {name: next(iter(units)) for name, units in SHOWN_UNITS.items()}]
+)
+def test_the_units_of_results_are_the_usual_ones(shown, units):
+    shown({"force": "kgf"})
+    shown(units)
+    assert shown_units() == {}
+    assert say("tension", 7003.4) == "7003 N"

@@ -12,6 +12,7 @@ from rich.style import Style
 
 from calm.checks.finding import State
 from calm.files import Place
+from calm.quantities import QUANTITIES
 from calm.tui.table import TableCells, TableColumn
 from calm.tui.theme import CURSOR, LOOKS, MARK
 
@@ -162,7 +163,7 @@ class LineTable(TableCells, can_focus=True):
         sign = Segment(" ", style)
         if row.spot in self.marked:
             sign = Segment(MARK, style)
-        elif row.state is not None and row.state.value not in ("pass", "accepted"):
+        elif row.state is not None and row.state.value not in ("pass", "accepted", "estimated"):
             colour = self.get_component_rich_style(f"line-table--{row.state.value}", partial=True)
             sign = Segment(LOOKS[row.state].sign, style + colour)
         cursor = CURSOR if number == self.cursor else " "
@@ -174,16 +175,6 @@ EDITABLE: tuple[Column, ...] = ("component", "label", "count", "length")
 """The columns that a person fills, from the left."""
 
 FIGURES = ("depth", "tension", "tilt", "margin")
-HEADINGS = {
-    "component": "component",
-    "label": "label",
-    "count": "n",
-    "length": "length",
-    "depth": "depth m",
-    "tension": "tension N",
-    "tilt": "tilt °",
-    "margin": "margin",
-}
 RIGHT_ALIGNED = frozenset({"count", "length", *FIGURES})
 
 _WIDTHS = {"count": 3, "length": 9, "depth": 8, "tension": 9, "tilt": 6, "margin": 7}
@@ -219,6 +210,7 @@ def layout_for(
     """
     shown = [*EDITABLE, *FIGURES]
     fixed = _WIDTHS | {"length": min(max(length, _WIDTHS["length"]), _MOST_LENGTH)}
+    fixed["tension"] = max(fixed["tension"], len(_heading("tension")))
     for name in ("margin", "tilt", "count", "tension", "depth"):
         if _text_room(shown, width, fixed) >= 2 * _WANTED_TEXT:
             break
@@ -231,9 +223,15 @@ def layout_for(
     for name in shown:
         tail = _TAIL if name == "component" else 0  # its size stands at its end
         is_right = name in RIGHT_ALIGNED
-        columns.append(TableColumn(name, HEADINGS[name], start, widths[name], is_right, tail))
+        columns.append(TableColumn(name, _heading(name), start, widths[name], is_right, tail))
         start += widths[name] + 1
     return tuple(columns)
+
+
+def _heading(name: str) -> str:
+    """The head of a column, with the unit of what is solved; the count is `n`."""
+    unit = QUANTITIES[name].display_unit if name in ("depth", "tension", "tilt") else ""
+    return f"{'n' if name == 'count' else name} {unit}".rstrip()
 
 
 def _text_room(shown: list[str], width: int, fixed: dict[str, int]) -> int:

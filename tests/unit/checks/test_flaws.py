@@ -512,6 +512,43 @@ FLAWS = (
         "down to 1000.0 m fish bite through rope",
     ),
     Flaw(
+        "a release above every float, beside a good one",
+        FIT,
+        (
+            (
+                "  - {use: sphere-steel",
+                "  - {use: release-ar861, label: upper}\n  - {use: sphere-steel",
+            ),
+        ),
+        "release-present",
+        "upper",
+        "warn",
+        "Nothing floats above upper, a release",
+    ),
+    Flaw(
+        "a nylon rope without stiffness",
+        CDMS,
+        (("stiffness: 2655 kN\n    material: aramid", "material: nylon"),),
+        "stretch",
+        "Kevlar 1",
+        "unknown",
+        "is nylon of unknown stiffness, taken as inextensible: it could stretch by",
+    ),
+    Flaw(
+        "a rope measured under most of what it bears",
+        FIT,
+        (
+            (
+                "    length: 480 m\n    label: wire",
+                "    length_at: {load: 22 kN, length: 480 m}\n    label: wire",
+            ),
+        ),
+        "stretch",
+        "wire",
+        "warn",
+        "wire is cut to its length under 22000 N; in use it bears",
+    ),
+    Flaw(
         "a float that leaps",
         SLOPE,
         (
@@ -552,6 +589,21 @@ FLAWS = (
         "wire",
         "warn",
         "without a swivel between them",
+    ),
+    Flaw(
+        "a wire that is not torque-balanced, whatever its name says",
+        FIT,
+        (
+            ("{use: swivel-miller-c212, label: swivel}", "{use: shackle-16, label: swivel}"),
+            (
+                "    label: wire\n",
+                "    label: wire\n    note: torque-balanced\n    torque_balanced: false\n",
+            ),
+        ),
+        "swivel",
+        "wire",
+        "warn",
+        "wire bears torque and ends at top float",
     ),
     Flaw(
         "a shackle for a release",

@@ -59,18 +59,18 @@ TEN_AND_35 = SeaWater(DepthTable((0.0,), (10.0,)), DepthTable((0.0,), (35.0,)))
         (
             [
                 "density:",
-                "  temperature: {columns: [depth m, temperature degC], rows: [[0, 18], [90, 4]]}",
+                "  temperature: {columns: [depth m, temperature degC], rows: [[0, 18], [990, 4]]}",
                 "  salinity: 34",
             ],
-            SeaWater(DepthTable((0.0, 90.0), (18.0, 4.0)), DepthTable((0.0,), (34.0,))),
+            SeaWater(DepthTable((0.0, 990.0), (18.0, 4.0)), DepthTable((0.0,), (34.0,))),
         ),
         (
             [
                 "density:",
                 "  temperature: 4 degC",
-                "  salinity: {columns: [depth m, salinity], rows: [[5, 30], [10, 34]]}",
+                "  salinity: {columns: [depth m, salinity], rows: [[5, 30], [1010, 34]]}",
             ],
-            SeaWater(DepthTable((0.0,), (4.0,)), DepthTable((5.0, 10.0), (30.0, 34.0))),
+            SeaWater(DepthTable((0.0,), (4.0,)), DepthTable((5.0, 1010.0), (30.0, 34.0))),
         ),
     ],
     ids=["constants", "other units", "mass fraction", "one table", "one of two", "the other"],
@@ -90,6 +90,34 @@ def test_sea_water_at_a_position(read: Read) -> None:
     assert mooring.notices == ()
     assert mooring.environment.position == mooring.position
     assert mooring.environment.density == TEN_AND_35
+
+
+STRATIFIED = "density: {columns: [depth m, density kg/m^3], rows: [[0, 1027], [1000, %s]]}"
+SEA = "density: {columns: [depth m, temperature degC, salinity], rows: %s}"
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("density: {temperature: 10 degC, salinity: 0.035}", ["0.035 as a share"]),
+        (SEA % "[[0, 14, 0.0351], [1100, 4, 0.0349]]", ["0.035 as a share"]),
+        ("density: {temperature: 35 degC, salinity: 10}", ["exchanged?"]),
+        (SEA % "[[0, 35.1, 4], [1100, 34.9, 14]]", ["exchanged?"]),
+        (SEA % "[[0, 4, 35], [1100, 14, 35]]", ["heavy water over light"]),
+        (SEA % "[[0, 14, 35], [50, 12, 35.1]]", ["The temperature is not", "The salinity is not"]),
+        (STRATIFIED.replace("1000", "50") % "1028", ["The density is not given below 50.0 m"]),
+        (STRATIFIED % "1028", []),
+        (SEA % "[[0, 31, 39], [200, 15, 36], [1100, 13.5, 38.5]]", []),
+        (SEA % "[[0, 2, 6], [1100, 4, 6.5]]", []),
+        ("density: {temperature: 18 degC, salinity: 0.2}", []),
+    ],
+)
+def test_what_is_odd_about_the_water_is_said(read: Read, line: str, said: list[str]) -> None:
+    place = "position: {latitude: 48.3 deg, longitude: -5.2 deg}\n"
+    notices = read(place + with_keys(line)).notices
+    assert len(notices) == len(said)
+    for words, notice in zip(said, notices, strict=True):
+        assert words in notice
 
 
 def test_a_drift_is_off_unless_asked_for(read: Read) -> None:
@@ -292,9 +320,6 @@ def test_tide_and_growth(read: Read) -> None:
     assert (file.environment.fouling.depth, file.environment.fouling.thickness) == (50.0, 0.02)
 
 
-STRATIFIED = "density: {columns: [depth m, density kg/m^3], rows: [[0, 1027], [50, %s]]}"
-
-
 @pytest.mark.parametrize(("below", "warned"), [("1026.95", False), ("1026.8", True)])
 def test_density_that_falls_with_depth_is_a_warning(
     read: Callable[..., MooringFile], below: str, warned: bool
@@ -309,7 +334,7 @@ def test_density_that_falls_with_depth_is_a_warning(
     ("lines", "mistake"),
     [
         (["density: 90 kg/m^3"], (4, 12, "`density: 90 kg/m^3` must be at least 900 kg/m^3")),
-        ([STRATIFIED % "1400"], (4, 72, "`density: 1400` must be at most 1350 kg/m^3")),
+        ([STRATIFIED % "1400"], (4, 74, "`density: 1400` must be at most 1350 kg/m^3")),
         (["maximum_speed: 0 m/s"], (4, 18, "`maximum_speed: 0 m/s` must be more than 0 m/s")),
         (
             ["maximum_speed: 0.5 m/s"],

@@ -49,7 +49,9 @@ def test_a_good_record_is_not_spoken_of(record: xr.Dataset, tmp_path: Path) -> N
         "title": "Total currents of a tidal channel, with tides and residual circulation",
         "summary": "Pressure was low-pass filtered. The model was forced with tidal constituents.",
         "history": "converted from local time to UTC; spikes removed; averaged over 10 minutes",
-        "comment": "Depths are relative to the ship. Not relative to the vessel.",
+        "comment": "Depths are relative to the ship. Not relative to the vessel. Tides are strong. "
+        "Mean current 0.2 m/s. Turned from beam coordinates to the earth.",
+        "keywords": "ADCP, tides, EARTH SCIENCE > OCEANS",
     }
     flags = ("time", "depth"), np.ones((720, 10), np.int8), {"standard_name": "status_flag"}
     assert said(record.assign(u_qc=flags).assign_attrs(told), tmp_path) == []
@@ -63,6 +65,9 @@ def test_a_good_record_is_not_spoken_of(record: xr.Dataset, tmp_path: Path) -> N
     {"comment": "Means over 1993 to 2016"}, {"history": "low-pass filtered, 40 h"},
     {"comment": "velocities are relative to the ship"}, {"summary": "glider-relative currents"},
     {"summary": "Currents (shear only)"}, {"summary": "rotated to along shore"},
+    {"source": "detided with t_tide"}, {"comment": "25-hour running mean"},
+    {"history": "subtracted the 1993-2012 mean"}, {"title": "Baroclinic profiles"},
+    {"comment": "velocities in beam coordinates"},
 ])  # fmt: skip
 def test_words_of_the_whole_file_refuse_it(record, tmp_path, words) -> None:
     record.assign_attrs(words).to_netcdf(tmp_path / "r.nc", engine="h5netcdf")
@@ -74,6 +79,7 @@ def test_words_of_the_whole_file_refuse_it(record, tmp_path, words) -> None:
     ({"title": "Daily mean currents"}, "the peaks are higher than the means"),
     ({"history": "cdo daymean a.nc b.nc"}, "the peaks are higher than the means"),
     ({"summary": "100-year return values"}, "extremes by statistics are no currents of one time"),
+    ({"comment": "Daily means"}, "the peaks are higher than the means"),
     ({"title": "Tidal currents"}, "where it is the tide alone, the rest of the current is missing"),
 ])  # fmt: skip
 def test_words_of_the_whole_file_that_are_said(record, tmp_path, words, meaning) -> None:
@@ -106,6 +112,12 @@ ZONE = "all 720 times are taken as they stand, in UTC"
     (of_attribute("time", "comment", "in local time"), f"`time` says `in local time`: {ZONE}"),
     (lambda one: one.assign_attrs(time_zone="CEST"), f"`time` says `CEST`: {ZONE}"),
     (lambda one: one.assign_attrs(comment="Times are local (UTC+2)"), ZONE),
+    (of_attribute("time", "long_name", "time, Eastern Daylight Time"), ZONE),
+    (of_attribute("time", "comment", "clock of the logger, CEST"), ZONE),
+    (lambda one: one.assign_attrs(keywords="FES2014, barotropic tide"), "its keywords say `FES201"),
+    (of_attribute("u", "units", "kn"), "have different units, `kn` and `m s-1`"),
+    (lambda one: one.where(one["depth"] != 40.0, 0.1), "1 of 10 levels have the same current all"),
+    (lambda one: one.where(one["time"].values[:, None] % 3 > 0, 0.0), "2400 of 7200 currents are"),
     (lambda one: one.isel(depth=[0, 1, 2]), "the current is not given below 24.0 m: that of the"),
     (lambda one: one.isel(depth=[5, 9]), "the current is not given above 90.0 m: that of the near"),
 ])  # fmt: skip
@@ -140,6 +152,29 @@ def test_flags_leave_out_what_is_bad_with_a_count(record, tmp_path) -> None:
         assert np.isnan(read.profiles(100, 101)[1]).all()
     with open_record(tmp_path / "r.nc", seabed=SEABED, on_the_line=True) as read:
         assert (read.profiles(100, 101)[1] == 3.0).all()
+
+
+@pytest.mark.parametrize("name", ["u_FLAG_W", "u_quality", "quality_flag", "QC_velocity"])
+def test_flags_are_found_by_their_names(record, tmp_path, name) -> None:
+    flags = np.where(np.arange(7200).reshape(720, 10) % 4, 1, 4).astype(np.int8)
+    record[name] = ("time", "depth"), flags
+    assert f"1800 of 7200 currents are left out, as `{name}` marks" in said(record, tmp_path)[0]
+
+
+def test_flags_of_another_variable_are_not_those_of_the_current(record, tmp_path) -> None:
+    record["temperature_qc"] = ("time", "depth"), np.full((720, 10), 4, np.int8)
+    assert said(record, tmp_path) == []
+
+
+def test_flags_may_be_bits(record, tmp_path) -> None:
+    bits = np.array([0, 1, 2, 10], np.int8)[np.arange(7200).reshape(720, 10) % 4]
+    meanings = {"flag_masks": np.array([1, 2, 8], np.int8), "flag_meanings": "warm bad suspect"}
+    record["u_qc"] = ("time", "depth"), bits, meanings
+    assert said(record, tmp_path) == [
+        "3600 of 7200 currents are left out, as `u_qc` marks them as bad"
+    ]
+    with open_record(tmp_path / "r.nc", seabed=SEABED) as read:
+        assert read.flags(0, 1)[0, :4].tolist() == [1, 1, 4, 4]
 
 
 def test_distances_along_the_beam_are_no_heights(record, tmp_path) -> None:
@@ -211,3 +246,53 @@ def test_letters_of_comments_may_be_of_any_encoding(tmp_path: Path) -> None:
         assert read.count == 9
     table, _ = read_current_file(tmp_path / "r.csv", "2026-03-01T03:00", Terms())
     assert table.u == (0.31,)
+
+
+def table(head: str, row: Callable[[int, int], str], above: str = "") -> str:
+    rows = (f"2026-03-0{1 + i // 24}T{i % 24:02d}:00,{z},{row(i, z)}" for i in range(72)
+            for z in (10, 290))  # fmt: skip
+    return "\n".join((*([above] if above else []), f"time,depth[m],{head}", *rows, ""))
+
+
+def components_of(i: int, z: int) -> str:
+    return f"{0.3 * np.cos(i / 2):.4f},{0.2 * np.sin(i / 2) + z / 5000:.4f}"
+
+
+def notes_of(path: Path) -> list[str]:
+    with open_record(path, seabed=SEABED) as read:
+        notes = [note for note in read.notes if note not in RULES]
+    _, profile = read_current_file(path, "2026-03-01T05:00", Terms(water_depth=SEABED))
+    assert [note for note in notes if note.startswith("its comment")] == profile
+    return notes
+
+
+@pytest.mark.parametrize(("comment", "said_of_it"), [
+    ("# daily means", "`daily means`: the peaks are higher than the means"),
+    ("# times in CET", "`times in CET`: the times are taken as UTC"),
+    ("# Time: UTC+2", "`Time: UTC+2`: the times are taken as UTC"),
+    ("# depth is height above the seabed", "`depth is height above the seabed`: the depths are"),
+    ("# ADCP, true north, converted from CET to UTC, depths below the surface", None),
+])  # fmt: skip
+def test_comments_above_a_table_are_said(tmp_path, comment, said_of_it) -> None:
+    (tmp_path / "r.csv").write_text(table("u[m/s],v[m/s]", components_of, comment))
+    notes = notes_of(tmp_path / "r.csv")
+    assert len(notes) == (said_of_it is not None)
+    assert all(said_of_it in note for note in notes)
+
+
+@pytest.mark.parametrize("comment", [
+    "# barotropic tide only", "# low-pass filtered, 40 h", "# ADCP velocities in beam coordinates",
+    "# compass: magnetic, declination not applied",
+])  # fmt: skip
+def test_comments_above_a_table_refuse_it(tmp_path, comment) -> None:
+    (tmp_path / "r.csv").write_text(table("u[m/s],v[m/s]", components_of, comment))
+    assert "by its comment" in refusal(tmp_path / "r.csv")
+
+
+@pytest.mark.parametrize(("turn", "told"), [(np.radians, True), (float, False)])
+def test_directions_in_radians_are_said(tmp_path, turn, told) -> None:
+    text = table("speed[m/s],toward[deg]", lambda i, z: f"0.3,{turn(5 * i + z / 100):.4f}")
+    (tmp_path / "r.csv").write_text(text)
+    assert [
+        note.endswith("radians, taken for degrees?") for note in notes_of(tmp_path / "r.csv")
+    ] == [True] * told

@@ -1,0 +1,107 @@
+"""Figures that nobody prints, taken as those of their class: judged by their low bound."""
+
+from pathlib import Path
+
+import pytest
+
+import calm
+from calm.checks.assess import check
+from calm.checks.assessment import Assessment
+from calm.checks.finding import State
+from calm.errors import InputError
+from calm.report.check_documents import check_document
+
+LINE = """\
+name: estimates
+environment:
+  depth: 500 m
+  current: {speed: 0.2 m/s, toward: 90 deg}
+line:
+  - {use: ball}
+  - {use: rope, label: upper, length: 100 m}
+  - {use: link, label: link FIGURES}
+  - {use: rope, label: lower, length: 100 m}
+  - {use: weight}
+components:
+  ball: {kind: sphere, role: float, diameter: 1 m, buoyancy: 3 kN}
+  rope: {kind: cable, diameter: 8 mm, weight: 1.6 N/m, stiffness: 3000 kN, working_load: 20 kN}
+  link: {kind: body, role: connector, length: 0.1 m, buoyancy: -5 N, kn: 1 N/(m/s)^2,
+         inclination: insensitive}
+  weight: {kind: anchor, weight: 20 kN}
+"""
+ESTIMATE = ", estimate: {quantity: working_load, value: 20 kN, low: LOW, source: its chain}"
+
+
+def judged(tmp_path: Path, figures: str, checks: str = "") -> Assessment:
+    path = tmp_path / "m.yaml"
+    path.write_text(LINE.replace(" FIGURES", figures) + checks, encoding="utf-8")
+    mooring = calm.load(path)
+    assert isinstance(mooring, calm.Mooring)
+    return check(mooring)
+
+
+def of_link(assessment: Assessment, rule: str) -> tuple[State, float | None, str]:
+    (finding,) = [
+        one for one in assessment.stands[0].findings
+        if (one.rule, one.component, one.situation) == (rule, "link", "as given")
+    ]  # fmt: skip
+    return finding.state, finding.limit, finding.message
+
+
+# The link bears 3000 N less 100 m of rope, 2840 N, and the little that the current adds.
+def test_what_passes_by_the_low_bound_is_estimated(tmp_path: Path) -> None:
+    assessment = judged(tmp_path, ESTIMATE.replace("LOW", "3 kN"))
+    state, limit, message = of_link(assessment, "strength")
+    assert (state, limit) == (State.ESTIMATED, 3000.0)
+    assert message.endswith("`working_load` is estimated: 3000 N at least, 20000 N (its chain).")
+    every = [one for one in assessment.all_findings() if one.state is State.ESTIMATED]
+    assert check_document([assessment])["estimated"] == len(every) >= 1
+
+
+def test_what_passes_by_its_value_alone_is_unknown(tmp_path: Path) -> None:
+    state, limit, message = of_link(judged(tmp_path, ESTIMATE.replace("LOW", "2.8 kN")), "strength")
+    assert (state, limit) == (State.UNKNOWN, 2800.0)
+    assert "20000 N (its chain)" in message
+
+
+def test_a_figure_that_is_given_counts_and_not_its_estimate(tmp_path: Path) -> None:
+    figures = ESTIMATE.replace("LOW", "3 kN") + ", working_load: 2.9 kN"
+    assessment = judged(tmp_path, figures)
+    assert of_link(assessment, "strength")[:2] == (State.PASS, 2900.0)
+    assert check_document([assessment])["estimated"] == 0
+
+
+def test_an_estimate_of_another_figure_changes_nothing(tmp_path: Path) -> None:
+    figures = ", estimate: {quantity: max_tilt, value: 30 deg, low: 20 deg, source: its like}"
+    assert of_link(judged(tmp_path, figures), "strength")[:2] == (State.UNKNOWN, None)
+
+
+def test_what_an_estimate_leaves_unknown_may_be_accepted(tmp_path: Path) -> None:
+    accept = "\nchecks: {accept: [{rule: strength, component: link, reason: pulled at 9 kN}]}\n"
+    assessment = judged(tmp_path, ESTIMATE.replace("LOW", "1 kN"), accept)
+    assert of_link(assessment, "strength")[0] is State.ACCEPTED
+
+
+def test_results_show_no_estimate_as_a_figure(tmp_path: Path) -> None:
+    assessment = judged(tmp_path, ESTIMATE.replace("LOW", "3 kN"))
+    result = assessment.stands[0].result
+    assert result is not None
+    (row,) = [row for row in result.components if row.label == "link"]
+    assert row.part.component.working_load is None
+    assert row.utilisation != row.utilisation
+
+
+@pytest.mark.parametrize(
+    ("written", "said"),
+    [
+        ("{quantity: weight, value: 1 kN, low: 1 kN, source: a}", "`quantity: weight` must be one"),
+        ("{quantity: grip, value: 1 kN, low: 20 deg, source: a}", "`low: 20 deg` is an angle"),
+        ("{quantity: grip, value: 1 kN, low: 2 kN, source: a}", "above the `value` of 1000"),
+        ("{quantity: grip, value: 1 kN, low: 0 N, source: a}", "must be more than 0 N"),
+        ("{quantity: grip, value: 1 kN, low: 1 kN}", "`source` is missing"),
+    ],
+)
+def test_estimates_that_cannot_be_read(written: str, said: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError) as mistake:
+        judged(tmp_path, f", estimate: {written}")
+    assert said in str(mistake.value)
