@@ -111,13 +111,15 @@ class FileOutcome:
         if self.result is None:
             return None
         if suffix == ".html":
-            from calm.report.html import result_html
+            from calm.report.html import page
+            from calm.report.result_report import result_report
 
-            return result_html(self.result, self.uncertain).encode("utf-8", "replace")
+            return page(result_report(self.result, self.uncertain)).encode("utf-8", "replace")
         if suffix == ".pdf":
-            from calm.report.pdf import result_pdf
+            from calm.report.pdf import printed
+            from calm.report.result_report import result_report
 
-            return result_pdf(self.result, self.uncertain)
+            return printed(result_report(self.result, self.uncertain))
         if suffix == ".nc":
             from calm.report.result_files import result_netcdf
 

@@ -237,10 +237,14 @@ class Report:
     plates: tuple[Plate, ...] = ()
 
 
+Field = tuple[Column, Callable[[Item], Cell | str]]
+"""Head of a column, and what it shows of an item."""
+
+
 def table_of(
     title: str,
     items: Iterable[Item],
-    *fields: tuple[Column, Callable[[Item], Cell | str]],
+    *fields: Field[Item],
     note: str = "",
     sums: Iterable[Item] = (),
     sortable: bool = False,

@@ -17,11 +17,12 @@ from calm.report.blocks import (
     ReportPart,
     Span,
 )
-from calm.report.check_facts import key_pairs, settled_tables
-from calm.report.check_report import judged_section
+from calm.report.check_facts import judged_section, key_pairs, settled_tables
 from calm.report.check_summary import (
+    joined,
     matrix_tables,
     named,
+    named_components,
     place_of,
     verdict_prose,
     worst_by_part,
@@ -73,38 +74,27 @@ def _told(facts: CheckFacts) -> Iterator[Block]:
     """Return what a mooring fails or is warned of, the gravest first with its remedy; what is
     missing.
     """
-    listed = [each for each in worst_by_part(facts.findings) if each.state in _SIGNS]
+    listed = joined(one for one in worst_by_part(facts.findings) if one.state in _SIGNS)
     if not listed:
         return
     lines: list[Line] = []
-    for state, group in groupby(listed, key=lambda finding: finding.state):
-        findings = list(group)
-        if state is State.UNKNOWN:
-            lines += _missing(findings)
-            continue
-        lines += map(_sentence, findings[:_TOLD])
-        if len(findings) > _TOLD:
-            lines.append(f"  and {len(findings) - _TOLD} more that {state}; --json has them")
+    for state, groups in groupby(listed, key=lambda found: found[0].state):
+        found = list(groups)
+        most = len(found) if state is State.UNKNOWN else _TOLD
+        lines += map(_sentence, found[:most])
+        if len(found) > most:
+            lines.append(f"  and {len(found) - most} more that {state}; --json has them")
     yield Heading(facts.mooring)
     yield Prose(tuple(lines))
 
 
-def _sentence(finding: Finding) -> Line:
-    sign = Span(f"{_SIGNS[finding.state]} ", finding.state)
-    found = Span(f"{finding.rule}, {place_of(finding)}: {finding.message}")
-    if not finding.remedy:
-        return sign, found
-    return sign, found, Span(f" {finding.remedy}", quiet=finding.state is not State.FAIL)
-
-
-def _missing(findings: Sequence[Finding]) -> Iterator[Line]:
-    """One sentence for each figure that is missing, with the components that lack it."""
-    groups: dict[tuple[str, str], dict[str, None]] = {}
-    for finding in findings:
-        if finding.component is None:
-            yield (Span(f"? {finding.rule}: {finding.message} {finding.remedy}", quiet=True),)
-            continue
-        lacking = groups.setdefault((finding.rule, finding.remedy or ""), {})
-        lacking[finding.component] = None
-    for (rule, remedy), names in groups.items():
-        yield (Span(f"? {rule} of {named(names, _LACKING)} is unknown. {remedy}", quiet=True),)
+def _sentence(found: Sequence[Finding]) -> Line:
+    """What is found alike of some components, told of the worst of them."""
+    worst = found[0]
+    sign, quiet = Span(f"{_SIGNS[worst.state]} ", worst.state), worst.state is not State.FAIL
+    if worst.state is State.UNKNOWN and worst.component is not None:
+        names = named((one.component or "" for one in found), _LACKING)
+        return sign, Span(f"{worst.rule} of {names} is unknown. {worst.remedy}", quiet=True)
+    others = "" if len(found) == 1 else f" The same holds for {named_components(found[1:])}."
+    told = Span(f"{worst.rule}, {place_of(worst)}: {worst.message}{others}")
+    return (sign, told, Span(f" {worst.remedy}", quiet=quiet)) if worst.remedy else (sign, told)

@@ -14,7 +14,7 @@ import numpy as np
 from calm.checks.finding import AS_GIVEN, Finding, State
 from calm.checks.rules import RULES
 from calm.quantities import say
-from calm.report.blocks import Cell, Column, Pairs, ReportPart, Table, table_of
+from calm.report.blocks import ON_THE_WAY, Cell, Column, Pairs, ReportPart, Section, Table, table_of
 from calm.report.check_summary import (
     counted_states,
     grouped,
@@ -26,6 +26,7 @@ from calm.report.check_summary import (
     said_of,
     state_cell,
     worst_by_part,
+    worst_by_rule,
 )
 from calm.report.provenance import title_pairs
 from calm.report.result_json import members
@@ -126,6 +127,13 @@ def facts_of(assessment: Assessment) -> CheckFacts:
         tuple(assessment.accepted_findings()),
         tuple(key for key in assessment.limits if key.departs),
     )
+
+
+def judged_section(assessment: Assessment) -> Section:
+    """What is concluded of one mooring; nothing of it is printed yet."""
+    columns = (*(stand.environment for stand in assessment.stands), ON_THE_WAY)
+    name, worst = assessment.name, worst_by_rule(assessment)
+    return Section(name, (), columns, worst, facts_of(assessment))
 
 
 def _file_hash(path: Path) -> str | None:

@@ -12,6 +12,7 @@ from calm.report.blocks import (
     ON_THE_WAY,
     Block,
     Figure,
+    Heading,
     PageBreak,
     Prose,
     Report,
@@ -19,14 +20,20 @@ from calm.report.blocks import (
     Section,
     Signatures,
 )
-from calm.report.check_facts import PAGE_ONE, CheckFacts, facts_of, facts_part, left_out
+from calm.report.check_facts import (
+    PAGE_ONE,
+    CheckFacts,
+    facts_of,
+    facts_part,
+    judged_section,
+    left_out,
+)
 from calm.report.check_summary import (
     limits_table,
     matrix_tables,
     rules_tables,
     unknown_table,
     verdict_prose,
-    worst_by_rule,
     worst_table,
 )
 from calm.report.check_tables import (
@@ -51,13 +58,6 @@ from calm.report.sheet import sheet
 if TYPE_CHECKING:
     from calm.checks.assessment import Assessment
     from calm.checks.comparison import Comparison
-
-
-def judged_section(assessment: Assessment) -> Section:
-    """What is concluded of one mooring; nothing of it is printed yet."""
-    columns = (*(stand.environment for stand in assessment.stands), ON_THE_WAY)
-    name, worst = assessment.name, worst_by_rule(assessment)
-    return Section(name, (), columns, worst, facts_of(assessment))
 
 
 def mooring_section(assessment: Assessment, against: Comparison | None = None) -> Section:
@@ -167,6 +167,7 @@ def _checks(assessment: Assessment, facts: CheckFacts) -> Iterator[Block]:
 
 def _on_the_way(assessment: Assessment) -> Iterator[Block]:
     if assessment.launch is not None or assessment.recovery is not None:
+        yield Heading("Launch and recovery in short")
         yield handling_summary(assessment)
         yield handling_table(assessment)
     else:

@@ -76,28 +76,66 @@ def worst_by_part(findings: Iterable[Finding]) -> list[Finding]:
 
 def rules_tables(columns: Sequence[str], found: Sequence[Worst]) -> Iterator[Table]:
     """Rules by environments: state, margin and component of the worst finding of each."""
-    cells = {(each.column, each.finding.rule): each for each in found}
-    for beside in _abreast(columns):
-        rules = [
-            rule for rule in RULES.values() if any((one, rule.name) in cells for one in beside)
-        ]
-        rows = tuple(
-            (Cell(rule.title), *(_judged(cells.get((one, rule.name))) for one in beside))
-            for rule in rules
-        )
-        yield Table("Rules by environment", _headed("rule", beside), rows, _RULES_NOTE)
+    rows = [
+        (rule.title, [each for each in found if each.finding.rule == rule.name])
+        for rule in RULES.values()
+    ]
+    title, note = "Rules by environment", "the least margin, the component that has it, and what"
+    yield from _states(title, columns, rows, _of_rule, f"Under each state: {note} is unknown.")
 
 
 def matrix_tables(sections: Sequence[Section]) -> Iterator[Table]:
     """Moorings by environments: the worst state in each, the rule that makes it, and its margin."""
     every = dict.fromkeys(column for section in sections for column in section.columns)
     every.pop(ON_THE_WAY, None)
-    for beside in _abreast([*every, ON_THE_WAY]):
-        rows = tuple(
-            (Cell(section.name), *(_of_column(section, column) for column in beside))
-            for section in sections
+    rows = [(section.name, section.worst) for section in sections]
+    title, note = "Moorings by environment", "the rule that makes it, its least margin, and how"
+    columns = (*every, ON_THE_WAY)
+    yield from _states(title, columns, rows, _of_mooring, f"Under each state: {note} many unknown.")
+
+
+def _of_rule(finding: Finding) -> str:
+    return " ".join(filter(None, (margin_of(finding), finding.component)))
+
+
+def _of_mooring(finding: Finding) -> str:
+    return f"{RULES[finding.rule].title} {margin_of(finding)}".rstrip()
+
+
+def _states(
+    title: str,
+    columns: Sequence[str],
+    rows: Iterable[tuple[str, Sequence[Worst]]],
+    detail: Callable[[Finding], str],
+    note: str,
+) -> Iterator[Table]:
+    """Tables of the worst state of each row in each column.
+
+    Parameters
+    ----------
+    rows : name, and what was found of it
+    detail : of a state, to stand under it
+    """
+
+    def cell(found: Sequence[Worst]) -> Cell:
+        if not found:
+            return Cell("–")
+        finding = min((each.finding for each in found), key=_rank)
+        missing = sum(each.unknown for each in found)
+        texts = (detail(finding), f"{missing} unknown" if missing else "")
+        return Cell(finding.state.value, "; ".join(filter(None, texts)), finding.state)
+
+    for beside in _abreast(columns):
+        yield table_of(
+            title,
+            [row for row in rows if any(each.column in beside for each in row[1])],
+            (Column(title.split()[0].lower().removesuffix("s")), lambda row: row[0]),
+            *(
+                (Column(name), lambda row, name=name: cell([w for w in row[1] if w.column == name]))
+                for name in beside
+            ),
+            note=note,
         )
-        yield Table("Moorings by environment", _headed("mooring", beside), rows, _MATRIX_NOTE)
 
 
 def worst_table(sections: Sequence[Section]) -> Table:
@@ -150,39 +188,6 @@ def _where(finding: Finding, several: bool) -> str:
     if several or finding.environment != OWN or finding.situation != AS_GIVEN:
         places.append(place_of(finding))
     return ", ".join(filter(None, places))
-
-
-_RULES_NOTE = "Under each state: the least margin, the component that has it, and what is unknown."
-_MATRIX_NOTE = (
-    "Under each state: the rule that makes it, its least margin, and how many are unknown."
-)
-
-
-def _headed(first: str, columns: Sequence[str]) -> tuple[Column, ...]:
-    return (Column(first), *map(Column, columns))
-
-
-def _judged(worst: Worst | None) -> Cell:
-    if worst is None:
-        return Cell("–")
-    finding = worst.finding
-    detail = " ".join(filter(None, (margin_of(finding), finding.component)))
-    return Cell(finding.state.value, _with_unknown(detail, worst.unknown), finding.state)
-
-
-def _of_column(section: Section, column: str) -> Cell:
-    here = [each for each in section.worst if each.column == column]
-    if not here:
-        return Cell("–")
-    finding = min((each.finding for each in here), key=_rank)
-    detail = f"{RULES[finding.rule].title} {margin_of(finding)}".rstrip()
-    missing = sum(each.unknown for each in here)
-    return Cell(finding.state.value, _with_unknown(detail, missing), finding.state)
-
-
-def _with_unknown(detail: str, count: int) -> str:
-    """The detail, and how many findings are unknown."""
-    return "; ".join(filter(None, (detail, f"{count} unknown" if count else "")))
 
 
 def _unknown_count(findings: Iterable[Finding]) -> int:

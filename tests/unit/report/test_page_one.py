@@ -7,14 +7,14 @@ import pypdfium2
 import pytest
 
 import calm
+import calm.report.html
 from calm.checks.finding import State
 from calm.report.check_brief import check_part
 from calm.report.check_documents import check_document
 from calm.report.check_facts import facts_of
-from calm.report.check_report import mooring_section
+from calm.report.check_report import check_report, mooring_section
 from calm.report.check_summary import named
-from calm.report.html import report_html
-from calm.report.pdf import report_pdf
+from calm.report.pdf import printed
 from calm.units import KILOGRAM_FORCE, KNOT
 from tests.judged import judged
 
@@ -62,7 +62,9 @@ def facts(assessment):
 
 
 def pages(*assessments):
-    with pypdfium2.PdfDocument(report_pdf([mooring_section(each) for each in assessments])) as pdf:
+    with pypdfium2.PdfDocument(
+        printed(check_report([mooring_section(each) for each in assessments]))
+    ) as pdf:
         return [" ".join(page.get_textpage().get_text_range().split()) for page in pdf]
 
 
@@ -150,7 +152,7 @@ def test_several_moorings_have_their_figures_before_the_signatures(assessment, f
 
 
 def test_no_text_is_smaller_than_it_may_be(assessment):
-    with pypdfium2.PdfDocument(report_pdf([mooring_section(assessment)])) as pdf:
+    with pypdfium2.PdfDocument(printed(check_report([mooring_section(assessment)]))) as pdf:
         sizes = {
             round(pypdfium2.raw.FPDFText_GetFontSize(text.raw, at), 1)
             for text in [pdf[0].get_textpage()]
@@ -169,7 +171,7 @@ def test_the_document_the_page_and_the_terminal_say_the_same(assessment, facts):
     assert said["least_safety_factor"]["component"] == facts.factor.component
     assert said["counts"]["fail"] >= 1 and said["departures"] == ["anchor_factor"]
     (pairs,) = [one for one in check_part([assessment]).blocks if type(one).__name__ == "Pairs"]
-    html = report_html([mooring_section(assessment)])
+    html = calm.report.html.page(check_report([mooring_section(assessment)]))
     for name, value in pairs.pairs:
         assert name in html and value.split("\n")[0] in html
 
