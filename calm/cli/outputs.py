@@ -75,10 +75,8 @@ class FileOutcome:
 
     def document(self) -> dict[str, Any]:
         """The JSON object of the result, or of the failure."""
-        from calm.report.result_json import failure_document
-
         if self.failure:
-            return failure_document(self.name, self.failure)
+            return {"name": self.name, **self.failure.to_dict()}
         assert self.result is not None
         document = self.result.to_dict()
         if self.explanation is not None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from math import ceil, hypot
 from pathlib import Path
@@ -87,7 +87,7 @@ class CheckFacts:
     mooring: str
     titles: tuple[tuple[str, str], ...]
     sha256: str | None
-    current: StrongestCurrent | None
+    current: StrongestCurrent
     anchor: Finding | None
     factor: LeastFactor | None
     findings: tuple[Finding, ...]
@@ -103,7 +103,7 @@ class CheckFacts:
         counts = counted_states(self.findings)
         return {
             "sha256": self.sha256,
-            "strongest_current": self.current and vars(self.current),
+            "strongest_current": vars(self.current),
             "anchor": anchor,
             "least_safety_factor": self.factor and vars(self.factor),
             "counts": {state.value: counts[state] for state in State},
@@ -178,16 +178,16 @@ def key_pairs(facts: CheckFacts) -> Pairs:
     """Return what decides, a line or two each: on page one, and on a terminal."""
     pairs = []
     current, anchor, factor = facts.current, facts.anchor, facts.factor
-    if current is not None:
-        depth = f" at a depth of {say('depth', current.depth)}" if current.speed else ""
-        text = f"{say('speed', current.speed)} ({current.speed / KNOT:.2f} kn){depth}"
-        text = f"{text}, environment {current.environment}"
-        pairs.append(("strongest current", _lines(text, current.weak)))
-    if anchor is None or anchor.margin is None:
+    depth = f" at a depth of {say('depth', current.depth)}" if current.speed else ""
+    text = f"{_both('speed', current.speed, KNOT, 'kn', 2)}{depth}"
+    text = f"{text}, environment {current.environment}"
+    pairs.append(("strongest current", _lines(text, current.weak)))
+    if anchor is None or None in (anchor.margin, anchor.value, anchor.limit):
         pairs.append(("anchor margin", "unknown"))
     else:
-        text = f"{_force(anchor.margin)}: {_force(anchor.value)} held, {_force(anchor.limit)}"
-        pairs.append(("anchor margin", f"{text} needed, environment {place_of(anchor)}"))
+        margin, held, needed = map(_force, (anchor.margin, anchor.value, anchor.limit))
+        text = f"{margin}: {held} held, {needed} needed, environment {place_of(anchor)}"
+        pairs.append(("anchor margin", text))
     pairs.append(("least factor of safety", _factor_text(factor)))
     counts = counted_states(facts.findings)
     named = (State.FAIL, State.WARN, State.UNKNOWN, State.ESTIMATED, State.ACCEPTED)
@@ -211,7 +211,13 @@ def _lines(*texts: str) -> str:
 
 
 def _force(value: float | None) -> str:
-    return "" if value is None else f"{say('tension', value)} ({value / KILOGRAM_FORCE:.0f} kgf)"
+    return "" if value is None else _both("tension", value, KILOGRAM_FORCE, "kgf", 0)
+
+
+def _both(quantity: str, value: float, scale: float, unit: str, decimals: int) -> str:
+    """A value in the unit that people read, and in another that it is asked for."""
+    said = say(quantity, value)
+    return said if said.endswith(unit) else f"{said} ({value / scale:.{decimals}f} {unit})"
 
 
 def facts_part(facts: CheckFacts, title: str = "") -> ReportPart:
@@ -269,8 +275,22 @@ def _height(table: Table) -> float:
 
 def settled_tables(facts: CheckFacts) -> Iterator[Table]:
     """What the designer has decided: what is accepted, and limits of the design's own."""
-    if facts.accepted:
-        yield accepted_table(facts.accepted)
+    alike = {"rule": "", "component": None, "labels": None, "line": 0}
+    groups = grouped(facts.accepted, lambda one: one.accept and replace(one.accept, **alike))
+    rows = [(found, accept) for found in groups if (accept := found[0].accept) is not None]
+    if rows:
+        yield table_of(
+            "Accepted",
+            rows,
+            (Column("rule"), lambda one: ", ".join(rules_of(one[0]))),
+            (Column("component"), lambda one: named_components(one[0])),
+            (Column("reason", share=1.8), lambda one: one[1].reason),
+            (
+                Column("by, on", share=0.8),
+                lambda one: Cell(one[1].by or "nobody", one[1].date or ""),
+            ),
+            (Column("until", share=0.0), lambda one: one[1].until or "for good"),
+        )
     if facts.departures:
         yield limits_table(facts.departures, "Limits that depart from their defaults")
 
@@ -288,28 +308,4 @@ def _mending(findings: Sequence[Finding]) -> Iterator[Table]:
         (Column("rule", share=0.8), lambda found: RULES[found[0].rule].title),
         (Column("component"), named_components),
         (Column("finding", share=2.2), lambda found: said_of(found[0]).text),
-    )
-
-
-def accepted_groups(accepted: Iterable[Finding]) -> list[list[Finding]]:
-    """Return what is accepted, together what one person accepts for one reason."""
-    return grouped(accepted, lambda one: one.accept and replace(
-        one.accept, rule="", component=None, labels=None, line=0))  # fmt: skip
-
-
-def accepted_table(accepted: Iterable[Finding]) -> Table:
-    """Return what is accepted, by whom, until when and why."""
-    rows = [
-        (found, accept)
-        for found in accepted_groups(accepted)
-        if (accept := found[0].accept) is not None
-    ]
-    return table_of(
-        "Accepted",
-        rows,
-        (Column("rule"), lambda one: ", ".join(rules_of(one[0]))),
-        (Column("component"), lambda one: named_components(one[0])),
-        (Column("reason", share=1.8), lambda one: one[1].reason),
-        (Column("by, on", share=0.8), lambda one: Cell(one[1].by or "nobody", one[1].date or "")),
-        (Column("until", share=0.0), lambda one: one[1].until or "for good"),
     )

@@ -32,7 +32,6 @@ from calm.report.check_summary import (
     limits_table,
     matrix_tables,
     rules_tables,
-    unknown_table,
     verdict_prose,
     worst_table,
 )
@@ -156,11 +155,7 @@ def _drawn(assessment: Assessment) -> Iterator[Block]:
 
 
 def _checks(assessment: Assessment, facts: CheckFacts) -> Iterator[Block]:
-    findings = [*assessment.all_findings()]
-    unknown = unknown_table(findings)
-    if unknown is not None:
-        yield unknown
-    yield from checks_table(findings)
+    yield from checks_table(assessment.all_findings())
     yield from left_out(facts)
     yield limits_table(assessment.limits)
 

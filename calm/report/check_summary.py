@@ -341,42 +341,5 @@ def limits_table(limits: Iterable[LimitKey], title: str = "Limits as used") -> T
     )
 
 
-def unknown_table(findings: Iterable[Finding]) -> Table | None:
-    """Return what is unknown, piece by piece, and which figure would settle it; None where nothing
-    is.
-    """
-    unknown = [each for each in worst_by_part(findings) if each.state is State.UNKNOWN]
-    if not unknown:
-        return None
-    by_part = grouped(unknown, lambda each: each.component)
-    alike: dict[Hashable, list[list[Finding]]] = {}
-    for found in by_part:
-        alike.setdefault(tuple((one.rule, _wording(one)) for one in found), []).append(found)
-    return table_of(
-        "Unknown, piece by piece",
-        alike.values(),
-        (Column("component"), lambda parts: named_components(part[0] for part in parts)),
-        (Column("not judged by"), lambda parts: ", ".join(rules_of(parts[0]))),
-        (
-            Column("what would settle it", share=1.5),
-            lambda parts: " ".join(dict.fromkeys(one.remedy for one in parts[0] if one.remedy)),
-        ),
-        (
-            Column("greatest figures found", share=1.5),
-            lambda parts: ", ".join(_greatest_values(parts)),
-        ),
-        sortable=True,
-    )
-
-
 def _counted(count: int, word: str) -> str:
     return f"{count} {word}{'s' * (count != 1)}"
-
-
-def _greatest_values(parts: Sequence[Sequence[Finding]]) -> Iterator[str]:
-    """The greatest value by each rule of some parts, and where it is."""
-    for found in grouped((one for part in parts for one in part), lambda one: one.rule):
-        known = [(one.value, one) for one in found if one.value is not None]
-        if known:
-            value, greatest = max(known, key=lambda pair: pair[0])
-            yield f"{say_in_unit(greatest, value)} ({place_of(greatest)})"

@@ -25,6 +25,7 @@ from calm.report.check_summary import (
 from calm.report.sheet import figure_cell, quantity_column, quantity_field
 
 if TYPE_CHECKING:
+    from calm.case import Result
     from calm.checks.assessment import Assessment, MooringInEnvironment
     from calm.checks.backup import Break
     from calm.checks.finding import Finding
@@ -32,43 +33,38 @@ if TYPE_CHECKING:
     from calm.files import Piece
     from calm.physics.line import Floats
 
-_RESULTS = (
-    "depth",
-    "knockdown",
-    "offset",
-    "tilt",
-    "tension",
-    "vertical",
-    "horizontal",
-    "required_weight",
-)
+_RESULTS: dict[str, Callable[[Result], float | None]] = {
+    "depth": lambda result: result.top.depth,
+    "knockdown": lambda result: result.top.knockdown,
+    "offset": lambda result: hypot(result.top.x, result.top.y),
+    "tilt": lambda result: float(result.components.tilt.max()),
+    "tension": lambda result: float(result.components.tension.max()),
+    "vertical": lambda result: result.anchor.vertical,
+    "horizontal": lambda result: result.anchor.horizontal,
+    "required_weight": lambda result: result.anchor.required_weight,
+}
 
 
 def results_table(stands: Sequence[MooringInEnvironment]) -> Table:
     """The mooring as given in each environment: its top, and the pull on its anchor."""
-    columns = (Column("environment"), *map(quantity_column, _RESULTS))
-    note = "Depth, knockdown and offset: of the top. Tilt and tension: the greatest in the line."
-    return Table("Results by environment", columns, tuple(map(_standing, stands)), note)
 
+    def figure(name: str) -> Field[MooringInEnvironment]:
+        of = _RESULTS[name]
+        return quantity_column(name), lambda stand: figure_cell(
+            name, None if stand.result is None else of(stand.result)
+        )
 
-def _standing(stand: MooringInEnvironment) -> tuple[Cell, ...]:
-    result = stand.result
-    if result is None:
-        failure = stand.situations[0].failure
-        status = failure.status if failure else ""
-        return (Cell(stand.environment, status, State.FAIL), *(Cell("-") for _ in _RESULTS))
-    top, anchor = result.top, result.anchor
-    figures = {
-        "depth": top.depth,
-        "knockdown": top.knockdown,
-        "offset": hypot(top.x, top.y),
-        "tilt": float(result.components.tilt.max()),
-        "tension": float(result.components.tension.max()),
-        "vertical": anchor.vertical,
-        "horizontal": anchor.horizontal,
-        "required_weight": anchor.required_weight,
-    }
-    return (Cell(stand.environment), *(figure_cell(name, figures[name]) for name in _RESULTS))
+    def status(stand: MooringInEnvironment) -> Cell:
+        failure, state = stand.situations[0].failure, None if stand.result else State.FAIL
+        return Cell(stand.environment, failure.status if failure else "", state)
+
+    return table_of(
+        "Results by environment",
+        stands,
+        (Column("environment"), status),
+        *map(figure, _RESULTS),
+        note="Depth, knockdown and offset: of the top. Tilt and tension: the greatest in the line.",
+    )
 
 
 def checks_table(findings: Iterable[Finding]) -> Iterator[Table | Prose]:
@@ -197,38 +193,37 @@ def inventory_table(items: Sequence[InventoryItem]) -> Table:
     groups: dict[str, list[InventoryItem]] = {}
     for item in items:
         groups.setdefault(item.use, []).append(item)
-    rows = [_stock(group[0].name or use, use, group) for use, group in groups.items()]
-    rows.append(_stock("Total", "", list(items)))
-    columns = (
-        Column("component"),
-        Column("id"),
-        Column("pieces", numeric=True),
-        quantity_column("cut_length"),
-        quantity_column("dry_mass"),
-        quantity_column("wet_weight"),
-        Column("spares"),
-    )
     note = "Cut length: of wires, ropes and chains. Spares: by hand."
     if any(item.dry_mass is None for item in items):
         note += " ≥: a lower bound, since masses in air are missing: no lift may rely on it."
-    return Table("Inventory", columns, tuple(rows), note, totals=1, by_hand=True)
 
+    def named(group: Sequence[InventoryItem]) -> str:
+        return "Total" if group is items else group[0].name or group[0].use
 
-def _stock(name: str, use: str, items: Sequence[InventoryItem]) -> tuple[Cell, ...]:
-    lines = [item for item in items if item.kind in FLEXIBLE_KINDS]
-    return (
-        Cell(name),
-        Cell(use),
-        Cell(str(len(items))),
-        _sum("cut_length", [item.cut_length for item in lines]) if lines else Cell("-"),
-        _sum("dry_mass", [item.dry_mass for item in items]),
-        _sum("wet_weight", [item.wet_weight for item in items]),
-        Cell(),
+    return table_of(
+        "Inventory",
+        groups.values(),
+        (Column("component"), named),
+        (Column("id"), lambda group: "" if group is items else group[0].use),
+        (Column("pieces", numeric=True), lambda group: str(len(group))),
+        (quantity_column("cut_length"), _cut_length),
+        (quantity_column("dry_mass"), lambda group: _sum("dry_mass", group)),
+        (quantity_column("wet_weight"), lambda group: _sum("wet_weight", group)),
+        (Column("spares"), lambda group: ""),
+        note=note,
+        sums=[items],
+        by_hand=True,
     )
 
 
-def _sum(name: str, values: Sequence[float | None]) -> Cell:
+def _cut_length(items: Sequence[InventoryItem]) -> Cell:
+    lines = [item for item in items if item.kind in FLEXIBLE_KINDS]
+    return _sum("cut_length", lines) if lines else Cell("-")
+
+
+def _sum(name: str, items: Sequence[InventoryItem]) -> Cell:
     """The sum of what is known, and how much is not; of masses that is the least there can be."""
+    values = [getattr(item, name) for item in items]
     known = [value for value in values if value is not None]
     missing = len(values) - len(known)
     if not known:

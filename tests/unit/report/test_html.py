@@ -109,7 +109,6 @@ def test_page_one_says_what_is_accepted_and_why():
     assert text.index("? nothing fails") < accepted < text.index("Designed by")
     reason = "its load in line is printed nowhere; proof-loaded to 20 kN before each cruise"
     assert accepted < text.index(reason) < text.index("Designed by")
-    assert "Unknown, piece by piece" in text
 
 
 def test_limits_as_used_stand_with_their_sources(assessment, section):
@@ -199,9 +198,9 @@ def test_many_environments_are_told_in_tables_that_fit(assessment):
     names = [f"environment {number}" for number in range(10)]
     stands = tuple(replace(first, environment=name) for name in names)
     section = mooring_section(replace(assessment, stands=stands))
-    heads = [re.findall(r"<th ", table) for table in re.findall(
-        r"<caption>Rules by environment</caption>.*?</thead>", calm.report.html.page(check_report([section])), re.DOTALL
-    )]  # fmt: skip
+    html = calm.report.html.page(check_report([section]))
+    tables = re.findall(r"<caption>Rules by environment</caption>.*?</thead>", html, re.DOTALL)
+    heads = [re.findall(r"<th ", table) for table in tables]
     assert [len(head) for head in heads] == [5, 5, 4]
 
 
@@ -253,7 +252,8 @@ from calm.report.check_report import check_report, mooring_section
 import calm.report.html
 from calm.report.pdf import printed
 sections = [mooring_section(judged(Path(sys.argv[1]), "ebb"))]
-for content in (calm.report.html.page(check_report(sections)).encode(), printed(check_report(sections))):
+report = check_report(sections)
+for content in (calm.report.html.page(report).encode(), printed(report)):
     print(hashlib.sha256(content).hexdigest())
 """
 
