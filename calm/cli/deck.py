@@ -13,6 +13,7 @@ from calm.cli.check_files import DesignFile, read_designs
 from calm.cli.options import CatalogFiles, Units, quantities, show_units
 from calm.cli.streams import ExitCode, narrate
 from calm.errors import NoEquilibrium, UsageError
+from calm.version import __version__
 
 if TYPE_CHECKING:
     from calm.deck import Deck
@@ -130,7 +131,8 @@ def _contents(deck: Deck, paper: Paper, notes: tuple[str, ...]) -> Mapping[str, 
     from calm.report.result_json import to_json
 
     texts = {"diagram.svg": diagram_svg(deck, paper), **deck_csvs(deck)}
-    texts["plan.json"] = to_json([_plan(deck) | {"verdict": _verdict(deck)}])
+    plan = {"calm": __version__, **_plan(deck), "verdict": _verdict(deck)}
+    texts["plan.json"] = to_json([plan])
     return {
         "deck.pdf": printed(deck_report(deck, paper, notes), paper, least=7.5),
         "diagram.pdf": printed(diagram_report(deck, paper), paper, least=7.5),
