@@ -48,7 +48,8 @@ def deck(
     Writes deck.pdf with a mooring diagram for the wall, deployment and recovery
     logs, cutting list, hardware bill, shipping list, lifts, instrument sheet and,
     anchor last, the plan of the anchor drop; the diagram by itself as diagram.pdf
-    and diagram.svg; the lists as CSV files; and the plan as plan.json.
+    and diagram.svg; the lists as CSV files and as sheets of deck.xlsx; and the plan
+    as plan.json.
 
     Parameters
     ----------
@@ -125,7 +126,12 @@ def _write(folder: Path, path: Path, deck: Deck, paper: Paper) -> None:
 
 
 def _contents(deck: Deck, paper: Paper, notes: tuple[str, ...]) -> Mapping[str, bytes]:
-    from calm.report.deck_files import deck_csvs, deck_report, diagram_report
+    from calm.report.deck_files import (
+        deck_csvs,
+        deck_report,
+        deck_workbook,
+        diagram_report,
+    )
     from calm.report.diagram import diagram_svg
     from calm.report.pdf import printed
     from calm.report.result_json import to_json
@@ -135,6 +141,7 @@ def _contents(deck: Deck, paper: Paper, notes: tuple[str, ...]) -> Mapping[str, 
     texts["plan.json"] = to_json([plan])
     return {
         "deck.pdf": printed(deck_report(deck, paper, notes), paper, least=7.5),
+        "deck.xlsx": deck_workbook(deck),
         "diagram.pdf": printed(diagram_report(deck, paper), paper, least=7.5),
         **{name: text.encode("utf-8", "replace") for name, text in texts.items()},
     }
