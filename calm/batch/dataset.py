@@ -78,6 +78,7 @@ def layout_of(mooring: Mooring, record: Record, shape: ShapeNodes | None) -> Res
         Variable("time", ("time",), "<i8", {
             "standard_name": "time", "long_name": "time of the profile", "axis": "T",
             "units": f"{_time_unit(record.time)} since 1970-01-01 00:00:00", "calendar": "standard",
+            "units_metadata": "leap_seconds: none",
         }),
         *of_station,
         labels("component_label", "component", [piece.label for piece in pieces], PIECES),

@@ -13,6 +13,7 @@ from calm.cli.check_files import DesignFile, read_designs
 from calm.cli.options import CatalogFiles, Units, quantities, show_units
 from calm.cli.streams import ExitCode, narrate
 from calm.errors import NoEquilibrium, UsageError
+from calm.version import __version__
 
 if TYPE_CHECKING:
     from calm.deck import Deck
@@ -47,7 +48,8 @@ def deck(
     Writes deck.pdf with a mooring diagram for the wall, deployment and recovery
     logs, cutting list, hardware bill, shipping list, lifts, instrument sheet and,
     anchor last, the plan of the anchor drop; the diagram by itself as diagram.pdf
-    and diagram.svg; the lists as CSV files; and the plan as plan.json.
+    and diagram.svg; the lists as CSV files and as sheets of deck.xlsx; and the plan
+    as plan.json.
 
     Parameters
     ----------
@@ -124,15 +126,22 @@ def _write(folder: Path, path: Path, deck: Deck, paper: Paper) -> None:
 
 
 def _contents(deck: Deck, paper: Paper, notes: tuple[str, ...]) -> Mapping[str, bytes]:
-    from calm.report.deck_files import deck_csvs, deck_report, diagram_report
+    from calm.report.deck_files import (
+        deck_csvs,
+        deck_report,
+        deck_workbook,
+        diagram_report,
+    )
     from calm.report.diagram import diagram_svg
     from calm.report.pdf import printed
     from calm.report.result_json import to_json
 
     texts = {"diagram.svg": diagram_svg(deck, paper), **deck_csvs(deck)}
-    texts["plan.json"] = to_json([_plan(deck) | {"verdict": _verdict(deck)}])
+    plan = {"calm": __version__, **_plan(deck), "verdict": _verdict(deck)}
+    texts["plan.json"] = to_json([plan])
     return {
         "deck.pdf": printed(deck_report(deck, paper, notes), paper, least=7.5),
+        "deck.xlsx": deck_workbook(deck),
         "diagram.pdf": printed(diagram_report(deck, paper), paper, least=7.5),
         **{name: text.encode("utf-8", "replace") for name, text in texts.items()},
     }

@@ -13,6 +13,7 @@ from cyclopts import Parameter
 
 from calm.cli.streams import ExitCode, narrate, show, show_parts
 from calm.errors import NoEquilibrium, UsageError
+from calm.version import __version__
 
 if TYPE_CHECKING:
     from calm.case import Result, TowResult
@@ -206,7 +207,8 @@ class Outputs:
         Parameters
         ----------
         document : callable
-            Makes the JSON object; called only where it was asked for.
+            Makes the JSON object; called only where it was asked for. The version of CALM, and
+            with it the units, are added where it has none.
 
         Raises
         ------
@@ -216,13 +218,16 @@ class Outputs:
         from calm.report.folder import write_file
         from calm.report.result_json import to_json
 
+        def text() -> str:
+            return to_json([{"calm": __version__} | document()])
+
         if self.json == STDOUT:
-            show(to_json([document()]))
+            show(text())
             return
         if part is not None:
             show_parts(part)
         if self.json is not None:
-            write_file(self.json, to_json([document()]).encode())
+            write_file(self.json, text().encode())
 
     def write(self, shown: Sequence[Shown], to_csv: Callable[[], str]) -> None:
         """Write the files, then the standard output: what was asked for there, or the tables.

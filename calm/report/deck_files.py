@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from datetime import datetime
+from io import BytesIO
 from typing import TYPE_CHECKING
 
 from calm.checks.finding import State
@@ -20,7 +22,7 @@ from calm.report.deck_lists import (
 from calm.report.deck_logs import deployment_part, recovery_part
 from calm.report.diagram import diagram_pages
 from calm.report.drop_sheet import drop_part
-from calm.report.provenance import date, document_part, origin
+from calm.report.provenance import date, document_part, moment, origin
 
 if TYPE_CHECKING:
     from calm.deck import Deck
@@ -31,15 +33,66 @@ Rows = Iterable[Sequence[object]]
 
 def deck_csvs(deck: Deck) -> dict[str, str]:
     """The content of each file by its name: UTF-8, SI units in the header, empty where unknown."""
+    return {f"{name}.csv": table_csv(*sheet) for name, sheet in deck_sheets(deck).items()}
+
+
+def deck_workbook(deck: Deck) -> bytes:
+    """The same sheets as one Excel workbook, units in the headings, ready to print.
+
+    Texts are texts, whatever they begin with; the date of the workbook is `moment`.
+    """
+    from xlsxwriter import Workbook
+
+    content = BytesIO()
+    book = Workbook(content, {"in_memory": True})
+    book.set_properties({"title": deck.file.name, "created": moment() or datetime(1980, 1, 1)})
+    bold = book.add_format({"bold": True, "text_wrap": True, "valign": "top", "bottom": 1})
+    for name, (header, rows) in deck_sheets(deck).items():
+        sheet = book.add_worksheet(name)
+        for column, head in enumerate(header):
+            sheet.write_string(0, column, head.replace("_", " ").replace("[", " ["), bold)
+        for number, row in enumerate(rows, 1):
+            for column, value in enumerate(row):
+                if isinstance(value, int | float) and value == value:
+                    sheet.write_number(number, column, float(f"{value:.6g}"))
+                elif isinstance(value, str):
+                    sheet.write_string(number, column, value)
+        sheet.freeze_panes(1, 0)
+        sheet.repeat_rows(0)
+        sheet.set_landscape()
+        sheet.fit_to_pages(1, 0)
+        sheet.set_footer("&L&A&RPage &P of &N")
+        sheet.autofit()
+    book.close()
+    return content.getvalue()
+
+
+def deck_sheets(deck: Deck) -> dict[str, tuple[Sequence[str], Rows]]:
+    """The head and the rows of each sheet by its name, in SI; None where unknown."""
     return {
-        "deployment.csv": table_csv(_DEPLOYMENT, _deployment(deck)),
-        "recovery.csv": table_csv(_RECOVERY, _recovery(deck)),
-        "cutting.csv": table_csv(_CUTTING, _cutting(deck)),
-        "hardware.csv": table_csv(_HARDWARE, _hardware(deck)),
-        "shipping.csv": table_csv(_SHIPPING, _shipping(deck)),
-        "lifts.csv": table_csv(_LIFTS, _lifts(deck)),
-        "instruments.csv": table_csv(_INSTRUMENTS, _instruments(deck)),
+        "parts": (_PARTS, _parts(deck)),
+        "cutting": (_CUTTING, _cutting(deck)),
+        "instruments": (_INSTRUMENTS, _instruments(deck)),
+        "hardware": (_HARDWARE, _hardware(deck)),
+        "shipping": (_SHIPPING, _shipping(deck)),
+        "lifts": (_LIFTS, _lifts(deck)),
+        "deployment": (_DEPLOYMENT, _deployment(deck)),
+        "recovery": (_RECOVERY, _recovery(deck)),
     }
+
+
+_PARTS = (
+    "index", "label", "use", "name", "role", "clamped_on", "at[m]", "cut_length[m]", "mass[kg]",
+    "weight_in_water[N]",
+)  # fmt: skip
+
+
+def _parts(deck: Deck) -> Rows:
+    for one in deck.assessment.inventory:
+        yield (
+            one.index, one.label, one.use, one.name, one.role, one.clamped_on, one.at,
+            one.cut_length, one.dry_mass, one.wet_weight,
+        )  # fmt: skip
 
 
 _DEPLOYMENT = (

@@ -6,6 +6,7 @@ import json
 import math
 import re
 
+import openpyxl
 import pypdfium2
 import pypdfium2.raw as pdfium
 import pytest
@@ -130,7 +131,8 @@ def test_the_same_input_gives_the_same_bytes(deck):
     assert first == again
     assert set(first) >= {
         "deck.pdf", "diagram.pdf", "diagram.svg", "deployment.csv", "recovery.csv", "cutting.csv",
-        "hardware.csv", "shipping.csv", "lifts.csv", "instruments.csv", "plan.json",
+        "hardware.csv", "shipping.csv", "lifts.csv", "instruments.csv", "plan.json", "parts.csv",
+        "deck.xlsx",
     }  # fmt: skip
 
 
@@ -205,6 +207,28 @@ def test_the_files_for_spreadsheets(deck):
     assert "weight" not in {row["label"] for row in up}
     shipped = [*csv.DictReader(io.StringIO((out / "shipping.csv").read_text()))]
     assert {row["use"]: row["mass[kg]"] for row in shipped}["logger"] == ""
+
+
+def test_the_workbook_holds_what_the_files_hold(deck):
+    out, _ = deck(mooring(8).replace("use: ball, label: top float", 'use: ball, label: "=1+1"'))
+    book = openpyxl.load_workbook(out / "deck.xlsx")
+    assert book.sheetnames == [
+        "parts", "cutting", "instruments", "hardware", "shipping", "lifts", "deployment",
+        "recovery",
+    ]  # fmt: skip
+    for sheet in book:
+        heads, *rows = sheet.iter_rows(values_only=True)
+        own = [*csv.DictReader(io.StringIO((out / f"{sheet.title}.csv").read_text()))]
+        assert [head.replace(" [", "[").replace(" ", "_") for head in heads] == [*own[0]]
+        assert len(rows) == len(own)
+        for row, told in zip(rows, own, strict=True):
+            for cell, text in zip(row, told.values(), strict=True):
+                if isinstance(cell, int | float):
+                    assert cell == pytest.approx(float(text), rel=1e-5, abs=1e-9)
+                else:
+                    assert (cell or "") == text.removeprefix("'")
+    first = book["parts"]["B2"]
+    assert (first.value, first.data_type) == ("=1+1", "s")
 
 
 def test_many_environments_are_design_currents(deck):

@@ -78,7 +78,7 @@ APPENDIX_A = {
     "_FillValue": "NCD", "axis": "SC", "calendar": "SC", "cf_role": "SC", "Conventions": "SG",
     "coordinates": "SD", "featureType": "SG", "flag_meanings": "SD", "flag_values": "DD",
     "history": "SG", "long_name": "SCD", "positive": "SCD", "source": "SGD",
-    "standard_name": "SCD", "title": "SG", "units": "SCD",
+    "standard_name": "SCD", "title": "SG", "units": "SCD", "units_metadata": "SCD",
 }  # fmt: skip
 """Attributes of the conventions, by their appendix A: S text, N a number, D of the type of the
 variable; then where they may stand, G globally, C with coordinates, D with other variables.
