@@ -62,6 +62,7 @@ def summary_report(summary: Summary) -> Report:
     """Return how often limits are broken, drawings, distributions, worst profiles, return
     levels.
     """
+    not_judged = (f"Not judged: {name}, {why}." for name, why in summary.not_judged.items())
     moving = [part for part in summary.parts if part.clamped] or list(summary.parts[:-1])
     parts = (
         ReportPart("Result", tuple(_result(summary))),
@@ -82,7 +83,7 @@ def summary_report(summary: Summary) -> Report:
             "Limits",
             (
                 limits_table(summary),
-                _not_judged(summary),
+                Prose(tuple(not_judged)),
                 limits_used_table(summary.limits_used),
             ),
         ),
@@ -105,11 +106,6 @@ def _result(summary: Summary) -> Iterator[Block]:
 def _left_out(summary: Summary) -> Iterator[Prose]:
     if summary.unsolved:
         yield Prose((left_out(summary),), State.WARN)
-
-
-def _not_judged(summary: Summary) -> Prose:
-    reasons = (f"Not judged: {name}, {reason}." for name, reason in summary.not_judged.items())
-    return Prose(tuple(reasons))
 
 
 def _inputs(summary: Summary) -> Iterator[Block]:

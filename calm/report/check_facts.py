@@ -5,7 +5,9 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import accumulate
 from math import ceil, hypot
+from operator import attrgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -42,8 +44,7 @@ PAGE_ONE = 9.0
 _TITLES = ("document", "revision", "date", "author")
 
 _MENDING = "What fails, is unknown or warns"
-_ROOM, _WIDTH = 570.0, 510.0  # points of page one that the tables and what decides may fill
-_LINE, _SIGN, _SHORT = 12.6, 5.9, 64.0  # points: a line of text, a letter, a column of figures
+_LINES, _SIGNS = 44.0, 76.0  # lines of page one, and letters of a line of a table's words
 
 
 @dataclass(frozen=True)
@@ -230,53 +231,47 @@ def facts_part(facts: CheckFacts, title: str = "") -> ReportPart:
     origin.append(("SHA-256 of the file", facts.sha256 or "the file could not be read again"))
     pairs = (Pairs((*facts.titles, *origin)), key_pairs(facts))
     said = [text for each in pairs for _, value in each.pairs for text in value.split("\n")]
-    room = _ROOM - _LINE * sum(ceil(len(text) / 75) for text in said)
+    room = _LINES - sum(ceil(len(text) / 75) for text in said)
     shown: list[Table] = []
     for table in (*reversed(list(settled_tables(facts))), *_mending(facts.findings)):
+        room -= 4.0  # the title, the heads and the note
         shown.insert(0, _cut(table, room if table.title == _MENDING else room / 2))
-        room -= _height(shown[0])
+        room -= sum(_lines_of(row, table.columns, _SIGNS / 4) for row in shown[0].rows)
     return ReportPart(title, (*pairs, *shown), least=PAGE_ONE)
 
 
 def left_out(facts: CheckFacts) -> Iterator[Table]:
     """What is accepted and what departs, where page one has not room for all of it."""
-    shown = {each.title: each for each in facts_part(facts).blocks if isinstance(each, Table)}
-    for table in settled_tables(facts):
-        if len(shown[table.title].rows) < len(table.rows):
-            yield table
+    shown = facts_part(facts).blocks
+    return (table for table in settled_tables(facts) if table not in shown)
 
 
-def _cut(table: Table, room: float) -> Table:
-    """The first rows of a table, as many as fit but one at least, and how many are left."""
-    count = len(table.rows)
-    for kept in range(count, 1, -1):
-        if _height(replace(table, rows=table.rows[:kept])) <= room:
-            break
-    else:
-        kept = 1
-    note = f"{count - kept} more under Checks."
-    return replace(table, rows=table.rows[:kept], note=note) if kept < count else table
+def _cut(table: Table, lines: float) -> Table:
+    """The first rows of a table, as many as fit in some lines but one at least."""
+    signs = _SIGNS / sum(column.share for column in table.columns)
+    total = accumulate(_lines_of(row, table.columns, signs) for row in table.rows)
+    kept = max(sum(each <= lines for each in total), 1)
+    left = len(table.rows) - kept
+    rows = table.rows[:kept]
+    return replace(table, rows=rows, note=f"{left} more under Checks.") if left else table
 
 
-def _height(table: Table) -> float:
-    """About how high a table is on page one [pt]."""
-    wide = sum(column.share for column in table.columns if not column.numeric)
-    room = _WIDTH - _SHORT * sum(column.numeric or not column.share for column in table.columns)
-    height = 3.5 * _LINE + _LINE * ceil(len(table.note) / 90)
-    for row in table.rows:
-        lines = [1]
-        for cell, column in zip(row, table.columns, strict=True):
-            if column.share and not column.numeric:
-                signs = column.share / wide * room / _SIGN
-                lines.append(sum(ceil(len(text) / signs) for text in (cell.text, cell.detail)))
-        height += 5.0 + _LINE * max(lines)
-    return height
+def _lines_of(row: Sequence[Cell], columns: Sequence[Column], signs: float) -> float:
+    """About how many lines a row takes on page one; its rule and room count as a half.
+
+    Parameters
+    ----------
+    signs : that a line of a column has for each of its shares of the width
+    """
+    pairs = [pair for pair in zip(row, columns, strict=True) if pair[1].share]
+    return 0.5 + max(ceil(len(f"{cell.text} {cell.detail}") / (signs * column.share))
+                     for cell, column in pairs)  # fmt: skip
 
 
 def settled_tables(facts: CheckFacts) -> Iterator[Table]:
     """What the designer has decided: what is accepted, and limits of the design's own."""
-    alike = {"rule": "", "component": None, "labels": None, "line": 0}
-    groups = grouped(facts.accepted, lambda one: one.accept and replace(one.accept, **alike))
+    words = attrgetter("accept.reason", "accept.by", "accept.date", "accept.until")
+    groups = grouped(facts.accepted, words)
     rows = [(found, accept) for found in groups if (accept := found[0].accept) is not None]
     if rows:
         yield table_of(

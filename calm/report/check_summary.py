@@ -62,7 +62,7 @@ def worst_by_rule(assessment: Assessment) -> tuple[Worst, ...]:
     ]
     columns.append((ON_THE_WAY, assessment.findings))
     return tuple(
-        Worst(column, min(group, key=_rank), _unknown_count(group))
+        Worst(column, min(group, key=_rank), sum(one.state is State.UNKNOWN for one in group))
         for column, findings in columns
         for group in grouped(findings, lambda each: each.rule)
     )
@@ -140,44 +140,32 @@ def _states(
 
 def worst_table(sections: Sequence[Section]) -> Table:
     """Each rule with the worst of all its findings, and in how many moorings it fails or warns."""
-    several = len(sections) > 1
-    found: dict[str, list[tuple[Section, Worst]]] = {name: [] for name in RULES}
-    for section in sections:
-        for each in section.worst:
-            found[each.finding.rule].append((section, each))
-    rules = [pairs for pairs in found.values() if pairs]
-
-    def worst(pairs: Sequence[tuple[Section, Worst]]) -> Finding:
-        return min((each.finding for _, each in pairs), key=_rank)
-
-    def figure(pairs: Sequence[tuple[Section, Worst]], name: str) -> str:
-        return say_in_unit(worst(pairs), getattr(worst(pairs), name))
-
-    def moorings(pairs: Sequence[tuple[Section, Worst]], state: State) -> str:
-        count = len({section.name for section, each in pairs if each.finding.state is state})
-        return str(count) if count and several else ""
-
+    several, rows = len(sections) > 1, []
+    for name in RULES:
+        found = [(one.name, each) for one in sections for each in one.worst]
+        found = [(mooring, each) for mooring, each in found if each.finding.rule == name]
+        if found:
+            states = {(mooring, each.finding.state) for mooring, each in found}
+            counts = Counter(state for _, state in states) if several else Counter[State]()
+            worst = min((each.finding for _, each in found), key=_rank)
+            rows.append((worst, sum(each.unknown for _, each in found), counts))
     return table_of(
         "Worst finding of each rule",
-        rules,
-        (Column("rule", share=0.0), lambda pairs: worst(pairs).rule),
-        (Column("state", share=0.0), lambda pairs: state_cell(worst(pairs))),
-        (Column("value", numeric=True), lambda pairs: figure(pairs, "value")),
-        (Column("limit", numeric=True), lambda pairs: figure(pairs, "limit")),
-        (Column("margin", numeric=True), lambda pairs: margin_of(worst(pairs))),
-        (
-            Column("unknown", numeric=True),
-            lambda pairs: str(sum(each.unknown for _, each in pairs) or ""),
+        rows,
+        (Column("rule", share=0.0), lambda row: row[0].rule),
+        (Column("state", share=0.0), lambda row: state_cell(row[0])),
+        (Column("value", numeric=True), lambda row: say_in_unit(row[0], row[0].value)),
+        (Column("limit", numeric=True), lambda row: say_in_unit(row[0], row[0].limit)),
+        (Column("margin", numeric=True), lambda row: margin_of(row[0])),
+        (Column("unknown", numeric=True), lambda row: str(row[1] or "")),
+        *(
+            (
+                Column(heading, numeric=True, narrow=False),
+                lambda row, state=state: str(row[2][state] or ""),
+            )
+            for heading, state in (("moorings that fail", State.FAIL), ("that warn", State.WARN))
         ),
-        (
-            Column("moorings that fail", numeric=True, narrow=False),
-            lambda pairs: moorings(pairs, State.FAIL),
-        ),
-        (
-            Column("that warn", numeric=True, narrow=False),
-            lambda pairs: moorings(pairs, State.WARN),
-        ),
-        (Column("where"), lambda pairs: _where(worst(pairs), several)),
+        (Column("where"), lambda row: _where(row[0], several)),
         sortable=True,
     )
 
@@ -188,11 +176,6 @@ def _where(finding: Finding, several: bool) -> str:
     if several or finding.environment != OWN or finding.situation != AS_GIVEN:
         places.append(place_of(finding))
     return ", ".join(filter(None, places))
-
-
-def _unknown_count(findings: Iterable[Finding]) -> int:
-    """Return how many of the findings are unknown."""
-    return sum(finding.state is State.UNKNOWN for finding in findings)
 
 
 def _abreast(columns: Sequence[str]) -> Iterator[Sequence[str]]:

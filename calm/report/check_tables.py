@@ -250,7 +250,9 @@ def likelihood_tables(named: Iterable[tuple[str, Sequence[Finding]]]) -> Iterato
     if not any(found for _, found in designs):
         return
     rows: list[tuple[str, Finding | None]] = []
-    for name, found in sorted(designs, key=lambda design: -_greatest(design[1])):
+    for name, found in sorted(
+        designs, key=lambda one: -(one[1][0].probability or 0.0) if one[1] else inf
+    ):
         likely = [each for each in found if each.probability]
         names = (name, *("" for _ in likely[1:]))
         rows += zip(names, likely or (None,), strict=True)
@@ -296,7 +298,3 @@ def _likeliest(findings: Sequence[Finding]) -> list[Finding]:
     return sorted(
         found.values(), key=lambda one: (-(one.probability or 0.0), order.index(one.rule))
     )
-
-
-def _greatest(found: Sequence[Finding]) -> float:
-    return (found[0].probability or 0.0) if found else -inf

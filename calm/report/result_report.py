@@ -18,7 +18,6 @@ from calm.report.blocks import (
     Cell,
     Column,
     Figure,
-    Line,
     Prose,
     Report,
     ReportPart,
@@ -84,17 +83,10 @@ def uncertainty_part(uncertain: Uncertain) -> ReportPart:
         each = ", ".join(f"{count} {status}" for status, count in uncertain.failures.items())
         said = f"{uncertain.failed} of {uncertain.samples} samples have no equilibrium ({each})"
         blocks.append(Prose((f"{said}; the figures are of the others.",), State.WARN))
-    blocks.append(Prose((_quiet(_basis(uncertain)),)))
-    return ReportPart("How sure these figures are", tuple(blocks))
-
-
-def _quiet(text: str) -> Line:
-    return (Span(text, quiet=True),)
-
-
-def _basis(uncertain: Uncertain) -> str:
     drawn = drawn_text(uncertain.result.file.uncertainty)
-    return f"{uncertain.samples} samples, seed {uncertain.seed}; drawn: {drawn}."
+    basis = f"{uncertain.samples} samples, seed {uncertain.seed}; drawn: {drawn}."
+    blocks.append(Prose(((Span(basis, quiet=True),),)))
+    return ReportPart("How sure these figures are", tuple(blocks))
 
 
 def drawn_text(uncertainty: Uncertainty) -> str:
