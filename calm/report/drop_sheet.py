@@ -203,8 +203,8 @@ def _notes(plan: DropPlan) -> tuple[str, ...]:
     notes = [
         "The line is a chain without inertia: what it does in the first 20 s, and the jerk at the "
         "touchdown, are not in these figures; nor is what waves do.",
-        "± is twice what bars and what steps of twice the length change, together; the current and "
-        "the drag of the anchor are known less well.",
+        "± is twice the change that segments and time steps of double length make together; the "
+        "current and the drag of the anchor are known less well.",
     ]
     if plan.rest_difference is not None:
         notes.append(
