@@ -78,9 +78,10 @@ def _show_in_notebooks() -> None:
     from calm.case.result import Solved
 
     def html(result: Result | TowResult) -> str:
-        from calm.report.notebook import to_html
+        from calm.report.html import fragment
+        from calm.report.sheet import result_part
 
-        return to_html(result)
+        return fragment(result_part(result))
 
     Solved.notebook_form = staticmethod(html)
 

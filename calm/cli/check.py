@@ -8,7 +8,7 @@ from dataclasses import replace
 from datetime import date, datetime
 from functools import cache, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from calm.cli.check_files import DesignFile, read_designs
 from calm.cli.options import CatalogFiles, Samples, Seed, Units, show_units
@@ -305,39 +305,31 @@ def _answer(
     from concurrent.futures import ThreadPoolExecutor
 
     from calm.report.check_brief import check_part
-    from calm.report.check_documents import check_document
+    from calm.report.check_documents import check_document, checks_csv, inventory_csv
     from calm.report.folder import write_report
-    from calm.report.pdf import report_pdf
 
     document = cache(lambda: check_document(assessments))
-    sections = [each.section for each in drawings]
-    with ThreadPoolExecutor(1) as beside:
-        leaves = [each.pdf for each in drawings]
-        pdf = None if folder is None else beside.submit(report_pdf, sections, leaves)
+    if folder is None:
         outputs.write_answer(document, check_part(assessments))
-        if folder is not None and pdf is not None:
-            files = _report_files(assessments, drawings, document())
-            write_report(folder, files | {"report.pdf": pdf.result()})
-            narrate(f"the report is in {folder}")
-
-
-def _report_files(
-    assessments: Sequence[Assessment], drawings: Sequence[DrawnSection], document: dict[str, Any]
-) -> dict[str, bytes]:
-    """The files of a report's folder, without its PDF."""
-    from calm.report.check_documents import checks_csv, inventory_csv
-    from calm.report.html import report_html
+        return
+    from calm.report.check_report import check_report
+    from calm.report.html import page
+    from calm.report.pdf import printed
     from calm.report.result_json import to_json
 
-    texts = {
-        "report.html": report_html(
-            [each.section for each in drawings], [each.html for each in drawings]
-        ),
-        "report.json": to_json([document]),
-        "checks.csv": checks_csv(assessments),
-        "inventory.csv": inventory_csv(assessments),
-    }
-    return {name: text.encode("utf-8", "replace") for name, text in texts.items()}
+    report = check_report([each.section for each in drawings])
+    with ThreadPoolExecutor(1) as beside:
+        pdf = beside.submit(printed, report, leaves=[each.pdf for each in drawings])
+        outputs.write_answer(document, check_part(assessments))
+        texts = {
+            "report.html": page(report, [each.html for each in drawings]),
+            "report.json": to_json([document()]),
+            "checks.csv": checks_csv(assessments),
+            "inventory.csv": inventory_csv(assessments),
+        }
+        files = {name: text.encode("utf-8", "replace") for name, text in texts.items()}
+        write_report(folder, files | {"report.pdf": pdf.result()})
+    narrate(f"the report is in {folder}")
 
 
 def _code(assessment: Assessment, allow_unknown: bool) -> ExitCode:

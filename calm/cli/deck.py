@@ -149,12 +149,11 @@ def _contents(deck: Deck, paper: Paper, notes: tuple[str, ...]) -> Mapping[str, 
 
 def _plan(deck: Deck) -> dict[str, Any]:
     """The plan of the anchor drop, or why there is none."""
-    from calm.report.result_json import failure_document
 
     if deck.plan is None:
         return {"status": str(deck.order), "message": "The anchor goes first: it is not dropped."}
     if isinstance(deck.plan, NoEquilibrium):
-        return failure_document(deck.file.name, deck.plan)
+        return {"name": deck.file.name, **deck.plan.to_dict()}
     return deck.plan.to_dict()
 
 

@@ -110,8 +110,10 @@ def motion(
     from calm.motion.matching import labels_of
     from calm.motion.study import cross_validated, judged, prepare, series_of, several
     from calm.report.folder import check_folder, write_report
-    from calm.report.motion_report import motion_files
+    from calm.report.html import page
+    from calm.report.motion_report import motion_report
     from calm.report.motion_tables import motion_document, motion_part
+    from calm.report.pdf import printed
 
     if workers is not None and workers < 1:
         raise UsageError(f"--workers: {workers} is not 1 or more")
@@ -175,8 +177,8 @@ def motion(
             study = replace(study, held_out=(*study.held_out, *each))
     name = mooring.file.name or file.stem
     if report is not None:
-        files_of = motion_files(study, series, measured.time, factor, name, notes)
-        write_report(report, files_of)
+        said = motion_report(study, series, measured.time, factor, name, notes)
+        write_report(report, {"motion.html": page(said).encode(), "motion.pdf": printed(said)})
     outputs.write_answer(lambda: motion_document(study, name), motion_part(study, name))
     return code
 

@@ -76,10 +76,8 @@ class FileOutcome:
 
     def document(self) -> dict[str, Any]:
         """The JSON object of the result, or of the failure."""
-        from calm.report.result_json import failure_document
-
         if self.failure:
-            return failure_document(self.name, self.failure)
+            return {"name": self.name, **self.failure.to_dict()}
         assert self.result is not None
         document = self.result.to_dict()
         if self.explanation is not None:
@@ -102,7 +100,7 @@ class FileOutcome:
 
             parts.append(explanation_part(self.explanation))
         if self.uncertain is not None:
-            from calm.report.uncertainty import uncertainty_part
+            from calm.report.result_report import uncertainty_part
 
             parts.append(uncertainty_part(self.uncertain))
         return parts
@@ -112,13 +110,15 @@ class FileOutcome:
         if self.result is None:
             return None
         if suffix == ".html":
-            from calm.report.html import result_html
+            from calm.report.html import page
+            from calm.report.result_report import result_report
 
-            return result_html(self.result, self.uncertain).encode("utf-8", "replace")
+            return page(result_report(self.result, self.uncertain)).encode("utf-8", "replace")
         if suffix == ".pdf":
-            from calm.report.pdf import result_pdf
+            from calm.report.pdf import printed
+            from calm.report.result_report import result_report
 
-            return result_pdf(self.result, self.uncertain)
+            return printed(result_report(self.result, self.uncertain))
         if suffix == ".nc":
             from calm.report.result_files import result_netcdf
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from calm.batch.statistics.extremes import Fit, Level
@@ -14,10 +15,10 @@ from calm.report.batch_summary import (
     TITLES,
     extent,
     left_out,
-    percent,
+    profiles_table,
     refusals,
+    rules_table,
     standing,
-    when,
 )
 from calm.report.blocks import (
     Block,
@@ -28,11 +29,9 @@ from calm.report.blocks import (
     ReportPart,
     Span,
     Table,
-    table_of,
 )
 
 if TYPE_CHECKING:
-    from calm.batch.statistics.limits import RuleShare
     from calm.batch.statistics.summary import Distribution, Summary
 
 _QUANTITIES = ("knockdown", "tilt", "tension")
@@ -53,13 +52,14 @@ def summary_part(summary: Summary) -> ReportPart:
     lost, note = summary.count - summary.solved, left_out(summary)
     ended = Span(standing(summary), State.FAIL if lost else None)
     missing = tuple(refusals(summary))
+    worst = [(name, one) for name, each in summary.worst.items() for one in each[:1]]
     blocks: tuple[Block, ...] = (
         Heading(summary.name),
         Prose((extent(summary), (ended,))),
         _parts(summary),
-        _rules(summary),
+        replace(rules_table(summary), title="", note=""),
         *([Prose((note,), State.WARN)] if note else []),
-        _worst(summary),
+        profiles_table("", worst),
         *_levels(summary),
         *([Prose(missing, State.WARN)] if missing else []),
         Prose(((Span(_ALL, quiet=True),),)),
@@ -88,44 +88,6 @@ def _extremes(name: str, one: Distribution | None) -> tuple[str, str]:
         return "-", "-"
     quantity = QUANTITIES[name]
     return quantity.format(one.percentiles[2]), quantity.format(one.maximum)
-
-
-def _rules(summary: Summary) -> Table:
-    return table_of(
-        "",
-        summary.rules,
-        (Column("rule"), lambda rule: rule.title),
-        (
-            Column("fails\n% of profiles", numeric=True),
-            lambda rule: Cell(percent(rule.fails), state=State.FAIL if rule.fails else None),
-        ),
-        (Column("at most\n%", numeric=True), lambda rule: percent(rule.fails_at_most)),
-        (Column("warns\n%", numeric=True), lambda rule: percent(rule.warns)),
-        (Column("most often broken by"), _broken),
-    )
-
-
-def _broken(rule: RuleShare) -> str:
-    """The part that breaks a rule most often, and how many cannot be judged by it."""
-    unknown = f"{rule.unknown} unknown" if rule.unknown else ""
-    most = max(rule.exceedances, key=lambda one: one.share or 0.0, default=None)
-    if most is None or not most.share:
-        return unknown
-    broken = f"{most.limit.component}, {percent(most.share)} %"
-    return f"{broken}; {unknown}" if unknown else broken
-
-
-def _worst(summary: Summary) -> Table:
-    columns = [Column("worst profile by"), Column("time", share=0.0)]
-    for name in TITLES:
-        unit = QUANTITIES[QUANTITY[name]].display_unit
-        columns.append(Column(name.replace("_", " "), unit, numeric=True))
-    rows = []
-    for name, profiles in summary.worst.items():
-        for profile in profiles[:1]:
-            figures = (QUANTITIES[QUANTITY[one]].format(getattr(profile, one)) for one in TITLES)
-            rows.append(tuple(map(Cell, (name.replace("_", " "), when(profile.time), *figures))))
-    return Table("", tuple(columns), tuple(rows))
 
 
 def _levels(summary: Summary) -> Iterator[Table]:

@@ -19,10 +19,11 @@ from calm.report.batch_summary import (
     QUANTITY,
     TITLES,
     extent,
-    grouped,
     left_out,
     percent,
+    profiles_table,
     refusals,
+    rules_table,
     standing,
     summary_document,
     when,
@@ -61,6 +62,7 @@ def summary_report(summary: Summary) -> Report:
     """Return how often limits are broken, drawings, distributions, worst profiles, return
     levels.
     """
+    not_judged = (f"Not judged: {name}, {why}." for name, why in summary.not_judged.items())
     moving = [part for part in summary.parts if part.clamped] or list(summary.parts[:-1])
     parts = (
         ReportPart("Result", tuple(_result(summary))),
@@ -81,8 +83,8 @@ def summary_report(summary: Summary) -> Report:
             "Limits",
             (
                 limits_table(summary),
-                _not_judged(summary),
-                limits_used_table([(summary.name, summary.limits_used)]),
+                Prose(tuple(not_judged)),
+                limits_used_table(summary.limits_used),
             ),
         ),
         ReportPart("Distributions", (*_left_out(summary), *statistics_tables(summary))),
@@ -106,11 +108,6 @@ def _left_out(summary: Summary) -> Iterator[Prose]:
         yield Prose((left_out(summary),), State.WARN)
 
 
-def _not_judged(summary: Summary) -> Prose:
-    reasons = (f"Not judged: {name}, {reason}." for name, reason in summary.not_judged.items())
-    return Prose(tuple(reasons))
-
-
 def _inputs(summary: Summary) -> Iterator[Block]:
     for name, text in summary.source.items():
         yield Listing(name.replace("_", " ").capitalize(), text)
@@ -125,26 +122,6 @@ _EXTRAPOLATED = (
     "fitted tail knows no bounds: a tilt beyond 90° or a knockdown below the seabed says that the "
     "record does not reach so far."
 )
-
-
-def rules_table(summary: Summary) -> Table:
-    """Return how often each rule fails or warns anywhere on the line."""
-    return table_of(
-        "How often a rule fails",
-        summary.rules,
-        (Column("rule"), lambda rule: rule.title),
-        (Column("judged in", "profiles", numeric=True), lambda rule: grouped(rule.judged)),
-        (Column("fails", "% of them", numeric=True), lambda rule: _share(rule.fails, State.FAIL)),
-        (Column("at most", "%", numeric=True), lambda rule: _share(rule.fails_at_most, State.FAIL)),
-        (Column("warns", "% of them", numeric=True), lambda rule: _share(rule.warns, State.WARN)),
-        (Column("limits", numeric=True), lambda rule: str(len(rule.exceedances))),
-        (
-            Column("of them unknown", numeric=True),
-            lambda rule: Cell(str(rule.unknown), state=State.UNKNOWN if rule.unknown else None),
-        ),
-        note="At most: if the rule fails, too, in every profile that has a current and was not "
-        "solved. A limit that is judged in no profile is unknown.",
-    )
 
 
 def limits_table(summary: Summary) -> Table:
@@ -198,18 +175,9 @@ def worst_tables(summary: Summary) -> Iterator[Table | Prose]:
         if not profiles:
             yield Prose((f"The {TITLES[name]} is not known in any profile.",), State.UNKNOWN)
             continue
-        heads = (replace(quantity_column(QUANTITY[one]), heading=TITLES[one]) for one in TITLES)
-        columns = (Column("time", share=0.0), *heads, Column("tilts most"))
-        rows = tuple(
-            (
-                Cell(when(profile.time)),
-                *(figure_cell(QUANTITY[one], getattr(profile, one)) for one in TITLES),
-                Cell(profile.leaning),
-            )
-            for profile in profiles
-        )
         count = f"{len(profiles)} profiles" if len(profiles) < WORST else f"{WORST} worst profiles"
-        yield Table(f"The {count} by {TITLES[name]}", columns, rows)
+        title = f"The {count} by {TITLES[name]}"
+        yield profiles_table(title, [("", profile) for profile in profiles])
 
 
 def levels_tables(summary: Summary) -> Iterator[Table | Prose]:
@@ -229,10 +197,6 @@ def levels_tables(summary: Summary) -> Iterator[Table | Prose]:
             yield Table(title, columns, rows, " ".join(f"{_rules(fit)}." for fit in fits))
     for reason in refusals(summary):
         yield Prose((f"{reason[0].upper()}{reason[1:]}.",), State.UNKNOWN)
-
-
-def _share(share: float | None, state: State) -> Cell:
-    return Cell(percent(share), state=state if share else None)
 
 
 def _figures(name: str, one: Distribution | None) -> Iterator[Cell]:

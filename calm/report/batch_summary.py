@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import asdict
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,8 +11,11 @@ from numpy.typing import NDArray
 
 from calm.batch.statistics.extremes import Fit, LevelsRefused
 from calm.batch.statistics.summary import PERCENTILES, Summary
+from calm.checks.finding import State
+from calm.report.blocks import Cell, Column, Field, Table, table_of
 from calm.report.check_documents import limit_document
 from calm.report.result_json import members
+from calm.report.sheet import figure_cell, quantity_column
 
 if TYPE_CHECKING:
     from calm.batch.statistics.limits import Exceedance, RuleShare
@@ -127,6 +130,66 @@ def _profile(profile: WorstProfile) -> dict[str, Any]:
 
 def _time(time: np.datetime64 | None) -> str | None:
     return None if time is None else f"{np.datetime_as_string(time, unit='s')}Z"
+
+
+def rules_table(summary: Summary) -> Table:
+    """Return how often each rule fails or warns anywhere on the line."""
+
+    def broken(share: float | None, state: State) -> Cell:
+        return Cell(percent(share), state=state if share else None)
+
+    return table_of(
+        "How often a rule fails",
+        summary.rules,
+        (Column("rule"), lambda rule: rule.title),
+        (
+            Column("judged in", "profiles", numeric=True, narrow=False),
+            lambda rule: grouped(rule.judged),
+        ),
+        (
+            Column("fails", "% of profiles", numeric=True),
+            lambda rule: broken(rule.fails, State.FAIL),
+        ),
+        (
+            Column("at most", "%", numeric=True),
+            lambda rule: broken(rule.fails_at_most, State.FAIL),
+        ),
+        (Column("warns", "%", numeric=True), lambda rule: broken(rule.warns, State.WARN)),
+        (
+            Column("limits", numeric=True, narrow=False),
+            lambda rule: str(len(rule.exceedances)),
+        ),
+        (Column("most often broken by"), _most_often),
+        note="Shares are of the profiles in which a rule is judged. At most: if the rule fails, "
+        "too, in every profile that has a current and was not solved. A limit that is judged in no "
+        "profile is unknown.",
+    )
+
+
+def _most_often(rule: RuleShare) -> str:
+    """The part that breaks a rule most often, and how many cannot be judged by it."""
+    most = max(rule.exceedances, key=lambda one: one.share or 0.0, default=None)
+    worst = f"{most.limit.component}, {percent(most.share)} %" if most and most.share else ""
+    unknown = f"{rule.unknown} unknown" if rule.unknown else ""
+    return "; ".join(filter(None, (worst, unknown)))
+
+
+def profiles_table(title: str, profiles: Sequence[tuple[str, WorstProfile]]) -> Table:
+    """Profiles with their responses, each with what it is the worst by where that is not said."""
+
+    def response(name: str) -> Field[tuple[str, WorstProfile]]:
+        quantity, short = QUANTITY[name], name.replace("_", " ")
+        column = replace(quantity_column(quantity, TITLES[name]), short=short, marked=False)
+        return column, lambda pair: figure_cell(quantity, getattr(pair[1], name))
+
+    return table_of(
+        title,
+        profiles,
+        (Column("worst profile by"), lambda pair: pair[0].replace("_", " ")),
+        (Column("time", share=0.0), lambda pair: when(pair[1].time)),
+        *map(response, TITLES),
+        (Column("tilts most", narrow=False), lambda pair: pair[1].leaning),
+    )
 
 
 TITLES = {

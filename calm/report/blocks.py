@@ -13,7 +13,7 @@ from calm.checks.finding import State
 
 if TYPE_CHECKING:
     from calm.checks.finding import Finding
-    from calm.files.check_limits import LimitKey
+    from calm.report.check_facts import CheckFacts
 
 Item = TypeVar("Item")
 
@@ -61,7 +61,8 @@ class Table:
 
     A row of a single cell heads those below it. The rows of a table that is `sortable` may be put
     in another order and chosen from; a `dense` one has more columns than fit with room to spare.
-    One that is to be filled in `by_hand` has rules and room to write.
+    One that is to be filled in `by_hand` has rules and room to write; of any other, columns without
+    a word in them are left out.
     """
 
     title: str
@@ -72,6 +73,20 @@ class Table:
     sortable: bool = False
     dense: bool = False
     by_hand: bool = False
+
+    def __post_init__(self) -> None:
+        """Leave out the columns in which no row has a word."""
+        count = len(self.columns)
+        full = [row for row in self.rows if len(row) == count]
+        kept = [at for at in range(count) if any(row[at] != _EMPTY for row in full)]
+        if self.by_hand or not full or len(kept) == count:
+            return
+        rows = (row if len(row) < count else tuple(row[at] for at in kept) for row in self.rows)
+        object.__setattr__(self, "rows", tuple(rows))
+        object.__setattr__(self, "columns", tuple(self.columns[at] for at in kept))
+
+
+_EMPTY = Cell()
 
 
 @dataclass(frozen=True)
@@ -158,10 +173,14 @@ Block = Table | Pairs | Figure | Prose | Note | Heading | Listing | Signatures |
 
 @dataclass(frozen=True)
 class ReportPart:
-    """Blocks under a heading; what a command shows of one thing is a part of its own."""
+    """Blocks under a heading; what a command shows of one thing is a part of its own.
+
+    On paper no text of it is smaller than `least` [pt].
+    """
 
     title: str
     blocks: tuple[Block, ...]
+    least: float = 8.0
 
 
 @dataclass(frozen=True)
@@ -187,17 +206,14 @@ class Section:
     parts : what is printed
     columns : the environments and what else was judged, in order; none of a single result
     worst : for each column and rule that applies there
-    findings, accepted : of a design check; what of it is accepted
-    limits : by which it is judged
+    facts : what is signed, of a design check
     """
 
     name: str
     parts: tuple[ReportPart, ...]
     columns: tuple[str, ...] = ()
     worst: tuple[Worst, ...] = ()
-    findings: tuple[Finding, ...] = ()
-    accepted: tuple[Finding, ...] = ()
-    limits: tuple[LimitKey, ...] = ()
+    facts: CheckFacts | None = None
 
 
 @dataclass(frozen=True)
@@ -221,10 +237,14 @@ class Report:
     plates: tuple[Plate, ...] = ()
 
 
+Field = tuple[Column, Callable[[Item], Cell | str]]
+"""Head of a column, and what it shows of an item."""
+
+
 def table_of(
     title: str,
     items: Iterable[Item],
-    *fields: tuple[Column, Callable[[Item], Cell | str]],
+    *fields: Field[Item],
     note: str = "",
     sums: Iterable[Item] = (),
     sortable: bool = False,

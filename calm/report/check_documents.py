@@ -11,6 +11,7 @@ from calm.checks.inventory import total_of
 from calm.checks.rules import RULES
 from calm.quantities import QUANTITIES
 from calm.records.delimited import table_csv
+from calm.report.check_facts import facts_of
 from calm.report.provenance import UNJUDGED
 from calm.report.result_json import members
 
@@ -29,9 +30,9 @@ def check_document(assessments: Sequence[Assessment]) -> dict[str, Any]:
     dict
         `state`, the worst there is; how many findings are `estimated`; what is `accepted`, and why;
         `findings`, and as `tighter` those of other situations that leave less margin; of each
-        mooring by its name `launch`, `recovery`, `backup`, `inventory` and its `totals`, and its
-        `document` where files give any; and `situations`, what was solved of each mooring in each
-        environment.
+        mooring by its name the `key_figures` of page one, `launch`, `recovery`, `backup`,
+        `inventory` and its `totals`, and its `document` where files give any; and `situations`,
+        what was solved of each mooring in each environment.
     """
     from calm.version import __version__
 
@@ -59,6 +60,7 @@ def check_document(assessments: Sequence[Assessment]) -> dict[str, Any]:
             for each in assessments
             for key in each.limits
         ],
+        "key_figures": {each.name: facts_of(each).to_dict() for each in assessments},
         "not_judged": list(UNJUDGED),
         "findings": [
             _finding(each, finding) for each in assessments for finding in each.all_findings()

@@ -12,21 +12,27 @@ from calm.report.blocks import (
     ON_THE_WAY,
     Block,
     Figure,
+    Heading,
+    PageBreak,
     Prose,
     Report,
     ReportPart,
     Section,
     Signatures,
 )
+from calm.report.check_facts import (
+    PAGE_ONE,
+    CheckFacts,
+    facts_of,
+    facts_part,
+    judged_section,
+    left_out,
+)
 from calm.report.check_summary import (
-    accepted_table,
-    failures,
     limits_table,
     matrix_tables,
     rules_tables,
-    unknown_table,
     verdict_prose,
-    worst_by_rule,
     worst_table,
 )
 from calm.report.check_tables import (
@@ -43,7 +49,7 @@ from calm.report.differences import comparison_part
 from calm.report.provenance import (
     NOT_JUDGED,
     date,
-    document_part,
+    history_part,
     inputs_part,
 )
 from calm.report.sheet import sheet
@@ -58,17 +64,16 @@ def mooring_section(assessment: Assessment, against: Comparison | None = None) -
 
     `against` is the mooring compared with the design that it came from.
     """
-    stands = assessment.stands
-    columns = (*(stand.environment for stand in stands), ON_THE_WAY)
-    worst = worst_by_rule(assessment)
+    stands, facts = assessment.stands, facts_of(assessment)
+    judged = judged_section(assessment)
     compared = () if against is None else (comparison_part(against),)
     parts = (
-        *document_part(assessment.mooring.file),
+        *history_part(assessment.mooring.file),
         *compared,
-        ReportPart("Judgement", tuple(_judgement(assessment, columns))),
+        ReportPart("Judgement", tuple(_judgement(assessment, judged))),
         ReportPart("The line", tuple(_line(assessment))),
         ReportPart("Shape, tension and breaks", tuple(_drawn(assessment))),
-        ReportPart("Checks", tuple(_checks(assessment))),
+        ReportPart("Checks", tuple(_checks(assessment, facts))),
         ReportPart("Launch, recovery, breaks", tuple(_on_the_way(assessment))),
         ReportPart(
             "Inventory",
@@ -80,31 +85,30 @@ def mooring_section(assessment: Assessment, against: Comparison | None = None) -
             [stand.mooring.water for stand in stands],
         ),
     )
-    return Section(
-        assessment.name,
-        parts,
-        columns,
-        worst,
-        tuple(assessment.all_findings()),
-        tuple(assessment.accepted_findings()),
-        assessment.limits,
-    )
+    return replace(judged, parts=parts)
 
 
 def check_report(sections: Sequence[Section]) -> Report:
-    """The report of a design check: the summary, a section for each mooring, the signatures."""
+    """The report of a design check: what is signed, then all that it rests on.
+
+    Page one is all that an engineer signs, of one mooring; of several, a summary follows it.
+    """
     count = len(sections)
     environments = {column for each in sections for column in each.columns} - {ON_THE_WAY}
     moorings = sections[0].name if count == 1 else f"{count} moorings"
     in_all = f"{len(environments)} environment{'s' if len(environments) != 1 else ''}"
+    facts = [each.facts for each in sections if each.facts is not None]
+    verdict = verdict_prose(finding for each in facts for finding in each.findings)
+    signatures = Signatures(("Designed by", "Checked by"))
     return Report(
         title="Design check",
         subtitle=f"{moorings}, {in_all}",
         front=(
-            ReportPart("Summary", tuple(_summary(sections))),
-            ReportPart("Limits", (limits_table([(each.name, each.limits) for each in sections]),)),
+            ReportPart("", (verdict,), least=PAGE_ONE),
+            *(facts_part(each, each.mooring if count > 1 else "") for each in facts),
+            ReportPart("Signatures", (signatures, PageBreak()), least=PAGE_ONE),
+            *((ReportPart("Summary", tuple(_summary(sections))),) if count > 1 else ()),
             NOT_JUDGED,
-            ReportPart("Signatures", (Signatures(("Designed by", "Checked by", "Approved by")),)),
         ),
         sections=tuple(sections),
         date=date(),
@@ -112,22 +116,17 @@ def check_report(sections: Sequence[Section]) -> Report:
 
 
 def _summary(sections: Sequence[Section]) -> Iterator[Block]:
-    yield verdict_prose(finding for each in sections for finding in each.findings)
-    accepted = accepted_table([(each.name, each.accepted) for each in sections])
-    if accepted is not None:
-        yield accepted
     yield from matrix_tables(sections)
-    if len(sections) > 1:
-        yield from likelihood_tables([(each.name, each.findings) for each in sections])
-    yield failures(sections)
+    findings = [(each.name, each.facts.findings) for each in sections if each.facts is not None]
+    yield from likelihood_tables(findings)
     yield worst_table(sections)
 
 
-def _judgement(assessment: Assessment, columns: Sequence[str]) -> Iterator[Block]:
+def _judgement(assessment: Assessment, judged: Section) -> Iterator[Block]:
     description = assessment.mooring.file.description
     if description:
         yield Prose((description,))
-    yield from rules_tables(columns, worst_by_rule(assessment))
+    yield from rules_tables(judged.columns, judged.worst)
     yield from likelihood_tables([(assessment.name, [*assessment.all_findings()])])
     yield results_table(assessment.stands)
 
@@ -155,16 +154,15 @@ def _drawn(assessment: Assessment) -> Iterator[Block]:
     yield Prose((_FIGURE_NOTE,))
 
 
-def _checks(assessment: Assessment) -> Iterator[Block]:
-    findings = [*assessment.all_findings()]
-    unknown = unknown_table(findings)
-    if unknown is not None:
-        yield unknown
-    yield from checks_table(findings)
+def _checks(assessment: Assessment, facts: CheckFacts) -> Iterator[Block]:
+    yield from checks_table(assessment.all_findings())
+    yield from left_out(facts)
+    yield limits_table(assessment.limits)
 
 
 def _on_the_way(assessment: Assessment) -> Iterator[Block]:
     if assessment.launch is not None or assessment.recovery is not None:
+        yield Heading("Launch and recovery in short")
         yield handling_summary(assessment)
         yield handling_table(assessment)
     else:

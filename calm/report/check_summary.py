@@ -3,16 +3,28 @@
 from __future__ import annotations
 
 import math
+import re
 from collections import Counter
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
+from itertools import groupby
 from typing import TYPE_CHECKING
 
 from calm.checks.criterion import said
-from calm.checks.finding import AS_GIVEN, Finding, State, worst_state
+from calm.checks.finding import AS_GIVEN, OWN, Finding, State, worst_state
 from calm.checks.rules import RULES
 from calm.files.check_limits import LimitKey
 from calm.quantities import QUANTITIES
-from calm.report.blocks import ON_THE_WAY, Cell, Column, Prose, Section, Table, Worst, table_of
+from calm.report.blocks import (
+    ON_THE_WAY,
+    Cell,
+    Column,
+    Prose,
+    Section,
+    Span,
+    Table,
+    Worst,
+    table_of,
+)
 
 if TYPE_CHECKING:
     from calm.checks.assessment import Assessment
@@ -50,159 +62,123 @@ def worst_by_rule(assessment: Assessment) -> tuple[Worst, ...]:
     ]
     columns.append((ON_THE_WAY, assessment.findings))
     return tuple(
-        Worst(column, min(group, key=_rank), unknown_count(group))
+        Worst(column, min(group, key=_rank), sum(one.state is State.UNKNOWN for one in group))
         for column, findings in columns
-        for group in _groups(findings, lambda each: each.rule)
+        for group in grouped(findings, lambda each: each.rule)
     )
 
 
 def worst_by_part(findings: Iterable[Finding]) -> list[Finding]:
     """The worst finding of each rule on each component, the gravest first."""
-    groups = _groups(findings, lambda each: (each.rule, each.place))
+    groups = grouped(findings, lambda each: (each.rule, each.place))
     return sorted((min(group, key=_rank) for group in groups), key=_rank)
 
 
 def rules_tables(columns: Sequence[str], found: Sequence[Worst]) -> Iterator[Table]:
     """Rules by environments: state, margin and component of the worst finding of each."""
-    cells = {(each.column, each.finding.rule): each for each in found}
-    for beside in abreast(columns):
-        rules = [
-            rule for rule in RULES.values() if any((one, rule.name) in cells for one in beside)
-        ]
-        rows = tuple(
-            (Cell(rule.title), *(_judged(cells.get((one, rule.name))) for one in beside))
-            for rule in rules
-        )
-        yield Table("Rules by environment", _headed("rule", beside), rows, _RULES_NOTE)
+    rows = [
+        (rule.title, [each for each in found if each.finding.rule == rule.name])
+        for rule in RULES.values()
+    ]
+    title, note = "Rules by environment", "the least margin, the component that has it, and what"
+    yield from _states(title, columns, rows, _of_rule, f"Under each state: {note} is unknown.")
 
 
 def matrix_tables(sections: Sequence[Section]) -> Iterator[Table]:
     """Moorings by environments: the worst state in each, the rule that makes it, and its margin."""
     every = dict.fromkeys(column for section in sections for column in section.columns)
     every.pop(ON_THE_WAY, None)
-    for beside in abreast([*every, ON_THE_WAY]):
-        rows = tuple(
-            (Cell(section.name), *(_of_column(section, column) for column in beside))
-            for section in sections
+    rows = [(section.name, section.worst) for section in sections]
+    title, note = "Moorings by environment", "the rule that makes it, its least margin, and how"
+    columns = (*every, ON_THE_WAY)
+    yield from _states(title, columns, rows, _of_mooring, f"Under each state: {note} many unknown.")
+
+
+def _of_rule(finding: Finding) -> str:
+    return " ".join(filter(None, (margin_of(finding), finding.component)))
+
+
+def _of_mooring(finding: Finding) -> str:
+    return f"{RULES[finding.rule].title} {margin_of(finding)}".rstrip()
+
+
+def _states(
+    title: str,
+    columns: Sequence[str],
+    rows: Iterable[tuple[str, Sequence[Worst]]],
+    detail: Callable[[Finding], str],
+    note: str,
+) -> Iterator[Table]:
+    """Tables of the worst state of each row in each column.
+
+    Parameters
+    ----------
+    rows : name, and what was found of it
+    detail : of a state, to stand under it
+    """
+
+    def cell(found: Sequence[Worst]) -> Cell:
+        if not found:
+            return Cell("–")
+        finding = min((each.finding for each in found), key=_rank)
+        missing = sum(each.unknown for each in found)
+        texts = (detail(finding), f"{missing} unknown" if missing else "")
+        return Cell(finding.state.value, "; ".join(filter(None, texts)), finding.state)
+
+    for beside in _abreast(columns):
+        yield table_of(
+            title,
+            [row for row in rows if any(each.column in beside for each in row[1])],
+            (Column(title.split()[0].lower().removesuffix("s")), lambda row: row[0]),
+            *(
+                (Column(name), lambda row, name=name: cell([w for w in row[1] if w.column == name]))
+                for name in beside
+            ),
+            note=note,
         )
-        yield Table("Moorings by environment", _headed("mooring", beside), rows, _MATRIX_NOTE)
 
 
 def worst_table(sections: Sequence[Section]) -> Table:
     """Each rule with the worst of all its findings, and in how many moorings it fails or warns."""
-    found: dict[str, list[tuple[Section, Finding]]] = {}
-    missing: Counter[str] = Counter()
-    for section in sections:
-        for each in section.worst:
-            found.setdefault(each.finding.rule, []).append((section, each.finding))
-            missing[each.finding.rule] += each.unknown
-    rows = []
-    for rule in RULES.values():
-        if rule.name not in found:
-            continue
-        section, finding = min(found[rule.name], key=lambda pair: pair[1].rank)
-        rows.append(
-            (
-                Cell(finding.state.value, state=finding.state),
-                Cell(rule.title),
-                Cell(say_in_unit(finding, finding.value)),
-                Cell(say_in_unit(finding, finding.limit)),
-                Cell(margin_of(finding)),
-                Cell(section.name, finding.component or ""),
-                Cell(place_of(finding)),
-                Cell(_moorings(found[rule.name], State.FAIL)),
-                Cell(_moorings(found[rule.name], State.WARN)),
-                Cell(str(missing[rule.name])),
-            )
-        )
-    columns = (
-        Column("state", share=0.0),
-        Column("rule"),
-        Column("value", numeric=True),
-        Column("limit", numeric=True),
-        Column("margin", numeric=True),
-        Column("mooring, component"),
-        Column("environment"),
-        Column("moorings that fail", numeric=True),
-        Column("that warn", numeric=True),
-        Column("figures unknown", numeric=True),
-    )
-    return Table("Worst finding of each rule", columns, tuple(rows), sortable=True)
-
-
-def failures(sections: Sequence[Section]) -> Table | Prose:
-    """Every rule that a mooring fails, with its worst finding and the remedy."""
-    failed = [
-        (section.name, min(group, key=_rank), len(group) - 1)
-        for section in sections
-        for group in _groups(
-            (each.finding for each in section.worst if each.finding.state is State.FAIL),
-            lambda each: each.rule,
-        )
-    ]
-    if not failed:
-        if _failing_accepted(each.finding for section in sections for each in section.worst):
-            return Prose(("No rule fails but what is accepted.",), State.ACCEPTED)
-        return Prose(("No rule fails.",), State.PASS)
+    several, rows = len(sections) > 1, []
+    for name in RULES:
+        found = [(one.name, each) for one in sections for each in one.worst]
+        found = [(mooring, each) for mooring, each in found if each.finding.rule == name]
+        if found:
+            states = {(mooring, each.finding.state) for mooring, each in found}
+            counts = Counter(state for _, state in states) if several else Counter[State]()
+            worst = min((each.finding for _, each in found), key=_rank)
+            rows.append((worst, sum(each.unknown for _, each in found), counts))
     return table_of(
-        "Failures",
-        failed,
-        (Column("mooring"), lambda one: one[0]),
-        (Column("rule"), lambda one: RULES[one[1].rule].title),
-        (
-            Column("environment"),
-            lambda one: Cell(place_of(one[1]), f"and {one[2]} more" if one[2] else ""),
+        "Worst finding of each rule",
+        rows,
+        (Column("rule", share=0.0), lambda row: row[0].rule),
+        (Column("state", share=0.0), lambda row: state_cell(row[0])),
+        (Column("value", numeric=True), lambda row: say_in_unit(row[0], row[0].value)),
+        (Column("limit", numeric=True), lambda row: say_in_unit(row[0], row[0].limit)),
+        (Column("margin", numeric=True), lambda row: margin_of(row[0])),
+        (Column("unknown", numeric=True), lambda row: str(row[1] or "")),
+        *(
+            (
+                Column(heading, numeric=True, narrow=False),
+                lambda row, state=state: str(row[2][state] or ""),
+            )
+            for heading, state in (("moorings that fail", State.FAIL), ("that warn", State.WARN))
         ),
-        (
-            Column("finding and remedy", share=2.5),
-            lambda one: Cell(one[1].message, one[1].remedy or ""),
-        ),
+        (Column("where"), lambda row: _where(row[0], several)),
+        sortable=True,
     )
 
 
-_RULES_NOTE = "Under each state: the least margin, the component that has it, and what is unknown."
-_MATRIX_NOTE = (
-    "Under each state: the rule that makes it, its least margin, and how many are unknown."
-)
+def _where(finding: Finding, several: bool) -> str:
+    """The component, with mooring, environment and situation where they are not plain."""
+    places = [finding.component, finding.mooring if several else None]
+    if several or finding.environment != OWN or finding.situation != AS_GIVEN:
+        places.append(place_of(finding))
+    return ", ".join(filter(None, places))
 
 
-def _headed(first: str, columns: Sequence[str]) -> tuple[Column, ...]:
-    return (Column(first), *map(Column, columns))
-
-
-def _judged(worst: Worst | None) -> Cell:
-    if worst is None:
-        return Cell("–")
-    finding = worst.finding
-    detail = " ".join(filter(None, (margin_of(finding), finding.component)))
-    return Cell(finding.state.value, _with_unknown(detail, worst.unknown), finding.state)
-
-
-def _of_column(section: Section, column: str) -> Cell:
-    here = [each for each in section.worst if each.column == column]
-    if not here:
-        return Cell("–")
-    finding = min((each.finding for each in here), key=_rank)
-    detail = f"{RULES[finding.rule].title} {margin_of(finding)}".rstrip()
-    missing = sum(each.unknown for each in here)
-    return Cell(finding.state.value, _with_unknown(detail, missing), finding.state)
-
-
-def _with_unknown(detail: str, count: int) -> str:
-    """The detail, and how many findings are unknown."""
-    return "; ".join(filter(None, (detail, f"{count} unknown" if count else "")))
-
-
-def unknown_count(findings: Iterable[Finding]) -> int:
-    """Return how many of the findings are unknown."""
-    return sum(finding.state is State.UNKNOWN for finding in findings)
-
-
-def _moorings(found: Sequence[tuple[Section, Finding]], state: State) -> str:
-    return str(len({section.name for section, finding in found if finding.state is state}))
-
-
-def abreast(columns: Sequence[str]) -> Iterator[Sequence[str]]:
+def _abreast(columns: Sequence[str]) -> Iterator[Sequence[str]]:
     """The columns in groups of about the same size that fit the width of a page."""
     groups = math.ceil(len(columns) / _ABREAST)
     size = math.ceil(len(columns) / groups)
@@ -210,11 +186,76 @@ def abreast(columns: Sequence[str]) -> Iterator[Sequence[str]]:
         yield columns[start : start + size]
 
 
-def _groups(findings: Iterable[Finding], key: Callable[[Finding], Hashable]) -> list[list[Finding]]:
+def grouped(findings: Iterable[Finding], key: Callable[[Finding], Hashable]) -> list[list[Finding]]:
+    """Return the findings of each key together, in the order in which the keys come."""
     groups: dict[Hashable, list[Finding]] = {}
     for finding in findings:
         groups.setdefault(key(finding), []).append(finding)
     return list(groups.values())
+
+
+def joined(findings: Iterable[Finding]) -> list[list[Finding]]:
+    """Return together the findings of one rule that say the same of several components."""
+    return grouped(findings, lambda one: (one.rule, one.state, _wording(one)))
+
+
+def _wording(finding: Finding) -> str:
+    """What a finding says and advises, without its component and figures."""
+    text = f"{finding.message} {finding.remedy or ''}"
+    if finding.component is not None:
+        text = text.replace(finding.component, "")
+    return re.sub(r"\d[\d.]*", "#", text)
+
+
+def rules_of(findings: Iterable[Finding]) -> list[str]:
+    """The titles of the rules of some findings, each once."""
+    return list(dict.fromkeys(RULES[one.rule].title for one in findings))
+
+
+def named(labels: Iterable[str], most: int = 3) -> str:
+    """Name labels, each once, such as ``glass 1 to 4, cable``.
+
+    Parameters
+    ----------
+    most : names shown, successive numbers as one; how many labels are left is said
+    """
+    numbered: dict[str, list[int]] = {}
+    for label in labels:
+        match = re.fullmatch(r"(.+ )([1-9]\d{0,5})", label)
+        stem, number = match.groups() if match else (label, "0")
+        numbered.setdefault(stem, []).append(int(number))
+    runs = [run for stem, numbers in numbered.items() for run in _runs(stem, numbers)]
+    left = sum(count for _, count in runs[most:])
+    return ", ".join(name for name, _ in runs[:most]) + (f" and {left} more" if left else "")
+
+
+def _runs(stem: str, numbers: Iterable[int]) -> Iterator[tuple[str, int]]:
+    """Name each run of successive numbers, and count what it stands for."""
+    each = sorted(set(numbers))
+    for _, group in groupby(enumerate(each), lambda pair: pair[1] - pair[0]):
+        run = [number for _, number in group]
+        last = f" to {run[-1]}" if len(run) > 1 else ""
+        yield f"{stem}{run[0] or ''}{last}", len(run)
+
+
+def named_components(findings: Iterable[Finding]) -> str:
+    """Name the components of some findings."""
+    return named(one.component or "whole line" for one in findings)
+
+
+def state_cell(finding: Finding) -> Cell:
+    """The state of a finding, in its colour and word."""
+    return Cell(finding.state.value, state=finding.state)
+
+
+def said_of(finding: Finding) -> Cell:
+    """Return what was found and what to do; the figures of a pass say it all, and so does a remedy
+    that names the figure missing."""
+    if finding.state is State.PASS:
+        return Cell()
+    if finding.state is State.UNKNOWN and finding.remedy:
+        return Cell(finding.remedy)
+    return Cell(finding.message, finding.remedy or "")
 
 
 SIGNS = {
@@ -265,86 +306,23 @@ def _failing_accepted(findings: Iterable[Finding]) -> bool:
 def verdict_prose(findings: Iterable[Finding]) -> Prose:
     """The verdict with its sign, such as ``? nothing fails, 34 figures unknown``."""
     state, words = verdict_of(findings)
-    return Prose((f"{SIGNS[state]} {words}",), state)
+    return Prose(((Span(f"{SIGNS[state]} {words}", state),),), state)
 
 
-def accepted_table(moorings: Sequence[tuple[str, Sequence[Finding]]]) -> Table | None:
-    """Return what is accepted of each mooring, with its reason; None where nothing is."""
-    accepted = [
-        (name, finding, accept)
-        for name, findings in moorings
-        for finding in findings
-        if (accept := finding.accept) is not None
-    ]
-    if not accepted:
-        return None
-    state = Cell(State.ACCEPTED.value, state=State.ACCEPTED)
-    return table_of(
-        "Accepted with a reason",
-        accepted,
-        (Column("state", share=0.0), lambda one: state),
-        (Column("mooring"), lambda one: one[0]),
-        (
-            Column("rule, component"),
-            lambda one: Cell(RULES[one[1].rule].title, one[1].component or "whole line"),
-        ),
-        (Column("finding", share=1.5), lambda one: one[1].message),
-        (Column("reason", share=1.5), lambda one: one[2].reason),
-        (Column("by, on"), lambda one: Cell(one[2].by or "-", one[2].date or "")),
-        (Column("until", share=0.0), lambda one: one[2].until or "for good"),
-    )
-
-
-def limits_table(moorings: Sequence[tuple[str, Sequence[LimitKey]]]) -> Table:
-    """The limits as used, with their defaults and the sources of those; departures come first."""
-    limits = [
-        (name, key)
-        for name, keys in moorings
-        for key in sorted(keys, key=lambda key: not key.departs)
-    ]
+def limits_table(limits: Iterable[LimitKey], title: str = "Limits as used") -> Table:
+    """Limits with their defaults and the sources of those; departures come first."""
     departs = Cell("departs", state=State.WARN)
     return table_of(
-        "Limits as used",
-        limits,
-        (Column("", share=0.0), lambda one: departs if one[1].departs else ""),
-        (Column("mooring"), lambda one: one[0]),
-        (Column("limit"), lambda one: one[1].name),
-        (Column("as used", numeric=True), lambda one: said(one[1], one[1].value)),
-        (Column("default", numeric=True), lambda one: said(one[1], one[1].default)),
-        (Column("source of the default", share=2.0), lambda one: one[1].source),
+        title,
+        sorted(limits, key=lambda key: not key.departs),
+        (Column("", share=0.0), lambda key: departs if key.departs else ""),
+        (Column("limit", share=1.2), lambda key: key.name),
+        (Column("as used", numeric=True), lambda key: said(key, key.value)),
+        (Column("default", numeric=True), lambda key: said(key, key.default)),
+        (Column("source of the default", share=2.0), lambda key: key.source),
         note="A limit that departs from its default is the design's own; no source stands for it.",
-    )
-
-
-def unknown_table(findings: Iterable[Finding]) -> Table | None:
-    """Return what is unknown, piece by piece, and which figure would settle it; None where nothing
-    is.
-    """
-    unknown = [each for each in worst_by_part(findings) if each.state is State.UNKNOWN]
-    if not unknown:
-        return None
-    return table_of(
-        "Unknown, piece by piece",
-        _groups(unknown, lambda each: each.component),
-        (Column("component"), lambda found: found[0].component or "whole line"),
-        (
-            Column("not judged by"),
-            lambda found: ", ".join(RULES[one.rule].title for one in found),
-        ),
-        (
-            Column("what would settle it", share=1.5),
-            lambda found: " ".join(dict.fromkeys(one.remedy for one in found if one.remedy)),
-        ),
-        (Column("what it bears or stands there", share=1.5), _known_values),
-        sortable=True,
     )
 
 
 def _counted(count: int, word: str) -> str:
     return f"{count} {word}{'s' * (count != 1)}"
-
-
-def _known_values(found: Iterable[Finding]) -> str:
-    """The values of some findings with where they are."""
-    known = (one for one in found if one.value is not None)
-    return ", ".join(f"{say_in_unit(one, one.value)} ({place_of(one)})" for one in known)

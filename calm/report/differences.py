@@ -71,13 +71,11 @@ _SHORT = "before", "after"
 
 def _figure(one: Compared) -> tuple[Cell, ...]:
     quantity = QUANTITIES.get(one.quantity)
-    states = one.states or (None, None)
-    texts = [
-        _text(value, quantity, state) for value, state in zip(_values(one), states, strict=True)
-    ]
+    states, both = one.states or (None, None), (one.before, one.after)
+    texts = [_text(value, quantity, state) for value, state in zip(both, states, strict=True)]
     values = [
         Cell(text, state=state, mark="" if state is None or value is None else SIGNS[state])
-        for text, value, state in zip(texts, _values(one), states, strict=True)
+        for text, value, state in zip(texts, both, states, strict=True)
     ]
     change = ""
     if isinstance(one.before, float) and isinstance(one.after, float) and texts[0] != texts[1]:
@@ -86,10 +84,6 @@ def _figure(one: Compared) -> tuple[Cell, ...]:
         change = text if text.startswith("-") else f"+{text}"
     unit = quantity.display_unit if quantity else ""
     return Cell(one.title), Cell(unit), *values, Cell(change)
-
-
-def _values(one: Compared) -> tuple[float | str | None, float | str | None]:
-    return one.before, one.after
 
 
 def _text(value: float | str | None, quantity: Quantity | None, state: State | None) -> str:

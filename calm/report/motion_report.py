@@ -10,9 +10,7 @@ import numpy as np
 from calm.checks.finding import State
 from calm.drawing.picture import figure_svg
 from calm.report.blocks import Block, Figure, Note, Prose, Report, ReportPart, Section
-from calm.report.html import page
 from calm.report.motion_tables import PLAIN, factors_table, held_out_table, sensors_table
-from calm.report.pdf import printed
 from calm.report.provenance import date
 
 if TYPE_CHECKING:
@@ -34,26 +32,6 @@ _LEGEND = (
 _NOTHING = "Nothing in the residuals is clearly a drift, a slipped clamp or a wrong length."
 
 
-def motion_files(
-    study: Study,
-    series: Sequence[SensorSeries],
-    time: NDArray[datetime64],
-    factor: Floats,
-    name: str,
-    notes: Sequence[str],
-) -> dict[str, bytes]:
-    """The files of the report, by name: ``motion.html`` and ``motion.pdf``.
-
-    Parameters
-    ----------
-    series : of the sensors
-    time, factor : (n,) the factor on the current over time
-    notes : what was said of the input
-    """
-    report = motion_report(study, series, time, factor, name, notes)
-    return {"motion.html": page(report).encode(), "motion.pdf": printed(report)}
-
-
 def motion_report(
     study: Study,
     series: Sequence[SensorSeries],
@@ -66,7 +44,9 @@ def motion_report(
 
     Parameters
     ----------
-    study, series, time, factor, name, notes : as in `motion_files`
+    series : of the sensors
+    time, factor : (n,) the factor on the current over time
+    notes : what was said of the input
     """
     shown = sorted(series, key=lambda one: not one.hidden)[:MOST_PANELS]
     shown = [one for one in series if any(one is each for each in shown)]

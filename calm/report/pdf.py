@@ -14,34 +14,7 @@ from calm.report.blocks import Section
 from calm.report.provenance import moment
 
 if TYPE_CHECKING:
-    from calm.case import Result, TowResult
-    from calm.case.uncertain import Uncertain
     from calm.report.blocks import Report
-
-
-def report_pdf(sections: Sequence[Section], leaves: Sequence[str] | None = None) -> bytes:
-    """The report of a design check, as `calm.report.html.report_html` shows it.
-
-    `leaves` are the sections as `pdf_leaf` has them, where they are made already.
-
-    The same sections give the same bytes: the fonts are those that typst and matplotlib bring, and
-    the only date is that of SOURCE_DATE_EPOCH. A sign that no font has shows as �.
-    """
-    from calm.report.check_report import check_report
-
-    return printed(check_report(sections), leaves=leaves)
-
-
-def pdf_leaf(section: Section) -> str:
-    """Return what the pages show of a section."""
-    return _text(section)
-
-
-def result_pdf(result: Result | TowResult, uncertain: Uncertain | None = None) -> bytes:
-    """The report of one solved mooring or tow, and of how sure its figures are."""
-    from calm.report.result_section import result_report
-
-    return printed(result_report(result, uncertain))
 
 
 def printed(
@@ -51,6 +24,9 @@ def printed(
     leaves: Sequence[str] | None = None,
 ) -> bytes:
     """Any report on pages; its texts reach the template as data, never as markup.
+
+    The same report gives the same bytes: the fonts are those that typst and matplotlib bring, and
+    the only date is that of SOURCE_DATE_EPOCH. A sign that no font has shows as �.
 
     Parameters
     ----------
@@ -67,7 +43,7 @@ def printed(
         (files("calm.report") / "report.typ").read_bytes(),
         font_paths=fonts,
         sys_inputs={
-            "report": _text(replace(report, sections=())),
+            "report": pdf_leaf(replace(report, sections=())),
             "sections": f"[{','.join(leaves)}]",
             "paper": "us-letter" if paper == "letter" else paper,
             "least": f"{least:g}",
@@ -77,7 +53,7 @@ def printed(
     )
 
 
-def _text(part: Report | Section) -> str:
+def pdf_leaf(part: Report | Section) -> str:
     """A report or a section as the template takes it."""
     text = legible(json.dumps(part, default=_members, ensure_ascii=False))
     return text.encode("utf-8", "replace").decode("utf-8")

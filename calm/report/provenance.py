@@ -20,7 +20,7 @@ from calm.checks.finding import State
 from calm.errors import InputError, UsageError
 from calm.files import MooringFile
 from calm.quantities import QUANTITIES, bearing_of, say
-from calm.report.blocks import Block, Cell, Column, Listing, Pairs, Prose, ReportPart, Table
+from calm.report.blocks import Cell, Column, Listing, Pairs, Prose, ReportPart, Table, table_of
 from calm.report.sheet import quantity_column
 from calm.whole_file import read_text
 
@@ -187,20 +187,22 @@ def document_part(file: MooringFile) -> tuple[ReportPart, ...]:
     """The title block and the history of revisions; nothing where a file gives no document."""
     if file.document is None:
         return ()
-    blocks: list[Block] = [Pairs(tuple(title_pairs(file)))]
-    if file.document.history:
-        rows = tuple(
-            (Cell(one.revision), Cell(one.date or ""), Cell(one.by or ""), Cell(one.change or ""))
-            for one in file.document.history
-        )
-        columns = (
-            Column("revision", share=0.0),
-            Column("date", share=0.0),
-            Column("by"),
-            Column("change", share=3.0),
-        )
-        blocks.append(Table("History", columns, rows))
-    return (ReportPart("Document", tuple(blocks)),)
+    return (ReportPart("Document", (Pairs(tuple(title_pairs(file))),)), *history_part(file))
+
+
+def history_part(file: MooringFile) -> tuple[ReportPart, ...]:
+    """The history of revisions; nothing where a file gives none."""
+    if file.document is None or not file.document.history:
+        return ()
+    table = table_of(
+        "",
+        file.document.history,
+        (Column("revision", share=0.0), lambda one: one.revision),
+        (Column("date", share=0.0), lambda one: one.date or ""),
+        (Column("by"), lambda one: one.by or ""),
+        (Column("change", share=3.0), lambda one: one.change or ""),
+    )
+    return (ReportPart("History", (table,)),)
 
 
 def title_pairs(file: MooringFile) -> list[tuple[str, str]]:

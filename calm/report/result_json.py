@@ -8,8 +8,6 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any
 
-from calm.errors import NoEquilibrium
-
 UNITS = {
     "length": "m",
     "force": "N",
@@ -19,24 +17,6 @@ UNITS = {
     "time": "s",
 }
 """The units of every JSON document."""
-
-
-def failure_document(name: str, failure: NoEquilibrium) -> dict[str, Any]:
-    """The object that takes a result's place where a mooring has no equilibrium.
-
-    Parameters
-    ----------
-    name : str
-        Name of the mooring.
-    failure : NoEquilibrium
-        Why it has none.
-
-    Returns
-    -------
-    dict
-        `name`, `status`, `message` and `advice`, all text.
-    """
-    return {"name": name, **failure.to_dict()}
 
 
 def to_json(documents: list[dict[str, Any]]) -> str:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from calm.case import Result, TowResult
 from calm.case.result_tables import rows_down
@@ -16,7 +16,7 @@ from calm.checks.strength import safety_factor
 from calm.drawing.schematic.shown_parts import place_text
 from calm.files.strumming_keys import BourgetMarichalKeys
 from calm.quantities import QUANTITIES, say
-from calm.report.blocks import Cell, Column, Line, Note, Prose, ReportPart, Span, Table
+from calm.report.blocks import Cell, Column, Field, Line, Note, Prose, ReportPart, Span, Table
 from calm.solve import Status
 
 if TYPE_CHECKING:
@@ -247,6 +247,19 @@ def line_table(
         *map(quantity_column, names),
     )
     return Table("", columns, tuple(_rows(result, names, places)), note, dense=True)
+
+
+def quantity_field(name: str, attribute: str = "", heading: str | None = None) -> Field[Any]:
+    """A column of a quantity for `table_of`.
+
+    Parameters
+    ----------
+    name : of the quantity
+    attribute : of the items, where it has another name
+    heading : where it is another
+    """
+    column = quantity_column(name, heading)
+    return column, lambda one: figure_cell(name, getattr(one, attribute or name))
 
 
 def quantity_column(name: str, heading: str | None = None) -> Column:

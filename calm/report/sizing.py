@@ -54,16 +54,13 @@ def _answer(sizing: Sizing) -> str:
     if after.value == before.value:
         return f"Nothing to change: the target is met with {change.text} as it is."
     growth = after.value - before.value
+    several = len(change.parts) > 1 and not change.whole
+    each = f", each of {len(change.parts)}" if several else ""
     share = f" ({growth / abs(before.value):+.1%})".replace("%", " %") if before.value else ""
     return (
         f"{change.text}: {with_unit(before.value, change.unit)} → "
-        f"{with_unit(after.value, change.unit)}, {growth:+.6g}{share}{_each(sizing)}"
+        f"{with_unit(after.value, change.unit)}, {growth:+.6g}{share}{each}"
     )
-
-
-def _each(sizing: Sizing) -> str:
-    several = len(sizing.change.parts) > 1 and not sizing.change.whole
-    return f", each of {len(sizing.change.parts)}" if several else ""
 
 
 def _comparison(sizing: Sizing, before: Trial, after: Trial) -> Table:
@@ -73,10 +70,11 @@ def _comparison(sizing: Sizing, before: Trial, after: Trial) -> Table:
     if target.label is not None:
         name = f"{target.quantity} of {target.label}"
     measured = ("-" if one.measured is None else f"{one.measured:.6g}" for one in both)
-    aimed = (name, _sign(target.unit), *measured)
+    aimed = (name, target.unit.replace("deg", "°"), *measured)
     rows = [tuple(Cell(text, strong=True) for text in aimed)]
+    afloat = after.result is not None and after.result.type == "surface"
     for field, quantity, words in _ROWS:
-        if words == name or (field == "used_buoyancy" and not _at_the_surface(after)):
+        if words == name or (field == "used_buoyancy" and not afloat):
             continue
         shown = QUANTITIES[quantity]
         figures = (getattr(one.figures, field, None) for one in both)
@@ -88,14 +86,6 @@ def _comparison(sizing: Sizing, before: Trial, after: Trial) -> Table:
         Column("after", numeric=True),
     )
     return Table("", columns, tuple(rows))
-
-
-def _at_the_surface(trial: Trial) -> bool:
-    return trial.result is not None and trial.result.type == "surface"
-
-
-def _sign(unit: str) -> str:
-    return "°" if unit == "deg" else unit
 
 
 def _new_warnings(sizing: Sizing) -> list[str]:

@@ -13,8 +13,9 @@ import pypdfium2
 import pytest
 
 import calm
-from calm.report.check_report import mooring_section
-from calm.report.html import report_html, result_html
+import calm.report.html
+from calm.report.check_report import check_report, mooring_section
+from calm.report.result_report import result_report
 from tests.judged import (
     FORMULA,
     LINES,
@@ -110,7 +111,7 @@ def section(tmp_path_factory):
 
 
 def test_the_page_is_silent_and_alone(opened, section):
-    with opened(report_html([section])) as page:
+    with opened(calm.report.html.page(check_report([section]))) as page:
         assert page.title() == "Design check: Tidal strait ADCP, 3 environments"
         assert page.locator("svg").count() == 2
 
@@ -119,7 +120,9 @@ def test_the_page_is_silent_and_alone(opened, section):
     "name", ["tidal-adcp", "deep-current-meters", "taut-nylon-surface", "chain-and-rope-surface"]
 )
 def test_no_labels_overlap(opened, name):
-    with opened(report_html([mooring_section(judged(LINES / f"{name}.yaml"))])) as page:
+    with opened(
+        calm.report.html.page(check_report([mooring_section(judged(LINES / f"{name}.yaml"))]))
+    ) as page:
         assert page.evaluate(OVERLAPS) == []
         assert page.evaluate(OUTSIDE) == []
 
@@ -131,26 +134,28 @@ def test_no_labels_overlap_with_ten_environments(opened):
         for number in range(10)
     ]
     section = mooring_section(replace(assessment, stands=tuple(stands)))
-    with opened(report_html([section])) as page:
+    with opened(calm.report.html.page(check_report([section]))) as page:
         assert page.evaluate(OVERLAPS) == []
         assert page.evaluate(OUTSIDE) == []
 
 
 @pytest.mark.parametrize("name", ["sediment-trap-undercurrent", "depressor-fit-depth"])
 def test_a_single_result_is_silent_and_legible(opened, name):
-    with opened(result_html(calm.load(LINES / f"{name}.yaml").solve())) as page:
+    with opened(
+        calm.report.html.page(result_report(calm.load(LINES / f"{name}.yaml").solve()))
+    ) as page:
         assert page.evaluate(OVERLAPS) == []
 
 
 def test_nothing_is_wider_than_the_page(opened, section):
-    with opened(report_html([section])) as page:
+    with opened(calm.report.html.page(check_report([section]))) as page:
         assert page.evaluate("document.documentElement.scrollWidth") <= 1280
         page.set_viewport_size({"width": 800, "height": 900})
         assert page.evaluate("document.documentElement.scrollWidth") <= 800
 
 
 def test_a_phone_shows_it_legibly(opened, section):
-    with opened(report_html([section])) as page:
+    with opened(calm.report.html.page(check_report([section]))) as page:
         page.set_viewport_size({"width": 390, "height": 844})
         assert page.evaluate("document.documentElement.scrollWidth") <= 390
         assert page.evaluate(OVERLAPS) == []
@@ -169,7 +174,9 @@ def test_a_phone_shows_it_legibly(opened, section):
 
 
 def test_no_head_stands_at_the_end_of_a_printed_page(opened, section):
-    with opened(report_html([section, replace(section, name="Another mooring")])) as page:
+    with opened(
+        calm.report.html.page(check_report([section, replace(section, name="Another mooring")]))
+    ) as page:
         heads = page.locator("h2, h3, h4, caption").all_inner_texts()
         heads += [" ".join(row.split()) for row in page.locator("thead tr").all_inner_texts()]
         content = page.pdf(prefer_css_page_size=True)
@@ -184,7 +191,11 @@ def test_no_head_stands_at_the_end_of_a_printed_page(opened, section):
 
 
 def test_the_place_of_a_clamp_is_told(opened, tmp_path):
-    with opened(report_html([mooring_section(judged(LINES / "deep-current-meters.yaml"))])) as page:
+    with opened(
+        calm.report.html.page(
+            check_report([mooring_section(judged(LINES / "deep-current-meters.yaml"))])
+        )
+    ) as page:
         assert page.locator("svg text", has_text="at 100.00").count() == 1
         for title in ("Table of the line", "Pieces for the deck"):
             table = page.locator("table", has=page.locator("caption", has_text=title))
@@ -193,7 +204,9 @@ def test_the_place_of_a_clamp_is_told(opened, tmp_path):
 
 
 def test_names_that_mean_harm_are_text(opened, tmp_path):
-    with opened(report_html([mooring_section(judged_hostile(tmp_path))])) as page:
+    with opened(
+        calm.report.html.page(check_report([mooring_section(judged_hostile(tmp_path))]))
+    ) as page:
         text = page.evaluate("document.body.textContent")
         for name in (SCRIPT, QUOTES, FORMULA, RIGHT_TO_LEFT, LONG):
             assert name in text
@@ -203,7 +216,7 @@ def test_names_that_mean_harm_are_text(opened, tmp_path):
 
 
 def test_everything_is_read_without_script(opened, section):
-    html = report_html([section])
+    html = calm.report.html.page(check_report([section]))
     with opened(html) as page:
         rows = page.locator("td:visible").count()
         assert page.locator(".controls").count() == 3
@@ -213,7 +226,7 @@ def test_everything_is_read_without_script(opened, section):
 
 
 def test_the_checks_are_chosen_and_sorted(opened, section):
-    with opened(report_html([section])) as page:
+    with opened(calm.report.html.page(check_report([section]))) as page:
         judged = page.locator("td .state")
         table = page.locator("table.sortable", has=judged).last
         controls = page.locator(".controls", has=page.locator("select")).last
@@ -240,7 +253,7 @@ def test_the_checks_are_chosen_and_sorted(opened, section):
 
 
 def test_it_prints_on_a4_without_controls(opened, section):
-    html = report_html([section, replace(section, name="Another mooring")])
+    html = calm.report.html.page(check_report([section, replace(section, name="Another mooring")]))
     with opened(html) as page:
         content = page.pdf(prefer_css_page_size=True)
         page.emulate_media(media="print")

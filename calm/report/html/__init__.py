@@ -4,33 +4,22 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cache
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
 from calm.drawing.picture import set_apart
+from calm.report.blocks import Block, Table
 
 if TYPE_CHECKING:
     from jinja2 import Environment
 
-    from calm.case import Result, TowResult
-    from calm.case.uncertain import Uncertain
-    from calm.report.blocks import Column, Report, Section
+    from calm.report.blocks import Column, Report, ReportPart, Section
 
 _LONG_WORD = re.compile(r"(\S{20,})")
-_STEP = 10  # signs after which a long word may break
-
-
-def report_html(sections: Sequence[Section], leaves: Sequence[str] | None = None) -> str:
-    """The report of a design check, the section of each mooring in order.
-
-    Every text is escaped. The page asks for nothing: style, script and drawings stand in it. It is
-    whole without its script, which sorts and chooses among the checks. `leaves` are the sections
-    as `leaf` has them, where they are made already.
-    """
-    from calm.report.check_report import check_report
-
-    return page(check_report(sections), leaves)
+_STEPS = re.compile(r"[^_./-]{1,10}[_./-]*|[_./-]+")
+"""Where a long word may break: after a sign between words, else at every tenth sign."""
 
 
 def leaf(section: Section, number: int) -> str:
@@ -40,15 +29,13 @@ def leaf(section: Section, number: int) -> str:
     return shown
 
 
-def result_html(result: Result | TowResult, uncertain: Uncertain | None = None) -> str:
-    """The report of one solved mooring or tow, and of how sure its figures are."""
-    from calm.report.result_section import result_report
-
-    return page(result_report(result, uncertain))
-
-
 def page(report: Report, leaves: Sequence[str] | None = None) -> str:
-    """Any report as a page; a text that is no Unicode shows question marks."""
+    """Any report as a page, the section of each mooring in order.
+
+    Every text is escaped; one that is no Unicode shows question marks. The page asks for nothing:
+    style, script and drawings stand in it. It is whole without its script, which sorts and chooses
+    among the checks. `leaves` are the sections as `leaf` has them, where they are made already.
+    """
     leaves = leaves or [leaf(section, at) for at, section in enumerate(report.sections, 1)]
     template = _environment().get_template("page.html.jinja")
     texts = {name: _text(name) for name in ("page.css", "page.js")}
@@ -56,6 +43,23 @@ def page(report: Report, leaves: Sequence[str] | None = None) -> str:
         report=report, leaves=leaves, style=texts["page.css"], script=texts["page.js"]
     )
     return html.encode("utf-8", "replace").decode("utf-8")
+
+
+def fragment(part: ReportPart) -> str:
+    """A part as a notebook shows it: without the style of a page, and what fits its width."""
+    blocks = tuple(map(_narrow, part.blocks))
+    template = _environment().get_template("parts.html.jinja")
+    shown: str = template.module.parts([replace(part, blocks=blocks)], "n")  # type: ignore[attr-defined]
+    return f"<div>{shown}</div>"
+
+
+def _narrow(block: Block) -> Block:
+    """A table without the columns for which there is no room."""
+    if not isinstance(block, Table):
+        return block
+    kept = [number for number, column in enumerate(block.columns) if column.narrow]
+    rows = (tuple(row[number] for number in kept) for row in block.rows)
+    return replace(block, columns=tuple(block.columns[n] for n in kept), rows=tuple(rows))
 
 
 @cache
@@ -76,20 +80,10 @@ def _environment() -> Environment:
 
 def _breakable(text: str) -> str:
     """The text escaped; a word too long for a column may break, and is still one when copied."""
-    from markupsafe import Markup, escape
-
-    if len(text) < 2 * _STEP:
-        return escape(text)
-
-    def broken(word: str) -> Markup:
-        steps = range(0, len(word), _STEP)
-        return Markup("<wbr>").join(word[start : start + _STEP] for start in steps)
+    from markupsafe import Markup
 
     words = _LONG_WORD.split(text)
-    long = words[1::2]
-    if not long:
-        return escape(text)
-    words[1::2] = map(broken, long)
+    words[1::2] = [Markup("<wbr>").join(_STEPS.findall(word)) for word in words[1::2]]
     return Markup("").join(words)
 
 

@@ -3,7 +3,7 @@ import json
 import pytest
 
 from calm.errors import NoEquilibrium
-from calm.report.result_json import UNITS, failure_document, to_json
+from calm.report.result_json import UNITS, to_json
 
 
 def test_one_document_is_an_object_and_several_an_array():
@@ -47,8 +47,7 @@ def test_a_result_says_its_units_once():
 
 def test_failure_tells_status_message_and_advice():
     failure = NoEquilibrium("slack", "The line is slack.", "Shorten it.")
-    assert failure_document("m", failure) == {
-        "name": "m",
+    assert failure.to_dict() == {
         "status": "slack",
         "message": "The line is slack.",
         "advice": "Shorten it.",

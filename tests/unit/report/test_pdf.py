@@ -5,8 +5,9 @@ import pytest
 
 import calm
 from calm.report.blocks import Prose, Report, ReportPart, Section
-from calm.report.check_report import mooring_section
-from calm.report.pdf import pdf_leaf, printed, report_pdf, result_pdf
+from calm.report.check_report import check_report, mooring_section
+from calm.report.pdf import pdf_leaf, printed
+from calm.report.result_report import result_report
 from tests.judged import FORMULA, LINES, judged, judged_hostile
 
 
@@ -38,7 +39,7 @@ def pages():
 
 @pytest.mark.thorough
 def test_each_mooring_begins_a_page(sections, pages):
-    texts = pages(report_pdf(sections))
+    texts = pages(printed(check_report(sections)))
     starts = [number for number, text in enumerate(texts) if "Judgement" in text]
     assert len(starts) == 2
     assert "Signatures" in " ".join(texts[: starts[0]])
@@ -47,14 +48,14 @@ def test_each_mooring_begins_a_page(sections, pages):
 
 
 def test_pages_are_numbered(sections, pages):
-    texts = pages(report_pdf(sections))
+    texts = pages(printed(check_report(sections)))
     for number, text in enumerate(texts, 1):
         assert f"{number} / {len(texts)}" in text
         assert "Design check: 2 moorings, 1 environment" in text
 
 
 def test_everything_is_said(sections, pages):
-    text = " ".join(pages(report_pdf(sections)))
+    text = " ".join(pages(printed(check_report(sections))))
     for words in (
         "Worst finding of each rule on each component", "Tensions on the way down and up",
         "Inventory", "SHA-256 of the inputs", "snap loads", "Designed by", "still water",
@@ -63,7 +64,7 @@ def test_everything_is_said(sections, pages):
 
 
 def test_names_that_mean_harm_are_text(tmp_path, pages):
-    text = " ".join(pages(report_pdf([mooring_section(judged_hostile(tmp_path))])))
+    text = " ".join(pages(printed(check_report([mooring_section(judged_hostile(tmp_path))]))))
     assert "alert(1)" in text
     assert "`e` $f_g$ {{ h }} #i" in text
     assert f"{FORMULA} 4" in text
@@ -73,10 +74,10 @@ def test_names_that_mean_harm_are_text(tmp_path, pages):
 @pytest.mark.thorough
 def test_the_date_is_that_of_the_environment(sections, monkeypatch):
     monkeypatch.delenv("SOURCE_DATE_EPOCH", raising=False)
-    undated = report_pdf(sections)
+    undated = printed(check_report(sections))
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
-    dated = report_pdf(sections)
-    assert dated == report_pdf(sections)
+    dated = printed(check_report(sections))
+    assert dated == printed(check_report(sections))
     with pypdfium2.PdfDocument(undated) as one, pypdfium2.PdfDocument(dated) as other:
         assert one.get_metadata_value("CreationDate") == ""
         assert other.get_metadata_value("CreationDate").startswith("D:20231114")
@@ -86,7 +87,7 @@ def test_the_date_is_that_of_the_environment(sections, monkeypatch):
 @pytest.mark.parametrize("name", ["taut-nylon-surface", "depressor-fit-depth"])
 def test_a_single_result_has_pages(name, pages):
     result = calm.load(LINES / f"{name}.yaml").solve()
-    text = " ".join(pages(result_pdf(result)))
+    text = " ".join(pages(printed(result_report(result))))
     assert result.name in text
     assert result.components.label[-1] in text
     assert "SHA-256 of the inputs" in text
@@ -102,4 +103,4 @@ def test_what_is_accepted_can_be_printed():
 def test_leaves_made_beforehand_give_the_same_bytes(sections):
     leaves = [pdf_leaf(section) for section in sections]
     bare = [replace(section, parts=()) for section in sections]
-    assert report_pdf(bare, leaves) == report_pdf(sections)
+    assert printed(check_report(bare), leaves=leaves) == printed(check_report(sections))

@@ -2,6 +2,7 @@
 
 import csv
 import io
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,7 +11,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from calm.case.strumming import StrummingBand
 from calm.drawing.plot import draw, picture
-from calm.report.notebook import to_html
+from calm.report.html import fragment
 from calm.report.result_files import to_csv
 from calm.report.sheet import result_part
 from calm.report.terminal import shown
@@ -57,9 +58,9 @@ def test_a_line_that_pulls_the_ship_up_says_so(make_tow_result):
 
 
 def test_notebook_says_the_same(tow_result):
-    shown = to_html(tow_result)
+    shown = fragment(result_part(tow_result))
     assert "Survey: tow at 1.03 m/s towards 90°" in shown
-    assert "<th>layback [m]</th>" in shown
+    assert re.search(r"<th[^>]*>layback <small>m</small></th>", shown)
     assert "Strumming at 3.56 Hz, Cn from 1.250 to 3.000" in shown
 
 

@@ -1,17 +1,72 @@
-"""How sure the figures of a mooring are, as a person reads it."""
+"""The report of a single solved mooring or tow."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import isnan
 from typing import TYPE_CHECKING
 
+from calm.case import TowResult
+from calm.checks.criterion import limits_used
 from calm.checks.finding import State
+from calm.checks.posture import reaches_the_surface
+from calm.drawing.picture import figure_svg
+from calm.drawing.plot import draw
 from calm.files.uncertainty import Spread
-from calm.report.blocks import Block, Cell, Column, Line, Prose, ReportPart, Span, Table, table_of
+from calm.report.blocks import (
+    Block,
+    Cell,
+    Column,
+    Figure,
+    Prose,
+    Report,
+    ReportPart,
+    Section,
+    Span,
+    Table,
+    table_of,
+)
+from calm.report.check_summary import limits_table
+from calm.report.provenance import NOT_JUDGED, date, document_part, inputs_part
+from calm.report.sheet import sheet
 
 if TYPE_CHECKING:
+    from calm.case import Result
     from calm.case.uncertain import Uncertain
     from calm.files import Uncertainty
+
+
+def result_report(result: Result | TowResult, uncertain: Uncertain | None = None) -> Report:
+    """Schematic, table, drawing and inputs of one result, and how sure its figures are."""
+    from calm.drawing.schematic import schematic_svg
+
+    said, file = sheet(result, places=True), result.file
+    water = result.tow.water if isinstance(result, TowResult) else result.mooring.water
+    environment = file.environment.name or "own"
+    drawing = figure_svg(draw(result, uncertain))
+    described = (Prose((file.description,)),) if file.description else ()
+    parts = (
+        *document_part(file),
+        ReportPart("Result", (*described, *said.summary, Prose((said.convergence,)))),
+        ReportPart("The line", (Figure("Schematic", schematic_svg(file, result), tall=True),
+                          replace(said.table, title="Table of the line"))),
+        ReportPart("Shape", (Figure("Elevation, current and plan", drawing),)),
+        *(() if uncertain is None else (uncertainty_part(uncertain),)),
+        *_limits(result),
+        NOT_JUDGED,
+        inputs_part([file], [environment], [water]),
+    )  # fmt: skip
+    subtitle = said.title.removeprefix(f"{result.name}: ")
+    return Report(result.name, subtitle, (), (Section(result.name, parts),), date())
+
+
+def _limits(result: Result | TowResult) -> tuple[ReportPart, ...]:
+    """The limits of the margins in a mooring's table; a tow has none."""
+    if isinstance(result, TowResult):
+        return ()
+    keys = limits_used(result.file, reaches_the_surface(result.mooring))
+    return (ReportPart("Limits", (limits_table(keys),)),)
+
 
 _ENDS = ("5 %", "50 %", "95 %")
 
@@ -28,17 +83,10 @@ def uncertainty_part(uncertain: Uncertain) -> ReportPart:
         each = ", ".join(f"{count} {status}" for status, count in uncertain.failures.items())
         said = f"{uncertain.failed} of {uncertain.samples} samples have no equilibrium ({each})"
         blocks.append(Prose((f"{said}; the figures are of the others.",), State.WARN))
-    blocks.append(Prose((_quiet(_basis(uncertain)),)))
-    return ReportPart("How sure these figures are", tuple(blocks))
-
-
-def _quiet(text: str) -> Line:
-    return (Span(text, quiet=True),)
-
-
-def _basis(uncertain: Uncertain) -> str:
     drawn = drawn_text(uncertain.result.file.uncertainty)
-    return f"{uncertain.samples} samples, seed {uncertain.seed}; drawn: {drawn}."
+    basis = f"{uncertain.samples} samples, seed {uncertain.seed}; drawn: {drawn}."
+    blocks.append(Prose(((Span(basis, quiet=True),),)))
+    return ReportPart("How sure these figures are", tuple(blocks))
 
 
 def drawn_text(uncertainty: Uncertainty) -> str:

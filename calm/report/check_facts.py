@@ -1,0 +1,306 @@
+"""What an engineer signs: the figures that decide a design check, for page one and for JSON."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import accumulate
+from math import ceil, hypot
+from operator import attrgetter
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from calm.checks.finding import AS_GIVEN, Finding, State
+from calm.checks.rules import RULES
+from calm.quantities import say
+from calm.report.blocks import ON_THE_WAY, Cell, Column, Pairs, ReportPart, Section, Table, table_of
+from calm.report.check_summary import (
+    counted_states,
+    grouped,
+    joined,
+    limits_table,
+    named_components,
+    place_of,
+    rules_of,
+    said_of,
+    state_cell,
+    worst_by_part,
+    worst_by_rule,
+)
+from calm.report.provenance import title_pairs
+from calm.report.result_json import members
+from calm.units import KILOGRAM_FORCE, KNOT
+
+if TYPE_CHECKING:
+    from calm.checks.assessment import Assessment
+    from calm.files.check_limits import LimitKey
+
+PAGE_ONE = 9.0
+"""Size of the smallest text of page one [pt]."""
+
+_TITLES = ("document", "revision", "date", "author")
+
+_MENDING = "What fails, is unknown or warns"
+_LINES, _SIGNS = 44.0, 76.0  # lines of page one, and letters of a line of a table's words
+
+
+@dataclass(frozen=True)
+class StrongestCurrent:
+    """The strongest current of all environments, and what the rule says of one that is weak."""
+
+    speed: float
+    depth: float
+    environment: str
+    weak: str
+
+
+@dataclass(frozen=True)
+class LeastFactor:
+    """The least breaking load over tension of all environments, and the piece that has it.
+
+    `unknown` counts the pieces that give no breaking load.
+    """
+
+    factor: float
+    component: str
+    environment: str
+    situation: str
+    unknown: int
+
+
+@dataclass(frozen=True)
+class CheckFacts:
+    """Hold what is signed of one mooring.
+
+    Attributes
+    ----------
+    mooring : its name
+    titles : name and value of what the title block says
+    sha256 : of the mooring file, byte for byte; None where it can no longer be read
+    current, anchor, factor : what decides; None where it is not known
+    findings, accepted : of which the worst stand on page one
+    departures : limits of the design's own
+    """
+
+    mooring: str
+    titles: tuple[tuple[str, str], ...]
+    sha256: str | None
+    current: StrongestCurrent
+    anchor: Finding | None
+    factor: LeastFactor | None
+    findings: tuple[Finding, ...]
+    accepted: tuple[Finding, ...]
+    departures: tuple[LimitKey, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the JSON object, in SI units."""
+        anchor = None
+        if self.anchor is not None:
+            anchor = members(self.anchor, "component", "environment", "situation", "margin")
+            anchor |= {"weight": self.anchor.value, "required_weight": self.anchor.limit}
+        counts = counted_states(self.findings)
+        return {
+            "sha256": self.sha256,
+            "strongest_current": vars(self.current),
+            "anchor": anchor,
+            "least_safety_factor": self.factor and vars(self.factor),
+            "counts": {state.value: counts[state] for state in State},
+            "departures": [key.name for key in self.departures],
+        }
+
+
+def facts_of(assessment: Assessment) -> CheckFacts:
+    """Return what is signed of a mooring that is judged."""
+    file = assessment.mooring.file
+    every = (*assessment.all_findings(), *assessment.tighter_findings())
+    anchors = [one for one in every if one.rule == "anchor-weight" and one.value is not None]
+    return CheckFacts(
+        assessment.name,
+        tuple(title_pairs(file)),
+        _file_hash(Path(file.path)),
+        _strongest_current(assessment),
+        min(anchors, key=lambda one: one.rank, default=None),
+        _least_factor(assessment),
+        every,
+        tuple(assessment.accepted_findings()),
+        tuple(key for key in assessment.limits if key.departs),
+    )
+
+
+def judged_section(assessment: Assessment) -> Section:
+    """What is concluded of one mooring; nothing of it is printed yet."""
+    columns = (*(stand.environment for stand in assessment.stands), ON_THE_WAY)
+    name, worst = assessment.name, worst_by_rule(assessment)
+    return Section(name, (), columns, worst, facts_of(assessment))
+
+
+def _file_hash(path: Path) -> str | None:
+    try:
+        return hashlib.sha256(path.read_bytes()).hexdigest()
+    except OSError:
+        return None
+
+
+def _strongest_current(assessment: Assessment) -> StrongestCurrent:
+    found = []
+    for stand in assessment.stands:
+        water = stand.mooring.water
+        level = int(np.hypot(water.u, water.v).argmax())
+        speed = hypot(water.u[level], water.v[level])
+        found.append((speed, float(water.level[level]), stand.environment))
+    weak = [
+        one.message
+        for one in assessment.all_findings()
+        if one.rule == "current" and one.state is State.WARN and one.limit is not None
+    ]
+    return StrongestCurrent(*max(found, key=lambda each: each[0]), " ".join(weak))
+
+
+def _least_factor(assessment: Assessment) -> LeastFactor | None:
+    """Return the least factor in every situation; None where no piece gives a breaking load."""
+    found = []
+    for stand in assessment.stands:
+        for situation in stand.situations:
+            if situation.result is not None:
+                pieces = situation.result.components
+                factors = np.asarray(pieces.safety_factor, np.float64)
+                unknown = int(np.isnan(factors[:-1]).sum())
+                if not np.isnan(factors).all():
+                    row = int(np.nanargmin(factors))
+                    at = stand.environment, situation.name
+                    found.append(LeastFactor(float(factors[row]), pieces.label[row], *at, unknown))
+    return min(found, key=lambda each: each.factor, default=None)
+
+
+def key_pairs(facts: CheckFacts) -> Pairs:
+    """Return what decides, a line or two each: on page one, and on a terminal."""
+    pairs = []
+    current, anchor, factor = facts.current, facts.anchor, facts.factor
+    depth = f" at a depth of {say('depth', current.depth)}" if current.speed else ""
+    text = f"{_both('speed', current.speed, KNOT, 'kn', 2)}{depth}"
+    text = f"{text}, environment {current.environment}"
+    pairs.append(("strongest current", _lines(text, current.weak)))
+    if anchor is None or None in (anchor.margin, anchor.value, anchor.limit):
+        pairs.append(("anchor margin", "unknown"))
+    else:
+        margin, held, needed = map(_force, (anchor.margin, anchor.value, anchor.limit))
+        text = f"{margin}: {held} held, {needed} needed, environment {place_of(anchor)}"
+        pairs.append(("anchor margin", text))
+    pairs.append(("least factor of safety", _factor_text(factor)))
+    counts = counted_states(facts.findings)
+    named = (State.FAIL, State.WARN, State.UNKNOWN, State.ESTIMATED, State.ACCEPTED)
+    pairs.append(("findings", ", ".join(f"{counts[state]} {state.value}" for state in named)))
+    return Pairs(tuple(pairs))
+
+
+def _factor_text(factor: LeastFactor | None) -> str:
+    if factor is None:
+        return "unknown: no piece gives its breaking load"
+    changed = "" if factor.situation == AS_GIVEN else f", {factor.situation}"
+    text = f"{factor.factor:.2f}, {factor.component}, environment {factor.environment}{changed}"
+    if not factor.unknown:
+        return text
+    pieces = "1 piece gives" if factor.unknown == 1 else f"{factor.unknown} pieces give"
+    return _lines(text, f"{pieces} no breaking load.")
+
+
+def _lines(*texts: str) -> str:
+    return "\n".join(filter(None, texts))
+
+
+def _force(value: float | None) -> str:
+    return "" if value is None else _both("tension", value, KILOGRAM_FORCE, "kgf", 0)
+
+
+def _both(quantity: str, value: float, scale: float, unit: str, decimals: int) -> str:
+    """A value in the unit that people read, and in another that it is asked for."""
+    said = say(quantity, value)
+    return said if said.endswith(unit) else f"{said} ({value / scale:.{decimals}f} {unit})"
+
+
+def facts_part(facts: CheckFacts, title: str = "") -> ReportPart:
+    """Return page one of a mooring, but for the verdict above it and the signatures below."""
+    from calm.version import __version__
+
+    lacking = [name for name in _TITLES if name not in dict(facts.titles)]
+    origin = [("not given", ", ".join(lacking))] if lacking else []
+    origin += [("computed with", f"CALM {__version__}")]
+    origin.append(("SHA-256 of the file", facts.sha256 or "the file could not be read again"))
+    pairs = (Pairs((*facts.titles, *origin)), key_pairs(facts))
+    said = [text for each in pairs for _, value in each.pairs for text in value.split("\n")]
+    room = _LINES - sum(ceil(len(text) / 75) for text in said)
+    shown: list[Table] = []
+    for table in (*reversed(list(settled_tables(facts))), *_mending(facts.findings)):
+        room -= 4.0  # the title, the heads and the note
+        shown.insert(0, _cut(table, room if table.title == _MENDING else room / 2))
+        room -= sum(_lines_of(row, table.columns, _SIGNS / 4) for row in shown[0].rows)
+    return ReportPart(title, (*pairs, *shown), least=PAGE_ONE)
+
+
+def left_out(facts: CheckFacts) -> Iterator[Table]:
+    """What is accepted and what departs, where page one has not room for all of it."""
+    shown = facts_part(facts).blocks
+    return (table for table in settled_tables(facts) if table not in shown)
+
+
+def _cut(table: Table, lines: float) -> Table:
+    """The first rows of a table, as many as fit in some lines but one at least."""
+    signs = _SIGNS / sum(column.share for column in table.columns)
+    total = accumulate(_lines_of(row, table.columns, signs) for row in table.rows)
+    kept = max(sum(each <= lines for each in total), 1)
+    left = len(table.rows) - kept
+    rows = table.rows[:kept]
+    return replace(table, rows=rows, note=f"{left} more under Checks.") if left else table
+
+
+def _lines_of(row: Sequence[Cell], columns: Sequence[Column], signs: float) -> float:
+    """About how many lines a row takes on page one; its rule and room count as a half.
+
+    Parameters
+    ----------
+    signs : that a line of a column has for each of its shares of the width
+    """
+    pairs = [pair for pair in zip(row, columns, strict=True) if pair[1].share]
+    return 0.5 + max(ceil(len(f"{cell.text} {cell.detail}") / (signs * column.share))
+                     for cell, column in pairs)  # fmt: skip
+
+
+def settled_tables(facts: CheckFacts) -> Iterator[Table]:
+    """What the designer has decided: what is accepted, and limits of the design's own."""
+    words = attrgetter("accept.reason", "accept.by", "accept.date", "accept.until")
+    groups = grouped(facts.accepted, words)
+    rows = [(found, accept) for found in groups if (accept := found[0].accept) is not None]
+    if rows:
+        yield table_of(
+            "Accepted",
+            rows,
+            (Column("rule"), lambda one: ", ".join(rules_of(one[0]))),
+            (Column("component"), lambda one: named_components(one[0])),
+            (Column("reason", share=1.8), lambda one: one[1].reason),
+            (
+                Column("by, on", share=0.8),
+                lambda one: Cell(one[1].by or "nobody", one[1].date or ""),
+            ),
+            (Column("until", share=0.0), lambda one: one[1].until or "for good"),
+        )
+    if facts.departures:
+        yield limits_table(facts.departures, "Limits that depart from their defaults")
+
+
+def _mending(findings: Sequence[Finding]) -> Iterator[Table]:
+    """The gravest of what fails, is unknown or warns; like findings are one row."""
+    shown = (State.FAIL, State.UNKNOWN, State.WARN)
+    groups = joined(one for one in worst_by_part(findings) if one.state in shown)
+    if not groups:
+        return
+    yield table_of(
+        _MENDING,
+        groups,
+        (Column("state", share=0.0), lambda found: state_cell(found[0])),
+        (Column("rule", share=0.8), lambda found: RULES[found[0].rule].title),
+        (Column("component"), named_components),
+        (Column("finding", share=2.2), lambda found: said_of(found[0]).text),
+    )
