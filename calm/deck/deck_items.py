@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
@@ -71,6 +72,34 @@ class DeckItem:
     def role(self) -> str:
         """Return what it is for."""
         return self.part.component.role
+
+    @property
+    def kind(self) -> tuple[object, ...]:
+        """Return what is alike in items that share a row where they follow one another.
+
+        That is hardware of any kind, and floats and clamps of one component; never what has a
+        serial number or a remark, an instrument, a release, an anchor, or what is cut.
+        """
+        own = self.serial or self.deployed_serial or self.remark
+        alone = own or not self.is_rigid or self.role in ("instrument", "release", "anchor")
+        if alone:
+            return (self.label,)
+        return (
+            ("hardware",) if self.role == "connector" and self.on is None else (self.name, self.on)
+        )
+
+
+def label_of_run(items: Sequence[DeckItem]) -> str:
+    """Return the label of an item, or those of the first and the last of several."""
+    return items[0].label if len(items) == 1 else f"{items[0].label} – {items[-1].label}"
+
+
+def name_of_run(items: Sequence[DeckItem]) -> str:
+    """Return the name of an item, or how many of each name there are of several."""
+    counts = Counter(item.name for item in items)
+    if len(items) == 1:
+        return items[0].name
+    return ", ".join(f"{count} × {name}" for name, count in counts.items())
 
 
 def deck_items_of(result: Result) -> tuple[DeckItem, ...]:

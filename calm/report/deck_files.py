@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from datetime import datetime
 from io import BytesIO
 from typing import TYPE_CHECKING
@@ -202,11 +203,9 @@ def deck_report(deck: Deck, paper: Paper, notes: tuple[str, ...] = ()) -> Report
     said = (*deck.notes, *notes)
     if said:
         parts.append(ReportPart("To be known", (Prose(said, State.WARN),)))
-    parts.append(ReportPart("Inputs", (origin([deck.file]),)))
     verdict = verdict_prose(deck.assessment.all_findings())
-    parts += (
-        ReportPart(part.title, (verdict, *part.blocks, PageBreak())) for part in _sheets(deck)
-    )
+    parts += (ReportPart(part.title, (verdict, *part.blocks)) for part in _sheets(deck))
+    parts.append(ReportPart("Inputs", (origin([deck.file]),)))
     subtitle = f"{deck.order}, environment: {deck.environment}"
     section = Section(deck.file.name, tuple(parts))
     return Report(deck.file.name, subtitle, (), (section,), date(), plates(deck, paper))
@@ -227,12 +226,17 @@ def plates(deck: Deck, paper: Paper) -> tuple[Plate, ...]:
 
 
 def _sheets(deck: Deck) -> Iterator[ReportPart]:
-    yield deployment_part(deck)
-    yield recovery_part(deck)
+    """Yield the logs and the drop plan on pages of their own, the lists one below the other."""
+    yield _last(deployment_part(deck))
+    yield _last(recovery_part(deck))
+    yield instruments_part(deck)
     yield cutting_part(deck)
     yield hardware_part(deck)
     yield shipping_part(deck)
-    yield lifts_part(deck)
-    yield instruments_part(deck)
+    yield _last(lifts_part(deck))
     if isinstance(deck.plan, DropPlan):
         yield drop_part(deck.plan)
+
+
+def _last(part: ReportPart) -> ReportPart:
+    return replace(part, blocks=(*part.blocks, PageBreak()))

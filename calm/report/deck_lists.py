@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from itertools import groupby
 from typing import TYPE_CHECKING
 
 from calm.deck.cutting import LENGTH_ERROR
+from calm.deck.deck_items import label_of_run
 from calm.deck.shipping import total_of
 from calm.quantities import QUANTITIES, say
 from calm.report.blocks import Block, Cell, Column, Note, Prose, ReportPart, Table, table_of
@@ -13,7 +15,8 @@ from calm.report.sheet import figure_cell, quantity_column
 
 if TYPE_CHECKING:
     from calm.deck import Deck
-    from calm.deck.deck_items import DeckInstrument, Extreme
+    from calm.deck.cutting import Mark
+    from calm.deck.deck_items import DeckInstrument, DeckItem, Extreme
     from calm.deck.shipping import Lift
 
 _SHARE = f"{LENGTH_ERROR:.1%}".replace("%", " %")
@@ -32,6 +35,7 @@ _IMPLIED = (
 def cutting_part(deck: Deck) -> ReportPart:
     """Lengths, marks, and how exactly they have to be."""
     rows: list[tuple[Cell, ...]] = []
+    kinds = {one.label: one for one in deck.parts}
     for cut in deck.cuts:
         load = "without load" if cut.load == 0.0 else f"at {say('tension', cut.load)}"
         effect = "-" if cut.effect is None else f"{cut.effect:+.2f}"
@@ -49,10 +53,16 @@ def cutting_part(deck: Deck) -> ReportPart:
             )
         )
         rows += [
-            (Cell(mark.label, indented=True), Cell(f"{mark.at:.2f}", "mark"),
-             *[Cell()] * 6, Cell("☐"))
-            for mark in cut.marks
-        ]  # fmt: skip
+            (
+                Cell(label_of_run([kinds[mark.label] for mark in marks]), indented=True),
+                Cell(
+                    ", ".join(f"{mark.at:.2f}" for mark in marks), "mark" + "s" * (len(marks) > 1)
+                ),
+                *[Cell()] * 6,
+                Cell("☐"),
+            )
+            for marks in _alike(cut.marks, kinds)
+        ]
     columns = (
         Column("wire or rope, marks below", share=1.6),
         Column("cut length, or\nfrom upper end", "m", numeric=True),
@@ -172,17 +182,28 @@ def lifts_part(deck: Deck) -> ReportPart:
     note = (
         "In air: the piece with what is clamped on it, as the crane lifts it; cables are paid out. "
         "Hanging: the weight in water of all that is over the side, where it hangs straight down "
-        "from the ship; below 0 it floats. Neither drag nor the swell is in it."
+        "from the ship; below 0 it floats. Neither drag nor the swell is in it. Shackles, links "
+        "and swivels are lifted with what is beside them; each has its row in the files."
     )
+    hardware = {one.label for one in deck.parts if one.kind == ("hardware",)}
+
+    def lifted(stages: Iterable[Lift]) -> list[Lift]:
+        return [one for one in stages if one.label not in hardware]
+
     return ReportPart(
         "Lifts",
         (
             Prose(tuple(said)),
-            _stages("Deployment, in the order over the side", lifts.deployment),
-            _stages("Recovery, from the top to the release", lifts.recovery),
+            _stages("Deployment, in the order over the side", lifted(lifts.deployment)),
+            _stages("Recovery, from the top to the release", lifted(lifts.recovery)),
             Note((note,)),
         ),
     )
+
+
+def _alike(marks: Iterable[Mark], items: Mapping[str, DeckItem]) -> list[list[Mark]]:
+    """Return the marks of like clamps that follow one another."""
+    return [[*group] for _, group in groupby(marks, key=lambda mark: items[mark.label].kind)]
 
 
 def _stages(title: str, lifts: Iterable[Lift]) -> Table:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Sequence
+from itertools import groupby
+from typing import TYPE_CHECKING, TypeVar
 
-from calm.deck.deck_items import Order
+from calm.deck.deck_items import Order, label_of_run, name_of_run
 from calm.drop import DropPlan
 from calm.quantities import QUANTITIES, say
 from calm.report.blocks import Block, Cell, Column, Pairs, Prose, ReportPart, Table, table_of
@@ -14,6 +16,8 @@ from calm.report.provenance import position_text, title_pairs
 if TYPE_CHECKING:
     from calm.deck import Deck
     from calm.deck.deck_items import DeckItem, RecoveredItem
+
+_Listed = TypeVar("_Listed")
 
 _BOX = Cell("☐")
 _SOUNDINGS = 6
@@ -71,16 +75,39 @@ _AT_THE_RELEASE = (
 )  # fmt: skip
 
 
-def placed(one: DeckItem, deck: Deck) -> str:
-    """Return where a clamp sits: from the upper end of its piece, anchor first from the lower end
+def placed(items: Sequence[DeckItem], deck: Deck) -> str:
+    """Return where clamps sit: from the upper end of their piece, anchor first from the lower end
     too.
     """
-    if one.on is None or one.at is None:
+    places = [one.at for one in items if one.on is not None and one.at is not None]
+    if not places:
         return ""
-    text = f"{one.at:.2f} m from the upper end"
-    if deck.order is Order.ANCHOR_FIRST and one.of_length is not None:
-        text += f", {one.of_length - one.at:.2f} m from the lower end"
+    text = f"{_span(places)} m from the upper end"
+    length = items[0].of_length
+    if deck.order is Order.ANCHOR_FIRST and length is not None:
+        text += f", {_span([length - at for at in places])} m from the lower end"
     return text
+
+
+def _span(values: Sequence[float]) -> str:
+    ends = dict.fromkeys((f"{values[0]:.2f}", f"{values[-1]:.2f}"))
+    return " to ".join(ends)
+
+
+def _runs(
+    items: Sequence[_Listed], item: Callable[[_Listed], DeckItem]
+) -> list[tuple[str, list[_Listed]]]:
+    """Return like items that follow one another, with their numbers in the list."""
+    runs = []
+    for _, group in groupby(enumerate(items, 1), key=lambda pair: item(pair[1]).kind):
+        numbers, listed = zip(*group, strict=True)
+        ends = dict.fromkeys((str(numbers[0]), str(numbers[-1])))
+        runs.append(("–".join(ends), [*listed]))
+    return runs
+
+
+def _piece(items: Sequence[DeckItem]) -> Cell:
+    return Cell(label_of_run(items), name_of_run(items), indented=items[0].on is not None)
 
 
 def _releases(deck: Deck) -> Table:
@@ -111,17 +138,14 @@ def _over_the_side(deck: Deck) -> Table:
 
     return table_of(
         "Order over the side",
-        list(enumerate(deck.deployment, 1)),
-        (Column("no.", numeric=True), lambda one: str(one[0])),
-        (
-            Column("piece", share=1.6),
-            lambda one: Cell(one[1].label, one[1].name, indented=one[1].on is not None),
-        ),
+        _runs(deck.deployment, lambda one: one),
+        (Column("no.", numeric=True), lambda run: run[0]),
+        (Column("piece", share=2.6), lambda run: _piece(run[1])),
         (
             Column("length cut, or place on its wire", "m"),
-            lambda one: placed(one[1], deck) or length(one[1]),
+            lambda run: placed(run[1], deck) or length(run[1][0]),
         ),
-        (Column("serial number", share=0.7), lambda one: one[1].serial or ""),
+        (Column("serial number", share=0.7), lambda run: run[1][0].serial or ""),
         (Column("time over", "UTC", share=0.7), lambda one: ""),
         (Column("remarks"), lambda one: ""),
         (Column("checked", share=0.0), lambda one: _BOX),
@@ -184,31 +208,30 @@ def _events(events: tuple[str, ...]) -> Table:
 def _surfacing(deck: Deck) -> Table:
     return table_of(
         "Order of surfacing",
-        list(enumerate(deck.recovery, 1)),
-        (Column("no.", numeric=True), lambda one: str(one[0])),
-        (
-            Column("piece", share=1.7),
-            lambda one: Cell(
-                one[1].item.label, one[1].item.name, indented=one[1].item.on is not None
-            ),
-        ),
-        (Column("serial number", share=0.8), lambda one: one[1].item.deployed_serial or ""),
-        (Column("expected after\nthe release", share=1.3), lambda one: _expected(one[1])),
+        _runs(deck.recovery, lambda one: one.item),
+        (Column("no.", numeric=True), lambda run: run[0]),
+        (Column("piece", share=3.0), lambda run: _piece([one.item for one in run[1]])),
+        (Column("serial number", share=0.8), lambda run: run[1][0].item.deployed_serial or ""),
+        (Column("expected after\nthe release", share=1.3), lambda run: _expected(run[1])),
         (Column("seen", "UTC", share=0.6), lambda one: ""),
         (Column("on deck", "UTC", share=0.6), lambda one: ""),
         (Column("whole", share=0.0), lambda one: _BOX),
         (Column("fouled", share=0.0), lambda one: _BOX),
         (Column("runs", share=0.0), lambda one: _BOX),
-        (Column("remarks", share=1.2), lambda one: one[1].item.remark or ""),
+        (Column("remarks", share=1.2), lambda run: run[1][0].item.remark or ""),
         note="By itself: what is buoyant enough; the rest comes with it, or hangs below when all "
         "is up. The order is that of surfacing, not of hauling.",
         by_hand=True,
     )
 
 
-def _expected(one: RecoveredItem) -> Cell:
-    if one.time is not None:
-        text = f"{one.time / 60.0:.1f} min"
-    else:
-        text = "" if one.hangs_at is None else f"hangs at {say('depth', one.hangs_at)}"
-    return Cell(text, "by itself" if one.by_itself else "")
+def _expected(items: Sequence[RecoveredItem]) -> Cell:
+    """Return when the first comes up, and until when the last has; or where they hang."""
+    said = []
+    for one in (items[0], items[-1]):
+        if one.time is not None:
+            said.append(f"{one.time / 60.0:.1f} min")
+        elif one.hangs_at is not None:
+            said.append(f"hangs at {say('depth', one.hangs_at)}")
+    text = " to ".join(dict.fromkeys(said))
+    return Cell(text, "by itself" if any(one.by_itself for one in items) else "")

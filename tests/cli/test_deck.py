@@ -11,6 +11,8 @@ import pypdfium2
 import pypdfium2.raw as pdfium
 import pytest
 
+from calm.shipped import shipped_folder
+
 COMPONENTS = """\
 components:
   ball: {kind: sphere, role: float, diameter: 1 m, mass: 300 kg, buoyancy: 4000 N}
@@ -207,6 +209,29 @@ def test_the_files_for_spreadsheets(deck):
     assert "weight" not in {row["label"] for row in up}
     shipped = [*csv.DictReader(io.StringIO((out / "shipping.csv").read_text()))]
     assert {row["use"]: row["mass[kg]"] for row in shipped}["logger"] == ""
+
+
+def test_like_pieces_that_follow_one_another_are_one_row(deck):
+    top = "{use: ball, label: top float, serial: T-1}"
+    text = mooring(8).replace(top, "{use: ball, label: float, count: 4}")
+    out, _ = deck(text)
+    pages, _, _ = pages_of((out / "deck.pdf").read_bytes())
+    log = next(page for page in pages if "Orderovertheside" in page)
+    assert packed("1–4 float 1 – float 4") in log
+    assert packed("4 × ball") in log
+    assert packed("float 2") not in log
+    over = [*csv.DictReader(io.StringIO((out / "deployment.csv").read_text()))]
+    assert [row["label"] for row in over][:4] == ["float 1", "float 2", "float 3", "float 4"]
+
+
+@pytest.mark.parametrize(
+    ("line", "most"), [("s1000", 7), ("fit-top-depth", 10), ("upward-adcp-300m", 13)]
+)
+@pytest.mark.thorough
+def test_a_package_is_no_thicker_than_this(calm, folder, line, most):
+    assert calm("deck", str(shipped_folder("lines") / f"{line}.yaml"), "-o", "out").code == 0
+    pages, _, _ = pages_of((folder / "out" / "deck.pdf").read_bytes())
+    assert len(pages) <= most
 
 
 def test_the_workbook_holds_what_the_files_hold(deck):
