@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
-_SIZE = 7.0  # points, of the letters
+_SIZE = 8.0  # points, of the letters
 _WIDTH, _HEIGHT = 533.0, 576.0  # points: an A4 page between its margins
 _LEGEND_ROW, _LEGEND_COLUMNS = 13.5, 4
 _LEAST_SPAN = 0.1  # of the depth: a line that hardly leans is not drawn as if it did
