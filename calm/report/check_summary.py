@@ -234,7 +234,7 @@ def _runs(stem: str, numbers: Iterable[int]) -> Iterator[tuple[str, int]]:
     each = sorted(set(numbers))
     for _, group in groupby(enumerate(each), lambda pair: pair[1] - pair[0]):
         run = [number for _, number in group]
-        last = f" to {run[-1]}" if len(run) > 1 else ""
+        last = f"{' and ' if len(run) == 2 else ' to '}{run[-1]}" if len(run) > 1 else ""
         yield f"{stem}{run[0] or ''}{last}", len(run)
 
 

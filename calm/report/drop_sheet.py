@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 
     from calm.drop import DropPlan
 
+_DRAG_BAND = f"{DRAG_BAND:g} times smaller or larger"
 _ROWS = 11
 """Of the table of the fall."""
 _DEEPER = 0.5
@@ -94,15 +95,15 @@ def _figures(plan: DropPlan) -> tuple[tuple[str, str], ...]:
         (
             "Fall time",
             f"{plan.fall_time:.0f} s ± {_error(plan.time_error)} s; {early:.0f} to {late:.0f} s "
-            f"with the anchor's drag {DRAG_BAND:g} times less and more",
+            f"if the anchor's drag is {_DRAG_BAND}",
         ),
         (
             "Fall-back, towards the float",
             f"{plan.fall_back:.0f} m ± {_error(plan.distance_error)} m; {near:.0f} to {far:.0f} m "
-            "with the same",
+            f"if the anchor's drag is {_DRAG_BAND}",
         ),
         (
-            "Aside of that direction",
+            "Off that direction",
             f"{abs(plan.aside):.0f} m to the {side}, seen from where it is let go",
         ),
         (
@@ -202,8 +203,8 @@ def _notes(plan: DropPlan) -> tuple[str, ...]:
     notes = [
         "The line is a chain without inertia: what it does in the first 20 s, and the jerk at the "
         "touchdown, are not in these figures; nor is what waves do.",
-        "± is twice what bars and what steps of twice the length change, together; the current and "
-        "the drag of the anchor are known less well.",
+        "± is twice the change that segments and time steps of double length make together; the "
+        "current and the drag of the anchor are known less well.",
     ]
     if plan.rest_difference is not None:
         notes.append(

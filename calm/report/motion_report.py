@@ -55,7 +55,7 @@ def motion_report(
     held: tuple[Block, ...] = (held_out_table(study.held_out),) if study.held_out else ()
     factors = factors_table(study.factors, study.task.common.datum)
     parts = (
-        ReportPart("What to doubt", (doubts, *marks)),
+        ReportPart("Doubtful data", (doubts, *marks)),
         ReportPart("Factors", (factors, Figure("Over time", factor_figure(time, factor)))),
         ReportPart("Measured against computed", (sensors_table(study), *held, Note((PLAIN,)))),
         ReportPart("Inputs", (Prose(tuple(notes) or ("Nothing was left out.",)),)),

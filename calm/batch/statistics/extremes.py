@@ -171,9 +171,9 @@ def _by_maxima(
     if len(maxima) < LEAST_MAXIMA:
         return LevelsRefused(
             "gev",
-            f"annual maxima of {LEAST_MAXIMA} whole years are needed; of the {count} year"
-            f"{'s' if count != 1 else ''} begun, {len(maxima)} "
-            f"{'has' if len(maxima) == 1 else 'have'} {100 * WHOLE:.0f} % of the profiles",
+            f"annual maxima of {LEAST_MAXIMA} whole years are needed; {len(maxima)} of {count} in "
+            f"the record {'has' if len(maxima) == 1 else 'have'} at least {100 * WHOLE:.0f} % of "
+            "the profiles",
         )
     if maxima.max() == maxima.min():
         return LevelsRefused("gev", f"the {len(maxima)} annual maxima are all alike")

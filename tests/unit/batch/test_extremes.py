@@ -146,14 +146,16 @@ def test_a_short_record_is_refused_with_its_length():
     time, values = daily_peaks(0.5, 0.1, 2.0, 10)
     gev, pot = return_levels(time, values, {})
     assert isinstance(gev, LevelsRefused) and isinstance(pot, LevelsRefused)
-    assert "10 whole years" in gev.reason and "of the 1 year begun, 0 have 90 %" in gev.reason
+    assert (
+        "10 whole years" in gev.reason and "0 of 1 in the record have at least 90 %" in gev.reason
+    )
     assert "183 days" in pot.reason
 
 
 def test_a_few_years_do_for_peaks_only():
     time, values = daily_peaks(9.5, 0.1, 2.0, 11)
     gev, pot = return_levels(time, values, {})
-    assert "of the 10 years begun, 9 have 90 %" in gev.reason
+    assert "9 of 10 in the record have at least 90 %" in gev.reason
     assert isinstance(pot, Fit)
 
 

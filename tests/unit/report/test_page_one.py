@@ -180,3 +180,4 @@ def test_labels_that_follow_are_named_as_a_run():
     assert named(["glass 1", "glass 3", "cable", "glass 2"]) == "glass 1 to 3, cable"
     assert named(["a 1", "a 3", "b", "c", "d 7", "d 8"]) == "a 1, a 3, b and 3 more"
     assert named(["300 m", "500 m"]) == "300 m, 500 m"
+    assert named(["d 7", "d 8"]) == "d 7 and 8"
