@@ -47,7 +47,7 @@ _PATTERNS: tuple[tuple[str, str], ...] = (
     ("mass", rf"{_WEIGHT}.*{_AIR}|{_AIR}.*{_WEIGHT}|\bmass(e|a)?\b|\bmasa\b|\bdry\b"),
     ("weight", r"^(weight|poids|gewicht|peso)\b"),
     ("mass", r"^(weight|poids|gewicht|peso)\b"),
-    ("diameter", r"diam|ø|durchmesser|^dia\b"),
+    ("diameter", r"diam|ø|durchmesser|^dia\b|^o\.?d\b"),
     ("width", r"width|largeur|breite|\banch(o|ura)\b"),
     (
         "height",

@@ -31,6 +31,7 @@ _ENOUGH = {"length", "buoyancy", "weight"}  # one of them makes a piece
 _MOST = 1000  # of one row's count
 _WIDEST, _WIDEST_LINE = 10.0, 0.5  # m of what has no unit
 _FULL = 5.0  # times its diameter: a metre of line shows no larger area
+_METRES = re.compile(r"/\s*(\d+)")  # kg/100 m
 _SPREAD = ("buoyancy", "mass", "area", "drag_area", "tangential_area")  # along a line
 _USUAL = {"cable": 1.3, "chain": 2.75, "sphere": 0.5, "cylinder": 1.2}
 _COEFFICIENT = {"cable": "cn", "chain": "cn", "sphere": "cx", "cylinder": "cn"}
@@ -169,9 +170,13 @@ def _row(
         widest = _WIDEST_LINE if row.is_line else _WIDEST
         if what in ("diameter", "width") and not (unit or column.known) and figure > widest:
             mistakes.append(f"{row.where}: {column.heading} is {figure:g} m; which unit is it in?")
-        row.figures[what] = figure
         if unit.per_metre if unit else column.per_metre:
             row.metre.add(what)
+            several = _METRES.search(f"{column.heading} {found.rest}")
+            if several and not row.is_line:
+                figure *= int(several[1])
+                row.guesses[what] = "read as that of the whole piece: it is no line"
+        row.figures[what] = figure
         if found.tidied:
             row.guesses[what] = f"`{cell}` read as {found.value:g} {found.rest}".rstrip()
     count = row.figures.pop("count", 1.0)
@@ -186,15 +191,26 @@ def weights_as_buoyancy(rows: Iterable[ListRow], guessed: list[Remark]) -> None:
     """Give every row its net force as buoyancy, positive up.
 
     Weights are positive down; where they are negative for what sinks by its name, positive up.
+    Where what sinks has a positive buoyancy and all else a negative one, they are weights.
     """
     rows = list(rows)
-    sinking = [
-        row.figures["weight"]
+    sinks = {
+        id(row)
         for row in rows
-        if row.figures.get("weight")
-        and (is_connector(row.name) or is_release(row.name) or row.is_line or row.is_anchor)
+        if is_connector(row.name) or is_release(row.name) or row.is_line or row.is_anchor
+    }
+    sinking = [
+        row.figures["weight"] for row in rows if id(row) in sinks and row.figures.get("weight")
     ]
     upward = 2 * sum(weight < 0.0 for weight in sinking) > len(sinking)
+    lifts = [
+        (id(row) in sinks, row.figures["buoyancy"]) for row in rows if row.figures.get("buoyancy")
+    ]
+    if len({down for down, _ in lifts}) == 2 and all(down == (lift > 0.0) for down, lift in lifts):
+        guessed.append(Remark("buoyancy", "positive for parts that sink: read as weight"))
+        for row in rows:
+            if row.figures.get("buoyancy"):
+                row.figures["buoyancy"] *= -1.0
     if upward:
         guessed.append(Remark("weights", "negative for parts that sink: read as buoyancy"))
     for row in rows:

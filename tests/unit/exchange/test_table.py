@@ -449,6 +449,30 @@ def test_a_weight_has_the_unit_that_is_written(heading, cell, read, tmp_path):
     assert wire.component.weight * wire.length == pytest.approx(weight)
 
 
+def test_the_weight_of_a_piece_is_that_of_the_whole_whatever_that_of_lines_is(read, tmp_path):
+    made = read(with_cell("Weight in water (kg/100 m)", "30"))
+    ball = pieces(made, tmp_path)[0].component
+    assert ball.net_buoyancy == pytest.approx(4330 * 9.80665)
+    assert "read as that of the whole piece" in " ".join(map(str, made.guessed))
+
+
+@pytest.mark.parametrize(
+    ("signs", "turned"), [((-1, 1, 1, 1), True), ((1, -1, -1, 1), False), ((1, -1, 1, 1), False)]
+)
+def test_a_list_of_which_all_signs_are_turned(signs, turned, read, tmp_path):
+    """What sinks by its name has all the buoyancy, what floats none; one wrong sign is no proof."""
+    lifts = [sign * lift for sign, lift in zip(signs, (450, 60, 45, 1500), strict=True)]
+    made = read(
+        "Item;Length (m);Buoyancy (kg);OD (mm)\n"
+        f"Float;1.2;{lifts[0]};1250\nWire;500;{lifts[1]};8\nAR861 release;1.1;{lifts[2]};150\n"
+        f"Anchor;0.5;{lifts[3]};900\n"
+    )
+    ball = pieces(made, tmp_path)[0].component
+    assert ball.net_buoyancy == pytest.approx(450 * 9.80665)
+    assert ("read as weight" in " ".join(map(str, made.guessed))) == turned
+    assert ball.diameter == 1.25
+
+
 LENGTHS = {
     "8 mm": 0.008, "0.1 km": 100.0, "330 ft": 100.584, "330 Fuß": 100.584, "55 fathoms": 100.584,
     "3960 pouces": 100.584, "100 metros": 100.0,
