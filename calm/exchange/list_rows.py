@@ -72,6 +72,12 @@ class ListRow:
         return bool(_ANCHOR_KINDS.search(f"{self.kind} {self.role}")) or is_anchor(self.name)
 
     @property
+    def sinks(self) -> bool:
+        """Tell whether it is a line, an anchor, or what sinks by its name."""
+        fitting = is_connector(self.name) or is_release(self.name)
+        return fitting or self.is_line or self.is_anchor
+
+    @property
     def is_line(self) -> bool:
         """Tell whether it is a cable or a chain."""
         if self.line is not None:
@@ -194,23 +200,14 @@ def weights_as_buoyancy(rows: Iterable[ListRow], guessed: list[Remark]) -> None:
     Where what sinks has a positive buoyancy and all else a negative one, they are weights.
     """
     rows = list(rows)
-    sinks = {
-        id(row)
-        for row in rows
-        if is_connector(row.name) or is_release(row.name) or row.is_line or row.is_anchor
-    }
-    sinking = [
-        row.figures["weight"] for row in rows if id(row) in sinks and row.figures.get("weight")
-    ]
+    sinking = [row.figures["weight"] for row in rows if row.sinks and row.figures.get("weight")]
     upward = 2 * sum(weight < 0.0 for weight in sinking) > len(sinking)
-    lifts = [
-        (id(row) in sinks, row.figures["buoyancy"]) for row in rows if row.figures.get("buoyancy")
-    ]
-    if len({down for down, _ in lifts}) == 2 and all(down == (lift > 0.0) for down, lift in lifts):
+    lifts = [row for row in rows if row.figures.get("buoyancy")]
+    turned = all(row.sinks == (row.figures["buoyancy"] > 0.0) for row in lifts)
+    if turned and 0 < sum(row.sinks for row in lifts) < len(lifts):
         guessed.append(Remark("buoyancy", "positive for parts that sink: read as weight"))
-        for row in rows:
-            if row.figures.get("buoyancy"):
-                row.figures["buoyancy"] *= -1.0
+        for row in lifts:
+            row.figures["buoyancy"] *= -1.0
     if upward:
         guessed.append(Remark("weights", "negative for parts that sink: read as buoyancy"))
     for row in rows:
@@ -235,7 +232,9 @@ def count_lines(rows: Iterable[ListRow], known: dict[str, ListColumn]) -> None:
         if column is None or not listed:
             continue
         per_metre = not column.whole and (
-            _within_a_metre(listed, what) if "area" in what else _same_for_all(listed, what)
+            all(row.figures[what] <= _FULL * row.figures.get("diameter", 0.0) for row in listed)
+            if "area" in what
+            else _same_for_all(listed, what)
         )
         for row in listed:
             if not per_metre:
@@ -248,11 +247,6 @@ def count_lines(rows: Iterable[ListRow], known: dict[str, ListColumn]) -> None:
                     if per_metre
                     else "the weight in the list is read as that of the whole length",
                 )
-
-
-def _within_a_metre(lines: list[ListRow], what: str) -> bool:
-    """Return whether the figures of every line could be those of a metre."""
-    return all(row.figures[what] <= _FULL * row.figures.get("diameter", 0.0) for row in lines)
 
 
 def _same_for_all(lines: list[ListRow], what: str) -> bool:
@@ -349,7 +343,11 @@ def _line(row: ListRow, problems: list[str]) -> ImportedComponent:
     if figures.get("length", 0.0) <= 0.0:
         problems.append(f"{row.where}: a line needs its length")
     across = figures.get("diameter", 0.0) or figures.get("width", 0.0)
-    kind = "chain" if is_chain(f"{row.name} {row.kind}") else "cable"
+    lift = figures.get("buoyancy", 0.0)
+    if "buoyancy" not in figures:
+        problems.append(f"{row.where}: its weight in water is missing{row.hint}")
+    chain = lift <= 0.0 and is_chain(f"{row.name} {row.kind}")
+    kind = "chain" if chain else "cable"
     if across <= 0.0:
         across = size_in(row.name)
         if across <= 0.0:
@@ -357,12 +355,6 @@ def _line(row: ListRow, problems: list[str]) -> ImportedComponent:
             across = 0.01
         guesses["diameter"] = "from its name"
     kept: dict[str, FigureOrWord] = {"diameter": across}
-    lift = figures.get("buoyancy")
-    if lift is None:
-        problems.append(f"{row.where}: its weight in water is missing{row.hint}")
-        lift = 0.0
-    if lift > 0.0:
-        kind = "cable"
     if "drag_area" in figures:
         along = figures.get("tangential_area", 0.0)
         kept |= {"cn": figures["drag_area"] / across, "ct": along / (math.pi * across)}
