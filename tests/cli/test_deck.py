@@ -225,7 +225,7 @@ def test_like_pieces_that_follow_one_another_are_one_row(deck):
 
 
 @pytest.mark.parametrize(
-    ("line", "most"), [("s1000", 7), ("fit-top-depth", 10), ("upward-adcp-300m", 13)]
+    ("line", "most"), [("s1000", 7), ("fit-top-depth", 10), ("upward-adcp-300m", 14)]
 )
 @pytest.mark.thorough
 def test_a_package_is_no_thicker_than_this(calm, folder, line, most):
