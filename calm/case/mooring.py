@@ -19,9 +19,9 @@ from calm.case.tow import Tow
 from calm.case.variant import Origin
 from calm.errors import NoEquilibrium, UsageError
 from calm.files import MooringFile
-from calm.files.definition import STEEL_DENSITY
 from calm.physics.drag import BLOCK_CD, area_drag
 from calm.physics.line import Line, Water
+from calm.physics.materials import STEEL_DENSITY
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.solve import Settings, Solution, Status, fit_length, solve_mooring
 from calm.solve.problem import COARSE_STEP

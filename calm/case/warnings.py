@@ -10,7 +10,7 @@ import numpy as np
 from calm.case.parts import clamps_in
 from calm.files import Cable, Component
 from calm.physics.line import Floats
-from calm.physics.stretch import FIBRES, published_stiffnesses
+from calm.physics.materials import fibre_of, published_stiffnesses
 from calm.quantities import say
 from calm.solve import Solution
 from calm.solve.audit import flow_across
@@ -30,9 +30,7 @@ def is_synthetic(component: Component) -> bool:
 
     Steel in a jacket of plastic is none.
     """
-    material = (component.material or "").lower()
-    fibrous = component.kind == "cable" and any(fibre in material for fibre in FIBRES)
-    return fibrous and "steel" not in material
+    return component.kind == "cable" and fibre_of(component.material) is not None
 
 
 def warnings_of(result: Result, solution: Solution) -> tuple[str, ...]:
@@ -106,8 +104,8 @@ def unknown_stretch(component: Component, tension: float) -> list[float] | None:
         return None
     if component.stiffness is not None or component.elongation is not None:
         return None
-    material, diameter = component.material or "", component.diameter
-    return [tension / stiffness for stiffness in published_stiffnesses(material, diameter)]
+    published = published_stiffnesses(component.material, component.diameter)
+    return [tension / stiffness for stiffness in published]
 
 
 def _published(strains: list[float]) -> str:

@@ -19,6 +19,7 @@ from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Recovery
 from calm.drop.launch import Launch
 from calm.files import Cable, Component, Flexible
+from calm.physics.materials import materials_in, potential_of
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.quantities import say
 
@@ -26,19 +27,6 @@ if TYPE_CHECKING:
     from calm.case import Mooring, Result
     from calm.checks.handling import Handling
     from calm.files import Clamp, Piece
-
-POTENTIALS = {
-    r"stainless|inox|a[24]|(aisi ?|1\.4\d\d)?(304|316)l?": -0.05,
-    r"titanium|titan|titane|ti|inconel|hastelloy": 0.0,
-    r"bronze|brass": -0.35,
-    r"copper|cu": -0.44,
-    r"galvani\w*|galv|hdg|steel|stahl|acier|iron": -0.66,
-    r"alumini?um|alu": -0.88,
-    r"zinc": -1.0,
-}
-"""Middle of the corrosion potential of metals in sea water [V], by a whole word of `material`, the
-nobler words before those that stand beside them: stainless steel is no steel, aluminium bronze
-no aluminium. Galvanised steel counts as steel, which its zinc protects."""
 
 GREATEST_DIFFERENCE = 0.2
 """Beyond it two metals that touch corrode each other in sea water [V]."""
@@ -48,7 +36,6 @@ _UNBALANCED = re.compile(
     r"\b(not|no|non|never|un|hardly|without)[- ]?(\w+[- ])?(torque|rotation|balanced)"
     r"|\bun(torque|balanced)|balanced\W+(no|not|false)\b"
 )
-_STEEL = re.compile(r"\b(steel|galv\w*|stainless|nilspin)\b")
 _NO_RELEASE = re.compile(r"\b(shackle|swivel|sling|chain|rope|wire|thimble|pear[- ]?link)s?\b")
 _TWICE = re.compile(r"\b(double|dual|pair|twin|tandem|two|releases)\b")
 _INSULATED = ("plastic", "jacket", "sheath", "coated", "insulat")
@@ -159,7 +146,8 @@ def _bears_torque(component: Component) -> bool:
     if balanced is None:
         said = _words(component.material, component.name, component.note)
         balanced = bool(_BALANCED.search(said)) and not _UNBALANCED.search(said)
-    return _STEEL.search(_words(component.material)) is not None and not balanced
+    of_steel = any("steel" in each.name for each in materials_in(component.material))
+    return of_steel and not balanced
 
 
 def _held_by(way: Sequence[Piece]) -> tuple[Piece, bool] | None:
@@ -231,21 +219,11 @@ def unlike_metals(
         if not _has(piece, _INSULATED):
             pairs += [(piece, clamp) for clamp in piece.clamps]
     for one, other in pairs:
-        first, second = potential_of(one.component), potential_of(other.component)
+        first, second = (potential_of(part.component.material) for part in (one, other))
         if first is None or second is None or abs(first - second) <= GREATEST_DIFFERENCE:
             continue
         base, noble = (one, other) if first < second else (other, one)
         yield base, noble, abs(first - second)
-
-
-def potential_of(component: Component) -> float | None:
-    """Of the metal of a component in sea water [V]; None where it is not known or insulated."""
-    said = _words(component.material)
-    if any(word in said for word in _INSULATED):
-        return None
-    return next(
-        (volts for words, volts in POTENTIALS.items() if re.search(rf"\b({words})\b", said)), None
-    )
 
 
 def _corrodes(base: Piece | Clamp, noble: Piece | Clamp, volts: float) -> Verdict:

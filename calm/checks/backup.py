@@ -12,7 +12,8 @@ import numpy as np
 from calm.assemble import net_buoyancy
 from calm.errors import NoEquilibrium
 from calm.files import Component, Flexible
-from calm.files.definition import CATALOGUE_DENSITY, STEEL_DENSITY
+from calm.files.definition import CATALOGUE_DENSITY
+from calm.physics.materials import materials_in
 from calm.solve.standing import standing_lift
 
 if TYPE_CHECKING:
@@ -22,10 +23,6 @@ if TYPE_CHECKING:
 
 LEAST_MARGIN = 250.0
 """Net buoyancy that is asked for after any break, however little hangs on it [N]."""
-
-
-SHELLS = {"glass": 2230.0, "steel": STEEL_DENSITY, "aluminium": 2700.0, "titanium": 4500.0}
-"""Densities of the shells of hollow floats [kg/m³], by a word of `material`."""
 
 
 @dataclass(frozen=True)
@@ -85,8 +82,8 @@ def _lift_to_the_release(mooring: Mooring) -> Floats:
 def losses_of(mooring: Mooring) -> tuple[Loss, ...]:
     """The loss of each buoyant piece or clamp above the lowest release, from the top.
 
-    What is lost lifts no more. One that fills with water, and gives its mass and a material of
-    `SHELLS`, weighs what that material does in water; another is taken to be gone, and a cable is
+    What is lost lifts no more. One that fills with water, and gives its mass and a material whose
+    density is known, weighs what that does in water; another is taken to be gone, and a cable is
     not lost. The others lift what they do where the line stands upright.
     """
     lift = _lift_to_the_release(mooring)
@@ -115,8 +112,8 @@ def losses_of(mooring: Mooring) -> tuple[Loss, ...]:
 
 def _weight_when_flooded(component: Component, gravity: float) -> float:
     """In water, of the shell of a float that is full of water [N]; 0 where that is not known."""
-    said = (component.material or "").casefold()
-    density = next((value for word, value in SHELLS.items() if word in said), None)
+    named = (material.density for material in materials_in(component.material))
+    density = next((value for value in named if value and value > CATALOGUE_DENSITY), None)
     if density is None or component.mass is None:
         return 0.0
     return component.mass * gravity * (1.0 - CATALOGUE_DENSITY / density)

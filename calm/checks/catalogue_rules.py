@@ -18,7 +18,16 @@ from calm.checks.inventory import mass_in_air
 from calm.checks.posture import JUDGED_ROLES
 from calm.files import Anchor, Cable, Chain, Component, Cylinder, Flexible, Sphere
 from calm.files.catalogue import Assembly
-from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY, STEEL_DENSITY
+from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
+from calm.physics.materials import (
+    LEAD_DENSITY,
+    MATERIAL_NAMES,
+    MATERIALS,
+    STEEL_DENSITY,
+    density_of,
+    materials_in,
+)
+from calm.suggestions import nearest
 
 if TYPE_CHECKING:
     from calm.checks.handling import Handling
@@ -33,7 +42,6 @@ NOMINAL = 1.25
 """How much more a jacketed wire displaces than its nominal diameter, at most, by what is printed of
 its mass and its weight in water."""
 
-LEAD_DENSITY = 11340.0
 """Density of lead [kg/m³]; nothing on a mooring is denser."""
 
 STEEL_MODULUS = 210e9
@@ -44,16 +52,6 @@ GREATEST_STRENGTH = 4e9
 
 DEEPEST_WATER = 11000.0
 """Greatest depth of the ocean, in round figures [m]."""
-
-DENSITIES = {
-    "steel": STEEL_DENSITY,
-    "polyester": 1380.0,
-    "nylon": 1140.0,
-    "polypropylene": 910.0,
-    "aramid": 1440.0,
-    "HMPE": 975.0,
-}
-"""Densities [kg/m³] of what ropes are made of, by the `material` of a definition."""
 
 _NO_SOURCE = "does not say where its figures come from (`source`)"
 
@@ -84,7 +82,10 @@ def check_catalogue(
             messages = _unknown_parts(definition, known)
         else:
             messages = chain(
-                _sources(definition), impossible(definition), _late_warning(definition)
+                _sources(definition),
+                impossible(definition),
+                _late_warning(definition),
+                _of_unknown_material(definition),
             )
         findings += [CatalogueFinding(identifier, message) for message in messages]
         if definition.prefer is not None:
@@ -152,10 +153,10 @@ def _of_a_rope(rope: Cable) -> Iterator[str]:
     """Yield what makes a rope heavier, stiffer, stronger or more buoyant than its section allows.
 
     Its weight is held against a solid bar: of its `density`, else of that of its `material` where
-    `DENSITIES` has it, else of steel.
+    that is known, else of steel.
     """
     section = _section(rope)
-    density = rope.density or DENSITIES.get(rope.material or "", STEEL_DENSITY)
+    density = rope.density or density_of(rope.material) or STEEL_DENSITY
     bar = ROPE_ROUNDING * density * section
     weight = max(bar - CATALOGUE_DENSITY * section, 0.0) * STANDARD_GRAVITY
     lift = ROPE_ROUNDING * CATALOGUE_DENSITY * STANDARD_GRAVITY * section
@@ -250,11 +251,27 @@ def figures(handling: Handling) -> Iterator[Verdict]:
             yield unknown(None, message, "Give its `source` beside it, or leave it out.")
     remedy = "Look at its figures, and at their units."
     for part in parts_of(handling.mooring.file.pieces):
-        for state, found in ((State.FAIL, impossible), (State.WARN, _late_warning)):
+        for state, found in (
+            (State.FAIL, impossible),
+            (State.WARN, _late_warning),
+            (State.UNKNOWN, _of_unknown_material),
+        ):
             for fault in found(part.component):
                 if (part.use, fault) not in named:
                     named.add((part.use, fault))
                     yield verdict_on(part, state, f"{part.label} {fault}.", remedy)
+
+
+def _of_unknown_material(component: Component) -> Iterator[str]:
+    """Yield that the material a component names is none of those known."""
+    material = component.material
+    if material and not materials_in(material):
+        near = nearest(material, [each.name for each in MATERIALS])
+        yield (
+            f"is of `{material}`, a material that is not known: what it may bear, how it stretches "
+            "and what it corrodes cannot be judged by it"
+            + (f"; did you mean `{near}`?" if near else f"; known are {MATERIAL_NAMES}")
+        )
 
 
 LOADS = ("working_load", "breaking_load")

@@ -10,6 +10,7 @@ import numpy as np
 from calm.checks.finding import State, Verdict, at_least, rule, verdict_on
 from calm.files.environment import Environment
 from calm.quantities import say
+from calm.records.current_file import strongest_of
 from calm.records.current_terms import left_out
 
 if TYPE_CHECKING:
@@ -20,6 +21,9 @@ LEAST_CURRENT = 0.01
 
 USUAL_CURRENT = 0.2
 """What a wind of 7 m/s alone drives at the surface, 0.03 of it by DNV-RP-C205 [m/s]."""
+
+SHARE_OF_ITS_RECORD = 0.9
+"""Share of the strongest current of its own record below which a judged one is too weak."""
 
 WEAK_BESIDE_OTHERS = 0.02
 """Share of the strongest current below which another was typed in another unit: 1/100 is cm/s."""
@@ -44,6 +48,14 @@ def currents(moorings: Sequence[Mooring]) -> Iterator[tuple[Mooring, Verdict]]:
             yield mooring, verdict_on(None, State.WARN, left, remedy, speed)
     strongest = max(range(len(speeds)), key=speeds.__getitem__)
     speed = speeds[strongest]
+    for mooring, recorded in _records(moorings):
+        if speed < SHARE_OF_ITS_RECORD * recorded:
+            message = (
+                f"The record that this current is of has {say('speed', recorded)}; the strongest "
+                f"current judged is {say('speed', speed)}."
+            )
+            remedy = "Add an environment with that current, or solve the record with `calm batch`."
+            yield mooring, verdict_on(None, State.WARN, message, remedy, speed, recorded)
     if speed < LEAST_CURRENT:
         return
     message = f"The strongest current judged is {say('speed', speed)}"
@@ -54,6 +66,14 @@ def currents(moorings: Sequence[Mooring]) -> Iterator[tuple[Mooring, Verdict]]:
         moorings[strongest],
         at_least(None, speed, USUAL_CURRENT, f"{message}.", remedy, State.WARN),
     )
+
+
+def _records(moorings: Sequence[Mooring]) -> Iterator[tuple[Mooring, float]]:
+    """Return the strongest current of each record that an environment is a time of [m/s]."""
+    sources = {mooring.file.environment.current.record: mooring for mooring in moorings}
+    for source, mooring in sources.items():
+        if source is not None:
+            yield mooring, strongest_of(*source)
 
 
 def _strongest(mooring: Mooring) -> float:

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 from calm.assemble import net_buoyancy
 from calm.errors import NoEquilibrium
 from calm.files import Anchor, Chain, Clamp, Component, Flexible, Piece
-from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY, STEEL_DENSITY
+from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
+from calm.physics.materials import CONCRETE_DENSITY, STEEL_DENSITY
 
 if TYPE_CHECKING:
     from calm.case import Mooring
 
-CONCRETE_DENSITY = 2400.0
 """Density of ordinary concrete [kg/m³]."""
 
 

@@ -17,8 +17,9 @@ from calm.exchange.design import Design, ImportedComponent, one_line, refused
 from calm.exchange.design_writer import figure_text, mooring_text, quoted
 from calm.files import Anchor, Assembly, Catalogue, Rigid
 from calm.files.components import FLEXIBLE_KINDS, KINDS, Component
-from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY, STEEL_DENSITY
+from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
 from calm.files.yaml_document import read_document
+from calm.physics.materials import STEEL_DENSITY
 from calm.quantities import rounded
 
 _TOLERANCE = 0.05

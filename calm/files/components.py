@@ -15,7 +15,6 @@ from pydantic import Field, model_validator
 from calm.files.definition import (
     CATALOGUE_DENSITY,
     STANDARD_GRAVITY,
-    STEEL_DENSITY,
     Definition,
     Length,
     Mass,
@@ -27,6 +26,7 @@ from calm.files.definition import (
 from calm.files.fields import QuantityField, Role
 from calm.files.flexible import Cable, Chain, Flexible
 from calm.files.rigid import DRAG_FORMS, Body, Cylinder, CylinderShape, Rigid, Sphere, SphereShape
+from calm.physics.materials import STEEL_DENSITY, density_of
 
 __all__ = [
     "FLEXIBLE_KINDS",
@@ -44,15 +44,6 @@ __all__ = [
     "Sphere",
     "SphereShape",
 ]
-
-
-ANCHOR_DENSITIES = {
-    "steel": STEEL_DENSITY,
-    "cast iron": 7200.0,
-    "iron": 7200.0,
-    "concrete": 2400.0,
-}
-"""Densities of anchors by their `material` [kg/m³]."""
 
 
 class Anchor(Definition):
@@ -90,7 +81,7 @@ class Anchor(Definition):
     @property
     def material_density(self) -> float | None:
         """Return the density given, or that of its material [kg/m³]; None if unknown."""
-        return self.density or ANCHOR_DENSITIES.get((self.material or "").strip().casefold())
+        return self.density or density_of(self.material)
 
     @property
     def displaced_volume(self) -> float | None:

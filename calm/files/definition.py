@@ -31,6 +31,7 @@ from calm.files.fields import (
     Role,
     Text,
 )
+from calm.physics.materials import MATERIAL_NAMES
 from calm.units import DIMENSIONS, KILOGRAM_FORCE, with_unit
 
 CATALOGUE_DENSITY = 1025.0
@@ -38,9 +39,6 @@ CATALOGUE_DENSITY = 1025.0
 
 STANDARD_GRAVITY = KILOGRAM_FORCE
 """The force of gravity on a kilogram [N]."""
-
-STEEL_DENSITY = 7850.0
-"""Density of chains and anchors that do not give theirs [kg/m³]."""
 
 DISAGREEMENT = 0.01
 """Share by which figures that say the same thing may differ."""
@@ -155,7 +153,9 @@ class Definition(Model):
     )
     part_number: Text | None = Field(default=None, description="the maker's", examples=["1250-A"])
     material: Text | None = Field(
-        default=None, description="what it is made of", examples=["steel"]
+        default=None,
+        description=f"what it is made of, in words that name one of {MATERIAL_NAMES}",
+        examples=["galvanised steel"],
     )
     note: Text | None = Field(
         default=None,

@@ -9,7 +9,6 @@ from pydantic import AfterValidator, Field, ValidationInfo, model_validator
 from calm.files.definition import (
     CATALOGUE_DENSITY,
     STANDARD_GRAVITY,
-    STEEL_DENSITY,
     Definition,
     Diameter,
     MaterialDensity,
@@ -20,6 +19,7 @@ from calm.files.definition import (
     volume_from_weights,
 )
 from calm.files.fields import POSITIVE_FORCE, QuantityField, Role
+from calm.physics.materials import STEEL_DENSITY
 from calm.physics.stretch import ElongationCurve
 
 _LOAD = QuantityField("number", at_least=0, at_most=1)

@@ -47,7 +47,8 @@ RULES = {
         "Current",
         "speed",
         "the strongest current of all environments; the levels that the profile of each has",
-        "0.2 m/s, and less than a fiftieth of that of another environment; a tenth of the depth, "
+        "0.2 m/s; 0.9 of the strongest of the record that an environment is a time of; a fiftieth "
+        "of that of another environment; a tenth of the depth, "
         "and 25 m, without a level at either end: a warning",
         "DNV-RP-C205: a wind drives 0.015 to 0.03 of its speed at the surface, 0.2 m/s one of "
         "7 m/s",
@@ -224,7 +225,8 @@ RULES = {
         "figures of pieces and clamps that are impossible for their size and material: lift, "
         "mass, stiffness, strength, depth rating, coefficients of drag",
         "a failure; of a tilt warned of after the limit a warning; unknown where the line gives a "
-        "figure that flatters more than its component's, without a `source`",
+        "figure that flatters more than its component's, without a `source`, and of a `material` "
+        "that names none of those known",
         "The rules of `calm catalog check`",
         _ONCE,
     ),

@@ -1,11 +1,10 @@
-"""How a rope stretches: an elongation curve, and what is published where none is known."""
+"""How a rope stretches: the curve of its elongation."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from itertools import pairwise
 from math import isfinite, sqrt
-from types import MappingProxyType
 from typing import NamedTuple
 
 TRUSTED_LOAD = 0.8
@@ -193,52 +192,3 @@ def _slopes(widths: list[float], chords: list[float]) -> list[float]:
 def _end_slope(width: float, next_width: float, chord: float, next_chord: float) -> float:
     slope = ((2.0 * width + next_width) * chord - width * next_chord) / (width + next_width)
     return max(slope, 0.0)
-
-
-StiffnessLaw = tuple[float, float]
-"""a and b of EA = a D² + b D³ [N/m²], [N/m³]."""
-
-_NYLON: tuple[StiffnessLaw, ...] = ((1.18e8, 0.0), (2.71e8, 0.0), (1.035e9, 1.15e9))
-_POLYESTER: tuple[StiffnessLaw, ...] = ((1.09e9, 0.0), (5.42e8, 0.0), (4.312e9, 0.0))
-_POLYETHYLENE: tuple[StiffnessLaw, ...] = ((5.42e8, 0.0),)
-_HMPE: tuple[StiffnessLaw, ...] = ((7.85e10, 0.0), (3.248e10, 3.6456e10))
-_ARAMID: tuple[StiffnessLaw, ...] = ((5.42e10, 0.0),)
-
-FIBRES: Mapping[str, tuple[StiffnessLaw, ...]] = MappingProxyType(
-    {
-        "nylon": _NYLON,
-        "polyamide": _NYLON,
-        "perlon": _NYLON,
-        "polyester": _POLYESTER,
-        "dacron": _POLYESTER,
-        "polypropylene": ((1.06e9, 0.0), (2.71e8, 0.0)),
-        "polyethylene": _POLYETHYLENE,
-        "polyolefin": (),
-        "hmpe": _HMPE,
-        "dyneema": _HMPE,
-        "spectra": _HMPE,
-        "aramid": _ARAMID,
-        "kevlar": _ARAMID,
-        "vectran": (),
-    }
-)
-"""The published stiffnesses of ropes, by a word in the name of the material.
-
-Sources: the rope tables of OrcaFlex, as MoorPy takes them over (nylon, polyester, polypropylene);
-the moduli of R. Dewey's Mooring Design & Dynamics, on πD²/4; MoorPy's default properties (nylon 5,
-polyester 14, HMPE 56 times its breaking load).
-"""
-
-
-def published_stiffnesses(material: str, diameter: float) -> tuple[float, ...]:
-    """EA of a rope by everyone who gives one for its fibre [N], the softest first.
-
-    Parameters
-    ----------
-    material : as a person writes it; of a blend, the first fibre named
-    diameter : [m]
-    """
-    text = material.lower()
-    named = [fibre for fibre in FIBRES if fibre in text]
-    laws = FIBRES[min(named, key=text.index)] if named else ()
-    return tuple(sorted((a + b * diameter) * diameter**2 for a, b in laws))

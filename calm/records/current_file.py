@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from datetime import UTC
 from pathlib import Path
 
@@ -27,6 +28,8 @@ from calm.records.water_column import Place
 
 _ZARR = ("zarr.json", ".zgroup", ".zmetadata")
 
+_BLOCK = 10_000
+
 
 def read_current_file(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable, list[str]]:
     """Return the profile of a file at a time, and what to report about it.
@@ -44,9 +47,19 @@ def read_current_file(path: Path, time: str | None, terms: Terms) -> tuple[Curre
     TimeChoiceError
         The time is not in the file, or is needed to choose one of several.
     """
-    if holds_arrays(path):
-        return _from_arrays(path, time, terms)
-    return _from_text(path, time, terms)
+    read = _from_arrays if holds_arrays(path) else _from_text
+    table, notices = read(path, time, terms)
+    return (table if time is None else replace(table, record=(path, terms))), notices
+
+
+def strongest_of(path: Path, terms: Terms) -> float:
+    """Return the greatest horizontal speed of a record at any time and depth [m/s]."""
+    strongest = 0.0
+    with (ArrayRecord if holds_arrays(path) else CsvRecord)(path, terms, None, 1) as record:
+        for start in range(0, record.count, _BLOCK):
+            _, u, v, _ = record.profiles(start, min(start + _BLOCK, record.count))
+            strongest = max(strongest, float(np.nanmax(np.hypot(u, v), initial=0.0)))
+    return strongest
 
 
 def open_record(
@@ -137,10 +150,10 @@ def _profile(arrays: CurrentArrays, terms: Terms, notices: list[str]) -> Current
         if reason := too_fast(east, north, up, terms.maximum_speed):
             raise UnreadableError(f"its current at {level:g} m, {reason}")
     order = np.argsort(depth[below])
-    depth, u, v, w = (values[below][order] for values in (depth, u, v, w))
-    if np.any(np.diff(depth) == 0):
+    levels, *speeds = (tuple(values[below][order].tolist()) for values in (depth, u, v, w))
+    if np.any(np.diff(levels) == 0):
         raise UnreadableError("two levels have the same depth")
-    return CurrentTable(*(tuple(values.tolist()) for values in (depth, u, v, w)))
+    return CurrentTable(levels, speeds[0], speeds[1], speeds[2])
 
 
 def _from_text(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable, list[str]]:

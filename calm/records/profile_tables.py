@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TypeVar
 
 from calm.errors import Problem
@@ -57,12 +58,16 @@ _WATER = {
 
 @dataclass(frozen=True)
 class CurrentTable:
-    """Hold a current: east, north and upward speeds [m/s] at increasing depths [m]."""
+    """Hold a current: east, north and upward speeds [m/s] at increasing depths [m].
+
+    `record` is the file of many times that it is one of, and how that is read.
+    """
 
     depth: tuple[float, ...]
     u: tuple[float, ...]
     v: tuple[float, ...]
     w: tuple[float, ...]
+    record: tuple[Path, Terms] | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import StrEnum, auto
 from typing import TYPE_CHECKING
 
-from calm.physics.stretch import FIBRES
+from calm.physics.materials import fibre_of
 
 if TYPE_CHECKING:
     from calm.files import Component
@@ -124,7 +124,7 @@ def _symbol(component: Component, own: str, words: str) -> Symbol:
 def _cable(own: str, words: str) -> Symbol:
     if _METAL.search(own):
         return Symbol.WIRE
-    return Symbol.ROPE if "rope" in words or any(fibre in own for fibre in FIBRES) else Symbol.WIRE
+    return Symbol.ROPE if "rope" in words or fibre_of(own) else Symbol.WIRE
 
 
 def _float(component: Component, own: str) -> Symbol:

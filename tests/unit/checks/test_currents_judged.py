@@ -149,3 +149,23 @@ def test_an_accept_by_nobody_is_told(tmp_path):
             )
             == count
         )
+
+
+RECORD = """\
+time,depth[m],speed[m/s],toward[deg]
+2026-01-01T00:00,0,0.3,90
+2026-01-01T00:00,200,0.2,90
+2026-01-01T06:00,0,0.9,90
+2026-01-01T06:00,200,0.4,90
+"""
+
+
+def test_a_current_weaker_than_its_own_record_is_told(tmp_path):
+    (tmp_path / "record.csv").write_text(RECORD)
+    calm, storm = (
+        of(tmp_path, f"{{file: record.csv, time: '2026-01-01T{hour}:00'}}") for hour in ("00", "06")
+    )
+    told = "The record that this current is of has 0.90 m/s; the strongest current judged is "
+    assert said(calm)[0] == ("warn", f"{told}0.30 m/s.")
+    assert [state for state, _ in said(storm)] == ["pass"]
+    assert [state for state, _ in said(calm, storm)] == ["pass"]

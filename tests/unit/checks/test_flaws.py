@@ -692,6 +692,20 @@ FLAWS = (
         "0.66 V nobler in sea water",
     ),
     Flaw(
+        "a shackle of nobody knows what",
+        FIT,
+        (
+            (
+                "  - {use: shackle-13}\n  - {use: rcm11",
+                "  - {use: shackle-13, label: link, material: hastaloy}\n  - {use: rcm11",
+            ),
+        ),
+        "figures",
+        "link",
+        "unknown",
+        "link is of `hastaloy`, a material that is not known: what it may bear, how it stretches",
+    ),
+    Flaw(
         "a launch that may bear half the working load",
         SLOPE,
         (

@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.interpolate import PchipInterpolator
 
-from calm.physics.stretch import ElongationCurve, mean_curve_strain, published_stiffnesses
+from calm.physics.materials import published_stiffnesses
+from calm.physics.stretch import ElongationCurve, mean_curve_strain
 
 # a braided rope that stiffens, with an uneven table and a flat stretch
 LOADS = (0.0, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7)

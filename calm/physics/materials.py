@@ -1,0 +1,159 @@
+"""What components are made of: the materials known, and what follows from each."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Literal
+
+StiffnessLaw = tuple[float, float]
+"""a and b of EA = a D² + b D³ [N/m²], [N/m³]."""
+
+STEEL_DENSITY = 7850.0
+CONCRETE_DENSITY = 2400.0
+LEAD_DENSITY = 11340.0
+
+
+@dataclass(frozen=True)
+class Material:
+    """Hold what is known of a material.
+
+    Attributes
+    ----------
+    name : as it stands in a file
+    words : pattern of what people call it, from the beginning of a word
+    family : what follows from it: a metal corrodes, a fibre stretches
+    density : of the solid [kg/m³], None where it is that of no one material
+    potential : middle of its corrosion potential in sea water [V]
+    stiffnesses : what is published of ropes of it
+    """
+
+    name: str
+    words: str
+    family: Literal["metal", "fibre", "other"]
+    density: float | None = None
+    potential: float | None = None
+    stiffnesses: tuple[StiffnessLaw, ...] = ()
+
+
+MATERIALS = (
+    Material(
+        "stainless steel",
+        r"(?:super )?duplex(?: stainless)?(?: steel)?|stainl\w*(?: steel)?|inox\w*|nirosta"
+        r"|(?:a[24]|v[24]a|nitronic ?\d*|(?:aisi |ss ?)?(?:304|316)l?|1\.4\d\d\d?)\b(?: stainless)?"
+        r"(?: steel)?",
+        "metal", STEEL_DENSITY, -0.05,
+    ),
+    Material("titanium", r"titan\w*|ti\b", "metal", 4500.0, 0.0),
+    Material("nickel alloy", r"(?:inconel|hastelloy|monel|nickel)\w*", "metal", 8400.0, 0.0),
+    Material("bronze", r"(?:\w+um |nickel |phosphor )?bronze|brass", "metal", 8500.0, -0.35),
+    Material("copper", r"copper|cuivre|kupfer|cu\b", "metal", 8900.0, -0.44),
+    Material("cast iron", r"(?:cast )?iron|fonte|gusseisen", "metal", 7200.0, -0.66),
+    Material(
+        "steel",
+        r"galv\w*\.?(?: steel)?|hdg|steel\w*|stahl\w*|acier|acero|nilspin",
+        "metal", STEEL_DENSITY, -0.66,
+    ),
+    Material("aluminium", r"alumini?um\w*|alu\b", "metal", 2700.0, -0.88),
+    Material("zinc", r"zinc|zink", "metal", 7140.0, -1.0),
+    Material("lead", r"lead\b|blei|plomb", "metal", LEAD_DENSITY),
+    Material(
+        "nylon", r"nylon\w*|polyamide?\w*|perlon|pa6?\b", "fibre", 1140.0,
+        stiffnesses=((1.18e8, 0.0), (2.71e8, 0.0), (1.035e9, 1.15e9)),
+    ),
+    Material(
+        "polyester", r"polyester\w*|dacron|terylene", "fibre", 1380.0,
+        stiffnesses=((1.09e9, 0.0), (5.42e8, 0.0), (4.312e9, 0.0)),
+    ),
+    Material(
+        "polypropylene", r"polypropyl\w*|pp\b", "fibre", 910.0,
+        stiffnesses=((1.06e9, 0.0), (2.71e8, 0.0)),
+    ),
+    Material(
+        "HMPE", r"hmpe|uhmw\w*|dyneema|spectra|plasma|amsteel\w*", "fibre", 975.0,
+        stiffnesses=((7.85e10, 0.0), (3.248e10, 3.6456e10)),
+    ),
+    Material(
+        "polyethylene", r"polyethyl\w*|hdpe|pe\b", "fibre", 950.0, stiffnesses=((5.42e8, 0.0),)
+    ),
+    Material("polyolefin", r"polyolefin\w*", "fibre"),
+    Material(
+        "aramid", r"aramid\w*|kevlar|technora|twaron", "fibre", 1440.0,
+        stiffnesses=((5.42e10, 0.0),),
+    ),
+    Material("Vectran", r"vectran|lcp\b", "fibre", 1410.0),
+    Material("glass", r"(?:fibre|fiber)?glass|verre|glas\b|vitrovex", "other", 2230.0),
+    Material("syntactic foam", r"(?:syntactic|pvc)? ?foam|syntactic|mousse", "other"),
+    Material("concrete", r"concrete|b[ée]ton|cement", "other", CONCRETE_DENSITY),
+    Material(
+        "plastic",
+        r"plastics?|pvc|pom\b|acetal|delrin|peek|abs\b|polyurethane|pu\b|polycarbonate|nitrile|vinyl",
+        "other",
+    ),
+    Material("rubber", r"rubber|neoprene|epdm", "other"),
+    Material("ceramic", r"ceramic\w*|alumina", "other"),
+    Material("wood", r"wood\w*|bois", "other"),
+)  # fmt: skip
+"""Every material that a component can be made of.
+
+Densities are handbook figures. Potentials: the middle of the galvanic series in flowing sea water
+(ASTM G82); galvanised steel counts as steel, which its zinc protects. Stiffnesses of ropes: the
+tables of OrcaFlex, as MoorPy takes them over (nylon, polyester, polypropylene); the moduli of
+R. Dewey's Mooring Design & Dynamics, on πD²/4; MoorPy's default properties (nylon 5, polyester 14,
+HMPE 56 times its breaking load).
+"""
+
+MATERIAL_NAMES = ", ".join(material.name for material in MATERIALS)
+
+_NAMED = re.compile(
+    "|".join(rf"(?P<_{number}>\b(?:{each.words}))" for number, each in enumerate(MATERIALS)),
+    re.IGNORECASE,
+)
+_INSULATED = re.compile(r"plastic|jacket|sheath|coated|insulat", re.IGNORECASE)
+
+
+def materials_in(text: str | None) -> tuple[Material, ...]:
+    """Return the materials that a text names, in its order; none of a text that names none."""
+    found = _NAMED.finditer(text or "")
+    return tuple(MATERIALS[int((match.lastgroup or "_0")[1:])] for match in found)
+
+
+def density_of(text: str | None) -> float | None:
+    """Return the density of the one material that a text names [kg/m³].
+
+    None where it names none, or several that differ.
+    """
+    densities = {material.density for material in materials_in(text)}
+    return densities.pop() if len(densities) == 1 else None
+
+
+def fibre_of(text: str | None) -> Material | None:
+    """Return the fibre of a rope, of a blend the first named; None of wire in a plastic jacket."""
+    named = materials_in(text)
+    if any(material.family == "metal" and material.name != "lead" for material in named):
+        return None
+    return next((material for material in named if material.family == "fibre"), None)
+
+
+def potential_of(text: str | None) -> float | None:
+    """Return the corrosion potential in sea water of the noblest metal named [V].
+
+    None where no metal is named, or where it is insulated.
+    """
+    if text is None or _INSULATED.search(text):
+        return None
+    named = (material.potential for material in materials_in(text))
+    return max((volts for volts in named if volts is not None), default=None)
+
+
+def published_stiffnesses(text: str | None, diameter: float) -> tuple[float, ...]:
+    """Return EA of a rope by everyone who gives one for its fibre [N], the softest first.
+
+    Parameters
+    ----------
+    text : its material as a person writes it
+    diameter : [m]
+    """
+    fibre = fibre_of(text)
+    laws = fibre.stiffnesses if fibre else ()
+    return tuple(sorted((a + b * diameter) * diameter**2 for a, b in laws))
