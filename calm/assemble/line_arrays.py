@@ -11,7 +11,6 @@ import numpy as np
 
 from calm.files import (
     Anchor,
-    Body,
     Cable,
     Chain,
     Component,
@@ -20,6 +19,7 @@ from calm.files import (
     Flexible,
     Piece,
     Rigid,
+    Shaped,
     Solver,
     Sphere,
 )
@@ -126,7 +126,7 @@ def drag_of(
     if isinstance(component, Cylinder):
         kn, kt = drag.cylinder_drag(component.diameter, length, component.cn, component.ct)
         return kn, kt, component.inclination != "insensitive"
-    if isinstance(component, Body):
+    if isinstance(component, Shaped):
         return _body_drag(component)
     if isinstance(component, Flexible):
         return *cable_drag(component, solver or Solver()), True
@@ -158,7 +158,7 @@ def _elongation(component: Component) -> ElongationCurve | None:
     )
 
 
-def _body_drag(body: Body) -> tuple[float, float, bool]:
+def _body_drag(body: Shaped) -> tuple[float, float, bool]:
     if body.made_of is not None:
         kn = kt = 0.0
         follows = False
@@ -222,7 +222,7 @@ def _clamped_drag(component: Component) -> float:
 
 
 def _lift(component: Component) -> float:
-    return (component.lift or 0.0) if isinstance(component, Body) else 0.0
+    return (component.lift or 0.0) if isinstance(component, Shaped) else 0.0
 
 
 def _compliance(component: Component) -> float:

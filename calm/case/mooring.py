@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -14,11 +14,14 @@ from calm.assemble import assemble_floating, assemble_line, assemble_water, net_
 from calm.case.measure import result_of
 from calm.case.memory import Forgetful, Memory
 from calm.case.parts import naming_the_piece, parts_of
+from calm.case.profilers import profilers_of
 from calm.case.result import Result
 from calm.case.tow import Tow
-from calm.case.variant import Origin
 from calm.errors import NoEquilibrium, UsageError
-from calm.files import MooringFile
+from calm.files import MooringFile, read_mooring
+from calm.files.editing import Draft
+from calm.files.editing.draft import LINE, clamps_of
+from calm.files.yaml_document import Location
 from calm.physics.drag import BLOCK_CD, area_drag
 from calm.physics.line import Line, Water
 from calm.physics.materials import STEEL_DENSITY
@@ -26,6 +29,8 @@ from calm.physics.seawater import REFERENCE_DENSITY
 from calm.solve import Settings, Solution, Status, fit_length, solve_mooring
 from calm.solve.problem import COARSE_STEP
 from calm.solve.standing import standing_lift, too_heavy
+from calm.suggestions import unknown
+from calm.whole_file import read_text
 
 
 def load(
@@ -180,6 +185,10 @@ class Mooring:
         assert isinstance(changed, Mooring)
         return changed
 
+    def with_file(self, file: MooringFile) -> Mooring:
+        """Return another line in the same water, meant for what this one is meant for."""
+        return Mooring(file, self.for_surface, self.memory, water=self._water)
+
     def solve(self, environment: str | Path | None = None) -> Result:
         """Find the static equilibrium, in another of its environments where one is given.
 
@@ -191,7 +200,8 @@ class Mooring:
         if environment is not None:
             return self.with_(environment=environment).solve()
         solution = self.equilibrium(self.water)
-        return result_of(self, solution, self.still_beside(solution))
+        result = result_of(self, solution, self.still_beside(solution))
+        return replace(result, profilers=profilers_of(self))
 
     def equilibrium(self, water: Water) -> Solution:
         """The line solved in some water, refused where the mooring is not meant to stand so.
@@ -257,3 +267,55 @@ class Mooring:
             return self.memory.of(solve_mooring, line, self.water.still(), settings)
         except NoEquilibrium:
             return None
+
+
+@dataclass(frozen=True)
+class Origin:
+    """Tell what a mooring was read from; the names are those of `load`."""
+
+    path: str | Path
+    environment: str | Path | None
+    catalogs: tuple[Path, ...]
+    text: str | None
+
+    def read(self) -> MooringFile:
+        """Return the file with all it refers to, as `read_mooring` does."""
+        nearer = list(self.catalogs)
+        return read_mooring(
+            self.path, environment=self.environment, catalogs=nearer, text=self.text
+        )
+
+    def with_values(self, file: MooringFile, label: str | None, keys: Mapping[str, Any]) -> Origin:
+        """Return the same with values put into the text.
+
+        Parameters
+        ----------
+        file : as it was read
+        label : of the piece or clamp that has the keys; None where they are those of the file
+        keys : names and values as the file writes them; None takes a key out; where the file has a
+            mapping under a name, its keys are changed one by one
+
+        Raises
+        ------
+        UsageError
+            No piece and no clamp has the label.
+        """
+        draft = Draft(read_text(Path(self.path)) if self.text is None else self.text)
+        place: Location = () if label is None else _place_of(file, label)
+        for name, value in keys.items():
+            inner = value if isinstance(value, Mapping) and label is None else {None: value}
+            for key, each in inner.items():
+                where = (*place, name) if key is None else (*place, name, key)
+                written = str(each) if isinstance(each, (int, float)) else each
+                draft = draft.put_at(where, written)
+        return replace(self, text=draft.text)
+
+
+def _place_of(file: MooringFile, label: str) -> Location:
+    places = {part.label: part.place for part in parts_of(file.pieces)}
+    if label not in places:
+        raise UsageError(unknown(f"no piece or clamp is labelled `{label}`", label, places))
+    place = places[label]
+    if place.part >= 0 and not place.is_clamp:
+        raise UsageError(f"`{label}` is a part of an assembly; change the assembly")
+    return (*clamps_of(place.item), place.clamp) if place.is_clamp else (*LINE, place.item)

@@ -16,6 +16,7 @@ from calm.files import Clamp, Piece
 
 if TYPE_CHECKING:
     from calm.case.mooring import Mooring
+    from calm.case.profilers import ProfilerTravel
     from calm.case.tow import TowResult
     from calm.files import Clamp, MooringFile, Piece
 
@@ -150,7 +151,8 @@ class Result(Solved):
     """A converged mooring. Lengths and depths [m], forces [N], angles [degrees].
 
     `still_shape` is the same line without current, None where that has no unique shape,
-    `other_grounded_length` what lies on the seabed in another equilibrium.
+    `other_grounded_length` what lies on the seabed in another equilibrium. `profilers` are on their
+    way; the rest of the result is of all of them at their upper stops.
     """
 
     mooring: Mooring = field(repr=False)
@@ -158,6 +160,7 @@ class Result(Solved):
     anchor: AnchorLoad
     still_shape: Shape | None = field(repr=False)
     other_grounded_length: float = 0.0
+    profilers: tuple[ProfilerTravel, ...] = ()
 
     @property
     def other_equilibrium(self) -> dict[str, float] | None:
@@ -181,4 +184,7 @@ class Result(Solved):
 
     def to_dict(self) -> dict[str, Any]:
         """The JSON object of the result format; None stands where a figure is unknown."""
-        return document_of(self, {"top": asdict(self.top), "anchor": asdict(self.anchor)})
+        ends: dict[str, Any] = {"top": asdict(self.top), "anchor": asdict(self.anchor)}
+        if self.profilers:
+            ends["profilers"] = [asdict(each) for each in self.profilers]
+        return document_of(self, ends)

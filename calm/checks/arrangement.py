@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
+from math import cos, radians, sin
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,11 +15,20 @@ from calm.case.parts import clamps_in
 from calm.case.parts import parts_of as every_part
 from calm.case.warnings import is_synthetic
 from calm.checks.criterion import JudgedPart, parts_of
-from calm.checks.finding import State, Verdict, at_most, reported, rule, unknown, verdict_on
+from calm.checks.finding import (
+    State,
+    Verdict,
+    at_least,
+    at_most,
+    reported,
+    rule,
+    unknown,
+    verdict_on,
+)
 from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Recovery
 from calm.drop.launch import Launch
-from calm.files import Cable, Component, Flexible
+from calm.files import Cable, Component, Flexible, Profiler
 from calm.physics.materials import materials_in, potential_of
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.quantities import say
@@ -179,14 +189,15 @@ def clamp_place(handling: Handling) -> Iterator[Verdict]:
         spans = sorted(
             (_span(clamp, clamp.at) for clamp in piece.clamps), key=lambda span: span[:2]
         )
-        for upper, lower in pairwise(spans):
+        fixed = [span for span in spans if not isinstance(span[2].component, Profiler)]
+        for upper, lower in pairwise(fixed):
             if upper[1] - lower[0] > _TOUCH:
                 message = (
                     f"{lower[2].label} overlaps {upper[2].label} by "
                     f"{upper[1] - lower[0]:.2f} m on {piece.label}."
                 )
                 yield verdict_on(lower[2], State.FAIL, message, remedy)
-        for top, bottom, clamp in spans:
+        for top, bottom, clamp in fixed:
             out = max(-top, bottom - lengths[piece.index])
             if out > max(_TOUCH, (bottom - top) / 2.0 + _TOUCH if clamp.at == 0.0 else _TOUCH):
                 message = f"{clamp.label} sticks out {out:.2f} m over the end of {piece.label}."
@@ -285,8 +296,71 @@ def clamp_grip_on_the_way(handling: Handling) -> Iterator[Verdict]:
             yield _verdict(part, *max(pulls))
 
 
+PROFILER_WIRE = 6.35e-3, 9.53e-3
+"""Diameters of jacketed wire that the wheels of moored profilers are made for, 1/4 to 3/8 in [m];
+McLane Moored Profiler, user manual."""
+
+
+@rule("profiler")
+def profiler(result: Result) -> Iterator[Verdict]:
+    """Tension, wire, way and drive of a profiler where it is; it is judged at its stops, too.
+
+    Along the wire it meets its own speed and, at most, the current times the sine of the tilt.
+    What its wheels rub with, and what it weighs by its compressibility, is not known.
+    """
+    water = result.mooring.water
+    for row in result.clamps:
+        part, wire = row.part, result.file.pieces[row.index]
+        component = part.component
+        if not isinstance(component, Profiler):
+            continue
+        least = component.minimum_tension
+        message = f"{wire.label} bears {say('tension', row.tension)} at {part.label}, which"
+        message += f" needs {say('tension', least)} to travel on it."
+        remedy = "Add buoyancy above it, and weight to the anchor."
+        yield at_least(part, row.tension, least, message, remedy)
+        yield from _way_of(part, wire)
+        if component.drive_force is None:
+            told = f"What {part.label} climbs with is not known, nor whether it does in a current."
+            yield unknown(part, told, "Give its `drive_force` and `speed`.")
+            continue
+        flow, density = water.at(np.array(row.depth))
+        lean = radians(row.tilt)
+        past = (component.speed or 0.0) + float(np.linalg.norm(flow)) * sin(lean)
+        drag = axial_drag_of(component) * float(density) / REFERENCE_DENSITY * past**2
+        needed = drag + abs(net_buoyancy(component, water.gravity)) * cos(lean)
+        message = (
+            f"{part.label} needs {say('tension', needed)} along {wire.label} against drag and its "
+            f"own weight; its drive has {say('tension', component.drive_force)}."
+        )
+        remedy = "Straighten the wire with more buoyancy, or let it travel slower."
+        yield at_most(part, needed, component.drive_force, message, remedy)
+
+
+def _way_of(part: Clamp, wire: Piece) -> Iterator[Verdict]:
+    """Yield what stands in the way of a profiler, and the wire that it does not fit."""
+    upper, lower = part.travel or (0.0, 0.0)
+    for other in wire.clamps:
+        if upper < other.at < lower and other is not part:
+            message = f"{other.label} stands in the way of {part.label}, {other.at:.0f} m down."
+            yield verdict_on(part, State.FAIL, message, "Move it beyond one of the stops.")
+    thin, thick = PROFILER_WIRE
+    diameter = getattr(wire.component, "diameter", 0.0)
+    if not thin <= round(diameter, 5) <= thick:
+        message = (
+            f"{wire.label} is {1000.0 * diameter:.1f} mm thick; profilers travel on jacketed wire "
+            f"of {1000.0 * thin:.2f} to {1000.0 * thick:.2f} mm."
+        )
+        yield verdict_on(part, State.WARN, message, "Ask its maker.", diameter)
+
+
 def _clamps(mooring: Mooring) -> list[JudgedPart]:
-    return [part for part in parts_of(mooring) if part.clamp is not None]
+    """Return what is clamped on the line; a profiler is not."""
+    return [
+        part
+        for part in parts_of(mooring)
+        if part.clamp is not None and not isinstance(part.component, Profiler)
+    ]
 
 
 def _length_drag(part: JudgedPart) -> float:

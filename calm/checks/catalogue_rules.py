@@ -16,7 +16,7 @@ from calm.checks.criterion import said
 from calm.checks.finding import State, Verdict, rule, unknown, verdict_on
 from calm.checks.inventory import mass_in_air
 from calm.checks.posture import JUDGED_ROLES
-from calm.files import Anchor, Cable, Chain, Component, Cylinder, Flexible, Sphere
+from calm.files import Anchor, Cable, Chain, Component, Cylinder, Flexible, Profiler, Sphere
 from calm.files.catalogue import Assembly
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
 from calm.physics.materials import (
@@ -309,7 +309,7 @@ def missing_figures(definitions: Mapping[str, Component | Assembly]) -> list[Mis
 def _missing(component: Component) -> Iterator[str]:
     if mass_in_air(component) is None:
         yield "mass"
-    borne = not isinstance(component, Anchor)
+    borne = not isinstance(component, Anchor | Profiler)
     if borne and all(getattr(component, load) is None for load in LOADS):
         yield from LOADS
     if component.role in JUDGED_ROLES and component.depth_rating is None:

@@ -18,7 +18,6 @@ from calm.assemble import drag_of, net_buoyancy
 from calm.case import Result
 from calm.files import (
     Anchor,
-    Body,
     Cable,
     Chain,
     Clamp,
@@ -27,6 +26,7 @@ from calm.files import (
     Flexible,
     Fouling,
     Piece,
+    Shaped,
     Sphere,
 )
 from calm.files.components import FlexibleComponent, RigidComponent
@@ -130,7 +130,7 @@ def _larger(
         if length > 0.0:
             update["cn"] = across * kn / (0.5 * REFERENCE_DENSITY * d * length)
         update["ct"] = along * kt / (0.5 * REFERENCE_DENSITY * pi * d**2 / 4.0)
-    elif isinstance(component, Body):
+    elif isinstance(component, Shaped):
         update = dict.fromkeys(("drag_area", "cd", "drag_measurements", "made_of", "inclination"))
         update |= {"kn": across * kn, "kt": along * kt if directional else None}
     else:

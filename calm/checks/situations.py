@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from calm.case import Mooring, Result
 from calm.case.parts import cut_like
+from calm.case.profilers import held, profilers_in
 from calm.case.strumming import FACTOR
 from calm.checks.assessment import Situation
 from calm.checks.finding import AS_GIVEN, State, Verdict, at_most, rule, unknown
@@ -38,7 +39,8 @@ def situations_of(mooring: Mooring) -> tuple[Situation, ...]:
     """The mooring solved as given, then in every situation that its file asks for.
 
     Still water, high and low water, and still low water where the environment has a `depth_range`,
-    growth where it has `fouling`, cables with Cn × 1.5 where no law of strumming is in use, and the
+    profilers at their lower stops and where the wire leans most, growth where it has `fouling`,
+    cables with Cn × 1.5 where no law of strumming is in use, and the
     depth and lengths of `deployed` where they are others than those of the design.
     Pieces that are cut to fit keep the length that fits as given. Still water in which a line to
     the surface is slack, since it is longer than the water is deep, has no unique shape and is
@@ -61,7 +63,7 @@ def solved(name: str, mooring: Mooring) -> Situation:
 
 
 def _changed(mooring: Mooring, given: Result) -> Iterator[tuple[str, Mooring]]:
-    file, surface = cut_like(mooring.file, mooring), reaches_the_surface(given.mooring)
+    file, surface = held(cut_like(mooring.file, mooring)), reaches_the_surface(given.mooring)
     environment = file.environment
 
     def changed(depth: float | None = None, **what: Any) -> Mooring:
@@ -77,6 +79,12 @@ def _changed(mooring: Mooring, given: Result) -> Iterator[tuple[str, Mooring]]:
         low, high = environment.depth_range
         yield HIGH, changed(high)
         yield LOW, changed(low)
+    for clamp, travel in zip(profilers_in(mooring), given.profilers, strict=True):
+        lower = changed(pieces=held(file, clamp.place, travel.lower.at).pieces)
+        yield f"{clamp.label} at its lower stop", lower
+        if travel.worst not in (travel.upper, travel.lower):
+            leaning = changed(pieces=held(file, clamp.place, travel.worst.at).pieces)
+            yield f"{clamp.label} where its wire leans most", leaning
     if environment.fouling is not None:
         yield FOULED, changed(pieces=grown(file.pieces, given, environment.fouling))
     if file.solver.strumming is None and any(isinstance(p.component, Cable) for p in file.pieces):

@@ -2,12 +2,12 @@
 
 from calm.files.catalogue import Assembly, Catalogue
 from calm.files.check_limits import Accept, Checks, SafetyFactors
-from calm.files.components import Anchor, Body, Cable, Chain, Component, Cylinder, Sphere
+from calm.files.components import Anchor, Body, Cable, Chain, Component, Cylinder, Profiler, Sphere
 from calm.files.environment import Environment, Fouling, Position, Wind
 from calm.files.flexible import Flexible
 from calm.files.mooring_file import Clamp, LinePart, MooringFile, Piece, Place, Solver, TowKeys
 from calm.files.reader import read_mooring
-from calm.files.rigid import Rigid
+from calm.files.rigid import Rigid, Shaped
 from calm.files.schema import mooring_schema
 from calm.files.strumming_keys import (
     AmplitudeModel,
@@ -44,9 +44,11 @@ __all__ = [
     "Piece",
     "Place",
     "Position",
+    "Profiler",
     "Rigid",
     "SafetyFactors",
     "SeaWater",
+    "Shaped",
     "Solver",
     "Sphere",
     "Spread",

@@ -25,7 +25,17 @@ from calm.files.definition import (
 )
 from calm.files.fields import QuantityField, Role
 from calm.files.flexible import Cable, Chain, Flexible
-from calm.files.rigid import DRAG_FORMS, Body, Cylinder, CylinderShape, Rigid, Sphere, SphereShape
+from calm.files.rigid import (
+    DRAG_FORMS,
+    Body,
+    Cylinder,
+    CylinderShape,
+    Profiler,
+    Rigid,
+    Shaped,
+    Sphere,
+    SphereShape,
+)
 from calm.physics.materials import STEEL_DENSITY, density_of
 
 __all__ = [
@@ -40,7 +50,9 @@ __all__ = [
     "Cylinder",
     "CylinderShape",
     "FlexibleComponent",
+    "Profiler",
     "RigidComponent",
+    "Shaped",
     "Sphere",
     "SphereShape",
 ]
@@ -96,7 +108,7 @@ class Anchor(Definition):
         return self
 
 
-RigidComponent = Sphere | Cylinder | Body
+RigidComponent = Sphere | Cylinder | Body | Profiler
 FlexibleComponent = Cable | Chain
 Component = RigidComponent | FlexibleComponent | Anchor
 
@@ -104,6 +116,7 @@ KINDS: dict[str, type[Component]] = {
     "sphere": Sphere,
     "cylinder": Cylinder,
     "body": Body,
+    "profiler": Profiler,
     "cable": Cable,
     "chain": Chain,
     "anchor": Anchor,
@@ -134,7 +147,7 @@ def contradicted(kind: str, base: Set[str], override: Set[str]) -> frozenset[str
     ================ =========================== ==============================================
     kind             override gives              dropped from the definition
     ================ =========================== ==============================================
-    body             a drag in another form      its own form, with the `kt` that went with it
+    body, profiler   a drag in another form      its own form, with the `kt` that went with it
     rigid            `buoyancy`                  `volume`
     rigid            `mass` or `volume`, both    `buoyancy`, which then follows from them
                      being known
@@ -148,7 +161,7 @@ def contradicted(kind: str, base: Set[str], override: Set[str]) -> frozenset[str
     """
     known = base | override
     void: set[str] = set()
-    if kind == "body":
+    if kind in ("body", "profiler"):
         for form in DRAG_FORMS:
             if override & set(form) and not base & set(form):
                 void = set(_DRAG_KEYS)

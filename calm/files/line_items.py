@@ -9,7 +9,7 @@ from dataclasses import replace
 from calm.errors import Problem
 from calm.files.catalogue import Assembly, Catalogue, CatalogueEntry, define
 from calm.files.check_limits import LimitKey
-from calm.files.components import KINDS, Anchor, Cable, Component, contradicted
+from calm.files.components import KINDS, Anchor, Cable, Component, Profiler, contradicted
 from calm.files.definition import IN_AIR
 from calm.files.fields import LENGTH, POSITIVE_LENGTH, QuantityField, quantity_of
 from calm.files.flexible import Flexible, strain_under
@@ -146,6 +146,9 @@ class LineReader:
     def _piece(self, component: Component, item: SourceMapping) -> Piece:
         length: float | None
         load = 0.0
+        if isinstance(component, Profiler):
+            message = "a profiler rides on a wire: give it among the `clamps` of that"
+            self._refuse(item, ("use",), message)
         if not isinstance(component, Flexible):
             length = component.length
         elif item.data.get("length") == "fit":
@@ -226,7 +229,12 @@ class LineReader:
         for clamp in self._items(item, "clamps") if "clamps" in item.data else ():
             entry = self._entry(clamp)
             component = self._definition(entry, clamp, _CLAMP_KEYS) if entry else None
-            at = self._quantity(clamp, "at", LENGTH, "the distance from the top of the piece")
+            at: float | None = 0.0
+            if entry is None or entry.section.data.get("kind") != "profiler":
+                at = self._quantity(clamp, "at", LENGTH, "the distance from the top of the piece")
+            elif "at" in clamp.data:
+                message = "a profiler has no place of its own: it travels `between` two stops"
+                self._refuse(clamp, ("at",), message, key=True)
             if at is not None and length is not None and at > length:
                 message = f"`at: {shown(clamp.data['at'])}` is beyond the piece, {length:g} m long"
                 self._refuse(clamp, ("at",), message)

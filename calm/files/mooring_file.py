@@ -7,19 +7,22 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Annotated, Any, Literal, Protocol
 
 from pydantic import AfterValidator, Field
 
+from calm.errors import Problem
 from calm.files.check_limits import Accept, Checks, LimitKey
-from calm.files.components import Anchor, Component
+from calm.files.components import Anchor, Component, Profiler
 from calm.files.environment import Environment, Position
 from calm.files.fields import LENGTH, Model, QuantityField
 from calm.files.logbook import NO_EQUIPMENT, Deployed, DocumentKeys, Equipment, ReleaseKeys
 from calm.files.strumming_keys import Strumming
 from calm.files.uncertainty import Uncertainty
+from calm.files.yaml_document import SourceMapping
+from calm.suggestions import unknown
 
 
 class TowKeys(Model):
@@ -141,7 +144,11 @@ class LinePart(Protocol):
 
 @dataclass(frozen=True)
 class Clamp:
-    """Represent an instrument fixed to a piece, `at` metres (unstretched) from the piece's top."""
+    """Represent an instrument fixed to a piece, `at` metres (unstretched) from the piece's top.
+
+    A profiler travels over `travel`, the same distance of its upper and its lower stop; inf is the
+    end of the piece. It is taken to be `at` its upper one.
+    """
 
     use: str
     label: str
@@ -149,6 +156,7 @@ class Clamp:
     at: float
     place: Place
     equipment: Equipment = NO_EQUIPMENT
+    travel: tuple[float, float] | None = None
 
     @property
     def serial(self) -> str | None:
@@ -299,3 +307,57 @@ def numbered(pieces: Iterable[Piece]) -> tuple[Piece, ...]:
         )
         for index, piece in enumerate(pieces)
     )
+
+
+def travelling(
+    pieces: Sequence[Piece], top: SourceMapping, problems: list[Problem]
+) -> tuple[Piece, ...]:
+    """Give each profiler the way that it travels, by the labels of its stops.
+
+    Parameters
+    ----------
+    pieces : of a line, numbered
+    top : the file; stops that cannot be are added to `problems`
+    """
+    return tuple(
+        replace(
+            piece,
+            clamps=tuple(
+                _travelling(clamp, piece, pieces, top, problems)
+                if isinstance(clamp.component, Profiler)
+                else clamp
+                for clamp in piece.clamps
+            ),
+        )
+        for piece in pieces
+    )
+
+
+def _travelling(
+    clamp: Clamp,
+    piece: Piece,
+    pieces: Sequence[Piece],
+    top: SourceMapping,
+    problems: list[Problem],
+) -> Clamp:
+    stops = {each.label: 0.0 if each.index < piece.index else math.inf for each in pieces}
+    del stops[piece.label]
+    stops |= {each.label: each.at for each in piece.clamps if each.travel is None}
+    stops.pop(clamp.label, None)
+    assert isinstance(clamp.component, Profiler)
+    between = clamp.component.between or ()
+    place, lacks = clamp.place, "" if between else f"no stops of {clamp.label}"
+    row = ("line", place.item, *(() if place.part >= 0 else ("clamps", place.clamp)))
+    messages = [] if between else ["a profiler needs `between: [upper stop, lower stop]`"]
+    messages += [
+        unknown(f"`{label}` is no stop on `{piece.label}`, nor a piece beside it", label, stops)
+        for label in between
+        if label not in stops
+    ]
+    if not messages and between and not stops[between[0]] < stops[between[1]]:
+        messages = [f"`{between[0]}` is not above `{between[1]}`: give the upper stop first"]
+    problems += [top.problem(row, message, lacks=lacks) for message in messages]
+    if messages or not between:
+        return clamp
+    upper, lower = (stops[label] for label in between)
+    return replace(clamp, at=upper, travel=(upper, lower))

@@ -30,6 +30,7 @@ from calm.files.mooring_file import (
     Solver,
     TowKeys,
     numbered,
+    travelling,
 )
 from calm.files.uncertainty import Uncertainty
 from calm.files.yaml_document import SourceMapping, compose, read_document
@@ -172,7 +173,7 @@ def read_mooring(
         pieces = (*pieces, _stand_in(len(top.data["line"])))
     (_check_tow if towed else _check_anchor)(pieces, top, problems)
     _check_one_fit(pieces, top, problems)
-    pieces = numbered(pieces)
+    pieces = travelling(numbered(pieces), top, problems) if line_is_whole else numbered(pieces)
     checks = (keys and keys.checks) or Checks()
     labels = _labels(pieces) if line_is_whole else None
     accepts = read_accepts(checks.accept, labels, top, problems)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Discriminator, Field, Tag, ValidationInfo, model_validator
+from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationInfo, model_validator
 
 from calm.files.definition import (
     CATALOGUE_DENSITY,
@@ -21,7 +21,16 @@ from calm.files.definition import (
     refuse_weight_above_mass,
     volume_from_weights,
 )
-from calm.files.fields import COEFFICIENT, DRAG, LENGTH, Model, QuantityField
+from calm.files.fields import (
+    COEFFICIENT,
+    DRAG,
+    LENGTH,
+    POSITIVE_FORCE,
+    POSITIVE_LENGTH,
+    Model,
+    QuantityField,
+    Text,
+)
 from calm.physics.hull import tabulated_hull
 
 _AREA = QuantityField("area", at_least=0)
@@ -167,6 +176,12 @@ class Cylinder(Rigid):
     surface: Surface = None
 
 
+def _two_stops(value: object) -> object:
+    if value is not None and (not isinstance(value, list | tuple) or len(value) != 2):
+        raise ValueError("`between` names two stops: `between: [upper stop, lower stop]`")
+    return value
+
+
 class DragMeasurement(Model):
     """A drag measured at a speed [m/s, N]."""
 
@@ -208,10 +223,9 @@ DRAG_FORMS: tuple[tuple[str, ...], ...] = (
 """The ways a body may give its drag; exactly one of them."""
 
 
-class Body(Rigid):
+class Shaped(Rigid):
     """A piece of any shape that gives its drag in one of the `DRAG_FORMS`."""
 
-    kind: Literal["body"] = Field(description="which kind of component it is")
     length: Length
     kn: Annotated[float | None, DRAG] = Field(
         default=None,
@@ -243,7 +257,7 @@ class Body(Rigid):
     )
 
     @model_validator(mode="after")
-    def _drag_is_given_once(self) -> Body:
+    def _drag_is_given_once(self) -> Shaped:
         ways = [[key for key in form if getattr(self, key) is not None] for form in DRAG_FORMS]
         given = [keys for keys in ways if keys]
         if len(given) != 1:
@@ -264,3 +278,39 @@ class Body(Rigid):
             other = "`made_of`" if self.made_of else "`inclination: insensitive`"
             raise ValueError(f"`kt` has no meaning with {other}")
         return self
+
+
+class Body(Shaped):
+    """A body on the line or in it."""
+
+    kind: Literal["body"] = Field(description="which kind of component it is")
+
+
+LEAST_WIRE_TENSION = 2224.0
+"""Of the wire of a McLane Moored Profiler, 500 lbf by its manual [N]."""
+
+
+class Profiler(Shaped):
+    """A profiler that travels along a wire, from one stop to another and back."""
+
+    kind: Literal["profiler"] = Field(description="which kind of component it is")
+    between: Annotated[tuple[Text, ...] | None, BeforeValidator(_two_stops)] = Field(
+        default=None,
+        description="labels of its upper and its lower stop: what is clamped on its wire, or "
+        "pieces at the ends of that",
+        examples=[["upper bumper", "lower bumper"]],
+    )
+    minimum_tension: Annotated[float, POSITIVE_FORCE] = Field(
+        default=LEAST_WIRE_TENSION,
+        description="that its wire needs where it travels",
+        examples=["2224 N"],
+    )
+    drive_force: Annotated[float | None, POSITIVE_FORCE] = Field(
+        default=None, description="that it can climb with", examples=["50 N"]
+    )
+    speed: Annotated[float | None, QuantityField("speed", above=0)] = Field(
+        default=None, description="along its wire", examples=["0.25 m/s"]
+    )
+    endurance: Annotated[float | None, POSITIVE_LENGTH] = Field(
+        default=None, description="way that its batteries last for", examples=["1000 km"]
+    )

@@ -81,6 +81,17 @@ RULES = {
         "the result does not hold the current at each clamp",
         figures=("grip",),
     ),
+    "profiler": RuleText(
+        "Profiler on its wire",
+        "tension",
+        "tension of the wire, what stands in the way and what the drive has to overcome, at both "
+        "stops and where the wire leans most",
+        "`minimum_tension` of the profiler, 2224 N; its `drive_force`; jacketed wire of 6.35 to "
+        "9.53 mm, else a warning",
+        "McLane Moored Profiler, user manual",
+        "the profiles of a record are solved with it at its upper stop",
+        figures=("drive_force",),
+    ),
     "strength-steps": RuleText(
         "Strength steps",
         "tension",

@@ -94,7 +94,7 @@ def density(
     """
     import gsw
 
-    pressure = gsw.p_from_z(-np.asarray(depth, dtype=float), latitude)
+    pressure = pressure_at(depth, latitude)
     if longitude is None or latitude < SOUTHERNMOST:
         absolute = gsw.SR_from_SP(salinity)
     else:
@@ -115,8 +115,15 @@ def potential_density(temperature: ArrayLike, salinity: ArrayLike, depth: ArrayL
     import gsw
 
     absolute = gsw.SR_from_SP(salinity)
-    pressure = gsw.p_from_z(-np.asarray(depth, dtype=float), MID_LATITUDE)
+    pressure = pressure_at(depth, MID_LATITUDE)
     return absolute_density(absolute, gsw.CT_from_t(absolute, temperature, pressure), 0.0)
+
+
+def pressure_at(depth: ArrayLike, latitude: float) -> Floats:
+    """Return the pressure of the sea [dbar] at depths [m] at a latitude [degrees], by TEOS-10."""
+    import gsw
+
+    return np.asarray(gsw.p_from_z(-np.asarray(depth, dtype=float), latitude), dtype=float)
 
 
 def absolute_density(
@@ -139,5 +146,5 @@ def absolute_density(
     """
     import gsw
 
-    pressure = gsw.p_from_z(-np.asarray(depth, dtype=float), latitude)
+    pressure = pressure_at(depth, latitude)
     return np.asarray(gsw.rho(absolute_salinity, conservative_temperature, pressure), dtype=float)

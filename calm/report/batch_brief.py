@@ -19,6 +19,7 @@ from calm.report.batch_summary import (
     refusals,
     rules_table,
     standing,
+    stops_tables,
 )
 from calm.report.blocks import (
     Block,
@@ -59,6 +60,7 @@ def summary_part(summary: Summary) -> ReportPart:
         _parts(summary),
         replace(rules_table(summary), title="", note=""),
         *([Prose((note,), State.WARN)] if note else []),
+        *stops_tables(summary),
         profiles_table("", worst),
         *_levels(summary),
         *([Prose(missing, State.WARN)] if missing else []),

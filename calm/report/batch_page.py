@@ -25,6 +25,7 @@ from calm.report.batch_summary import (
     refusals,
     rules_table,
     standing,
+    stops_tables,
     summary_document,
     when,
 )
@@ -77,6 +78,7 @@ def summary_report(summary: Summary) -> Report:
                 *_left_out(summary),
             ),
         ),
+        *(ReportPart(table.title, (table,)) for table in stops_tables(summary)),
         ReportPart("Return levels", (*levels_tables(summary), Prose((_EXTRAPOLATED,)))),
         ReportPart("Worst profiles", tuple(worst_tables(summary))),
         ReportPart(

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.batch.statistics.extremes import Fit, LevelsRefused
-from calm.batch.statistics.summary import PERCENTILES, Summary
+from calm.batch.statistics.summary import PERCENTILES, STOP_SHARES, Summary
 from calm.checks.finding import State
 from calm.report.blocks import Cell, Column, Field, Table, table_of
 from calm.report.check_documents import limit_document
@@ -56,6 +56,7 @@ def summary_document(summary: Summary) -> dict[str, Any]:
         },
         "components": [said for clamped, said in parts if not clamped],
         "clamps": [said for clamped, said in parts if clamped],
+        **({"profiler_stops": [vars(one) for one in summary.stops]} if summary.stops else {}),
         "rules": [_rule(rule) for rule in summary.rules],
         "limits": [_limit(rule, one) for rule in summary.rules for one in rule.exceedances],
         "limits_used": [limit_document(key) for key in summary.limits_used],
@@ -282,3 +283,27 @@ def refusals(summary: Summary) -> Iterator[str]:
                 reasons.setdefault(said, []).append(TITLES[response.name])
     for said, of in reasons.items():
         yield said if len(of) == len(summary.responses) else f"{', '.join(of)}: {said}"
+
+
+def stops_tables(summary: Summary) -> Iterator[Table]:
+    """Return the depths of the stops of the profilers, as they are typed into these; none where
+    there are none.
+    """
+    if not summary.stops:
+        return
+    columns = [Column("profiler"), Column("stop")]
+    columns += [Column(f"{share:g} %\ndbar", numeric=True) for share in STOP_SHARES]
+    columns += [Column(f"{share:g} %\nm", numeric=True) for share in STOP_SHARES]
+    rows = tuple(
+        tuple(
+            Cell(text)
+            for text in (
+                one.profiler,
+                one.stop,
+                *(f"{figure:.1f}" for figure in (*one.pressures, *one.depths)),
+            )
+        )
+        for one in summary.stops
+    )
+    note = "In that share of the profiles the stop is not deeper."
+    yield Table("Stops of profilers", tuple(columns), rows, note=note)

@@ -21,6 +21,7 @@ from calm.solve import Status
 
 if TYPE_CHECKING:
     from calm.case import Result, TowResult
+    from calm.case.profilers import ProfilerTravel
     from calm.case.result_tables import ClampRow, ComponentRow
     from calm.case.strumming import StrummingBand
     from calm.files import Component
@@ -94,6 +95,15 @@ def _mooring(result: Result, places: bool) -> Sheet:
     )
 
 
+def _travel(profiler: ProfilerTravel) -> str:
+    """Return the way of a profiler: its stops, and where its wire leans most."""
+    upper, lower, worst = (
+        f"{say('depth', place.depth)} ({say('tension', place.tension)}, {say('tilt', place.tilt)})"
+        for place in (profiler.upper, profiler.lower, profiler.worst)
+    )
+    return f"{profiler.label} travels from {upper} to {lower}; its wire leans most at {worst}"
+
+
 def _mooring_summary(result: Result) -> tuple[Prose, ...]:
     """The top, and the loads on the anchor."""
     top, anchor = result.top, result.anchor
@@ -118,6 +128,7 @@ def _mooring_summary(result: Result) -> tuple[Prose, ...]:
         result,
         f"Top {at}",
         *([hull] if top.draft is not None else []),
+        *map(_travel, result.profilers),
         f"Anchor pulled by {pull}",
         (Span(f"Anchor weighs {weighs} {mark}".rstrip(), mark.state),),
         *_strumming(result),

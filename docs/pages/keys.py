@@ -40,6 +40,7 @@ _SECTIONS = {
     "Sphere": "`kind: sphere`",
     "Cylinder": "`kind: cylinder`",
     "Body": "`kind: body`",
+    "Profiler": "`kind: profiler`",
     "SphereShape": "`made_of:`, a sphere",
     "CylinderShape": "`made_of:`, a cylinder",
     "DragMeasurement": "`drag_measurements:`, an item",

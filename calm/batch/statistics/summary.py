@@ -20,13 +20,16 @@ from calm.batch.statistics.limits import (
     top_knockdown,
     top_offset,
 )
-from calm.batch.statistics.series import Column, ResultColumns, Times
+from calm.batch.statistics.series import Column, ResultColumns, Seat, Times
 from calm.batch.statuses import Ending, endings
 from calm.batch.stored_result import Stored
 from calm.case import Mooring
+from calm.case.profilers import profilers_in
 from calm.checks.criterion import limits_used
 from calm.checks.posture import reaches_the_surface
+from calm.files import Profiler
 from calm.files.check_limits import LimitKey
+from calm.physics.seawater import MID_LATITUDE, pressure_at
 
 WORST = 20
 """Profiles listed as the worst of a response."""
@@ -45,6 +48,20 @@ class PartDistributions:
     knockdown: Distribution | None
     tilt: Distribution | None
     tension: Distribution | None
+
+
+@dataclass(frozen=True)
+class StopDepths:
+    """Hold how deep a stop of a profiler is: depths [m] and pressures [dbar] at `STOP_SHARES`."""
+
+    profiler: str
+    stop: str
+    depths: tuple[float, ...]
+    pressures: tuple[float, ...]
+
+
+STOP_SHARES = (1.0, 50.0, 99.0)
+"""Percentiles of the depth of a stop."""
 
 
 @dataclass(frozen=True)
@@ -98,6 +115,7 @@ class Summary:
     not_judged : why others are not, by their names
     source : what the result says of where it comes from, by the names in `SOURCE`
     limits_used : what the rules judge by, each with its default
+    stops : of the profilers, down the line
     """
 
     name: str
@@ -114,6 +132,7 @@ class Summary:
     not_judged: Mapping[str, str]
     source: Mapping[str, str]
     limits_used: tuple[LimitKey, ...] = ()
+    stops: tuple[StopDepths, ...] = ()
 
     @property
     def solved(self) -> int:
@@ -176,6 +195,7 @@ def summarize(
             not_judged=NOT_JUDGED,
             source={name: str(dataset.attrs[name]) for name in SOURCE if name in dataset.attrs},
             limits_used=limits_used(mooring.file, reaches_the_surface(mooring)),
+            stops=tuple(_stops(series, mooring)),
         )
 
 
@@ -191,6 +211,23 @@ def _parts(series: ResultColumns) -> Iterator[PartDistributions]:
             of(series.tilt(seat)),
             of(series.greatest_tension([seat])),
         )
+
+
+def _stops(series: ResultColumns, mooring: Mooring) -> Iterator[StopDepths]:
+    seats = {series.label(seat): seat for seat in series.seats}
+    position = mooring.file.environment.position or mooring.file.position
+    latitude = MID_LATITUDE if position is None else position.latitude
+    for profiler in profilers_in(mooring):
+        assert isinstance(profiler.component, Profiler)
+        for stop, label in zip(("upper", "lower"), profiler.component.between or (), strict=True):
+            seat = seats[label]
+            if stop == "upper" and not seat.clamped:  # it ends where what follows begins
+                seat = Seat(seat.number + 1)
+            depths = np.nanpercentile(series.depth(seat), STOP_SHARES)
+            pressures = pressure_at(depths, latitude)
+            yield StopDepths(
+                profiler.label, stop, tuple(depths.tolist()), tuple(pressures.tolist())
+            )
 
 
 def _anchor_tension(series: ResultColumns) -> Column:

@@ -1,0 +1,115 @@
+"""A profiler along its wire: the line solved with it at its stops and between them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import isinf
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from calm.case.parts import clamps_in, cut_like
+from calm.errors import NoEquilibrium
+from calm.files import Clamp, MooringFile, Place
+
+if TYPE_CHECKING:
+    from calm.case.mooring import Mooring
+
+PLACES = 11
+"""Where on its way a profiler is solved for, its two stops among them."""
+
+
+@dataclass(frozen=True)
+class ProfilerPlace:
+    """Hold what a profiler finds at a place on its way: depth [m], tension [N], tilt [degrees].
+
+    `at` is the distance from the top of its wire, without load [m].
+    """
+
+    at: float
+    depth: float
+    tension: float
+    tilt: float
+
+
+@dataclass(frozen=True)
+class ProfilerTravel:
+    """Hold a profiler at its upper and its lower stop, and where its wire leans most."""
+
+    label: str
+    upper: ProfilerPlace
+    lower: ProfilerPlace
+    worst: ProfilerPlace
+
+
+def profilers_of(mooring: Mooring) -> tuple[ProfilerTravel, ...]:
+    """Return every profiler of a line on its way; the others stay at their upper stops.
+
+    Raises
+    ------
+    NoEquilibrium
+        The line does not stand with a profiler at one of its `PLACES`.
+    """
+    return tuple(_travel(mooring, clamp) for clamp in profilers_in(mooring))
+
+
+def profilers_in(mooring: Mooring) -> list[Clamp]:
+    """Return the profilers that travel on a line."""
+    return [clamp for clamp in clamps_in(mooring.file.pieces) if clamp.travel is not None]
+
+
+def _travel(mooring: Mooring, clamp: Clamp) -> ProfilerTravel:
+    upper, lower = way_of(mooring, clamp)
+    places = [_found(mooring, clamp, float(at)) for at in np.linspace(upper, lower, PLACES)]
+    worst = max(places, key=lambda place: place.tilt)
+    return ProfilerTravel(clamp.label, places[0], places[-1], worst)
+
+
+def way_of(mooring: Mooring, clamp: Clamp) -> tuple[float, float]:
+    """Return the distances of a profiler's stops from the top of its wire, without load [m].
+
+    Raises
+    ------
+    NoEquilibrium
+        The wire is cut to fit, and no length fits.
+    """
+    assert clamp.travel is not None
+    upper, lower = clamp.travel
+    if isinf(lower):
+        on = next(piece.index for piece in mooring.file.pieces if clamp in piece.clamps)
+        lower = float(mooring.line.length[on])
+    return upper, lower
+
+
+def _found(mooring: Mooring, clamp: Clamp, at: float) -> ProfilerPlace:
+    try:
+        file = held(cut_like(mooring.file, mooring), clamp.place, at)
+        clamps = mooring.with_file(file).solve().clamps
+    except NoEquilibrium as failure:
+        message = f"With {clamp.label} {at:.0f} m down its wire: {failure.message}"
+        raise NoEquilibrium(failure.status, message, failure.advice) from None
+    row = clamps.label.index(clamp.label)
+    return ProfilerPlace(
+        at, float(clamps.depth[row]), float(clamps.tension[row]), float(clamps.tilt[row])
+    )
+
+
+def held(file: MooringFile, place: Place | None = None, at: float = 0.0) -> MooringFile:
+    """Return a file whose profilers stay where they are, one of them at another place.
+
+    Parameters
+    ----------
+    place : of that profiler in the line; None where all stay
+    at : distance from the top of its wire, without load [m]
+    """
+    pieces = tuple(
+        replace(
+            piece,
+            clamps=tuple(
+                replace(clamp, at=at if clamp.place == place else clamp.at, travel=None)
+                for clamp in piece.clamps
+            ),
+        )
+        for piece in file.pieces
+    )
+    return replace(file, pieces=pieces)
