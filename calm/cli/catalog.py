@@ -29,7 +29,7 @@ catalog = App(
   calm catalog check mine.yaml""",
 )
 
-Kind = Literal["sphere", "cylinder", "body", "cable", "chain", "anchor", "assembly"]
+Kind = Literal["sphere", "cylinder", "body", "profiler", "cable", "chain", "anchor", "assembly"]
 
 
 @catalog.command(name="list")

@@ -137,11 +137,12 @@ def test_what_a_profiler_asks_of_its_wire(tmp_path, change, state, told):
 
 def test_drag_along_a_leaning_wire(tmp_path):
     """½ρ cd A (speed + U sin tilt)², against the figures that the result has at the place."""
-    result = mooring(tmp_path, "{speed: 0.5 m/s, toward: 90 deg}").solve()
+    weak = ("drive_force: 50 N", "drive_force: 1 N")
+    result = mooring(tmp_path, "{speed: 0.5 m/s, toward: 90 deg}", change=weak).solve()
     tilt = np.radians(result.profilers[0].upper.tilt)
     past = 0.25 + 0.5 * np.sin(tilt)
     drag = 0.5 * 1025.0 * 0.6 * 0.45 * past**2
-    needed = [each.value for each in profiler.judge(result) if "its drive has" in each.message]
+    needed = [each.limit for each in profiler.judge(result) if "its drive has" in each.message]
     assert needed == [pytest.approx(drag, rel=1e-6)]
 
 

@@ -30,6 +30,7 @@ class Flaw:
 
 
 AT_LEAST = (
+    "profiler",
     "current",
     "strength-steps",
     "anchor-weight",
@@ -690,6 +691,26 @@ FLAWS = (
         "wire",
         "warn",
         "0.66 V nobler in sea water",
+    ),
+    Flaw(
+        "a profiler with an instrument in its way",
+        SLOPE,
+        (
+            (
+                "at: 1 m, label: CTD 305 m}",
+                "at: 80 m, label: CTD 305 m}, {use: rider, label: MMP, "
+                "between: [swivel, meter 500 m]}",
+            ),
+            (
+                "line:\n",
+                "components:\n  rider: {kind: profiler, length: 1.3 m, mass: 70 kg, buoyancy: 0 N, "
+                "drag_area: 0.4 m^2, cd: 0.6, drive_force: 50 N, speed: 0.25 m/s}\nline:\n",
+            ),
+        ),
+        "profiler",
+        "MMP",
+        "fail",
+        "CTD 305 m stands in the way of MMP, 80 m down",
     ),
     Flaw(
         "a shackle of nobody knows what",

@@ -324,7 +324,9 @@ def test_rigid_mistakes(fields: dict[str, Any], problem: str) -> None:
 
 
 def test_kind_is_needed_and_known() -> None:
-    assert bad(diameter="1 m").startswith("`it`: `kind` is missing (sphere, cylinder, body, cable,")
+    assert bad(diameter="1 m").startswith(
+        "`it`: `kind` is missing (sphere, cylinder, body, profiler,"
+    )
     assert bad(kind=["a"]).startswith("`kind: …` must be one of sphere,")
 
 
