@@ -36,6 +36,7 @@ from calm.physics import drag
 from calm.physics.friction import Friction
 from calm.physics.hull import Floating, Hull, cylindrical_hull, spherical_hull, tabulated_hull
 from calm.physics.line import Line, Water
+from calm.physics.materials import STEEL_DENSITY
 from calm.physics.reynolds import DragCurve
 from calm.physics.stretch import ElongationCurve
 from calm.physics.strumming import AMPLIFICATIONS, BourgetMarichal, line_amplitude
@@ -107,6 +108,28 @@ def net_buoyancy(component: Component, gravity: float) -> float:
     """
     given = any(getattr(component, name, None) is not None for name in ("buoyancy", "weight"))
     return component.net_buoyancy * (1.0 if given else gravity / STANDARD_GRAVITY)
+
+
+def mass_in_air(component: Component) -> float | None:
+    """Mass, per metre of a cable or chain, as given or from the weight in water [kg, kg/m].
+
+    It follows from the displaced volume, or from the density of the material: that of steel for a
+    chain or an anchor that does not say. None where it does not follow.
+    """
+    if component.mass is not None:
+        return component.mass
+    net = component.net_buoyancy / STANDARD_GRAVITY
+    if component.displaced_volume is not None:
+        return CATALOGUE_DENSITY * component.displaced_volume - net
+    density = component.density if isinstance(component, Flexible) else None
+    if isinstance(component, Anchor):
+        density = component.material_density
+    if density is None and isinstance(component, Chain | Anchor):
+        density = STEEL_DENSITY
+    if density is None or density == CATALOGUE_DENSITY:
+        return None
+    mass = -net / (1.0 - CATALOGUE_DENSITY / density)
+    return mass if mass >= 0.0 else None
 
 
 def drag_of(

@@ -11,10 +11,10 @@ from itertools import chain
 from math import pi
 from typing import TYPE_CHECKING
 
+from calm.assemble import mass_in_air
 from calm.case.parts import parts_of
 from calm.checks.criterion import said
 from calm.checks.finding import State, Verdict, rule, unknown, verdict_on
-from calm.checks.inventory import mass_in_air
 from calm.checks.posture import JUDGED_ROLES
 from calm.files import Anchor, Cable, Chain, Component, Cylinder, Flexible, Profiler, Sphere
 from calm.files.catalogue import Assembly

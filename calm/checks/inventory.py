@@ -6,16 +6,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from calm.assemble import net_buoyancy
+from calm.assemble import mass_in_air, net_buoyancy
 from calm.errors import NoEquilibrium
-from calm.files import Anchor, Chain, Clamp, Component, Flexible, Piece
-from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
+from calm.files import Clamp, Component, Flexible, Piece
 from calm.physics.materials import CONCRETE_DENSITY, STEEL_DENSITY
 
 if TYPE_CHECKING:
     from calm.case import Mooring
-
-"""Density of ordinary concrete [kg/m³]."""
 
 
 @dataclass(frozen=True)
@@ -133,28 +130,6 @@ def _dry_mass(component: Component, length: float | None) -> float | None:
     if not isinstance(component, Flexible):
         return mass
     return None if mass is None or length is None else mass * length
-
-
-def mass_in_air(component: Component) -> float | None:
-    """Mass, per metre of a cable or chain, as given or from the weight in water [kg, kg/m].
-
-    It follows from the displaced volume, or from the density of the material: that of steel for a
-    chain or an anchor that does not say. None where it does not follow.
-    """
-    if component.mass is not None:
-        return component.mass
-    net = component.net_buoyancy / STANDARD_GRAVITY
-    if component.displaced_volume is not None:
-        return CATALOGUE_DENSITY * component.displaced_volume - net
-    density = component.density if isinstance(component, Flexible) else None
-    if isinstance(component, Anchor):
-        density = component.material_density
-    if density is None and isinstance(component, Chain | Anchor):
-        density = STEEL_DENSITY
-    if density is None or density == CATALOGUE_DENSITY:
-        return None
-    mass = -net / (1.0 - CATALOGUE_DENSITY / density)
-    return mass if mass >= 0.0 else None
 
 
 def anchor_dry_mass(required_weight: float, density: float, gravity: float) -> tuple[float, float]:

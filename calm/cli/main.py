@@ -30,6 +30,7 @@ from calm.cli.starter import NEW_EXAMPLES, SCHEMA_EXAMPLES, new, schema
 from calm.cli.streams import ExitCode, narrate, prepare, show
 from calm.cli.tow import STRUMMING_EXAMPLES, TOW_EXAMPLES, strumming, tow
 from calm.cli.verify import VERIFY_EXAMPLES, verify
+from calm.cli.waves import WAVES_EXAMPLES, waves
 from calm.errors import CalmError, InputError, NoEquilibrium
 
 if TYPE_CHECKING:
@@ -179,6 +180,7 @@ _GROUPS: dict[str, tuple[tuple[Any, str, str], ...]] = {
         (build, "", BUILD_EXAMPLES),
         (run, "[OPTIONS] FILE...", RUN_EXAMPLES),
         (size, "", SIZE_EXAMPLES),
+        (waves, "", WAVES_EXAMPLES),
         (check, "[OPTIONS] FILE...", CHECK_EXAMPLES),
         (diff, "[OPTIONS] FILE [FILE]", DIFF_EXAMPLES),
     ),

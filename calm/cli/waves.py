@@ -1,0 +1,158 @@
+"""``calm waves``: what the sea adds to the tensions of a mooring."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from calm.cli.options import CatalogFiles, EnvironmentName, Units, quantities, show_units
+from calm.cli.outputs import OutputPath, Outputs
+from calm.cli.streams import ExitCode, narrate
+from calm.errors import NoEquilibrium, UsageError
+
+if TYPE_CHECKING:
+    from calm.waves.spectra import SeaState
+
+WAVES_EXAMPLES = """Examples:
+
+  calm waves buoy.yaml --hs "5 m" --tp "8.4 s"
+  calm waves buoy.yaml --hs "3 m" --tp "7 s" --spectrum jonswap --toward "45 deg"
+  calm waves buoy.yaml --scatter site.csv --json waves.json
+  calm waves buoy.yaml --spectrum measured.csv"""
+
+
+def waves(
+    file: Path,
+    /,
+    *,
+    environment: EnvironmentName = None,
+    catalog: CatalogFiles = None,
+    hs: str | None = None,
+    tp: str | None = None,
+    spectrum: str = "bretschneider",
+    gamma: float = 3.3,
+    toward: str = "90 deg",
+    scatter: Path | None = None,
+    duration: str = "3 h",
+    json: OutputPath = None,
+    units: Units = None,
+) -> ExitCode:
+    """Estimate tensions and motions of a mooring in waves, about its equilibrium.
+
+    Linear: small waves about the shape in the mean current, drag linearised to
+    what it dissipates. Where a piece falls slack this no longer holds: the status
+    is slack-in-waves and the exit code 3.
+
+    Parameters
+    ----------
+    file
+        A mooring file.
+    hs
+        Significant wave height, such as "5 m".
+    tp
+        Period of the peak, such as "8.4 s"; that of a full sea for
+        pierson-moskowitz.
+    spectrum
+        bretschneider, jonswap, pierson-moskowitz, or a CSV file of
+        frequency[Hz],density[m^2/Hz].
+    gamma
+        Peakedness of jonswap.
+    toward
+        Where the waves run, clockwise from north.
+    scatter
+        A CSV file of seas: significant_wave_height[m],peak_period[s],share.
+    duration
+        Of the greatest and the least tension.
+    json
+        Write the answer as JSON, - to print it.
+    """
+    outputs = Outputs((file,), json)
+    outputs.check()
+    import calm
+    from calm.case import Tow
+    from calm.cli.streams import progress
+    from calm.report.sea_response import sea_response_part
+    from calm.waves.analysis import SLACK, analyse
+
+    seas, way, length = _asked(hs, tp, spectrum, gamma, toward, scatter, duration)
+    mooring = calm.load(file, environment=environment, catalogs=catalog or [])
+    if isinstance(mooring, Tow):
+        raise UsageError(f"{file} is a tow; calm waves judges moorings")
+    show_units(units, [mooring.file])
+    try:
+        analysis = analyse(mooring, seas, way, length, lambda each: progress(each, "seas"))
+    except NoEquilibrium as failure:
+        answer = {"name": mooring.file.name, **failure.to_dict()}
+        outputs.write_answer(lambda: answer, None)
+        narrate(f"{file}: {failure.status}: {failure.message} {failure.advice}")
+        return ExitCode.NO_EQUILIBRIUM
+    outputs.write_answer(analysis.to_dict, sea_response_part(analysis))
+    if analysis.status != SLACK:
+        return ExitCode.DONE
+    narrate(
+        f"{file}: {SLACK}: the least tension falls below 0, where linear tensions do not hold. "
+        "Give it more weight or more stretch; or `calm export --to moordyn`, to solve it in time."
+    )
+    return ExitCode.NO_EQUILIBRIUM
+
+
+def _asked(
+    hs: str | None,
+    tp: str | None,
+    spectrum: str,
+    gamma: float,
+    toward: str,
+    scatter: Path | None,
+    duration: str,
+) -> tuple[list[SeaState], float, float]:
+    """Return the seas, where they run [degrees], and how long they last [s].
+
+    Raises
+    ------
+    UsageError
+        With all that is wrong with the options.
+    """
+    from calm.suggestions import nearest
+    from calm.waves import spectra
+
+    given = quantities(
+        {
+            "hs": (hs, "length"),
+            "tp": (tp, "time"),
+            "toward": (toward, "angle"),
+            "duration": (duration, "time"),
+        }
+    )
+    complaints = [
+        f"--{name}: must be above 0"
+        for name in ("hs", "tp", "duration")
+        if name in given and not given[name] > 0.0
+    ]
+    if not 1.0 <= gamma <= 10.0:
+        complaints.append("--gamma: from 1, of a full sea, to 10")
+    named, path = spectrum in spectra.SPECTRA, Path(spectrum)
+    if not named and not path.is_file():
+        near = nearest(spectrum, spectra.SPECTRA)
+        meant = f"; did you mean `{near}`?" if near else ""
+        complaints.append(
+            f"--spectrum: `{spectrum}` is neither {', '.join(spectra.SPECTRA)} nor a file{meant}"
+        )
+    asked = [name for name, each in (("--hs", hs), ("--tp", tp)) if each is not None]
+    if scatter is not None and (asked or not named):
+        complaints.append("--scatter: gives heights and periods; leave --hs, --tp and a file out")
+    elif scatter is None and not named and asked:
+        complaints.append(f"{', '.join(asked)}: a measured spectrum has its own")
+    elif scatter is None and named:
+        needs = ["--hs", *(["--tp"] if spectrum != "pierson-moskowitz" else [])]
+        if missing := [name for name in needs if name not in asked]:
+            complaints.append(f"{', '.join(missing)}: missing; or give a --scatter table")
+    if complaints:
+        raise UsageError("\n".join(complaints))
+    if scatter is not None:
+        seas = spectra.scatter_states(scatter, spectrum, gamma)
+    elif named:
+        period = given.get("tp") or spectra.full_sea_period(given["hs"])
+        seas = [spectra.spectrum_of(spectrum, given["hs"], period, gamma)]
+    else:
+        seas = [spectra.measured_spectrum(path)]
+    return seas, given["toward"], given["duration"]

@@ -1,0 +1,275 @@
+"""Tensions and motions of a mooring in sea states, each settled and with its own accuracy."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import asdict, dataclass, replace
+from math import degrees, isnan
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from calm.physics.line import Floats
+from calm.waves.buoy import Buoy, buoy_of
+from calm.waves.lumped_line import LumpedLine, lumped_line
+from calm.waves.response import Response, Waves, respond
+from calm.waves.spectra import SeaState, greatest_of, passing_probability
+
+if TYPE_CHECKING:
+    from calm.case import Mooring
+    from calm.solve import Solution
+
+CONVERGED, SLACK = "converged", "slack-in-waves"
+
+SETTLED = 0.01
+"""Change of the standard deviations of tension at half the elements or half the frequencies below
+which there are enough of them."""
+
+COARSEST, FEWEST, MOST_HALVINGS = 1.0 / 50.0, 32, 4
+"""Elements as a share of the depth, frequencies, and how often both are refined."""
+
+SMALL = 0.01
+"""Of the greatest standard deviation: below it a change is not looked at."""
+
+
+@dataclass(frozen=True)
+class PieceInWaves:
+    """Hold a piece of the line in a sea: tensions [N] at its upper end, motions [m], [degrees].
+
+    Greatest and least are the most probable ones of the duration; `slack_probability` that of
+    falling slack in it.
+    """
+
+    index: int
+    label: str
+    tension_mean: float
+    tension_std: float
+    tension_max: float
+    tension_min: float
+    zero_crossing_period: float
+    slack_probability: float
+    heave_std: float
+    tilt_std: float
+
+
+@dataclass(frozen=True)
+class MooringInSea:
+    """Hold a mooring in a sea: its pieces down the line, and the labels of those that fall slack.
+
+    `follower_std` is the deviation of the tension below a float that follows every wave [N]; None
+    of a line below the surface.
+    """
+
+    sea: SeaState
+    components: tuple[PieceInWaves, ...]
+    slack: tuple[str, ...]
+    follower_std: float | None
+
+
+@dataclass(frozen=True)
+class WaveAccuracy:
+    """Hold how much the deviations of tension change, as shares.
+
+    `mesh` and `frequencies`: with half as many elements or frequencies. `linearisation`: with a
+    fifth less of the linearised drag, of which they are a measure of the share.
+    """
+
+    mesh: float
+    frequencies: float
+    linearisation: float
+
+
+@dataclass(frozen=True)
+class WaveAnalysis:
+    """Hold what waves do to a mooring.
+
+    Attributes
+    ----------
+    name : of the mooring
+    states : in the order given
+    accuracy : in the highest of them
+    warnings : what rests on assumptions
+    """
+
+    name: str
+    states: tuple[MooringInSea, ...]
+    accuracy: WaveAccuracy
+    warnings: tuple[str, ...]
+
+    @property
+    def status(self) -> str:
+        """Return "slack-in-waves" where a piece falls slack in a sea, else "converged"."""
+        return SLACK if any(state.slack for state in self.states) else CONVERGED
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the JSON object of the result: SI units and degrees."""
+        from calm.version import __version__
+
+        return {
+            "calm": __version__,
+            "name": self.name,
+            "status": self.status,
+            "states": [
+                {
+                    "significant_wave_height": state.sea.significant_height,
+                    "peak_period": state.sea.peak_period,
+                    "share": state.sea.share,
+                    "components": [asdict(one) for one in state.components],
+                    "slack": list(state.slack),
+                    "follower_std": state.follower_std,
+                }
+                for state in self.states
+            ],
+            "fatigue": None,
+            "accuracy": asdict(self.accuracy),
+            "warnings": list(self.warnings),
+        }
+
+
+@dataclass(frozen=True)
+class _Setting:
+    """What is solved: the line, its float, the water, and how many frequencies of each sea."""
+
+    line: LumpedLine
+    buoy: Buoy | None
+    water: Waves
+    count: int
+
+    def waves(self, sea: SeaState) -> Waves:
+        return replace(self.water, omega=sea.frequencies(self.count))
+
+    def respond(self, sea: SeaState) -> Response:
+        return respond(self.line, self.buoy, self.waves(sea), sea)[0]
+
+    def deviations(self, sea: SeaState) -> Floats:
+        """Return the deviations of tension of the pieces [N]; 0 of those on the seabed."""
+        return _by_piece(self.line, self.respond(sea))
+
+
+def analyse(
+    mooring: Mooring,
+    seas: Sequence[SeaState],
+    toward: float,
+    duration: float = 10_800.0,
+    watched: Callable[[Sequence[SeaState]], Iterable[SeaState]] = iter,
+) -> WaveAnalysis:
+    """Return the tensions and motions of a mooring in sea states.
+
+    The line is lumped masses about its equilibrium in the mean current, the waves are linear and
+    long-crested, the drag is linearised to what it dissipates. Elements and frequencies are refined
+    in the highest sea until the deviations of tension settle to 1 %.
+
+    Parameters
+    ----------
+    seas : one or more
+    toward : where the waves run [degrees], clockwise from north
+    duration : for the greatest and the least tension [s]
+    watched : hands on the seas one by one, such as to show how many are done
+
+    Raises
+    ------
+    NoEquilibrium
+        The mooring does not stand.
+    UsageError
+        The float at the surface has no hull, or no mass.
+    """
+    solution = mooring.equilibrium(mooring.water)
+    highest = max(seas, key=lambda sea: sea.significant_height)
+    setting, accuracy = _settled(mooring, solution, highest, toward)
+    states = []
+    for sea in watched(seas):
+        states.append(_in_sea(mooring, solution, setting, sea, duration))
+    warnings = [
+        f"{label} gives no `stiffness` and is taken as inextensible: its tensions are too great."
+        for label in setting.line.inextensible
+    ]
+    return WaveAnalysis(mooring.file.name, tuple(states), accuracy, tuple(warnings))
+
+
+def _settled(
+    mooring: Mooring, solution: Solution, sea: SeaState, toward: float
+) -> tuple[_Setting, WaveAccuracy]:
+    """Return elements and frequencies that are enough for a sea, and what halving them changes."""
+    _, density = mooring.water.at(np.array(0.0))
+    water = Waves(np.zeros(0), toward, mooring.water.depth, float(density), mooring.water.gravity)
+    longest, count = COARSEST * mooring.water.depth, FEWEST
+    buoy = buoy_of(mooring, solution, follows=False)
+    setting = _Setting(lumped_line(mooring, solution, longest), buoy, water, count)
+    found = setting.deviations(sea)
+    mesh = frequencies = np.inf
+    for _ in range(MOST_HALVINGS):
+        if mesh > SETTLED:
+            longest *= 0.5
+            finer = replace(setting, line=lumped_line(mooring, solution, longest))
+            better = finer.deviations(sea)
+            mesh, setting, found = _change(found, better), finer, better
+        if frequencies > SETTLED:
+            more = replace(setting, count=2 * setting.count)
+            better = more.deviations(sea)
+            frequencies, setting, found = _change(found, better), more, better
+    waves = setting.waves(sea)
+    response, damping = respond(setting.line, buoy, waves, sea)
+    less, _ = respond(setting.line, buoy, waves, sea, drag_factor=0.8, first=damping)
+    linear = _change(_by_piece(setting.line, response), _by_piece(setting.line, less))
+    return setting, WaveAccuracy(mesh, frequencies, linear)
+
+
+def _change(before: Floats, after: Floats) -> float:
+    counted = after > SMALL * after.max(initial=0.0)
+    return float(np.abs(before[counted] / after[counted] - 1.0).max(initial=0.0))
+
+
+def _by_piece(line: LumpedLine, response: Response) -> Floats:
+    deviation, _ = response.moments(response.pull)
+    return np.where(line.piece_spring >= 0, deviation[line.piece_spring], 0.0)
+
+
+def _in_sea(
+    mooring: Mooring, solution: Solution, setting: _Setting, sea: SeaState, duration: float
+) -> MooringInSea:
+    line, response = setting.line, setting.respond(sea)
+    tension, period = response.moments(response.pull)
+    motion, _ = response.moments(response.motion)
+    turn = np.diff(response.motion, axis=1)
+    turn = turn - (turn * line.spring).sum(2, keepdims=True) * line.spring
+    lean, _ = response.moments(turn / line.span[:, None])
+    rows = []
+    for piece in mooring.file.pieces[:-1]:
+        spring, node = int(line.piece_spring[piece.index]), int(line.piece_node[piece.index])
+        mean = float(solution.tension[int(solution.piece_nodes[piece.index, 0])])
+        if piece.index < line.top_pieces:  # nothing pulls at the upper end of what floats on top
+            mean = float(solution.tension[int(solution.piece_nodes[line.top_pieces - 1, 1])])
+        if spring < 0:  # on the seabed
+            rows.append(_row(piece.index, piece.label, mean, 0.0, np.nan, 0.0, 0.0, duration))
+            continue
+        tilt = degrees(float(np.linalg.norm(lean[spring])))
+        rows.append(
+            _row(
+                piece.index, piece.label, mean, float(tension[spring]), float(period[spring]),
+                float(motion[node, 2]), tilt, duration,
+            )
+        )  # fmt: skip
+    follower = None
+    if setting.buoy is not None:
+        following = replace(setting, buoy=replace(setting.buoy, follows=True))
+        follower = float(following.deviations(sea)[0])
+    slack = tuple(row.label for row in rows if row.tension_min < 0.0 < row.tension_std)
+    return MooringInSea(sea, tuple(rows), slack, follower)
+
+
+def _row(
+    index: int,
+    label: str,
+    mean: float,
+    deviation: float,
+    period: float,
+    heave: float,
+    tilt: float,
+    duration: float,
+) -> PieceInWaves:
+    moves = deviation > 0.0 and not isnan(period)
+    most = greatest_of(deviation, period, duration) if moves else 0.0
+    probability = passing_probability(mean, deviation, period, duration) if moves else 0.0
+    return PieceInWaves(
+        index, label, mean, deviation, mean + most, mean - most, period, probability, heave, tilt
+    )

@@ -1,0 +1,156 @@
+"""A float at the surface in waves: what lifts it, what it weighs and what it radiates."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from math import pi, sqrt
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import j1
+
+from calm.errors import UsageError
+from calm.files import Cylinder, Sphere
+from calm.files.rigid import Displacement
+from calm.physics.line import Floats
+
+if TYPE_CHECKING:
+    from calm.case import Mooring
+    from calm.solve import Solution
+
+Complexes = NDArray[np.complex128]
+
+DISC_ADDED = 4.0 / 3.0
+"""Added mass of a disc at the surface over ρR³: half of that of one deep down, 8/3 (Lamb 1932)."""
+
+DISC_CD = 1.17
+"""Drag coefficient of a disc across the flow (Hoerner 1965, 3-15)."""
+
+SIDEWAYS_ADDED = 0.5
+"""Added mass in surge over the displaced water, of a short hull."""
+
+FOLLOWING = 1e10
+"""Stiffness that holds a float to a given motion [N/m]."""
+
+
+@dataclass(frozen=True)
+class Buoy:
+    """Hold a hull afloat.
+
+    Attributes
+    ----------
+    mass : of the float and what stands on it [kg]
+    displaced : water it displaces [kg]
+    radius : of its waterplane [m]
+    draft : [m]
+    drag, heave_drag : K of its drag in the current, and as it heaves [N/(m/s)²]
+    rao : heave over the elevation by angular frequency [rad/s]: amplitude [-], phase [degrees]
+    follows : whether it heaves as the water does
+    """
+
+    mass: float
+    displaced: float
+    radius: float
+    draft: float
+    drag: float
+    heave_drag: float
+    rao: tuple[tuple[float, float, float], ...] = ()
+    follows: bool = False
+
+    def heave(
+        self, omega: Floats, number: Floats, density: float, gravity: float
+    ) -> tuple[Complexes, Complexes]:
+        """Return what resists heave, per metre of it, and what lifts, per metre of elevation [N/m].
+
+        Froude-Krylov force of a disc at its draft, ρgA e^(-kT) 2 J1(kR)/(kR); added mass
+        `DISC_ADDED`, of the water as it moves there; radiation by Haskind's relation,
+        k ω |X|² / (2 ρ g²) in deep water (Newman 1977, 6.18).
+
+        Parameters
+        ----------
+        omega, number : (f,) angular frequencies [rad/s] and wave numbers [1/m]
+        density, gravity : of the water [kg/m³], [m/s²]
+        """
+        if self.follows:
+            return np.full(omega.shape, FOLLOWING + 0j), np.full(omega.shape, FOLLOWING + 0j)
+        if self.rao:
+            at, amplitude, phase = np.array(self.rao).T
+            turned = np.interp(omega, at, np.unwrap(np.radians(phase)))
+            return (
+                np.full(omega.shape, FOLLOWING + 0j),
+                FOLLOWING * np.interp(omega, at, amplitude) * np.exp(1j * turned),
+            )
+        spring = density * gravity * pi * self.radius**2
+        added = DISC_ADDED * density * self.radius**3
+        across = number * self.radius
+        smith = np.exp(-number * self.draft) * 2.0 * j1(across) / np.maximum(across, 1e-12)
+        lifting = (spring - omega**2 * added) * smith
+        radiated = number * omega * lifting**2 / (2.0 * density * gravity**2)
+        resisting = spring - omega**2 * (self.mass + added) + 1j * omega * radiated
+        return resisting, lifting + 1j * omega * radiated * smith
+
+
+def buoy_of(mooring: Mooring, solution: Solution, follows: bool) -> Buoy | None:
+    """Return the float at the surface; None of a line below it.
+
+    Parameters
+    ----------
+    follows : heaves with the water, whatever its hull
+
+    Raises
+    ------
+    UsageError
+        Its hull is not known.
+    """
+    if not solution.afloat:
+        return None
+    index = solution.afloat[0]
+    piece = mooring.file.pieces[index]
+    above = mooring.file.pieces[: index + 1]
+    riding, component = solution.riding, piece.component
+    given = getattr(component, "rao", None) or ()
+    follows = follows or getattr(component, "heave", None) == "follows"
+    draft = 0.0 if riding is None or np.isnan(riding.draft) else riding.draft
+    radius = _waterplane_radius(component, draft)
+    if radius is None and not (follows or given):
+        raise UsageError(
+            f"{piece.label} has no hull, which decides how it heaves: give its `hull`, or "
+            "`heave: follows`"
+        )
+    masses = [each.component.mass for each in above]
+    if any(mass is None for mass in masses):
+        raise UsageError(f"{piece.label} gives no `mass`, which decides how it heaves")
+    _, density = mooring.water.at(np.array(0.0))
+    lift = float(solution.force[int(solution.piece_nodes[index, 1]), 2])
+    mass = float(sum(mass or 0.0 for mass in masses))
+    return Buoy(
+        mass=mass,
+        displaced=max(mass + lift / mooring.water.gravity, 0.0),
+        radius=radius or 0.0,
+        draft=draft,
+        drag=float(solution.carried.normal_drag[index]) * float(density) / 1025.0,
+        heave_drag=0.5 * float(density) * DISC_CD * pi * (radius or 0.0) ** 2,
+        rao=tuple((omega, amplitude, phase) for omega, (amplitude, phase) in sorted(given)),
+        follows=follows,
+    )
+
+
+def _waterplane_radius(component: object, draft: float) -> float | None:
+    """Return the radius of a disc as large as the hull's waterplane [m]; None where unknown."""
+    hull = getattr(component, "hull", None)
+    if isinstance(hull, Displacement):
+        rows = hull.displacement
+        if draft <= 0.0:
+            return None
+        for (low, below, _), (high, above, _) in pairwise(rows):
+            if draft <= high:
+                return sqrt((above - below) / (high - low) / pi)
+        return None
+    diameter = getattr(component, "diameter", None)
+    if isinstance(component, Sphere) and draft > 0.0 and diameter:
+        return sqrt(max(draft * (diameter - draft), 0.0))
+    if isinstance(component, Cylinder) and diameter:
+        return float(diameter) / 2.0
+    return None

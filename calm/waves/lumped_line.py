@@ -1,0 +1,245 @@
+"""The standing line as lumped masses between springs, for small motions about its equilibrium."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from calm.assemble import mass_in_air
+from calm.files import Cable, Chain, Cylinder, Flexible
+from calm.files.flexible import strain_under
+from calm.physics.line import Floats, Integers
+from calm.physics.seawater import REFERENCE_DENSITY
+
+if TYPE_CHECKING:
+    from calm.case import Mooring
+    from calm.files import Component
+    from calm.solve import Solution
+
+SHORTEST = 0.05
+"""Elements below it are no springs of their own: what they weigh hangs at the node [m]."""
+
+RIGID = 1e9
+"""Stiffness EA of what does not stretch [N]."""
+
+CHAIN_STIFFNESS = 0.854e11
+"""EA of studless chain over the square of its bar [N/m²]; catenary tables of OrcaFlex."""
+
+CYLINDER_ADDED, SPHERE_ADDED, BODY_ADDED = 1.0, 0.5, 1.0
+"""Added mass over displaced water: across a cylinder, of a sphere, of a body of any shape
+(DNV-RP-C205, appendix D)."""
+
+
+@dataclass(frozen=True)
+class LumpedLine:
+    """Hold n nodes from the free end down, and n - 1 springs between them; the last node is fixed.
+
+    Attributes
+    ----------
+    position : (n, 3) east, north and up from the surface [m]
+    mass : (n,) [kg]
+    added_across, added_along : (n,) added mass across and along the line [kg]
+    water_across, water_along : (n,) displaced water that the pressure of waves pushes [kg]
+    across_drag, along_drag, any_drag : (n,) K of K|v|v, by the part of the flow across and along
+        the line, and whatever the direction [N/(m/s)²]
+    tangent : (n, 3) unit vectors down the line
+    tension : (n-1,) in equilibrium [N]
+    stiffness : (n-1,) dT/d(length) [N/m]
+    spring : (n-1, 3) unit vectors down the springs
+    span : (n-1,) their stretched lengths [m]
+    current : (n, 3) [m/s]
+    piece_spring : (pieces,) the spring below the upper end of each piece, of those at the top below
+        their lower end; -1 where there is none
+    piece_node : (pieces,) the node at the upper end of each piece; -1 on the seabed
+    top_pieces : how many pieces are the float at the top and what it carries above the surface
+    inextensible : labels of cables whose stiffness is not known
+    """
+
+    position: Floats
+    mass: Floats
+    added_across: Floats
+    added_along: Floats
+    water_across: Floats
+    water_along: Floats
+    across_drag: Floats
+    along_drag: Floats
+    any_drag: Floats
+    tangent: Floats
+    tension: Floats
+    stiffness: Floats
+    spring: Floats
+    span: Floats
+    current: Floats
+    piece_spring: Integers
+    piece_node: Integers
+    top_pieces: int
+    inextensible: tuple[str, ...]
+
+
+def lumped_line(mooring: Mooring, solution: Solution, longest: float) -> LumpedLine:
+    """Return the line of a solution as lumped masses.
+
+    Half the mass and the drag of an element is lumped at each of its ends. What lies on the seabed
+    does not move.
+
+    Parameters
+    ----------
+    mooring : what was solved
+    longest : length of an element [m]
+    """
+    pieces = mooring.file.pieces
+    carried = solution.carried
+    buoy = (solution.afloat[0] + 1) if solution.afloat else 0
+    first = int(solution.piece_nodes[buoy - 1, 1]) if buoy else 0
+    last = max(solution.hanging, first + 1)
+    span = np.linalg.norm(np.diff(solution.position, axis=0), axis=1)
+
+    position = [solution.position[first]]
+    elements: list[tuple[int, float, float, float]] = []  # piece, span, unstretched, tension
+    lumps: list[tuple[int, int, int]] = []  # node, piece, clamp
+    starts: dict[int, int] = {}
+    for one in range(first, last):
+        piece, clamp = int(solution.element_piece[one]), int(solution.element_clamp[one])
+        starts.setdefault(piece, len(position) - 1)
+        if clamp >= 0 or span[one] < SHORTEST:
+            lumps.append((len(position) - 1, piece, clamp))
+            continue
+        flexible = isinstance(pieces[piece].component, Flexible)
+        count = max(int(np.ceil(span[one] / longest)), 1) if flexible else 1
+        begin, end = solution.position[one], solution.position[one + 1]
+        for part in range(1, count + 1):
+            position.append(begin + (end - begin) * part / count)
+            tension = 0.5 * float(solution.tension[one] + solution.tension[one + 1])
+            elements.append((piece, span[one] / count, solution.cut[one] / count, tension))
+
+    n = len(position)
+    where = np.array(position)
+    node = {name: np.zeros(n) for name in _NODE_FIGURES}
+    inextensible: dict[str, None] = {}
+    stiffness = np.empty(n - 1)
+    for number, (piece, length, cut, tension) in enumerate(elements):
+        component = pieces[piece].component
+        figures = _figures_of(component, 1.0 if isinstance(component, Flexible) else length)
+        scale = cut if isinstance(component, Flexible) else length
+        drags = carried.normal_drag[piece], carried.tangential_drag[piece]
+        if not isinstance(component, Flexible):
+            drags = drags[0] / length, drags[1] / length
+            figures = {name: value / length for name, value in figures.items()}
+        if carried.directional[piece]:
+            figures |= {"across_drag": drags[0], "along_drag": drags[1], "any_drag": 0.0}
+        else:
+            figures |= {"across_drag": 0.0, "along_drag": 0.0, "any_drag": drags[0]}
+        for name, value in figures.items():
+            node[name][number : number + 2] += 0.5 * scale * value
+        if isinstance(component, Cable) and not _gives_stiffness(component):
+            inextensible[pieces[piece].label] = None
+        stiffness[number] = _axial(component, tension) / (cut if cut > 0.0 else length)
+    clamps = [clamp for each in pieces for clamp in each.clamps]
+    for at, piece, clamp in lumps:
+        component = clamps[clamp].component if clamp >= 0 else pieces[piece].component
+        length = float(getattr(component, "length", 0.0) or 0.0)
+        figures = _figures_of(component, length)
+        if clamp >= 0:
+            drag = float(carried.clamp_drag[clamp])
+        else:
+            share = solution.cut[first] if isinstance(component, Flexible) else 1.0
+            drag = float(carried.normal_drag[piece]) * float(share)
+        for name, value in {**figures, "any_drag": drag}.items():
+            node[name][at] += value
+
+    spring = np.diff(where, axis=0)
+    span = np.linalg.norm(spring, axis=1)
+    spring /= span[:, None]
+    tangent = np.vstack([spring[:1], spring[:-1] + spring[1:], spring[-1:]])
+    tangent /= np.linalg.norm(tangent, axis=1)[:, None]
+    current, density = mooring.water.at(np.maximum(-where[:, 2], 0.0))
+    for name in ("across_drag", "along_drag", "any_drag"):
+        node[name] *= density / REFERENCE_DENSITY
+    count = len(solution.line.length)
+    piece_node = np.array([starts.get(piece, -1) for piece in range(count)])
+    piece_spring = np.where(piece_node >= 0, np.minimum(piece_node, n - 2), -1)
+    if buoy:
+        piece_node[:buoy], piece_spring[:buoy] = 0, 0
+    elif count > 1:
+        piece_spring[0] = piece_spring[1]
+    return LumpedLine(
+        position=where,
+        **node,
+        tangent=tangent,
+        tension=np.array([each[3] for each in elements]),
+        stiffness=stiffness,
+        spring=spring,
+        span=span,
+        current=np.asarray(current, float),
+        piece_spring=piece_spring,
+        piece_node=piece_node,
+        top_pieces=max(buoy, 1),
+        inextensible=tuple(inextensible),
+    )
+
+
+_NODE_FIGURES = (
+    *("mass", "added_across", "added_along", "water_across", "water_along"),
+    *("across_drag", "along_drag", "any_drag"),
+)
+
+
+def _figures_of(component: Component, length: float) -> dict[str, float]:
+    """Return masses of a component, per metre where it is flexible [kg, kg/m].
+
+    Without a mass it is taken from its net force and the water that its size displaces.
+    """
+    water = REFERENCE_DENSITY * _volume(component, length)
+    mass = mass_in_air(component)
+    if mass is None:
+        mass = max(water - component.net_buoyancy / 9.80665, 0.0)
+    slender = isinstance(component, Flexible)
+    across, along = CYLINDER_ADDED, 0.0
+    if not slender and not isinstance(component, Cylinder):
+        across = along = SPHERE_ADDED if component.kind == "sphere" else BODY_ADDED
+    return {
+        "mass": mass,
+        "added_across": across * water,
+        "added_along": along * water,
+        "water_across": water,
+        "water_along": 0.0 if slender else water,
+    }
+
+
+def _volume(component: Component, length: float) -> float:
+    """Return the volume displaced, by the outer size where it is not given [m³, m³/m]."""
+    diameter = float(getattr(component, "diameter", 0.0) or 0.0)
+    if isinstance(component, Cable):
+        return pi * diameter**2 / 4.0
+    if component.displaced_volume:
+        return float(component.displaced_volume)
+    if isinstance(component, Chain):
+        mass = mass_in_air(component) or 0.0
+        return mass / 7850.0
+    if isinstance(component, Cylinder):
+        return pi * diameter**2 / 4.0 * length
+    if component.kind == "sphere":
+        return pi * diameter**3 / 6.0
+    return 0.0
+
+
+def _gives_stiffness(cable: Cable) -> bool:
+    return any(each is not None for each in (cable.stiffness, cable.elongation))
+
+
+def _axial(component: Component, tension: float) -> float:
+    """Return the tangent stiffness EA at a tension [N]."""
+    if isinstance(component, Chain):
+        return CHAIN_STIFFNESS * component.diameter**2
+    if isinstance(component, Cable):
+        if component.stiffness is not None:
+            return component.stiffness
+        if component.elongation is not None:
+            step = max(0.01 * tension, 1.0)
+            below = max(tension - step, 0.0)
+            strained = strain_under(component, tension + step) - strain_under(component, below)
+            return (tension + step - below) / strained if strained > 0.0 else RIGID
+    return RIGID

@@ -1,0 +1,281 @@
+"""Linear response of a line to waves: drag linearised to what it dissipates, all frequencies."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import erf, exp, pi, radians, sqrt
+
+import numpy as np
+
+from calm.physics.line import Floats
+from calm.waves.buoy import SIDEWAYS_ADDED, Buoy, Complexes
+from calm.waves.lumped_line import LumpedLine
+from calm.waves.spectra import SeaState, wave_numbers
+
+SETTLED = 2e-3
+"""Relative change of the standard deviations below which the drag is linearised well enough."""
+
+MOST_ITERATIONS = 40
+
+_POINTS, _WEIGHTS = np.polynomial.hermite_e.hermegauss(7)
+_WEIGHTS = _WEIGHTS / _WEIGHTS.sum()
+
+
+@dataclass(frozen=True)
+class Response:
+    """Hold the response of a line to waves of unit elevation, and to a sea.
+
+    Attributes
+    ----------
+    omega : (f,) [rad/s]
+    weight : (f,) variance of the elevation that each stands for [m²]
+    motion : (f, n, 3) of the nodes [m/m]
+    pull : (f, n-1) tension in the springs [N/m]
+    iterations : of the linearisation
+    """
+
+    omega: Floats
+    weight: Floats
+    motion: Complexes
+    pull: Complexes
+    iterations: int
+
+    def moments(self, transfer: Complexes) -> tuple[Floats, Floats]:
+        """Return standard deviation and zero-crossing period [s] of transfers (f, …)."""
+        shape = (-1,) + (1,) * (transfer.ndim - 1)
+        spectral = np.abs(transfer) ** 2 * self.weight.reshape(shape)
+        zeroth = spectral.sum(0)
+        second = (spectral * self.omega.reshape(shape) ** 2).sum(0)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            period = 2.0 * pi * np.sqrt(zeroth / second)
+        return np.sqrt(zeroth), period
+
+
+@dataclass(frozen=True)
+class Waves:
+    """Hold long-crested waves over a depth of water.
+
+    Attributes
+    ----------
+    omega : (f,) [rad/s]
+    toward : [degrees] clockwise from north
+    depth, density, gravity : of the water [m], [kg/m³], [m/s²]
+    """
+
+    omega: Floats
+    toward: float
+    depth: float
+    density: float
+    gravity: float
+
+    @property
+    def number(self) -> Floats:
+        """Return the wave numbers [1/m]."""
+        return wave_numbers(self.omega, self.depth, self.gravity)
+
+    def velocity(self, position: Floats) -> Complexes:
+        """Return the velocity of the water at (n, 3) places, per metre of elevation: (f, n, 3).
+
+        Linear waves, elevation Re e^(i(ωt - ks)), s toward where they run.
+        """
+        k, omega = self.number[:, None], self.omega[:, None]
+        ahead = np.array([np.sin(radians(self.toward)), np.cos(radians(self.toward)), 0.0])
+        height = np.minimum(position[:, 2], 0.0)[None, :]
+        deep = k * self.depth
+        # cosh k(z+h) / sinh kh and sinh k(z+h) / sinh kh without overflow
+        whole = 1.0 - np.exp(-2.0 * np.minimum(deep, 300.0))
+        rest = np.exp(-2.0 * np.minimum(k * (height + self.depth), 300.0))
+        decay = np.exp(np.maximum(k * height, -700.0)) / whole
+        phase = np.exp(-1j * k * (position @ ahead)[None, :])
+        along = omega * decay * (1.0 + rest) * phase
+        up = 1j * omega * decay * (1.0 - rest) * phase
+        return np.asarray(along[:, :, None] * ahead + up[:, :, None] * np.array([0.0, 0.0, 1.0]))
+
+
+def respond(
+    line: LumpedLine,
+    buoy: Buoy | None,
+    waves: Waves,
+    sea: SeaState,
+    *,
+    drag_factor: float = 1.0,
+    first: Floats | None = None,
+) -> tuple[Response, Floats]:
+    """Return the response to a sea, and the damping (n, 3, 3) that it was found with [N/(m/s)].
+
+    The drag of each node is replaced by the linear one that does most of what it does on the
+    average over a Gaussian motion about the mean current: E[F v'] / E[v'²], found anew until the
+    motions settle.
+
+    Parameters
+    ----------
+    waves, sea : the waves, and how much of them there is
+    drag_factor : on the damping, to see what rests on it
+    first : the damping to begin with; with a factor it is kept
+    """
+    omega = waves.omega
+    steps = np.diff(omega, prepend=omega[0], append=omega[-1])
+    weight = sea.density(omega) * 0.5 * (steps[:-1] + steps[1:])
+    water = waves.velocity(line.position)
+    forced = _inertia_force(line, buoy, waves, water)
+    damping = np.zeros((len(line.mass), 3, 3)) if first is None else first
+    if first is None:
+        still = np.sqrt((np.abs(water) ** 2 * weight[:, None, None]).sum(0)) + 1e-6
+        damping = _linearised(line, buoy, still)
+    deviation = np.zeros(1)
+    iterations = 0
+    while iterations < MOST_ITERATIONS:
+        iterations += 1
+        motion = _solved(line, buoy, waves, water, forced, drag_factor * damping)
+        relative = water - 1j * omega[:, None, None] * motion
+        found = _deviations(line, relative, weight)
+        new = _linearised(line, buoy, found)
+        change = np.abs(found - deviation).max() / max(float(found.max()), 1e-12)
+        deviation = found
+        if drag_factor != 1.0 or change < SETTLED:
+            break
+        damping = 0.5 * (damping + new)
+    pull = _pull(line, motion)
+    return Response(omega, weight, motion, pull, iterations), damping
+
+
+def _axes(line: LumpedLine) -> Floats:
+    """Return (n, 3, 3) unit vectors: along the line, along the mean flow across it, and third."""
+    t = line.tangent
+    across = line.current - (line.current * t).sum(1, keepdims=True) * t
+    size = np.linalg.norm(across, axis=1, keepdims=True)
+    other = np.where(np.abs(t[:, 2:]) < 0.9, [[0.0, 0.0, 1.0]], [[1.0, 0.0, 0.0]])
+    other = other - (other * t).sum(1, keepdims=True) * t
+    other /= np.linalg.norm(other, axis=1, keepdims=True)
+    first = np.where(size > 1e-9, across / np.maximum(size, 1e-9), other)
+    return np.stack([t, first, np.cross(t, first)], axis=1)
+
+
+def _deviations(line: LumpedLine, relative: Complexes, weight: Floats) -> Floats:
+    """Return (n, 3) standard deviations of the flow past the nodes, along their axes [m/s]."""
+    own = np.einsum("nac,fnc->fna", _axes(line), relative)
+    return np.asarray(np.sqrt((np.abs(own) ** 2 * weight[:, None, None]).sum(0)) + 1e-9)
+
+
+def _linearised(line: LumpedLine, buoy: Buoy | None, deviation: Floats) -> Floats:
+    """Return (n, 3, 3) damping of the nodes for a flow of these deviations [N/(m/s)]."""
+    axes = _axes(line)
+    mean = np.einsum("nac,nc->na", axes, line.current)
+    along = np.array([_slope(u, s) for u, s in zip(mean[:, 0], deviation[:, 0], strict=True)])
+    x = mean[:, 1, None, None] + deviation[:, 1, None, None] * _POINTS[None, :, None]
+    y = mean[:, 2, None, None] + deviation[:, 2, None, None] * _POINTS[None, None, :]
+    weights = _WEIGHTS[:, None] * _WEIGHTS[None, :]
+    size = np.hypot(x, y) + 1e-12
+    first = ((size + x * x / size) * weights).sum((1, 2))
+    second = ((size + y * y / size) * weights).sum((1, 2))
+    local = np.zeros((len(line.mass), 3))
+    local[:, 0] = line.along_drag * along
+    local[:, 1] = line.across_drag * first
+    local[:, 2] = line.across_drag * second
+    any_drag = line.any_drag.copy()
+    if buoy is not None:
+        any_drag[0] += buoy.drag
+    round_ones = np.flatnonzero(any_drag > 0.0)
+    if len(round_ones):
+        u, s = mean[round_ones], deviation[round_ones]
+        grid = np.stack(np.meshgrid(_POINTS, _POINTS, _POINTS, indexing="ij"), -1).reshape(-1, 3)
+        share = np.einsum("a,b,c->abc", _WEIGHTS, _WEIGHTS, _WEIGHTS).reshape(-1)
+        flow = u[:, None, :] + s[:, None, :] * grid[None]
+        size3 = np.linalg.norm(flow, axis=2, keepdims=True) + 1e-12
+        slopes = ((size3 + flow**2 / size3) * share[None, :, None]).sum(1)
+        local[round_ones] += any_drag[round_ones, None] * slopes
+    damping: Floats = np.einsum("nac,na,nad->ncd", axes, local, axes)
+    if buoy is not None:
+        upward = float(np.linalg.norm(axes[0, :, 2] * deviation[0]))
+        damping[0, 2, 2] += buoy.heave_drag * _slope(0.0, upward)
+    return damping
+
+
+def _slope(mean: float, deviation: float) -> float:
+    """E[d(|v|v)/dv] of a Gaussian flow: 2 (σ √(2/π) e^(-U²/2σ²) + U erf(U/(√2 σ)))."""
+    ratio = mean / deviation
+    return 2.0 * (
+        deviation * sqrt(2.0 / pi) * exp(-0.5 * min(ratio**2, 1400.0))
+        + mean * erf(ratio / sqrt(2.0))
+    )
+
+
+def _inertia_force(
+    line: LumpedLine, buoy: Buoy | None, waves: Waves, water: Complexes
+) -> Complexes:
+    """Return (f, n, 3) forces of the accelerated water, per metre of elevation [N/m]."""
+    across = line.water_across + line.added_across
+    along = line.water_along + line.added_along
+    t = line.tangent
+    axial = (water * t).sum(2, keepdims=True) * t
+    accelerated = across[:, None] * (water - axial) + along[:, None] * axial
+    force = 1j * waves.omega[:, None, None] * accelerated
+    if buoy is not None:
+        _, lifting = buoy.heave(waves.omega, waves.number, waves.density, waves.gravity)
+        surface = waves.velocity(np.array([[*line.position[0, :2], -0.5 * buoy.draft]]))[:, 0]
+        moved = (1.0 + SIDEWAYS_ADDED) * buoy.displaced
+        force[:, 0, :2] += 1j * waves.omega[:, None] * moved * surface[:, :2]
+        elevation = np.exp(-1j * waves.number * _ahead(line, waves))
+        force[:, 0, 2] += lifting * elevation
+    return np.asarray(force)
+
+
+def _ahead(line: LumpedLine, waves: Waves) -> float:
+    east, north = line.position[0, :2]
+    return float(east * np.sin(radians(waves.toward)) + north * np.cos(radians(waves.toward)))
+
+
+def _solved(
+    line: LumpedLine,
+    buoy: Buoy | None,
+    waves: Waves,
+    water: Complexes,
+    forced: Complexes,
+    damping: Floats,
+) -> Complexes:
+    """Return the motion (f, n, 3) of the nodes: elimination node by node, the fixed end first."""
+    omega, n = waves.omega, len(line.mass)
+    eye, t = np.eye(3), line.tangent
+    outer = t[:, :, None] * t[:, None, :]
+    mass = line.mass[:, None, None] * eye + line.added_across[:, None, None] * (eye - outer)
+    mass = mass + line.added_along[:, None, None] * outer
+    s = line.spring
+    axial = s[:, :, None] * s[:, None, :]
+    sideways = line.tension / line.span
+    springs = line.stiffness[:, None, None] * axial + sideways[:, None, None] * (eye - axial)
+    diagonal = np.zeros((n, 3, 3))
+    diagonal[:-1] += springs
+    diagonal[1:] += springs
+    square, first = -(omega**2)[:, None, None], 1j * omega[:, None, None]
+    force = forced + np.einsum("ncd,fnd->fnc", damping, water)
+    motion = np.zeros((len(omega), n, 3), complex)
+    reduced: list[Complexes] = [np.zeros(0, complex)] * n
+    pushes: list[Complexes] = [np.zeros(0, complex)] * n
+    for i in range(n - 2, -1, -1):
+        matrix = diagonal[i] + square * mass[i] + first * damping[i]
+        if i == 0 and buoy is not None:
+            resisting, _ = buoy.heave(omega, waves.number, waves.density, waves.gravity)
+            moved = buoy.mass + SIDEWAYS_ADDED * buoy.displaced
+            matrix = matrix + 0j
+            matrix[:, 0, 0] += -(omega**2) * moved
+            matrix[:, 1, 1] += -(omega**2) * moved
+            matrix[:, 2, 2] += resisting
+        push = force[:, i]
+        if i < n - 2:
+            gain = springs[i] @ reduced[i + 1]
+            matrix = matrix - gain @ springs[i]
+            push = push + np.einsum("fcd,fd->fc", gain, pushes[i + 1])
+        reduced[i] = np.linalg.inv(matrix)
+        pushes[i] = push
+    for i in range(n - 1):
+        push = pushes[i]
+        if i > 0:
+            push = push + np.einsum("cd,fd->fc", springs[i - 1], motion[:, i - 1])
+        motion[:, i] = np.einsum("fcd,fd->fc", reduced[i], push)
+    return motion
+
+
+def _pull(line: LumpedLine, motion: Complexes) -> Complexes:
+    """Return (f, n-1) tension in the springs beyond that of equilibrium [N/m]."""
+    stretched = ((motion[:, 1:] - motion[:, :-1]) * line.spring).sum(2)
+    return np.asarray(line.stiffness * stretched)

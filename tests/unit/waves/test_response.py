@@ -1,0 +1,233 @@
+"""Lines in waves against closed forms, and a float against a panel method."""
+
+from dataclasses import replace
+from math import cos, pi, sin, sqrt
+
+import numpy as np
+import pytest
+
+from calm.errors import InputError, UsageError
+from calm.waves import spectra
+from calm.waves.buoy import Buoy
+from calm.waves.lumped_line import LumpedLine
+from calm.waves.response import Waves, _slope, _solved, respond
+
+DENSITY, GRAVITY = 1027.0, 9.81
+
+
+def plumb(length, mass, axial, tension, count, drag=0.0):
+    """A plumb line, `count` springs of a uniform line; its lower end is fixed."""
+    n, step = count + 1, length / count
+    lumps = np.full(n, mass * step)
+    lumps[[0, -1]] *= 0.5
+    none, down = np.zeros(n), np.tile([0.0, 0.0, -1.0], (n, 1))
+    return LumpedLine(
+        position=np.column_stack([none, none, -np.linspace(0.0, length, n)]),
+        mass=lumps, added_across=none, added_along=none, water_across=none, water_along=none,
+        across_drag=drag * lumps / mass, along_drag=0.02 * drag * lumps / mass, any_drag=none,
+        tangent=down, tension=np.full(count, tension), stiffness=np.full(count, axial / step),
+        spring=down[1:], span=np.full(count, step), current=np.zeros((n, 3)),
+        piece_spring=np.array([0]), piece_node=np.array([0]), top_pieces=1, inextensible=(),
+    )  # fmt: skip
+
+
+def waves(omega, depth=5000.0):
+    return Waves(np.asarray(omega, float), 90.0, depth, DENSITY, GRAVITY)
+
+
+FOLLOWER = Buoy(1000.0, 1500.0, 1.0, 0.5, 0.0, 0.0, follows=True)
+
+
+@pytest.mark.parametrize(("axial", "mass"), [(4.0e6, 0.35), (6.577e6, 0.4522), (8.4e4, 0.29)])
+def test_an_axial_wave_in_a_line_of_4600_m(axial, mass):
+    """EA k cot(kL) below a float that follows the waves, k = ω √(m/EA); steel wire and nylon."""
+    omega = np.linspace(0.3, 1.2, 10)
+    line = plumb(4600.0, mass, axial, 5000.0, 2000)
+    sea = spectra.spectrum_of("bretschneider", 3.0, 9.0, 3.3)
+    response, _ = respond(line, FOLLOWER, waves(omega), sea)
+    k = omega * sqrt(mass / axial)
+    expected = np.abs(axial * k / np.tan(k * 4600.0))
+    # the lumped line disperses by (k h)²/24, at most 1e-4 here, more beside its resonances
+    assert np.abs(response.pull[:, 0]) == pytest.approx(expected, rel=0.02)
+
+
+def test_elements_converge_at_second_order():
+    omega, axial, mass = np.array([1.0]), 4.0e6, 0.35
+    sea = spectra.spectrum_of("bretschneider", 3.0, 9.0, 3.3)
+    k = 1.0 * sqrt(mass / axial)
+    errors = []
+    for count in (50, 100, 200):
+        response, _ = respond(
+            plumb(4600.0, mass, axial, 5000.0, count), FOLLOWER, waves(omega), sea
+        )
+        step = 4600.0 / count
+        middle = axial * k * cos(k * (4600.0 - step / 2.0)) / sin(k * 4600.0)
+        errors.append(abs(abs(response.pull[0, 0]) / abs(middle) - 1.0))
+    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.1)
+    assert errors[1] / errors[2] == pytest.approx(4.0, rel=0.1)
+
+
+def test_a_taut_string_pushed_at_its_free_end():
+    """F tan(kL) / (T k), k = ω √(m/T)."""
+    line = plumb(100.0, 2.0, 1e8, 3000.0, 400)
+    omega = np.array([0.2, 0.5, 0.8])
+    nothing = np.zeros((3, 401, 3), complex)
+    push = nothing.copy()
+    push[:, 0, 0] = 1.0
+    motion = _solved(line, None, waves(omega), nothing, push, np.zeros((401, 3, 3)))
+    k = omega * sqrt(2.0 / 3000.0)
+    assert motion[:, 0, 0].real == pytest.approx(np.tan(k * 100.0) / (3000.0 * k), rel=1e-4)
+    assert np.abs(motion[:, :, 1:]).max() < 1e-12
+
+
+def test_an_undamped_string_swings_at_its_natural_frequencies():
+    """(2n - 1) π/2 √(T/m) / L of one fixed at one end: there its response is greatest."""
+    line = plumb(100.0, 2.0, 1e8, 3000.0, 200)
+    speed = sqrt(3000.0 / 2.0)
+    for number in (1, 2, 3):
+        natural = (2 * number - 1) * pi / 2.0 * speed / 100.0
+        omega = natural * np.linspace(0.99, 1.01, 81)
+        push = np.zeros((81, 201, 3), complex)
+        push[:, 0, 0] = 1.0
+        zero = np.zeros((81, 201, 3), complex)
+        motion = _solved(line, None, waves(omega), zero, push, np.zeros((201, 3, 3)))
+        found = omega[np.abs(motion[:, 0, 0]).argmax()]
+        assert found == pytest.approx(natural, rel=4e-4)
+
+
+def test_without_drag_the_response_is_linear_in_the_height():
+    line = plumb(1000.0, 0.4, 4e6, 5000.0, 100)
+    found = []
+    for height in (0.5, 5.0):
+        sea = spectra.spectrum_of("bretschneider", height, 9.0, 3.3)
+        response, _ = respond(line, FOLLOWER, waves(sea.frequencies(64)), sea)
+        found.append(response.moments(response.pull)[0])
+    assert found[1] == pytest.approx(10.0 * found[0], rel=1e-12)
+
+
+def test_drag_takes_energy_out_and_nothing_moves_without_waves():
+    sea, tiny = (spectra.spectrum_of("bretschneider", h, 9.0, 3.3) for h in (5.0, 1e-6))
+    free, dragged = plumb(3000.0, 0.3, 9e4, 3000.0, 200), plumb(3000.0, 0.3, 9e4, 3000.0, 200, 20.0)
+    found = []
+    for line, state in ((free, sea), (dragged, sea), (dragged, tiny)):
+        response, _ = respond(line, FOLLOWER, waves(state.frequencies(96)), state)
+        found.append(response.moments(response.pull)[0][0])
+    assert found[1] < found[0]
+    assert found[2] == pytest.approx(found[0] * 1e-6 / 5.0, rel=1e-3)
+
+
+@pytest.mark.parametrize(("mean", "deviation"), [(0.0, 1.0), (0.3, 0.2), (2.0, 0.1), (-0.5, 0.4)])
+def test_linearised_drag_against_quadrature(mean, deviation):
+    """E[F v'] / E[v'²] of F = |v|v over a Gaussian flow, by the trapezoidal rule."""
+    x = np.linspace(-10.0, 10.0, 200_001)
+    flow = mean + deviation * x
+    bell = np.exp(-0.5 * x**2)
+    found = np.trapezoid(np.abs(flow) * flow * x * bell, x)
+    expected = found / (deviation * np.trapezoid(x**2 * bell, x))
+    assert _slope(abs(mean), deviation) == pytest.approx(expected, rel=1e-6)
+
+
+def test_heave_of_a_disc_against_a_panel_method():
+    """Radius 1.37 m, draft 0.875 m, 2045 kg: Capytaine 2.2 on a mesh of 14 by 40 by 14 panels.
+
+    Added mass and radiation by formulas of a disc follow it to 5 % up to 2 rad/s, where the sea
+    of a buoy is. Beyond, near its resonance at 3 rad/s, only the panels know.
+    """
+    omega = np.array([0.5, 1.0, 1.5, 2.0])
+    disc = Buoy(2045.45, 3155.9, 1.37, 0.875, 0.0, 0.0)
+    resisting, lifting = disc.heave(omega, omega**2 / GRAVITY, DENSITY, GRAVITY)
+    assert np.abs(lifting / resisting) == pytest.approx([0.982, 0.940, 0.871, 0.803], rel=0.05)
+
+
+def test_a_given_heave_is_followed():
+    given = Buoy(2000.0, 3000.0, 1.4, 0.8, 0.0, 0.0, rao=((0.1, 1.0, 0.0), (2.0, 0.5, 90.0)))
+    line = plumb(1000.0, 0.4, 4e6, 5000.0, 50)
+    sea = spectra.spectrum_of("bretschneider", 3.0, 9.0, 3.3)
+    response, _ = respond(line, given, waves([2.0]), sea)
+    assert response.motion[0, 0, 2] == pytest.approx(0.5j, rel=1e-4)
+
+
+def test_waves_of_any_depth():
+    """ω² = g k tanh(kh); deep down the motion is that of Airy, and none goes through the bed."""
+    omega = np.array([0.05, 0.3, 1.0, 3.0])
+    for depth in (5.0, 50.0, 4000.0):
+        k = spectra.wave_numbers(omega, depth, GRAVITY)
+        assert GRAVITY * k * np.tanh(k * depth) == pytest.approx(omega**2, rel=1e-10)
+    places = np.array([[0.0, 0.0, 0.0], [30.0, 0.0, -20.0], [0.0, 0.0, -50.0]])
+    flow = waves(omega, 50.0).velocity(places)
+    assert flow[:, 2, 2] == pytest.approx(0.0, abs=1e-12)
+    k = waves(omega, 50.0).number
+    assert flow[:, 1, 0] == pytest.approx(
+        omega * np.cosh(k * 30.0) / np.sinh(k * 50.0) * np.exp(-30j * k), rel=1e-10
+    )
+    assert flow[:, 0, 2] == pytest.approx(1j * omega, rel=1e-12)
+
+
+@pytest.mark.parametrize("kind", spectra.SPECTRA)
+def test_spectra_hold_their_height_and_peak(kind):
+    sea = spectra.spectrum_of(kind, 4.0, 9.0, 3.3)
+    omega = np.geomspace(0.1, 60.0, 40_000)
+    density = sea.density(omega)
+    assert np.trapezoid(density, omega) == pytest.approx(1.0, rel=2e-4)
+    assert omega[density.argmax()] == pytest.approx(2.0 * pi / 9.0, rel=1e-3)
+
+
+def test_peakedness_of_one_is_a_full_sea():
+    omega = np.geomspace(0.2, 5.0, 50)
+    one, plain = spectra.jonswap(4.0, 9.0, 1.0)(omega), spectra.bretschneider(4.0, 9.0)(omega)
+    assert one == pytest.approx(plain, rel=2e-4)
+
+
+def test_extremes_of_a_gaussian_process():
+    """1000 crossings: √(2 ln 1000) = 3.717 deviations; e⁻¹ of it is not passed."""
+    assert spectra.greatest_of(2.0, 10.0, 10_000.0) == pytest.approx(2.0 * 3.7169, rel=1e-4)
+    margin = spectra.greatest_of(1.0, 10.0, 10_000.0)
+    probability = spectra.passing_probability(margin, 1.0, 10.0, 10_000.0)
+    assert probability == pytest.approx(1.0 - np.exp(-1.0), rel=1e-9)
+    assert spectra.passing_probability(-1.0, 1.0, 10.0, 100.0) == 1.0
+    assert spectra.full_sea_period(4.0) == pytest.approx(10.03, abs=0.01)
+
+
+def test_waves_that_would_break_are_refused():
+    with pytest.raises(UsageError, match="would break"):
+        spectra.spectrum_of("bretschneider", 5.0, 4.0, 3.3)
+
+
+def test_tables_of_seas(tmp_path):
+    table = tmp_path / "seas.csv"
+    table.write_text("significant_wave_height[m],peak_period[s],share\n2,7,30\n4,9,10\n6,11,0\n")
+    states = spectra.scatter_states(table, "bretschneider", 3.3)
+    assert [(one.significant_height, one.share) for one in states] == [(2.0, 0.75), (4.0, 0.25)]
+    table.write_text("significant_wave_height[m],peak_period[s],share\n-2,7,1\n9,4,1\n2,x,1\n")
+    with pytest.raises(InputError) as refused:
+        spectra.scatter_states(table, "bretschneider", 3.3)
+    assert [problem.line for problem in refused.value.problems] == [4]
+    table.write_text("significant_wave_height[m],peak_period[s],share\n-2,7,1\n9,4,1\n")
+    with pytest.raises(InputError) as refused:
+        spectra.scatter_states(table, "bretschneider", 3.3)
+    assert [problem.line for problem in refused.value.problems] == [2, 3]
+
+
+def test_a_measured_spectrum(tmp_path):
+    table = tmp_path / "sea.csv"
+    sea = spectra.spectrum_of("bretschneider", 3.0, 8.0, 3.3)
+    frequency = np.linspace(0.03, 1.5, 600)
+    density = sea.density(2.0 * pi * frequency) * 2.0 * pi
+    rows = "\n".join(f"{f:.6g},{s:.6g}" for f, s in zip(frequency, density, strict=True))
+    table.write_text(f"frequency[Hz],density[m^2/Hz]\n{rows}\n")
+    read = spectra.measured_spectrum(table)
+    assert read.significant_height == pytest.approx(3.0, rel=2e-3)
+    assert read.peak_period == pytest.approx(8.0, rel=0.02)
+    for text in ("frequency[Hz],x\n1,2\n", "frequency[Hz],density[m^2/Hz]\n1,2\n0.5,1\n2,1\n"):
+        table.write_text(text)
+        with pytest.raises(InputError):
+            spectra.measured_spectrum(table)
+
+
+def test_a_following_float_heaves_with_the_water():
+    line = plumb(1000.0, 0.4, 4e6, 5000.0, 50)
+    sea = spectra.spectrum_of("bretschneider", 3.0, 9.0, 3.3)
+    response, _ = respond(line, FOLLOWER, waves([0.5, 1.0]), sea)
+    assert np.abs(response.motion[:, 0, 2]) == pytest.approx(1.0, rel=1e-4)
+    free, _ = respond(line, replace(FOLLOWER, follows=False), waves([0.05]), sea)
+    assert np.abs(free.motion[0, 0, 2]) == pytest.approx(1.0, rel=0.3)
