@@ -15,8 +15,8 @@ from calm.case.result_tables import ClampRow, Clamps, ComponentRow, Components, 
 from calm.case.strumming import strumming_of
 from calm.case.warnings import warnings_of
 from calm.files import Clamp, Piece
-from calm.physics.anchor import required_weight
 from calm.physics.line import Floats
+from calm.physics.seabed import required_weight
 from calm.physics.track import head_count
 from calm.solve import Solution, Status
 

@@ -16,8 +16,8 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from calm.errors import NoEquilibrium
-from calm.physics.anchor import required_weight
 from calm.physics.line import Floats, Integers
+from calm.physics.seabed import required_weight
 from calm.solve import Settings, Solution
 from tests.validation.agreement import clamp_nodes
 from tests.validation.families import FAMILIES

@@ -17,7 +17,7 @@ from calm.checks.finding import Rule, State
 from calm.checks.posture import reaches_the_surface
 from calm.checks.rules import RULES, equilibrium
 from calm.files.rule_texts import RULES as TEXTS
-from calm.physics.anchor import required_weight
+from calm.physics.seabed import required_weight
 
 NOT_JUDGED = {
     name: TEXTS[name].unseen
