@@ -33,7 +33,7 @@ from calm.files.strumming_keys import (
     StrummingFactor,
 )
 from calm.physics import drag
-from calm.physics.friction import Friction
+from calm.physics.drag import Friction
 from calm.physics.hull import Floating, Hull, cylindrical_hull, spherical_hull, tabulated_hull
 from calm.physics.line import Line, Water
 from calm.physics.materials import STEEL_DENSITY

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from calm.drop.chain import BarChain
-from calm.physics.friction import Friction
+from calm.physics.drag import Friction
 from calm.physics.line import Floats, Water
 from calm.physics.seawater import REFERENCE_DENSITY
 

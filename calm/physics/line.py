@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.physics.friction import Friction
+from calm.physics.drag import Friction
 from calm.physics.hull import Floating
 from calm.physics.seawater import REFERENCE_VISCOSITY as REFERENCE_VISCOSITY
 from calm.physics.strumming import BourgetMarichal

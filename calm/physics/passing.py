@@ -17,7 +17,7 @@ from math import isfinite
 from typing import NamedTuple
 
 from calm.physics.cable import pass_segment, segment_length, touchdown, until_turn
-from calm.physics.friction import CONSTANT
+from calm.physics.drag import CONSTANT
 from calm.physics.profile import Sea, interval_at
 from calm.physics.rod import floating_depth, pass_clamp, pass_rod
 from calm.physics.state import (

@@ -11,9 +11,8 @@ from math import atan2, pow, sqrt
 from sys import float_info
 from typing import NamedTuple
 
-from calm.physics.drag import interpolated
+from calm.physics.drag import BERTEAUX, CONSTANT, interpolated
 from calm.physics.element import Vector
-from calm.physics.friction import BERTEAUX, CONSTANT
 from calm.physics.reynolds import Smooth, drag_variation
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.physics.state import Record

@@ -10,7 +10,7 @@ from math import atan2, cos, hypot, log2, pi, radians, sin
 import numpy as np
 
 from calm.analytic.uniform import heavy_line
-from calm.physics.friction import Friction
+from calm.physics.drag import Friction
 from calm.physics.line import Floats, Water
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.solve import Settings, Solution, solve_mooring

@@ -12,7 +12,7 @@ from math import degrees, hypot, radians
 
 from calm.analytic.pode import CableFunctions, cable_functions
 from calm.analytic.uniform import critical_angle, critical_weight_ratio, tension_ratio
-from calm.physics.friction import Friction
+from calm.physics.drag import Friction
 from calm.physics.line import Line, Water
 from calm.solve import Settings
 from calm.verification.published_case import (

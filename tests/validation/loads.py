@@ -10,7 +10,7 @@ from math import copysign, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.physics.friction import Friction
+from calm.physics.drag import Friction
 from calm.physics.line import Line, Water
 from calm.physics.reynolds import DragCurve
 from tests.validation.smooth import Smooth

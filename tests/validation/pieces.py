@@ -7,7 +7,7 @@ from math import pi
 
 import numpy as np
 
-from calm.physics.friction import Friction
+from calm.physics.drag import Friction
 from calm.physics.line import Line, Water
 from calm.physics.strumming import BourgetMarichal
 

@@ -15,7 +15,7 @@ from random import Random
 
 import numpy as np
 
-from calm.physics.friction import Friction
+from calm.physics.drag import Friction
 from calm.physics.line import Line, Water
 from calm.physics.strumming import BourgetMarichal
 from calm.solve import Towing

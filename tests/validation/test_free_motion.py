@@ -9,7 +9,7 @@ import pytest
 
 import calm
 from calm.case import Mooring
-from calm.physics.friction import Friction
+from calm.physics.drag import Friction
 from calm.physics.line import Line
 from calm.shipped import shipped_folder
 from calm.solve import FallingAnchor, part_of, solve_fall, solve_rise

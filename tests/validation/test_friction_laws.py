@@ -13,7 +13,7 @@ import pytest
 
 import calm
 from calm.errors import NoEquilibrium
-from calm.physics.friction import Friction
+from calm.physics.drag import Friction
 from calm.solve import Settings, solve_mooring
 from tests.property.strategies import mooring
 from tests.validation.agreement import closure, difference

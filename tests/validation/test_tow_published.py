@@ -24,7 +24,7 @@ import pytest
 
 from calm.analytic.pode import cable_functions
 from calm.analytic.uniform import critical_angle, critical_weight_ratio, heavy_line
-from calm.physics.friction import Friction
+from calm.physics.drag import Friction
 from calm.physics.line import Line, Water
 from calm.physics.strumming import BourgetMarichal
 from calm.solve import Settings, Towing, solve_tow

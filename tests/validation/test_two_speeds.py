@@ -18,7 +18,7 @@ import pytest
 
 import calm
 from calm.errors import NoEquilibrium
-from calm.physics.friction import Friction
+from calm.physics.drag import Friction
 from calm.shipped import shipped_folder
 from calm.solve import FallingAnchor, Settings, Solution, solve_fall, solve_mooring, solve_rise
 from tests.validation.families import FAMILIES

@@ -14,7 +14,7 @@ from calm.files import (
     StrummingFactor,
 )
 from calm.files.strumming_keys import AmplitudeName
-from calm.physics.friction import Friction
+from calm.physics.drag import Friction
 from calm.physics.strumming import AMPLIFICATIONS
 
 from .conftest import GOOD, TOW, Place

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from calm.errors import NoEquilibrium
-from calm.physics.friction import Friction
+from calm.physics.drag import Friction
 from calm.physics.line import Water
 from calm.physics.reynolds import DragCurve, sphere_coefficient
 from calm.solve import FallingAnchor, part_of, solve_fall, solve_rise
