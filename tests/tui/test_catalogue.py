@@ -2,9 +2,8 @@
 
 from calm.assemble.catalogue_search import Index
 from calm.files.catalogue import Catalogue
-from calm.tui.catalogue.component_list import ComponentList
+from calm.tui.catalogue.component_list import ComponentList, Remembered
 from calm.tui.catalogue.component_screen import ComponentScreen
-from calm.tui.catalogue.remembered import Remembered
 from calm.tui.field import Field
 from tests.tui.conftest import MOORING
 
