@@ -38,8 +38,8 @@ from calm.solve.audit import referee_of
 from calm.solve.finish import STATUS_OF
 from calm.solve.mooring import MORE_ROOM, AskedSearch, find_asked, search_of
 from calm.solve.problem import MANY_ROOM, problem_of
+from calm.solve.solution import FOUND
 from calm.solve.starts import fill_starts
-from calm.solve.status import FOUND
 
 BLOCK = 1024
 """Profiles that a worker takes at a time."""

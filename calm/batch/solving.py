@@ -20,8 +20,8 @@ from calm.solve.mooring import HANGING, LANDED, NODES, SOUGHT, UNKNOWN_VALUE, As
 from calm.solve.problem import BELOW, COARSE, FINE, Limits, LineProblem, Search
 from calm.solve.refine import is_segment
 from calm.solve.search import Referee
+from calm.solve.solution import FOLDED, FOUND, MARCH_STOPPED, UNSUPPORTED
 from calm.solve.standing import SUPPORTED, TOO_HEAVY
-from calm.solve.status import FOLDED, FOUND, MARCH_STOPPED, UNSUPPORTED
 
 DEPTH, EAST, NORTH, TENSION_TOP, TENSION_BOTTOM, TILT = range(6)
 OF_PIECE = ("depth_top", "x_top", "y_top", "tension_top", "tension_bottom", "tilt")
@@ -29,7 +29,7 @@ OF_CLAMP = ("depth", "x", "y", "tension", "tilt")
 OF_ENDS = ("top_depth", "anchor_vertical", "anchor_horizontal", "used_buoyancy", "end_depth")
 
 NO_CURRENT, LEVELS_COINCIDE, HEAPED, LACKS_ROOM = range(100, 104)
-"""How a profile ends, besides the endings of `calm.solve.status`: no level with a value, two of
+"""How a profile ends, besides the endings of `calm.solve.solution`: no level with a value, two of
 one depth, a heap on the seabed of what is meant to stand; more segments than there is room for."""
 
 

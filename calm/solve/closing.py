@@ -33,7 +33,7 @@ from calm.solve.problem import (
     reach_of,
 )
 from calm.solve.root import bracketed_root, root_near
-from calm.solve.status import (
+from calm.solve.solution import (
     FOUND,
     MARCH_STOPPED,
     MISSES,
@@ -68,7 +68,7 @@ class Root(NamedTuple):
 
 
 class Closed(NamedTuple):
-    """A closed line, or how it ended: see `calm.solve.status`.
+    """A closed line, or how it ended: see `calm.solve.solution`.
 
     Attributes
     ----------

@@ -18,9 +18,7 @@ from calm.solve.search import (
     FoundShape,
     ending_of_audit,
 )
-from calm.solve.solution import Settings, Solution
-from calm.solve.standing import standing_lift, too_heavy
-from calm.solve.status import (
+from calm.solve.solution import (
     ABOVE_SURFACE,
     BELOW_SEABED,
     DRAGGED_DOWN,
@@ -37,8 +35,11 @@ from calm.solve.status import (
     SLACK_ON_DIGITS,
     TOO_MANY_AFLOAT,
     UNSUPPORTED,
+    Settings,
+    Solution,
     Status,
 )
+from calm.solve.standing import standing_lift, too_heavy
 
 STATUS_OF = {
     FOUND: Status.CONVERGED,

@@ -13,7 +13,7 @@ from calm.physics.march import NO_CUTS, Cuts
 from calm.physics.state import MarchError
 from calm.solve.free_march import Moving
 from calm.solve.root import root_near
-from calm.solve.status import Status
+from calm.solve.solution import Status
 
 FASTEST = 100.0
 """Speed that nothing with a drag reaches [m/s]."""

@@ -19,7 +19,7 @@ from calm.solve.closing import (
     with_sought,
 )
 from calm.solve.problem import BELOW, MOST_AFLOAT, About, LineProblem, Search, Unknown
-from calm.solve.status import (
+from calm.solve.solution import (
     DRAGGED_DOWN,
     FOUND,
     MARCH_STOPPED,
@@ -51,7 +51,7 @@ class CoarseRoots(NamedTuple):
 
     Attributes
     ----------
-    ending, value : FOUND, or why there is none: see `calm.solve.status`
+    ending, value : FOUND, or why there is none: see `calm.solve.solution`
     root : the highest
     deeper : the deepest that the scan came upon; not `found` where that is the same
     """

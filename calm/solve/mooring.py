@@ -24,10 +24,9 @@ from calm.solve.problem import (
 )
 from calm.solve.refine import Errors, Refined
 from calm.solve.search import FoundShape, Referee, find_shape
-from calm.solve.solution import Settings, Solution
+from calm.solve.solution import Settings, Solution, Status
 from calm.solve.speed import runs_compiled
 from calm.solve.standing import refuse_unsupported, standing_lift
-from calm.solve.status import Status
 
 MOST_DEPTHS = 500
 """The longest line that is solved, in depths: segments are no longer than a hundredth of one."""

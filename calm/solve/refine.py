@@ -31,7 +31,7 @@ from calm.solve.problem import (
     LineProblem,
     Search,
 )
-from calm.solve.status import BELOW_SEABED, FOUND, MARCH_STOPPED, NO_SHAPE_NEAR
+from calm.solve.solution import BELOW_SEABED, FOUND, MARCH_STOPPED, NO_SHAPE_NEAR
 
 DEPTH_TARGET = 4e-5
 TENSION_TARGET = 1.6e-4

@@ -39,8 +39,7 @@ from calm.solve.problem import (
     Unknown,
 )
 from calm.solve.refine import UNKNOWN_ERRORS, Errors, Refined, refine, tension_at
-from calm.solve.starts import is_highest, start_of
-from calm.solve.status import (
+from calm.solve.solution import (
     ABOVE_SURFACE,
     BELOW_SEABED,
     FOUND,
@@ -53,6 +52,7 @@ from calm.solve.status import (
     SLACK_ON_DIGITS,
     UNSUPPORTED,
 )
+from calm.solve.starts import is_highest, start_of
 
 LARGEST_CLOSURE = 1e-6
 LARGEST_MOMENT = 1e-8
@@ -88,7 +88,7 @@ class FoundShape(NamedTuple):
 
     Attributes
     ----------
-    ending, value, piece : see `calm.solve.status`
+    ending, value, piece : see `calm.solve.solution`
     refined : the closed line
     errors : of the shape, with what no halving shows
     closure, moment : what the audit found

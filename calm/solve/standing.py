@@ -7,7 +7,7 @@ import numpy as np
 from calm.errors import NoEquilibrium
 from calm.physics.line import Floats, Line, Water
 from calm.physics.seawater import REFERENCE_DENSITY
-from calm.solve.status import Status
+from calm.solve.solution import Status
 
 
 def standing_lift(line: Line, water: Water) -> Floats:

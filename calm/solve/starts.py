@@ -14,7 +14,7 @@ from calm.physics.track import CABLE, Course
 from calm.solve.closing import Root, coarse_about, whole_line, with_sought
 from calm.solve.locate import growth_below, in_even_current, locate
 from calm.solve.problem import BELOW, FASTEST, STARTS, About, LineProblem, Search
-from calm.solve.status import FOUND
+from calm.solve.solution import FOUND
 
 NOWHERE_NEAR = 0.97
 """Share of its buoyancy in use beyond which a float may as well be under water."""

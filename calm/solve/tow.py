@@ -14,8 +14,7 @@ from calm.physics.state import MarchError
 from calm.solve.finish import refuse_unbalanced, solution_of
 from calm.solve.root import bracketed_root
 from calm.solve.search import audit_shape, stated_errors
-from calm.solve.solution import Settings, Solution
-from calm.solve.status import Status
+from calm.solve.solution import Settings, Solution, Status
 from calm.solve.towing import Towed
 from calm.solve.waterline import Waterline, half_out
 

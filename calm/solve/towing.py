@@ -48,9 +48,8 @@ from calm.solve.refine import (
     with_bends,
 )
 from calm.solve.search import Referee
-from calm.solve.solution import Settings
+from calm.solve.solution import FOUND, MARCH_STOPPED, Settings
 from calm.solve.speed import runs_compiled
-from calm.solve.status import FOUND, MARCH_STOPPED
 
 
 class Towed:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from calm.errors import NoEquilibrium
 from calm.physics.state import MarchError, Trace
 from calm.solve.problem import HALVED
-from calm.solve.status import Status
+from calm.solve.solution import Status
 from calm.solve.towing import Towed
 
 MOST_MOVES = 6

@@ -7,7 +7,7 @@ import pytest
 
 from calm.batch.statuses import STATUSES
 from calm.cli.streams import ExitCode
-from calm.solve.status import Status
+from calm.solve.solution import Status
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs" / "reference" / "messages.md").read_text(encoding="utf-8")
