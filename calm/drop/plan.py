@@ -32,8 +32,8 @@ from calm.drop.launch import (
 from calm.drop.motion import ChainState
 from calm.errors import NoEquilibrium
 from calm.files import Position
-from calm.physics.ellipsoid import Frame
 from calm.physics.line import Floats
+from calm.positions import Frame
 from calm.quantities import bearing_of
 from calm.solve import Status
 

@@ -11,8 +11,7 @@ from calm.errors import UsageError
 from calm.files import MooringFile, read_mooring
 from calm.files.editing import Draft, EditError, WorkingFile
 from calm.locate.range_fit import Located
-from calm.physics.ellipsoid import Frame
-from calm.positions import read_as_minutes
+from calm.positions import Frame, read_as_minutes
 from calm.quantities import bearing_of, bearing_text
 
 FAR = 2.0

@@ -13,8 +13,8 @@ import numpy as np
 
 from calm.locate.ranges import Survey
 from calm.locate.sound import Sound
-from calm.physics.ellipsoid import Frame
 from calm.physics.line import Booleans, Floats
+from calm.positions import Frame
 
 
 @dataclass(frozen=True)

@@ -10,9 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from calm.errors import InputError, Problem
-from calm.physics.ellipsoid import Frame
 from calm.physics.line import Floats
-from calm.positions import HEMISPHERES, degrees_of, plain_degrees
+from calm.positions import HEMISPHERES, Frame, degrees_of, plain_degrees
 from calm.records.delimited import GAPS, abridged, no_number
 from calm.records.headings import NamedRow, read_named_columns
 from calm.suggestions import shown
