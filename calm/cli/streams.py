@@ -12,7 +12,7 @@ from enum import IntEnum
 from time import monotonic
 from typing import TYPE_CHECKING, TypeVar
 
-from calm.drawing.signs import encodable, printable
+from calm.drawing.picture import encodable, printable
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ def prepare() -> None:
 
 
 def _written_out(error: UnicodeError) -> tuple[str, int]:
-    from calm.drawing.signs import in_ascii
+    from calm.drawing.picture import in_ascii
 
     assert isinstance(error, UnicodeEncodeError)
     text = in_ascii(error.object[error.start : error.end])

@@ -13,7 +13,7 @@ from rich.table import Table as RichTable
 from rich.text import Text
 
 from calm.checks.finding import State
-from calm.drawing.signs import in_ascii, printable
+from calm.drawing.picture import in_ascii, printable
 from calm.report.blocks import (
     Block,
     Cell,

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 from rich.cells import cell_len, set_cell_size
 from rich.text import Text
 
+from calm.drawing.picture import encodable
 from calm.drawing.schematic.pen import ELLIPSIS
 from calm.drawing.schematic.shown_parts import HEADINGS, Schematic, TextRow, schematic_of
 from calm.drawing.schematic.sign import BALLS, LINES, Sign, Symbol
-from calm.drawing.signs import encodable
 from calm.quantities import QUANTITIES
 
 if TYPE_CHECKING:

@@ -9,8 +9,8 @@ from itertools import accumulate
 from typing import TYPE_CHECKING
 
 from calm.drawing.line_picture import alike, together
+from calm.drawing.picture import printable
 from calm.drawing.schematic.sign import BALLS, Sign, Symbol, sign_of
-from calm.drawing.signs import printable
 from calm.files import Place, Rigid
 from calm.quantities import QUANTITIES, say
 
