@@ -11,8 +11,7 @@ from textual.style import Style
 from textual.widget import Widget
 from textual.widgets import Static
 
-from calm.tui.actions import shown_key
-from calm.tui.key_table import Action
+from calm.tui.key_table import Action, shown_key
 
 _GAP = "  "
 
