@@ -17,7 +17,6 @@ from itertools import chain, combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.motion import prior
 from calm.physics.line import Floats, Integers
 
 REACH = 5.0
@@ -40,7 +39,7 @@ class Common:
     since : (s,) the first time at which it does; NaT where it never does
     elsewhere : (s,) probability that it does
     covariance : (q, q)
-    scale : of the errors of the currents, on those of `calm.motion.prior`
+    scale : of the errors of the currents, on those of `calm.motion.common_unknowns`
     gap : (g, g) error of the logarithm of the factor on a group of levels whose currents are taken
         from the others, another group left out besides; see `calm.motion.line_response.gap_errors`
     widened : factor on the deviations of depths, where the pressures miss by more than all errors
@@ -148,10 +147,10 @@ def first_time(evidence: Evidence, fall: Floats, mean: Floats, covariance: Float
     cross = _from_there_on(evidence.seen.transpose(0, 2, 1) @ (heavy * fall[:, None, :]))
     alone = _from_there_on(fall**2 * np.einsum("nss->ns", heavy))
     size = np.maximum(alone - np.einsum("nqs,qr,nrs->ns", cross, inverse, cross), 0.0)
-    wide = prior.ELSEWHERE**2
+    wide = ELSEWHERE**2
     gain = 0.5 * own**2 / (size + 1.0 / wide) - 0.5 * np.log1p(wide * size)
-    gain[1:] += np.log(prior.SLIPPED / count)
-    gain[0] += np.log(prior.MISPLACED)
+    gain[1:] += np.log(SLIPPED / count)
+    gain[0] += np.log(MISPLACED)
     after = _from_there_on(evidence.known.astype(float))
     can = (after >= FEWEST) & (after[:1] - after >= FEWEST)
     can[0] = after[0] >= FEWEST
@@ -184,8 +183,8 @@ def fits(
             move[first[sensor] :, sensor, 0] = fall[first[sensor] :, sensor]
             seen = np.concatenate([seen, move], axis=2)
             spread = np.pad(spread, (0, 1))
-            spread[fixed, fixed] = prior.ELSEWHERE**2
-            odds = np.log(prior.SLIPPED / count if first[sensor] else prior.MISPLACED)
+            spread[fixed, fixed] = ELSEWHERE**2
+            odds = np.log(SLIPPED / count if first[sensor] else MISPLACED)
         before = np.linalg.inv(spread)
         matrix, pull = evidence.normal(seen) + before, evidence.pulls(seen, evidence.left)
         found = np.linalg.solve(matrix, pull.sum(axis=0) + before[:, :fixed] @ mean)
@@ -231,12 +230,12 @@ def hanging_sensors(
         spread = covariance.copy()
         chance = 0.0
         for sensor in way:
-            spread[moved + sensor, moved + sensor] = prior.ELSEWHERE**2
+            spread[moved + sensor, moved + sensor] = ELSEWHERE**2
             if first[sensor]:
-                chance += np.log(prior.SLIPPED / times)
+                chance += np.log(SLIPPED / times)
             else:  # its zero may be wrong as well as its place
-                spread[offset + sensor, offset + sensor] += prior.ELSEWHERE**2
-                chance += np.log(prior.MISPLACED)
+                spread[offset + sensor, offset + sensor] += ELSEWHERE**2
+                chance += np.log(MISPLACED)
         free = np.flatnonzero(np.diag(spread) > 0.0)
         part = np.ix_(free, free)
         before = np.linalg.inv(spread[part])
@@ -269,3 +268,54 @@ def _from_there_on(values: Floats) -> Floats:
     """Sums over the first axis from each place to the end."""
     sums: Floats = np.cumsum(values[::-1], axis=0)[::-1]
     return sums
+
+
+CURRENT = 0.05
+"""Of the factor on the whole current at one time."""
+SHEAR = 0.05
+"""Of the factor that grows from -1 at the lowest level to 1 at the highest."""
+LEVEL: Mapping[int, float] = {0: 0.05, 1: 0.05, 2: 0.07, 3: 0.15, 4: 0.30, 8: 0.20}
+"""Of the factor on a single level, by its quality flag."""
+STEADY = 0.01
+"""What a weak current is wrong by besides [m/s]."""
+GAP = 0.25
+"""Of the factor on a level whose current is taken from its neighbours, where the record does not
+say how alike these are."""
+LARGEST = 0.5
+"""Of the factor on a single level, at most."""
+FALSE: Mapping[int, float] = {0: 0.01, 1: 0.01, 2: 0.03, 3: 0.10, 4: 0.30, 8: 0.10}
+"""Probability that a current is false in direction or size, by its quality flag."""
+WORSE, ALL_WORSE = 3.0, 0.01
+"""All currents of a time are so many times worse than this, and the probability that they are."""
+
+FACTORS: Mapping[str, tuple[float, float]] = {
+    "cable_drag": (0.0, 0.15),
+    "rigid_drag": (0.0, 0.15),
+    "buoyancy": (0.0, 0.02),
+    "length": (0.0, 0.003),
+}
+"""Mean and deviation of the logarithms of the common factors."""
+DATUM = 0.01
+"""Of the depth of the water, as a share of it: what all depths may be wrong by alike."""
+OFFSET = 1.0
+"""Of the offset of a sensor [m]."""
+ELSEWHERE, MISPLACED, SLIPPED = 20.0, 0.01, 0.01
+"""How far from its place in the file a sensor is that is not there [m], and the probabilities that
+it is so from the beginning, and that its clamp slips during the record."""
+TIDE = 1.0
+"""Of tide and air pressure [m]; where the sea level is given, `RESIDUAL_TIDE`."""
+RESIDUAL_TIDE = 0.15
+NOISE = 0.2
+"""Of a depth by pressure at one time [m]."""
+SPIKE, SPIKES = 30.0, 1e-5
+"""Of a depth that is a spike [m], and the probability that one is."""
+WORST = 0.07
+"""Share of the knockdown that the line itself may be wrong by, after all else: shape, model."""
+
+
+def by_flag(values: Mapping[int, float], flag: NDArray[np.int8]) -> Floats:
+    """Return a figure for every flag; one that is not known counts as bad, 4."""
+    table = np.full(256, values[4])
+    for number, value in values.items():
+        table[number] = value
+    return table[flag.astype(np.uint8)]

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.motion import prior
+from calm.motion import common_unknowns
 from calm.motion.common_unknowns import Common
 from calm.motion.line_response import LineResponse, ReadCurrents
 from calm.motion.measurements import MooringMeasurements
@@ -56,8 +56,10 @@ def estimated(moments: LineResponse, common: Common) -> Estimate:
         return mixture.estimate()
     for sensor in range(len(one.label)):
         spike = posterior(one, at, known.way.spread, common, still, sensor)
-        mixture.add(every, known.way, spike, np.full(len(every), np.log(prior.SPIKES)), ())
-    odds, worse = _odds(moments), np.full(len(every), np.log(prior.ALL_WORSE))
+        mixture.add(
+            every, known.way, spike, np.full(len(every), np.log(common_unknowns.SPIKES)), ()
+        )
+    odds, worse = _odds(moments), np.full(len(every), np.log(common_unknowns.ALL_WORSE))
     count = np.isfinite(one.depth).sum(axis=1)
     fair = -0.5 * (count + np.linalg.slogdet(first.expected)[1])
     level = moments.levels(first.depth)
@@ -71,7 +73,7 @@ def estimated(moments: LineResponse, common: Common) -> Estimate:
                 part = LineResponse(one.at(tried), moments.forward, {})
                 other = part.way(level[tried], common, without)
                 if not without:
-                    other = replace(other, spread=prior.WORSE**2 * other.spread)
+                    other = replace(other, spread=common_unknowns.WORSE**2 * other.spread)
                 found = _tried(part, other, at, common, tried)
                 mixture.add(tried, other, found, chance[tried], without)
     return mixture.estimate()
@@ -84,7 +86,7 @@ def _odds(moments: LineResponse) -> Floats:
     """
     one = moments.measured
     known = np.isfinite(one.u) & np.isfinite(one.v)
-    false = np.where(known, prior.by_flag(prior.FALSE, one.flag), 0.0)
+    false = np.where(known, common_unknowns.by_flag(common_unknowns.FALSE, one.flag), 0.0)
     odds = np.full((len(one.time), moments.groups), -np.inf)
     for g in range(moments.groups):
         mine = moments.group == g
@@ -284,7 +286,9 @@ def posterior(
     q = free + f + 1 + s + s
     state = np.zeros((n, q, q))
     state[:, :g, :g] = spread
-    state[:, g, g] = (prior.TIDE if one.tide is None else prior.RESIDUAL_TIDE) ** 2
+    state[:, g, g] = (
+        common_unknowns.TIDE if one.tide is None else common_unknowns.RESIDUAL_TIDE
+    ) ** 2
     state[:, free:, free:] = common.covariance
     slope = np.zeros((n, p, q))
     slope[:, :, :g], slope[:, :, g] = at.slope, 1.0
@@ -301,10 +305,10 @@ def posterior(
     known = np.isfinite(one.depth)
     offset = common.offset + fall * common.moved
     innovation = np.where(known, one.depth - base[:, one.point] - offset, 0.0)
-    noise = np.where(known, prior.NOISE**2, UNMEASURED**2)
+    noise = np.where(known, common_unknowns.NOISE**2, UNMEASURED**2)
     if spike >= 0:
-        noise[:, spike] = np.maximum(noise[:, spike], prior.SPIKE**2)
-    down = np.maximum(there - still, 0.0) * prior.WORST
+        noise[:, spike] = np.maximum(noise[:, spike], common_unknowns.SPIKE**2)
+    down = np.maximum(there - still, 0.0) * common_unknowns.WORST
     length = 0.25 * np.ptp(still)
     alike = np.exp(-np.abs(still[:, None] - still[one.point]) / max(length, 1.0))
     bent = down[:, :, None] * alike * down[:, None, one.point]

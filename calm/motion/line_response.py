@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from calm.batch.profiles import Batch, Profiles
 from calm.case import Mooring
-from calm.motion import prior
+from calm.motion import common_unknowns
 from calm.motion.common_unknowns import Common
 from calm.motion.measurements import FREE, MooringMeasurements
 from calm.physics.line import Floats, Integers, Line
@@ -99,12 +99,15 @@ class LineResponse:
         """
         u, v, known = self.read(level, without)
         speed = np.maximum(np.hypot(u, v), 1e-3)
-        own = np.hypot(prior.by_flag(prior.LEVEL, self.measured.flag), prior.STEADY / speed)
+        own = np.hypot(
+            common_unknowns.by_flag(common_unknowns.LEVEL, self.measured.flag),
+            common_unknowns.STEADY / speed,
+        )
         gap = common.gap[:, [*without]].max(axis=1) if without else np.diag(common.gap)
-        own = np.minimum(np.where(known, own, gap[self.group]), prior.LARGEST)
+        own = np.minimum(np.where(known, own, gap[self.group]), common_unknowns.LARGEST)
         spread = np.zeros((len(u), self.groups, self.groups))
         place = np.linspace(-1.0, 1.0, self.groups) if self.groups > 1 else np.zeros(1)
-        spread += prior.CURRENT**2 + prior.SHEAR**2 * np.outer(place, place)
+        spread += common_unknowns.CURRENT**2 + common_unknowns.SHEAR**2 * np.outer(place, place)
         for g in range(self.groups):
             mine = own[:, self.group == g]
             spread[:, g, g] += (mine**2).mean(axis=1)
@@ -250,7 +253,7 @@ def gap_errors(level: Floats, u: Floats, v: Floats, group: Integers) -> Floats:
 
     The median size of the logarithm of their ratio, as the deviation of a normal law, over the half
     of the times with the stronger current: of the group of a row, left out with that of a column.
-    `calm.motion.prior.GAP` where too few times say.
+    `calm.motion.common_unknowns.GAP` where too few times say.
 
     Parameters
     ----------
@@ -258,7 +261,7 @@ def gap_errors(level: Floats, u: Floats, v: Floats, group: Integers) -> Floats:
     group : (k,) of each level
     """
     count = int(group.max()) + 1 if len(group) else 0
-    errors = np.full((count, count), prior.GAP)
+    errors = np.full((count, count), common_unknowns.GAP)
     whole = np.isfinite(u) & np.isfinite(v) & np.isfinite(level)
     times = np.flatnonzero(whole.all(axis=1))
     if len(times) < FEWEST:
@@ -269,10 +272,10 @@ def gap_errors(level: Floats, u: Floats, v: Floats, group: Integers) -> Floats:
             known = np.broadcast_to(known, (len(times), len(group)))
             taken = [filled(level[times], each[times], known)[:, mine] for each in (u, v)]
             here, there = (
-                np.hypot(east, north).mean(axis=1) + prior.STEADY
+                np.hypot(east, north).mean(axis=1) + common_unknowns.STEADY
                 for east, north in ((u[times][:, mine], v[times][:, mine]), taken)
             )
             off = np.abs(np.log(there / here))[here + there >= np.median(here + there)]
             errors[one, other] = NORMAL * np.median(off)
-    least: Floats = np.maximum(errors, prior.LEVEL[1])
+    least: Floats = np.maximum(errors, common_unknowns.LEVEL[1])
     return least

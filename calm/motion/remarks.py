@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.motion import prior
+from calm.motion import common_unknowns
 from calm.motion.common_unknowns import Common
 from calm.physics.line import Floats, Integers
 
@@ -87,7 +87,7 @@ def sensor_remarks(
             said.append(f"{label}: drifts by {size:+.1f} m over the record{slipped}{among}")
     for j, label in enumerate(labels):
         offset = common.offset[j] + common.moved[j] * throughout[j]
-        if abs(offset) > FAR_OFFSET * prior.OFFSET:
+        if abs(offset) > FAR_OFFSET * common_unknowns.OFFSET:
             said.append(
                 f"{label}: {offset:+.1f} m off throughout: its zero, or a length or a place on the "
                 f"line that is wrong{_or_another(label, labels, common)}"
@@ -261,9 +261,9 @@ def datum_remarks(common: Common, seabed: float) -> list[str]:
     spread = float(np.sqrt(common.covariance[at, at]))
     alike = common.datum + float(common.offset.mean())
     said = f"all sensors: {common.datum:+.1f} m off alike"
-    if common.datum > 2.0 * spread and abs(alike - AIR) < 2.0 * max(spread, prior.NOISE):
+    if common.datum > 2.0 * spread and abs(alike - AIR) < 2.0 * max(spread, common_unknowns.NOISE):
         return [f"{said}: as if the pressures included that of the air, 10.13 dbar; take it off"]
-    if abs(common.datum) > FAR_OFFSET * prior.DATUM * seabed:
+    if abs(common.datum) > FAR_OFFSET * common_unknowns.DATUM * seabed:
         return [f"{said}: the depth of the water, a length, or the zero of the pressures is wrong"]
     return []
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.case import Mooring
-from calm.motion import prior
+from calm.motion import common_unknowns
 from calm.motion.common_unknowns import Common, Evidence, first_time, fits, hanging_sensors
 from calm.motion.estimate import best_state
 from calm.motion.line_response import STEP, Forward, LineResponse, gap_errors
@@ -59,12 +59,12 @@ def assumed(mooring: Mooring, measured: MooringMeasurements, names: Sequence[str
     """
     sensors = len(measured.label)
     spread = [
-        *(prior.FACTORS[name][1] for name in names),
-        prior.DATUM * mooring.water.depth,
-        *[prior.OFFSET] * sensors,
+        *(common_unknowns.FACTORS[name][1] for name in names),
+        common_unknowns.DATUM * mooring.water.depth,
+        *[common_unknowns.OFFSET] * sensors,
         *[0.0] * sensors,
     ]
-    factors = {name: float(np.exp(prior.FACTORS[name][0])) for name in names}
+    factors = {name: float(np.exp(common_unknowns.FACTORS[name][0])) for name in names}
     moments = LineResponse(measured, Forward(mooring, factors), {})
     level = moments.levels(np.tile(moments.forward.still, (len(measured.time), 1)))
     gap = gap_errors(level, measured.u, measured.v, moments.group)
@@ -195,7 +195,7 @@ def _placed(
     fall = np.where(np.arange(len(time))[:, None] >= first, fall, 0.0)
     seen = np.concatenate([evidence.seen, fall[:, :, None] * np.eye(sensors)], axis=2)
     normal, pull = evidence.normal(seen), evidence.pulls(seen, evidence.left).sum(axis=0)
-    free = np.linalg.solve(normal + np.eye(len(normal)) / prior.ELSEWHERE**2, pull)
+    free = np.linalg.solve(normal + np.eye(len(normal)) / common_unknowns.ELSEWHERE**2, pull)
     longest = _memory(evidence, evidence.left - seen @ free)
     found = hanging_sensors(
         normal / alike, pull / alike, known.value, known.covariance, first, len(time),

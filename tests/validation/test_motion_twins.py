@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import calm
-from calm.motion import prior
+from calm.motion import common_unknowns
 from calm.motion.correction import Task
 from calm.motion.line_response import Forward, points
 from calm.motion.matching import labels_of
@@ -63,19 +63,19 @@ def twin(mooring, seed, used=USED, slip=None):
         depth = points(forward.solve(level, u, v))
         level = depth[:, at]
     place = np.linspace(-1.0, 1.0, len(LEVELS))
-    error = prior.CURRENT * random.standard_normal((TIMES, 1))
-    error = error + prior.SHEAR * place * random.standard_normal((TIMES, 1))
-    error = error + prior.LEVEL[1] * random.standard_normal(u.shape)
+    error = common_unknowns.CURRENT * random.standard_normal((TIMES, 1))
+    error = error + common_unknowns.SHEAR * place * random.standard_normal((TIMES, 1))
+    error = error + common_unknowns.LEVEL[1] * random.standard_normal(u.shape)
     speed = np.maximum(np.hypot(u, v), 0.02)
-    error += prior.STEADY / speed * random.standard_normal(u.shape)
-    turned = random.random(u.shape) < prior.FALSE[1]  # a tilted meter's direction
+    error += common_unknowns.STEADY / speed * random.standard_normal(u.shape)
+    turned = random.random(u.shape) < common_unknowns.FALSE[1]  # a tilted meter's direction
     angle = turned * random.uniform(0.5, np.pi, u.shape)
     flow = (u + 1j * v) * np.exp(-error + 1j * angle)
     sensor = np.array([labels.index(label) for label in used])
     sea = 0.8 * np.sin(2.0 * np.pi * np.arange(TIMES) / 12.42) + 0.3 * wandering(random, 1)[:, 0]
     surface = depth + 3.0 * random.standard_normal() + sea[:, None]
-    offset = prior.OFFSET * random.standard_normal(len(used))
-    noise = prior.NOISE * random.standard_normal((TIMES, len(used)))
+    offset = common_unknowns.OFFSET * random.standard_normal(len(used))
+    noise = common_unknowns.NOISE * random.standard_normal((TIMES, len(used)))
     pressure = surface[:, sensor] + offset + noise
     if slip is not None:
         label, down, start = slip

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import calm.motion.whole_record as module
-from calm.motion import prior
+from calm.motion import common_unknowns
 from calm.motion.measurements import MooringMeasurements
 from calm.motion.whole_record import _alike, _scale, estimate_common
 
@@ -40,7 +40,7 @@ def record(seed, factor, datum, wrong, memory=0.0):
     logs = wrong * 0.05 * (whole + shear + own)
     depth = Line(None, {"cable_drag": factor}).depths(None, u * np.exp(logs), 0.0)[:, SENSORS]
     depth += datum + np.array([0.4, -0.3]) + random.standard_normal((TIMES, 1))
-    depth += prior.NOISE * random.standard_normal(depth.shape)
+    depth += common_unknowns.NOISE * random.standard_normal(depth.shape)
     depth[7, 0] += 40.0  # an outlier, and what was not measured
     depth[[20, 90], [0, 1]] = np.nan
     return MooringMeasurements(
@@ -69,7 +69,7 @@ def best(one, start=None):
         down = factor * square @ GAIN[SENSORS].T
         slope = factor * (np.exp(0.1) - 1.0) / 0.05 * GAIN[SENSORS] * square[:, None, :]
         by_currents = scale**2 * slope @ spread @ slope.transpose(0, 2, 1)
-        rest = prior.TIDE**2 + prior.NOISE**2 * np.eye(2)
+        rest = common_unknowns.TIDE**2 + common_unknowns.NOISE**2 * np.eye(2)
         rest = rest + (0.07 * down)[:, :, None] * alike_down * (0.07 * down)[:, None, :]
         rest = rest + np.where(known, 0.0, 1e8)[:, :, None] * np.eye(2)
         bend = 0.5 * np.einsum("nss->ns", by_currents) / np.maximum(down, 1.0)

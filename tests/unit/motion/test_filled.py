@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from calm.motion import prior
+from calm.motion import common_unknowns
 from calm.motion.line_response import filled, gap_errors
 
 LEVEL = np.array([0.0, 100.0, 200.0, 300.0])
@@ -32,7 +32,7 @@ def test_errors_of_neighbours_are_those_of_the_record():
 
 def test_the_median_departure_from_the_neighbours_in_stronger_currents_is_the_error():
     # the second level is off the others by factors of one size, in weak currents by a larger one
-    times, offset = 40, prior.STEADY
+    times, offset = 40, common_unknowns.STEADY
     level = np.tile(LEVEL, (times, 1))
     speed = np.where(np.arange(times) < times // 2, 0.8, 0.2)[:, None] * np.ones(4)
     size = np.where(np.arange(times) < times // 2, 0.3, 1.0)
@@ -41,15 +41,15 @@ def test_the_median_departure_from_the_neighbours_in_stronger_currents_is_the_er
     errors = gap_errors(level, 0.6 * speed, 0.8 * speed, np.arange(4))
     assert errors.shape == (4, 4)
     assert errors[1] == pytest.approx(1.4826 * 0.3)  # whichever is left out besides
-    assert errors[3, 1] == errors[0, 1] == prior.LEVEL[1]
+    assert errors[3, 1] == errors[0, 1] == common_unknowns.LEVEL[1]
 
 
 def test_few_times_say_nothing_and_equal_levels_are_not_without_error():
     same = np.full((19, 4), 0.4)
     level = np.tile(LEVEL, (19, 1))
-    assert (gap_errors(level, same, same, np.arange(4)) == prior.GAP).all()
+    assert (gap_errors(level, same, same, np.arange(4)) == common_unknowns.GAP).all()
     many = [np.repeat(one, 2, axis=0) for one in (level, same, same)]
-    assert (gap_errors(*many, np.arange(4)) == prior.LEVEL[1]).all()
+    assert (gap_errors(*many, np.arange(4)) == common_unknowns.LEVEL[1]).all()
 
 
 @pytest.mark.parametrize("gap", [0, 1, 2])
@@ -59,4 +59,4 @@ def test_times_with_a_gap_in_any_of_depth_u_and_v_say_nothing_of_neighbours(gap)
     speed[::2, 1] *= 10.0
     given = [np.tile(LEVEL, (60, 1)), speed, speed.copy()]
     given[gap][::2, 3] = np.nan
-    assert gap_errors(*given, np.arange(4))[1, 1] == prior.LEVEL[1]
+    assert gap_errors(*given, np.arange(4))[1, 1] == common_unknowns.LEVEL[1]

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from calm.motion import prior
+from calm.motion import common_unknowns
 from calm.motion.estimate import Mixture, Posterior, _odds, _sets
 from calm.motion.line_response import ReadCurrents
 
@@ -59,7 +59,7 @@ def test_the_odds_of_a_false_current_are_those_of_its_flag():
     u = np.array([[0.1, 0.2, 0.3], [0.1, 0.2, np.nan]])
     measured = SimpleNamespace(u=u, v=0.0 * u, flag=flag, time=np.zeros(2))
     odds = _odds(SimpleNamespace(measured=measured, groups=2, group=np.array([0, 1, 1])))
-    mean = 0.5 * (prior.FALSE[3] + prior.FALSE[4])
+    mean = 0.5 * (common_unknowns.FALSE[3] + common_unknowns.FALSE[4])
     assert odds[0] == pytest.approx([np.log(0.01 / 0.99), np.log(mean / (1.0 - mean))])
     assert odds[1] == pytest.approx([np.log(0.03 / 0.97), np.log(0.30 / 0.70)])
 

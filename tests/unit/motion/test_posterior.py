@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from calm.motion import prior
+from calm.motion import common_unknowns
 from calm.motion.common_unknowns import Common
 from calm.motion.estimate import Linear, between, posterior
 from calm.motion.line_response import LineResponse
@@ -42,8 +42,8 @@ def test_the_posterior_is_that_of_all_unknowns_written_out(tide):
     one, at, common = given(tide)
     found = posterior(one, at, SPREAD[None], common, STILL)
     # unknowns: two logarithms, sea, factor, datum, two offsets, two steps, three errors of the line
-    sea = prior.TIDE if tide is None else prior.RESIDUAL_TIDE
-    down = prior.WORST * (THERE - STILL)
+    sea = common_unknowns.TIDE if tide is None else common_unknowns.RESIDUAL_TIDE
+    down = common_unknowns.WORST * (THERE - STILL)
     alike = np.exp(-np.abs(STILL[:, None] - STILL[None]) / (0.25 * np.ptp(STILL)))
     # the law is of the exponential kind only between a point and a sensor
     bent = np.outer(down, down) * alike
@@ -56,7 +56,7 @@ def test_the_posterior_is_that_of_all_unknowns_written_out(tide):
     seen = depth[[0, 2]].copy()
     seen[:, 5:7], seen[1, 8] = np.eye(2), FALL
     level = THERE - SLOPE @ at.logs[0] + common.datum + (0.0 if tide is None else tide[0])
-    expected = seen @ covariance @ seen.T + prior.NOISE**2 * np.eye(2)
+    expected = seen @ covariance @ seen.T + common_unknowns.NOISE**2 * np.eye(2)
     innovation = READ - level[[0, 2]] - common.offset - [0.0, 0.7 * FALL]
     gain = covariance @ seen.T @ np.linalg.inv(expected)
     state, left = gain @ innovation, covariance - gain @ seen @ covariance
@@ -75,7 +75,7 @@ def test_a_spike_has_its_own_noise_and_what_was_not_measured_says_nothing():
     one, at, common = given()
     plain = posterior(one, at, SPREAD[None], common, STILL)
     spike = posterior(one, at, SPREAD[None], common, STILL, spike=1)
-    more = np.diag([0.0, prior.SPIKE**2 - prior.NOISE**2])
+    more = np.diag([0.0, common_unknowns.SPIKE**2 - common_unknowns.NOISE**2])
     assert spike.expected[0] == pytest.approx(plain.expected[0] + more)
     lost = replace(one, depth=np.array([[READ[0], np.nan]]))
     upper = replace(one, label=("a",), point=np.array([0]), depth=READ[None, :1])
@@ -127,8 +127,8 @@ def test_the_errors_of_the_currents_are_those_of_the_table():
                   flag=np.array([[3, 1]], np.int8))  # fmt: skip
     common = replace(given()[2], scale=2.0, gap=np.array([[0.11, 0.12], [0.13, 0.14]]))
     way = LineResponse(one, SimpleNamespace(), {}).way(np.array([[10.0, 90.0]]), common)
-    whole, shear = prior.CURRENT**2, prior.SHEAR**2
-    own = [prior.LEVEL[3] ** 2 + (prior.STEADY / 0.5) ** 2, 0.14**2]
+    whole, shear = common_unknowns.CURRENT**2, common_unknowns.SHEAR**2
+    own = [common_unknowns.LEVEL[3] ** 2 + (common_unknowns.STEADY / 0.5) ** 2, 0.14**2]
     expected = whole + shear * np.array([[1.0, -1.0], [-1.0, 1.0]]) + np.diag(own)
     assert way.spread[0] == pytest.approx(4.0 * expected)
     assert way.u.tolist() == [[0.3, 0.3]] and way.v.tolist() == [[0.4, 0.4]]
@@ -145,9 +145,9 @@ def test_of_several_levels_the_shear_is_linear_and_the_worst_gap_counts():
     moments, common = LineResponse(one, SimpleNamespace(), {}), replace(given()[2], gap=gap)
     level = moments.levels(np.zeros((1, 3)))
     assert (np.diff(level) > 0.0).all() and level[0] == pytest.approx([20.0, 20.0, 90.0], abs=1e-5)
-    own = prior.LEVEL[1] ** 2 + (prior.STEADY / speed[0]) ** 2
+    own = common_unknowns.LEVEL[1] ** 2 + (common_unknowns.STEADY / speed[0]) ** 2
     place = np.array([-1.0, 0.0, 1.0])
-    whole = prior.CURRENT**2 + prior.SHEAR**2 * np.outer(place, place)
+    whole = common_unknowns.CURRENT**2 + common_unknowns.SHEAR**2 * np.outer(place, place)
     assert moments.way(level, common).spread[0] == pytest.approx(whole + np.diag(own))
     own[:2] = 0.12**2, 0.14**2  # of a row, with that of a column left out besides: the worst
     assert moments.way(level, common, (0, 1)).spread[0] == pytest.approx(whole + np.diag(own))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
 
-from calm.motion import prior
+from calm.motion import common_unknowns
 from calm.motion.common_unknowns import Common, Evidence, first_time, fits, hanging_sensors
 
 TIMES, SENSORS = 12, 3
@@ -46,7 +46,7 @@ def test_the_time_is_the_likeliest_of_all_by_the_densities_written_out():
     random = np.random.default_rng(11)
     mean, before = np.array([0.05, 2.0, 0.3, -0.2, 0.1]), np.diag(BEFORE)
     weight = random.uniform(0.5, 1.5, TIMES)
-    slopes, wide = SEEN.reshape(-1, 5), prior.ELSEWHERE**2
+    slopes, wide = SEEN.reshape(-1, 5), common_unknowns.ELSEWHERE**2
     error = np.kron(np.diag(1.0 / weight), ERROR)
     known = slopes @ before @ slopes.T + error
     found = []
@@ -60,7 +60,7 @@ def test_the_time_is_the_likeliest_of_all_by_the_densities_written_out():
             move = np.zeros((TIMES, SENSORS))
             move[first:, 1] = FALL[first:, 1]
             whole = known + wide * np.outer(move.ravel(), move.ravel())
-            chance = np.log(prior.SLIPPED / TIMES if first else prior.MISPLACED)
+            chance = np.log(common_unknowns.SLIPPED / TIMES if first else common_unknowns.MISPLACED)
             density = multivariate_normal(slopes @ mean, whole).logpdf(left.ravel())
             likely[first] = chance + density
         found.append(first_time(given, FALL, mean, before)[1])
@@ -92,8 +92,10 @@ def test_fits_and_their_odds_come_to_the_densities_written_out():
         if sensor >= 0:
             move = np.zeros((TIMES, SENSORS))
             move[first[sensor] :, sensor] = FALL[first[sensor] :, sensor]
-            whole = known + prior.ELSEWHERE**2 * np.outer(move.ravel(), move.ravel())
-            chance = np.log(prior.SLIPPED / TIMES if first[sensor] else prior.MISPLACED)
+            whole = known + common_unknowns.ELSEWHERE**2 * np.outer(move.ravel(), move.ravel())
+            chance = np.log(
+                common_unknowns.SLIPPED / TIMES if first[sensor] else common_unknowns.MISPLACED
+            )
         density = multivariate_normal(slopes @ mean, whole).logpdf(left.ravel()) + chance
         assert multivariate_normal(None, error).logpdf(rest.ravel()) + odds == pytest.approx(
             density
@@ -116,16 +118,16 @@ def test_all_ways_the_sensors_may_hang_count_by_their_densities():
     found = hanging_sensors(
         given.normal(seen), given.pulls(seen, left).sum(axis=0), mean, covariance, first, TIMES, 1.0
     )
-    slopes, wide = seen.reshape(-1, 8), prior.ELSEWHERE**2
+    slopes, wide = seen.reshape(-1, 8), common_unknowns.ELSEWHERE**2
     told = []
     for way in ((), (0,), (1,), (0, 1)):
         spread, chance = covariance.copy(), 1.0
         if 0 in way:
             spread[5, 5] = wide
-            chance *= prior.SLIPPED / TIMES
+            chance *= common_unknowns.SLIPPED / TIMES
         if 1 in way:
             spread[6, 6], spread[3, 3] = wide, spread[3, 3] + wide
-            chance *= prior.MISPLACED
+            chance *= common_unknowns.MISPLACED
         expected = slopes @ spread @ slopes.T + np.kron(np.eye(TIMES), ERROR)
         density = multivariate_normal(slopes @ mean, expected).pdf(left.ravel())
         gain = spread @ slopes.T @ np.linalg.inv(expected)
