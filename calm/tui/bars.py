@@ -11,7 +11,8 @@ from textual.style import Style
 from textual.widget import Widget
 from textual.widgets import Static
 
-from calm.tui.key_table import Action, shown_key
+from calm.tui.actions import shown_key
+from calm.tui.key_table import Action
 
 _GAP = "  "
 

@@ -14,7 +14,8 @@ from textual.containers import ScrollableContainer
 from textual.screen import Screen
 from textual.widgets import Input, TextArea
 
-from calm.tui.key_table import ACTIONS, Action, Place, actions_in, shown_key, shown_keys
+from calm.tui.actions import actions_in, shown_key, shown_keys
+from calm.tui.key_table import ACTIONS, Action, Place
 from calm.tui.theme import LOOKS
 
 _SIGNS = "Signs: " + ", ".join(f"{look.sign} {look.word}" for look in LOOKS.values())

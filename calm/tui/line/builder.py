@@ -11,11 +11,12 @@ from textual.events import DescendantFocus, Key
 
 from calm.files.components import KINDS
 from calm.files.editing import Draft
+from calm.tui.actions import bindings, hints
 from calm.tui.bars import KeyBar
 from calm.tui.catalogue.catalogue_pane import CataloguePane
 from calm.tui.cell_editor import CellEditor
 from calm.tui.dialogs import InputSheet
-from calm.tui.key_table import Place, bindings, hints
+from calm.tui.key_table import Place
 from calm.tui.line.advising import Advising
 from calm.tui.line.body import LineBody
 from calm.tui.line.comparing import Comparing

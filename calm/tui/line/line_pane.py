@@ -12,11 +12,11 @@ from textual.message import Message
 
 from calm.checks.finding import State
 from calm.files import Place
+from calm.tui.actions import bindings
 from calm.tui.catalogue.catalogue_pane import Purpose
 from calm.tui.cell_editor import CellEditor
 from calm.tui.checking import Reading
 from calm.tui.dialogs import Answer, Question
-from calm.tui.key_table import bindings
 from calm.tui.line.line_cell import LineCell
 from calm.tui.line.mooring_sheet import equipment_changes, equipment_sheet, naming
 from calm.tui.line.rows import table_rows

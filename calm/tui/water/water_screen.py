@@ -9,11 +9,11 @@ from textual.app import App
 from textual.binding import BindingType
 from textual.events import DescendantFocus
 
+from calm.tui.actions import bindings, hints
 from calm.tui.bars import KeyBar
 from calm.tui.cell_editor import CellEditor
 from calm.tui.checking import needed
 from calm.tui.dialogs import Asked, InputSheet
-from calm.tui.key_table import bindings, hints
 from calm.tui.messages import Workspace
 from calm.tui.screen import DraftScreen
 from calm.tui.water.currents_to_begin import Currents
