@@ -1,4 +1,4 @@
-"""Latitudes and longitudes as people write them: degrees, minutes, seconds, hemispheres."""
+"""Places on the earth: latitudes and longitudes as people write them, and the ellipsoid."""
 
 from __future__ import annotations
 
@@ -7,8 +7,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
-from calm.physics.line import Floats
+Floats = NDArray[np.float64]
 
 HEMISPHERES: Mapping[str, str] = {"latitude": "NS", "longitude": "EW"}
 """Letters of the positive and the negative side."""

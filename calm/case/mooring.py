@@ -1,4 +1,4 @@
-"""A mooring file, ready to be solved."""
+"""A mooring file ready to be solved, and the same with some of its values changed."""
 
 from __future__ import annotations
 

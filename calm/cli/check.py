@@ -315,7 +315,7 @@ def _answer(
     from calm.report.check_report import check_report
     from calm.report.html import page
     from calm.report.pdf import printed
-    from calm.report.result_json import to_json
+    from calm.report.result_files import to_json
 
     report = check_report([each.section for each in drawings])
     with ThreadPoolExecutor(1) as beside:

@@ -134,7 +134,7 @@ def _contents(deck: Deck, paper: Paper, notes: tuple[str, ...]) -> Mapping[str, 
     )
     from calm.report.diagram import diagram_svg
     from calm.report.pdf import printed
-    from calm.report.result_json import to_json
+    from calm.report.result_files import to_json
 
     texts = {"diagram.svg": diagram_svg(deck, paper), **deck_csvs(deck)}
     plan = {"calm": __version__, **_plan(deck), "verdict": _verdict(deck)}

@@ -216,7 +216,7 @@ class Outputs:
             The system refuses to write.
         """
         from calm.report.folder import write_file
-        from calm.report.result_json import to_json
+        from calm.report.result_files import to_json
 
         def text() -> str:
             return to_json([{"calm": __version__} | document()])
@@ -245,7 +245,7 @@ class Outputs:
             The system refuses to write.
         """
         from calm.report.folder import write_file
-        from calm.report.result_json import to_json
+        from calm.report.result_files import to_json
 
         texts: dict[Path, str] = {}
         if self.json is not None:

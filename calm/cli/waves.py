@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
+
+from cyclopts import Parameter
 
 from calm.cli.options import CatalogFiles, EnvironmentName, Units, quantities, show_units
 from calm.cli.outputs import OutputPath, Outputs
@@ -12,6 +14,8 @@ from calm.errors import NoEquilibrium, UsageError
 
 if TYPE_CHECKING:
     from calm.waves.spectra import SeaState
+
+Signed = Annotated[str | None, Parameter(allow_leading_hyphen=True)]
 
 WAVES_EXAMPLES = """Examples:
 
@@ -27,11 +31,11 @@ def waves(
     *,
     environment: EnvironmentName = None,
     catalog: CatalogFiles = None,
-    hs: str | None = None,
-    tp: str | None = None,
+    hs: Signed = None,
+    tp: Signed = None,
     spectrum: str = "bretschneider",
     gamma: float = 3.3,
-    toward: str = "90 deg",
+    toward: Annotated[str, Parameter(allow_leading_hyphen=True)] = "90 deg",
     scatter: Path | None = None,
     duration: str = "3 h",
     json: OutputPath = None,

@@ -1,4 +1,4 @@
-"""A figure as a file."""
+"""A figure as a file, and the signs that stand in figures."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Drag coefficients by shape, constant with Reynolds number.
+"""Drag coefficients by shape, constant with Reynolds number; the laws of friction along cables.
 
 Every function gives the drag of a shape at 1 m/s in sea water of 1025 kg/m³: Kn across its axis,
 Kt along it [N/(m/s)²]. Constant coefficients hold for Reynolds numbers from 1e3 to 2e5 (cylinders

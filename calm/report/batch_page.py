@@ -45,7 +45,7 @@ from calm.report.blocks import (
 from calm.report.check_summary import limits_table as limits_used_table
 from calm.report.html import page
 from calm.report.provenance import NOT_JUDGED, date, versions
-from calm.report.result_json import to_json
+from calm.report.result_files import to_json
 from calm.report.sheet import figure_cell, quantity_column
 from calm.whole_file import put
 

@@ -13,7 +13,7 @@ from calm.quantities import QUANTITIES
 from calm.records.delimited import table_csv
 from calm.report.check_facts import facts_of
 from calm.report.provenance import UNJUDGED
-from calm.report.result_json import members
+from calm.report.result_files import members
 
 if TYPE_CHECKING:
     from calm.checks.assessment import Assessment, Situation

@@ -31,7 +31,7 @@ from calm.report.check_summary import (
     worst_by_rule,
 )
 from calm.report.provenance import title_pairs
-from calm.report.result_json import members
+from calm.report.result_files import members
 from calm.units import KILOGRAM_FORCE, KNOT
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from calm.checks.finding import State
 from calm.report.blocks import Block, Cell, Column, Heading, Line, Prose, ReportPart, Span, Table
-from calm.report.result_json import members
+from calm.report.result_files import members
 
 if TYPE_CHECKING:
     from calm.verification import Case, CaseOutcome, Kind, Source

@@ -1,4 +1,4 @@
-"""The settings of a solve and what it returns."""
+"""The settings of a solve and what it returns: a solution, or the status of having none."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The list of the components found: one line each, with a cursor."""
+"""The list of the components found: one line each, with a cursor; the last ones are remembered."""
 
 from __future__ import annotations
 

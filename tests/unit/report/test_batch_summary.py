@@ -17,7 +17,7 @@ from calm.report import folder
 from calm.report.batch_brief import summary_part
 from calm.report.batch_page import summary_html, summary_paths, write_summary
 from calm.report.batch_summary import percent, summary_document
-from calm.report.result_json import to_json
+from calm.report.result_files import to_json
 from calm.report.terminal import shown
 from calm.shipped import shipped_folder
 from tests.judged import hostile_file

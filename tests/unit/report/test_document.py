@@ -3,7 +3,7 @@ import json
 import pytest
 
 from calm.errors import NoEquilibrium
-from calm.report.result_json import UNITS, to_json
+from calm.report.result_files import UNITS, to_json
 
 
 def test_one_document_is_an_object_and_several_an_array():

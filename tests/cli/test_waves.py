@@ -1,0 +1,113 @@
+"""``calm waves`` as it is typed."""
+
+import json
+
+import pytest
+
+BUOY = """\
+name: Small buoy
+environment: {depth: 80 m, current: {speed: 0.3 m/s, toward: 90 deg}}
+line:
+  - {use: buoy, label: buoy}
+  - {use: rope, length: 95 m, label: rope}
+  - {use: chain, length: 12 m, label: chain}
+  - {use: block, label: block}
+components:
+  buoy: {kind: cylinder, role: float, diameter: 1.6 m, length: 1.2 m, mass: 700 kg,
+         volume: 2.4127 m^3, HULL}
+  rope: {kind: cable, diameter: 20 mm, weight: 0.5 N/m, mass: 0.3 kg/m, material: nylon,
+         STIFF}
+  chain: {kind: chain, diameter: 16 mm, mass: 5.6 kg/m}
+  block: {kind: anchor, weight: 20 kN}
+"""
+
+
+@pytest.fixture
+def buoy(tmp_path):
+    def written(hull="hull: cylinder", stiff="stiffness: 90 kN"):
+        path = tmp_path / "buoy.yaml"
+        path.write_text(BUOY.replace("HULL", hull).replace("STIFF", stiff))
+        return str(path)
+
+    return written
+
+
+SEA = ("--hs", "1.5 m", "--tp", "6 s")
+
+
+def test_the_table_and_the_object(calm, buoy):
+    shown = calm("waves", buoy(), *SEA)
+    assert shown.code in (0, 3)
+    assert "Hs 1.5 m, Tp 6.0 s" in shown.out
+    told = json.loads(calm("waves", buoy(), *SEA, "--json", "-").out)
+    (state,) = told["states"]
+    assert (state["significant_wave_height"], state["peak_period"], state["share"]) == (1.5, 6, 1)
+    assert [one["label"] for one in state["components"]] == ["buoy", "rope", "chain"]
+    rope = state["components"][1]
+    assert rope["tension_max"] - rope["tension_mean"] == pytest.approx(
+        rope["tension_mean"] - rope["tension_min"]
+    )
+    assert set(told["accuracy"]) == {"mesh", "frequencies", "linearisation"}
+    assert told["fatigue"] is None
+    assert told["units"]["force"] == "N"
+
+
+def test_slack_has_a_status_of_its_own(calm, buoy):
+    shown = calm("waves", buoy(), "--hs", "6 m", "--tp", "9 s", "--json", "-")
+    assert shown.code == 3
+    told = json.loads(shown.out)
+    assert told["status"] == "slack-in-waves"
+    assert told["states"][0]["slack"]
+    assert "slack-in-waves" in shown.err
+
+
+def test_a_scatter_table(calm, buoy, tmp_path):
+    table = tmp_path / "seas.csv"
+    table.write_text("significant_wave_height[m],peak_period[s],share\n0.5,4,3\n1.0,5,1\n")
+    told = json.loads(calm("waves", buoy(), "--scatter", str(table), "--json", "-").out)
+    assert [one["share"] for one in told["states"]] == [0.75, 0.25]
+    deviations = [one["components"][1]["tension_std"] for one in told["states"]]
+    assert deviations[0] < deviations[1]
+
+
+def test_a_rope_of_unknown_stiffness_is_told(calm, buoy):
+    shown = calm("waves", buoy(stiff="cn: 1.2"), *SEA)
+    assert "rope gives no `stiffness` and is taken as inextensible" in shown.out
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (("--hs", "0 m", "--tp", "6 s"), "--hs: must be above 0"),
+        (("--hs", "2 m", "--tp", "-1 s"), "--tp: must be above 0"),
+        (("--hs", "2 m"), "--tp: missing"),
+        (("--hs", "2", "--tp", "6 s"), "--hs"),
+        (("--hs", "5 m", "--tp", "4 s"), "would break"),
+        ((*SEA, "--spectrum", "jonswop"), "did you mean `jonswap`?"),
+        ((*SEA, "--spectrum", "jonswap", "--gamma", "0.2"), "--gamma: from 1"),
+        ((*SEA, "--scatter", "none.csv"), "--scatter: gives heights"),
+        (("--scatter", "none.csv"), "none.csv"),
+    ],
+)
+def test_seas_that_cannot_be_are_refused(calm, buoy, options, told):
+    shown = calm("waves", buoy(), *options)
+    assert shown.code == 2
+    assert told in shown.err
+    assert "Traceback" not in shown.err
+
+
+def test_a_buoy_without_a_hull_is_refused(calm, tmp_path, buoy):
+    path = buoy().replace("buoy.yaml", "body.yaml")
+    text = (tmp_path / "buoy.yaml").read_text()
+    body = (
+        text.replace(
+            "{kind: cylinder, role: float, diameter: 1.6 m, length: 1.2 m, mass: 700 kg,",
+            "{kind: body, role: float, drag_area: 1.9 m^2, cd: 1, length: 1.2 m, mass: 700 kg,",
+        )
+        .replace(", hull: cylinder", "")
+        .replace("volume: 2.4127 m^3, }", "volume: 2.4127 m^3}")
+    )
+    (tmp_path / "body.yaml").write_text(body)
+    shown = calm("waves", path, *SEA)
+    assert shown.code == 2
+    assert "has no hull" in shown.err
