@@ -94,6 +94,11 @@ class Cable(Flexible):
         description="rows of load over breaking load and strain, e.g. [[0.1, 0.03], [0.3, 0.08]]",
         examples=[[[0.05, 0.05], [0.1, 0.08], [0.2, 0.12]]],
     )
+    dynamic_stiffness: Annotated[float | None, POSITIVE_FORCE] = Field(
+        default=None,
+        description="EA under the quick loads of waves, greater than that of a slow load",
+        examples=["600 kN"],
+    )
     permanent_elongation: Annotated[
         float | None, QuantityField("number", at_least=0, at_most=1)
     ] = Field(

@@ -4,7 +4,15 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationInfo, model_validator
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    Discriminator,
+    Field,
+    Tag,
+    ValidationInfo,
+    model_validator,
+)
 
 from calm.files.definition import (
     CATALOGUE_DENSITY,
@@ -84,6 +92,19 @@ Hull = Annotated[
 ]
 
 
+def _frequencies_grow(rao: dict[str, tuple[float, float]] | None) -> object:
+    for key in rao or {}:
+        try:
+            right = float(key) > 0.0
+        except ValueError:
+            right = False
+        if not right:
+            raise ValueError(f"`{key}` is no angular frequency in rad/s, such as `0.5: [1, 0 deg]`")
+    if rao is not None and len(rao) < 2:
+        raise ValueError("`rao` needs two frequencies or more")
+    return rao
+
+
 class Rigid(Definition):
     """A piece of fixed length, or one clamped on a line."""
 
@@ -112,6 +133,34 @@ class Rigid(Definition):
     wind_cd: Annotated[float | None, COEFFICIENT] = Field(
         default=None, description="drag coefficient of `wind_area`", examples=[1.0]
     )
+
+    heave: Literal["filtered", "follows"] | None = Field(
+        default=None,
+        description="of a float at the surface in waves: by its hull, or as the water does",
+        examples=["follows"],
+    )
+    rao: Annotated[
+        dict[
+            str,
+            tuple[
+                Annotated[float, QuantityField("number", at_least=0)],
+                Annotated[float, QuantityField("angle")],
+            ],
+        ]
+        | None,
+        AfterValidator(_frequencies_grow),
+    ] = Field(
+        default=None,
+        description="heave of a float over the elevation of the sea, by angular frequency in "
+        "rad/s: amplitude and phase",
+        examples=[{"0.5": [1.0, "0 deg"], "2": [0.6, "20 deg"]}],
+    )
+
+    @property
+    def heave_response(self) -> tuple[tuple[float, float, float], ...]:
+        """Return the rows of `rao`: frequency [rad/s], amplitude [-], phase [degrees]."""
+        rows = (self.rao or {}).items()
+        return tuple(sorted((float(at), *response) for at, response in rows))
 
     @property
     def net_buoyancy(self) -> float:

@@ -13,7 +13,7 @@ from scipy.special import j1
 
 from calm.errors import UsageError
 from calm.files import Cylinder, Sphere
-from calm.files.rigid import Displacement
+from calm.files.rigid import Displacement, Rigid
 from calm.physics.line import Floats
 
 if TYPE_CHECKING:
@@ -110,8 +110,10 @@ def buoy_of(mooring: Mooring, solution: Solution, follows: bool) -> Buoy | None:
     piece = mooring.file.pieces[index]
     above = mooring.file.pieces[: index + 1]
     riding, component = solution.riding, piece.component
-    given = getattr(component, "rao", None) or ()
-    follows = follows or getattr(component, "heave", None) == "follows"
+    if not isinstance(component, Rigid):
+        raise UsageError(f"{piece.label}, a {component.kind}, floats at the surface, and no float")
+    given = component.heave_response
+    follows = follows or component.heave == "follows"
     draft = 0.0 if riding is None or np.isnan(riding.draft) else riding.draft
     radius = _waterplane_radius(component, draft)
     if radius is None and not (follows or given):
@@ -132,7 +134,7 @@ def buoy_of(mooring: Mooring, solution: Solution, follows: bool) -> Buoy | None:
         draft=draft,
         drag=float(solution.carried.normal_drag[index]) * float(density) / 1025.0,
         heave_drag=0.5 * float(density) * DISC_CD * pi * (radius or 0.0) ** 2,
-        rao=tuple((omega, amplitude, phase) for omega, (amplitude, phase) in sorted(given)),
+        rao=given,
         follows=follows,
     )
 

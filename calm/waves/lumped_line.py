@@ -227,14 +227,17 @@ def _volume(component: Component, length: float) -> float:
 
 
 def _gives_stiffness(cable: Cable) -> bool:
-    return any(each is not None for each in (cable.stiffness, cable.elongation))
+    ways = (cable.stiffness, cable.elongation, cable.dynamic_stiffness)
+    return any(each is not None for each in ways)
 
 
 def _axial(component: Component, tension: float) -> float:
     """Return the tangent stiffness EA at a tension [N]."""
     if isinstance(component, Chain):
-        return CHAIN_STIFFNESS * component.diameter**2
+        return component.stiffness or CHAIN_STIFFNESS * component.diameter**2
     if isinstance(component, Cable):
+        if component.dynamic_stiffness is not None:
+            return component.dynamic_stiffness
         if component.stiffness is not None:
             return component.stiffness
         if component.elongation is not None:

@@ -111,3 +111,34 @@ def test_a_buoy_without_a_hull_is_refused(calm, tmp_path, buoy):
     shown = calm("waves", path, *SEA)
     assert shown.code == 2
     assert "has no hull" in shown.err
+
+
+def test_a_buoy_that_follows_and_one_by_its_own_response(calm, buoy):
+    def deviation(hull, *options, stiff="stiffness: 90 kN"):
+        told = json.loads(calm("waves", buoy(hull, stiff), *SEA, "--json", "-", *options).out)
+        (state,) = told["states"]
+        return state["components"][1]["tension_std"], state["follower_std"]
+
+    filtered, follower = deviation("hull: cylinder")
+    following, _ = deviation("heave: follows")
+    given, _ = deviation('rao: {"0.1": [1, 0 deg], "12": [1, 0 deg]}')
+    assert following == pytest.approx(follower, rel=1e-9)
+    assert given == pytest.approx(following, rel=1e-6)
+    assert filtered < following
+    stiffer, _ = deviation("heave: follows", stiff="stiffness: 90 kN, dynamic_stiffness: 200 kN")
+    assert stiffer > following
+
+
+@pytest.mark.parametrize(
+    ("hull", "told"),
+    [
+        ("heave: floats", "`heave: floats` must be one of filtered, follows"),
+        ('rao: {"fast": [1, 0 deg], "2": [1, 0 deg]}', "`fast` is no angular frequency"),
+        ('rao: {"1": [1, 0 deg]}', "two frequencies or more"),
+        ('rao: {"1": [-1, 0 deg], "2": [1, 0 deg]}', "at least 0"),
+    ],
+)
+def test_a_response_that_cannot_be_is_refused(calm, buoy, hull, told):
+    shown = calm("waves", buoy(hull), *SEA)
+    assert shown.code == 2
+    assert told in shown.err
