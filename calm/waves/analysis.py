@@ -12,7 +12,7 @@ import numpy as np
 from calm.physics.line import Floats
 from calm.waves.buoy import Buoy, buoy_of
 from calm.waves.lumped_line import LumpedLine, lumped_line
-from calm.waves.response import Response, Waves, respond
+from calm.waves.response import WaveResponse, Waves, respond
 from calm.waves.spectra import SeaState, greatest_of, passing_probability
 
 if TYPE_CHECKING:
@@ -138,7 +138,7 @@ class _Setting:
     def waves(self, sea: SeaState) -> Waves:
         return replace(self.water, omega=sea.frequencies(self.count))
 
-    def respond(self, sea: SeaState) -> Response:
+    def respond(self, sea: SeaState) -> WaveResponse:
         return respond(self.line, self.buoy, self.waves(sea), sea)[0]
 
     def deviations(self, sea: SeaState) -> Floats:
@@ -219,7 +219,7 @@ def _change(before: Floats, after: Floats) -> float:
     return float(np.abs(before[counted] / after[counted] - 1.0).max(initial=0.0))
 
 
-def _by_piece(line: LumpedLine, response: Response) -> Floats:
+def _by_piece(line: LumpedLine, response: WaveResponse) -> Floats:
     deviation, _ = response.moments(response.pull)
     return np.where(line.piece_spring >= 0, deviation[line.piece_spring], 0.0)
 

@@ -22,7 +22,7 @@ _WEIGHTS = _WEIGHTS / _WEIGHTS.sum()
 
 
 @dataclass(frozen=True)
-class Response:
+class WaveResponse:
     """Hold the response of a line to waves of unit elevation, and to a sea.
 
     Attributes
@@ -100,7 +100,7 @@ def respond(
     *,
     drag_factor: float = 1.0,
     first: Floats | None = None,
-) -> tuple[Response, Floats]:
+) -> tuple[WaveResponse, Floats]:
     """Return the response to a sea, and the damping (n, 3, 3) that it was found with [N/(m/s)].
 
     The drag of each node is replaced by the linear one that does most of what it does on the
@@ -136,7 +136,7 @@ def respond(
             break
         damping = 0.5 * (damping + new)
     pull = _pull(line, motion)
-    return Response(omega, weight, motion, pull, iterations), damping
+    return WaveResponse(omega, weight, motion, pull, iterations), damping
 
 
 def _axes(line: LumpedLine) -> Floats:

@@ -105,6 +105,7 @@ def build_result(**changes):
         components=components, clamps=clamps, shape=shape, still_shape=still,
         warnings=("adcp leans 16.0°, its warning is at 15°",),
         mooring=Record(file=file, water=water), file=file, strumming=None,
+        profilers=(),
         strumming_band=StrummingBand(1.5, "converged", 118.0, 13.05, 5333.3),
     )  # fmt: skip
     result = Record(**(fields | changes))
