@@ -28,7 +28,7 @@ which there are enough of them."""
 COARSEST, FEWEST, MOST_HALVINGS = 1.0 / 50.0, 32, 4
 """Elements as a share of the depth, frequencies, and how often both are refined."""
 
-SMALL = 0.01
+SMALL = 0.05
 """Of the greatest standard deviation: below it a change is not looked at."""
 
 
@@ -56,8 +56,8 @@ class PieceInWaves:
 class MooringInSea:
     """Hold a mooring in a sea: its pieces down the line, and the labels of those that fall slack.
 
-    `follower_std` is the deviation of the tension below a float that follows every wave [N]; None
-    of a line below the surface.
+    `follower_std` is the deviation of the tension below a float that follows every wave [N], of
+    the highest of several seas alone; None of a line below the surface.
     """
 
     sea: SeaState
@@ -138,12 +138,16 @@ class _Setting:
     def waves(self, sea: SeaState) -> Waves:
         return replace(self.water, omega=sea.frequencies(self.count))
 
-    def respond(self, sea: SeaState) -> WaveResponse:
-        return respond(self.line, self.buoy, self.waves(sea), sea)[0]
+    def respond(
+        self, sea: SeaState, first: Floats | None = None, *, once: bool = False, drag: float = 1.0
+    ) -> tuple[WaveResponse, Floats]:
+        """Return the response to a sea, and its damping; `first` is that of one like it."""
+        waves = self.waves(sea)
+        return respond(self.line, self.buoy, waves, sea, drag_factor=drag, first=first, once=once)
 
     def deviations(self, sea: SeaState) -> Floats:
         """Return the deviations of tension of the pieces [N]; 0 of those on the seabed."""
-        return _by_piece(self.line, self.respond(sea))
+        return _by_piece(self.line, self.respond(sea)[0])
 
 
 def analyse(
@@ -176,9 +180,14 @@ def analyse(
     solution = mooring.equilibrium(mooring.water)
     highest = max(seas, key=lambda sea: sea.significant_height)
     setting, accuracy = _settled(mooring, solution, highest, toward)
-    states = []
+    states, damping = [], None
     for sea in watched(seas):
-        states.append(_in_sea(mooring, solution, setting, sea, duration))
+        response, damping = setting.respond(sea, damping)
+        states.append(
+            _in_sea(
+                mooring, solution, setting, sea, response, damping, duration, beside=sea is highest
+            )
+        )
     warnings = [
         f"{label} gives no `stiffness` and is taken as inextensible: its tensions are too great."
         for label in setting.line.inextensible
@@ -202,14 +211,17 @@ def _settled(
             longest *= 0.5
             finer = replace(setting, line=lumped_line(mooring, solution, longest))
             better = finer.deviations(sea)
-            mesh, setting, found = _change(found, better), finer, better
+            mesh = _change(found, better)
+            if mesh > SETTLED / 2.0:
+                setting, found = finer, better
         if frequencies > SETTLED:
             more = replace(setting, count=2 * setting.count)
             better = more.deviations(sea)
-            frequencies, setting, found = _change(found, better), more, better
-    waves = setting.waves(sea)
-    response, damping = respond(setting.line, buoy, waves, sea)
-    less, _ = respond(setting.line, buoy, waves, sea, drag_factor=0.8, first=damping)
+            frequencies = _change(found, better)
+            if frequencies > SETTLED / 2.0:
+                setting, found = more, better
+    response, damping = setting.respond(sea)
+    less, _ = setting.respond(sea, damping, once=True, drag=0.8)
     linear = _change(_by_piece(setting.line, response), _by_piece(setting.line, less))
     return setting, WaveAccuracy(mesh, frequencies, linear)
 
@@ -225,9 +237,17 @@ def _by_piece(line: LumpedLine, response: WaveResponse) -> Floats:
 
 
 def _in_sea(
-    mooring: Mooring, solution: Solution, setting: _Setting, sea: SeaState, duration: float
+    mooring: Mooring,
+    solution: Solution,
+    setting: _Setting,
+    sea: SeaState,
+    response: WaveResponse,
+    damping: Floats,
+    duration: float,
+    *,
+    beside: bool,
 ) -> MooringInSea:
-    line, response = setting.line, setting.respond(sea)
+    line = setting.line
     tension, period = response.moments(response.pull)
     motion, _ = response.moments(response.motion)
     turn = np.diff(response.motion, axis=1)
@@ -250,9 +270,9 @@ def _in_sea(
             )
         )  # fmt: skip
     follower = None
-    if setting.buoy is not None:
+    if setting.buoy is not None and beside:
         following = replace(setting, buoy=replace(setting.buoy, follows=True))
-        follower = float(following.deviations(sea)[0])
+        follower = float(_by_piece(line, following.respond(sea, damping)[0])[0])
     slack = tuple(row.label for row in rows if row.tension_min < 0.0 < row.tension_std)
     return MooringInSea(sea, tuple(rows), slack, follower)
 

@@ -17,6 +17,9 @@ SETTLED = 2e-3
 
 MOST_ITERATIONS = 40
 
+RELAXATION = 0.8
+"""Share of the way to the new damping that an iteration goes."""
+
 _POINTS, _WEIGHTS = np.polynomial.hermite_e.hermegauss(7)
 _WEIGHTS = _WEIGHTS / _WEIGHTS.sum()
 
@@ -100,6 +103,7 @@ def respond(
     *,
     drag_factor: float = 1.0,
     first: Floats | None = None,
+    once: bool = False,
 ) -> tuple[WaveResponse, Floats]:
     """Return the response to a sea, and the damping (n, 3, 3) that it was found with [N/(m/s)].
 
@@ -111,7 +115,8 @@ def respond(
     ----------
     waves, sea : the waves, and how much of them there is
     drag_factor : on the damping, to see what rests on it
-    first : the damping to begin with; with a factor it is kept
+    first : the damping to begin with, such as that of a sea like it
+    once : keep that damping
     """
     omega = waves.omega
     steps = np.diff(omega, prepend=omega[0], append=omega[-1])
@@ -132,9 +137,9 @@ def respond(
         new = _linearised(line, buoy, found)
         change = np.abs(found - deviation).max() / max(float(found.max()), 1e-12)
         deviation = found
-        if drag_factor != 1.0 or change < SETTLED:
+        if once or change < SETTLED:
             break
-        damping = 0.5 * (damping + new)
+        damping = damping + RELAXATION * (new - damping)
     pull = _pull(line, motion)
     return WaveResponse(omega, weight, motion, pull, iterations), damping
 
