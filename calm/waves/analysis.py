@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from calm.errors import UsageError
 from calm.physics.line import Floats
 from calm.waves.buoy import Buoy, buoy_of
 from calm.waves.lumped_line import LumpedLine, lumped_line
@@ -18,6 +19,10 @@ from calm.waves.spectra import SeaState, greatest_of, passing_probability
 if TYPE_CHECKING:
     from calm.case import Mooring
     from calm.solve import Solution
+
+SHALLOWEST = 0.6
+"""Significant height over the depth of the water where a sea breaks (Thornton and Guza 1983, 0.42
+as the root mean square height)."""
 
 CONVERGED, SLACK = "converged", "slack-in-waves"
 
@@ -175,8 +180,14 @@ def analyse(
     NoEquilibrium
         The mooring does not stand.
     UsageError
-        The float at the surface has no hull, or no mass.
+        The float at the surface has no hull, or no mass; a sea breaks in this depth.
     """
+    for sea in seas:
+        if sea.significant_height > SHALLOWEST * mooring.water.depth:
+            raise UsageError(
+                f"a sea of {sea.significant_height:g} m breaks in {mooring.water.depth:g} m of "
+                f"water, where it is {SHALLOWEST * mooring.water.depth:.1f} m high at most"
+            )
     solution = mooring.equilibrium(mooring.water)
     highest = max(seas, key=lambda sea: sea.significant_height)
     setting, accuracy = _settled(mooring, solution, highest, toward)

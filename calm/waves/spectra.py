@@ -19,6 +19,9 @@ SPECTRA = ("bretschneider", "jonswap", "pierson-moskowitz")
 STEEPEST = 1.0 / 7.0
 """Height over length of a wave that breaks (Michell 1893); a sea is far below it."""
 
+HIGHEST, LONGEST_PERIOD = 30.0, 30.0
+"""Beyond every significant height and peak period measured: 19 m by a buoy (WMO 2016) [m], [s]."""
+
 BETWEEN = 0.5, 12.0
 """Frequencies solved for, as multiples of that of the peak: beyond them a sea of Bretschneider's
 form has less than 1e-4 of its variance."""
@@ -100,8 +103,13 @@ def spectrum_of(kind: str, height: float, period: float, gamma: float) -> SeaSta
     Raises
     ------
     UsageError
-        Waves steeper than can be, or longer than an hour.
+        Waves higher, longer or steeper than there are.
     """
+    if height > HIGHEST or period > LONGEST_PERIOD:
+        raise UsageError(
+            f"waves of {height:g} m and {period:g} s: no sea is higher than {HIGHEST:g} m or "
+            f"longer than {LONGEST_PERIOD:g} s"
+        )
     length = 9.80665 * period**2 / (2.0 * pi)
     if height > STEEPEST * length:
         raise UsageError(

@@ -83,6 +83,8 @@ def test_a_rope_of_unknown_stiffness_is_told(calm, buoy):
         (("--hs", "2 m"), "--tp: missing"),
         (("--hs", "2", "--tp", "6 s"), "--hs"),
         (("--hs", "5 m", "--tp", "4 s"), "would break"),
+        (("--hs", "40 m", "--tp", "25 s"), "no sea is higher than 30 m"),
+        (("--hs", "3 m", "--tp", "60 s"), "longer than 30 s"),
         ((*SEA, "--spectrum", "jonswop"), "did you mean `jonswap`?"),
         ((*SEA, "--spectrum", "jonswap", "--gamma", "0.2"), "--gamma: from 1"),
         ((*SEA, "--scatter", "none.csv"), "--scatter: gives heights"),
@@ -143,3 +145,12 @@ def test_a_response_that_cannot_be_is_refused(calm, buoy, hull, told):
     shown = calm("waves", buoy(hull), *SEA)
     assert shown.code == 2
     assert told in shown.err
+
+
+def test_a_sea_breaks_in_shallow_water(calm, buoy, tmp_path):
+    path = buoy()
+    text = (tmp_path / "buoy.yaml").read_text().replace("depth: 80 m", "depth: 9 m")
+    (tmp_path / "buoy.yaml").write_text(text.replace("length: 95 m", "length: 20 m"))
+    shown = calm("waves", path, "--hs", "6 m", "--tp", "12 s")
+    assert shown.code == 2
+    assert "breaks in 9 m of water, where it is 5.4 m high at most" in shown.err
