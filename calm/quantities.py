@@ -340,3 +340,11 @@ def bearing_of(east: float, north: float) -> float:
 def bearing_text(bearing: float) -> str:
     """A direction [degrees] as people write it: ``068°``."""
     return f"{round(bearing) % 360:03d}°"
+
+
+def duration(seconds: float) -> str:
+    """Return a time in the unit that fits."""
+    if seconds < 90.0:
+        return f"{seconds:.0f} s"
+    minutes = round(seconds / 60.0)
+    return f"{minutes} min" if minutes < 90 else f"{minutes // 60} h {minutes % 60:02d} min"

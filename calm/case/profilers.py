@@ -10,7 +10,7 @@ import numpy as np
 
 from calm.case.parts import clamps_in, cut_like
 from calm.errors import NoEquilibrium
-from calm.files import Clamp, MooringFile, Place
+from calm.files import Clamp, MooringFile, Place, Profiler
 
 if TYPE_CHECKING:
     from calm.case.mooring import Mooring
@@ -34,12 +34,19 @@ class ProfilerPlace:
 
 @dataclass(frozen=True)
 class ProfilerTravel:
-    """Hold a profiler at its upper and its lower stop, and where its wire leans most."""
+    """Hold a profiler at its upper and its lower stop, and where its wire leans most.
+
+    `distance` is between its stops, without load [m], `time` what a profile takes [s], `profiles`
+    how many its batteries last for; None where its speed or its endurance is not given.
+    """
 
     label: str
     upper: ProfilerPlace
     lower: ProfilerPlace
     worst: ProfilerPlace
+    distance: float
+    time: float | None
+    profiles: int | None
 
 
 def profilers_of(mooring: Mooring) -> tuple[ProfilerTravel, ...]:
@@ -61,8 +68,17 @@ def profilers_in(mooring: Mooring) -> list[Clamp]:
 def _travel(mooring: Mooring, clamp: Clamp) -> ProfilerTravel:
     upper, lower = way_of(mooring, clamp)
     places = [_found(mooring, clamp, float(at)) for at in np.linspace(upper, lower, PLACES)]
-    worst = max(places, key=lambda place: place.tilt)
-    return ProfilerTravel(clamp.label, places[0], places[-1], worst)
+    component, distance = clamp.component, lower - upper
+    assert isinstance(component, Profiler)
+    return ProfilerTravel(
+        label=clamp.label,
+        upper=places[0],
+        lower=places[-1],
+        worst=max(places, key=lambda place: place.tilt),
+        distance=distance,
+        time=None if component.speed is None else distance / component.speed,
+        profiles=None if component.endurance is None else int(component.endurance // distance),
+    )
 
 
 def way_of(mooring: Mooring, clamp: Clamp) -> tuple[float, float]:

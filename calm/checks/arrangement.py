@@ -31,10 +31,11 @@ from calm.drop.launch import Launch
 from calm.files import Cable, Component, Flexible, Profiler
 from calm.physics.materials import materials_in, potential_of
 from calm.physics.seawater import REFERENCE_DENSITY
-from calm.quantities import say
+from calm.quantities import duration, say
 
 if TYPE_CHECKING:
     from calm.case import Mooring, Result
+    from calm.case.profilers import ProfilerTravel
     from calm.case.result_tables import ClampRow
     from calm.checks.handling import Handling
     from calm.files import Clamp, Piece
@@ -311,17 +312,18 @@ def profiler(result: Result) -> Iterator[Verdict]:
     """
     for row in result.clamps:
         if isinstance(row.part.component, Profiler):
-            found = list(_of_profiler(result, row, row.part.component))
+            found = [*_of_profiler(result, row), *_lasting(result.profilers, row.part)]
             yield from [each for each in found if each.state != State.PASS] or found[:1]
 
 
-def _of_profiler(result: Result, row: ClampRow, component: Profiler) -> Iterator[Verdict]:
+def _of_profiler(result: Result, row: ClampRow) -> Iterator[Verdict]:
     part, wire, water = row.part, result.file.pieces[row.index], result.mooring.water
+    component = part.component
+    assert isinstance(component, Profiler)
     least = component.minimum_tension
-    message = f"{wire.label} bears {say('tension', row.tension)} at {part.label}, which"
-    message += f" needs {say('tension', least)} to travel on it."
-    remedy = "Add buoyancy above it, and weight to the anchor."
-    yield at_least(part, row.tension, least, message, remedy)
+    bears, needs = say("tension", row.tension), say("tension", least)
+    message = f"{wire.label} bears {bears} at {part.label}, which needs {needs} to travel on it."
+    yield at_least(part, row.tension, least, message, "Add buoyancy above it.")
     yield from _way_of(part, wire)
     if component.drive_force is None:
         told = f"What {part.label} climbs with is not known, nor whether it does in a current."
@@ -338,6 +340,18 @@ def _of_profiler(result: Result, row: ClampRow, component: Profiler) -> Iterator
     )
     remedy = "Straighten the wire with more buoyancy, or let it travel slower."
     yield at_least(part, component.drive_force, needed, message, remedy)
+
+
+LONGEST_PROFILE = 8.0 * 3600.0 / 1.25
+"""What a profile may take: a McLane profiler gives up after 1.25 times that, or 8 hours [s]."""
+
+
+def _lasting(travels: Sequence[ProfilerTravel], part: Clamp) -> Iterator[Verdict]:
+    for travel in travels:
+        if travel.label == part.label and (travel.time or 0.0) > LONGEST_PROFILE:
+            took, most = duration(travel.time or 0.0), duration(LONGEST_PROFILE)
+            message = f"A profile of {part.label} takes {took}; its time limit allows {most}."
+            yield verdict_on(part, State.WARN, message, "Divide the way, or let it travel faster.")
 
 
 def _way_of(part: Clamp, wire: Piece) -> Iterator[Verdict]:
@@ -358,12 +372,8 @@ def _way_of(part: Clamp, wire: Piece) -> Iterator[Verdict]:
 
 
 def _clamps(mooring: Mooring) -> list[JudgedPart]:
-    """Return what is clamped on the line; a profiler is not."""
-    return [
-        part
-        for part in parts_of(mooring)
-        if part.clamp is not None and not isinstance(part.component, Profiler)
-    ]
+    parts = (part for part in parts_of(mooring) if part.clamp is not None)
+    return [part for part in parts if not isinstance(part.component, Profiler)]
 
 
 def _length_drag(part: JudgedPart) -> float:

@@ -25,6 +25,7 @@ from calm.cli.options import (
 )
 from calm.cli.streams import ExitCode, narrate, show_parts
 from calm.errors import UsageError
+from calm.quantities import duration
 
 if TYPE_CHECKING:
     from calm.batch.run import BatchOutcome
@@ -326,11 +327,3 @@ def state(progress: Progress, seconds: float) -> str:
 def grouped(number: int) -> str:
     """A count with its thousands apart."""
     return f"{number:,}".replace(",", " ")
-
-
-def duration(seconds: float) -> str:
-    """A time in the unit that fits."""
-    if seconds < 90.0:
-        return f"{seconds:.0f} s"
-    minutes = round(seconds / 60.0)
-    return f"{minutes} min" if minutes < 90 else f"{minutes // 60} h {minutes % 60:02d} min"

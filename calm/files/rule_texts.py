@@ -87,7 +87,7 @@ RULES = {
         "tension of the wire, what stands in the way and what the drive has to overcome, at both "
         "stops and where the wire leans most",
         "`minimum_tension` of the profiler, 2224 N; its `drive_force`; jacketed wire of 6.35 to "
-        "9.53 mm, else a warning",
+        "9.53 mm, and a profile of 6.4 h at most, else a warning",
         "McLane Moored Profiler, user manual",
         "the profiles of a record are solved with it at its upper stop",
         figures=("drive_force",),

@@ -10,7 +10,7 @@ import numpy as np
 from calm.checks.finding import State
 from calm.drawing.picture import figure_svg
 from calm.drop.plan import DRAG_BAND
-from calm.quantities import QUANTITIES, bearing_text, say
+from calm.quantities import QUANTITIES, bearing_text, duration, say
 from calm.report.blocks import (
     Block,
     Cell,
@@ -69,7 +69,7 @@ def _instructions(plan: DropPlan) -> Prose:
         behind = "before" if plan.start.distance >= 0.0 else "beyond"
         said.append(
             f"Put the float over the side {_metres(abs(plan.start.distance))} {behind} the target: "
-            f"the run takes some {_minutes(plan.start.time)}."
+            f"the run takes some {duration(plan.start.time)}."
         )
     said.append(
         f"Let the anchor go {_metres(abs(plan.tow_past))} {beyond} the target, with the float "
@@ -215,11 +215,6 @@ def _notes(plan: DropPlan) -> tuple[str, ...]:
 
 def _metres(distance: float) -> str:
     return f"{distance:.0f} m"
-
-
-def _minutes(seconds: float) -> str:
-    hours, minutes = divmod(round(seconds / 60.0), 60)
-    return f"{hours} h {minutes:02d} min" if hours else f"{minutes} min"
 
 
 def _error(value: float) -> str:

@@ -15,7 +15,7 @@ from calm.checks.posture import reaches_the_surface
 from calm.checks.strength import safety_factor
 from calm.drawing.schematic.shown_parts import place_text
 from calm.files.strumming_keys import BourgetMarichalKeys
-from calm.quantities import QUANTITIES, say
+from calm.quantities import QUANTITIES, duration, say
 from calm.report.blocks import Cell, Column, Field, Line, Note, Prose, ReportPart, Span, Table
 from calm.solve import Status
 
@@ -101,7 +101,12 @@ def _travel(profiler: ProfilerTravel) -> str:
         f"{say('depth', place.depth)} ({say('tension', place.tension)}, {say('tilt', place.tilt)})"
         for place in (profiler.upper, profiler.lower, profiler.worst)
     )
-    return f"{profiler.label} travels from {upper} to {lower}; its wire leans most at {worst}"
+    said = f"{profiler.label} travels from {upper} to {lower}; its wire leans most at {worst}"
+    if profiler.time is not None:
+        said += f"; a profile takes {duration(profiler.time)}"
+    if profiler.profiles is not None:
+        said += f", its batteries last for {profiler.profiles}"
+    return said
 
 
 def _mooring_summary(result: Result) -> tuple[Prose, ...]:

@@ -20,7 +20,8 @@ from calm.batch import work as batch_work
 from calm.batch.statuses import Ending
 from calm.batch.work import Progress
 from calm.cli import main
-from calm.cli.batch import ProgressTeller, bar, duration, state
+from calm.cli.batch import ProgressTeller, bar, state
+from calm.quantities import duration
 
 ROOT = Path(__file__).parents[2]
 HEADER = "time,depth[m],u[m/s],v[m/s]\n"

@@ -135,6 +135,16 @@ def test_what_a_profiler_asks_of_its_wire(tmp_path, change, state, told):
     assert max(found, key=lambda each: each.state.severity).state == state
 
 
+def test_time_and_number_of_profiles(tmp_path):
+    """1375 m with 0.25 m/s are 5500 s; 100 km of batteries 72 times that."""
+    change = ("speed: 0.25 m/s", "speed: 0.25 m/s, endurance: 100 km")
+    (travel,) = mooring(tmp_path, change=change).solve().profilers
+    assert (travel.distance, travel.time, travel.profiles) == (1375.0, 5500.0, 72)
+    slow = mooring(tmp_path, change=("speed: 0.25 m/s", "speed: 0.05 m/s")).solve()
+    told = [each.message for each in profiler.judge(slow) if each.state == "warn"]
+    assert told == ["A profile of MMP takes 7 h 38 min; its time limit allows 6 h 24 min."]
+
+
 def test_drag_along_a_leaning_wire(tmp_path):
     """½ρ cd A (speed + U sin tilt)², against the figures that the result has at the place."""
     weak = ("drive_force: 50 N", "drive_force: 1 N")
