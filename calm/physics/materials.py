@@ -55,7 +55,7 @@ MATERIALS = (
         "metal", STEEL_DENSITY, -0.66,
     ),
     Material("aluminium", r"alumini?um\w*|alu\b", "metal", 2700.0, -0.88),
-    Material("zinc", r"zinc|zink", "metal", 7140.0, -1.0),
+    Material("zinc", r"zin[ck]", "metal", 7140.0, -1.0),
     Material("lead", r"lead\b|blei|plomb", "metal", LEAD_DENSITY),
     Material(
         "nylon", r"nylon\w*|polyamide?\w*|perlon|pa6?\b", "fibre", 1140.0,
