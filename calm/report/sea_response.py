@@ -101,7 +101,7 @@ def _told(analysis: WaveAnalysis, state: MooringInSea) -> list[str | tuple[Span,
         )
     one = analysis.accuracy
     good = (
-        f"Half the elements change deviations by {one.mesh:.1%}, half the frequencies by "
+        f"Twice the elements change deviations by {one.mesh:.1%}, twice the frequencies by "
         f"{one.frequencies:.1%}; a fifth less drag by {one.linearisation:.0%}."
     ).replace("%", " %")
     return [*said, (Span(good, quiet=True),)]

@@ -27,7 +27,7 @@ as the root mean square height)."""
 CONVERGED, SLACK = "converged", "slack-in-waves"
 
 SETTLED = 0.01
-"""Change of the standard deviations of tension at half the elements or half the frequencies below
+"""Change of the standard deviations of tension with twice the elements or the frequencies below
 which there are enough of them."""
 
 COARSEST, FEWEST, MOST_HALVINGS = 1.0 / 50.0, 32, 4
@@ -75,7 +75,7 @@ class MooringInSea:
 class WaveAccuracy:
     """Hold how much the deviations of tension change, as shares.
 
-    `mesh` and `frequencies`: with half as many elements or frequencies. `linearisation`: with a
+    `mesh` and `frequencies`: with twice as many elements or frequencies. `linearisation`: with a
     fifth less of the linearised drag, of which they are a measure of the share.
     """
 
@@ -209,7 +209,7 @@ def analyse(
 def _settled(
     mooring: Mooring, solution: Solution, sea: SeaState, toward: float
 ) -> tuple[_Setting, WaveAccuracy]:
-    """Return elements and frequencies that are enough for a sea, and what halving them changes."""
+    """Return elements and frequencies that are enough for a sea, and what twice as many change."""
     _, density = mooring.water.at(np.array(0.0))
     water = Waves(np.zeros(0), toward, mooring.water.depth, float(density), mooring.water.gravity)
     longest, count = COARSEST * mooring.water.depth, FEWEST
@@ -223,13 +223,13 @@ def _settled(
             finer = replace(setting, line=lumped_line(mooring, solution, longest))
             better = finer.deviations(sea)
             mesh = _change(found, better)
-            if mesh > SETTLED / 2.0:
+            if mesh > SETTLED:
                 setting, found = finer, better
         if frequencies > SETTLED:
             more = replace(setting, count=2 * setting.count)
             better = more.deviations(sea)
             frequencies = _change(found, better)
-            if frequencies > SETTLED / 2.0:
+            if frequencies > SETTLED:
                 setting, found = more, better
     response, damping = setting.respond(sea)
     less, _ = setting.respond(sea, damping, once=True, drag=0.8)

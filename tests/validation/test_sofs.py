@@ -27,6 +27,8 @@ MEASURED = (
 
 KGF = 9.80665
 
+pytestmark = pytest.mark.thorough
+
 
 @pytest.fixture(scope="module")
 def mooring():
