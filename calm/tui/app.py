@@ -26,7 +26,7 @@ from calm.tui.painted import Painted, PlainSigns, shows_all_signs
 from calm.tui.saving import Saving
 from calm.tui.screen import DraftScreen
 from calm.tui.session import Session
-from calm.tui.theme import PICTURE_DARK, PICTURE_LIGHT, choose_theme, themes
+from calm.tui.theme import PICTURE_DARK, PICTURE_LIGHT, choose_theme, legible, themes
 from calm.tui.turns import InTurn
 
 _AUTOSAVED_AFTER = 0.3  # seconds
@@ -112,11 +112,13 @@ class BuildApp(InTurn):
         yield SystemCommand("colours", "Choose other colours.", self.action_change_theme)
 
     def get_line_filters(self) -> Sequence[LineFilter]:
-        """Return those of textual; one that takes all colours off, one for terminals of plain
-        signs.
+        """Return those of textual and one for colours that can be read; or one that takes all
+        colours off; and one for terminals of plain signs.
         """
-        filters = [_COLOURLESS] if self.no_color else super().get_line_filters()
-        return [*filters, *self._plain]
+        if self.no_color:
+            return [_COLOURLESS, *self._plain]
+        theme = self.current_theme
+        return [*super().get_line_filters(), legible(theme.dark, theme.ansi), *self._plain]
 
     def _display(self, screen: Screen[Any], renderable: RenderableType | None) -> None:
         """Send the terminal what it does not show yet."""
