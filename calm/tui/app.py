@@ -11,6 +11,7 @@ from rich.console import RenderableType
 from textual import on, work
 from textual._compositor import CompositorUpdate
 from textual.app import SystemCommand
+from textual.command import CommandPalette
 from textual.filter import LineFilter, NoColor
 from textual.screen import Screen
 from textual.timer import Timer
@@ -18,7 +19,7 @@ from textual.timer import Timer
 from calm.errors import CalmError
 from calm.files.editing import KeptWork, WorkingFile
 from calm.tui import saving
-from calm.tui.help_screen import Actions
+from calm.tui.help_screen import Actions, Commands
 from calm.tui.judging import Judging
 from calm.tui.line.builder import BuilderScreen
 from calm.tui.messages import CatalogueRead, Edited, Judged, JudgingFailed, Workspace
@@ -104,8 +105,12 @@ class BuildApp(InTurn):
             self._offer(self._offered)
         else:
             self._mend()
-        if self.session.file.is_open_elsewhere():
-            self.tell(f"{self.session.name} is open elsewhere, with work not saved", wrong=True)
+        is_unsaved = self.session.file.is_open_elsewhere()
+        others = self.saving.presence.say(self.session.file.path)
+        if is_unsaved or others:
+            what = "with work not saved" if is_unsaved else "in another builder"
+            who = f" (process {others[0]})" if others else ""
+            self.tell(f"{self.session.name} is open elsewhere{who}, {what}", wrong=True)
 
     def get_system_commands(self, screen: Screen[Any]) -> Iterable[SystemCommand]:
         """The command for colours; the other commands of textual have keys of their own here."""
@@ -164,6 +169,11 @@ class BuildApp(InTurn):
     async def action_quit(self) -> None:
         """Leave; unsaved work is asked about."""
         self.saving.quit()
+
+    def action_command_palette(self) -> None:
+        """Find a command by its name."""
+        if not isinstance(self.screen, CommandPalette):
+            self.push_screen(Commands(id="--command-palette"))
 
     def action_help(self) -> None:
         """All keys."""
@@ -277,6 +287,7 @@ class BuildApp(InTurn):
 
     def on_unmount(self) -> None:
         """Keep what is not saved whatever has ended the application, a closed page or a failure."""
+        self.saving.presence.say(None)
         self.keep_at_the_end()
 
     def take_typed(self) -> None:

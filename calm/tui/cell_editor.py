@@ -10,8 +10,8 @@ from textual.binding import BindingType
 from textual.geometry import Region
 from textual.message import Message
 
-from calm.tui.actions import bindings
 from calm.tui.checking import Check, Reading, anything
+from calm.tui.key_table import bindings
 from calm.tui.scrolled import ScrolledEntry
 
 Then = Literal["stay", "edit next", "right", "up", "down"]

@@ -15,9 +15,9 @@ from textual.markup import escape
 from textual.screen import ModalScreen
 from textual.widgets import Static
 
-from calm.tui.actions import bindings
 from calm.tui.checking import Check, Reading, anything
 from calm.tui.field import Field, all_settled
+from calm.tui.key_table import bindings
 
 if TYPE_CHECKING:
     from rich.console import RenderableType

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -12,16 +12,17 @@ from textual.message import Message
 
 from calm.checks.finding import State
 from calm.files import Place
-from calm.tui.actions import bindings
 from calm.tui.catalogue.catalogue_pane import Purpose
 from calm.tui.cell_editor import CellEditor
 from calm.tui.checking import Reading
 from calm.tui.dialogs import Answer, Question
+from calm.tui.key_table import bindings
 from calm.tui.line.line_cell import LineCell
 from calm.tui.line.mooring_sheet import equipment_changes, equipment_sheet, naming
 from calm.tui.line.rows import table_rows
 from calm.tui.line.table import EDITABLE, Column, LineTable
 from calm.tui.messages import Workspace
+from calm.tui.names import Named, namings
 from calm.tui.table import EditableTable
 from calm.tui.verdict_text import Saying, why
 
@@ -86,6 +87,7 @@ class LinePane(EditableTable):
         """Make a change, after what is typed in place is taken. Whether it was made."""
         if not self.settle():
             return False
+        self.session.followed = []
         is_made, spot = self.workspace.attempt(change)
         if is_made:
             self._show_edited(spot, message)
@@ -94,7 +96,7 @@ class LinePane(EditableTable):
     def _show_edited(self, spot: Place | None = None, message: str = "") -> None:
         """Show the draft, which was edited, and have it judged."""
         self.show_draft(spot)
-        self.workspace.tell(message)
+        self.workspace.tell("; ".join([*filter(None, [message]), *self.session.followed]))
         self.workspace.edited()
 
     # the cursor and the marks
@@ -226,8 +228,28 @@ class LinePane(EditableTable):
     def action_duplicate(self) -> None:
         """Repeat what is chosen."""
         chosen = self._chosen_of_a_kind()
+        named = [each for spot in chosen for each in namings(self.session.draft, spot)]
+        if not named:
+            self._duplicate(chosen)
+            return
+
+        def take(answer: str | None) -> None:
+            if answer:
+                self._duplicate(chosen, named if answer == "both" else ())
+
+        text = "\n".join(f"{each.where} names {each.text}" for each in named)
+        answers = [
+            Answer("o", "the one that is there; the copy stands for itself", "one"),
+            Answer("b", "both (`NAME *`) in what is accepted", "both"),
+        ]
+        self.app.push_screen(Question("Is the copy meant, too?", text, answers), take)
+
+    def _duplicate(self, chosen: tuple[Place, ...], also: Sequence[Named] = ()) -> None:
+        def change() -> Place | None:
+            return self.session.duplicate(chosen, also)
+
         if chosen:
-            self.attempt(lambda: self.session.duplicate(chosen))
+            self.attempt(change)
 
     def action_delete(self) -> None:
         """Take out what is chosen."""
