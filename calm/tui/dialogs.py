@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 _FRAME = """
     align: center middle;
-    & > Vertical {
+    & > Vertical, & > VerticalScroll {
         width: 72; max-width: 100%; height: auto; max-height: 100%; padding: 1 2;
         background: $panel; border-left: outer $primary;
     }
@@ -115,7 +115,7 @@ class InputSheet(ModalScreen[dict[str, str] | None]):
 
     def compose(self) -> ComposeResult:
         """Return what is asked, and where it is typed."""
-        with Vertical():
+        with VerticalScroll(can_focus=False):
             yield Static(self._title, classes="title", markup=False)
             if self._text:
                 yield Static(self._text, classes="text", markup=False)

@@ -67,6 +67,16 @@ change_component | O | change component |  | Change the component of the row, on
   own, in its form.
 equipment | N | serial number |  | Serial number, calibration, sampling, battery and termination
   of the row.
+find | slash | find | 12 | Find words in the line: id, label, serial number, maker.
+find_next(1) | greater_than_sign,f3 | find next |  | To the next row that has them.
+find_next(-1) | less_than_sign,shift+f3 | find last |  | To the one before.
+alike(1) | right_square_bracket | next alike |  | To the next piece of the same kind.
+alike(-1) | left_square_bracket | last alike |  | To the one before.
+least(1) | W | weakest |  | To the piece with the least margin of its strength.
+least(0) | E | lowest margin |  | To the row with the lowest margin of all.
+column | number_sign | fill column |  | Serial numbers, lengths, labels or codes of the marked rows,
+  or of all of the component under the cursor, one below the other or pasted.
+repeat | R | repeat |  | Repeat the piece, or those marked, as often as you say.
 next_finding | f8,g | next finding |  | To the next row with the most serious finding; the last
   line of the screen shows it.
 why | y | why |  | All findings of this row, with remedies.
@@ -119,7 +129,7 @@ figures | f | missing figures |  | Fill in the figures that are not known, piece
   their source.
 verdict | G | verdict |  | The verdict line by line: Enter goes to the row that a line is about,
   Esc back.
-search | slash | catalogue |  | Search the catalogue.
+search | B | catalogue |  | Browse the catalogue.
 define | o | own component |  | Define a component of your own.
 picture('elevation') | 1 | elevation |  | The line seen from the side.
 picture('plan') | 2 | plan |  | The line seen from above.
@@ -243,6 +253,11 @@ _SIGNS = {
     "equals_sign": "=",
     "asterisk": "*",
     "colon": ":",
+    "greater_than_sign": ">",
+    "less_than_sign": "<",
+    "left_square_bracket": "[",
+    "right_square_bracket": "]",
+    "number_sign": "#",
 }
 
 

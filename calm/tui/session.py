@@ -153,9 +153,15 @@ class Session:
 
     def put(self, spot: Place, values: Mapping[str, Value | None], label: str) -> None:
         """Set keys of a row; None takes one away."""
-        draft, (rows, index) = self.draft, _listed(spot)
-        for key, value in values.items():
-            draft = draft.put(index, key, value, rows)
+        self.put_rows({spot: values}, label)
+
+    def put_rows(self, given: Mapping[Place, Mapping[str, Value | None]], label: str) -> None:
+        """Set keys of several rows in one step."""
+        draft = self.draft
+        for spot, values in given.items():
+            rows, index = _listed(spot)
+            for key, value in values.items():
+                draft = draft.put(index, key, value, rows)
         self._edit(draft, label)
 
     def replace(self, spot: Place, values: Mapping[str, str]) -> list[str]:
@@ -183,8 +189,10 @@ class Session:
         left = self.spots()
         return left[min(first, len(left) - 1)] if left else None
 
-    def duplicate(self, spots: Iterable[Place], also: Sequence[Named] = ()) -> Place | None:
-        """Repeat rows below the last of them; the first of the copies.
+    def duplicate(
+        self, spots: Iterable[Place], also: Sequence[Named] = (), times: int = 1
+    ) -> Place | None:
+        """Repeat rows below the last of them, once or several times; the first of the copies.
 
         Of what names them, `also` names the copies then.
         """
@@ -194,16 +202,18 @@ class Session:
         items = [spot.item for spot in chosen if not spot.is_clamp]
         label = f"duplicate {self._called(chosen)}"
         if items:
-            draft = widened(self.draft.duplicate(items), also)
-            self._edit(draft, label, new=_rows_of(draft, items[-1] + 1, len(items)))
+            copies = self.draft.copy(items) * times
+            draft = widened(self.draft.paste(items[-1] + 1, copies), also)
+            self._edit(draft, label, new=_rows_of(draft, items[-1] + 1, len(copies)))
             return Place(items[-1] + 1)
-        return self._put_clamps(chosen[-1], chosen[-1].clamp + 1, self._clamps(chosen), label)
+        last, clamps = chosen[-1], self._clamps(chosen) * times
+        return self._put_clamps(last, last.clamp + 1, clamps, label)[0]
 
-    def _put_clamps(self, spot: Place, first: int, texts: Sequence[str], label: str) -> Place:
-        """Put clamps on the piece of a row, as the `first` and below; where that is."""
+    def _put_clamps(self, spot: Place, first: int, texts: Sequence[str], label: str) -> list[Place]:
+        """Put clamps on the piece of a row, as the `first` and below; where they are."""
         new = [Place(spot.item, clamp=first + each) for each in range(len(texts))]
         self._edit(self.draft.paste(first, texts, clamps_of(spot.item)), label, new=new)
-        return new[0]
+        return new
 
     def move(self, spots: Iterable[Place], by: int) -> tuple[Place, ...]:
         """Move rows up (-1) or down (1); where they are then. At the end of the line they stay."""
@@ -247,18 +257,20 @@ class Session:
         return len(self.copied) if chosen else 0
 
     def paste(self, spot: Place | None, *, below: bool) -> Place | None:
-        """Put what was copied beside a row; the first row of it, None where nothing was."""
+        """Put what was copied beside a row; its last row, where the next comes below, or its
+        first; None where nothing was copied.
+        """
         count = len(self.copied)
         label = f"paste {count} row{'s' * (count != 1)}"
         if self.copied.items:
             index = 0 if spot is None else spot.item + below
             draft = self.draft.paste(index, self.copied.items)
             self._edit(draft, label, new=_rows_of(draft, index, count))
-            return Place(index)
+            return Place(index + (count - 1) * below)
         if not self.copied.clamps or spot is None:
             return None
         first = spot.clamp + below if spot.is_clamp else len(self.draft.items[spot.item].clamps)
-        return self._put_clamps(spot, first, self.copied.clamps, label)
+        return self._put_clamps(spot, first, self.copied.clamps, label)[-1 if below else 0]
 
     def assemble(self, spots: Iterable[Place], id: str) -> Place:
         """Make pieces that follow one another an assembly of the file, which stands for them then.

@@ -17,8 +17,10 @@ from calm.tui.cell_editor import CellEditor
 from calm.tui.checking import Reading
 from calm.tui.dialogs import Answer, Question
 from calm.tui.key_table import bindings
+from calm.tui.line.column_sheet import ask_column, ask_equipment, ask_times, rows_meant
+from calm.tui.line.going import Going
 from calm.tui.line.line_cell import LineCell
-from calm.tui.line.mooring_sheet import equipment_changes, equipment_sheet, naming
+from calm.tui.line.mooring_sheet import naming
 from calm.tui.line.rows import table_rows
 from calm.tui.line.table import EDITABLE, Column, LineTable
 from calm.tui.messages import Workspace
@@ -57,6 +59,7 @@ class LinePane(EditableTable):
         super().__init__(self.table, editor_id="cell", id="line-pane")
         self.workspace, self.session = workspace, workspace.session
         self.came_from_verdict = False
+        self.going = Going(workspace, self.table)
         self._cell: LineCell | None = None  # what is edited, or was last
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
@@ -196,19 +199,8 @@ class LinePane(EditableTable):
 
     def action_equipment(self) -> None:
         """Serial number, calibration and more of the row."""
-        spot = self.table.spot
-        if spot is None or not self.settle():
-            return
-        place = ("line", spot.item, *(("clamps", spot.clamp) if spot.is_clamp else ()))
-        values = self.session.draft.value(place)
-        label = str(values.get("label") or values.get("use") or "")
-
-        def take(texts: dict[str, str] | None) -> None:
-            changed = equipment_changes(values, texts or {})
-            if changed:
-                self.attempt(lambda: self.session.put(spot, changed, f"equipment of {label}"))
-
-        self.app.push_screen(equipment_sheet(label, values, is_clamp=spot.is_clamp), take)
+        if self.table.spot is not None and self.settle():
+            ask_equipment(self, self.table.spot)
 
     def action_assemble(self) -> None:
         """Make an assembly of what is chosen."""
@@ -224,6 +216,34 @@ class LinePane(EditableTable):
                 )
 
         self.app.push_screen(naming(self.session), take)
+
+    def action_find(self) -> None:
+        """Find words in the line."""
+        if self.settle():
+            self.going.ask()
+
+    def action_find_next(self, by: int) -> None:
+        """Go to the next row with these words, or the one before."""
+        self.going.to_words(by)
+
+    def action_alike(self, by: int) -> None:
+        """Go to the next row of the same kind, or the one before."""
+        self.going.to_alike(by)
+
+    def action_least(self, loads: int) -> None:
+        """Go to the least margin of the strength of pieces, or of all."""
+        self.going.to_least(loads=bool(loads))
+
+    def action_column(self) -> None:
+        """Fill a column of the rows that are meant."""
+        if self.table.rows and self.settle():
+            ask_column(self, rows_meant(self.table))
+
+    def action_repeat(self) -> None:
+        """Repeat what is chosen several times."""
+        chosen = self._chosen_of_a_kind()
+        if chosen and self.settle():
+            ask_times(self, chosen)
 
     def action_duplicate(self) -> None:
         """Repeat what is chosen."""

@@ -154,7 +154,7 @@ _OF_A_ROW = (
 )
 _COMPARED = "Compared with the design by calm diff."
 _ITEMS: Location = ("deployed", "items")
-_RELEASES: Location = ("releases",)
+RELEASES: Location = ("releases",)
 
 
 @dataclass(frozen=True)
@@ -201,7 +201,7 @@ def deployed_sheet(draft: Draft, hung: DeployedRow | None) -> InputSheet:
             text = said(draft, _ITEMS, ("label", hung.label), key)
             asked.append(Asked(f"item {key}", title, text, check))
     if hung.is_release:
-        codes = said(draft, _RELEASES, ("serial", _serial(draft, hung)), "codes")
+        codes = said(draft, RELEASES, ("serial", _serial(draft, hung)), "codes")
         asked.append(Asked("codes", "Codes", codes, placeholder="arm 0A1B, release 0A55"))
     return InputSheet("As deployed", f"{_COMPARED} Below the depth: {hung.label}.", asked)
 
@@ -217,7 +217,7 @@ def as_deployed(draft: Draft, hung: DeployedRow | None, texts: Mapping[str, str]
         called = "serial", _serial(draft, hung)
         if texts["codes"] and not called[1]:
             raise EditError(f"{hung.label} needs its serial number, by which its codes are known")
-        draft = entered(draft, _RELEASES, called, {"codes": texts["codes"]})
+        draft = entered(draft, RELEASES, called, {"codes": texts["codes"]})
     return draft
 
 
@@ -238,13 +238,29 @@ def equipment_sheet(label: str, values: Mapping[str, Any], *, is_clamp: bool) ->
     values : what the file says of it
     """
     asked = [
-        Asked("serial", "Serial number", _said(values, "serial"), _serial_of_equipment, "4711"),
-        Asked("calibrated", "Calibrated", _said(values, "calibrated"), day, "2027-06-30"),
-        Asked("sampling", "Sampling", _said(values, "sampling"), anything, "every 10 min"),
-        Asked("battery_until", "Battery until", _said(values, "battery_until"), day, "2028-06-30"),
+        Asked(
+            "serial",
+            "Serial number",
+            texts_of_equipment(values, "serial"),
+            serial_of_equipment,
+            "4711",
+        ),
+        Asked(
+            "calibrated", "Calibrated", texts_of_equipment(values, "calibrated"), day, "2027-06-30"
+        ),
+        Asked(
+            "sampling", "Sampling", texts_of_equipment(values, "sampling"), anything, "every 10 min"
+        ),
+        Asked(
+            "battery_until",
+            "Battery until",
+            texts_of_equipment(values, "battery_until"),
+            day,
+            "2028-06-30",
+        ),
     ]
     if not is_clamp:
-        made = _said(values, "termination")
+        made = texts_of_equipment(values, "termination")
         asked.append(Asked("termination", "Termination", made, anything, "swaged, thimbles"))
     return InputSheet(label, _SEVERAL, asked)
 
@@ -255,18 +271,20 @@ def equipment_changes(
     """Return what of the texts differs from what the file says; None takes a key away."""
     changed: dict[str, Value | None] = {}
     for key, new in texts.items():
-        if new != _said(values, key):
+        if new != texts_of_equipment(values, key):
             several = key == "serial" and "," in new and "count" in values
             changed[key] = [one.strip() for one in new.split(",")] if several else new or None
     return changed
 
 
-def _said(values: Mapping[str, Any], key: str) -> str:
+def texts_of_equipment(values: Mapping[str, Any], key: str) -> str:
+    """A value of the equipment as it is typed: several are parted by commas."""
     value = values.get(key)
     return ", ".join(map(str, value)) if isinstance(value, list) else str(value or "")
 
 
-def _serial_of_equipment(text: str) -> Reading:
+def serial_of_equipment(text: str) -> Reading:
+    """Check a serial number, or one for each of a count."""
     numbers = [" ".join(one.split()) for one in text.split(",")]
     if len(numbers) > 1 and not all(numbers):
         return Reading("", "a number is blank")
