@@ -61,13 +61,7 @@ class CellEditor(ScrolledEntry):
         return self.has_class("-open")
 
     def open(
-        self,
-        text: str,
-        check: Check,
-        region: Region,
-        *,
-        least_width: int = 10,
-        begun: bool = False,
+        self, text: str, check: Check, region: Region, *, least_width: int = 10, begun: bool = False
     ) -> None:
         """Begin to edit a text over a part of the screen [cells of the parent].
 

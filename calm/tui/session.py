@@ -112,12 +112,7 @@ class Session:
             self.history.do(draft, label)
 
     def _edit(
-        self,
-        draft: Draft,
-        label: str,
-        *,
-        gone: Iterable[Place] = (),
-        new: Iterable[Place] = (),
+        self, draft: Draft, label: str, *, gone: Iterable[Place] = (), new: Iterable[Place] = ()
     ) -> None:
         """Take a draft of which rows are `gone` and others `new`; what names the others follows."""
         gone, new, then = list(gone), set(new), _spots(draft)

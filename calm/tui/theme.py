@@ -21,15 +21,9 @@ from calm.checks.finding import State
 
 def _bars(ground: str, bar: str, lit: str) -> dict[str, str]:
     """Scroll bars that do not shout."""
-    return {
-        "scrollbar": bar,
-        "scrollbar-hover": lit,
-        "scrollbar-active": lit,
-        "scrollbar-background": ground,
-        "scrollbar-background-hover": ground,
-        "scrollbar-background-active": ground,
-        "scrollbar-corner-color": ground,
-    }
+    grounds = ("background", "background-hover", "background-active", "corner-color")
+    bars = {"scrollbar": bar, "scrollbar-hover": lit, "scrollbar-active": lit}
+    return bars | {f"scrollbar-{each}": ground for each in grounds}
 
 
 DARK = Theme(
@@ -67,33 +61,17 @@ _MANY = frozenset({"truecolor", "24bit", "256"})
 _LIGHT_GROUNDS = frozenset({"7", *map(str, range(9, 16))})
 
 
-PICTURE_DARK = TerminalTheme(
-    (0x10, 0x17, 0x1D),
-    (0xD6, 0xDE, 0xE4),
-    [
-        (0x10, 0x17, 0x1D),
-        (0xE5, 0x74, 0x6B),
-        (0x7C, 0xC5, 0x8A),
-        (0xC9, 0xA2, 0x5C),
-        (0x5A, 0x8F, 0xD6),
-        (0xB3, 0x9D, 0xDB),
-        (0x7F, 0xD1, 0xC7),
-        (0xD6, 0xDE, 0xE4),
-    ],
+def _palette(ground: str, text: str, colours: str) -> TerminalTheme:
+    """A ground, what is written on it, and eight colours, each as red, green and blue."""
+    own, ink, *eight = (tuple(bytes.fromhex(each)) for each in (ground, text, *colours.split()))
+    return TerminalTheme(own, ink, eight)  # type: ignore[arg-type]
+
+
+PICTURE_DARK = _palette(
+    "10171d", "d6dee4", "10171d e5746b 7cc58a c9a25c 5a8fd6 b39ddb 7fd1c7 d6dee4"
 )
-PICTURE_LIGHT = TerminalTheme(
-    (0xF7, 0xF9, 0xFA),
-    (0x16, 0x22, 0x2B),
-    [
-        (0x16, 0x22, 0x2B),
-        (0xB3, 0x26, 0x1E),
-        (0x1E, 0x7D, 0x34),
-        (0x8A, 0x61, 0x00),
-        (0x1F, 0x56, 0xA8),
-        (0x6A, 0x3F, 0xA0),
-        (0x0C, 0x7A, 0x70),
-        (0xE6, 0xEC, 0xF0),
-    ],
+PICTURE_LIGHT = _palette(
+    "f7f9fa", "16222b", "16222b b3261e 1e7d34 8a6100 1f56a8 6a3fa0 0c7a70 e6ecf0"
 )
 """What the eight colours of the pictures and of the verdict are in these themes."""
 

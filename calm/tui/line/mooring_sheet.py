@@ -16,7 +16,7 @@ from calm.tui.checking import Reading, anything, day, moment, quantity
 from calm.tui.dialogs import Answer, Asked, InputSheet, Question
 from calm.tui.session import Session
 
-_PLACES: dict[str, Location] = {
+_PLACES: Mapping[str, Location] = {
     "name": ("name",),
     "description": ("description",),
     "latitude": ("position", "latitude"),
@@ -24,20 +24,9 @@ _PLACES: dict[str, Location] = {
     "speed": ("tow", "speed"),
     "toward": ("tow", "toward"),
     "height": ("tow", "height"),
-    **{
-        key: ("document", key)
-        for key in (
-            "id",
-            "revision",
-            "date",
-            "author",
-            "checked",
-            "approved",
-            "project",
-            "ship",
-            "cruise",
-        )
-    },
+} | {
+    each: ("document", each)
+    for each in "id revision date author checked approved project ship cruise".split()  # noqa: SIM905
 }
 
 _HISTORY: Location = ("document", "history")
@@ -50,19 +39,10 @@ _NAME_AND_PLACE = (
     Asked("latitude", "Latitude", check=LATITUDE, placeholder="e.g. 48.3 deg, + north"),
     Asked("longitude", "Longitude", check=LONGITUDE, placeholder="e.g. -5.2 deg, + east"),
 )
+_SPEED, _COURSE = QuantityField("speed", above=0), QuantityField("angle")
 _TOW = (
-    Asked(
-        "speed",
-        "Tow speed",
-        check=quantity(QuantityField("speed", above=0)),
-        placeholder="e.g. 4 knot",
-    ),
-    Asked(
-        "toward",
-        "Towards",
-        check=quantity(QuantityField("angle")),
-        placeholder="e.g. 90 deg for east",
-    ),
+    Asked("speed", "Tow speed", check=quantity(_SPEED), placeholder="e.g. 4 knot"),
+    Asked("toward", "Towards", check=quantity(_COURSE), placeholder="e.g. 90 deg for east"),
     Asked("height", "Sheave height", check=quantity(LENGTH, optional=True), placeholder="e.g. 3 m"),
 )
 _DOCUMENT = (
@@ -136,16 +116,11 @@ _DEPLOYED_PLACES: dict[str, Location] = {
     "longitude": ("deployed", "position", "longitude"),
     "depth": ("deployed", "depth"),
 }
+_DEPTH = quantity(QuantityField("length", above=0), optional=True)
 _WHOLE = (
     Asked("date", "Date", check=moment, placeholder="e.g. 2027-06-30 14:05"),
-    Asked("latitude", "Latitude", check=LATITUDE, placeholder="e.g. 48.3 deg, + north"),
-    Asked("longitude", "Longitude", check=LONGITUDE, placeholder="e.g. -5.2 deg, + east"),
-    Asked(
-        "depth",
-        "Depth there",
-        check=quantity(QuantityField("length", above=0), optional=True),
-        placeholder="e.g. 1187 m",
-    ),
+    *_NAME_AND_PLACE[2:],
+    Asked("depth", "Depth there", check=_DEPTH, placeholder="e.g. 1187 m"),
 )
 _OF_A_ROW = (
     ("serial", "Serial number", anything),
