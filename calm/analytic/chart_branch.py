@@ -46,10 +46,7 @@ _NODES = _NODES + 0.5
 def critical_angle(k: ArrayLike) -> Floats:
     """Angle to the current of a cable that stays straight [rad], 90° at K = 0.
 
-    Parameters
-    ----------
-    k : array_like
-        K ≥ 0: drag of a metre across the current over its weight.
+    K ≥ 0, an array or a number, is the drag of a metre across the current over its weight.
     """
     return np.asarray(np.arccos(-_leaning(k)), dtype=np.float64)
 

@@ -142,14 +142,8 @@ class StraightCable:
 
 
 def straight(k: float, known: Mapping[str, float]) -> StraightCable | None:
-    """The straight cable that has the known quantities to 1e-9, tensions over w; None if none has.
-
-    Parameters
-    ----------
-    k : float
-        K.
-    known : mapping
-        Three of the seven quantities [rad, m].
+    """The straight cable that has three known quantities [rad, m] to 1e-9, tensions over w; or
+    None.
     """
     angle = float(critical_angle(k))
     sine, cosine = math.sin(angle), 0.0 if k == 0.0 else math.cos(angle)

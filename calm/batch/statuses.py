@@ -49,12 +49,7 @@ def ending_of(status: str) -> Ending:
 
 
 def endings(counts: Mapping[str, int]) -> dict[Ending, int]:
-    """Profiles by how they ended, 0 where none did.
-
-    Parameters
-    ----------
-    counts : profiles by their status
-    """
+    """Profiles by how they ended, from their counts by status; 0 where none did."""
     ended = dict.fromkeys(Ending, 0)
     for status, count in counts.items():
         ended[ending_of(status)] += count

@@ -154,12 +154,7 @@ class Acceptance:
         return replace(finding, state=state, message=f"{finding.message} {said}")
 
     def notices(self, accepted: Iterable[Finding]) -> Iterator[str]:
-        """Notices of accepts that do not count, or that no finding needs.
-
-        Parameters
-        ----------
-        accepted : every finding that is accepted
-        """
+        """Notices of accepts that do not count, or that no finding of all that are accepted needs."""
         used = {finding.accept for finding in accepted}
         bare = [one for one in self.accepts if None in (one.by, one.until) and one in used]
         if bare:

@@ -186,13 +186,7 @@ def _passing(before: ChainState, after: ChainState, bottom: float) -> ChainState
 
 
 def _stepped(mover: Mover, state: ChainState, step: float, depth: float) -> ChainState:
-    """A step, or a shorter one where it is not found.
-
-    Raises
-    ------
-    NoEquilibrium
-        ``not-converged``
-    """
+    """A step, or a shorter one where it is not found; NoEquilibrium: ``not-converged``."""
     shortest = _SHORTEST * depth
     while step > shortest:
         for gently in (False, True):
@@ -255,11 +249,6 @@ def _slowed(mover: Mover, state: ChainState, streamed: float) -> ChainState:
     """The line in a flow so much slower that it streams to a distance [m].
 
     A free end that is pushed nearer in the whole flow would bend the line as no rope bends.
-
-    Raises
-    ------
-    UsageError
-        It streams farther in a flow that hardly moves it.
     """
     from scipy.optimize import brentq
 

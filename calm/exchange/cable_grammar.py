@@ -70,10 +70,7 @@ class KeyValues(dict[str, KeyValue]):
     def number(self, *keys: str, default: float = 0.0) -> float:
         """Return the number of the first key that has one other than 0, at the time 0.
 
-        Parameters
-        ----------
-        keys : that mean the same
-        default : where the file has none of them
+        The keys mean the same; `default` is returned where the file has none of them.
         """
         found = default
         for key in keys:

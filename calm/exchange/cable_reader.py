@@ -242,10 +242,8 @@ def _pieces(
 ) -> list[ImportedPiece]:
     """Return a segment as one piece, or as several where its drag changes with depth, from below.
 
-    Parameters
-    ----------
-    lower : depth of its lower end, standing upright [m]
-    clamps : height above its lower end [m], and what hangs there
+    Its lower end is at the depth `lower` standing upright [m]; clamps have heights above that end
+    [m].
     """
     count = _PARTS if varies(material) else 1
     made: list[tuple[float, ImportedComponent]] = []

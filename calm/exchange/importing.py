@@ -159,16 +159,7 @@ def import_file(
 def _format_of(path: Path, name: str | None, *, listed: bool = False) -> ImportFormat:
     """Return the format of a file: as named, or by its content.
 
-    Parameters
-    ----------
-    listed : whether a file of no other format is read as a list, even with a single column
-
-    Raises
-    ------
-    InputError
-        The file cannot be read, or is of no format that is known.
-    UsageError
-        There is no format of that name.
+    One that is `listed` is a list where it is of no other format, even with a single column.
     """
     if name is not None:
         for each in FORMATS:

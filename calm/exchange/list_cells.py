@@ -98,10 +98,7 @@ class ColumnUnit:
 def unit_called(text: str, what: str) -> ColumnUnit | None:
     """Return the unit that a text names, words such as *wet* apart; None where it names none.
 
-    Parameters
-    ----------
-    text : that stands in brackets, in a units row or after a number
-    what : the column holds
+    The text stands in brackets, in a units row or after a number of a column that holds `what`.
 
     Raises
     ------
@@ -207,11 +204,8 @@ class CellNumber(NamedTuple):
 
 
 def number(cell: str, decimal: str = "") -> CellNumber:
-    """Return the number of a cell.
-
-    Parameters
-    ----------
-    decimal : sign of the file; found in the cell itself where it is not given
+    """Return the number of a cell, by the decimal sign of the file or, without it, of the cell
+    itself.
     """
     text = cell.strip().lstrip("'")
     if text.lower() in _NOTHING:
@@ -273,9 +267,7 @@ def _either(digits: str) -> str:
 def decimal_sign(cells: Iterable[tuple[str, str]]) -> tuple[str, str]:
     """Return the decimal sign of a file, and what it was found from where it has commas.
 
-    Parameters
-    ----------
-    cells : place and text of all that hold numbers
+    The cells are the place and the text of all that hold numbers.
 
     Raises
     ------

@@ -195,19 +195,7 @@ def _value(name: str, kind: str, header: dict[str, str], rows: list[str]) -> Mat
 
 
 def _spread(name: str, first: float, last: float, step: float) -> MatValue:
-    """Return the numbers of a range, the last included where a step ends at it.
-
-    Parameters
-    ----------
-    name : of the variable
-    first, last : numbers of the range
-    step : between two numbers
-
-    Raises
-    ------
-    ValueError
-        The range does not end.
-    """
+    """Return the numbers of a range, the last included where a step ends at it."""
     count = (last - first) / step * (1 + 1e-12) + 1 if step else 0.0
     if not 0.0 <= count <= _MOST:
         raise ValueError(f"the range `{name}` has {count:g} numbers")
@@ -242,13 +230,7 @@ def _is_hdf5(content: bytes) -> bool:
 
 
 def _read_hdf5(content: bytes, wanted: Collection[str]) -> dict[str, MatValue]:
-    """Return the wanted variables that a file has; links to other files are not followed.
-
-    Raises
-    ------
-    ValueError, OSError
-        The file is damaged, or a variable refers to another file.
-    """
+    """Return the wanted variables that a file has; links to other files are not followed."""
     import h5py
 
     found: dict[str, MatValue] = {}
@@ -331,13 +313,7 @@ def numbers(value: MatValue | None) -> RealArray:
 
 
 def _fits(name: str, shape: tuple[int, ...]) -> bool:
-    """Return whether a variable of a shape may be read at all.
-
-    Raises
-    ------
-    ValueError
-        It may not.
-    """
+    """Return True; raise ValueError where a variable of a shape may not be read at all."""
     if math.prod(shape) > _MOST:
         raise ValueError(f"`{name}` has {math.prod(shape)} elements")
     return True

@@ -181,9 +181,7 @@ def read_elements(
 ) -> tuple[list[MddElement], list[str]]:
     """Return the elements of a line in the order of the file, and what is wrong with them.
 
-    Parameters
-    ----------
-    suffix : ``t`` for the matrices of a tow, ``CO`` for what is clamped on, or nothing
+    The suffix is ``t`` for the matrices of a tow, ``CO`` for what is clamped on, or nothing.
     """
     problems: list[str] = []
     size = _matrix(variables, f"H{suffix}", problems)

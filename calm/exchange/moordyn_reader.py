@@ -309,13 +309,7 @@ def is_moordyn(content: bytes) -> bool:
 
 
 def _read_sections(path: Path) -> MoorDynSections:
-    """Read a file.
-
-    Raises
-    ------
-    InputError
-        A table has a row with too few words.
-    """
+    """Read a file, whose tables have no row with too few words."""
     sections, current, headings, skip = MoorDynSections(), "", list[str](), 0
     for number, text in enumerate(read_text(path).splitlines(), 1):
         line = text.split("#")[0] if not text.lstrip().startswith("(") else text

@@ -132,12 +132,9 @@ def report_at(section: SourceMapping, *place: str) -> Report:
 
 
 def density_notices(density: float | DepthTable | SeaWater, depth: float | None) -> Iterator[str]:
-    """Yield what is odd about the density of the water, in sentences.
+    """Yield what is odd about the density of the water as it was read, in sentences.
 
-    Parameters
-    ----------
-    density : as it was read
-    depth : of the water [m], None where it is not known
+    Its depth [m] is None where it is not known.
     """
     if isinstance(density, SeaWater):
         profiles = {"temperature": density.temperature, "salinity": density.salinity}

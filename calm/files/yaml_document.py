@@ -77,11 +77,7 @@ def read_document(path: Path) -> Document:
 
 
 def compose(name: str, text: str) -> Document:
-    """Return the document of a text, as that of a file or in place of one.
-
-    Parameters
-    ----------
-    name : of the file, as messages show it
+    """Return the document of a text, as that of a file of a name or in place of one.
 
     Raises
     ------

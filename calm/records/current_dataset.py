@@ -197,12 +197,7 @@ class CurrentDataset:
 
 
 def understand(dataset: xr.Dataset, terms: Terms) -> CurrentDataset:
-    """Return what a dataset holds, without reading its currents.
-
-    Parameters
-    ----------
-    dataset : as it stands in the file, its times undecoded
-    terms : how its currents are to be taken
+    """Return what a dataset, its times undecoded, holds under some terms, its currents not read.
 
     Raises
     ------

@@ -163,12 +163,7 @@ class CopiedTable:
 
 
 def read_table(path: Path, example: str) -> TextTable:
-    """Return the table of a file.
-
-    Parameters
-    ----------
-    path : of UTF-8 text
-    example : of a header, for messages
+    """Return the table of a file of UTF-8 text; messages show the example of a header.
 
     Raises
     ------
@@ -278,13 +273,9 @@ def cells_in(text: str) -> list[list[str]]:
 def dialect_of(lines: Sequence[str], *, words: bool = False) -> Dialect:
     """Return how a table is written, by the sign that parts most of its lines into as many cells.
 
+    The lines are neither empty nor comments. Where cells are of several words no blank parts them.
     Numbers have decimal commas where some have a comma that is none of thousands, and none has a
     point.
-
-    Parameters
-    ----------
-    lines : without empty ones and comments
-    words : whether cells are of several words, so that no blank parts them
     """
     best, most = ",", 0
     for separator in _SEPARATORS:

@@ -94,9 +94,7 @@ class Record(ABC):
     def digest(self, check: Callable[[], None] = lambda: None) -> str:
         """SHA-256 of the times, depths and currents as they are read; the name does not count.
 
-        Parameters
-        ----------
-        check : called before each part is read
+        `check` is called before each part is read.
         """
         digest = hashlib.sha256()
         digest.update(np.ascontiguousarray(self.time, "<M8[ns]").view("<i8").data)

@@ -165,11 +165,6 @@ def _direction(
 def _find(dataset: xr.Dataset, sought: _Sought, regular: bool, notes: list[str]) -> str | None:
     """Return the variable of a standard name, else of a usual name; one to true north before
     another.
-
-    Raises
-    ------
-    UnreadableError
-        Several have the standard name, or what the variable says of itself is something else.
     """
     for standard_name in sought.standard:
         found = [str(name) for name in dataset.cf.standard_names.get(standard_name, [])]

@@ -71,12 +71,9 @@ def chart_picture(k: float, lower_end: str, suffix: str) -> bytes:
 
 
 def draw_chart(k: float, lower_end: str = "below-90") -> Figure:
-    """The chart of one K: a page of A4 that belongs to no window; no text on it covers another.
+    """The chart of one K, 0 to 100: a page of A4 that belongs to no window; no text covers another.
 
-    Parameters
-    ----------
-    k : 0 ≤ K ≤ 100
-    lower_end : ``below-90`` or ``above-90``: the angle at the lower ends of the cables to be read
+    The lower ends of the cables to be read are at angles ``below-90`` or ``above-90``.
 
     Raises
     ------

@@ -259,9 +259,7 @@ def _cut(table: Table, lines: float) -> Table:
 def _lines_of(row: Sequence[Cell], columns: Sequence[Column], signs: float) -> float:
     """About how many lines a row takes on page one; its rule and room count as a half.
 
-    Parameters
-    ----------
-    signs : that a line of a column has for each of its shares of the width
+    A line of a column has so many signs for each of its shares of the width.
     """
     pairs = [pair for pair in zip(row, columns, strict=True) if pair[1].share]
     return 0.5 + max(ceil(len(f"{cell.text} {cell.detail}") / (signs * column.share))

@@ -109,12 +109,9 @@ def _states(
     detail: Callable[[Finding], str],
     note: str,
 ) -> Iterator[Table]:
-    """Tables of the worst state of each row in each column.
+    """Tables of the worst state of each row, a name and what was found of it, in each column.
 
-    Parameters
-    ----------
-    rows : name, and what was found of it
-    detail : of a state, to stand under it
+    The detail of a state stands under it.
     """
 
     def cell(found: Sequence[Worst]) -> Cell:
@@ -215,9 +212,7 @@ def rules_of(findings: Iterable[Finding]) -> list[str]:
 def named(labels: Iterable[str], most: int = 3) -> str:
     """Name labels, each once, such as ``glass 1 to 4, cable``.
 
-    Parameters
-    ----------
-    most : names shown, successive numbers as one; how many labels are left is said
+    Of more than `most` names, successive numbers as one, how many are left is said.
     """
     numbered: dict[str, list[int]] = {}
     for label in labels:

@@ -266,12 +266,7 @@ _NOTE = (
 
 
 def likelihood_tables(named: Iterable[tuple[str, Sequence[Finding]]]) -> Iterator[Table]:
-    """The designs by their greatest probability; nothing where none was counted.
-
-    Parameters
-    ----------
-    named : name and findings of each design
-    """
+    """The designs, by name, by their greatest probability; nothing where none was counted."""
     designs = [(name, _likeliest(findings)) for name, findings in named]
     if not any(found for _, found in designs):
         return

@@ -73,15 +73,11 @@ def source_text(file: MooringFile) -> str | None:
 
 
 def input_hash(files: Sequence[MooringFile]) -> str:
-    """SHA-256 of the inputs, in hexadecimal digits.
-
-    Parameters
-    ----------
-    files : one mooring or tow as read in each of its environments
+    """SHA-256 of the inputs, in hexadecimal digits, as read in each of the environments.
 
     It covers the text of the mooring file, and as JSON with sorted keys the components with every
-    figure of the catalogue, the settings, and each environment with its currents: what came from
-    a file of currents, too. Where the files lie does not count.
+    figure of the catalogue, the settings, and each environment with its currents: what came from a
+    file of currents, too. Where the files lie does not count.
     """
     digest = hashlib.sha256((source_text(files[0]) or "").encode("utf-8", "replace"))
     for file in files:

@@ -41,12 +41,9 @@ _WARNED = _STYLES[State.FAIL]
 
 
 def shown(part: ReportPart, *, plain: bool = False) -> RenderableType:
-    """A part for a rich console; its figures are left to what draws them there.
+    """A part for a rich console, or with the signs of ASCII alone where it is to be plain.
 
-    Parameters
-    ----------
-    part : title, tables and sentences
-    plain : with the signs of ASCII alone
+    Its figures are left to what draws them there.
     """
     return Group(*_Printer(plain).part(part))
 

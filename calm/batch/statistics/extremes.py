@@ -321,10 +321,8 @@ def peaks_over(
 def extremal_index(intervals: NDArray[np.float64]) -> float:
     """θ, the share of exceedances that are independent of those before them.
 
-    Parameters
-    ----------
-    intervals : (N - 1,) between exceedances [steps], each 1 or more; the form of the estimate
-        changes where one of them is beyond 2
+    The intervals between exceedances, (N - 1,), are 1 step or more; the form of the estimate
+    changes where one of them is beyond 2.
     """
     one, two = (1.0, 2.0) if intervals.max() > 2.0 else (0.0, 0.0)
     below = float(((intervals - one) * (intervals - two)).sum())

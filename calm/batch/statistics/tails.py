@@ -62,10 +62,8 @@ class Tail:
     def level(self, growth: float) -> float:
         """The return level μ + σ (e^{ξ g} - 1)/ξ of a period of T years.
 
-        Parameters
-        ----------
-        growth : g, -log(-log(1 - 1/T)) for maxima of years (Coles 2001, eq. 3.4), log(λ T) for
-            λ independent peaks a year (eq. 4.12 with λ in place of the rate of exceedances)
+        Its growth g is -log(-log(1 - 1/T)) for maxima of years (Coles 2001, eq. 3.4), log(λ T) for
+        λ independent peaks a year (eq. 4.12 with λ in place of the rate of exceedances).
         """
         return self.location + self.scale * _grown(self.shape, growth)
 
@@ -197,13 +195,7 @@ def _apart(shape: float) -> float:
 
 
 def _least(loss: Callable[[Any], float], *starts: list[float]) -> tuple[Floats, float]:
-    """Return where a loss is least, and how much it is there, from the best of some starts.
-
-    Raises
-    ------
-    NotFitted
-        The search did not end.
-    """
+    """Return where a loss is least, and how much it is there, from the best of some starts."""
     from scipy.optimize import minimize
 
     start = min(starts, key=lambda one: loss(np.array(one)))

@@ -117,9 +117,7 @@ def lock_file(folder: Path) -> Path:
 def locked(folder: Path, tell: Callable[[str], None]) -> Iterator[None]:
     """Hold the lock of a work folder, which ends with the process, however that ends.
 
-    Parameters
-    ----------
-    tell : called where the file system has no locks
+    Where the file system has no locks, that is told.
 
     Raises
     ------
@@ -162,13 +160,7 @@ def _held(lock: Path, folder: Path, tell: Callable[[str], None]) -> int:
 
 
 def _has_lock(handle: int) -> bool:
-    """Lock an open file; whether there is such a thing.
-
-    Raises
-    ------
-    BlockingIOError
-        Somebody else has it.
-    """
+    """Lock an open file; whether there is such a thing. BlockingIOError: somebody else has it."""
     if sys.platform == "win32":
         return False
     import fcntl

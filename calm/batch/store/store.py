@@ -117,9 +117,7 @@ class Store:
     def forget_damaged(self, check: Callable[[], None]) -> list[int]:
         """The blocks that are not as they were written: they are missing again.
 
-        Parameters
-        ----------
-        check : called before each block is read again
+        `check` is called before each block is read again.
         """
 
         def is_whole(number: int) -> bool:
