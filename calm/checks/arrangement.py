@@ -270,7 +270,8 @@ def clamp_grip(result: Result) -> Iterator[Verdict]:
         depth = np.array(float(result.clamps.depth[part.clamp]))
         flow, density = water.at(depth)
         flow = np.asarray(flow, float).reshape(3)
-        drag = _length_drag(part) * float(density) / REFERENCE_DENSITY
+        across = drag_of(part.component, getattr(part.component, "length", 0.0))[0]
+        drag = across * float(density) / REFERENCE_DENSITY
         force = drag * float(np.linalg.norm(flow)) * flow
         force[2] += _lift(part, result.mooring, float(density))
         yield _verdict(part, float(np.linalg.norm(force)), "")
@@ -374,11 +375,6 @@ def _way_of(part: Clamp, wire: Piece) -> Iterator[Verdict]:
 def _clamps(mooring: Mooring) -> list[JudgedPart]:
     parts = (part for part in parts_of(mooring) if part.clamp is not None)
     return [part for part in parts if not isinstance(part.component, Profiler)]
-
-
-def _length_drag(part: JudgedPart) -> float:
-    """K of the drag K|V|V across the axis [N/(m/s)²]."""
-    return drag_of(part.component, getattr(part.component, "length", 0.0))[0]
 
 
 def _lift(part: JudgedPart, mooring: Mooring, density: float) -> float:

@@ -154,7 +154,7 @@ class Acceptance:
         return replace(finding, state=state, message=f"{finding.message} {said}")
 
     def notices(self, accepted: Iterable[Finding]) -> Iterator[str]:
-        """Notices of accepts that do not count, or that no finding of all that are accepted needs."""
+        """Notices of accepts that do not count, or that none of the accepted findings needs."""
         used = {finding.accept for finding in accepted}
         bare = [one for one in self.accepts if None in (one.by, one.until) and one in used]
         if bare:

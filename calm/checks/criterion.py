@@ -144,10 +144,6 @@ def _depth(result: Result, part: JudgedPart) -> float:
     return nan if result.type == "surface" and top <= AT_SURFACE else max(top, bottom)
 
 
-def _reserve(result: Result, _: JudgedPart) -> float:
-    return 1.0 - result.top.used_buoyancy if result.type == "surface" else 0.0
-
-
 READINGS: dict[str, Callable[[Result, JudgedPart], float]] = {
     "tension": lambda result, part: float(result.components.tension[part.index]),
     "tension_bottom": lambda result, part: float(result.components.tension_bottom[part.index]),
@@ -162,7 +158,9 @@ READINGS: dict[str, Callable[[Result, JudgedPart], float]] = {
     "slide": lambda result, _: (
         result.anchor.horizontal + result.anchor.friction * result.anchor.vertical
     ),
-    "reserve": _reserve,
+    "reserve": lambda result, _: (
+        1.0 - result.top.used_buoyancy if result.type == "surface" else 0.0
+    ),
 }
 """What is read of a part in a result: a tension of the whole piece is the greatest on it, that of a
 least tension leaves out what lies on the seabed, a slide is H + friction × V."""

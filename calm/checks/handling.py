@@ -75,7 +75,7 @@ def backup(handling: Handling) -> Iterator[Verdict]:
         return
     breaks = [one for one in handling.backup if one.judged]
     judged: list[Break | Loss] = [*breaks, *handling.losses]
-    worst = min(judged, key=_room, default=handling.backup[-1])
+    worst = min(judged, key=lambda one: one.margin - one.required, default=handling.backup[-1])
     if isinstance(worst, Loss):
         part: LinePart = worst
         after = f"After the loss of {worst.label}"
@@ -93,11 +93,6 @@ def backup(handling: Handling) -> Iterator[Verdict]:
         State.WARN if alone else State.FAIL,
         source=cite("backup_margin"),
     )
-
-
-def _room(one: Break | Loss) -> float:
-    """Return what is left beyond what is required [N]."""
-    return one.margin - one.required
 
 
 @rule("launch-strength", once=True)

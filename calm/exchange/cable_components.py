@@ -228,7 +228,7 @@ def varies(definition: CableDefinition) -> bool:
 def _displacement(
     definition: CableDefinition, shape: str
 ) -> tuple[tuple[float, float, float], ...]:
-    """Return rows of draft [m], displaced volume [m³] and immersed area [m²]; refuse other shapes."""
+    """Return rows of draft [m], displaced volume [m³] and immersed area [m²] of a known shape."""
     values = definition.values
     across = values.number("d", "diam")
     height = values.number("h", "height")

@@ -163,7 +163,8 @@ def _of_sheets(path: Path) -> Iterable[LibraryElement]:
         weights_as_buoyancy(rows, [])
         for row in rows:
             found = True
-            yield LibraryElement(row.name, _is_line(row, title), _figures(row))
+            figures = {what: one for what, one in row.figures.items() if what not in _NOT_THEIRS}
+            yield LibraryElement(row.name, _is_line(row, title), figures)
     if not found:
         raise refused(path, "holds no elements: no sheet has headings that CALM knows")
 
@@ -174,7 +175,3 @@ def _is_line(row: ListRow, title: str) -> bool:
     if abs(row.figures.get("length", 1.0) - 1.0) > _A_METRE or (floats and "width" in row.figures):
         return False
     return bool(row.metre) or row.is_line or is_line(title)
-
-
-def _figures(row: ListRow) -> dict[str, float]:
-    return {what: value for what, value in row.figures.items() if what not in _NOT_THEIRS}

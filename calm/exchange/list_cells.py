@@ -120,7 +120,8 @@ def unit_called(text: str, what: str) -> ColumnUnit | None:
         return None
     if what not in _DIMENSIONS:
         raise ValueError(f"`{text}` is not understood")
-    raise ValueError(f"`{plain}` is no unit of {_DIMENSIONS[what]} that CALM knows{_hint(plain)}")
+    hint = ": of 907, 1000 or 1016 kg" if plain.lower() in _AMBIGUOUS else ""
+    raise ValueError(f"`{plain}` is no unit of {_DIMENSIONS[what]} that CALM knows{hint}")
 
 
 def unit_of_heading(heading: str, what: str) -> ColumnUnit | None:
@@ -188,10 +189,6 @@ def _factor(text: str, dimension: str) -> float | None:
         return unit_factor(spelled, dimension)
     except QuantityError:
         return None
-
-
-def _hint(text: str) -> str:
-    return ": of 907, 1000 or 1016 kg" if text.lower() in _AMBIGUOUS else ""
 
 
 class CellNumber(NamedTuple):

@@ -256,11 +256,10 @@ def _variable(file: Any, node: Any, depth: int) -> MatValue:
     if not isinstance(value, h5py.Group):
         return _values(file, value, kind.removeprefix("global ").strip(), depth)
     elements = [key for key in value if key.startswith("_") and key[1:].isdigit()]
-    return [_variable(file, value[key], depth + 1) for key in sorted(elements, key=_number)]
-
-
-def _number(key: str) -> int:
-    return int(key[1:])
+    return [
+        _variable(file, value[key], depth + 1)
+        for key in sorted(elements, key=lambda key: int(key[1:]))
+    ]
 
 
 def _values(file: Any, node: Any, kind: str, depth: int) -> MatValue:
@@ -281,14 +280,11 @@ def _values(file: Any, node: Any, kind: str, depth: int) -> MatValue:
     if kind in _TEXTS:
         rows = np.atleast_2d(array)
         if array.dtype.kind == "i":
-            return [_utf_8(row) for row in rows]
+            return [
+                row.astype(np.uint8).tobytes().decode("utf-8", "replace").rstrip() for row in rows
+            ]
         return ["".join(chr(int(code)) for code in row).rstrip() for row in rows]
     return array
-
-
-def _utf_8(row: np.ndarray[Any, np.dtype[Any]]) -> str:
-    """Return a text of Octave, which writes bytes."""
-    return row.astype(np.uint8).tobytes().decode("utf-8", "replace").rstrip()
 
 
 def _text_of(value: object) -> str:

@@ -222,7 +222,8 @@ def _explain(
         if details["type"] == "missing" and isinstance(details["loc"][-1], str):
             missing.append((location, name))
         elif details["type"] == "extra_forbidden":
-            keys = [*_keys(model, details["loc"][:-1]), *also_allowed]
+            forms = _models_in(_form(model, details["loc"][:-1]))
+            keys = [*(name for one in forms for name in one.model_fields), *also_allowed]
             if also_allowed:
                 keys.remove("kind")
             near = _meant(name, keys)
@@ -337,11 +338,6 @@ def _flow(value: object) -> str:
     if isinstance(value, dict):
         return "{" + ", ".join(f"{key}: {_flow(each)}" for key, each in value.items()) + "}"
     return f"[{', '.join(map(_flow, value))}]" if isinstance(value, list) else str(value)
-
-
-def _keys(model: type[BaseModel], loc: tuple[int | str, ...]) -> list[str]:
-    """Return the keys allowed at a pydantic location."""
-    return [name for one in _models_in(_form(model, loc)) for name in one.model_fields]
 
 
 def _form(model: type[BaseModel], loc: tuple[int | str, ...]) -> Any:

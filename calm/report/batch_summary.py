@@ -63,7 +63,7 @@ def summary_document(summary: Summary) -> dict[str, Any]:
         "not_judged": dict(summary.not_judged),
         "responses": {response.name: _response(response) for response in summary.responses},
         "worst": {
-            name: [_profile(profile) for profile in profiles]
+            name: [asdict(profile) | {"time": _time(profile.time)} for profile in profiles]
             for name, profiles in summary.worst.items()
         },
     }
@@ -123,10 +123,6 @@ def _limit(rule: RuleShare, one: Exceedance) -> dict[str, Any]:
         **members(one, "share", "worst"),
         "time": _time(one.time),
     }
-
-
-def _profile(profile: WorstProfile) -> dict[str, Any]:
-    return asdict(profile) | {"time": _time(profile.time)}
 
 
 def _time(time: np.datetime64 | None) -> str | None:

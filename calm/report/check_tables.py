@@ -101,7 +101,12 @@ def checks_table(findings: Iterable[Finding]) -> Iterator[Table | Prose]:
         "Worst finding of each rule on each component",
         joined(kept),
         (Column("state", share=0.0), lambda found: state_cell(found[0])),
-        (Column("rule"), lambda found: _with_source(found, sources)),
+        (
+            Column("rule"),
+            lambda found: Cell(
+                RULES[found[0].rule].title, f"[{sources.index(found[0].source) + 1}]"
+            ),
+        ),
         (Column("component", share=1.8), _placed),
         (Column("value", numeric=True), lambda found: say_in_unit(found[0], found[0].value)),
         (Column("limit", numeric=True), lambda found: say_in_unit(found[0], found[0].limit)),
@@ -112,10 +117,6 @@ def checks_table(findings: Iterable[Finding]) -> Iterator[Table | Prose]:
         sortable=True,
     )
     yield Prose(tuple(f"[{number}] {source}" for number, source in enumerate(sources, 1)))
-
-
-def _with_source(found: Sequence[Finding], sources: Sequence[str]) -> Cell:
-    return Cell(RULES[found[0].rule].title, f"[{sources.index(found[0].source) + 1}]")
 
 
 def _placed(found: Sequence[Finding]) -> Cell:

@@ -61,17 +61,14 @@ def _rows(result: Result | TowResult) -> Iterator[list[object]]:
         numbers = (getattr(component, name) for name in _NUMBERS)
         yield [*_words(result, "component", component), *numbers]
         for clamp in clamps:
-            numbers = (getattr(clamp, _at_a_point(name), None) for name in _NUMBERS)
+            # a clamp has one figure where a component has one for each end
+            names = (name.removesuffix("_top").removesuffix("_bottom") for name in _NUMBERS)
+            numbers = (getattr(clamp, name, None) for name in names)
             yield [*_words(result, "clamp", clamp), *numbers]
 
 
 def _words(result: Result | TowResult, part: str, row: ComponentRow | ClampRow) -> list[object]:
     return [result.name, part, row.index, row.use, row.label]
-
-
-def _at_a_point(name: str) -> str:
-    """Name of the one figure that a clamp has where a component has one for each end."""
-    return name.removesuffix("_top").removesuffix("_bottom")
 
 
 _MORE: dict[str, tuple[str, str, Attributes]] = {

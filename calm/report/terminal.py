@@ -86,7 +86,7 @@ class _Printer:
         if block.title:
             yield self._text(block.title, "bold")
         gap = 1 if block.dense else 2
-        grid = _grid(gap=gap)
+        grid = table.Table(box=None, padding=(0, 0, 0, gap), pad_edge=False)
         chosen = [number for number, column in enumerate(block.columns) if column.narrow]
         for number in chosen:
             self._add_column(grid, block.columns[number])
@@ -156,11 +156,6 @@ def _together(block: Block, following: Block) -> bool:
     if isinstance(following, Prose):
         return isinstance(block, Prose | Heading)
     return isinstance(block, Heading)
-
-
-def _grid(*, gap: int) -> table.Table:
-    """A table without rules, `gap` blanks between its columns."""
-    return table.Table(box=None, padding=(0, 0, 0, gap), pad_edge=False)
 
 
 MANY = 100

@@ -230,10 +230,6 @@ def _stops(series: ResultColumns, mooring: Mooring) -> Iterator[StopDepths]:
             )
 
 
-def _anchor_tension(series: ResultColumns) -> Column:
-    return series.column("tension_top", -1)
-
-
 def _greatest_tilt(series: ResultColumns) -> Column:
     greatest = np.full(len(series), np.nan, np.float32)
     for seat in series.seats:
@@ -243,7 +239,7 @@ def _greatest_tilt(series: ResultColumns) -> Column:
 
 RESPONSES: Mapping[str, Callable[[ResultColumns], Column]] = {
     "knockdown": top_knockdown,
-    "anchor_tension": _anchor_tension,
+    "anchor_tension": lambda series: series.column("tension_top", -1),
     "tilt": _greatest_tilt,
     "offset": top_offset,
 }

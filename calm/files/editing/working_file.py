@@ -56,7 +56,9 @@ class WorkingFile:
         self._seen: bytes | None = None
         self._looked: Stamp | None = None
         self._differs = False
-        self._places = [_place_of(*each) for each in self._folders()]
+        self._places = [
+            folder / f"{stem}.{os.urandom(4).hex()}{SUFFIX}" for folder, stem in self._folders()
+        ]
         self._adopted: Path | None = None
         self._lock = RLock()  # a signal may ask for the copy while it is being removed
 
@@ -332,11 +334,6 @@ class KeptWork:
 def _digest(content: bytes | None) -> str:
     """Return a short sign of a content; empty of none."""
     return "" if content is None else hashlib.sha256(content).hexdigest()[:16]
-
-
-def _place_of(folder: Path, stem: str) -> Path:
-    """Return a new name for a copy in a folder."""
-    return folder / f"{stem}.{os.urandom(4).hex()}{SUFFIX}"
 
 
 def _with_record(text: str, base: str) -> bytes:

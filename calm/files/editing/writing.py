@@ -237,7 +237,10 @@ def written(text: str, *, flow: bool, quote: str = "") -> str:
         return "'" + text.replace("'", "''") + "'"
     if quote != '"' and _stands_plain(text, flow):
         return text
-    escaped = "".join(_ESCAPED.get(sign) or _escaped(sign) for sign in text)
+    escaped = "".join(
+        _ESCAPED.get(sign) or (sign if sign.isprintable() else f"\\U{ord(sign):08x}")
+        for sign in text
+    )
     return f'"{escaped}"'
 
 
@@ -245,7 +248,3 @@ def _stands_plain(text: str, flow: bool) -> bool:
     if _WORD.fullmatch(text) or text.startswith(("---", "...")) or not text.isprintable():
         return False
     return bool(_PLAIN.fullmatch(text)) and not (flow and _NOT_IN_FLOW.search(text))
-
-
-def _escaped(sign: str) -> str:
-    return sign if sign.isprintable() else f"\\U{ord(sign):08x}"
