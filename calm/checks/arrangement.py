@@ -11,8 +11,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from calm.assemble import axial_drag_of, drag_of, net_buoyancy
+from calm.case import Mooring, Result
 from calm.case.parts import clamps_in
 from calm.case.parts import parts_of as every_part
+from calm.case.profilers import ProfilerTravel
+from calm.case.result_tables import ClampRow
 from calm.case.warnings import is_synthetic
 from calm.checks.criterion import JudgedPart, parts_of
 from calm.checks.finding import (
@@ -28,17 +31,13 @@ from calm.checks.finding import (
 from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Recovery
 from calm.drop.launch import Launch
-from calm.files import Cable, Component, Flexible, Profiler
+from calm.files import Cable, Clamp, Component, Flexible, Piece, Profiler
 from calm.physics.materials import materials_in, potential_of
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.quantities import duration, say
 
 if TYPE_CHECKING:
-    from calm.case import Mooring, Result
-    from calm.case.profilers import ProfilerTravel
-    from calm.case.result_tables import ClampRow
     from calm.checks.handling import Handling
-    from calm.files import Clamp, Piece
 
 GREATEST_DIFFERENCE = 0.2
 """Beyond it two metals that touch corrode each other in sea water [V]."""

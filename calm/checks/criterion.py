@@ -10,18 +10,14 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from itertools import groupby
 from math import hypot, isnan, nan
-from typing import TYPE_CHECKING
 
+from calm.case import Mooring, Result
 from calm.case.parts import clamps_down
 from calm.case.strumming import FACTOR
 from calm.checks.finding import Rule, State, Verdict, at_least, at_most, rule, unknown
-from calm.files import StrummingFactor
+from calm.files import Component, MooringFile, Place, StrummingFactor
 from calm.files.check_limits import LimitKey, limit_keys
 from calm.units import DIMENSIONS
-
-if TYPE_CHECKING:
-    from calm.case import Mooring, Result
-    from calm.files import Component, MooringFile, Place
 
 AT_SURFACE = 0.1
 """Depth down to which a part counts as at the surface [m]."""

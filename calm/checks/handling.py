@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from math import isnan
-from typing import TYPE_CHECKING
 
+from calm.case import Mooring
 from calm.checks.criterion import Citing
 from calm.checks.finding import (
     State,
@@ -19,16 +19,12 @@ from calm.checks.finding import (
     verdict_on,
 )
 from calm.checks.posture import reaches_the_surface
-from calm.checks.recovery import Loss, Recovery
+from calm.checks.recovery import Break, Loss, Recovery
 from calm.checks.strength import lesser_load, passes_load_on
 from calm.drop.launch import Launch
 from calm.errors import NoEquilibrium
 from calm.files import LinePart
 from calm.quantities import QUANTITIES, say
-
-if TYPE_CHECKING:
-    from calm.case import Mooring
-    from calm.checks.recovery import Break
 
 GREATEST_TOUCHDOWN_SPEED = 2.5
 """Speed above which an anchor may bury itself or break what is on it [m/s]."""

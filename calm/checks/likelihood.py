@@ -11,19 +11,16 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
 
+from calm.case import Mooring
 from calm.case.draws import Draw, checked_samples, drawn, draws_of, normals_of
 from calm.case.uncertain import BLOCK, Mapped
 from calm.checks.assess import ONCE, STANDING, handled
+from calm.checks.assessment import Assessment, MooringInEnvironment
 from calm.checks.finding import Finding, Rule
 from calm.errors import NoEquilibrium
+from calm.files import Place
 from calm.solve import expect_many
-
-if TYPE_CHECKING:
-    from calm.case import Mooring
-    from calm.checks.assessment import Assessment, MooringInEnvironment
-    from calm.files import Place
 
 HANDLED = 64
 """Samples whose launch and recovery are solved: the first of the sequence, a sequence as well."""

@@ -25,7 +25,7 @@ import numpy as np
 
 from calm.assemble import net_buoyancy, with_axial_clamps
 from calm.errors import NoEquilibrium
-from calm.files import Component, Flexible
+from calm.files import Component, Flexible, Piece, Place
 from calm.files.definition import CATALOGUE_DENSITY
 from calm.physics.line import Floats, Line, Water
 from calm.physics.materials import materials_in
@@ -36,8 +36,6 @@ from calm.solve.standing import standing_lift
 
 if TYPE_CHECKING:
     from calm.case import Mooring, Result
-    from calm.files import Piece, Place
-    from calm.physics.line import Floats
 
 MOST_SOLVED = 48
 """Buoyant pieces whose rise is solved one by one; of more, some rise as the one before them."""

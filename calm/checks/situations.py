@@ -41,7 +41,6 @@ from calm.records.water_column import kilometres_from
 from calm.solve import Status
 
 if TYPE_CHECKING:
-    from calm.case import Mooring
     from calm.checks.handling import Handling
 
 STILL, STILL_LOW = "still water", "still low water"

@@ -8,7 +8,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from calm.batch.statistics.summary import RESPONSES
+from calm.batch.statistics.summary import (
+    RESPONSES,
+    Distribution,
+    PartDistributions,
+    Response,
+    Summary,
+)
 from calm.drawing.graph import (
     Graph,
     LegendEntry,
@@ -31,8 +37,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
     from xarray import Dataset
-
-    from calm.batch.statistics.summary import Distribution, PartDistributions, Response, Summary
 
     Floats = NDArray[np.float64]
 

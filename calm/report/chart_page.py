@@ -18,6 +18,7 @@ import numpy as np
 from calm.analytic.chart_branch import CurvePoints, critical_angle, curve
 from calm.drawing.picture import image
 from calm.errors import UsageError
+from calm.physics.line import Floats
 from calm.report.blocks import Cell, Column, Note, ReportPart, Table
 
 if TYPE_CHECKING:
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from calm.analytic.chart import ChartAnswer, ChartSolution
-    from calm.physics.line import Floats
 
 CHART_FORMATS = (".svg", ".png", ".pdf")
 """The endings a chart's file name may have."""

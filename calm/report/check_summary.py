@@ -7,9 +7,9 @@ import re
 from collections import Counter
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from itertools import groupby
-from typing import TYPE_CHECKING
 
 from calm.checks.assess import RULES
+from calm.checks.assessment import Assessment
 from calm.checks.criterion import said
 from calm.checks.finding import AS_GIVEN, OWN, Finding, State, worst_state
 from calm.files.check_limits import LimitKey
@@ -25,9 +25,6 @@ from calm.report.blocks import (
     Worst,
     table_of,
 )
-
-if TYPE_CHECKING:
-    from calm.checks.assessment import Assessment
 
 _ABREAST = 5
 """Environments beside each other in a table; more of them take another table."""

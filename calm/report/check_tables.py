@@ -9,12 +9,18 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from itertools import groupby
 from math import hypot, inf, isnan
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from calm.case import Result
 from calm.checks.assess import RULES
+from calm.checks.assessment import Assessment, MooringInEnvironment
 from calm.checks.finding import Finding, State
+from calm.checks.inventory import InventoryItem
+from calm.checks.recovery import Break
 from calm.drawing.schematic.shown_parts import place_text
+from calm.files import Piece
 from calm.files.components import FLEXIBLE_KINDS
+from calm.physics.line import Floats
 from calm.quantities import QUANTITIES, say
 from calm.report.blocks import (
     Block,
@@ -31,7 +37,7 @@ from calm.report.blocks import (
     Table,
     table_of,
 )
-from calm.report.check_facts import judged_section, key_pairs, settled_tables
+from calm.report.check_facts import CheckFacts, judged_section, key_pairs, settled_tables
 from calm.report.check_summary import (
     joined,
     margin_of,
@@ -48,16 +54,6 @@ from calm.report.check_summary import (
 )
 from calm.report.provenance import UNSEEN
 from calm.report.sheet import figure_cell, quantity_column, quantity_field
-
-if TYPE_CHECKING:
-    from calm.case import Result
-    from calm.checks.assessment import Assessment, MooringInEnvironment
-    from calm.checks.finding import Finding
-    from calm.checks.inventory import InventoryItem
-    from calm.checks.recovery import Break
-    from calm.files import Piece
-    from calm.physics.line import Floats
-    from calm.report.check_facts import CheckFacts
 
 _RESULTS: dict[str, Callable[[Result], float | None]] = {
     "depth": lambda result: result.top.depth,

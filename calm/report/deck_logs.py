@@ -4,18 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from itertools import groupby
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
-from calm.deck.deck_items import Order, label_of_run, name_of_run
+from calm.deck import Deck
+from calm.deck.deck_items import DeckItem, Order, RecoveredItem, label_of_run, name_of_run
 from calm.drop import DropPlan
 from calm.quantities import QUANTITIES, say
 from calm.report.blocks import Block, Cell, Column, Pairs, Prose, ReportPart, Table, table_of
 from calm.report.drop_sheet import whereabouts
 from calm.report.provenance import position_text, title_pairs
-
-if TYPE_CHECKING:
-    from calm.deck import Deck
-    from calm.deck.deck_items import DeckItem, RecoveredItem
 
 _Listed = TypeVar("_Listed")
 

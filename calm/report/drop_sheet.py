@@ -9,6 +9,7 @@ import numpy as np
 
 from calm.checks.finding import State
 from calm.drawing.picture import figure_svg
+from calm.drop import DropPlan
 from calm.drop.plan import DRAG_BAND
 from calm.quantities import QUANTITIES, bearing_text, duration, say
 from calm.report.blocks import (
@@ -30,7 +31,6 @@ from calm.units import KNOT
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from calm.drop import DropPlan
 
 _DRAG_BAND = f"{DRAG_BAND:g} times smaller or larger"
 _ROWS = 11

@@ -13,15 +13,12 @@ from dataclasses import replace
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from calm.errors import UsageError
-from calm.report.blocks import Section
+from calm.report.blocks import Report, Section
 from calm.report.provenance import moment
 from calm.whole_file import put
-
-if TYPE_CHECKING:
-    from calm.report.blocks import Report
 
 REPORT_FILES = ("report.html", "report.pdf", "report.json", "checks.csv", "inventory.csv")
 """What a design check writes in the folder."""

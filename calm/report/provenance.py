@@ -11,22 +11,19 @@ from datetime import UTC, datetime
 from importlib.metadata import version
 from math import hypot
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from pydantic import BaseModel
 
 from calm.checks.finding import State
 from calm.errors import InputError, UsageError
-from calm.files import MooringFile
+from calm.files import MooringFile, Position
+from calm.physics.line import Water
 from calm.quantities import QUANTITIES, bearing_of, say
 from calm.report.blocks import Cell, Column, Listing, Pairs, Prose, ReportPart, Table, table_of
 from calm.report.sheet import quantity_column
 from calm.whole_file import read_text
-
-if TYPE_CHECKING:
-    from calm.files import MooringFile, Position
-    from calm.physics.line import Water
 
 _LIBRARIES = ("numpy", "pydantic", "matplotlib", "jinja2", "typst")
 

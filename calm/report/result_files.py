@@ -7,13 +7,13 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.case import Result
-from calm.case.result_tables import Components, rows_down
+from calm.case import Result, TowResult
+from calm.case.result_tables import ClampRow, ComponentRow, Components, rows_down
 from calm.dataset.netcdf import (
     CLAMPS,
     OF_CLAMP,
@@ -31,10 +31,6 @@ from calm.dataset.netcdf import (
 )
 from calm.quantities import QUANTITIES
 from calm.records.delimited import table_csv
-
-if TYPE_CHECKING:
-    from calm.case import Result, TowResult
-    from calm.case.result_tables import ClampRow, ComponentRow
 
 _WORDS = ("mooring", "part", "index", "use", "label")
 _WITHIN = {"tension", "least_tension", "reynolds"}

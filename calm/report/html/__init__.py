@@ -10,12 +10,11 @@ from importlib.resources import files
 from typing import TYPE_CHECKING
 
 from calm.drawing.picture import set_apart
-from calm.report.blocks import Block, Table
+from calm.report.blocks import Block, Column, Report, ReportPart, Section, Table
 
 if TYPE_CHECKING:
     from jinja2 import Environment
 
-    from calm.report.blocks import Column, Report, ReportPart, Section
 
 _LONG_WORD = re.compile(r"(\S{20,})")
 _STEPS = re.compile(r"[^_./-]{1,10}[_./-]*|[_./-]+")
