@@ -18,7 +18,6 @@ from calm.exchange.design import (
     Remark,
     refused,
 )
-from calm.exchange.element_library import GROUPS
 from calm.exchange.mat_file import MatValue, RealArray, numbers, read_variables
 from calm.exchange.mdd_elements import (
     MddElement,
@@ -29,6 +28,9 @@ from calm.exchange.mdd_elements import (
     rigid,
 )
 from calm.quantities import bearing_of
+
+GROUPS = ("floats", "wires", "chains", "acrels", "cms", "anchors", "miscs")
+"""The variables of a library that hold elements."""
 
 _WANTED = frozenset(
     ["U", "V", "W", "z", "rho", "time", "ZCO", "Jobj", "Pobj", "mooreleCO", "HCO", "BCO", "CdCO"]

@@ -14,10 +14,9 @@ from pydantic import BeforeValidator, Field
 from calm.errors import InputError, Problem
 from calm.files.catalogue import Catalogue
 from calm.files.check_limits import Checks, read_accepts
-from calm.files.components import Anchor
+from calm.files.components import Anchor, Flexible
 from calm.files.definition import Model, Text
 from calm.files.environment import Position, read_environment
-from calm.files.flexible import Flexible
 from calm.files.line_items import LineReader
 from calm.files.logbook import Deployed, DocumentKeys, ReleaseKeys, check_deployed
 from calm.files.mooring_file import (

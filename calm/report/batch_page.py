@@ -6,10 +6,10 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
+from calm.batch.finished import stored_result
 from calm.batch.statistics.extremes import EXTRAPOLATION, METHODS, Fit, Level
 from calm.batch.statistics.limits import Exceedance
 from calm.batch.statistics.summary import PERCENTILES, WORST, Distribution, Summary, summarize
-from calm.batch.store.finished import stored_result
 from calm.case import Mooring
 from calm.checks.finding import State
 from calm.quantities import QUANTITIES

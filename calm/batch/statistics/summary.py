@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from calm.batch.finished import Stored
 from calm.batch.statistics.extremes import Fit, LevelsRefused, median_step, return_levels, years_of
 from calm.batch.statistics.limits import (
     NOT_JUDGED,
@@ -22,7 +23,6 @@ from calm.batch.statistics.limits import (
 )
 from calm.batch.statistics.series import Column, ResultColumns, Seat, Times
 from calm.batch.statuses import Ending, endings
-from calm.batch.store.finished import Stored
 from calm.case import Mooring
 from calm.case.profilers import profilers_in
 from calm.checks.criterion import limits_used

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.batch.store.store import IDENTITY, WORK, Store, refuse_another
+from calm.batch.work_store import IDENTITY, WORK, Store, refuse_another
 from calm.dataset.netcdf import write_netcdf
 from calm.errors import UsageError
 from calm.suggestions import unknown

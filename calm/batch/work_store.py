@@ -164,7 +164,7 @@ def open_store(folder: Path, layout: ResultLayout, block: int, identity: str) ->
     Parameters
     ----------
     folder : of the store
-    identity : the text of what it is made from, see `calm.batch.store.store`
+    identity : the text of what it is made from, see `calm.batch.work_store`
 
     Raises
     ------
