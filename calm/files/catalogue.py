@@ -18,7 +18,7 @@ from pydantic import Field
 
 from calm.errors import InputError, Problem, UsageError
 from calm.files.components import KINDS, Component
-from calm.files.definition import Definition
+from calm.files.definition import Definition, described
 from calm.files.yaml_document import Document, SourceMapping, compose, read_document, validate
 from calm.shipped import shipped_folder
 from calm.suggestions import nearest, shown, unknown
@@ -43,9 +43,9 @@ class Assembly(Definition):
     """Pieces that are always used together; `parts` are items as in the `line` of a mooring."""
 
     kind: Literal["assembly"] = Field(description="which kind of component it is")
-    parts: tuple[dict[str, Any], ...] = Field(
-        description="pieces as in `line`, from the top",
-        examples=[[{"use": "glass-17in", "count": 2}, {"use": "chain-13", "length": "1 m"}]],
+    parts: tuple[dict[str, Any], ...] = described(
+        "pieces as in `line`, from the top",
+        [{"use": "glass-17in", "count": 2}, {"use": "chain-13", "length": "1 m"}],
     )
 
 

@@ -27,6 +27,7 @@ from calm.files.definition import (
     Role,
     TangentialCoefficient,
     TangentialDrag,
+    described,
     is_in_air,
     refuse_weight_above_mass,
     volume_from_weights,
@@ -85,10 +86,8 @@ class Flexible(Definition):
     density: MaterialDensity = None
     cn: NormalCoefficient = None
     ct: TangentialCoefficient = None
-    stiffness: Annotated[float | None, POSITIVE_FORCE] = Field(
-        default=None,
-        description="EA, the force that would double the length, e.g. 4 MN",
-        examples=["4 MN"],
+    stiffness: Annotated[float | None, POSITIVE_FORCE] = described(
+        "EA, the force that would double the length, e.g. 4 MN", "4 MN", default=None
     )
 
     def strain_under(self, load: float) -> float:
@@ -100,36 +99,30 @@ class Cable(Flexible):
     """A rope, wire or electrical cable."""
 
     kind: Literal["cable"] = Field(description="which kind of component it is")
-    buoyancy: Annotated[float | None, QuantityField("force per length")] = Field(
+    buoyancy: Annotated[float | None, QuantityField("force per length")] = described(
+        "net force in sea water of 1025 kg/m^3, positive up (per metre of a cable)",
+        "0.1 N/m",
         default=None,
-        description="net force in sea water of 1025 kg/m^3, positive up (per metre of a cable)",
-        examples=["0.1 N/m"],
     )
-    finish: Literal["smooth", "rough", "very-rough"] | None = Field(
-        default=None, description="of the surface of a cable", examples=["rough"]
+    finish: Literal["smooth", "rough", "very-rough"] | None = described(
+        "of the surface of a cable", "rough", default=None
     )
-    torque_balanced: bool | None = Field(
+    torque_balanced: bool | None = described(
+        "of a wire rope: whether it does not turn under load", True, default=None
+    )
+    elongation: Elongation | None = described(
+        "rows of load over breaking load and strain, e.g. [[0.1, 0.03], [0.3, 0.08]]",
+        [[0.05, 0.05], [0.1, 0.08], [0.2, 0.12]],
         default=None,
-        description="of a wire rope: whether it does not turn under load",
-        examples=[True],
     )
-    elongation: Elongation | None = Field(
+    dynamic_stiffness: Annotated[float | None, POSITIVE_FORCE] = described(
+        "EA under the quick loads of waves, greater than that of a slow load",
+        "600 kN",
         default=None,
-        description="rows of load over breaking load and strain, e.g. [[0.1, 0.03], [0.3, 0.08]]",
-        examples=[[[0.05, 0.05], [0.1, 0.08], [0.2, 0.12]]],
-    )
-    dynamic_stiffness: Annotated[float | None, POSITIVE_FORCE] = Field(
-        default=None,
-        description="EA under the quick loads of waves, greater than that of a slow load",
-        examples=["600 kN"],
     )
     permanent_elongation: Annotated[
         float | None, QuantityField("number", at_least=0, at_most=1)
-    ] = Field(
-        default=None,
-        description="of a rope that has been loaded, at every tension, e.g. 4 %",
-        examples=["4 %"],
-    )
+    ] = described("of a rope that has been loaded, at every tension, e.g. 4 %", "4 %", default=None)
 
     @property
     def net_buoyancy(self) -> float:
@@ -219,15 +212,13 @@ class Anchor(Definition):
     role: Role = "anchor"
     kind: Literal["anchor"] = Field(description="which kind of component it is")
     mass: Mass = None
-    weight: Annotated[float | None, QuantityField("force", at_least=0)] = Field(
-        default=None,
-        description="in sea water of 1025 kg/m^3 (per metre of a cable or chain)",
-        examples=["5000 N"],
+    weight: Annotated[float | None, QuantityField("force", at_least=0)] = described(
+        "in sea water of 1025 kg/m^3 (per metre of a cable or chain)", "5000 N", default=None
     )
     density: MaterialDensity = None
     length: Length = 0.0
-    friction: Annotated[float | None, QuantityField("number", above=0)] = Field(
-        default=None, description="coefficient on the seabed", examples=[0.6]
+    friction: Annotated[float | None, QuantityField("number", above=0)] = described(
+        "coefficient on the seabed", 0.6, default=None
     )
     kt: TangentialDrag = None
 
