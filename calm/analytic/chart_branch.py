@@ -67,10 +67,8 @@ class Branch:
 
     Parameters
     ----------
-    k : float
-        0 ≤ K ≤ 100.
-    sign : int
-        1 for the first branch, −1 for the second.
+    k : 0 ≤ K ≤ 100
+    sign : 1 for the first branch, −1 for the second
     """
 
     k: float
@@ -266,10 +264,8 @@ def curve(k: float, phi: ArrayLike) -> CurvePoints:
 
     Parameters
     ----------
-    k : float
-        0 ≤ K ≤ 100.
-    phi : array_like
-        Angles to the current [rad], each from −π to π and none of them critical. Between φ_c − π
+    k : 0 ≤ K ≤ 100
+    phi : angles to the current [rad], each from −π to π and none of them critical. Between φ_c − π
         and φ_c a point lies on the first branch, otherwise on the second.
 
     Returns

@@ -70,12 +70,9 @@ def reason(k: float, known: Mapping[str, float], floats: bool) -> ChartRefusal:
 
     Parameters
     ----------
-    k : float
-        K.
-    known : mapping
-        The quantities, of a cable that floats turned upside down.
-    floats : bool
-        Whether they were turned.
+    k : K
+    known : the quantities, of a cable that floats turned upside down
+    floats : whether they were turned
     """
     critical = float(critical_angle(k))
     shown = math.degrees(math.pi - critical if floats else critical)

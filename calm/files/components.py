@@ -283,8 +283,7 @@ def contradicted(kind: str, base: Set[str], override: Set[str]) -> frozenset[str
 
     Parameters
     ----------
-    kind : str
-        Of the definition.
+    kind : of the definition
     base, override : set of str
         The keys that the definition and the override give.
 

@@ -131,8 +131,7 @@ class _Reader:
     Parameters
     ----------
     text : str
-    start : int
-        Where in it that begins which the events are of.
+    start : where in it that begins which the events are of
     next_event : gives one after the other
     """
 
@@ -278,18 +277,12 @@ class Node(NamedTuple):
     Attributes
     ----------
     kind : "mapping", "sequence" or "scalar"
-    start, end : int
-        Its text is ``text[start:end]``; an empty value is right after its colon or dash.
-    line, column : int
-        Of its start, counted from 1.
-    style : str
-        Of a collection `block` or `flow`; of a scalar its first sign when quoted or a block.
-    data : dict, list, str or None
-        What it says, scalars as the text the person wrote. Shared: not to be changed.
-    keys : tuple of Node
-        Of a mapping, in the order of the file.
-    children : tuple of Node
-        The values of a mapping, or the items of a sequence.
+    start, end : its text is ``text[start:end]``; an empty value is right after its colon or dash
+    line, column : of its start, counted from 1
+    style : of a collection `block` or `flow`; of a scalar its first sign when quoted or a block
+    data : what it says, scalars as the text the person wrote. Shared: not to be changed.
+    keys : of a mapping, in the order of the file
+    children : the values of a mapping, or the items of a sequence
     """
 
     kind: Kind

@@ -136,13 +136,12 @@ def read_mooring(
     environment : str or path, optional
         A variant named in the file, or an environment file; its keys replace those of the
         file's own `environment`.
-    catalogs : sequence of paths
-        Catalogue files that come before the user's own and the shipped ones, the last first.
+    catalogs : catalogue files that come before the user's own and the shipped ones, the last first
     text : str, optional
         In place of the file's content. The file need not exist; what the text refers to is looked
         for beside it.
-    stand_in : bool
-        Let a line that has no anchor yet stand on one that holds anything, of the id `STAND_IN`.
+    stand_in : let a line that has no anchor yet stand on one that holds anything, of the id
+        `STAND_IN`
 
     Raises
     ------

@@ -32,12 +32,10 @@ class Document:
 
     Attributes
     ----------
-    path : str
-        As messages show it.
-    data : dict
-        Mappings, lists, text and None.
-    values, keys : dict
-        The place of every value and of every key, by its location: ``("line", 0, "use")``.
+    path : as messages show it
+    data : mappings, lists, text and None
+    values, keys : the place of every value and of every key, by its location: ``("line", 0,
+        "use")``
     """
 
     path: str
@@ -118,12 +116,10 @@ class SourceMapping:
 
     Attributes
     ----------
-    document, location
-        Where the mapping (the upper one) stands; problems without a key are put there.
-    data : dict
-        The mapping, its own keys over those it overlays.
-    base : Section or None
-        What lies below.
+    document, location : where the mapping (the upper one) stands; problems without a key are put
+        there
+    data : the mapping, its own keys over those it overlays
+    base : what lies below
     """
 
     document: Document

@@ -56,8 +56,7 @@ def write_report(folder: Path, files: Mapping[str, bytes]) -> None:
 
     Parameters
     ----------
-    files : mapping
-        Of the name in the folder to the content.
+    files : of the name in the folder to the content
 
     Raises
     ------

@@ -40,14 +40,12 @@ class WorkingFile:
 
     Parameters
     ----------
-    path : path or None
-        None: it has no name yet; its copy is then kept in the user's state folder
-        (`XDG_STATE_HOME`), where also go copies that cannot be written beside the file.
+    path : None: it has no name yet; its copy is then kept in the user's state folder
+        (`XDG_STATE_HOME`), where also go copies that cannot be written beside the file
 
     Attributes
     ----------
-    unsaved : text or None
-        What `keep` is to keep; None where nothing is unsaved.
+    unsaved : what `keep` is to keep; None where nothing is unsaved
     """
 
     def __init__(self, path: str | Path | None) -> None:

@@ -37,10 +37,9 @@ class Wording(NamedTuple):
     Attributes
     ----------
     value : Value
-    lines : str
-        In a block list that begins in column 1, with its comments.
-    above, inline, behind : str
-        The comments above it, its text within brackets, and what follows that on its line.
+    lines : in a block list that begins in column 1, with its comments
+    above, inline, behind : the comments above it, its text within brackets, and what follows that
+        on its line
     """
 
     value: Value
@@ -85,10 +84,8 @@ class WritingStyle:
     Attributes
     ----------
     line_break : str
-    step : int
-        Columns by which what is below a key is indented.
-    dash : int
-        The same for the dashes of a list.
+    step : columns by which what is below a key is indented
+    dash : the same for the dashes of a list
     """
 
     line_break: str = "\n"
@@ -228,10 +225,8 @@ def written(text: str, *, flow: bool, quote: str = "") -> str:
     Parameters
     ----------
     text : str
-    flow : bool
-        It is to stand within brackets, where commas and brackets end a plain text.
-    quote : str
-        The sign it was quoted with so far, which is kept.
+    flow : it is to stand within brackets, where commas and brackets end a plain text
+    quote : the sign it was quoted with so far, which is kept
     """
     if quote == "'" and text.isprintable():
         return "'" + text.replace("'", "''") + "'"
