@@ -78,10 +78,7 @@ class Branch:
     def holding(cls, k: float, phi: float) -> tuple[Branch, float] | None:
         """The branch and the λ of an angle φ [rad]; None for the critical angle.
 
-        Raises
-        ------
-        UsageError
-            An angle beyond ±180°.
+        UsageError: an angle beyond ±180°.
         """
         if not -np.pi <= phi <= np.pi:
             raise UsageError(f"an angle is {np.degrees(phi):.6g}°; it must be from −180° to 180°")

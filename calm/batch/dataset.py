@@ -193,10 +193,7 @@ class ShapeNodes:
 def nodes_of(mooring: Mooring) -> ShapeNodes:
     """Lay the nodes along the line of a mooring.
 
-    Raises
-    ------
-    NoEquilibrium
-        Where a piece is to be cut to fit, and no length does.
+    NoEquilibrium: where a piece is to be cut to fit, and no length does.
     """
     lengths, flexible = mooring.line.length, mooring.line.flexible
     part = float(lengths[flexible].sum()) / PARTS

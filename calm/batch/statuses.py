@@ -77,10 +77,7 @@ def implausible(
 def first_implausible(record: Record, maximum_speed: float) -> str:
     """The first time, level and value of a record that is implausible, in words.
 
-    Raises
-    ------
-    InputError
-        The file is damaged.
+    InputError: the file is damaged.
     """
     for start in range(0, record.count, _AT_ONCE):
         depth, u, v, w = record.profiles(start, min(start + _AT_ONCE, record.count))

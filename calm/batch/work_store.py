@@ -193,10 +193,7 @@ def open_store(folder: Path, layout: ResultLayout, block: int, identity: str) ->
 def refuse_another(path: Path, before: str, now: str) -> None:
     """Refuse to go on with what was made from another input, and report what differs.
 
-    Raises
-    ------
-    UsageError
-        Where the two identities are not the same, or the first cannot be read.
+    UsageError: where the two identities are not the same, or the first cannot be read.
     """
     if before == now:
         return
@@ -264,10 +261,7 @@ def identity_of(
 ) -> dict[str, Any]:
     """All that the figures of a result follow from, as JSON has it.
 
-    Raises
-    ------
-    calm.batch.threads.Stopped
-        While the record is read through, which may take long.
+    calm.batch.threads.Stopped: while the record is read through, which may take long.
     """
     ends = (record.time[0], record.time[-1])
     identity = {

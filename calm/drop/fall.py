@@ -111,13 +111,9 @@ def fall(
 ) -> Motion:
     """The fall of a line from where it is towed until its anchor meets the seabed.
 
-    The instant of the touchdown is interpolated within the step that passes it.
-
-    Raises
-    ------
-    NoEquilibrium
-        ``anchor-lifts`` where the anchor does not come to the seabed, ``not-converged`` where a
-        step is not found.
+    The instant of the touchdown is interpolated within the step that passes it. NoEquilibrium:
+    ``anchor-lifts`` where the anchor does not come to the seabed, ``not-converged`` where a step is
+    not found.
     """
     mover = Mover(chain_of(line, fineness.bars), _sea(water), anchor)
     bottom = line.anchor_height - water.depth
@@ -160,10 +156,7 @@ def settle(
 ) -> Motion:
     """Return how a line comes to rest on the anchor that holds it.
 
-    Raises
-    ------
-    NoEquilibrium
-        ``not-converged`` where it does not.
+    NoEquilibrium: ``not-converged`` where it does not.
     """
     mover = Mover(chain_of(line, fineness.bars), _sea(water), anchor, held=True)
     return Motion(mover, _settled(mover, landed, 0.2 * water.depth / fineness.steps))

@@ -79,13 +79,7 @@ class Launch:
 
 
 def launch_of(mooring: Mooring, fineness: Fineness = IN_SHORT) -> Launch:
-    """Return the launch of a mooring, anchor last.
-
-    Raises
-    ------
-    NoEquilibrium
-        As `fall`.
-    """
+    """Return the launch of a mooring, anchor last (NoEquilibrium: as `fall`)."""
     line, water, anchor = falling_line(mooring), mooring.water, falling_anchor(mooring)
     ship = ship_of(mooring, SHIP_SPEED, course_into_current(water))
     drop = mooring.memory.of(_let_go, line, water, anchor, ship, fineness)

@@ -222,10 +222,7 @@ class ExportedLine:
     def paths(self) -> list[PartPath]:
         """Return where each part lies in equilibrium, from the top down.
 
-        Raises
-        ------
-        NoEquilibrium
-            There is none.
+        NoEquilibrium: there is none.
         """
         result = self.solve()
         nodes = np.column_stack([result.shape.x, result.shape.y, result.shape.depth])

@@ -169,10 +169,7 @@ def _drag(component: Component) -> float:
 def environment_lines(path: Path, output: Path) -> list[str]:
     """Return the `environment` of a file, its paths relative to the folder of the mooring file.
 
-    Raises
-    ------
-    InputError
-        The file cannot be read, or has no `environment`.
+    InputError: the file cannot be read, or has no `environment`.
     """
     found = read_document(path).data.get("environment")
     if not isinstance(found, dict) or not found:

@@ -99,11 +99,7 @@ def unit_called(text: str, what: str) -> ColumnUnit | None:
     """Return the unit that a text names, words such as *wet* apart; None where it names none.
 
     The text stands in brackets, in a units row or after a number of a column that holds `what`.
-
-    Raises
-    ------
-    ValueError
-        It is no unit of what the column holds.
+    ValueError: it is no unit of what the column holds.
     """
     plain = " ".join(text.replace("_", " ").split())
     while plain:
@@ -127,10 +123,7 @@ def unit_called(text: str, what: str) -> ColumnUnit | None:
 def unit_of_heading(heading: str, what: str) -> ColumnUnit | None:
     """Return the unit of a heading: in brackets, or its last word; None where it has none.
 
-    Raises
-    ------
-    ValueError
-        What stands in brackets is no unit, or there are two.
+    ValueError: what stands in brackets is no unit, or there are two.
     """
     if what not in _DIMENSIONS:
         return None
@@ -264,12 +257,8 @@ def _either(digits: str) -> str:
 def decimal_sign(cells: Iterable[tuple[str, str]]) -> tuple[str, str]:
     """Return the decimal sign of a file, and what it was found from where it has commas.
 
-    The cells are the place and the text of all that hold numbers.
-
-    Raises
-    ------
-    ValueError
-        Two signs are used, or nothing tells what `1,250` is.
+    The cells are the place and the text of all that hold numbers. ValueError: two signs are used,
+    or nothing tells what `1,250` is.
     """
     seen: dict[str, str] = {}
     doubtful: dict[str, tuple[str, str]] = {}  # where, and the digits
@@ -318,12 +307,8 @@ def is_table(content: bytes) -> bool:
 def read_sheets(path: Path) -> dict[str, SheetRows]:
     """Return the rows of every sheet by its name; lines that begin with # are comments.
 
-    A sheet without a cell is left out; text has one sheet, without a name.
-
-    Raises
-    ------
-    InputError
-        It cannot be read.
+    A sheet without a cell is left out; text has one sheet, without a name. InputError: it cannot be
+    read.
     """
     content = read_content(path, largest=_LARGEST)
     workbook = _is_spreadsheet(content)

@@ -258,12 +258,8 @@ Library = Mapping[str, LibraryElement]
 def read_library(path: Path) -> Library:
     """Return the elements of Mooring Design & Dynamics' `mdcodes.mat`, or of a table or workbook.
 
-    Of several elements of one name the first holds.
-
-    Raises
-    ------
-    InputError
-        The file cannot be read, or holds no elements.
+    Of several elements of one name the first holds. InputError: the file cannot be read, or holds
+    no elements.
     """
     content = read_content(path, largest=200_000_000)
     elements = _of_matrices(path) if is_mat(content) else _of_sheets(path)

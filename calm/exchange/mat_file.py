@@ -42,10 +42,7 @@ RealArray = NDArray[np.float64]
 def read_variables(path: Path, wanted: Collection[str]) -> dict[str, MatValue]:
     """Return the wanted variables that a file has.
 
-    Raises
-    ------
-    InputError
-        The file is no `.mat` file, or a damaged one.
+    InputError: the file is no `.mat` file, or a damaged one.
     """
     content = _inflated(read_content(path, largest=LARGEST), LARGEST + 1)
     if len(content) > LARGEST:
@@ -114,10 +111,7 @@ def _is_octave_text(content: bytes) -> bool:
 def read_octave_text(text: str) -> dict[str, MatValue]:
     """Every variable that can be read; the others are left out.
 
-    Raises
-    ------
-    ValueError
-        A matrix has fewer numbers than its header says, or a header cannot be read.
+    ValueError: a matrix has fewer numbers than its header says, or a header cannot be read.
     """
     variables: dict[str, MatValue] = {}
     cell: list[MatValue] | None = None
@@ -294,10 +288,7 @@ def _text_of(value: object) -> str:
 def numbers(value: MatValue | None) -> RealArray:
     """Return a variable as numbers; an empty array where there is none.
 
-    Raises
-    ------
-    ValueError
-        It holds no real numbers.
+    ValueError: it holds no real numbers.
     """
     if value is None:
         return np.zeros((0, 0))

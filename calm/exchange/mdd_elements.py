@@ -314,13 +314,7 @@ def is_moords(content: bytes) -> bool:
 
 
 def read_moords(path: Path) -> Design:
-    """Read a design.
-
-    Raises
-    ------
-    InputError
-        Its headings or figures are not those of that program.
-    """
+    """Read a design (InputError: its headings or figures are not those of that program)."""
     rows = list(csv.DictReader(io.StringIO(read_text(path))))
     if not rows or not rows[0].keys() >= _MARKS:
         raise refused(path, "is not a design of moords: its headings are others")

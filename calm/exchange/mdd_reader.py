@@ -50,10 +50,7 @@ _EARLIEST, _LATEST = 500_000.0, 1_000_000.0  # datenums that are dates of this a
 def read_mdd(path: Path) -> Design:
     """Read a mooring or a tow.
 
-    Raises
-    ------
-    InputError
-        The file is damaged, is none of that program, or holds what CALM cannot represent.
+    InputError: the file is damaged, is none of that program, or holds what CALM cannot represent.
     """
     variables = read_variables(path, _WANTED)
     sized = [name for name in ("H", "Ht") if name in variables and len(_flat(variables[name]))]

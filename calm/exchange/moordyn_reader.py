@@ -55,10 +55,7 @@ _COLUMNS = {
 def read_moordyn(path: Path) -> Design:
     """Read a file with one line, of one or several lengths, from an anchor up.
 
-    Raises
-    ------
-    InputError
-        It cannot be read, or holds a platform, a body, a rod or several lines.
+    InputError: it cannot be read, or holds a platform, a body, a rod or several lines.
     """
     sections = _read_sections(path)
     for name in ("bodies", "rods"):
@@ -270,13 +267,7 @@ class SectionRow:
     words: dict[str, str]
 
     def number(self, key: str, default: float | None = None) -> float:
-        """Return a word as a number.
-
-        Raises
-        ------
-        InputError
-            It is missing, or no number.
-        """
+        """Return a word as a number (InputError: it is missing, or no number)."""
         text = self.words.get(key)
         if text is None and default is not None:
             return default

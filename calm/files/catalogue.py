@@ -59,10 +59,7 @@ class Catalogue:
     def load(cls, files: Sequence[str | Path] = ()) -> Catalogue:
         """Load the shipped catalogue, the user's own above it, and the files given on top.
 
-        Raises
-        ------
-        InputError
-            A catalogue of the user cannot be read.
+        InputError: a catalogue of the user cannot be read.
         """
         folder = user_folder()
         own = sorted(folder.glob("*.yaml")) if folder.is_dir() else []
@@ -145,10 +142,7 @@ class Catalogue:
     def all(self) -> dict[str, Component | Assembly]:
         """Return every component and assembly, validated.
 
-        Raises
-        ------
-        InputError
-            With the mistakes of all definitions.
+        InputError: with the mistakes of all definitions.
         """
         problems: list[Problem] = []
         found = {

@@ -66,10 +66,7 @@ class Document:
 def read_document(path: Path) -> Document:
     """Read a YAML file whose top level is a mapping.
 
-    Raises
-    ------
-    InputError
-        The file cannot be read, is no text, no valid YAML, or holds duplicate keys.
+    InputError: the file cannot be read, is no text, no valid YAML, or holds duplicate keys.
     """
     return compose(str(path), read_text(path))
 
@@ -77,10 +74,7 @@ def read_document(path: Path) -> Document:
 def compose(name: str, text: str) -> Document:
     """Return the document of a text, as that of a file of a name or in place of one.
 
-    Raises
-    ------
-    InputError
-        It is no valid YAML, or holds duplicate keys.
+    InputError: it is no valid YAML, or holds duplicate keys.
     """
     root, refusals = composition.compose(text.removeprefix("\ufeff"))
     if root is not None and root.kind != "mapping":

@@ -199,10 +199,7 @@ class CurrentDataset:
 def understand(dataset: xr.Dataset, terms: Terms) -> CurrentDataset:
     """Return what a dataset, its times undecoded, holds under some terms, its currents not read.
 
-    Raises
-    ------
-    UnreadableError
-        It holds no current that can be understood: why, and what it holds.
+    UnreadableError: it holds no current that can be understood: why, and what it holds.
     """
     try:
         return _understood(dataset, terms)

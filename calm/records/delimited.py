@@ -165,10 +165,7 @@ class CopiedTable:
 def read_table(path: Path, example: str) -> TextTable:
     """Return the table of a file of UTF-8 text; messages show the example of a header.
 
-    Raises
-    ------
-    InputError
-        It cannot be read, is empty, or has no header.
+    InputError: it cannot be read, is empty, or has no header.
     """
     text = decoded(path, COMMENT.sub(rb"\1", read_content(path, largest=LARGEST_CSV)))
     header, lines = table_lines(
@@ -238,12 +235,7 @@ def copied_table(text: str) -> CopiedTable:
     """Return the table of a text that was copied from a spreadsheet, a file or a page.
 
     A first line without a number is its headings. `calm.records.profile_tables` reads what it
-    holds.
-
-    Raises
-    ------
-    NoTableError
-        There are no rows, or rows of different length.
+    holds. NoTableError: there are no rows, or rows of different length.
     """
     lines = list(_content(enumerate(text.splitlines(), 1)))
     dialect = dialect_of([line.strip(" ") for _, line in lines])

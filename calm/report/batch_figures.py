@@ -170,12 +170,7 @@ def draw_shape(dataset: Dataset, time: str | np.datetime64) -> Figure:
 
     The line is drawn through the nodes of a result that has them (`--shape`), else straight from
     the upper end of one component to that of the next. The elevation is in the vertical plane of
-    the anchor and the top.
-
-    Raises
-    ------
-    UsageError
-        The profile has no equilibrium.
+    the anchor and the top. UsageError: the profile has no equilibrium.
     """
     from matplotlib.figure import Figure
 

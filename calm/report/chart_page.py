@@ -73,12 +73,8 @@ def chart_picture(k: float, lower_end: str, suffix: str) -> bytes:
 def draw_chart(k: float, lower_end: str = "below-90") -> Figure:
     """The chart of one K, 0 to 100: a page of A4 that belongs to no window; no text covers another.
 
-    The lower ends of the cables to be read are at angles ``below-90`` or ``above-90``.
-
-    Raises
-    ------
-    UsageError
-        K out of range; ``above-90`` at K = 0, whose curve ends at 90°.
+    The lower ends of the cables to be read are at angles ``below-90`` or ``above-90``. UsageError:
+    K out of range; ``above-90`` at K = 0, whose curve ends at 90°.
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure

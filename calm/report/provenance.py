@@ -42,10 +42,7 @@ _LATEST = 253_402_300_799  # the last second of the year 9999
 def moment() -> datetime | None:
     """The time that SOURCE_DATE_EPOCH gives, in UTC; None without it: a report has no other date.
 
-    Raises
-    ------
-    UsageError
-        It is no number of seconds that a calendar has.
+    UsageError: it is no number of seconds that a calendar has.
     """
     text = os.environ.get("SOURCE_DATE_EPOCH")
     if not text:

@@ -73,12 +73,8 @@ class Tail:
         For each possible level the likelihood is maximised over the other parameters. The interval
         holds the levels for which twice the logarithm of this is less than `CHI_SQUARE` below that
         of the fit (Coles 2001, §2.6.6, §3.3.4, §4.3.3). An end is None where none is found within
-        100 standard deviations of the values: the data do not bound the level there.
-
-        Raises
-        ------
-        NotFitted
-            The search for a maximum failed.
+        100 standard deviations of the values: the data do not bound the level there. NotFitted: the
+        search for a maximum failed.
         """
         best, estimate = self._loss(self.location, self.scale, self.shape), self.level(growth)
 

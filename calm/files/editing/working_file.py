@@ -63,10 +63,7 @@ class WorkingFile:
     def read(self) -> str:
         """Return the text of the file, with its byte order mark and line breaks.
 
-        Raises
-        ------
-        InputError
-            It cannot be read, or is no text.
+        InputError: it cannot be read, or is no text.
         """
         assert self.path is not None
         content = read_content(self.path)
@@ -131,12 +128,8 @@ class WorkingFile:
     def keep(self) -> Path | None:
         """Bring the copy in line with `unsaved`; where it is. For any thread.
 
-        A copy that this session made goes where nothing is unsaved; none but that.
-
-        Raises
-        ------
-        NotWritten
-            Neither beside the file nor in the state folder.
+        A copy that this session made goes where nothing is unsaved; none but that. NotWritten:
+        neither beside the file nor in the state folder.
         """
         with self._lock:
             if self.unsaved is None:
