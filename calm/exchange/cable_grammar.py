@@ -95,20 +95,15 @@ class CableDefinition:
 
 
 @dataclass
-class CableAttachment:
-    """Represent a connector hung on nodes of a segment."""
-
-    token: Token
-    nodes: list[int]
-
-
-@dataclass
 class CableSegment:
-    """Represent a length of one material, and what joins it to the next one up."""
+    """Represent a length of one material, and what joins it to the next one up.
+
+    `attachments` are connectors hung on it, each with its nodes.
+    """
 
     token: Token
     values: KeyValues
-    attachments: list[CableAttachment] = field(default_factory=list)
+    attachments: list[tuple[Token, list[int]]] = field(default_factory=list)
     connector: Token | None = None
     joint: KeyValues = field(default_factory=KeyValues)
 
@@ -347,13 +342,13 @@ def _renamed(token: Token, text: str) -> Token:
     return Token("name", text, token.path, token.line, token.column)
 
 
-def _attachments(words: TokenStream, key: Token) -> list[CableAttachment]:
+def _attachments(words: TokenStream, key: Token) -> list[tuple[Token, list[int]]]:
     """Lists such as ``meter : (3 9 27), light : [2, 2, 40]``."""
-    found: list[CableAttachment] = []
+    found: list[tuple[Token, list[int]]] = []
     while words.next.kind in ("name", "text"):
         token = words.take()
         words.comes(":")
-        found.append(CableAttachment(token, _nodes(words, token)))
+        found.append((token, _nodes(words, token)))
         words.comes(",")
     if not found:
         raise key.refuse("`attachments` names nothing")

@@ -298,13 +298,11 @@ def _clamps(
         return []
     heights = _heights(segment, length)
     found = []
-    for attachment in segment.attachments:
-        component = makers.connector(_connector(problem, attachment.token))
-        for node in attachment.nodes:
+    for token, nodes in segment.attachments:
+        component = makers.connector(_connector(problem, token))
+        for node in nodes:
             if not 1 <= node <= len(heights):
-                raise attachment.token.refuse(
-                    f"node {node}: the segment has nodes 1 to {len(heights)}"
-                )
+                raise token.refuse(f"node {node}: the segment has nodes 1 to {len(heights)}")
             found.append((heights[node - 1], component))
     return found
 

@@ -75,7 +75,7 @@ def _pull(
     anchor.figures.pop("mass", None)
     anchor.figures["weight"] = _HOLDS
     try:
-        mooring = load(output, text=mooring_text(design, "", environment).text)
+        mooring = load(output, text=mooring_text(design, "", environment)[0])
         assert isinstance(mooring, Mooring)
         anchored = mooring.solve().anchor
     except CalmError:

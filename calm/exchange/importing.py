@@ -148,10 +148,10 @@ def import_file(
         raise refused(path, message)
     matched = match_catalogue_entries(design) if match_catalogue else ()
     secure_anchor(design, lines, output)
-    page = mooring_text(design, path.name, lines, __version__)
-    _check(path, output, page.text)
+    text, guessed = mooring_text(design, path.name, lines, __version__)
+    _check(path, output, text)
     return Imported(
-        path, chosen.name, page.text, tuple(page.guessed + design.guessed),
+        path, chosen.name, text, tuple(guessed + design.guessed),
         tuple(design.dropped), matched, design.record,
     )  # fmt: skip
 
