@@ -13,9 +13,8 @@ from calm.files.rule_texts import RULES
 
 if TYPE_CHECKING:
     from calm.case import Mooring, Result
-    from calm.checks.backup import Break, Loss
     from calm.checks.inventory import InventoryItem
-    from calm.checks.recovery import Recovery
+    from calm.checks.recovery import Break, Loss, Recovery
     from calm.drop.launch import Launch
     from calm.errors import NoEquilibrium
     from calm.files.check_limits import LimitKey

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from math import isnan
 from typing import TYPE_CHECKING
 
-from calm.checks.backup import Loss
 from calm.checks.criterion import Citing
 from calm.checks.finding import (
     State,
@@ -20,7 +19,7 @@ from calm.checks.finding import (
     verdict_on,
 )
 from calm.checks.posture import reaches_the_surface
-from calm.checks.recovery import Recovery
+from calm.checks.recovery import Loss, Recovery
 from calm.checks.strength import lesser_load, passes_load_on
 from calm.drop.launch import Launch
 from calm.errors import NoEquilibrium
@@ -29,7 +28,7 @@ from calm.quantities import QUANTITIES, say
 
 if TYPE_CHECKING:
     from calm.case import Mooring
-    from calm.checks.backup import Break
+    from calm.checks.recovery import Break
 
 GREATEST_TOUCHDOWN_SPEED = 2.5
 """Speed above which an anchor may bury itself or break what is on it [m/s]."""

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from calm.exchange.cable_grammar import CableDefinition, KeyValue, KeyValues
-from calm.exchange.design import FigureOrWord, ImportedComponent, Remark, refused
-from calm.exchange.part_names import is_chain, role_of
+from calm.exchange.design import FigureOrWord, ImportedComponent, Remark, is_chain, refused, role_of
 from calm.files.definition import CATALOGUE_DENSITY
 from calm.units import KILOGRAM_FORCE
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from math import atan2, degrees, hypot, pi, sqrt
 
+from calm.exchange.design import is_chain
 from calm.exchange.exported_parts import ExportedLine, ExportedPart, PartLoad, unique_name
-from calm.exchange.part_names import is_chain
 from calm.files import Chain, Cylinder, Rigid, Sphere
 from calm.files.rigid import Displacement
 from calm.physics.hull import Hull, cylindrical_hull, spherical_hull, tabulated_hull

@@ -14,9 +14,9 @@ from calm.exchange.design import (
     ImportedPiece,
     ImportedWater,
     Remark,
+    ids_of,
     one_line,
 )
-from calm.exchange.part_names import ids_of
 from calm.files import Catalogue
 from calm.files.components import FLEXIBLE_KINDS
 from calm.units import KILOGRAM_FORCE

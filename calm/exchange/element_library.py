@@ -10,12 +10,11 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from calm.exchange.design import refused
+from calm.exchange.design import is_line, refused
 from calm.exchange.list_cells import SheetRows, read_sheets
 from calm.exchange.list_headings import headings_of
 from calm.exchange.list_rows import ListRow, rows_of, weights_as_buoyancy
 from calm.exchange.mat_file import MatValue, is_mat, names, numbers, read_variables
-from calm.exchange.part_names import is_line
 from calm.suggestions import nearest
 from calm.units import KILOGRAM_FORCE
 from calm.whole_file import read_content

@@ -21,8 +21,8 @@ from calm.exchange.import_completion import (
 from calm.exchange.list_cells import is_table
 from calm.exchange.list_reader import read_list
 from calm.exchange.mat_file import is_mat
+from calm.exchange.mdd_elements import is_moords, read_moords
 from calm.exchange.mdd_reader import read_mdd
-from calm.exchange.moords_reader import is_moords, read_moords
 from calm.exchange.moordyn_reader import is_moordyn, read_moordyn
 from calm.files import read_mooring
 from calm.version import __version__

@@ -15,10 +15,10 @@ from calm.exchange.design import (
     ImportedPiece,
     ImportedWater,
     Remark,
+    is_chain,
     refused,
     refused_at,
 )
-from calm.exchange.part_names import is_chain
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
 from calm.whole_file import read_text
 

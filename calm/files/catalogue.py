@@ -19,8 +19,7 @@ from pydantic import Field
 from calm.errors import InputError, Problem, UsageError
 from calm.files.components import KINDS, Component
 from calm.files.definition import Definition
-from calm.files.mistakes import validate
-from calm.files.yaml_document import Document, SourceMapping, compose, read_document
+from calm.files.yaml_document import Document, SourceMapping, compose, read_document, validate
 from calm.shipped import shipped_folder
 from calm.suggestions import nearest, shown, unknown
 from calm.whole_file import FileCache, read_text

@@ -16,7 +16,7 @@ from pydantic import AfterValidator, Field, WithJsonSchema, model_validator
 from pydantic.fields import FieldInfo
 
 from calm.errors import Problem
-from calm.files.fields import LENGTH, POSITIVE_LENGTH, Model, QuantityField, Text, quantity_of
+from calm.files.definition import LENGTH, POSITIVE_LENGTH, Model, QuantityField, Text, quantity_of
 from calm.files.rule_texts import ACCEPTABLE
 from calm.files.yaml_document import SourceMapping
 from calm.suggestions import shown, unknown

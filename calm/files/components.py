@@ -19,11 +19,12 @@ from calm.files.definition import (
     Length,
     Mass,
     MaterialDensity,
+    QuantityField,
+    Role,
     TangentialDrag,
     refuse_weight_above_mass,
     volume_from_weights,
 )
-from calm.files.fields import QuantityField, Role
 from calm.files.flexible import Cable, Chain, Flexible
 from calm.files.rigid import (
     DRAG_FORMS,

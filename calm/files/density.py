@@ -10,8 +10,7 @@ import numpy as np
 from pydantic import Discriminator, Field, Tag, ValidationError
 
 from calm.errors import Problem
-from calm.files.definition import CATALOGUE_DENSITY, DENSITY
-from calm.files.fields import Model, QuantityField, Text
+from calm.files.definition import CATALOGUE_DENSITY, DENSITY, Model, QuantityField, Text
 from calm.files.yaml_document import SourceMapping
 from calm.physics import seawater
 from calm.records.current_terms import left_out

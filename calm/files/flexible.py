@@ -8,17 +8,19 @@ from pydantic import AfterValidator, Field, ValidationInfo, model_validator
 
 from calm.files.definition import (
     CATALOGUE_DENSITY,
+    POSITIVE_FORCE,
     STANDARD_GRAVITY,
     Definition,
     Diameter,
     MaterialDensity,
     NormalCoefficient,
+    QuantityField,
+    Role,
     TangentialCoefficient,
     is_in_air,
     refuse_weight_above_mass,
     volume_from_weights,
 )
-from calm.files.fields import POSITIVE_FORCE, QuantityField, Role
 from calm.physics.materials import STEEL_DENSITY
 from calm.physics.stretch import ElongationCurve
 

@@ -10,14 +10,12 @@ from calm.errors import Problem
 from calm.files.catalogue import Assembly, Catalogue, CatalogueEntry, define
 from calm.files.check_limits import LimitKey
 from calm.files.components import KINDS, Anchor, Cable, Component, Profiler, contradicted
-from calm.files.definition import IN_AIR
-from calm.files.fields import LENGTH, POSITIVE_LENGTH, QuantityField, quantity_of
+from calm.files.definition import IN_AIR, LENGTH, POSITIVE_LENGTH, QuantityField, quantity_of
 from calm.files.flexible import Flexible, strain_under
 from calm.files.logbook import EQUIPMENT_KEYS, LengthAt, check_serials, read_equipment
-from calm.files.mistakes import unknown_key, validate
 from calm.files.mooring_file import Clamp, Piece, Place, placed
 from calm.files.rigid import Rigid
-from calm.files.yaml_document import SourceMapping
+from calm.files.yaml_document import SourceMapping, unknown_key, validate
 from calm.suggestions import about_quantity, shown, unknown
 from calm.units import QuantityError
 

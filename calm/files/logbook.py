@@ -9,10 +9,9 @@ from pydantic import AfterValidator, Field, WithJsonSchema
 
 from calm.errors import Problem
 from calm.files.check_limits import Day
+from calm.files.definition import POSITIVE_LENGTH, Model, QuantityField, Role, Text
 from calm.files.environment import Position
-from calm.files.fields import POSITIVE_LENGTH, Model, QuantityField, Role, Text
-from calm.files.mistakes import validate
-from calm.files.yaml_document import SourceMapping
+from calm.files.yaml_document import SourceMapping, validate
 from calm.records.current_terms import TimeChoiceError, parse_time
 from calm.suggestions import shown, unknown
 

@@ -15,12 +15,11 @@ from calm.errors import InputError, Problem
 from calm.files.catalogue import Catalogue
 from calm.files.check_limits import Checks, read_accepts
 from calm.files.components import Anchor
+from calm.files.definition import Model, Text
 from calm.files.environment import Position, read_environment
-from calm.files.fields import Model, Text
 from calm.files.flexible import Flexible
 from calm.files.line_items import LineReader
 from calm.files.logbook import Deployed, DocumentKeys, ReleaseKeys, check_deployed
-from calm.files.mistakes import validate
 from calm.files.mooring_file import (
     Clamp,
     MooringFile,
@@ -33,7 +32,7 @@ from calm.files.mooring_file import (
     travelling,
 )
 from calm.files.uncertainty import Uncertainty
-from calm.files.yaml_document import SourceMapping, compose, read_document
+from calm.files.yaml_document import SourceMapping, compose, read_document, validate
 from calm.suggestions import unknown
 from calm.units import QuantityError
 

@@ -16,28 +16,26 @@ from pydantic import (
 
 from calm.files.definition import (
     CATALOGUE_DENSITY,
+    COEFFICIENT,
     DISAGREEMENT,
+    DRAG,
+    LENGTH,
+    POSITIVE_FORCE,
+    POSITIVE_LENGTH,
     STANDARD_GRAVITY,
     Definition,
     Diameter,
     Length,
     Mass,
+    Model,
     NormalCoefficient,
+    QuantityField,
     TangentialCoefficient,
     TangentialDrag,
+    Text,
     is_in_air,
     refuse_weight_above_mass,
     volume_from_weights,
-)
-from calm.files.fields import (
-    COEFFICIENT,
-    DRAG,
-    LENGTH,
-    POSITIVE_FORCE,
-    POSITIVE_LENGTH,
-    Model,
-    QuantityField,
-    Text,
 )
 from calm.physics.hull import tabulated_hull
 

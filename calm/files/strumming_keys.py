@@ -20,7 +20,7 @@ from typing import Annotated, Literal, cast, get_args
 
 from pydantic import BeforeValidator, ConfigDict, Discriminator, Field, Tag, ValidationInfo
 
-from calm.files.fields import COEFFICIENT, Model, QuantityField
+from calm.files.definition import COEFFICIENT, Model, QuantityField
 from calm.physics.strumming import BourgetMarichal
 from calm.suggestions import nearest, not_among, shown
 from calm.units import QuantityError

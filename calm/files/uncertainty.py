@@ -8,7 +8,7 @@ from typing import Annotated, Any
 from pydantic import Field, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
-from calm.files.fields import Model, QuantityField
+from calm.files.definition import Model, QuantityField
 from calm.units import QuantityError
 
 MOST_DEVIATION = 0.25

@@ -13,7 +13,7 @@ from calm.batch.statistics.extremes import Fit, LevelsRefused
 from calm.batch.statistics.summary import PERCENTILES, STOP_SHARES, Summary
 from calm.checks.finding import State
 from calm.report.blocks import Cell, Column, Field, Table, table_of
-from calm.report.check_documents import limit_document
+from calm.report.check_report import limit_document
 from calm.report.result_files import members
 from calm.report.sheet import figure_cell, quantity_column
 

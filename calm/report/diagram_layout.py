@@ -13,7 +13,7 @@ from calm.drawing.schematic.pen import text_width, wrapped
 from calm.drawing.schematic.shown_parts import one_line, place_text
 from calm.drawing.schematic.sign import LINES, Sign, Symbol, sign_of
 from calm.drawing.schematic.symbols import figure_of
-from calm.files.alignment import own_labels
+from calm.files.file_differences import own_labels
 from calm.quantities import QUANTITIES
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import xarray as xr
 
-from calm.batch.stored_result import place_of
+from calm.batch.store.finished import place_of
 
 if TYPE_CHECKING:
     import numpy as np

@@ -120,7 +120,7 @@ def return_levels(
     ----------
     time : (n,) ascending, as evenly as a record with gaps is
     values : (n,) NaN where there is none
-    statuses : profiles by their status, as `calm.batch.stored_result.statuses_of` counts them; of
+    statuses : profiles by their status, as `calm.batch.store.finished.statuses_of` counts them; of
         those that were not solved, only `calm.batch.statuses.IN_WEAK_CURRENT` and profiles
         without data are passed over
     step : `median_step` of the times, where it is known already

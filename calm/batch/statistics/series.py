@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.batch.stored_result import Stored, labels_of, readable, statuses_of, times_of
+from calm.batch.store.finished import Stored, labels_of, readable, statuses_of, times_of
 
 Column = NDArray[np.floating[Any]]
 Times = NDArray[np.datetime64]

@@ -22,7 +22,7 @@ from calm.batch.statistics.limits import (
 )
 from calm.batch.statistics.series import Column, ResultColumns, Seat, Times
 from calm.batch.statuses import Ending, endings
-from calm.batch.stored_result import Stored
+from calm.batch.store.finished import Stored
 from calm.case import Mooring
 from calm.case.profilers import profilers_in
 from calm.checks.criterion import limits_used

@@ -16,7 +16,7 @@ from calm.batch.statistics.summary import (
     envelope_of,
     summarize,
 )
-from calm.batch.stored_result import open_result
+from calm.batch.store.finished import open_result
 from calm.errors import UsageError
 from calm.report.batch_summary import summary_document
 from tests.unit.batch.made_result import FILE, made_mooring, make_result, stormy
