@@ -6,8 +6,8 @@ from collections import Counter
 from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parents[2] / "calm"
-MOST_LINES = 82_230
-MOST_MODULES = 362
+MOST_LINES = 81_600
+MOST_MODULES = 357
 MOST_IMPORTS = 0.108
 """Share of the lines of code that import something."""
 
