@@ -60,7 +60,7 @@ def diff(
         for notice in line.file.notices:
             narrate(f"{file}: {notice}")
     comparison = compared(files, lines)
-    from calm.report.differences import comparison_part
+    from calm.report.explanation import comparison_part
 
     outputs.write_answer(comparison.to_dict, comparison_part(comparison))
     return ExitCode.DONE

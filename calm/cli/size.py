@@ -65,7 +65,7 @@ def size(
     import calm
     from calm.case import Tow
     from calm.case.size import size as sized
-    from calm.report.sizing import refusal, sizing_part
+    from calm.report.explanation import refusal, sizing_part
 
     mooring = calm.load(file, environment=environment, catalogs=catalog or [])
     if isinstance(mooring, Tow):

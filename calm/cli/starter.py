@@ -58,7 +58,7 @@ def new(
 
 
 def _new_record(output: Path | None, force: bool) -> ExitCode:
-    from calm.records.made_record import made_record
+    from calm.records.record import made_record
 
     if output is None:
         raise UsageError("a record is not text; give the file to write, --output record.nc")

@@ -11,7 +11,7 @@ from typing import Annotated, Literal
 from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
 
 from calm.errors import InputError, Problem
-from calm.files.definition import DENSITY
+from calm.files.definition import DENSITY, POSITIVE_LENGTH, Model, QuantityField, Text
 from calm.files.density import (
     USUAL_DENSITY,
     Density,
@@ -22,9 +22,7 @@ from calm.files.density import (
     report_at,
     table_of,
 )
-from calm.files.fields import POSITIVE_LENGTH, Model, QuantityField, Text
-from calm.files.mistakes import validate
-from calm.files.yaml_document import SourceMapping
+from calm.files.yaml_document import SourceMapping, validate
 from calm.records.current_terms import DEEPEST, Terms, TimeChoiceError, too_fast
 from calm.records.profile_tables import (
     DIRECTION,

@@ -16,7 +16,7 @@ from textual.widgets import Static
 
 from calm.files.catalogue import defined, tidy_id
 from calm.files.components import KINDS
-from calm.files.fields import QuantityField
+from calm.files.definition import QuantityField
 from calm.tui.checking import Check, Reading, anything, quantity
 from calm.tui.field import Cycle, Field, all_settled
 from calm.tui.key_table import bindings, hints
