@@ -15,7 +15,7 @@ import numpy as np
 
 from calm.case import Mooring, Result
 from calm.case.parts import parts_of
-from calm.checks import arrangement, catalogue_rules, handling, posture, situations, strength
+from calm.checks import arrangement, catalogue_rules, handling, posture, situations, strength, wave_rules
 from calm.checks.assessment import Acceptance, Assessment, MooringInEnvironment, Situation
 from calm.checks.criterion import limits_used
 from calm.checks.finding import AS_GIVEN, OWN, Finding, Rule, State, Verdict, rule, verdict_on
@@ -24,6 +24,7 @@ from calm.checks.inventory import inventory_of
 from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import breaks_of, losses_of, recovery_of
 from calm.checks.situations import LEAST_CURRENT, SOLVES, STRUMMING, currents, situations_of
+from calm.checks.wave_rules import MooringInWaves
 from calm.drop.launch import launch_of
 from calm.errors import NoEquilibrium
 from calm.files import Clamp, MooringFile, Piece, Place
@@ -62,6 +63,7 @@ def stand_of(mooring: Mooring, name: str, day: date | None = None) -> MooringInE
     environment = mooring.file.environment.name or OWN
     situations = situations_of(mooring)
     given, *changed = ([*findings_of(each, name, environment, day=day)] for each in situations)
+    given += _findings_in_waves(situations[0], name, environment, day)
     states = {_of(finding): finding.state.severity for finding in given}
     others = [_softened(finding) for findings in changed for finding in findings]
     graver = [each for each in others if each.state.severity > states.get(_of(each), -1)]
@@ -156,6 +158,18 @@ def findings_of(
                     yield acceptance.of(finding)
 
 
+def _findings_in_waves(
+    given: Situation, mooring: str, environment: str, day: date | None
+) -> Iterator[Finding]:
+    if given.result is None:
+        return
+    acceptance = _acceptance(given.result.file, day)
+    evidence = MooringInWaves.of(_estimated_result(given.result).mooring)
+    for rule in IN_WAVES:
+        for verdict in rule.judge(evidence):
+            yield acceptance.of(rule.find(verdict, mooring, environment))
+
+
 def _acceptance(file: MooringFile, day: date | None) -> Acceptance:
     estimates = {part.label: part.component.estimates for part in parts_of(file.pieces)}
     return Acceptance(file.accepts, day or date.today(), estimates)
@@ -226,7 +240,7 @@ def _handled(stand: MooringInEnvironment) -> Handling:
     return Handling(mooring, failure, failure, breaks_of(mooring), losses_of(mooring))
 
 
-_MODULES = (arrangement, catalogue_rules, handling, posture, situations, strength)
+_MODULES = (arrangement, catalogue_rules, handling, posture, situations, strength, wave_rules)
 
 
 @rule("equilibrium")
@@ -248,13 +262,17 @@ STILL_ONLY = verdict_on(
 _ORDER = list(TEXTS)
 
 
+_ALL = [
+    each for module in _MODULES for each in vars(module).values() if isinstance(each, Rule)
+]
+
+
 def _judging(*, once: bool) -> tuple[Rule, ...]:
     """Rules of the modules in the order of their texts; those of one situation come last.
 
     The one of the currents judges all environments together.
     """
-    found = chain.from_iterable(vars(module).values() for module in _MODULES)
-    rules = [each for each in found if isinstance(each, Rule) and each.once == once]
+    rules = [each for each in _ALL if each.once == once and not each.in_waves]
     rules = [each for each in rules if each is not currents]
     rules.sort(key=lambda each: (each.situation != AS_GIVEN, _ORDER.index(each.name)))
     return tuple(rules)
@@ -266,5 +284,8 @@ STANDING = _judging(once=False)
 ONCE = _judging(once=True)
 """What is judged once of a mooring: its breaks, its launch and its recovery."""
 
-RULES = {each.name: each for each in (equilibrium, currents, *STANDING, *ONCE)}
+IN_WAVES = tuple(each for each in _ALL if each.in_waves)
+"""What is judged of a `MooringInWaves`, in every environment."""
+
+RULES = {each.name: each for each in (equilibrium, currents, *STANDING, *IN_WAVES, *ONCE)}
 """Every rule by its name."""

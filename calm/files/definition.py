@@ -196,6 +196,15 @@ class EstimatedFigure(Model):
         return self
 
 
+class FatigueKeys(Model):
+    """`fatigue:` of a component: by which published curve its fatigue in waves is found."""
+
+    curve: Literal[
+        "dnv-studless-chain", "dnv-stud-chain", "dnv-polyester", "api-studless-chain",
+        "api-stud-chain", "api-connecting-link", "api-stranded-wire", "api-spiral-strand",
+    ] = Field(description="of DNV-OS-E301 or API RP 2SK", examples=["dnv-stud-chain"])  # fmt: skip
+
+
 class Definition(Model):
     """What every component may say, whatever its kind.
 
@@ -282,6 +291,11 @@ class Definition(Model):
                 "source": "the chain it hangs on",
             }
         ],
+    )
+    fatigue: FatigueKeys | None = Field(
+        default=None,
+        description="curve of its fatigue in waves, where it is not that of its kind",
+        examples=[{"curve": "dnv-stud-chain"}],
     )
     slack: Literal["allowed"] | None = Field(
         default=None,

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
+from pydantic import BeforeValidator, Discriminator, Field, Tag
 
 from calm.errors import InputError, Problem
 from calm.files.definition import DENSITY, POSITIVE_LENGTH, Model, QuantityField, Text
@@ -22,6 +22,7 @@ from calm.files.density import (
     report_at,
     table_of,
 )
+from calm.files.sea import WaveKeys, WavesGiven, Wind, read_waves
 from calm.files.yaml_document import SourceMapping, validate
 from calm.records.current_terms import DEEPEST, Terms, TimeChoiceError, too_fast
 from calm.records.profile_tables import (
@@ -77,6 +78,7 @@ class Environment:
         What grows on the cables.
     maximum_speed : float
         A faster current counts as a mistake of its source [m/s]; inf in a tow and in air.
+    waves : WavesGiven or None
     """
 
     name: str | None
@@ -90,6 +92,7 @@ class Environment:
     depth_range: tuple[float, float] | None = None
     fouling: Fouling | None = None
     maximum_speed: float = math.inf
+    waves: WavesGiven | None = None
 
 
 class Fouling(Model):
@@ -109,35 +112,6 @@ class Fouling(Model):
         description="of the growth; as heavy as water when absent",
         examples=["1025 kg/m^3"],
     )
-
-
-class Wind(Model):
-    """Wind over the water: speed [m/s], and where it blows to [degrees].
-
-    It drives the water at the surface at `surface_drift`, a share of its own speed, and the water
-    below ever less, linearly, down to `drift_depth` [m]: the seabed where it is None.
-    """
-
-    speed: Annotated[float, _SPEED] = Field(
-        description="of the wind, at the height of the float", examples=["12 m/s"]
-    )
-    toward: Annotated[float, QuantityField(**vars(DIRECTION))] = Field(
-        description="where it blows to, clockwise from north", examples=["90 deg"]
-    )
-    surface_drift: Annotated[float, QuantityField("number", at_least=0, at_most=0.1)] = Field(
-        default=0.0,
-        description="share of the wind's speed that the surface water drifts at",
-        examples=["2 %"],
-    )
-    drift_depth: Annotated[float | None, POSITIVE_LENGTH] = Field(
-        default=None, description="how deep the water that the wind drives goes", examples=["50 m"]
-    )
-
-    @model_validator(mode="after")
-    def _depth_of_a_drift(self) -> Wind:
-        if self.drift_depth is not None and "surface_drift" not in self.model_fields_set:
-            raise ValueError("`drift_depth` needs `surface_drift`, a share of the wind's speed")
-        return self
 
 
 class UniformCurrent(Model):
@@ -255,6 +229,11 @@ class EnvironmentKeys(TowEnvironmentKeys):
         description="growth on everything from the surface down, for the design check",
         examples=[{"depth": "50 m", "thickness": "20 mm"}],
     )
+    waves: WaveKeys | None = Field(
+        default=None,
+        description="seas that the design check judges: one, or a table of them",
+        examples=[{"significant_height": "5 m", "peak_period": "8.4 s"}],
+    )
 
 
 def read_environment(
@@ -292,6 +271,8 @@ def read_environment(
     if open_files:  # otherwise the depth may be that of another section
         _check_depth_range(keys, section, problems)
     current = _current(keys, section, problems, notices, open_files, position)
+    given_waves = getattr(keys, "waves", None)
+    waves = None if given_waves is None else read_waves(given_waves, section, problems, open_files)
     if density is None or current is None or len(problems) > before:
         return None
     notices.extend(density_notices(density, keys.depth))
@@ -312,6 +293,7 @@ def read_environment(
         depth_range=getattr(keys, "depth_range", None),
         fouling=getattr(keys, "fouling", None),
         maximum_speed=getattr(keys, "maximum_speed", math.inf),
+        waves=waves,
     )
 
 
