@@ -8,14 +8,21 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from datetime import date
-from itertools import chain
 from typing import ParamSpec, TypeVar
 
 import numpy as np
 
 from calm.case import Mooring, Result
 from calm.case.parts import parts_of
-from calm.checks import arrangement, catalogue_rules, handling, posture, situations, strength, wave_rules
+from calm.checks import (
+    arrangement,
+    catalogue_rules,
+    handling,
+    posture,
+    situations,
+    strength,
+    wave_rules,
+)
 from calm.checks.assessment import Acceptance, Assessment, MooringInEnvironment, Situation
 from calm.checks.criterion import limits_used
 from calm.checks.finding import AS_GIVEN, OWN, Finding, Rule, State, Verdict, rule, verdict_on
@@ -165,9 +172,9 @@ def _findings_in_waves(
         return
     acceptance = _acceptance(given.result.file, day)
     evidence = MooringInWaves.of(_estimated_result(given.result).mooring)
-    for rule in IN_WAVES:
-        for verdict in rule.judge(evidence):
-            yield acceptance.of(rule.find(verdict, mooring, environment))
+    for each in IN_WAVES:
+        for verdict in each.judge(evidence):
+            yield acceptance.of(each.find(verdict, mooring, environment))
 
 
 def _acceptance(file: MooringFile, day: date | None) -> Acceptance:
@@ -262,9 +269,7 @@ STILL_ONLY = verdict_on(
 _ORDER = list(TEXTS)
 
 
-_ALL = [
-    each for module in _MODULES for each in vars(module).values() if isinstance(each, Rule)
-]
+_ALL = [each for module in _MODULES for each in vars(module).values() if isinstance(each, Rule)]
 
 
 def _judging(*, once: bool) -> tuple[Rule, ...]:

@@ -9,7 +9,6 @@ from calm.files.mooring_file import Clamp, LinePart, MooringFile, Piece, Place, 
 from calm.files.reader import read_mooring
 from calm.files.rigid import Rigid, Shaped
 from calm.files.schema import mooring_schema
-from calm.files.sea import WavesGiven, Wind
 from calm.files.strumming_keys import (
     AmplitudeModel,
     BourgetMarichalKeys,
@@ -18,6 +17,7 @@ from calm.files.strumming_keys import (
     StrummingFactor,
 )
 from calm.files.uncertainty import Spread, Uncertainty
+from calm.files.water import WavesGiven, Wind
 from calm.records.profile_tables import CurrentTable, DepthTable, SeaWater
 
 __all__ = [

@@ -12,17 +12,20 @@ from pydantic import BeforeValidator, Discriminator, Field, Tag
 
 from calm.errors import InputError, Problem
 from calm.files.definition import DENSITY, POSITIVE_LENGTH, Model, QuantityField, Text
-from calm.files.density import (
+from calm.files.water import (
     USUAL_DENSITY,
     Density,
     TableKeys,
+    WaveKeys,
+    WavesGiven,
+    Wind,
     check_density,
     density_notices,
     read_density,
+    read_waves,
     report_at,
     table_of,
 )
-from calm.files.sea import WaveKeys, WavesGiven, Wind, read_waves
 from calm.files.yaml_document import SourceMapping, validate
 from calm.records.current_terms import DEEPEST, Terms, TimeChoiceError, too_fast
 from calm.records.profile_tables import (

@@ -210,8 +210,12 @@ def _sea_of(path: Path, frequency: Floats, density: Floats) -> SeaState:
     lowest = omega[int(np.searchsorted(parts.cumsum(), UNSEEN * parts.sum()))]
     peak = float(omega[int(density.argmax())])
     first = max(float(lowest), 0.02 * peak)
-    form = partial(np.interp, xp=omega, fp=spectral, left=0.0, right=0.0)
+    form = partial(_between, omega, spectral)
     return SeaState(height, 2.0 * pi / peak, form, longest=2.0 * pi * BETWEEN[0] / first)
+
+
+def _between(omega: Floats, spectral: Floats, at: Floats) -> Floats:
+    return np.interp(at, omega, spectral, left=0.0, right=0.0)
 
 
 def _spectral_arrays(path: Path) -> tuple[Floats, Floats]:

@@ -141,7 +141,7 @@ def dirlik(moments: Sequence[float], slope: float) -> float:
     ranges = one * scale**slope * gamma(1.0 + slope) + 2.0 ** (0.5 * slope) * gamma(
         1.0 + 0.5 * slope
     ) * (two * abs(width) ** slope + three)
-    return peaks * (2.0 * sqrt(zeroth)) ** slope * ranges
+    return float(peaks * (2.0 * sqrt(zeroth)) ** slope * ranges)
 
 
 def narrow_band(moments: Sequence[float], slope: float) -> float:
@@ -153,7 +153,8 @@ def narrow_band(moments: Sequence[float], slope: float) -> float:
     if not zeroth > 0.0:
         return 0.0
     crossings = sqrt(second / zeroth) / (2.0 * pi)
-    return crossings * (2.0 * sqrt(2.0 * zeroth)) ** slope * gamma(1.0 + 0.5 * slope)
+    ranges = (2.0 * sqrt(2.0 * zeroth)) ** slope * gamma(1.0 + 0.5 * slope)
+    return float(crossings * ranges)
 
 
 def curve_of(component: Component) -> str | None:

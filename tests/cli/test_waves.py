@@ -48,7 +48,10 @@ def test_the_table_and_the_object(calm, buoy):
         rope["tension_mean"] - rope["tension_min"]
     )
     assert set(told["accuracy"]) == {"mesh", "frequencies", "linearisation"}
-    assert told["fatigue"] is None
+    assert [(one["label"], one["curve"]) for one in told["fatigue"]] == [
+        ("rope", None),
+        ("chain", "dnv-studless-chain"),
+    ]
     assert told["units"]["force"] == "N"
 
 
