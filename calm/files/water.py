@@ -294,7 +294,12 @@ class WaveKeys(Model):
     def _some_sea(self) -> Self:
         height, period, named = self.significant_height, self.peak_period, self.spectrum in SPECTRA
         if not named and (height, period) != (None, None):
-            raise ValueError("a measured `spectrum` has its own height and period; leave them out")
+            near = nearest(self.spectrum, SPECTRA)
+            raise ValueError(
+                f"`{shown(self.spectrum)}` is none of {', '.join(SPECTRA)}; did you mean `{near}`?"
+                if near
+                else "a measured `spectrum` has its own height and period; leave them out"
+            )
         if named and height is None and (self.scatter is None or period is not None):
             raise ValueError("`waves` needs `significant_height`, a `scatter` table, or both")
         if height is not None and period is None and self.spectrum not in OF_HEIGHT:
