@@ -309,6 +309,15 @@ def verdict_prose(findings: Iterable[Finding]) -> Prose:
     return Prose(((Span(f"{SIGNS[state]} {words}", state),),), state)
 
 
+def short_verdict(findings: Iterable[Finding]) -> Span:
+    """The verdict for the head of a page, such as ``? 0 fail, 34 unknown, 1 warn``."""
+    given = [*findings]
+    counts = Counter(finding.state for finding in given)
+    states = (State.FAIL, State.UNKNOWN, State.WARN)
+    state, _ = verdict_of(given)
+    return Span(f"{SIGNS[state]} {', '.join(f'{counts[one]} {one}' for one in states)}", state)
+
+
 def limits_table(limits: Iterable[LimitKey], title: str = "Limits as used") -> Table:
     """Limits with their defaults and the sources of those; departures come first."""
     departs = Cell("departs", state=State.WARN)
