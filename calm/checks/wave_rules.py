@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from calm.checks.criterion import Citing
-from calm.checks.finding import Verdict, at_least, at_most, rule, unknown
+from calm.checks.finding import State, Verdict, at_least, at_most, rule, unknown
 from calm.checks.posture import reaches_the_surface
 from calm.checks.strength import lesser_load, passes_load_on
 from calm.errors import UsageError
@@ -69,7 +69,7 @@ def wave_strength(evidence: MooringInWaves) -> Iterator[Verdict]:
             continue
         message = f"{bears}; its loads allow {say('tension', limit)}."
         remedy = "Take a stronger one, or let the line stretch more."
-        yield at_most(piece, tension, limit, message, remedy, source=source)
+        yield _sure(waves, at_most(piece, tension, limit, message, remedy, source=source))
 
 
 @rule("wave-slack", in_waves=True)
@@ -87,7 +87,7 @@ def wave_slack(evidence: MooringInWaves) -> Iterator[Verdict]:
                 f"Hs {state.sea.significant_height:.1f} m; below 0 it falls slack and snatches."
             )
             remedy = "Give the line more weight or more stretch, or solve it in time: `calm export`"
-            yield at_least(piece, row.least, 0.0, message, f"{remedy}.")
+            yield _sure(waves, at_least(piece, row.least, 0.0, message, f"{remedy}."))
 
 
 @rule("fatigue", in_waves=True)
@@ -114,7 +114,19 @@ def fatigue(evidence: MooringInWaves) -> Iterator[Verdict]:
                 f"{_years(one.life_high)}), by {one.curve}; {_years(limit / YEAR)} are asked for."
             )
             remedy = "Take a thicker one, let the line stretch more, or renew it sooner."
-            yield at_least(piece, one.life * YEAR, limit, message, remedy, source=source)
+            life = one.life * YEAR
+            yield _sure(waves, at_least(piece, life, limit, message, remedy, source=source))
+
+
+def _sure(waves: WaveAnalysis, verdict: Verdict) -> Verdict:
+    """Return a failure as unknown where a rope without stiffness makes the tensions too great."""
+    if verdict.state is not State.FAIL or not waves.warnings:
+        return verdict
+    message = f"{verdict.message} {' '.join(waves.warnings)}"
+    return replace(
+        verdict, state=State.UNKNOWN, message=message, remedy="Give the rope's `stiffness`.",
+        limit=None, margin=None,
+    )  # fmt: skip
 
 
 def _years(count: float) -> str:

@@ -1,6 +1,7 @@
 """Moorings given to other programs, and read back: the same equilibrium."""
 
 import re
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -96,7 +97,7 @@ def test_the_damping_of_moordyn_spares_what_waves_do(name):
     """
     lines = export_file(LINES / f"{name}.yaml", "moordyn").content.decode().splitlines()
     heads = [number for number, line in enumerate(lines) if line.startswith("-----")]
-    tables = [lines[a + 3 : b] for a, b in zip(heads[1:], heads[2:], strict=False)]
+    tables = [lines[a + 3 : b] for a, b in pairwise(heads[1:])]
     types = {row.split()[0]: [float(cell) for cell in row.split()[1:]] for row in tables[0]}
     for row in tables[2]:
         _, kind, _, _, length, segments, _ = row.split()
