@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Annotated, Self
 
 import numpy as np
-from pydantic import Discriminator, Field, Tag, ValidationError, model_validator
+from pydantic import Discriminator, Tag, ValidationError, model_validator
 
 from calm.errors import InputError, Problem, UsageError
 from calm.files.definition import (
@@ -20,6 +20,7 @@ from calm.files.definition import (
     Model,
     QuantityField,
     Text,
+    described,
 )
 from calm.files.yaml_document import SourceMapping
 from calm.physics import seawater
@@ -63,13 +64,12 @@ def _table_or_constant(value: object) -> str:
 class TableKeys(Model):
     """Columns, each a name and its unit, and rows of values."""
 
-    columns: tuple[Text, ...] = Field(
-        description="each a name and its unit: depth m, speed m/s, toward deg; or u m/s, v m/s, "
-        "w m/s",
-        examples=[["depth m", "speed m/s", "toward deg"]],
+    columns: tuple[Text, ...] = described(
+        "each a name and its unit: depth m, speed m/s, toward deg; or u m/s, v m/s, w m/s",
+        ["depth m", "speed m/s", "toward deg"],
     )
-    rows: tuple[tuple[Text | None, ...], ...] = Field(
-        description="values, top to bottom", examples=[[[0, 0.8, 90], [1100, 0.05, 60]]]
+    rows: tuple[tuple[Text | None, ...], ...] = described(
+        "values, top to bottom", [[0, 0.8, 90], [1100, 0.05, 60]]
     )
 
 
@@ -80,12 +80,12 @@ class SeaWaterKeys(Model):
         Annotated[float, QuantityField(**vars(TEMPERATURE)), Tag("constant")]
         | Annotated[TableKeys, Tag("table")],
         Discriminator(_table_or_constant),
-    ] = Field(description="in situ, a constant or a table", examples=["10 degC"])
+    ] = described("in situ, a constant or a table", "10 degC")
     salinity: Annotated[
         Annotated[float, QuantityField(**vars(SALINITY)), Tag("constant")]
         | Annotated[TableKeys, Tag("table")],
         Discriminator(_table_or_constant),
-    ] = Field(description="practical, a constant or a table", examples=[35])
+    ] = described("practical, a constant or a table", 35)
 
 
 Density = Annotated[
@@ -151,12 +151,9 @@ def report_at(section: SourceMapping, *place: str) -> Report:
 
 
 def density_notices(density: float | DepthTable | SeaWater, depth: float | None) -> Iterator[str]:
-    """Yield what is odd about the density of the water, in sentences.
+    """Yield what is odd about the density of the water as it was read, in sentences.
 
-    Parameters
-    ----------
-    density : as it was read
-    depth : of the water [m], None where it is not known
+    Its depth [m] is None where it is not known.
     """
     if isinstance(density, SeaWater):
         profiles = {"temperature": density.temperature, "salinity": density.salinity}
@@ -240,19 +237,15 @@ class Wind(Model):
     below ever less, linearly, down to `drift_depth` [m]: the seabed where it is None.
     """
 
-    speed: Annotated[float, _SPEED] = Field(
-        description="of the wind, at the height of the float", examples=["12 m/s"]
+    speed: Annotated[float, _SPEED] = described("of the wind, at the height of the float", "12 m/s")
+    toward: Annotated[float, QuantityField(**vars(DIRECTION))] = described(
+        "where it blows to, clockwise from north", "90 deg"
     )
-    toward: Annotated[float, QuantityField(**vars(DIRECTION))] = Field(
-        description="where it blows to, clockwise from north", examples=["90 deg"]
+    surface_drift: Annotated[float, QuantityField("number", at_least=0, at_most=0.1)] = described(
+        "share of the wind's speed that the surface water drifts at", "2 %", default=0.0
     )
-    surface_drift: Annotated[float, QuantityField("number", at_least=0, at_most=0.1)] = Field(
-        default=0.0,
-        description="share of the wind's speed that the surface water drifts at",
-        examples=["2 %"],
-    )
-    drift_depth: Annotated[float | None, POSITIVE_LENGTH] = Field(
-        default=None, description="how deep the water that the wind drives goes", examples=["50 m"]
+    drift_depth: Annotated[float | None, POSITIVE_LENGTH] = described(
+        "how deep the water that the wind drives goes", "50 m", default=None
     )
 
     @model_validator(mode="after")
@@ -265,29 +258,27 @@ class Wind(Model):
 class WaveKeys(Model):
     """The keys of `waves:`: one sea, a table of seas with their shares of the time, or both."""
 
-    significant_height: Annotated[float | None, POSITIVE_LENGTH] = Field(
-        default=None, description="Hs of the sea to be survived", examples=["5 m"]
+    significant_height: Annotated[float | None, POSITIVE_LENGTH] = described(
+        "Hs of the sea to be survived", "5 m", default=None
     )
-    peak_period: Annotated[float | None, QuantityField("time", above=0)] = Field(
-        default=None,
-        description="Tp of that sea; pierson-moskowitz and ochi-hubble have their own",
-        examples=["8.4 s"],
+    peak_period: Annotated[float | None, QuantityField("time", above=0)] = described(
+        "Tp of that sea; pierson-moskowitz and ochi-hubble have their own", "8.4 s", default=None
     )
-    spectrum: Text = Field(
+    spectrum: Text = described(
+        f"{', '.join(SPECTRA)}, or a CSV or NetCDF file of a measured one",
+        "jonswap",
         default="bretschneider",
-        description=f"{', '.join(SPECTRA)}, or a CSV or NetCDF file of a measured one",
-        examples=["jonswap"],
     )
-    gamma: Annotated[float, QuantityField("number", at_least=1, at_most=10)] = Field(
-        default=3.3, description="peakedness of jonswap", examples=[3.3]
+    gamma: Annotated[float, QuantityField("number", at_least=1, at_most=10)] = described(
+        "peakedness of jonswap", 3.3, default=3.3
     )
-    toward: Annotated[float, QuantityField(**vars(DIRECTION))] = Field(
-        default=90.0, description="where they run, clockwise from north", examples=["90 deg"]
+    toward: Annotated[float, QuantityField(**vars(DIRECTION))] = described(
+        "where they run, clockwise from north", "90 deg", default=90.0
     )
-    scatter: Text | None = Field(
+    scatter: Text | None = described(
+        "CSV: significant_wave_height[m],peak_period[s],share; fatigue needs it",
+        "seas.csv",
         default=None,
-        description="CSV: significant_wave_height[m],peak_period[s],share; fatigue needs it",
-        examples=["seas.csv"],
     )
 
     @model_validator(mode="after")
