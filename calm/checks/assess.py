@@ -15,6 +15,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from datetime import date
 from functools import partial
+from itertools import chain
 from typing import ParamSpec, TypeVar
 
 import numpy as np
@@ -23,15 +24,7 @@ from calm.case import Mooring, Result
 from calm.case.draws import Draw, checked_samples, drawn, draws_of, normals_of
 from calm.case.parts import parts_of
 from calm.case.uncertain import BLOCK, Mapped
-from calm.checks import (
-    arrangement,
-    catalogue_rules,
-    handling,
-    posture,
-    situations,
-    strength,
-    wave_rules,
-)
+from calm.checks import arrangement, catalogue_rules, handling, posture, situations, strength
 from calm.checks.assessment import Acceptance, Assessment, MooringInEnvironment, Situation
 from calm.checks.criterion import limits_used
 from calm.checks.finding import AS_GIVEN, OWN, Finding, Rule, State, Verdict, rule, verdict_on
@@ -40,7 +33,7 @@ from calm.checks.inventory import inventory_of
 from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import breaks_of, losses_of, recovery_of
 from calm.checks.situations import LEAST_CURRENT, SOLVES, STRUMMING, currents, situations_of
-from calm.checks.wave_rules import MooringInWaves
+from calm.checks.wave_rules import IN_WAVES, MooringInWaves
 from calm.drop.launch import launch_of
 from calm.errors import NoEquilibrium
 from calm.files import Clamp, MooringFile, Piece, Place
@@ -256,7 +249,7 @@ def _handled(stand: MooringInEnvironment) -> Handling:
     return Handling(mooring, failure, failure, breaks_of(mooring), losses_of(mooring))
 
 
-_MODULES = (arrangement, catalogue_rules, handling, posture, situations, strength, wave_rules)
+_MODULES = (arrangement, catalogue_rules, handling, posture, situations, strength)
 
 
 @rule("equilibrium")
@@ -278,15 +271,13 @@ STILL_ONLY = verdict_on(
 _ORDER = list(TEXTS)
 
 
-_ALL = [each for module in _MODULES for each in vars(module).values() if isinstance(each, Rule)]
-
-
 def _judging(*, once: bool) -> tuple[Rule, ...]:
     """Rules of the modules in the order of their texts; those of one situation come last.
 
     The one of the currents judges all environments together.
     """
-    rules = [each for each in _ALL if each.once == once and not each.in_waves]
+    found = chain.from_iterable(vars(module).values() for module in _MODULES)
+    rules = [each for each in found if isinstance(each, Rule) and each.once == once]
     rules = [each for each in rules if each is not currents]
     rules.sort(key=lambda each: (each.situation != AS_GIVEN, _ORDER.index(each.name)))
     return tuple(rules)
@@ -297,9 +288,6 @@ STANDING = _judging(once=False)
 
 ONCE = _judging(once=True)
 """What is judged once of a mooring: its breaks, its launch and its recovery."""
-
-IN_WAVES = tuple(each for each in _ALL if each.in_waves)
-"""What is judged of a `MooringInWaves`, in every environment."""
 
 RULES = {each.name: each for each in (equilibrium, currents, *STANDING, *IN_WAVES, *ONCE)}
 """Every rule by its name."""

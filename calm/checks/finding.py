@@ -151,7 +151,6 @@ class Rule:
     of_anchor : whether it judges the anchor, and nothing where a line has none
     once : whether it judges a `Handling`, once of a mooring
     situation : of what it judges once
-    in_waves : whether it judges a `MooringInWaves`, once of an environment
     criteria : from a `Mooring` to what is asked of it, where that can be counted in many profiles
     """
 
@@ -164,7 +163,6 @@ class Rule:
     criteria: Callable[[Any], Iterator[Any]] | None = None
     once: bool = False
     situation: str = AS_GIVEN
-    in_waves: bool = False
 
     def find(
         self, verdict: Verdict, mooring: str, environment: str, situation: str = AS_GIVEN
@@ -180,12 +178,7 @@ class Rule:
 
 
 def rule(
-    name: str,
-    *,
-    of_anchor: bool = False,
-    once: bool = False,
-    situation: str = AS_GIVEN,
-    in_waves: bool = False,
+    name: str, *, of_anchor: bool = False, once: bool = False, situation: str = AS_GIVEN
 ) -> Callable[[Callable[[Any], Iterator[Any]]], Rule]:
     """Make the `Rule` of that name in `calm.files.rule_texts` from a function that judges."""
     text = RULE_TEXTS[name]
@@ -193,7 +186,7 @@ def rule(
     def of(judge: Callable[[Any], Iterator[Any]]) -> Rule:
         return Rule(
             name, text.title, text.quantity, text.source, judge, of_anchor,
-            once=once, situation=situation, in_waves=in_waves,
+            once=once, situation=situation,
         )  # fmt: skip
 
     return of

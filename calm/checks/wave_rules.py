@@ -40,7 +40,7 @@ class MooringInWaves:
             return cls(mooring, str(error))
 
 
-@rule("wave-strength", in_waves=True)
+@rule("wave-strength")
 def wave_strength(evidence: MooringInWaves) -> Iterator[Verdict]:
     """Judge the greatest tension of every piece in waves.
 
@@ -72,7 +72,7 @@ def wave_strength(evidence: MooringInWaves) -> Iterator[Verdict]:
         yield _sure(waves, at_most(piece, tension, limit, message, remedy, source=source))
 
 
-@rule("wave-slack", in_waves=True)
+@rule("wave-slack")
 def wave_slack(evidence: MooringInWaves) -> Iterator[Verdict]:
     """Judge the least tension of every piece in waves: a line that falls slack snatches."""
     mooring, waves = evidence.mooring, evidence.waves
@@ -90,7 +90,7 @@ def wave_slack(evidence: MooringInWaves) -> Iterator[Verdict]:
             yield _sure(waves, at_least(piece, row.least, 0.0, message, f"{remedy}."))
 
 
-@rule("fatigue", in_waves=True)
+@rule("fatigue")
 def fatigue(evidence: MooringInWaves) -> Iterator[Verdict]:
     """Judge the life of every piece whose curve is published, by the service time × the factor."""
     mooring, waves = evidence.mooring, evidence.waves
@@ -131,3 +131,7 @@ def _sure(waves: WaveAnalysis, verdict: Verdict) -> Verdict:
 
 def _years(count: float) -> str:
     return "more than 1000 years" if count > 1000.0 else f"{count:.2g} years"
+
+
+IN_WAVES = (wave_strength, wave_slack, fatigue)
+"""What is judged of a `MooringInWaves`, once in every environment."""
