@@ -6,12 +6,12 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from calm.files.water import USUAL_DENSITY
 from textual import events, on
 from textual.binding import BindingType
 from textual.message import Message
 
 from calm.files.definition import DENSITY, POSITIVE_LENGTH, QuantityField
-from calm.files.density import USUAL_DENSITY
 from calm.files.editing import Draft, Value
 from calm.files.yaml_document import Location
 from calm.records.headings import heading
