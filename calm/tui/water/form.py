@@ -6,13 +6,13 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from calm.files.water import USUAL_DENSITY
 from textual import events, on
 from textual.binding import BindingType
 from textual.message import Message
 
 from calm.files.definition import DENSITY, POSITIVE_LENGTH, QuantityField
 from calm.files.editing import Draft, Value
+from calm.files.water import USUAL_DENSITY
 from calm.files.yaml_document import Location
 from calm.records.headings import heading
 from calm.records.profile_tables import SALINITY, TEMPERATURE, speed_and_direction
