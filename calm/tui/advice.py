@@ -221,6 +221,8 @@ def differences(before: View, after: View) -> list[str]:
                 effects.append(f"{name} {texts[0]} → {texts[1]}")
     elif after.failure is not None:
         effects.append(f"it does not stand: {after.failure.message}")
+    if idle := [when for when, view in (("before", before), ("now", after)) if not view.result]:
+        return [*effects, f"findings: not judged {' and '.join(idle)}, as it does not stand"]
     for state, word in (
         (State.FAIL, "failures"),
         (State.UNKNOWN, "figures unknown"),

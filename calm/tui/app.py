@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+import time
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, ClassVar
 
@@ -23,7 +24,7 @@ from calm.tui.help_screen import Actions, Commands
 from calm.tui.judging import Judging
 from calm.tui.line.builder import BuilderScreen
 from calm.tui.messages import CatalogueRead, Edited, Judged, JudgingFailed, Workspace
-from calm.tui.painted import Painted, PlainSigns, shows_all_signs
+from calm.tui.painted import Pace, Painted, PlainSigns, shows_all_signs
 from calm.tui.saving import Saving
 from calm.tui.screen import DraftScreen
 from calm.tui.session import Session
@@ -32,6 +33,7 @@ from calm.tui.turns import InTurn
 
 _AUTOSAVED_AFTER = 0.3  # seconds
 _LOOKED_AT_DISK = 2.0  # seconds between two looks
+_HELD_AT_MOST = 3.0  # seconds that a frame waits for a terminal that answers no more
 _COLOURLESS = NoColor()
 
 
@@ -74,11 +76,12 @@ class BuildApp(InTurn):
         self.saving = Saving(self, self.workspace)
         self.builder = BuilderScreen(self.workspace)
         self.not_kept = ""
-        self._painted = Painted()
+        self._painted, self._pace = Painted(), Pace()
         self._offered = kept
         self._plain = [] if shows_all_signs(environ, sys.__stderr__) else [PlainSigns()]
         self._is_catalogue_read = False
         self._autosaving: Timer | None = None
+        self._late: Timer | None = None
         self._is_left = False
         self._lost: str | None = None
 
@@ -126,10 +129,25 @@ class BuildApp(InTurn):
         return [*super().get_line_filters(), legible(theme.dark, theme.ansi), *self._plain]
 
     def _display(self, screen: Screen[Any], renderable: RenderableType | None) -> None:
-        """Send the terminal what it does not show yet."""
-        if isinstance(renderable, CompositorUpdate):
-            renderable = self._painted.update(renderable)
-        super()._display(screen, renderable)
+        """Send the terminal what it does not show yet, once it has shown what was sent before."""
+        if not isinstance(renderable, CompositorUpdate):
+            super()._display(screen, renderable)
+        elif self._pace.holds(time.monotonic()):
+            if self._late is None:
+                self._late = self.set_timer(_HELD_AT_MOST, self.on_cursor_position)
+        else:
+            super()._display(screen, self._painted.update(renderable))
+            driver = self._driver
+            if driver is not None and self._running and not (self.is_headless or self.is_web):
+                driver.write(self._pace.question(time.monotonic()))
+
+    def on_cursor_position(self) -> None:
+        """The terminal shows what was sent: send what has changed since."""
+        if self._late is not None:
+            self._late.stop()
+            self._late = None
+        if self._pace.answered() and self.is_running:
+            self.screen.refresh()
 
     def action_repaint(self) -> None:
         """Send the terminal all of the screen."""
@@ -302,10 +320,17 @@ class BuildApp(InTurn):
 
     def leave(self) -> None:
         """Leave; nothing is to be kept."""
-        self._is_left = True
+        self._is_left, self._ends_at = True, time.monotonic() + 1.0
         if not self.session.changed:
             self.keep()  # which removes a copy that is out of date
-        self.exit(0)
+        self._exit_answered()
+
+    def _exit_answered(self) -> None:
+        """End once the terminal has answered: the shell would take the answer for keys."""
+        if self._pace.is_out and self._ends_at > time.monotonic():
+            self.set_timer(0.02, self._exit_answered)
+        else:
+            self.exit(0)
 
     def _offer(self, kept: KeptWork) -> None:
         def take(answer: str | None) -> None:

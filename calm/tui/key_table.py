@@ -69,7 +69,7 @@ equipment | N | serial number |  | Serial number, calibration, sampling, battery
   of the row.
 find | slash | find | 12 | Find words in the line: id, label, serial number, maker.
 find_next(1) | greater_than_sign,f3 | find next |  | To the next row that has them.
-find_next(-1) | less_than_sign,shift+f3 | find last |  | To the one before.
+find_next(-1) | less_than_sign | find last |  | To the one before.
 alike(1) | right_square_bracket | next alike |  | To the next piece of the same kind.
 alike(-1) | left_square_bracket | last alike |  | To the one before.
 least(1) | W | weakest |  | To the piece with the least margin of its strength.

@@ -27,6 +27,8 @@ Cell = tuple[str, Style | None]
 
 _UNKNOWN: Cell = ("\0", None)
 _PLAIN = "\x1b[0m"
+_WHERE = "\x1b[6n"  # the report of the cursor's place, which every terminal of ECMA-48 sends
+_PATIENCE = 3.0  # seconds; an answer that takes longer is lost
 _GAP = 8
 """Cells that have not changed are sent where fewer lie between others: to skip them costs more."""
 
@@ -63,6 +65,41 @@ class Painted:
         """Forget what was shown in a terminal of another size."""
         if len(self._rows) != height or any(len(row) != width for row in self._rows):
             self._rows = [[_UNKNOWN] * width for _ in range(height)]
+
+
+class Pace:
+    """Lets a terminal show one frame before the next is made: over a slow link they merge.
+
+    The terminal is asked where its cursor is behind a frame, and answers when it has come to that.
+    One that has never answered is not waited for.
+    """
+
+    def __init__(self) -> None:
+        self._has_asked = self._answers = self._has_waiting = False
+        self._since: float | None = None
+
+    def holds(self, now: float) -> bool:
+        """Return whether a frame is to wait; the one that is made then has all that changed."""
+        is_out = self._since is not None and now - self._since < _PATIENCE
+        self._has_waiting = self._answers and is_out
+        return self._has_waiting
+
+    def question(self, now: float) -> str:
+        """Return what is sent behind a frame."""
+        if self._has_asked and not self._answers:
+            return ""
+        self._has_asked, self._since = True, now
+        return _WHERE
+
+    def answered(self) -> bool:
+        """Take an answer; whether a frame waits for it."""
+        self._answers, self._since = True, None
+        return self._has_waiting
+
+    @property
+    def is_out(self) -> bool:
+        """Return whether an answer is to come: it would be taken for keys by what follows."""
+        return self._answers and self._since is not None
 
 
 class _Changes(CompositorUpdate):

@@ -70,6 +70,10 @@ class ScrolledEntry(Input):
 
     virtual_size = Reactive(Size(0, 0), repaint=False)
 
+    def on_mount(self) -> None:
+        """Its cursor stands still: nothing is sent while nobody types."""
+        self.cursor_blink = False
+
     def on_paste(self, event: Paste) -> None:
         """Rows of a table are no value: textual would take the first of them."""
         if len(event.text.splitlines()) > 1:

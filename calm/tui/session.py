@@ -53,6 +53,7 @@ class Session:
     catalogs : catalogue files given with the command
     copied : what `paste` puts in
     standing : the environment that the line stands in
+    added : the rows that the last change has put in
     followed : what the last change of the line made of labels that the file names elsewhere
 
     Raises
@@ -77,6 +78,7 @@ class Session:
         self.catalogs = tuple(catalogs)
         self.copied = Copied()
         self.followed: list[str] = []
+        self.added: frozenset[Place] = frozenset()
         self.standing = Standing(self.history, environment)
 
     @property
@@ -110,6 +112,7 @@ class Session:
         """Take a draft as the next state; one that changes nothing is no step."""
         if draft.text != self.draft.text:
             self.history.do(draft, label)
+            self.added = frozenset()
 
     def _edit(
         self, draft: Draft, label: str, *, gone: Iterable[Place] = (), new: Iterable[Place] = ()
@@ -124,6 +127,7 @@ class Session:
         moved = dict(pairs) | (dict(zip(gone, sorted(new), strict=False)) if gone and new else {})
         draft, self.followed = followed(self.draft, draft, moved)
         self.do(draft, label)
+        self.added = frozenset(new.difference(moved.values()))
 
     def write(self, text: str, label: str = "edit the text", *, further: bool = False) -> None:
         """Take another text; `further` where it goes on with the last step."""

@@ -156,3 +156,12 @@ def test_many_changed_lines_are_counted():
     told = changed_lines(before, "")
     assert len(told) == 25 and told[-1] == "and 16 lines more"
     assert changed_lines(before, before) == []
+
+
+def test_what_does_not_stand_is_not_judged_and_not_without_warnings():
+    stands = judge(MOORING)
+    sinks = judge(MOORING.replace("buoyancy: 2000 N", "buoyancy: 5 N"))
+    assert stands.result is not None and sinks.result is None
+    assert differences(stands, sinks)[-1] == "findings: not judged now, as it does not stand"
+    assert differences(sinks, stands)[-1] == "findings: not judged before, as it does not stand"
+    assert not any("→" in each for each in differences(stands, sinks))

@@ -1,5 +1,7 @@
 """The catalogue beside the line: what is chosen, replaced and defined."""
 
+import pytest
+
 from calm.assemble.catalogue_search import Index
 from calm.files.catalogue import Catalogue
 from calm.tui.catalogue.component_list import ComponentList, Remembered
@@ -106,13 +108,16 @@ def test_favourites_and_what_was_taken_come_first_in_every_file(drive, tmp_path)
 
     async def look(driver):
         await driver.press("a")
-        listed = [each.id for each in driver.app.builder.query_one(ComponentList).rows]
-        assert listed[:2] == [chosen[0], "shackle-19"]
+        rows = driver.app.builder.query_one(ComponentList).rows
+        others = [each.id for each in rows[1:] if each.role != "float"]
+        assert rows[0].id == chosen[0] and others[0] == "shackle-19"
+        assert rows[1].role == "float"  # the top of a line
         await driver.press("f3")
         assert f"{chosen[0]} is no longer a favourite" in driver.screen
 
     async def later(driver):
         await driver.press("a")
+        await driver.type("sh")
         assert driver.app.builder.query_one(ComponentList).chosen.id == "shackle-19"
 
     chosen = []
@@ -121,3 +126,24 @@ def test_favourites_and_what_was_taken_come_first_in_every_file(drive, tmp_path)
     drive(later, tmp_path / "another.yaml")
     (tmp_path / "state" / "calm" / "catalogue.json").write_text('{"recent": [1')
     assert Remembered().favourites == [] == Remembered().recent
+
+
+@pytest.mark.parametrize(
+    "keys, role",
+    [
+        (["A"], "float"),
+        (["down", "down", "i"], "instrument"),
+        (["down", "r"], "line"),
+        (["r"], "float"),
+        (["end", "delete", "end", "a"], "anchor"),
+    ],
+)
+def test_the_catalogue_knows_where_it_is_opened_and_begins_without_words(drive, small, keys, role):
+    async def story(driver):
+        await driver.press("a", *"wire", "escape", "home", *keys)
+        listing = driver.app.builder.query_one(ComponentList)
+        assert listing.chosen.role == role
+        await driver.type("chain")
+        assert "chain" in listing.chosen.searched
+
+    drive(story, small)

@@ -164,3 +164,15 @@ def test_the_last_profile_stays_dimmed_where_the_water_cannot_be_read(drive, sma
         assert 0.0 < strength(driver, ProfilePicture) < 0.8 * before
 
     drive(story, small)
+
+
+def test_a_new_row_shows_no_figures_until_they_are_its_own(drive, small):
+    async def story(driver):
+        before = driver.table.rows[0].texts["depth"]
+        driver.app.judging.ask = lambda: None  # nothing is judged any more
+        await driver.press("c", "V")
+        assert driver.uses[:2] == ["ball", "ball"]
+        assert "depth" not in driver.table.rows[0].texts
+        assert driver.table.rows[1].texts["depth"] == before
+
+    drive(story, small)

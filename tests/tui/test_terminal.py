@@ -224,3 +224,68 @@ def copy_of(file):
         time.sleep(0.05)
     (copy,) = found
     return copy
+
+
+class SlowLink:
+    """A terminal behind a satellite: 300 ms there and back, 20 kbit/s; it answers as xterm does."""
+
+    ROUND, RATE = 0.3, 2500.0  # s; bytes a second
+
+    def __init__(self, file, folder):
+        self.terminal = Terminal(file, columns=80, rows=24, folder=folder)
+        self._due, self._coming, self._answers, self._credit = [], b"", [], 0.0
+        self._last = time.monotonic()
+        self.bytes, self.shown_at = 0, 0.0
+
+    def run(self, seconds, done=lambda: False):
+        """Let the link work for a time, or until something is done; the seconds that it took."""
+        begun = time.monotonic()
+        while time.monotonic() - begun < seconds and not done():
+            try:
+                data = self.terminal.child.read_nonblocking(65536, timeout=0.01)
+                self._coming, self.bytes = self._coming + data, self.bytes + len(data)
+            except pexpect.TIMEOUT:
+                pass
+            now = time.monotonic()
+            self._credit = min(self._credit + (now - self._last) * self.RATE, self.RATE * 0.05)
+            self._last = now
+            taken, self._coming = (
+                self._coming[: int(self._credit)],
+                self._coming[int(self._credit) :],
+            )
+            self._credit -= len(taken)
+            if taken:
+                self.terminal._stream.feed(taken)
+                self.shown_at = now
+                self._answers += [now + self.ROUND] * taken.count(b"[6n")
+            while self._answers and self._answers[0] <= now:
+                self._answers.pop(0)
+                self.terminal.child.send("\x1b[1;1R")
+        return time.monotonic() - begun
+
+
+def test_twenty_keys_over_a_satellite_settle_within_a_second_of_the_last(folder):
+    """What waits for the terminal is one frame, and the next has all that has changed since."""
+    path = folder / "deep.yaml"
+    lines = shipped_folder("lines") / "deep-current-meters.yaml"
+    path.write_text(lines.read_text(encoding="utf-8"), encoding="utf-8")
+    link = SlowLink(path, folder)
+    link.run(60, lambda: "top float" in link.terminal.text)
+    link.run(15)  # the first screen is there, and all is judged
+    before = link.bytes
+    for _ in range(20):
+        link.terminal.child.send(DOWN)
+        link.run(0.1)
+    last = time.monotonic()
+    link.run(8)
+    assert link.shown_at - last < 1.0
+    rows = [line for line in link.terminal.text.splitlines() if line.startswith("▸")]
+    assert len(rows) == 1
+    assert link.bytes - before < 12_000
+    quiet = link.bytes
+    link.terminal.child.send("l")
+    link.run(2)
+    opened = link.bytes
+    link.run(3)
+    assert opened > quiet and link.bytes == opened  # an open input is silent
+    link.terminal.child.close(force=True)

@@ -79,6 +79,7 @@ class CataloguePane(Vertical):
         self.clampable = False
         self.towed = False
         self._used: list[str] = []
+        self._role = ""
         self._by: str | None = None
         self._asked: Listed | None = None
         self._shown: Listed | None = None
@@ -128,22 +129,25 @@ class CataloguePane(Vertical):
         purpose: Purpose,
         target: str,
         used: list[str],
+        role: str = "",
         *,
         clampable: bool = False,
         towed: bool = False,
     ) -> None:
         """Look for a component for the row called `target`, empty in an empty line.
 
-        Favourites come first, what was taken lately, and what is `used` in the line. With
-        `clampable`, only what can be clamped on a line.
+        Favourites come first; then, until words are typed, what has a `role`, what was taken
+        lately, and what is `used` in the line. With `clampable`, only what can be clamped on a
+        line.
         """
         self.purpose, self.clampable, self.towed = purpose, clampable, towed
-        self._used = used
+        self._used, self._role = used, role
         self._leave_asking()
         self.retitle(target)
+        with self.prevent(Input.Changed):
+            self.search.value = ""
         self._search()
         self.search.focus()
-        self.search.action_select_all()
 
     def retitle(self, target: str) -> None:
         """Say beside which row the next one comes."""
@@ -161,6 +165,8 @@ class CataloguePane(Vertical):
         kept = self.remembered
         first = [*dict.fromkeys([*kept.favourites, *kept.recent, *self._used])]
         found = self.index.search(self.search.value, kinds, first=first, by=self._by)
+        if self._role and self._by is None and not self.search.value.strip():
+            found.sort(key=lambda each: (each.id not in kept.favourites, each.role != self._role))
         self.listing.show(found, self.index, self._by, frozenset(kept.favourites))
 
     @on(ComponentList.Moved)

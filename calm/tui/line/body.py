@@ -124,7 +124,23 @@ class LineBody(Horizontal):
         )
         target, towed = self._target(purpose), self.session.draft.is_tow
         used = self._used()
-        self.catalogue.open(purpose, target, used, clampable=is_on_line, towed=towed)
+        role = self._role(purpose)
+        self.catalogue.open(purpose, target, used, role, clampable=is_on_line, towed=towed)
+
+    def _role(self, purpose: Purpose) -> str:
+        """Return what is likely wanted there: a float on top, an anchor last, the like."""
+        spot, index, items = self.line.table.spot, self.workspace.index, self.session.draft.items
+        if spot is None or (purpose == "above" and spot == Place(0)):
+            return "" if self.session.draft.is_tow else "float"
+        if purpose == "clamp" or index is None:
+            return "instrument"
+        if purpose == "replace":
+            listed = index.get(self.session.item(spot).values.get("use", ""))
+            return listed.role if listed else ""
+        listed_all = [index.get(item.values.get("use", "")) for item in items]
+        roles = {each.role for each in listed_all if each}
+        is_last = spot.item == len(items) - 1 and purpose == "below"
+        return "anchor" if is_last and "release" in roles and "anchor" not in roles else ""
 
     def _used(self) -> list[str]:
         """Return what the line uses, from the bottom."""

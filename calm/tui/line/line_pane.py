@@ -71,7 +71,7 @@ class LinePane(EditableTable):
         workspace, view = self.workspace, self.workspace.view
         workspace.refresh_index()
         figures = view if view is not None and (view.rows or view.problems) else workspace.good
-        rows = table_rows(self.session.draft, figures, workspace.index)
+        rows = table_rows(self.session.draft, figures, workspace.index, self.session.added)
         self.table.show_rows(rows, old=workspace.is_old)
 
     def show_draft(self, spot: Place | None = None) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -22,12 +22,15 @@ if TYPE_CHECKING:
 _MOST_MARGIN = 9.99
 
 
-def table_rows(draft: Draft, view: View | None, index: Index | None) -> list[TableRow]:
+def table_rows(
+    draft: Draft, view: View | None, index: Index | None, added: Collection[Place] = ()
+) -> list[TableRow]:
     """A row for each item and clamp; figures of pieces that share an item are its worst.
 
-    A view of an earlier text gives its figures to the rows that are called as its own are.
+    A view of an earlier text gives its figures to the rows that are called as its own are, but for
+    those that were `added`.
     """
-    found = _figures(draft, view)
+    found = _figures(draft, view, added)
     wrong = _wrong_items(draft, view)
     rows = []
     for number, item in enumerate(draft.items):
@@ -53,7 +56,9 @@ def _wrong_items(draft: Draft, view: View | None) -> set[int]:
     }
 
 
-def _figures(draft: Draft, view: View | None) -> dict[Place, Sequence[FoundRow]]:
+def _figures(
+    draft: Draft, view: View | None, added: Collection[Place]
+) -> dict[Place, Sequence[FoundRow]]:
     """Return what was found for each row."""
     if view is None:
         return {}
@@ -70,7 +75,7 @@ def _figures(draft: Draft, view: View | None) -> dict[Place, Sequence[FoundRow]]
         for below in range(-1, len(item.clamps)):
             place = Place(number, clamp=below)
             rest = known.get(_called(draft.items, place))
-            if rest:
+            if rest and place not in added:
                 taken[place] = rest.pop(0)
     return taken
 
