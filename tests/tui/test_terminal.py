@@ -264,8 +264,12 @@ class SlowLink:
         return time.monotonic() - begun
 
 
-def test_twenty_keys_over_a_satellite_settle_within_a_second_of_the_last(folder):
-    """What waits for the terminal is one frame, and the next has all that has changed since."""
+def test_twenty_keys_over_a_satellite_settle_soon_after_the_last(folder):
+    """What waits for the terminal is one frame, and the next has all that has changed since.
+
+    Sent one by one the frames are 16 kB and take 4.5 s more than the keys; a second is what they
+    take merged, and two are for a machine that is busy.
+    """
     path = folder / "deep.yaml"
     lines = shipped_folder("lines") / "deep-current-meters.yaml"
     path.write_text(lines.read_text(encoding="utf-8"), encoding="utf-8")
@@ -278,10 +282,10 @@ def test_twenty_keys_over_a_satellite_settle_within_a_second_of_the_last(folder)
         link.run(0.1)
     last = time.monotonic()
     link.run(8)
-    assert link.shown_at - last < 1.0
+    assert link.shown_at - last < 3.0
     rows = [line for line in link.terminal.text.splitlines() if line.startswith("▸")]
     assert len(rows) == 1
-    assert link.bytes - before < 12_000
+    assert link.bytes - before < 8_000
     quiet = link.bytes
     link.terminal.child.send("l")
     link.run(2)
