@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any
@@ -16,7 +16,18 @@ from calm.checks.strength import safety_factor
 from calm.drawing.schematic.shown_parts import place_text
 from calm.files.strumming_keys import BourgetMarichalKeys
 from calm.quantities import QUANTITIES, duration, say
-from calm.report.blocks import Cell, Column, Field, Line, Note, Prose, ReportPart, Span, Table
+from calm.report.blocks import (
+    Block,
+    Cell,
+    Column,
+    Field,
+    Line,
+    Note,
+    Prose,
+    ReportPart,
+    Span,
+    Table,
+)
 from calm.solve import Status
 
 if TYPE_CHECKING:
@@ -50,12 +61,14 @@ class Sheet:
     title : name and kind
     table : a row for each component and each clamped instrument, in file order
     summary : the two ends of the line in words, the warnings below them
-    convergence : how the solution was reached and how good it is
+    accuracy : how good the solution is
+    convergence : how it was reached
     """
 
     title: str
     table: Table
     summary: tuple[Prose, ...]
+    accuracy: str
     convergence: str
 
 
@@ -68,14 +81,27 @@ def sheet(result: Result | TowResult, *, places: bool = False) -> Sheet:
     return _mooring(result, places)
 
 
-def result_part(result: Result | TowResult) -> ReportPart:
+def result_part(
+    result: Result | TowResult, facts: Sequence[Line] = (), *, verbose: bool = False
+) -> ReportPart:
     """A result in short: it fits 80 columns, where long labels wrap.
 
     A figure beyond its limit carries ``!`` and one near it ``~``, so that nothing hangs on colour.
+
+    Parameters
+    ----------
+    facts : more about the line, after its summary
+    verbose : say how the solution was reached
     """
     said = sheet(result)
-    note = Note((said.table.note, said.convergence))
-    return ReportPart(said.title, (replace(said.table, note=""), *said.summary, note))
+    summary, *warned = said.summary
+    notes = (said.table.note, said.accuracy, *([said.convergence] if verbose else []))
+    blocks: tuple[Block, ...] = (
+        replace(summary, lines=(*summary.lines, *facts)),
+        *warned,
+        Note(notes),
+    )
+    return ReportPart(said.title, (replace(said.table, note=""), *blocks))
 
 
 def _summary(result: Result | TowResult, *lines: Line) -> tuple[Prose, ...]:
@@ -91,6 +117,7 @@ def _mooring(result: Result, places: bool) -> Sheet:
             result, _MOORING_COLUMNS, f"Depth, height and offset: {_NOTE}", places=places
         ),
         summary=_mooring_summary(result),
+        accuracy=_accuracy(result),
         convergence=_convergence(result, "anchor"),
     )
 
@@ -145,6 +172,7 @@ def _tow(result: TowResult, places: bool) -> Sheet:
         title=f"{result.name}: tow at {say('speed', result.speed)} towards {result.toward:.0f}°",
         table=line_table(result, _TOW_COLUMNS, f"Depth and layback: {_NOTE}", places=places),
         summary=_tow_summary(result),
+        accuracy=_accuracy(result),
         convergence=_convergence(result, "tow point"),
     )
 
@@ -210,14 +238,19 @@ def _level(result: TowResult, depth: float) -> str:
     return f"{say('depth', depth)} deep" if depth >= 0.0 else f"{say('depth', -depth)} in the air"
 
 
-def _convergence(result: Result | TowResult, end: str) -> str:
-    """Return how the solution was reached and how good it is; `end` is where the line is held."""
+def _accuracy(result: Result | TowResult) -> str:
+    """Return how good the solution is."""
     accuracy = result.accuracy
     pull = "" if accuracy.anchor is None else f", at the anchor {accuracy.anchor:.2g} N"
+    return f"Good to {accuracy.depth:.2g} m and {accuracy.tension:.2g} N{pull}."
+
+
+def _convergence(result: Result | TowResult, end: str) -> str:
+    """Return how the solution was reached; `end` is where the line is held."""
     return (
         f"{result.status.capitalize()} in {result.iterations} marches of {result.segments} "
-        f"segments, good to {accuracy.depth:.2g} m and {accuracy.tension:.2g} N{pull}; {end} "
-        f"missed by {abs(result.miss):.1g} m, forces closed to {result.closure:.1g}."
+        f"segments; {end} missed by {abs(result.miss):.1g} m, forces closed to "
+        f"{result.closure:.1g}."
     )
 
 
