@@ -18,6 +18,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
+from itertools import islice
 from math import ceil, isnan, nan
 from typing import TYPE_CHECKING, Any
 
@@ -115,22 +116,26 @@ class Recovery:
         ]
 
 
-def recovery_of(mooring: Mooring, result: Result) -> Recovery:
+def recovery_of(mooring: Mooring, result: Result, *, first_only: bool = False) -> Recovery:
     """The recovery of a mooring from where it stands.
 
     Parameters
     ----------
     result : of the mooring; tells where it stands and how long its pieces are
+    first_only : follow the first float alone: one solve in place of one for each
 
     Raises
     ------
     NoEquilibrium
         As `solve_rise`, in still water too.
     """
-    water = mooring.water
-    line, lifts = _freed(mooring, result)
-    released = len(lifts) - 1
-    none = np.full(len(mooring.line.length), nan)
+    count, water = len(mooring.line.length), mooring.water
+    release = mooring.file.release
+    released = count - 1 if release is None else release
+    whole = with_axial_clamps(mooring.line, mooring.file.pieces[:-1])
+    line = part_of(whole, 0, released + 1)
+    lifts = _lifts(line, water, result)
+    none = np.full(count, nan)
     at_rest = Recovery(released, 0.0, float(lifts.sum()), None, none, none, none, (), ())
     if not lifts.sum() > 0.0:
         return at_rest
@@ -140,7 +145,8 @@ def recovery_of(mooring: Mooring, result: Result) -> Recovery:
     if not speed > 0.0:
         return at_rest
     length = result.components.length[: released + 1]
-    risers = dict(_risers(line, water.still(), length, lifts, top, speed, mooring.settings))
+    risen = _risers(line, water.still(), length, lifts, top, speed, mooring.settings)
+    risers = dict(islice(risen, 1 if first_only else None))
     arrival = none.copy()
     head = head_count(line)
     for piece, time in risers.items():
@@ -163,40 +169,6 @@ def recovery_of(mooring: Mooring, result: Result) -> Recovery:
         length=length,
         seabed=water.depth,
     )
-
-
-def ascent_of(mooring: Mooring, result: Result) -> tuple[float, float] | None:
-    """Speed at which the freed line rises, and when its first float is up; None if it does not.
-
-    It takes one solve, where `recovery_of` takes one for each buoyant piece.
-
-    Parameters
-    ----------
-    result : of the mooring; tells where it stands and how long its pieces are
-    """
-    line, lifts = _freed(mooring, result)
-    top = max(result.top.depth, 0.0)
-    if not lifts.sum() > 0.0:
-        return None
-    try:
-        motion, _ = _rise(line, mooring.water, top, mooring.settings)
-    except NoEquilibrium:
-        return None
-    speed = float(motion.velocity[2])
-    length = result.components.length[: len(lifts)]
-    still = mooring.water.still()
-    if not speed > 0.0:
-        return None
-    first = next(_risers(line, still, length, lifts, top, speed, mooring.settings), None)
-    return None if first is None else (speed, first[1])
-
-
-def _freed(mooring: Mooring, result: Result) -> tuple[Line, Floats]:
-    """What rises when the release opens, and the net force of each piece of it, + up [N]."""
-    release = mooring.file.release
-    count = len(mooring.line.length) if release is None else release + 1
-    line = part_of(with_axial_clamps(mooring.line, mooring.file.pieces[:-1]), 0, count)
-    return line, _lifts(line, mooring.water, result)
 
 
 def _lifts(line: Line, water: Water, result: Result) -> Floats:

@@ -7,13 +7,15 @@ them.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from math import floor, hypot, log10
 from typing import TYPE_CHECKING
 
 from calm.checks.finding import State
 from calm.checks.inventory import inventory_of
-from calm.checks.recovery import ascent_of
+from calm.checks.recovery import recovery_of
+from calm.errors import NoEquilibrium
 from calm.quantities import QUANTITIES, Quantity, duration, say
 from calm.report.blocks import Block, Cell, Column, Line, Prose, ReportPart, Span, Table
 from calm.report.check_summary import SIGNS
@@ -53,17 +55,20 @@ def line_facts(result: Result) -> tuple[str, ...]:
     floats = -sum(weight for weight in weights if weight < 0.0)
     length = float(result.components.cut_length.sum())
     depth = result.mooring.water.depth
-    ascent = ascent_of(result.mooring, result)
-    rises = "Freed, it does not rise by itself"
-    if ascent is not None and ascent[1] > 0.0:
-        rises = f"Freed, it rises with {say('speed', ascent[0])}: the top is up in "
-        rises += duration(ascent[1])
+    rises = []
+    with suppress(NoEquilibrium):
+        rise = recovery_of(result.mooring, result, first_only=True)
+        if rise.time_to_surface is None:
+            rises = ["Freed, it does not rise by itself"]
+        elif rise.time_to_surface > 0.0:
+            up = duration(rise.time_to_surface)
+            rises = [f"Freed, it rises with {say('speed', rise.rise_speed)}: the top is up in {up}"]
     return (
         f"Without the anchor {mass}; what floats lifts {say('wet_weight', floats)}, net "
         f"{say('wet_weight', -sum(weights))}",
         f"Line of {say('length', length)}, scope {length / depth:.3f}; watch circle of "
         f"{say('offset', hypot(result.top.x, result.top.y))} in this current",
-        *([rises] if ascent is None or ascent[1] > 0.0 else []),
+        *rises,
     )
 
 

@@ -240,9 +240,9 @@ def _level(result: TowResult, depth: float) -> str:
 
 def _accuracy(result: Result | TowResult) -> str:
     """Return how good the solution is."""
-    accuracy = result.accuracy
-    pull = "" if accuracy.anchor is None else f", at the anchor {accuracy.anchor:.2g} N"
-    return f"Good to {accuracy.depth:.2g} m and {accuracy.tension:.2g} N{pull}."
+    good = result.accuracy
+    pull = "" if good.anchor is None else f", at the anchor {good.anchor:.2g} N"
+    return f"Good to {good.depth:.2g} m and {good.tension:.2g} N{pull}."
 
 
 def _convergence(result: Result | TowResult, end: str) -> str:

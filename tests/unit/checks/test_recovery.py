@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import calm
-from calm.checks.recovery import Recovery, ascent_of, recovery_of
+from calm.checks.recovery import Recovery, recovery_of
 from calm.shipped import shipped_folder
 from calm.solve import Status, solve_rise
 
@@ -178,8 +178,11 @@ def test_what_hangs_right_below_a_float_hangs_there_whatever_the_rounding():
     assert recovery.depth_at(3, 0.5) == pytest.approx(25.0)
 
 
-def test_the_ascent_in_short_is_that_of_the_whole_recovery(tmp_path, recovered):
+def test_the_first_float_alone_rises_as_with_the_others(tmp_path, recovered):
     for text in (FILE, FILE.replace("buoyancy: 2000 N", "buoyancy: 1200 N")):
         whole = recovered(text)
         mooring = calm.load(tmp_path / "m.yaml")
-        assert ascent_of(mooring, mooring.solve()) == (whole.rise_speed, whole.time_to_surface)
+        first = recovery_of(mooring, mooring.solve(), first_only=True)
+        assert first.rise_speed == whole.rise_speed
+        assert first.time_to_surface == whole.time_to_surface
+        assert first.order == whole.order[:1]
