@@ -10,11 +10,8 @@ from pathlib import Path
 from threading import Event, Timer
 from typing import TYPE_CHECKING, TypeVar
 
-from calm.batch.dataset import layout_of
-from calm.batch.profiles import Batch
-from calm.batch.shape import nodes_of
-from calm.batch.statuses import Ending, endings
-from calm.batch.store.finished import (
+from calm.batch.dataset import layout_of, nodes_of
+from calm.batch.finished import (
     ENDINGS,
     clear,
     finish,
@@ -26,9 +23,11 @@ from calm.batch.store.finished import (
     store_folder,
     stored_result,
 )
-from calm.batch.store.store import identity_of, open_store, to_text
+from calm.batch.profiles import Batch
+from calm.batch.statuses import Ending, endings
 from calm.batch.threads import Stopped, go_on, processors
 from calm.batch.work import BatchWork, Progress, compile_solver
+from calm.batch.work_store import identity_of, open_store, to_text
 from calm.case import Mooring
 from calm.errors import UsageError
 

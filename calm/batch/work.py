@@ -19,12 +19,11 @@ import numpy as np
 from numba.core import event
 from numpy.typing import NDArray
 
-from calm.batch.dataset import arrays_of
+from calm.batch.dataset import ShapeNodes, arrays_of
 from calm.batch.profiles import Batch, Profiles
-from calm.batch.shape import ShapeNodes
 from calm.batch.statuses import STATUSES, Ending, endings
-from calm.batch.store.store import Arrays, Store
 from calm.batch.threads import in_threads
+from calm.batch.work_store import Arrays, Store
 from calm.case import Mooring
 from calm.errors import UsageError
 from calm.physics.compiled import cache_folder

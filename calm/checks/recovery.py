@@ -26,7 +26,7 @@ import numpy as np
 
 from calm.assemble import net_buoyancy, with_axial_clamps
 from calm.errors import NoEquilibrium
-from calm.files import Component, Flexible
+from calm.files import Component, Flexible, Piece, Place
 from calm.files.definition import CATALOGUE_DENSITY
 from calm.physics.line import Floats, Line, Water
 from calm.physics.materials import materials_in
@@ -37,8 +37,6 @@ from calm.solve.standing import standing_lift
 
 if TYPE_CHECKING:
     from calm.case import Mooring, Result
-    from calm.files import Piece, Place
-    from calm.physics.line import Floats
 
 MOST_SOLVED = 48
 """Buoyant pieces whose rise is solved one by one; of more, some rise as the one before them."""
@@ -87,12 +85,8 @@ class Recovery:
     def depth_at(self, piece: int, share: float) -> float:
         """Return the depth of a place on a piece when all is up [m]; nan where it is not known.
 
-        It hangs by the shorter way along the line to a piece that is up, above it or below.
-
-        Parameters
-        ----------
-        piece : its index
-        share : of the piece's length, from its upper end
+        The place is a share of the length from the upper end of the piece of an index. It hangs by
+        the shorter way along the line to a piece that is up, above it or below.
         """
         up = np.isfinite(self.arrival[: len(self.length)])
         if piece >= len(up):
@@ -198,11 +192,8 @@ def _risers(
 ) -> Iterator[tuple[int, float]]:
     """The pieces that come up by themselves, and when [s].
 
-    Parameters
-    ----------
-    water : without current
-    length, lifts : (n,) stretched length [m] and net force [N] of the pieces
-    top, speed : depth of the line's upper end where it stands [m], and its speed at first [m/s]
+    They have stretched lengths [m] and net forces [N], (n,); the line's upper end stands at `top`
+    [m] and has a speed at first [m/s]. The water is without current.
     """
     time, up, count = 0.0, 0, len(length)
     rising = np.flatnonzero(lifts > 0.0).tolist()
@@ -367,10 +358,8 @@ def breaks_of(mooring: Mooring) -> tuple[Break, ...]:
 def _beyond_help(above: Sequence[Piece], lift: Floats, *between: str) -> range:
     """The breaks inside the lowest cluster of floats, and below it down to a cable or instrument.
 
-    Parameters
-    ----------
-    above, lift : the pieces above the release, and their net forces [N]
-    between : kinds and roles of what may stand between the floats of a cluster
+    The pieces are those above the release, with their net forces [N]; kinds and roles of what may
+    stand `between` the floats of a cluster count.
     """
     floats = [
         force > 0.0 and not _is(piece, "cable") for piece, force in zip(above, lift, strict=True)

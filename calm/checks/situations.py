@@ -41,7 +41,6 @@ from calm.records.water_column import kilometres_from
 from calm.solve import Status
 
 if TYPE_CHECKING:
-    from calm.case import Mooring
     from calm.checks.handling import Handling
 
 STILL, STILL_LOW = "still water", "still low water"
@@ -257,7 +256,7 @@ def currents(moorings: Sequence[Mooring]) -> Iterator[tuple[Mooring, Verdict]]:
 
     Each verdict comes with the mooring in the environment that it is of.
     """
-    speeds = [_strongest(mooring) for mooring in moorings]
+    speeds = [float(np.hypot(each.water.u, each.water.v).max()) for each in moorings]
     for mooring, speed in zip(moorings, speeds, strict=True):
         if 0.0 < speed < WEAK_BESIDE_OTHERS * max(speeds):
             message = (
@@ -296,10 +295,6 @@ def _records(moorings: Sequence[Mooring]) -> Iterator[tuple[Mooring, float]]:
     for source, mooring in sources.items():
         if source is not None:
             yield mooring, strongest_of(*source)
-
-
-def _strongest(mooring: Mooring) -> float:
-    return float(np.hypot(mooring.water.u, mooring.water.v).max())
 
 
 def _left_out(mooring: Mooring) -> str:

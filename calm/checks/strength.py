@@ -4,21 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from calm.case import Mooring, Result
 from calm.case.warnings import is_synthetic
 from calm.checks.criterion import Citing, Criterion, JudgedPart, criteria, pieces_of
 from calm.checks.finding import State, Verdict, at_least, rule
 from calm.checks.inventory import anchor_dry_mass
 from calm.checks.posture import reaches_the_surface
-from calm.files import Cable, Component, Piece
+from calm.files import Cable, Component, Piece, SafetyFactors
 from calm.quantities import say
-
-if TYPE_CHECKING:
-    from calm.case import Mooring, Result
-    from calm.files import SafetyFactors
 
 WEAK_LINK = 0.5
 """Share of the strength of the cables on both its sides below which a piece is a weak link."""

@@ -271,7 +271,7 @@ def _concluded(
 
     assessment = assessment_of(name, stands, day)
     if draws is not None:
-        from calm.checks.likelihood import with_probabilities
+        from calm.checks.assess import with_probabilities
 
         assessment = with_probabilities(assessment, *draws, shared)
     return CheckedMooring(

@@ -102,8 +102,8 @@ def motion(
     """
     import numpy as np
 
+    from calm.batch.finished import open_result, readable
     from calm.batch.profiles import Batch
-    from calm.batch.store.finished import open_result, readable
     from calm.batch.work import compile_solver
     from calm.motion.correction import MeasuredRecord, run_motion
     from calm.motion.instrument_file import read_instruments, write_depths

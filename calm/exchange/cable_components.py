@@ -228,13 +228,7 @@ def varies(definition: CableDefinition) -> bool:
 def _displacement(
     definition: CableDefinition, shape: str
 ) -> tuple[tuple[float, float, float], ...]:
-    """Return rows of draft [m], displaced volume [m³] and immersed area [m²].
-
-    Raises
-    ------
-    InputError
-        The hull has no size, or a shape that is not known.
-    """
+    """Return rows of draft [m], displaced volume [m³] and immersed area [m²] of a known shape."""
     values = definition.values
     across = values.number("d", "diam")
     height = values.number("h", "height")

@@ -338,9 +338,7 @@ def _kebab(name: str) -> str:
 def ids_of(components: Iterable[ImportedComponent], taken: Iterable[str] = ()) -> dict[int, str]:
     """Return the id of every component, by its `id()`; those with the same figures share one.
 
-    Parameters
-    ----------
-    taken : ids that are in use for something else
+    None is one that is `taken` by something else.
     """
     components = list(components)
     ids: dict[int, str] = {}

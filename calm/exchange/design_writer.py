@@ -34,14 +34,6 @@ _FORCES = {"buoyancy", "weight"}
 
 
 @dataclass
-class Written:
-    """Hold the text of a mooring file, and what was guessed in it."""
-
-    text: str
-    guessed: list[Remark]
-
-
-@dataclass
 class _Page:
     """Hold the lines so far, and the guesses in their comments."""
 
@@ -63,8 +55,8 @@ class _Page:
 
 def mooring_text(
     design: Design, source: str, environment: list[str] | None = None, version: str = ""
-) -> Written:
-    """Return the mooring file of a design.
+) -> tuple[str, list[Remark]]:
+    """Return the text of the mooring file of a design, and what was guessed in it.
 
     Parameters
     ----------
@@ -108,7 +100,7 @@ def mooring_text(
         page.add("components:")
     for id_, component in own.items():
         _write_component(page, component, id_, design.in_kilograms)
-    return Written("\n".join(page.lines) + "\n", page.guessed)
+    return "\n".join(page.lines) + "\n", page.guessed
 
 
 def _number(value: float) -> str:

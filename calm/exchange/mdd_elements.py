@@ -181,9 +181,7 @@ def read_elements(
 ) -> tuple[list[MddElement], list[str]]:
     """Return the elements of a line in the order of the file, and what is wrong with them.
 
-    Parameters
-    ----------
-    suffix : ``t`` for the matrices of a tow, ``CO`` for what is clamped on, or nothing
+    The suffix is ``t`` for the matrices of a tow, ``CO`` for what is clamped on, or nothing.
     """
     problems: list[str] = []
     size = _matrix(variables, f"H{suffix}", problems)
@@ -316,13 +314,7 @@ def is_moords(content: bytes) -> bool:
 
 
 def read_moords(path: Path) -> Design:
-    """Read a design.
-
-    Raises
-    ------
-    InputError
-        Its headings or figures are not those of that program.
-    """
+    """Read a design (InputError: its headings or figures are not those of that program)."""
     rows = list(csv.DictReader(io.StringIO(read_text(path))))
     if not rows or not rows[0].keys() >= _MARKS:
         raise refused(path, "is not a design of moords: its headings are others")

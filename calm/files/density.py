@@ -7,10 +7,10 @@ from collections.abc import Iterator, Mapping
 from typing import Annotated
 
 import numpy as np
-from pydantic import Discriminator, Field, Tag, ValidationError
+from pydantic import Discriminator, Tag, ValidationError
 
 from calm.errors import Problem
-from calm.files.definition import CATALOGUE_DENSITY, DENSITY, Model, QuantityField, Text
+from calm.files.definition import CATALOGUE_DENSITY, DENSITY, Model, QuantityField, Text, described
 from calm.files.yaml_document import SourceMapping
 from calm.physics import seawater
 from calm.records.current_terms import left_out
@@ -44,13 +44,12 @@ def _table_or_constant(value: object) -> str:
 class TableKeys(Model):
     """Columns, each a name and its unit, and rows of values."""
 
-    columns: tuple[Text, ...] = Field(
-        description="each a name and its unit: depth m, speed m/s, toward deg; or u m/s, v m/s, "
-        "w m/s",
-        examples=[["depth m", "speed m/s", "toward deg"]],
+    columns: tuple[Text, ...] = described(
+        "each a name and its unit: depth m, speed m/s, toward deg; or u m/s, v m/s, w m/s",
+        ["depth m", "speed m/s", "toward deg"],
     )
-    rows: tuple[tuple[Text | None, ...], ...] = Field(
-        description="values, top to bottom", examples=[[[0, 0.8, 90], [1100, 0.05, 60]]]
+    rows: tuple[tuple[Text | None, ...], ...] = described(
+        "values, top to bottom", [[0, 0.8, 90], [1100, 0.05, 60]]
     )
 
 
@@ -61,12 +60,12 @@ class SeaWaterKeys(Model):
         Annotated[float, QuantityField(**vars(TEMPERATURE)), Tag("constant")]
         | Annotated[TableKeys, Tag("table")],
         Discriminator(_table_or_constant),
-    ] = Field(description="in situ, a constant or a table", examples=["10 degC"])
+    ] = described("in situ, a constant or a table", "10 degC")
     salinity: Annotated[
         Annotated[float, QuantityField(**vars(SALINITY)), Tag("constant")]
         | Annotated[TableKeys, Tag("table")],
         Discriminator(_table_or_constant),
-    ] = Field(description="practical, a constant or a table", examples=[35])
+    ] = described("practical, a constant or a table", 35)
 
 
 Density = Annotated[
@@ -132,12 +131,9 @@ def report_at(section: SourceMapping, *place: str) -> Report:
 
 
 def density_notices(density: float | DepthTable | SeaWater, depth: float | None) -> Iterator[str]:
-    """Yield what is odd about the density of the water, in sentences.
+    """Yield what is odd about the density of the water as it was read, in sentences.
 
-    Parameters
-    ----------
-    density : as it was read
-    depth : of the water [m], None where it is not known
+    Its depth [m] is None where it is not known.
     """
     if isinstance(density, SeaWater):
         profiles = {"temperature": density.temperature, "salinity": density.salinity}

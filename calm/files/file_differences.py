@@ -19,8 +19,8 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from calm.files.components import Flexible
 from calm.files.definition import QuantityField
-from calm.files.flexible import Flexible
 from calm.files.mooring_file import Clamp, MooringFile, Piece
 from calm.quantities import bearing_of
 from calm.records.profile_tables import CurrentTable, DepthTable

@@ -15,10 +15,11 @@ from pydantic import AfterValidator, Field
 
 from calm.errors import Problem
 from calm.files.check_limits import Accept, Checks, LimitKey
-from calm.files.components import Anchor, Component, Profiler
+from calm.files.components import Anchor, Component
 from calm.files.definition import LENGTH, Model, QuantityField
 from calm.files.environment import Environment, Position
 from calm.files.logbook import NO_EQUIPMENT, Deployed, DocumentKeys, Equipment, ReleaseKeys
+from calm.files.rigid import Profiler
 from calm.files.strumming_keys import Strumming
 from calm.files.uncertainty import Uncertainty
 from calm.files.yaml_document import SourceMapping

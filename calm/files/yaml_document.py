@@ -32,12 +32,10 @@ class Document:
 
     Attributes
     ----------
-    path : str
-        As messages show it.
-    data : dict
-        Mappings, lists, text and None.
-    values, keys : dict
-        The place of every value and of every key, by its location: ``("line", 0, "use")``.
+    path : as messages show it
+    data : mappings, lists, text and None
+    values, keys : the place of every value and of every key, by its location: ``("line", 0,
+        "use")``
     """
 
     path: str
@@ -68,25 +66,15 @@ class Document:
 def read_document(path: Path) -> Document:
     """Read a YAML file whose top level is a mapping.
 
-    Raises
-    ------
-    InputError
-        The file cannot be read, is no text, no valid YAML, or holds duplicate keys.
+    InputError: the file cannot be read, is no text, no valid YAML, or holds duplicate keys.
     """
     return compose(str(path), read_text(path))
 
 
 def compose(name: str, text: str) -> Document:
-    """Return the document of a text, as that of a file or in place of one.
+    """Return the document of a text, as that of a file of a name or in place of one.
 
-    Parameters
-    ----------
-    name : of the file, as messages show it
-
-    Raises
-    ------
-    InputError
-        It is no valid YAML, or holds duplicate keys.
+    InputError: it is no valid YAML, or holds duplicate keys.
     """
     root, refusals = composition.compose(text.removeprefix("\ufeff"))
     if root is not None and root.kind != "mapping":
@@ -122,12 +110,10 @@ class SourceMapping:
 
     Attributes
     ----------
-    document, location
-        Where the mapping (the upper one) stands; problems without a key are put there.
-    data : dict
-        The mapping, its own keys over those it overlays.
-    base : Section or None
-        What lies below.
+    document, location : where the mapping (the upper one) stands; problems without a key are put
+        there
+    data : the mapping, its own keys over those it overlays
+    base : what lies below
     """
 
     document: Document
@@ -226,7 +212,8 @@ def _explain(
         if details["type"] == "missing" and isinstance(details["loc"][-1], str):
             missing.append((location, name))
         elif details["type"] == "extra_forbidden":
-            keys = [*_keys(model, details["loc"][:-1]), *also_allowed]
+            forms = _models_in(_form(model, details["loc"][:-1]))
+            keys = [*(name for one in forms for name in one.model_fields), *also_allowed]
             if also_allowed:
                 keys.remove("kind")
             near = _meant(name, keys)
@@ -341,11 +328,6 @@ def _flow(value: object) -> str:
     if isinstance(value, dict):
         return "{" + ", ".join(f"{key}: {_flow(each)}" for key, each in value.items()) + "}"
     return f"[{', '.join(map(_flow, value))}]" if isinstance(value, list) else str(value)
-
-
-def _keys(model: type[BaseModel], loc: tuple[int | str, ...]) -> list[str]:
-    """Return the keys allowed at a pydantic location."""
-    return [name for one in _models_in(_form(model, loc)) for name in one.model_fields]
 
 
 def _form(model: type[BaseModel], loc: tuple[int | str, ...]) -> Any:

@@ -227,10 +227,8 @@ class Sound:
 def read_sound(path: Path) -> Sound:
     """Return a profile from a CSV file with the header ``depth[m],sound_speed[m/s]``.
 
-    Raises
-    ------
-    InputError
-        With every mistake of the file: a depth that does not grow, a speed that no water has.
+    InputError: with every mistake of the file: a depth that does not grow, a speed that no water
+    has.
     """
     problems: list[Problem] = []
     columns = read_named_columns(path, _OF_SOUND, _EXAMPLE, problems)

@@ -76,11 +76,7 @@ class Record(ABC):
         """Return depth (k,) or (m, k) [m], and u, v, w (m, k) [m/s] of some profiles, NaN in gaps.
 
         The depths are positive down, in any order; `w` is None where the record has none.
-
-        Raises
-        ------
-        InputError
-            The file is damaged there.
+        InputError: the file is damaged there.
         """
 
     def flags(self, start: int, stop: int) -> NDArray[np.int8] | None:
@@ -94,9 +90,7 @@ class Record(ABC):
     def digest(self, check: Callable[[], None] = lambda: None) -> str:
         """SHA-256 of the times, depths and currents as they are read; the name does not count.
 
-        Parameters
-        ----------
-        check : called before each part is read
+        `check` is called before each part is read.
         """
         digest = hashlib.sha256()
         digest.update(np.ascontiguousarray(self.time, "<M8[ns]").view("<i8").data)
@@ -118,12 +112,8 @@ class Record(ABC):
 def parse_period(text: str) -> Period:
     """Return a period ``A/B`` of ISO times; a year, a month or a day as B counts whole.
 
-    Either end may be left out, or be two points: ``2026-03/``, ``../2026-03-31``.
-
-    Raises
-    ------
-    UsageError
-        The text is none, or ends before it begins.
+    Either end may be left out, or be two points: ``2026-03/``, ``../2026-03-31``. UsageError: the
+    text is none, or ends before it begins.
     """
     first, slash, last = text.partition("/")
     if not slash:
@@ -137,12 +127,8 @@ def parse_period(text: str) -> Period:
 def parse_place(text: str) -> Place:
     """Return a place ``LAT,LON`` [degrees north, degrees east], longitudes from −180 or from 0.
 
-    Either may be of degrees and minutes: ``57 28.84 N, 19 10.2 W``.
-
-    Raises
-    ------
-    UsageError
-        The text is none, or no place on the earth.
+    Either may be of degrees and minutes: ``57 28.84 N, 19 10.2 W``. UsageError: the text is none,
+    or no place on the earth.
     """
     parts = text.split(",")
     try:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from calm.batch.finished import stored_result
 from calm.batch.statistics.extremes import EXTRAPOLATION, METHODS, Fit, Level
-from calm.batch.statistics.summary import PERCENTILES, WORST, Summary, summarize
-from calm.batch.store.finished import stored_result
+from calm.batch.statistics.limits import Exceedance
+from calm.batch.statistics.summary import PERCENTILES, WORST, Distribution, Summary, summarize
 from calm.case import Mooring
 from calm.checks.finding import State
 from calm.quantities import QUANTITIES
@@ -51,10 +51,6 @@ from calm.report.provenance import NOT_JUDGED, date, versions
 from calm.report.result_files import to_json
 from calm.report.sheet import figure_cell, quantity_column
 from calm.whole_file import put
-
-if TYPE_CHECKING:
-    from calm.batch.statistics.limits import Exceedance
-    from calm.batch.statistics.summary import Distribution
 
 
 def summary_html(summary: Summary) -> str:

@@ -9,10 +9,9 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeVar
 
-from calm.checks.finding import State
+from calm.checks.finding import Finding, State
 
 if TYPE_CHECKING:
-    from calm.checks.finding import Finding
     from calm.report.check_facts import CheckFacts
 
 Item = TypeVar("Item")

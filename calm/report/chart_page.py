@@ -18,6 +18,7 @@ import numpy as np
 from calm.analytic.chart_branch import CurvePoints, critical_angle, curve
 from calm.drawing.picture import image
 from calm.errors import UsageError
+from calm.physics.line import Floats
 from calm.report.blocks import Cell, Column, Note, ReportPart, Table
 
 if TYPE_CHECKING:
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from calm.analytic.chart import ChartAnswer, ChartSolution
-    from calm.physics.line import Floats
 
 CHART_FORMATS = (".svg", ".png", ".pdf")
 """The endings a chart's file name may have."""
@@ -71,17 +71,10 @@ def chart_picture(k: float, lower_end: str, suffix: str) -> bytes:
 
 
 def draw_chart(k: float, lower_end: str = "below-90") -> Figure:
-    """The chart of one K: a page of A4 that belongs to no window; no text on it covers another.
+    """The chart of one K, 0 to 100: a page of A4 that belongs to no window; no text covers another.
 
-    Parameters
-    ----------
-    k : 0 ≤ K ≤ 100
-    lower_end : ``below-90`` or ``above-90``: the angle at the lower ends of the cables to be read
-
-    Raises
-    ------
-    UsageError
-        K out of range; ``above-90`` at K = 0, whose curve ends at 90°.
+    The lower ends of the cables to be read are at angles ``below-90`` or ``above-90``. UsageError:
+    K out of range; ``above-90`` at K = 0, whose curve ends at 90°.
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure

@@ -10,9 +10,12 @@ from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any
 
 from calm.checks.assess import RULES
+from calm.checks.assessment import Assessment, Situation
 from calm.checks.finding import Finding, State, worst_state
 from calm.checks.inventory import total_of
+from calm.checks.recovery import Loss
 from calm.drawing.check_figures import check_figure
+from calm.files.check_limits import LimitKey
 from calm.quantities import QUANTITIES
 from calm.records.delimited import table_csv
 from calm.report.blocks import (
@@ -58,11 +61,7 @@ from calm.report.result_files import members
 from calm.report.sheet import sheet
 
 if TYPE_CHECKING:
-    from calm.checks.assessment import Assessment, Situation
     from calm.checks.comparison import Comparison
-    from calm.checks.finding import Finding
-    from calm.checks.recovery import Loss
-    from calm.files.check_limits import LimitKey
 
 
 def mooring_section(assessment: Assessment, against: Comparison | None = None) -> Section:

@@ -9,12 +9,18 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from itertools import groupby
 from math import hypot, inf, isnan
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from calm.case import Result
 from calm.checks.assess import RULES
+from calm.checks.assessment import Assessment, MooringInEnvironment
 from calm.checks.finding import Finding, State
+from calm.checks.inventory import InventoryItem
+from calm.checks.recovery import Break
 from calm.drawing.schematic.shown_parts import place_text
+from calm.files import Piece
 from calm.files.components import FLEXIBLE_KINDS
+from calm.physics.line import Floats
 from calm.quantities import QUANTITIES, say
 from calm.report.blocks import (
     Block,
@@ -31,7 +37,7 @@ from calm.report.blocks import (
     Table,
     table_of,
 )
-from calm.report.check_facts import judged_section, key_pairs, settled_tables
+from calm.report.check_facts import CheckFacts, judged_section, key_pairs, settled_tables
 from calm.report.check_summary import (
     joined,
     margin_of,
@@ -48,16 +54,6 @@ from calm.report.check_summary import (
 )
 from calm.report.provenance import UNSEEN
 from calm.report.sheet import figure_cell, quantity_column, quantity_field
-
-if TYPE_CHECKING:
-    from calm.case import Result
-    from calm.checks.assessment import Assessment, MooringInEnvironment
-    from calm.checks.finding import Finding
-    from calm.checks.inventory import InventoryItem
-    from calm.checks.recovery import Break
-    from calm.files import Piece
-    from calm.physics.line import Floats
-    from calm.report.check_facts import CheckFacts
 
 _RESULTS: dict[str, Callable[[Result], float | None]] = {
     "depth": lambda result: result.top.depth,
@@ -101,7 +97,12 @@ def checks_table(findings: Iterable[Finding]) -> Iterator[Table | Prose]:
         "Worst finding of each rule on each component",
         joined(kept),
         (Column("state", share=0.0), lambda found: state_cell(found[0])),
-        (Column("rule"), lambda found: _with_source(found, sources)),
+        (
+            Column("rule"),
+            lambda found: Cell(
+                RULES[found[0].rule].title, f"[{sources.index(found[0].source) + 1}]"
+            ),
+        ),
         (Column("component", share=1.8), _placed),
         (Column("value", numeric=True), lambda found: say_in_unit(found[0], found[0].value)),
         (Column("limit", numeric=True), lambda found: say_in_unit(found[0], found[0].limit)),
@@ -112,10 +113,6 @@ def checks_table(findings: Iterable[Finding]) -> Iterator[Table | Prose]:
         sortable=True,
     )
     yield Prose(tuple(f"[{number}] {source}" for number, source in enumerate(sources, 1)))
-
-
-def _with_source(found: Sequence[Finding], sources: Sequence[str]) -> Cell:
-    return Cell(RULES[found[0].rule].title, f"[{sources.index(found[0].source) + 1}]")
 
 
 def _placed(found: Sequence[Finding]) -> Cell:
@@ -266,12 +263,7 @@ _NOTE = (
 
 
 def likelihood_tables(named: Iterable[tuple[str, Sequence[Finding]]]) -> Iterator[Table]:
-    """The designs by their greatest probability; nothing where none was counted.
-
-    Parameters
-    ----------
-    named : name and findings of each design
-    """
+    """The designs, by name, by their greatest probability; nothing where none was counted."""
     designs = [(name, _likeliest(findings)) for name, findings in named]
     if not any(found for _, found in designs):
         return

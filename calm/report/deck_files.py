@@ -6,9 +6,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from datetime import datetime
 from io import BytesIO
-from typing import TYPE_CHECKING
 
 from calm.checks.finding import State
+from calm.deck import Deck
 from calm.drop import DropPlan
 from calm.records.delimited import table_csv
 from calm.report.blocks import PageBreak, Plate, Prose, Report, ReportPart, Section
@@ -22,12 +22,9 @@ from calm.report.deck_lists import (
 )
 from calm.report.deck_logs import deployment_part, recovery_part
 from calm.report.diagram import diagram_pages
+from calm.report.diagram_layout import Paper
 from calm.report.drop_sheet import drop_part
 from calm.report.provenance import date, document_part, input_hash, moment, versions
-
-if TYPE_CHECKING:
-    from calm.deck import Deck
-    from calm.report.diagram_layout import Paper
 
 Rows = Iterable[Sequence[object]]
 

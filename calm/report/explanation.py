@@ -216,12 +216,7 @@ _ROWS = (
 
 
 def sizing_part(sizing: Sizing) -> ReportPart:
-    """Return what to change so that the target is met, and what else that changes.
-
-    Parameters
-    ----------
-    sizing : one whose target is met; of the others there is only a reason to tell
-    """
+    """Return what to change so that a target that can be met is met, and what else that changes."""
     assert sizing.after is not None
     lines: list[Line] = []
     if sizing.before.failure is not None:

@@ -13,15 +13,12 @@ from dataclasses import replace
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from calm.errors import UsageError
-from calm.report.blocks import Section
+from calm.report.blocks import Report, Section
 from calm.report.provenance import moment
 from calm.whole_file import put
-
-if TYPE_CHECKING:
-    from calm.report.blocks import Report
 
 REPORT_FILES = ("report.html", "report.pdf", "report.json", "checks.csv", "inventory.csv")
 """What a design check writes in the folder."""
@@ -30,10 +27,8 @@ REPORT_FILES = ("report.html", "report.pdf", "report.json", "checks.csv", "inven
 def check_folder(folder: Path) -> None:
     """Refuse a folder in which nothing could be written, before the work for it is done.
 
-    Raises
-    ------
-    UsageError
-        It is no folder, or lies in none; it or the nearest one that exists may not be written.
+    UsageError: it is no folder, or lies in none; it or the nearest one that exists may not be
+    written.
     """
     try:
         with contextlib.suppress(FileNotFoundError):
@@ -59,8 +54,7 @@ def write_report(folder: Path, files: Mapping[str, bytes]) -> None:
 
     Parameters
     ----------
-    files : mapping
-        Of the name in the folder to the content.
+    files : of the name in the folder to the content
 
     Raises
     ------
@@ -109,10 +103,7 @@ def _restore(folder: Path, parts: Mapping[str, Path], kept: Mapping[str, Path]) 
 def check_destination(path: Path) -> None:
     """Refuse a file that could not be written, before the work for it is done.
 
-    Raises
-    ------
-    UsageError
-        The folder is missing, or the file or its folder may not be written.
+    UsageError: the folder is missing, or the file or its folder may not be written.
     """
     folder = os.path.dirname(os.path.realpath(path))
     if os.path.isdir(path):
@@ -127,11 +118,7 @@ def write_file(path: Path, content: bytes) -> None:
     """Write a file whole: a reader sees the old content or the new, never a part.
 
     A device or a pipe is written as it is, and a symbolic link keeps pointing where it did.
-
-    Raises
-    ------
-    UsageError
-        The system refuses, e.g. because the disk is full; the old file is then untouched.
+    UsageError: the system refuses, e.g. because the disk is full; the old file is then untouched.
     """
     try:
         if os.path.exists(path) and not os.path.isfile(path):

@@ -11,6 +11,7 @@ import numpy as np
 
 from calm.checks.finding import State
 from calm.drawing.picture import figure_svg
+from calm.physics.line import Floats
 from calm.report.blocks import (
     Block,
     Column,
@@ -36,7 +37,6 @@ if TYPE_CHECKING:
 
     from calm.motion.remarks import Agreement
     from calm.motion.study import HeldOut, SensorSeries, Study
-    from calm.physics.line import Floats
 
 _DEPTHS = "Depths over time"
 _FALSE = "Times at which a current is more likely false than not"

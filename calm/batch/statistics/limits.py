@@ -221,12 +221,7 @@ class RuleShare:
 
 
 def equilibrium_share(ended: Mapping[Ending, int]) -> RuleShare:
-    """Return how often the line has no equilibrium; a profile that did not converge is not judged.
-
-    Parameters
-    ----------
-    ended : profiles by how they ended
-    """
+    """Return how often the line has no equilibrium; what did not converge is not judged."""
     without = ended[Ending.NO_EQUILIBRIUM]
     judged = ended[Ending.SOLVED] + without
     return _rule_share(equilibrium, judged, without, 0, ended[Ending.NOT_CONVERGED], ())

@@ -11,10 +11,10 @@ import pytest
 
 import calm
 from calm.batch import run as run_module
+from calm.batch.finished import open_result
 from calm.batch.profiles import Batch
 from calm.batch.run import LARGEST_BLOCK, run_batch
 from calm.batch.statuses import STATUSES, Ending
-from calm.batch.store.finished import open_result
 from calm.batch.threads import in_threads
 from calm.batch.work import compile_solver
 from calm.errors import UsageError

@@ -117,9 +117,7 @@ class Store:
     def forget_damaged(self, check: Callable[[], None]) -> list[int]:
         """The blocks that are not as they were written: they are missing again.
 
-        Parameters
-        ----------
-        check : called before each block is read again
+        `check` is called before each block is read again.
         """
 
         def is_whole(number: int) -> bool:
@@ -166,7 +164,7 @@ def open_store(folder: Path, layout: ResultLayout, block: int, identity: str) ->
     Parameters
     ----------
     folder : of the store
-    identity : the text of what it is made from, see `calm.batch.store.store`
+    identity : the text of what it is made from, see `calm.batch.work_store`
 
     Raises
     ------
@@ -195,10 +193,7 @@ def open_store(folder: Path, layout: ResultLayout, block: int, identity: str) ->
 def refuse_another(path: Path, before: str, now: str) -> None:
     """Refuse to go on with what was made from another input, and report what differs.
 
-    Raises
-    ------
-    UsageError
-        Where the two identities are not the same, or the first cannot be read.
+    UsageError: where the two identities are not the same, or the first cannot be read.
     """
     if before == now:
         return
@@ -266,10 +261,7 @@ def identity_of(
 ) -> dict[str, Any]:
     """All that the figures of a result follow from, as JSON has it.
 
-    Raises
-    ------
-    calm.batch.threads.Stopped
-        While the record is read through, which may take long.
+    calm.batch.threads.Stopped: while the record is read through, which may take long.
     """
     ends = (record.time[0], record.time[-1])
     identity = {

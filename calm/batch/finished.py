@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.batch.store.store import IDENTITY, WORK, Store, refuse_another
+from calm.batch.work_store import IDENTITY, WORK, Store, refuse_another
 from calm.dataset.netcdf import write_netcdf
 from calm.errors import UsageError
 from calm.suggestions import unknown
@@ -35,10 +35,7 @@ def store_folder(output: Path) -> Path:
 def is_finished(output: Path, identity: str) -> bool:
     """Return whether a result is there already.
 
-    Raises
-    ------
-    UsageError
-        It is something else, or the result of another input.
+    UsageError: it is something else, or the result of another input.
     """
     if not output.exists():
         return False
@@ -117,14 +114,7 @@ def lock_file(folder: Path) -> Path:
 def locked(folder: Path, tell: Callable[[str], None]) -> Iterator[None]:
     """Hold the lock of a work folder, which ends with the process, however that ends.
 
-    Parameters
-    ----------
-    tell : called where the file system has no locks
-
-    Raises
-    ------
-    UsageError
-        Another batch holds it.
+    Where the file system has no locks, that is told. UsageError: another batch holds it.
     """
     lock = lock_file(folder)
     handle = _held(lock, folder, tell)
@@ -162,13 +152,7 @@ def _held(lock: Path, folder: Path, tell: Callable[[str], None]) -> int:
 
 
 def _has_lock(handle: int) -> bool:
-    """Lock an open file; whether there is such a thing.
-
-    Raises
-    ------
-    BlockingIOError
-        Somebody else has it.
-    """
+    """Lock an open file; whether there is such a thing. BlockingIOError: somebody else has it."""
     if sys.platform == "win32":
         return False
     import fcntl
@@ -218,10 +202,7 @@ class Stored(Protocol):
 def stored_result(path: Path) -> Iterator[Stored]:
     """A result of `calm batch` as it lies on the disk; quicker there than `open_result`.
 
-    Raises
-    ------
-    UsageError
-        It cannot be read.
+    UsageError: it cannot be read.
     """
     if path.suffix == ".zarr":
         import zarr
@@ -241,10 +222,7 @@ def stored_result(path: Path) -> Iterator[Stored]:
 def open_result(path: Path) -> Dataset:
     """A result of `calm batch`, a .nc file or a .zarr folder, of which nothing is loaded yet.
 
-    Raises
-    ------
-    UsageError
-        It cannot be read.
+    UsageError: it cannot be read.
     """
     import xarray as xr
 
@@ -259,10 +237,7 @@ def open_result(path: Path) -> Dataset:
 def readable(path: Path) -> Iterator[None]:
     """Says what to do where a finished result cannot be read.
 
-    Raises
-    ------
-    UsageError
-        In place of what the libraries raise, whatever that is.
+    UsageError: in place of what the libraries raise, whatever that is.
     """
     try:
         yield
@@ -341,10 +316,7 @@ def place_of(dataset: Stored, label: str) -> tuple[str, int]:
 def status_names(dataset: Stored) -> tuple[str, ...]:
     """Return what the numbers of `status` in a result mean; the first is 0.
 
-    Raises
-    ------
-    UsageError
-        The dataset is no result of `calm batch`.
+    UsageError: the dataset is no result of `calm batch`.
     """
     attributes = dataset["status"].attrs if "status" in dataset else {}
     names = tuple(str(attributes.get("flag_meanings", "")).split())
@@ -357,10 +329,7 @@ def status_names(dataset: Stored) -> tuple[str, ...]:
 def statuses_of(dataset: Stored) -> dict[str, int]:
     """Return how many profiles of a result ended with each status that occurs.
 
-    Raises
-    ------
-    UsageError
-        The dataset is no result of `calm batch`.
+    UsageError: the dataset is no result of `calm batch`.
     """
     names, status = status_names(dataset), dataset["status"]
     counts = np.zeros(len(names), np.int64)
