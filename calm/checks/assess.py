@@ -33,6 +33,7 @@ from calm.checks.inventory import inventory_of
 from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import breaks_of, losses_of, recovery_of
 from calm.checks.situations import LEAST_CURRENT, SOLVES, STRUMMING, currents, situations_of
+from calm.checks.wave_rules import IN_WAVES, MooringInWaves
 from calm.drop.launch import launch_of
 from calm.errors import NoEquilibrium
 from calm.files import Clamp, MooringFile, Piece, Place
@@ -71,6 +72,7 @@ def stand_of(mooring: Mooring, name: str, day: date | None = None) -> MooringInE
     environment = mooring.file.environment.name or OWN
     situations = situations_of(mooring)
     given, *changed = ([*findings_of(each, name, environment, day=day)] for each in situations)
+    given += _findings_in_waves(situations[0], name, environment, day)
     states = {_of(finding): finding.state.severity for finding in given}
     others = [_softened(finding) for findings in changed for finding in findings]
     graver = [each for each in others if each.state.severity > states.get(_of(each), -1)]
@@ -163,6 +165,18 @@ def findings_of(
                 if anchored or verdict.place != end:
                     finding = rule.find(verdict, mooring, environment, situation.name)
                     yield acceptance.of(finding)
+
+
+def _findings_in_waves(
+    given: Situation, mooring: str, environment: str, day: date | None
+) -> Iterator[Finding]:
+    if given.result is None:
+        return
+    acceptance = _acceptance(given.result.file, day)
+    evidence = MooringInWaves.of(_estimated_result(given.result).mooring)
+    for each in IN_WAVES:
+        for verdict in each.judge(evidence):
+            yield acceptance.of(each.find(verdict, mooring, environment))
 
 
 def _acceptance(file: MooringFile, day: date | None) -> Acceptance:
@@ -275,7 +289,7 @@ STANDING = _judging(once=False)
 ONCE = _judging(once=True)
 """What is judged once of a mooring: its breaks, its launch and its recovery."""
 
-RULES = {each.name: each for each in (equilibrium, currents, *STANDING, *ONCE)}
+RULES = {each.name: each for each in (equilibrium, currents, *STANDING, *IN_WAVES, *ONCE)}
 """Every rule by its name."""
 
 

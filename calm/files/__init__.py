@@ -3,7 +3,7 @@
 from calm.files.catalogue import Assembly, Catalogue
 from calm.files.check_limits import Accept, Checks, SafetyFactors
 from calm.files.components import Anchor, Cable, Chain, Component, Flexible
-from calm.files.environment import Environment, Fouling, Position, Wind
+from calm.files.environment import Environment, Fouling, Position
 from calm.files.mooring_file import Clamp, LinePart, MooringFile, Piece, Place, Solver, TowKeys
 from calm.files.reader import read_mooring
 from calm.files.rigid import Body, Cylinder, Profiler, Rigid, Shaped, Sphere
@@ -16,6 +16,7 @@ from calm.files.strumming_keys import (
     StrummingFactor,
 )
 from calm.files.uncertainty import Spread, Uncertainty
+from calm.files.water import WavesGiven, Wind
 from calm.records.profile_tables import CurrentTable, DepthTable, SeaWater
 
 __all__ = [
@@ -55,6 +56,7 @@ __all__ = [
     "StrummingFactor",
     "TowKeys",
     "Uncertainty",
+    "WavesGiven",
     "Wind",
     "mooring_schema",
     "read_mooring",

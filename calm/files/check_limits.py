@@ -60,6 +60,8 @@ _PRACTICE = "oceanographic practice: a third to a fifth of the breaking load"
 _DEWEY = "Dewey, Mooring Design & Dynamics: weight in water ≥ 1.5 (V + H/0.6)"
 _NO_FIGURE = "practice of mooring groups, 50 to 100 kgf above the release; no figure is published"
 _BERTEAUX = "Berteaux, Prindle & May, OCEANS '87: fish bite from the surface to 1000 m and more"
+_2SK = "API RP 2SK: 1.67 on breaking strength, intact, tensions found dynamically"
+_LIFE = "API RP 2SK: a fatigue life of three times the service life"
 _URI = "URI GSO mooring program"
 
 
@@ -121,6 +123,15 @@ class Checks(Model):
     )
     launch_working_factor: Annotated[float, _FACTOR, Limit()] = described(
         "working load over tension there", 1, default=1.0
+    )
+    waves_safety_factor: Annotated[float, _SAFETY, Limit(_2SK)] = described(
+        "breaking load over greatest tension in waves", 1.67, default=1.67
+    )
+    fatigue_factor: Annotated[float, _SAFETY, Limit(_LIFE)] = described(
+        "life in waves over `service_time`", 3, default=3.0
+    )
+    service_time: Annotated[float, QuantityField("time", above=0), Limit()] = described(
+        "between two renewals of the line", "730 d", default=365.0 * 86_400.0
     )
     minimum_reserve: Annotated[float, _SHARE, Limit()] = described(
         "share of a surface float's buoyancy that must be left", 0.3, default=0.3

@@ -196,6 +196,15 @@ class EstimatedFigure(Model):
         return self
 
 
+class FatigueKeys(Model):
+    """`fatigue:` of a component: by which published curve its fatigue in waves is found."""
+
+    curve: Literal[
+        "dnv-studless-chain", "dnv-stud-chain", "dnv-polyester", "api-studless-chain",
+        "api-stud-chain", "api-connecting-link", "api-stranded-wire", "api-spiral-strand",
+    ] = described("of DNV-OS-E301 or API RP 2SK", "dnv-stud-chain")  # fmt: skip
+
+
 class Definition(Model):
     """What every component may say, whatever its kind.
 
@@ -264,6 +273,11 @@ class Definition(Model):
                 "source": "the chain it hangs on",
             }
         ],
+    )
+    fatigue: FatigueKeys | None = described(
+        "curve of its fatigue in waves, where it is not that of its kind",
+        {"curve": "dnv-stud-chain"},
+        default=None,
     )
     slack: Literal["allowed"] | None = described(
         "`allowed` exempts the piece from `minimum_tension`", "allowed", default=None

@@ -56,7 +56,7 @@ from calm.report.check_tables import (
     results_table,
 )
 from calm.report.explanation import comparison_part
-from calm.report.provenance import NOT_JUDGED, UNJUDGED, date, history_part, inputs_part
+from calm.report.provenance import NOT_JUDGED, UNJUDGED, date, history_part, inputs_part, unseen
 from calm.report.result_files import members
 from calm.report.sheet import sheet
 
@@ -104,6 +104,7 @@ def check_report(sections: Sequence[Section]) -> Report:
     in_all = f"{len(environments)} environment{'s' if len(environments) != 1 else ''}"
     facts = [each.facts for each in sections if each.facts is not None]
     verdict = verdict_prose(finding for each in facts for finding in each.findings)
+    seen = unseen(finding for each in facts for finding in each.findings)
     signatures = Signatures(("Designed by", "Checked by"))
     return Report(
         title="Design check",
@@ -113,7 +114,7 @@ def check_report(sections: Sequence[Section]) -> Report:
             *(facts_part(each, each.mooring if count > 1 else "") for each in facts),
             ReportPart("Signatures", (signatures, PageBreak()), least=PAGE_ONE),
             *((ReportPart("Summary", tuple(_summary(sections))),) if count > 1 else ()),
-            NOT_JUDGED,
+            ReportPart(NOT_JUDGED.title, (Prose(seen, State.UNKNOWN),)),
         ),
         sections=tuple(sections),
         date=date(),
@@ -224,7 +225,16 @@ def check_document(assessments: Sequence[Assessment]) -> dict[str, Any]:
             for key in each.limits
         ],
         "key_figures": {each.name: facts_of(each).to_dict() for each in assessments},
-        "not_judged": list(UNJUDGED),
+        "not_judged": [
+            one
+            for one in UNJUDGED
+            if one != "waves"
+            or not all(
+                stand.mooring.file.environment.waves
+                for each in assessments
+                for stand in each.stands
+            )
+        ],
         "findings": [
             _finding(each, finding) for each in assessments for finding in each.all_findings()
         ],

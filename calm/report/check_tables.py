@@ -52,7 +52,7 @@ from calm.report.check_summary import (
     worst_by_part,
     worst_table,
 )
-from calm.report.provenance import UNSEEN
+from calm.report.provenance import unseen
 from calm.report.sheet import figure_cell, quantity_column, quantity_field
 
 _RESULTS: dict[str, Callable[[Result], float | None]] = {
@@ -342,7 +342,9 @@ def check_part(assessments: Sequence[Assessment]) -> ReportPart:
         *likelihood_tables([(each.name, [*each.all_findings()]) for each in assessments]),
         *(block for each in facts for block in _told(each)),
     )
-    return ReportPart("", (*blocks, Note(UNSEEN[:1])))
+    return ReportPart(
+        "", (*blocks, Note(unseen(each for one in facts for each in one.findings)[:1]))
+    )
 
 
 def _decisive(facts: CheckFacts, *, several: bool) -> Iterator[Block]:

@@ -6,7 +6,7 @@ import hashlib
 import json
 import os
 import platform
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from datetime import UTC, datetime
 from importlib.metadata import version
 from math import hypot
@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from pydantic import BaseModel
 
-from calm.checks.finding import State
+from calm.checks.finding import Finding, State
 from calm.errors import InputError, UsageError
 from calm.files import MooringFile, Position
 from calm.physics.line import Water
@@ -105,6 +105,18 @@ UNSEEN = (
 )
 """What is printed in every report."""
 
+IN_WAVES = (
+    UNSEEN[0]
+    .replace(
+        "waves and the tensions they cause; snap",
+        "waves where an environment gives no `waves:`, and linear tensions in them do not see snap",
+    )
+    .replace("fatigue, by waves and by vortices", "fatigue by vortices"),
+    UNSEEN[1].replace("static tension", "tension"),
+    UNSEEN[2],
+)
+"""The same where waves are judged."""
+
 UNJUDGED = (
     "waves", "snap loads", "fatigue", "creep, corrosion and wear",
     "the jerk and the swing of a launch", "hauling and lifts on recovery", *_BESIDE,
@@ -113,6 +125,12 @@ UNJUDGED = (
 
 NOT_JUDGED = ReportPart("What is not judged", (Prose(UNSEEN, State.UNKNOWN),))
 """The part of every report that says so."""
+
+
+def unseen(findings: Iterable[Finding]) -> tuple[str, ...]:
+    """Return what is printed beside the findings of a design check."""
+    return IN_WAVES if any(each.rule == "wave-slack" for each in findings) else UNSEEN
+
 
 _MOST_LEVELS = 40
 

@@ -11,11 +11,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from calm.files.composition import Node
-from calm.files.density import TableKeys
 from calm.files.environment import Position
 from calm.files.logbook import DocumentKeys
 from calm.files.mooring_file import Solver
 from calm.files.reader import MooringKeys
+from calm.files.water import TableKeys
 
 # Read otherwise by YAML, or by other programs that read it.
 _WORD = re.compile(r"(?:~|=|<<|null|true|false|yes|no|on|off)?", re.IGNORECASE)
