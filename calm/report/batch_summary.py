@@ -196,12 +196,7 @@ TITLES = {
 }
 """Of the responses, by their names."""
 
-QUANTITY = {
-    "knockdown": "knockdown",
-    "anchor_tension": "tension",
-    "tilt": "tilt",
-    "offset": "offset",
-}
+QUANTITY = {name: name for name in TITLES} | {"anchor_tension": "tension"}
 """Of a response, in `calm.quantities`."""
 
 METHODS_IN_SHORT = {"gev": "GEV", "pot": "POT"}
