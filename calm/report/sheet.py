@@ -69,9 +69,7 @@ class Sheet:
 
 
 def sheet(result: Result | TowResult, *, places: bool = False) -> Sheet:
-    """Return what a mooring or a tow says; in a report its clamps have their places on their
-    pieces.
-    """
+    """Return what a mooring or a tow says; in a report clamps have their places on pieces."""
     if isinstance(result, TowResult):
         return _tow(result, places)
     return _mooring(result, places)
@@ -193,9 +191,7 @@ def _tow_summary(result: TowResult) -> tuple[Prose, ...]:
 
 
 def _strumming(result: Result | TowResult) -> tuple[str, ...]:
-    """Return how fast the cables vibrate and what that makes of their drag; or what it would
-    make.
-    """
+    """Return how fast cables vibrate and what that makes, or would make, of their drag."""
     strumming, band = result.strumming, result.strumming_band
     if strumming is not None:
         together = isinstance(result.file.solver.strumming, BourgetMarichalKeys)
