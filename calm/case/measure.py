@@ -63,7 +63,7 @@ def measured(solution: Solution, still: Solution | None = None) -> PieceMeasures
     lean = np.where(
         np.linalg.norm(chord, axis=1) > 0, _tilt(chord), _tilt(-pull if towed else pull)
     )
-    head = head_count(solution.line)
+    head = 0 if solution.pulled else head_count(solution.line)
     if head and (top[0] != bottom[head - 1]).any():
         lean[:head] = _tilt(top[0] - bottom[head - 1])
     knockdown = np.full(len(first), np.nan)

@@ -77,6 +77,7 @@ class Solution:
     other_depth, other_grounded_length : depth of the free end in another equilibrium that the
         solver came upon, and its unstretched length on the seabed [m]
     frequency : of the cables that strum [Hz]; 0 where none does
+    pulled : whether its first end is not free but pulled: a leg of a net
     """
 
     line: Line
@@ -108,6 +109,7 @@ class Solution:
     riding: Riding | None = None
     closure: float = nan
     moment_residual: float = nan
+    pulled: bool = False
 
     @property
     def surface(self) -> bool:
