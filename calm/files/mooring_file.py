@@ -9,7 +9,7 @@ import math
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Annotated, Any, Literal, Protocol
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Protocol
 
 from pydantic import AfterValidator, Field
 
@@ -23,6 +23,9 @@ from calm.files.strumming_keys import Strumming
 from calm.files.uncertainty import Uncertainty
 from calm.files.yaml_document import SourceMapping
 from calm.suggestions import unknown
+
+if TYPE_CHECKING:
+    from calm.files.legs import Leg
 
 
 class TowKeys(Model):
@@ -228,7 +231,7 @@ class MooringFile:
     check, `uncertainty` how uncertain its inputs are, `looser` the limits of components that its
     line sets beyond those of their definitions. `document` is what its title block says, `releases`
     the codes of the releases, `deployed` what went over the side, `units` those in which people
-    read it.
+    read it. A net has `legs`, whose pieces follow one another.
     """
 
     path: str
@@ -249,6 +252,7 @@ class MooringFile:
     releases: tuple[ReleaseKeys, ...] = field(default=(), hash=False)
     deployed: Deployed | None = None
     units: Mapping[str, str] = field(default_factory=dict, hash=False)
+    legs: tuple[Leg, ...] = ()
 
     def __repr__(self) -> str:
         """Return its name, where it is, and how many pieces it has."""

@@ -18,6 +18,7 @@ from calm.files.components import Anchor
 from calm.files.environment import Position, read_environment
 from calm.files.fields import Model, Text
 from calm.files.flexible import Flexible
+from calm.files.legs import NET_REFUSED, Leg, LegKeys, check_held_depths, read_legs
 from calm.files.line_items import LineReader
 from calm.files.logbook import Deployed, DocumentKeys, ReleaseKeys, check_deployed
 from calm.files.mistakes import validate
@@ -79,6 +80,14 @@ class MooringKeys(Model):
         "body",
         examples=[[{"use": "sphere-steel-1250"}, {"use": "anchor-wheels-4"}]],
     )
+    legs: dict[str, LegKeys] | None = Field(
+        default=None,
+        description="in place of `line`, several lines that meet at nodes, or are held elsewhere",
+        examples=[{"mooring": {"line": [], "bottom": {"join": "A"}}}],
+    )
+    nodes: dict[str, dict[str, Any]] | None = Field(
+        default=None, description="the nodes where legs meet", examples=[{"A": {}}]
+    )
     components: dict[str, Any] | None = Field(
         default=None,
         description="definitions of your own, used only here",
@@ -128,6 +137,7 @@ def read_mooring(
     catalogs: Sequence[str | Path] = (),
     text: str | None = None,
     stand_in: bool = False,
+    net: bool = False,
 ) -> MooringFile:
     """Read a mooring file and all it refers to.
 
@@ -145,6 +155,8 @@ def read_mooring(
         for beside it.
     stand_in : bool
         Let a line that has no anchor yet stand on one that holds anything, of the id `STAND_IN`.
+    net : bool
+        Let the file have legs.
 
     Raises
     ------
@@ -156,8 +168,10 @@ def read_mooring(
     catalogue = Catalogue.load(catalogs)
     document = read_document(Path(path)) if text is None else compose(str(path), text)
     top = SourceMapping.of(document, (), document.data)
-    towed = "tow" in top.data
-    keys = validate(MooringKeys, top, problems, context={"towed": towed})
+    towed, legged = "tow" in top.data, "legs" in top.data
+    if legged and not net:
+        raise InputError([top.problem(("legs",), NET_REFUSED, key=True)])
+    keys = _keys_of(top, problems, {"towed": towed}, legged=legged)
     definitions = _child(top, "components")
     if definitions is not None:
         catalogue = catalogue.under(definitions, problems)
@@ -167,13 +181,17 @@ def read_mooring(
     reader = LineReader(catalogue, problems, notices, towed=towed, in_air=in_air)
     reader.check(definitions.data if definitions is not None else ())
     before = len(problems)
+    legs: tuple[Leg, ...] = ()
     pieces = reader.read(top, "line") if isinstance(top.data.get("line"), list) else ()
     line_is_whole = bool(pieces) and len(problems) == before
     if stand_in and not towed and pieces and not _anchored(pieces):
         pieces = (*pieces, _stand_in(len(top.data["line"])))
-    (_check_tow if towed else _check_anchor)(pieces, top, problems)
-    _check_one_fit(pieces, top, problems)
-    pieces = travelling(numbered(pieces), top, problems) if line_is_whole else numbered(pieces)
+    if legged:
+        legs, pieces = read_legs(top, reader, problems)
+    else:
+        (_check_tow if towed else _check_anchor)(pieces, top, problems)
+        _check_one_fit(pieces, top, problems)
+        pieces = travelling(numbered(pieces), top, problems) if line_is_whole else numbered(pieces)
     checks = (keys and keys.checks) or Checks()
     labels = _labels(pieces) if line_is_whole else None
     accepts = read_accepts(checks.accept, labels, top, problems)
@@ -186,7 +204,9 @@ def read_mooring(
     if chosen:
         position = keys.position if keys else None
         surroundings = read_environment(*chosen, problems, notices, towed=towed, position=position)
-    if surroundings is not None:
+    if surroundings is not None and legged:
+        check_held_depths(legs, top, surroundings.depth, problems)
+    elif surroundings is not None:
         _check_fit(pieces, surroundings.depth, keys.tow if keys else None, top, problems)
     if problems or keys is None or surroundings is None:
         raise InputError(_in_order(problems, str(path)))
@@ -198,6 +218,7 @@ def read_mooring(
         tow=keys.tow,
         environment=surroundings,
         pieces=pieces,
+        legs=legs,
         solver=keys.solver or Solver(),
         checks=checks,
         uncertainty=keys.uncertainty or Uncertainty(),
@@ -210,6 +231,17 @@ def read_mooring(
         deployed=keys.deployed,
         units=keys.units.chosen if keys.units else {},
     )
+
+
+def _keys_of(
+    top: SourceMapping, problems: list[Problem], context: dict[str, Any], *, legged: bool
+) -> MooringKeys | None:
+    """Return the keys of a file; one with legs has no line, and its legs are read one by one."""
+    if not legged:
+        return validate(MooringKeys, top, problems, context=context)
+    ours = {key: value for key, value in top.data.items() if key not in ("legs", "nodes")}
+    keys = SourceMapping.of(top.document, top.location, {"line": ["legs"], **ours})
+    return validate(MooringKeys, keys, problems, context=context)
 
 
 def _labels(pieces: Sequence[Piece]) -> list[str]:

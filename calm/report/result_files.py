@@ -34,6 +34,7 @@ from calm.records.delimited import table_csv
 
 if TYPE_CHECKING:
     from calm.case import Result, TowResult
+    from calm.case.net import NetResult
     from calm.case.result_tables import ClampRow, ComponentRow
 
 _WORDS = ("mooring", "part", "index", "use", "label")
@@ -47,7 +48,7 @@ HEADER = (*_WORDS, *(QUANTITIES[name].header for name in _NUMBERS))
 """The first row: names, with the unit in brackets where there is one."""
 
 
-def to_csv(results: Sequence[Result | TowResult]) -> str:
+def to_csv(results: Sequence[Result | TowResult | NetResult]) -> str:
     """The components of one mooring or tow, or of several, as CSV text (UTF-8, comma, point, LF).
 
     `part` is ``component`` or ``clamp``; the rows of clamped instruments follow the piece they sit
@@ -56,7 +57,7 @@ def to_csv(results: Sequence[Result | TowResult]) -> str:
     return table_csv(HEADER, (row for result in results for row in _rows(result)))
 
 
-def _rows(result: Result | TowResult) -> Iterator[list[object]]:
+def _rows(result: Result | TowResult | NetResult) -> Iterator[list[object]]:
     for component, clamps in rows_down(result):
         numbers = (getattr(component, name) for name in _NUMBERS)
         yield [*_words(result, "component", component), *numbers]
@@ -65,7 +66,9 @@ def _rows(result: Result | TowResult) -> Iterator[list[object]]:
             yield [*_words(result, "clamp", clamp), *numbers]
 
 
-def _words(result: Result | TowResult, part: str, row: ComponentRow | ClampRow) -> list[object]:
+def _words(
+    result: Result | TowResult | NetResult, part: str, row: ComponentRow | ClampRow
+) -> list[object]:
     return [result.name, part, row.index, row.use, row.label]
 
 

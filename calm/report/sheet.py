@@ -21,6 +21,7 @@ from calm.solve import Status
 
 if TYPE_CHECKING:
     from calm.case import Result, TowResult
+    from calm.case.net import NetResult
     from calm.case.profilers import ProfilerTravel
     from calm.case.result_tables import ClampRow, ComponentRow
     from calm.case.strumming import StrummingBand
@@ -262,7 +263,8 @@ def line_table(
         Column("piece", short=""),
         *map(quantity_column, names),
     )
-    return Table("", columns, tuple(_rows(result, names, places)), note, dense=True)
+    rows = tuple(row for _, row in line_rows(result, names, places))
+    return Table("", columns, rows, note, dense=True)
 
 
 def quantity_field(name: str, attribute: str = "", heading: str | None = None) -> Field[Any]:
@@ -311,7 +313,7 @@ def tilt_mark(component: Component, tilt: float) -> FigureMark:
     return FigureMark.NONE
 
 
-def safety_mark(result: Result | TowResult, record: ComponentRow) -> FigureMark:
+def safety_mark(result: Result | TowResult | NetResult, record: ComponentRow) -> FigureMark:
     """Mark of a safety factor: too small, or the piece bears more than its working load.
 
     The factor asked on the breaking load is the file's `checks.safety_factor`, for a surface
@@ -324,9 +326,16 @@ def safety_mark(result: Result | TowResult, record: ComponentRow) -> FigureMark:
     return FigureMark.BEYOND if beyond else FigureMark.NONE
 
 
-def _rows(
-    result: Result | TowResult, names: tuple[str, ...], places: bool
-) -> Iterator[tuple[Cell, ...]]:
+def line_rows(
+    result: Result | TowResult | NetResult, names: tuple[str, ...], places: bool = False
+) -> Iterator[tuple[int, tuple[Cell, ...]]]:
+    """Return the rows of a table of a line, each with the index of its piece.
+
+    Parameters
+    ----------
+    names : of the quantities in each row
+    places : whether a clamp says where on its piece it sits, in place of a length
+    """
     for number, (piece, clamps) in enumerate(rows_down(result)):
         where = _where(result, piece.depth_top, piece.x_top, piece.y_top)
         marks = {
@@ -334,7 +343,7 @@ def _rows(
             "safety_factor": safety_mark(result, piece),
         }
         label = Cell(piece.label, strong=piece.role == "instrument")
-        yield Cell(str(number)), label, *_cells(names, piece, where, marks)
+        yield piece.index, (Cell(str(number)), label, *_cells(names, piece, where, marks))
         for clamp in clamps:
             component = clamp.part.component
             where = _where(result, clamp.depth, clamp.x, clamp.y)
@@ -344,10 +353,12 @@ def _rows(
             cells = [*_cells(names, clamp, where, marks)]
             if places:
                 cells[names.index("length")] = Cell(place_text(clamp.part.at))
-            yield Cell(), label, *cells
+            yield piece.index, (Cell(), label, *cells)
 
 
-def _where(result: Result | TowResult, depth: float, x: float, y: float) -> dict[str, float]:
+def _where(
+    result: Result | TowResult | NetResult, depth: float, x: float, y: float
+) -> dict[str, float]:
     """Return where a clamped instrument is, or the upper end of a piece."""
     bottom = result.file.environment.depth
     return {
@@ -355,6 +366,8 @@ def _where(result: Result | TowResult, depth: float, x: float, y: float) -> dict
         "height": math.nan if bottom is None else bottom - depth,
         "offset": math.hypot(x, y),
         "layback": math.hypot(x, y),
+        "x": x,
+        "y": y,
     }
 
 

@@ -6,6 +6,7 @@ and friction along them does not count.
 
 from __future__ import annotations
 
+from itertools import pairwise
 from math import inf
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -14,7 +15,7 @@ import numpy as np
 from calm.physics.line import Floats, Integers, Line, Water
 
 if TYPE_CHECKING:
-    from calm.solve.net import NetLeg
+    from calm.solve.net_leg import NetLeg
 
 MOST_LUMPS, SOFTEST = 14, 0.02
 """Springs of a leg at most, and how much one stretches under the weight of everything."""
@@ -76,7 +77,7 @@ class _Lumps:
                     lift[lump] += share * net
                     drag[lump] += share * normal
                     insensitive[lump] += share * any_way
-            springs += list(zip(row[:-1], row[1:], strict=True))
+            springs += list(pairwise(row))
             lengths += [whole / count] * count
             self.rows.append(row)
         self.fixed = np.array(fixed)
@@ -111,9 +112,9 @@ class _Lumps:
             for i, lump in enumerate(row):
                 if not np.isfinite(place[lump]).all():
                     place[lump] = ends[0] + (ends[1] - ends[0]) * i / (len(row) - 1)
-        place[~self.fixed] += 1e-3 * np.random.default_rng(1).standard_normal(place.shape)[
-            ~self.fixed
-        ]
+        place[~self.fixed] += (
+            1e-3 * np.random.default_rng(1).standard_normal(place.shape)[~self.fixed]
+        )
         return place
 
     def settle(self) -> None:
@@ -168,7 +169,8 @@ class _Lumps:
         across = current - (current * axis).sum(axis=1)[:, None] * axis
         speed, normal = (np.linalg.norm(each, axis=1) for each in (current, across))
         drag: Floats = (self.drag * normal)[:, None] * across
-        return drag + (self.insensitive * speed)[:, None] * current
+        any_way: Floats = (self.insensitive * speed)[:, None] * current
+        return drag + any_way
 
 
 def _points(line: Line, water: Water) -> list[tuple[float, float, float, float]]:
