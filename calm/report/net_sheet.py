@@ -65,7 +65,7 @@ def _ends(result: NetResult) -> list[Table | Prose]:
     """Nodes, anchors and held ends, and floats at the surface."""
     blocks: list[Table | Prose] = []
     if result.nodes:
-        fields = (quantity_field(name) for name in ("depth", "x", "y"))
+        fields = [quantity_field(name) for name in ("depth", "x", "y")]
         blocks.append(table_of("Nodes", result.nodes, (Column(""), lambda one: one.name), *fields))
     for title, loads in (("Anchors", result.anchors), ("Held ends", result.held)):
         if not loads:

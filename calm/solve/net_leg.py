@@ -179,7 +179,8 @@ class LegCourse:
         if self.kind == PULLED:
             first = Load(0, -1, 0.0, 0.5, 0.0, float(x[2]), 0.0, 0.0, 0.0, 0, 0.0,
                          float(x[0]), float(x[1]), 0.0, 0.0)  # fmt: skip
-            self.problem.course.loads[0] = first
+            loads: Any = self.problem.course.loads
+            loads[0] = first
             changed, depth, out = 1, -z, 0.0
         else:
             self.share, sought, shallow = 1.0, BELOW, float(x[0])
@@ -191,8 +192,9 @@ class LegCourse:
             depth, out = place(self.problem, unknown, shallow)
             changed = max(before, int(self.problem.work.left[CHANGED]))
         if self.compiled:
+            packed: Any = self.course.loads
             for i in range(changed):
-                self.course.loads[i] = tuple(self.problem.course.loads[i])
+                packed[i] = tuple(self.problem.course.loads[i])
         return depth, out
 
     @property
