@@ -313,6 +313,32 @@ def numbered(pieces: Iterable[Piece]) -> tuple[Piece, ...]:
     )
 
 
+def labels_of(pieces: Sequence[Piece]) -> list[str]:
+    """Return the labels of pieces and clamps, down the line."""
+    return [
+        label
+        for piece in pieces
+        for label in (piece.label, *(clamp.label for clamp in piece.clamps))
+    ]
+
+
+def unknown_releases(
+    releases: Sequence[ReleaseKeys], pieces: Sequence[Piece], deployed: Deployed | None
+) -> list[str]:
+    """Note the releases whose serial number nothing in the line has, designed or deployed."""
+    parts: list[Piece | Clamp] = []
+    for piece in pieces:
+        parts += (piece, *piece.clamps)
+    designed = {part.label: part.serial for part in parts if part.component.role == "release"}
+    items = () if deployed is None else deployed.items
+    serials = {*designed.values(), *(one.serial for one in items if one.label in designed)}
+    return [
+        f"`releases`: no release of the line has the serial number {release.serial}"
+        for release in releases
+        if serials != {None} and release.serial is not None and release.serial not in serials
+    ]
+
+
 def travelling(
     pieces: Sequence[Piece], top: SourceMapping, problems: list[Problem]
 ) -> tuple[Piece, ...]:

@@ -23,15 +23,16 @@ from calm.files.line_items import LineReader
 from calm.files.logbook import Deployed, DocumentKeys, ReleaseKeys, check_deployed
 from calm.files.mistakes import validate
 from calm.files.mooring_file import (
-    Clamp,
     MooringFile,
     OutputUnits,
     Piece,
     Place,
     Solver,
     TowKeys,
+    labels_of,
     numbered,
     travelling,
+    unknown_releases,
 )
 from calm.files.uncertainty import Uncertainty
 from calm.files.yaml_document import SourceMapping, compose, read_document
@@ -193,13 +194,13 @@ def read_mooring(
         _check_one_fit(pieces, top, problems)
         pieces = travelling(numbered(pieces), top, problems) if line_is_whole else numbered(pieces)
     checks = (keys and keys.checks) or Checks()
-    labels = _labels(pieces) if line_is_whole else None
+    labels = labels_of(pieces) if line_is_whole else None
     accepts = read_accepts(checks.accept, labels, top, problems)
     if keys and keys.deployed and labels is not None:
         cut = [p.label for p in pieces if isinstance(p.component, Flexible)]
         check_deployed(keys.deployed, labels, cut, top, problems)
     if keys and keys.releases and labels is not None:
-        notices += _unknown_releases(keys.releases, pieces, keys.deployed)
+        notices += unknown_releases(keys.releases, pieces, keys.deployed)
     surroundings = None
     if chosen:
         position = keys.position if keys else None
@@ -237,37 +238,10 @@ def _keys_of(
     top: SourceMapping, problems: list[Problem], context: dict[str, Any], *, legged: bool
 ) -> MooringKeys | None:
     """Return the keys of a file; one with legs has no line, and its legs are read one by one."""
-    if not legged:
-        return validate(MooringKeys, top, problems, context=context)
-    ours = {key: value for key, value in top.data.items() if key not in ("legs", "nodes")}
-    keys = SourceMapping.of(top.document, top.location, {"line": ["legs"], **ours})
-    return validate(MooringKeys, keys, problems, context=context)
-
-
-def _labels(pieces: Sequence[Piece]) -> list[str]:
-    """Return the labels of pieces and clamps, down the line."""
-    return [
-        label
-        for piece in pieces
-        for label in (piece.label, *(clamp.label for clamp in piece.clamps))
-    ]
-
-
-def _unknown_releases(
-    releases: Sequence[ReleaseKeys], pieces: Sequence[Piece], deployed: Deployed | None
-) -> list[str]:
-    """Note the releases whose serial number nothing in the line has, designed or deployed."""
-    parts: list[Piece | Clamp] = []
-    for piece in pieces:
-        parts += (piece, *piece.clamps)
-    designed = {part.label: part.serial for part in parts if part.component.role == "release"}
-    items = () if deployed is None else deployed.items
-    serials = {*designed.values(), *(one.serial for one in items if one.label in designed)}
-    return [
-        f"`releases`: no release of the line has the serial number {release.serial}"
-        for release in releases
-        if serials != {None} and release.serial is not None and release.serial not in serials
-    ]
+    if legged:
+        ours = {key: value for key, value in top.data.items() if key not in ("legs", "nodes")}
+        top = SourceMapping.of(top.document, top.location, {"line": ["legs"], **ours})
+    return validate(MooringKeys, top, problems, context=context)
 
 
 def _stand_in(item: int) -> Piece:

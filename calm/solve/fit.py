@@ -14,8 +14,7 @@ from calm.physics.track import Track
 from calm.solve.mooring import solve_mooring
 from calm.solve.problem import COARSE_STEP, REACH
 from calm.solve.root import root_near
-from calm.solve.solution import Settings, Status
-from calm.solve.speed import runs_compiled
+from calm.solve.solution import Settings, Status, runs_compiled
 from calm.solve.standing import refuse_unsupported, standing_lift, too_heavy
 from calm.solve.tow import Towing, solve_tow
 

@@ -24,8 +24,7 @@ from calm.solve.problem import (
 )
 from calm.solve.refine import Errors, Refined
 from calm.solve.search import FoundShape, Referee, find_shape
-from calm.solve.solution import Settings, Solution, Status
-from calm.solve.speed import runs_compiled
+from calm.solve.solution import Settings, Solution, Status, runs_compiled
 from calm.solve.standing import refuse_unsupported, standing_lift
 
 MOST_DEPTHS = 500

@@ -20,8 +20,7 @@ from calm.physics.state import MarchError, Trace
 from calm.solve.finish import refuse_unbalanced, risen, touching
 from calm.solve.net_leg import HANGING_DOWN, PULLED, STANDING, LegCourse, LegEnd, NetLeg, Passed
 from calm.solve.net_start import NetStart, start_of
-from calm.solve.solution import Settings, Solution, Status
-from calm.solve.speed import expect_many, runs_compiled
+from calm.solve.solution import Settings, Solution, Status, expect_many, runs_compiled
 
 MOST_STEPS, HALVINGS = 60, 9
 """Newton steps towards a shape, and how often one is halved that leads nowhere."""

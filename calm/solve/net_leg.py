@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from calm.physics.closure import closure
 from calm.physics.compiled import entry
 from calm.physics.line import Floats, Line, Water
 from calm.physics.march import NO_CUTS, Cuts
@@ -27,7 +26,7 @@ from calm.physics.passing import (
     pass_line,
 )
 from calm.physics.referee import RefereeShape, element_loads, find_ends, worst_moment
-from calm.physics.seabed import lay_line
+from calm.physics.seabed import closure, lay_line
 from calm.physics.state import COLUMNS, FAILURES, GOES_ON, NO_ROOM, MarchError, Trace
 from calm.physics.track import Load
 from calm.solve.audit import referee_of

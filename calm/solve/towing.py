@@ -48,8 +48,7 @@ from calm.solve.refine import (
     with_bends,
 )
 from calm.solve.search import Referee
-from calm.solve.solution import FOUND, MARCH_STOPPED, Settings
-from calm.solve.speed import runs_compiled
+from calm.solve.solution import FOUND, MARCH_STOPPED, Settings, runs_compiled
 
 
 class Towed:

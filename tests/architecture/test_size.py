@@ -6,7 +6,7 @@ from collections import Counter
 from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parents[2] / "calm"
-MOST_LINES = 82_560
+MOST_LINES = 84_300
 MOST_MODULES = 389
 MOST_IMPORTS = 0.108
 """Share of the lines of code that import something."""

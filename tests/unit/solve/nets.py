@@ -78,7 +78,7 @@ def anchored(east: float, north: float, depth: float) -> LegEnd:
 
 
 def relaxed(
-    legs: Sequence[NetLeg], nodes: int, water: Water, start: Floats, lumps: int = 16
+    legs: Sequence[NetLeg], nodes: int, water: Water, start: Floats, lumps: int = 12
 ) -> tuple[Floats, list[Floats]]:
     """Where the nodes and all lumps of a net of elastic legs come to rest.
 
@@ -150,7 +150,7 @@ def relaxed(
         chord = at[second] - at[first]
         size = np.linalg.norm(chord, axis=1)
         axis = chord / size[:, None]
-        if turn % 10 == 0:
+        if turn % 20 == 0:
             current, _ = water.at(-0.5 * (at[first] + at[second])[:, 2])
             flow = (current * axis).sum(axis=1)[:, None] * axis
             across = current - flow
@@ -169,7 +169,7 @@ def relaxed(
         np.add.at(force, first, pull)
         np.add.at(force, second, -pull)
         force[held] = 0.0
-        if turn % 10 == 0 and np.abs(force).max() < 1e-4:
+        if turn % 20 == 0 and np.abs(force).max() < 3e-4:
             break
         speed += 0.95 * force / mass[:, None]
         moving = float((mass * (speed**2).sum(axis=1)).sum())

@@ -179,12 +179,13 @@ def test_a_leg_to_a_second_anchor_without_stiffness_leaves_the_mooring() -> None
 
 
 def random_net(seed: int) -> tuple[list[NetLeg], int, np.ndarray, float]:
-    """Two to six legs, above the seabed and below the surface, where their nodes may be at first.
+    """Two to six legs clear of the seabed and the surface, where their nodes may be at first.
 
-    EA is low enough for the relaxation to come to rest soon.
+    EA is low enough for the relaxation to come to rest soon. What is anchored is held 200 m above
+    the seabed: the relaxation knows none, and legs on it are compared with moorings.
     """
     rng = np.random.default_rng(seed)
-    depth, soft = 400.0, 4e5
+    depth, soft = 600.0, 2e5
 
     def wire(low: float, high: float) -> Wire:
         return Wire(rng.uniform(low, high), rng.uniform(0.5, 3.0), rng.uniform(0.006, 0.014), soft)
@@ -192,7 +193,7 @@ def random_net(seed: int) -> tuple[list[NetLeg], int, np.ndarray, float]:
     def some_float() -> Point:
         return Point(rng.uniform(2000.0, 6000.0), rng.uniform(0.6, 1.2), rng.uniform(0.5, 0.9))
 
-    stem = NetLeg(line_of(wire(80.0, 120.0)), LegEnd(node=0), anchored(0.0, 0.0, depth))
+    stem = NetLeg(line_of(wire(80.0, 120.0)), LegEnd(node=0), LegEnd(place=(0.0, 0.0, -400.0)))
     legs = [NetLeg(line_of(some_float(), wire(60.0, 100.0)), FREE, LegEnd(node=0)), stem]
     start = [[0.0, 0.0, -300.0]]
     if rng.random() < 0.5:
@@ -201,7 +202,7 @@ def random_net(seed: int) -> tuple[list[NetLeg], int, np.ndarray, float]:
         weight = Point(-rng.uniform(100.0, 400.0), 0.3, 1.0)
         legs.append(NetLeg(line_of(wire(5.0, 30.0), weight), LegEnd(node=0), FREE))
     if rng.random() < 0.5:
-        away = anchored(rng.uniform(40.0, 70.0), rng.uniform(-30.0, 30.0), depth)
+        away = LegEnd(place=(rng.uniform(40.0, 70.0), rng.uniform(-30.0, 30.0), -400.0))
         legs.append(NetLeg(line_of(wire(100.0, 140.0)), LegEnd(node=0), away))
     if rng.random() < 0.4:
         legs.append(NetLeg(line_of(wire(20.0, 40.0)), LegEnd(node=1), LegEnd(node=0)))
@@ -220,21 +221,20 @@ def agrees_with_relaxation(seed: int) -> None:
     water = water_of(depth, *flows)
     found = solve_net(legs, nodes, water)
     places, rows = relaxed(legs, nodes, water, start)
-    # chords of 16 springs a wire: 100 m of it in an arc of some 20 m sag err by some centimetres
+    # chords of 12 springs a wire: 100 m of it in an arc of some 20 m sag err by some centimetres
     assert found.nodes == pytest.approx(places, abs=0.08)
     for leg, mine, row in zip(legs, found.legs, rows, strict=True):
-        top, its = (row[-1], mine.position[-1]) if leg.lower.free else (row[0], mine.position[0])
-        its = mine.position[0] if leg.lower.free else its
-        assert its == pytest.approx(top, abs=0.08)
+        first = row[-1] if leg.lower.free else row[0]
+        assert mine.position[0] == pytest.approx(first, abs=0.08)
 
 
-@pytest.mark.parametrize("seed", range(16))
+@pytest.mark.parametrize("seed", range(6))
 def test_random_nets_agree_with_relaxation(seed: int) -> None:
     agrees_with_relaxation(seed)
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("seed", range(16, 200))
+@pytest.mark.parametrize("seed", range(6, 200))
 def test_many_random_nets_agree_with_relaxation(seed: int) -> None:
     agrees_with_relaxation(seed)
 
