@@ -9,8 +9,8 @@ from threading import Event
 from time import monotonic
 from typing import TYPE_CHECKING, Any
 
+from calm.batch.compiling import compile_solver
 from calm.batch.profiles import Batch, Profiles
-from calm.batch.threads import compile_solver
 from calm.case import Mooring
 from calm.errors import UsageError
 from calm.version import __version__

@@ -10,6 +10,7 @@ from pathlib import Path
 from threading import Event, Timer
 from typing import TYPE_CHECKING, TypeVar
 
+from calm.batch.compiling import compile_solver
 from calm.batch.dataset import layout_of
 from calm.batch.profiles import Batch
 from calm.batch.shape import nodes_of
@@ -26,7 +27,7 @@ from calm.batch.store.finished import (
 from calm.batch.store.identity import identity_of, to_text
 from calm.batch.store.store import open_store
 from calm.batch.stored_result import readable, statuses_of, stored_result
-from calm.batch.threads import Stopped, compile_solver, go_on, processors
+from calm.batch.threads import Stopped, go_on, processors
 from calm.batch.work import BatchWork, Progress
 from calm.case import Mooring
 from calm.errors import UsageError

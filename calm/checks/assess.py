@@ -5,32 +5,27 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from datetime import date
-from itertools import chain
-from typing import TYPE_CHECKING, ParamSpec, TypeVar
+from typing import ParamSpec, TypeVar
 
 import numpy as np
 
 from calm.case import Mooring, Result
 from calm.case.parts import parts_of
-from calm.checks import arrangement, catalogue_rules, handling, posture, situations, strength
 from calm.checks.assessment import Acceptance, Assessment, MooringInEnvironment, Situation
 from calm.checks.backup import breaks_of, losses_of
 from calm.checks.criterion import limits_used
 from calm.checks.currents import LEAST_CURRENT, currents
-from calm.checks.finding import AS_GIVEN, OWN, Finding, Rule, State, Verdict, rule, verdict_on
+from calm.checks.finding import AS_GIVEN, OWN, Finding, State
 from calm.checks.handling import Handling
 from calm.checks.inventory import inventory_of
 from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import recovery_of
+from calm.checks.rules import ONCE, STANDING, STILL_ONLY, equilibrium
 from calm.checks.situations import SOLVES, STRUMMING, situations_of
 from calm.drop.launch import launch_of
 from calm.errors import NoEquilibrium
 from calm.files import Clamp, MooringFile, Piece, Place
-from calm.files.rule_texts import RULES as TEXTS
 from calm.solve import expect_many
-
-if TYPE_CHECKING:
-    from calm.errors import NoEquilibrium
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -226,43 +221,3 @@ def _handled(stand: MooringInEnvironment) -> Handling:
     failure = stand.situations[0].failure
     assert failure is not None
     return Handling(mooring, failure, failure, breaks_of(mooring), losses_of(mooring))
-
-
-_MODULES = (strength, arrangement, catalogue_rules, handling, posture, situations, strength)
-
-
-@rule("equilibrium")
-def equilibrium(failure: NoEquilibrium) -> Iterator[Verdict]:
-    """Found only where there is none."""
-    message = f"{failure.status}: {failure.message}"
-    yield verdict_on(None, State.FAIL, message, failure.advice)
-
-
-STILL_ONLY = verdict_on(
-    None,
-    State.WARN,
-    "No environment has a current of 1 cm/s: what tilts, is knocked down and pulls in one is not "
-    "judged.",
-    "Give the current, or an environment that has one.",
-)
-"""What `equilibrium` says of a mooring without a current to speak of."""
-
-_ORDER = list(TEXTS)
-
-
-def _judging(*, once: bool) -> tuple[Rule, ...]:
-    """Rules of the modules in the order of their texts; those of one situation come last."""
-    found = chain.from_iterable(vars(module).values() for module in _MODULES)
-    rules = [each for each in found if isinstance(each, Rule) and each.once == once]
-    rules.sort(key=lambda each: (each.situation != AS_GIVEN, _ORDER.index(each.name)))
-    return tuple(rules)
-
-
-STANDING = _judging(once=False)
-"""What is judged of a `Result`, in every environment and situation."""
-
-ONCE = _judging(once=True)
-"""What is judged once of a mooring: its breaks, its launch and its recovery."""
-
-RULES = {each.name: each for each in (equilibrium, currents, *STANDING, *ONCE)}
-"""Every rule by its name."""

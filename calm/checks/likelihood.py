@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING
 
 from calm.case.draws import Draw, checked_samples, drawn, draws_of, normals_of
 from calm.case.uncertain import BLOCK, Mapped
-from calm.checks.assess import ONCE, STANDING, handled
+from calm.checks.assess import handled
 from calm.checks.finding import Finding, Rule
+from calm.checks.rules import ONCE, STANDING
 from calm.errors import NoEquilibrium
 from calm.solve import expect_many
 

@@ -102,9 +102,9 @@ def motion(
     """
     import numpy as np
 
+    from calm.batch.compiling import compile_solver
     from calm.batch.profiles import Batch
     from calm.batch.stored_result import open_result, readable
-    from calm.batch.threads import compile_solver
     from calm.motion.correction import MeasuredRecord, run_motion
     from calm.motion.instrument_file import read_instruments, write_depths
     from calm.motion.matching import labels_of

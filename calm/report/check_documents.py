@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
-from calm.checks.assess import RULES
 from calm.checks.finding import Finding, State, worst_state
 from calm.checks.inventory import total_of
+from calm.checks.rules import RULES
 from calm.quantities import QUANTITIES
 from calm.records.delimited import table_csv
 from calm.report.check_facts import facts_of

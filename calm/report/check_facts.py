@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from calm.checks.assess import RULES
 from calm.checks.finding import AS_GIVEN, Finding, State
+from calm.checks.rules import RULES
 from calm.quantities import say
 from calm.report.blocks import ON_THE_WAY, Cell, Column, Pairs, ReportPart, Section, Table, table_of
 from calm.report.check_summary import (

@@ -9,9 +9,9 @@ from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from calm.checks.assess import RULES
 from calm.checks.criterion import said
 from calm.checks.finding import AS_GIVEN, OWN, Finding, State, worst_state
+from calm.checks.rules import RULES
 from calm.files.check_limits import LimitKey
 from calm.quantities import QUANTITIES
 from calm.report.blocks import (

@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from math import hypot, inf, isnan
 from typing import TYPE_CHECKING, Any
 
-from calm.checks.assess import RULES
 from calm.checks.finding import Finding, State
+from calm.checks.rules import RULES
 from calm.drawing.schematic.shown_parts import place_text
 from calm.files.components import FLEXIBLE_KINDS
 from calm.quantities import QUANTITIES, say

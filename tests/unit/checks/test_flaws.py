@@ -8,9 +8,10 @@ from pathlib import Path
 import pytest
 
 from calm.case import Mooring, load
-from calm.checks.assess import RULES, assessment_of, stand_of
+from calm.checks.assess import assessment_of, stand_of
 from calm.checks.assessment import Assessment
 from calm.checks.finding import Finding
+from calm.checks.rules import RULES
 from calm.shipped import shipped_folder
 
 
