@@ -23,7 +23,7 @@ from calm.deck.deck_items import Order, deck_items_of
 from calm.drop import drop_plan
 from calm.report.deck_files import deck_report
 from calm.report.diagram_layout import Paper
-from calm.report.pdf import printed
+from calm.report.folder import printed
 
 COMPONENTS = """
 components:

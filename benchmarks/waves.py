@@ -10,8 +10,8 @@ from pathlib import Path
 from machine import describe
 
 import calm
+from calm.records.sea_states import spectrum_of
 from calm.waves.analysis import analyse
-from calm.waves.spectra import spectrum_of
 
 LINE = Path(__file__).parents[1] / "tests" / "validation" / "sofs5.yaml"
 

@@ -174,6 +174,14 @@ _TABLE = (
         display="°",
     ),
     Quantity("potential", "potential", "V", "Difference of two metals in sea water.", decimals=2),
+    Quantity(
+        "life",
+        "life in waves",
+        "s",
+        "Until fatigue in waves breaks it.",
+        display="years",
+        usual_scale=1.0 / (365.25 * 86_400.0),
+    ),
     Quantity("body_tension", "tension at the body", "N", "Pull on the towed body.", decimals=0),
     Quantity("frequency", "frequency", "Hz", "Frequency at which the cable vibrates.", decimals=2),
     Quantity(

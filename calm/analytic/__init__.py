@@ -1,13 +1,11 @@
 """Closed forms of lines and cables, independent of the march they are held against.
 
-`catenary`: a line in still water; `uniform`: lines in a uniform stream, without weight and heavy;
-`pode`: Pode's cable functions; `villain_guillot` and `unequal_drag`: towed cables whose drag is
-linear or quadratic in each component of the velocity; `chart`: Braconnot's charts. All SI and
+`catenary`: a line in still water; `uniform`: lines in a uniform stream, without weight and heavy,
+and Pode's cable functions; `villain_guillot`: towed cables whose drag is linear or quadratic in
+each component of the velocity; `chart`: Braconnot's charts. All SI and
 radians; each module states its equations, their range and their source.
 """
 
 from calm.analytic import catenary as catenary
-from calm.analytic import pode as pode
-from calm.analytic import unequal_drag as unequal_drag
 from calm.analytic import uniform as uniform
 from calm.analytic import villain_guillot as villain_guillot

@@ -32,16 +32,12 @@ class ChartSolution:
 
     Parameters
     ----------
-    phi_a, phi_b : float
-        Angle of the cable, followed from A to B, to the current at its lower and upper end [rad],
-        from −π to π; negative where it goes down.
-    tension_a, tension_b : float
-        Tension at the lower and upper end [N].
-    height, distance, length : float
-        B above A, B downstream of A, and along the cable [m].
-    h0 : float
-        Tension at the apex of the curve over the weight, the unit of the chart [m]; 0 for a
-        straight cable, which has no apex.
+    phi_a, phi_b : angle of the cable, followed from A to B, to the current at its lower and upper
+        end [rad], from −π to π; negative where it goes down
+    tension_a, tension_b : tension at the lower and upper end [N]
+    height, distance, length : B above A, B downstream of A, and along the cable [m]
+    h0 : tension at the apex of the curve over the weight, the unit of the chart [m]; 0 for a
+        straight cable, which has no apex
     """
 
     phi_a: float
@@ -60,15 +56,11 @@ class ChartAnswer:
 
     Parameters
     ----------
-    status : str
-        ``converged``; else ``no-equilibrium``, ``inconsistent`` (the givens contradict each other)
-        or ``one-parameter-family`` (they do not fix the cable).
-    k : float
-        K.
-    solutions : tuple of ChartSolution
-        Every cable that fits: those that do not dip below A first, the first branch first.
-    message, advice : str
-        Without a solution: why, and what to change.
+    status : ``converged``; else ``no-equilibrium``, ``inconsistent`` (the givens contradict each
+        other) or ``one-parameter-family`` (they do not fix the cable)
+    k : K
+    solutions : every cable that fits: those that do not dip below A first, the first branch first
+    message, advice : without a solution: why, and what to change
     """
 
     status: str
@@ -97,10 +89,8 @@ def chart_solve(
 
     Parameters
     ----------
-    k : float
-        K = ρ Cx D V²/(2|w|), from 0 to 100.
-    weight : float
-        Weight in water of a metre, w [N/m]; negative for a cable that floats.
+    k : K = ρ Cx D V²/(2|w|), from 0 to 100
+    weight : weight in water of a metre, w [N/m]; negative for a cable that floats
     phi_a, phi_b : float, optional
         Angles to the current [rad], −π to π. At most the end the cable hangs from below (A; B
         where w < 0) can have a negative one.

@@ -46,10 +46,7 @@ _NODES = _NODES + 0.5
 def critical_angle(k: ArrayLike) -> Floats:
     """Angle to the current of a cable that stays straight [rad], 90° at K = 0.
 
-    Parameters
-    ----------
-    k : array_like
-        K ≥ 0: drag of a metre across the current over its weight.
+    K ≥ 0, an array or a number, is the drag of a metre across the current over its weight.
     """
     return np.asarray(np.arccos(-_leaning(k)), dtype=np.float64)
 
@@ -70,10 +67,8 @@ class Branch:
 
     Parameters
     ----------
-    k : float
-        0 ≤ K ≤ 100.
-    sign : int
-        1 for the first branch, −1 for the second.
+    k : 0 ≤ K ≤ 100
+    sign : 1 for the first branch, −1 for the second
     """
 
     k: float
@@ -83,10 +78,7 @@ class Branch:
     def holding(cls, k: float, phi: float) -> tuple[Branch, float] | None:
         """The branch and the λ of an angle φ [rad]; None for the critical angle.
 
-        Raises
-        ------
-        UsageError
-            An angle beyond ±180°.
+        UsageError: an angle beyond ±180°.
         """
         if not -np.pi <= phi <= np.pi:
             raise UsageError(f"an angle is {np.degrees(phi):.6g}°; it must be from −180° to 180°")
@@ -269,10 +261,8 @@ def curve(k: float, phi: ArrayLike) -> CurvePoints:
 
     Parameters
     ----------
-    k : float
-        0 ≤ K ≤ 100.
-    phi : array_like
-        Angles to the current [rad], each from −π to π and none of them critical. Between φ_c − π
+    k : 0 ≤ K ≤ 100
+    phi : angles to the current [rad], each from −π to π and none of them critical. Between φ_c − π
         and φ_c a point lies on the first branch, otherwise on the second.
 
     Returns

@@ -70,12 +70,9 @@ def reason(k: float, known: Mapping[str, float], floats: bool) -> ChartRefusal:
 
     Parameters
     ----------
-    k : float
-        K.
-    known : mapping
-        The quantities, of a cable that floats turned upside down.
-    floats : bool
-        Whether they were turned.
+    k : K
+    known : the quantities, of a cable that floats turned upside down
+    floats : whether they were turned
     """
     critical = float(critical_angle(k))
     shown = math.degrees(math.pi - critical if floats else critical)
@@ -142,14 +139,8 @@ class StraightCable:
 
 
 def straight(k: float, known: Mapping[str, float]) -> StraightCable | None:
-    """The straight cable that has the known quantities to 1e-9, tensions over w; None if none has.
-
-    Parameters
-    ----------
-    k : float
-        K.
-    known : mapping
-        Three of the seven quantities [rad, m].
+    """The straight cable that has three known quantities [rad, m] to 1e-9, tensions over w; or
+    None.
     """
     angle = float(critical_angle(k))
     sine, cosine = math.sin(angle), 0.0 if k == 0.0 else math.cos(angle)

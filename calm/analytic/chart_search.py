@@ -43,11 +43,9 @@ class ChartSearch:
 
     Parameters
     ----------
-    branch : Branch
-        Where to look.
-    sizes : mapping
-        The given among tension_a, tension_b (over w), height, distance (turned as the branch is),
-        length, all in metres.
+    branch : where to look
+    sizes : the given among tension_a, tension_b (over w), height, distance (turned as the branch
+        is), length, all in metres
     """
 
     branch: Branch
@@ -209,10 +207,8 @@ class LengthSearch:
 
     Parameters
     ----------
-    branch : Branch
-        Where to look.
-    cosine : float
-        D/L, D turned as the branch is.
+    branch : where to look
+    cosine : D/L, D turned as the branch is
     third, share : str, float
         tension_a, tension_b or height; that size over the length.
     """

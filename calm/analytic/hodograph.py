@@ -195,10 +195,7 @@ class Hodograph:
     def advance(self, start: float, arc: float) -> float:
         """The step of m that an arc takes, in units of T₀/R; −`start` where the line comes level.
 
-        Parameters
-        ----------
-        start : finite m
-        arc : up the line; negative down
+        The start is a finite m; the arc counts up the line, negative down.
         """
         from scipy.optimize import brentq
 

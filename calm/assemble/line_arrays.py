@@ -23,9 +23,9 @@ from calm.files import (
     Solver,
     Sphere,
 )
-from calm.files.components import CylinderShape, FlexibleComponent, RigidComponent, SphereShape
+from calm.files.components import FlexibleComponent, RigidComponent
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
-from calm.files.rigid import Displacement
+from calm.files.rigid import CylinderShape, Displacement, SphereShape
 from calm.files.strumming_keys import (
     AmplitudeModel,
     BourgetMarichalKeys,

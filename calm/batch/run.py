@@ -10,25 +10,24 @@ from pathlib import Path
 from threading import Event, Timer
 from typing import TYPE_CHECKING, TypeVar
 
-from calm.batch.compiling import compile_solver
-from calm.batch.dataset import layout_of
-from calm.batch.profiles import Batch
-from calm.batch.shape import nodes_of
-from calm.batch.statuses import Ending, endings
-from calm.batch.store.finished import (
+from calm.batch.dataset import layout_of, nodes_of
+from calm.batch.finished import (
     ENDINGS,
     clear,
     finish,
     is_finished,
     left_behind,
     locked,
+    readable,
+    statuses_of,
     store_folder,
+    stored_result,
 )
-from calm.batch.store.identity import identity_of, to_text
-from calm.batch.store.store import open_store
-from calm.batch.stored_result import readable, statuses_of, stored_result
+from calm.batch.profiles import Batch
+from calm.batch.statuses import Ending, endings
 from calm.batch.threads import Stopped, go_on, processors
-from calm.batch.work import BatchWork, Progress
+from calm.batch.work import BatchWork, Progress, compile_solver
+from calm.batch.work_store import identity_of, open_store, to_text
 from calm.case import Mooring
 from calm.errors import UsageError
 

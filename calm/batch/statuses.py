@@ -49,12 +49,7 @@ def ending_of(status: str) -> Ending:
 
 
 def endings(counts: Mapping[str, int]) -> dict[Ending, int]:
-    """Profiles by how they ended, 0 where none did.
-
-    Parameters
-    ----------
-    counts : profiles by their status
-    """
+    """Profiles by how they ended, from their counts by status; 0 where none did."""
     ended = dict.fromkeys(Ending, 0)
     for status, count in counts.items():
         ended[ending_of(status)] += count
@@ -82,10 +77,7 @@ def implausible(
 def first_implausible(record: Record, maximum_speed: float) -> str:
     """The first time, level and value of a record that is implausible, in words.
 
-    Raises
-    ------
-    InputError
-        The file is damaged.
+    InputError: the file is damaged.
     """
     for start in range(0, record.count, _AT_ONCE):
         depth, u, v, w = record.profiles(start, min(start + _AT_ONCE, record.count))

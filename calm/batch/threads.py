@@ -12,13 +12,7 @@ class Stopped(Exception):
 
 
 def go_on(stop: Event) -> None:
-    """Stop here where that is asked for.
-
-    Raises
-    ------
-    Stopped
-        See above.
-    """
+    """Stop here where that is asked for (Stopped: see above)."""
     if stop.is_set():
         raise Stopped
 

@@ -11,8 +11,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from calm.assemble import axial_drag_of, drag_of, net_buoyancy
+from calm.case import Mooring, Result
 from calm.case.parts import clamps_in
 from calm.case.parts import parts_of as every_part
+from calm.case.profilers import ProfilerTravel
+from calm.case.result_tables import ClampRow
 from calm.case.warnings import is_synthetic
 from calm.checks.criterion import JudgedPart, parts_of
 from calm.checks.finding import (
@@ -28,17 +31,13 @@ from calm.checks.finding import (
 from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Recovery
 from calm.drop.launch import Launch
-from calm.files import Cable, Component, Flexible, Profiler
+from calm.files import Cable, Clamp, Component, Flexible, Piece, Profiler
 from calm.physics.materials import materials_in, potential_of
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.quantities import duration, say
 
 if TYPE_CHECKING:
-    from calm.case import Mooring, Result
-    from calm.case.profilers import ProfilerTravel
-    from calm.case.result_tables import ClampRow
     from calm.checks.handling import Handling
-    from calm.files import Clamp, Piece
 
 GREATEST_DIFFERENCE = 0.2
 """Beyond it two metals that touch corrode each other in sea water [V]."""
@@ -270,7 +269,8 @@ def clamp_grip(result: Result) -> Iterator[Verdict]:
         depth = np.array(float(result.clamps.depth[part.clamp]))
         flow, density = water.at(depth)
         flow = np.asarray(flow, float).reshape(3)
-        drag = _length_drag(part) * float(density) / REFERENCE_DENSITY
+        across = drag_of(part.component, getattr(part.component, "length", 0.0))[0]
+        drag = across * float(density) / REFERENCE_DENSITY
         force = drag * float(np.linalg.norm(flow)) * flow
         force[2] += _lift(part, result.mooring, float(density))
         yield _verdict(part, float(np.linalg.norm(force)), "")
@@ -374,11 +374,6 @@ def _way_of(part: Clamp, wire: Piece) -> Iterator[Verdict]:
 def _clamps(mooring: Mooring) -> list[JudgedPart]:
     parts = (part for part in parts_of(mooring) if part.clamp is not None)
     return [part for part in parts if not isinstance(part.component, Profiler)]
-
-
-def _length_drag(part: JudgedPart) -> float:
-    """K of the drag K|V|V across the axis [N/(m/s)²]."""
-    return drag_of(part.component, getattr(part.component, "length", 0.0))[0]
 
 
 def _lift(part: JudgedPart, mooring: Mooring, density: float) -> float:

@@ -1,30 +1,43 @@
-"""Judging moorings: each in each of its environments, then its launch, recovery and breaks."""
+"""The rules, and judging moorings by them.
+
+Each is judged in each of its environments, then its launch, recovery and breaks.
+
+Given how uncertain the inputs of the design are, each limit has the probability that it is broken.
+The limits of a line that stands are counted in every sample, in the situation of the finding. A
+launch or a rise takes as long to solve as many equilibria: these, and the breaks, are counted in
+the first `HANDLED` samples. A sample without equilibrium breaks every limit.
+"""
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from datetime import date
+from functools import partial
+from itertools import chain
 from typing import ParamSpec, TypeVar
 
 import numpy as np
 
 from calm.case import Mooring, Result
+from calm.case.draws import Draw, checked_samples, drawn, draws_of, normals_of
 from calm.case.parts import parts_of
+from calm.case.uncertain import BLOCK, Mapped
+from calm.checks import arrangement, catalogue_rules, handling, posture, situations, strength
 from calm.checks.assessment import Acceptance, Assessment, MooringInEnvironment, Situation
-from calm.checks.backup import breaks_of, losses_of
 from calm.checks.criterion import limits_used
-from calm.checks.currents import LEAST_CURRENT, currents
-from calm.checks.finding import AS_GIVEN, OWN, Finding, State
+from calm.checks.finding import AS_GIVEN, OWN, Finding, Rule, State, Verdict, rule, verdict_on
 from calm.checks.handling import Handling
 from calm.checks.inventory import inventory_of
 from calm.checks.posture import reaches_the_surface
-from calm.checks.recovery import recovery_of
-from calm.checks.rules import ONCE, STANDING, STILL_ONLY, equilibrium
-from calm.checks.situations import SOLVES, STRUMMING, situations_of
+from calm.checks.recovery import breaks_of, losses_of, recovery_of
+from calm.checks.situations import LEAST_CURRENT, SOLVES, STRUMMING, currents, situations_of
+from calm.checks.wave_rules import IN_WAVES, MooringInWaves
 from calm.drop.launch import launch_of
 from calm.errors import NoEquilibrium
 from calm.files import Clamp, MooringFile, Piece, Place
+from calm.files.rule_texts import RULES as TEXTS
 from calm.solve import expect_many
 
 P = ParamSpec("P")
@@ -59,6 +72,7 @@ def stand_of(mooring: Mooring, name: str, day: date | None = None) -> MooringInE
     environment = mooring.file.environment.name or OWN
     situations = situations_of(mooring)
     given, *changed = ([*findings_of(each, name, environment, day=day)] for each in situations)
+    given += _findings_in_waves(situations[0], name, environment, day)
     states = {_of(finding): finding.state.severity for finding in given}
     others = [_softened(finding) for findings in changed for finding in findings]
     graver = [each for each in others if each.state.severity > states.get(_of(each), -1)]
@@ -153,6 +167,18 @@ def findings_of(
                     yield acceptance.of(finding)
 
 
+def _findings_in_waves(
+    given: Situation, mooring: str, environment: str, day: date | None
+) -> Iterator[Finding]:
+    if given.result is None:
+        return
+    acceptance = _acceptance(given.result.file, day)
+    evidence = MooringInWaves.of(_estimated_result(given.result).mooring)
+    for each in IN_WAVES:
+        for verdict in each.judge(evidence):
+            yield acceptance.of(each.find(verdict, mooring, environment))
+
+
 def _acceptance(file: MooringFile, day: date | None) -> Acceptance:
     estimates = {part.label: part.component.estimates for part in parts_of(file.pieces)}
     return Acceptance(file.accepts, day or date.today(), estimates)
@@ -221,3 +247,150 @@ def _handled(stand: MooringInEnvironment) -> Handling:
     failure = stand.situations[0].failure
     assert failure is not None
     return Handling(mooring, failure, failure, breaks_of(mooring), losses_of(mooring))
+
+
+_MODULES = (arrangement, catalogue_rules, handling, posture, situations, strength)
+
+
+@rule("equilibrium")
+def equilibrium(failure: NoEquilibrium) -> Iterator[Verdict]:
+    """Found only where there is none."""
+    message = f"{failure.status}: {failure.message}"
+    yield verdict_on(None, State.FAIL, message, failure.advice)
+
+
+STILL_ONLY = verdict_on(
+    None,
+    State.WARN,
+    "No environment has a current of 1 cm/s: what tilts, is knocked down and pulls in one is not "
+    "judged.",
+    "Give the current, or an environment that has one.",
+)
+"""What `equilibrium` says of a mooring without a current to speak of."""
+
+_ORDER = list(TEXTS)
+
+
+def _judging(*, once: bool) -> tuple[Rule, ...]:
+    """Rules of the modules in the order of their texts; those of one situation come last.
+
+    The one of the currents judges all environments together.
+    """
+    found = chain.from_iterable(vars(module).values() for module in _MODULES)
+    rules = [each for each in found if isinstance(each, Rule) and each.once == once]
+    rules = [each for each in rules if each is not currents]
+    rules.sort(key=lambda each: (each.situation != AS_GIVEN, _ORDER.index(each.name)))
+    return tuple(rules)
+
+
+STANDING = _judging(once=False)
+"""What is judged of a `Result`, in every environment and situation."""
+
+ONCE = _judging(once=True)
+"""What is judged once of a mooring: its breaks, its launch and its recovery."""
+
+RULES = {each.name: each for each in (equilibrium, currents, *STANDING, *IN_WAVES, *ONCE)}
+"""Every rule by its name."""
+
+
+HANDLED = 64
+"""Samples whose launch and recovery are solved: the first of the sequence, a sequence as well."""
+
+Key = tuple[str, "Place | None"]
+"""A rule, and the part of the line that it is found on."""
+
+
+def with_probabilities(
+    assessment: Assessment, samples: int, seed: int, mapped: Mapped = map
+) -> Assessment:
+    """The assessment, each of its findings with the probability that its limit is broken.
+
+    Parameters
+    ----------
+    samples, seed, mapped : as of `calm.case.uncertain.uncertain`
+
+    Raises
+    ------
+    UsageError
+        The number of samples is not a power of two, or none that is solved.
+    """
+    normals = normals_of(checked_samples(samples), seed)
+    expect_many(samples * len(assessment.stands))
+    draws = draws_of(assessment.mooring.file.uncertainty, normals)
+    stands = tuple(_stand(stand, draws, mapped) for stand in assessment.stands)
+    first = next((stand for stand in assessment.stands if stand.result is not None), None)
+    findings = assessment.findings
+    if first is not None:
+        broken = _broken(first.mooring, draws[:HANDLED], mapped, standing=False)
+        findings = _probable(findings, broken, min(samples, HANDLED))
+    return replace(assessment, stands=stands, findings=findings, draws=(samples, seed))
+
+
+def _stand(
+    stand: MooringInEnvironment, draws: Sequence[Draw], mapped: Mapped
+) -> MooringInEnvironment:
+    """With the probabilities of every situation that something is listed of."""
+    found = [stand.findings, stand.tighter, stand.accepted]
+    wanted = {finding.situation for each in found for finding in each}
+    for situation in stand.situations:
+        if situation.result is not None and situation.name in wanted:
+            mooring = situation.result.mooring
+            broken = _broken(mooring, draws, mapped)
+            found = [_probable(each, broken, len(draws), situation.name) for each in found]
+    return replace(stand, findings=found[0], tighter=found[1], accepted=found[2])
+
+
+def _probable(
+    findings: tuple[Finding, ...],
+    broken: Counter[Key],
+    samples: int,
+    situation: str | None = None,
+) -> tuple[Finding, ...]:
+    """The findings, those of a situation that have a limit with how often it was broken."""
+    return tuple(
+        replace(one, probability=(broken[one.rule, one.place] + broken[_ALL]) / samples)
+        if one.limit is not None and situation in (None, one.situation)
+        else one
+        for one in findings
+    )
+
+
+_ALL: Key = ("", None)
+"""Under which samples without equilibrium are counted."""
+
+
+def _broken(
+    mooring: Mooring, draws: Sequence[Draw], mapped: Mapped, *, standing: bool = True
+) -> Counter[Key]:
+    """Return how many samples break each limit, of a line that stands or of its handling."""
+    block = BLOCK if standing else BLOCK // 16
+    blocks = [draws[first : first + block] for first in range(0, len(draws), block)]
+    broken: Counter[Key] = Counter()
+    for each in mapped(partial(_counted, standing, mooring), blocks):
+        broken.update(each)
+    return broken
+
+
+def _counted(standing: bool, mooring: Mooring, draws: Sequence[Draw]) -> Counter[Key]:
+    broken: Counter[Key] = Counter()
+    for one in drawn(mooring, draws):
+        try:
+            result = one.solve()
+        except NoEquilibrium:
+            broken[_ALL] += 1
+        else:
+            if standing:
+                broken.update(_beyond(STANDING, result))
+            else:
+                broken.update(_beyond(ONCE, handled(one, result)))
+    return broken
+
+
+def _beyond(rules: Sequence[Rule], evidence: object) -> set[Key]:
+    """Return what is beyond its limit, each once."""
+    return {
+        (rule.name, verdict.place)
+        for rule in rules
+        for verdict in rule.judge(evidence)
+        if verdict.margin is not None and verdict.margin < 0.0
+    }

@@ -8,18 +8,17 @@ from datetime import date
 from typing import TYPE_CHECKING
 
 from calm.checks.finding import Finding, State, worst_state
+from calm.errors import NoEquilibrium
 from calm.files import Accept
+from calm.files.check_limits import LimitKey
+from calm.files.definition import EstimatedFigure
 from calm.files.rule_texts import RULES
 
 if TYPE_CHECKING:
     from calm.case import Mooring, Result
-    from calm.checks.backup import Break, Loss
     from calm.checks.inventory import InventoryItem
-    from calm.checks.recovery import Recovery
+    from calm.checks.recovery import Break, Loss, Recovery
     from calm.drop.launch import Launch
-    from calm.errors import NoEquilibrium
-    from calm.files.check_limits import LimitKey
-    from calm.files.definition import EstimatedFigure
 
 
 @dataclass(frozen=True)
@@ -155,12 +154,7 @@ class Acceptance:
         return replace(finding, state=state, message=f"{finding.message} {said}")
 
     def notices(self, accepted: Iterable[Finding]) -> Iterator[str]:
-        """Notices of accepts that do not count, or that no finding needs.
-
-        Parameters
-        ----------
-        accepted : every finding that is accepted
-        """
+        """Notices of accepts that do not count, or that none of the accepted findings needs."""
         used = {finding.accept for finding in accepted}
         bare = [one for one in self.accepts if None in (one.by, one.until) and one in used]
         if bare:

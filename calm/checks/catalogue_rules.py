@@ -67,14 +67,9 @@ class CatalogueFinding:
 def check_catalogue(
     definitions: Mapping[str, Component | Assembly], known: Collection[str]
 ) -> list[CatalogueFinding]:
-    """All findings about the definitions of a catalogue.
+    """All findings about the definitions of a catalogue, by id.
 
-    Parameters
-    ----------
-    definitions : mapping
-        What to check, by id.
-    known : collection of str
-        Every id that the parts of an assembly, or a `prefer`, may name.
+    Every known id is one that the parts of an assembly, or a `prefer`, may name.
     """
     findings = []
     for identifier, definition in definitions.items():

@@ -10,11 +10,10 @@ from typing import Any
 
 from calm.case import Mooring, Result, Tow, TowResult
 from calm.case.result_tables import ClampRow, ComponentRow, rows_by_place
-from calm.checks.assess import check
+from calm.checks.assess import RULES, check
 from calm.checks.assessment import Assessment
 from calm.checks.finding import State
 from calm.checks.inventory import total_of
-from calm.checks.rules import RULES
 from calm.errors import NoEquilibrium
 from calm.files import Flexible
 from calm.files.file_differences import Change, Differences, differences

@@ -10,18 +10,14 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from itertools import groupby
 from math import hypot, isnan, nan
-from typing import TYPE_CHECKING
 
+from calm.case import Mooring, Result
 from calm.case.parts import clamps_down
 from calm.case.strumming import FACTOR
 from calm.checks.finding import Rule, State, Verdict, at_least, at_most, rule, unknown
-from calm.files import StrummingFactor
+from calm.files import Component, MooringFile, Place, StrummingFactor
 from calm.files.check_limits import LimitKey, limit_keys
 from calm.units import DIMENSIONS
-
-if TYPE_CHECKING:
-    from calm.case import Mooring, Result
-    from calm.files import Component, MooringFile, Place
 
 AT_SURFACE = 0.1
 """Depth down to which a part counts as at the surface [m]."""
@@ -144,10 +140,6 @@ def _depth(result: Result, part: JudgedPart) -> float:
     return nan if result.type == "surface" and top <= AT_SURFACE else max(top, bottom)
 
 
-def _reserve(result: Result, _: JudgedPart) -> float:
-    return 1.0 - result.top.used_buoyancy if result.type == "surface" else 0.0
-
-
 READINGS: dict[str, Callable[[Result, JudgedPart], float]] = {
     "tension": lambda result, part: float(result.components.tension[part.index]),
     "tension_bottom": lambda result, part: float(result.components.tension_bottom[part.index]),
@@ -162,7 +154,9 @@ READINGS: dict[str, Callable[[Result, JudgedPart], float]] = {
     "slide": lambda result, _: (
         result.anchor.horizontal + result.anchor.friction * result.anchor.vertical
     ),
-    "reserve": _reserve,
+    "reserve": lambda result, _: (
+        1.0 - result.top.used_buoyancy if result.type == "surface" else 0.0
+    ),
 }
 """What is read of a part in a result: a tension of the whole piece is the greatest on it, that of a
 least tension leaves out what lies on the seabed, a slide is H + friction × V."""

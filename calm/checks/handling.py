@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from math import isnan
-from typing import TYPE_CHECKING
 
-from calm.checks.backup import Loss
+from calm.case import Mooring
 from calm.checks.criterion import Citing
 from calm.checks.finding import (
     State,
@@ -20,16 +19,12 @@ from calm.checks.finding import (
     verdict_on,
 )
 from calm.checks.posture import reaches_the_surface
-from calm.checks.recovery import Recovery
+from calm.checks.recovery import Break, Loss, Recovery
 from calm.checks.strength import lesser_load, passes_load_on
 from calm.drop.launch import Launch
 from calm.errors import NoEquilibrium
 from calm.files import LinePart
 from calm.quantities import QUANTITIES, say
-
-if TYPE_CHECKING:
-    from calm.case import Mooring
-    from calm.checks.backup import Break
 
 GREATEST_TOUCHDOWN_SPEED = 2.5
 """Speed above which an anchor may bury itself or break what is on it [m/s]."""
@@ -76,7 +71,7 @@ def backup(handling: Handling) -> Iterator[Verdict]:
         return
     breaks = [one for one in handling.backup if one.judged]
     judged: list[Break | Loss] = [*breaks, *handling.losses]
-    worst = min(judged, key=_room, default=handling.backup[-1])
+    worst = min(judged, key=lambda one: one.margin - one.required, default=handling.backup[-1])
     if isinstance(worst, Loss):
         part: LinePart = worst
         after = f"After the loss of {worst.label}"
@@ -94,11 +89,6 @@ def backup(handling: Handling) -> Iterator[Verdict]:
         State.WARN if alone else State.FAIL,
         source=cite("backup_margin"),
     )
-
-
-def _room(one: Break | Loss) -> float:
-    """Return what is left beyond what is required [N]."""
-    return one.margin - one.required
 
 
 @rule("launch-strength", once=True)

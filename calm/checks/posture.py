@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from functools import partial
 from math import isnan
-from typing import TYPE_CHECKING
 
+from calm.case import Mooring, Result
 from calm.case.warnings import is_synthetic, unknown_stretch
 from calm.checks.criterion import (
     AT_SURFACE,
@@ -29,9 +29,6 @@ from calm.checks.finding import (
 )
 from calm.quantities import say
 from calm.solve.finish import watch_circle_radius
-
-if TYPE_CHECKING:
-    from calm.case import Mooring, Result
 
 LEAST_TOP_DEPTH = 10.0
 """Depth that the top of a sub-surface line should have where the design gives none [m]."""

@@ -1,24 +1,42 @@
-"""A mooring with something changed: still water, the tide, growth, strumming; and as deployed."""
+"""The currents a mooring is judged in, and the mooring with something changed.
+
+The currents: how strong they are, and whether they cover the line. Changed: still water, the tide,
+growth, strumming; and as deployed.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from math import hypot
 from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
 
 from calm.case import Mooring, Result
 from calm.case.parts import cut_like
 from calm.case.profilers import held, profilers_in
 from calm.case.strumming import FACTOR
 from calm.checks.assessment import Situation
-from calm.checks.finding import AS_GIVEN, State, Verdict, at_most, rule, unknown
+from calm.checks.finding import (
+    AS_GIVEN,
+    State,
+    Verdict,
+    at_least,
+    at_most,
+    rule,
+    unknown,
+    verdict_on,
+)
 from calm.checks.growth import grown
 from calm.checks.posture import reaches_the_surface
 from calm.errors import NoEquilibrium, UsageError
 from calm.files import Cable, Clamp, CurrentTable, Piece, StrummingFactor
+from calm.files.environment import Environment
 from calm.files.logbook import DeployedItem
 from calm.quantities import say
+from calm.records.current_file import strongest_of
+from calm.records.current_terms import left_out
 from calm.records.water_column import kilometres_from
 from calm.solve import Status
 
@@ -217,3 +235,76 @@ def _numbered(part: _Part, items: dict[str, DeployedItem]) -> _Part:
     if item is None or item.serial is None:
         return part
     return replace(part, equipment=part.equipment.model_copy(update={"serial": item.serial}))
+
+
+LEAST_CURRENT = 0.01
+"""Speed below which a current counts as none [m/s]."""
+
+USUAL_CURRENT = 0.2
+"""What a wind of 7 m/s alone drives at the surface, 0.03 of it by DNV-RP-C205 [m/s]."""
+
+SHARE_OF_ITS_RECORD = 0.9
+"""Share of the strongest current of its own record below which a judged one is too weak."""
+
+WEAK_BESIDE_OTHERS = 0.02
+"""Share of the strongest current below which another was typed in another unit: 1/100 is cm/s."""
+
+
+@rule("current")
+def currents(moorings: Sequence[Mooring]) -> Iterator[tuple[Mooring, Verdict]]:
+    """Judge the strongest current of all environments, and what each leaves out.
+
+    Each verdict comes with the mooring in the environment that it is of.
+    """
+    speeds = [float(np.hypot(each.water.u, each.water.v).max()) for each in moorings]
+    for mooring, speed in zip(moorings, speeds, strict=True):
+        if 0.0 < speed < WEAK_BESIDE_OTHERS * max(speeds):
+            message = (
+                f"The current is {speed:.2g} m/s at its strongest, {say('speed', max(speeds))} in "
+                "another environment: a hundredth is cm/s read as m/s."
+            )
+            yield mooring, verdict_on(None, State.WARN, message, "Look at its unit.", speed)
+        if speed >= LEAST_CURRENT and (left := _left_out(mooring)):
+            remedy = "Give the current at more levels, or say with a level at each end what it is."
+            yield mooring, verdict_on(None, State.WARN, left, remedy, speed)
+    strongest = max(range(len(speeds)), key=speeds.__getitem__)
+    speed = speeds[strongest]
+    for mooring, recorded in _records(moorings):
+        if speed < SHARE_OF_ITS_RECORD * recorded:
+            message = (
+                f"The record that this current is of has {say('speed', recorded)}; the strongest "
+                f"current judged is {say('speed', speed)}."
+            )
+            remedy = "Add an environment with that current, or solve the record with `calm batch`."
+            yield mooring, verdict_on(None, State.WARN, message, remedy, speed, recorded)
+    if speed < LEAST_CURRENT:
+        return
+    message = f"The strongest current judged is {say('speed', speed)}"
+    if speed < USUAL_CURRENT:
+        message += f"; a wind of 7 m/s alone drives {say('speed', USUAL_CURRENT)} at the surface"
+    remedy = "Add an environment with the strongest current of the site."
+    yield (
+        moorings[strongest],
+        at_least(None, speed, USUAL_CURRENT, f"{message}.", remedy, State.WARN),
+    )
+
+
+def _records(moorings: Sequence[Mooring]) -> Iterator[tuple[Mooring, float]]:
+    """Return the strongest current of each record that an environment is a time of [m/s]."""
+    sources = {mooring.file.environment.current.record: mooring for mooring in moorings}
+    for source, mooring in sources.items():
+        if source is not None:
+            yield mooring, strongest_of(*source)
+
+
+def _left_out(mooring: Mooring) -> str:
+    """Return what of the depth a profile of the current says nothing of; "" of one that covers it.
+
+    One speed at the surface is taken for a current that is the same everywhere.
+    """
+    environment: Environment = mooring.file.environment
+    levels = environment.current.depth
+    if levels == (0.0,):
+        return ""
+    left = left_out(levels[0], levels[-1], mooring.water.depth)
+    return left and f"{left[0].upper()}{left[1:]}."

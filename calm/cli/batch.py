@@ -142,8 +142,7 @@ def _summarized(output: Path, mooring: Mooring, stop: Event) -> bool:
         The result cannot be read.
     """
     from calm.batch.threads import Stopped, go_on
-    from calm.report.batch_brief import summary_part
-    from calm.report.batch_page import write_summary
+    from calm.report.batch_page import summary_part, write_summary
 
     try:
         show_parts(summary_part(write_summary(output, mooring, lambda: go_on(stop))))

@@ -102,7 +102,7 @@ def solve(
         Write the answer as JSON, - to print it.
     """
     from calm.analytic.chart import chart_solve
-    from calm.report.chart_answer import answer_document, answer_part
+    from calm.report.chart_page import answer_document, answer_part
 
     outputs = Outputs(json=json)
     outputs.check()

@@ -174,8 +174,8 @@ def _beside(
 
 def _drawn(section: Section, number: int) -> DrawnSection:
     """The `number`th section of a report."""
+    from calm.report.folder import pdf_leaf
     from calm.report.html import leaf
-    from calm.report.pdf import pdf_leaf
 
     return DrawnSection(replace(section, parts=()), leaf(section, number), pdf_leaf(section))
 
@@ -231,15 +231,15 @@ def _ready(stands: int, drawn: bool) -> None:
     The march is fetched, but not compiled before the files are found good.
     """
     import calm.checks.assess
-    import calm.checks.backup
+    import calm.checks.recovery
     from calm.checks.situations import SOLVES
-    from calm.solve.speed import COLD, expect_many
+    from calm.solve.solution import COLD, expect_many
 
     expect_many(min(SOLVES * stands, COLD - 1))
     if drawn:
         import calm.report.check_report
         import calm.report.html  # noqa: F401
-        from calm.report.pdf import legible
+        from calm.report.folder import legible
 
         legible("")  # has the signs of the fonts read
 
@@ -271,7 +271,7 @@ def _concluded(
 
     assessment = assessment_of(name, stands, day)
     if draws is not None:
-        from calm.checks.likelihood import with_probabilities
+        from calm.checks.assess import with_probabilities
 
         assessment = with_probabilities(assessment, *draws, shared)
     return CheckedMooring(
@@ -304,8 +304,8 @@ def _answer(
     """
     from concurrent.futures import ThreadPoolExecutor
 
-    from calm.report.check_brief import check_part
-    from calm.report.check_documents import check_document, checks_csv, inventory_csv
+    from calm.report.check_report import check_document, checks_csv, inventory_csv
+    from calm.report.check_tables import check_part
     from calm.report.folder import write_report
 
     document = cache(lambda: check_document(assessments))
@@ -313,8 +313,8 @@ def _answer(
         outputs.write_answer(document, check_part(assessments))
         return
     from calm.report.check_report import check_report
+    from calm.report.folder import printed
     from calm.report.html import page
-    from calm.report.pdf import printed
     from calm.report.result_files import to_json
 
     report = check_report([each.section for each in drawings])

@@ -113,11 +113,11 @@ def deck(
 
 
 def _write(folder: Path, path: Path, deck: Deck, paper: Paper) -> None:
-    from calm.report.check_summary import verdict_prose
+    from calm.report.check_summary import SIGNS, verdict_of
     from calm.report.folder import write_report
 
-    (verdict,) = verdict_prose(deck.assessment.all_findings()).lines
-    narrate(f"{path}: {verdict}: calm check {path}")
+    state, words = verdict_of(deck.assessment.all_findings())
+    narrate(f"{path}: {SIGNS[state]} {words}: calm check {path}")
     notes = _signs_that_are_lacking(deck)
     for note in (*deck.notes, *notes):
         narrate(f"{path}: {note}")
@@ -133,7 +133,7 @@ def _contents(deck: Deck, paper: Paper, notes: tuple[str, ...]) -> Mapping[str, 
         diagram_report,
     )
     from calm.report.diagram import diagram_svg
-    from calm.report.pdf import printed
+    from calm.report.folder import printed
     from calm.report.result_files import to_json
 
     texts = {"diagram.svg": diagram_svg(deck, paper), **deck_csvs(deck)}
@@ -169,7 +169,7 @@ def _verdict(deck: Deck) -> dict[str, Any]:
 
 def _signs_that_are_lacking(deck: Deck) -> tuple[str, ...]:
     """What the sheets cannot show of the names in a file, and where."""
-    from calm.report.pdf import lacking
+    from calm.report.folder import lacking
 
     signs = lacking(text for text, _ in _texts(deck))
     if not signs:

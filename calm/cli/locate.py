@@ -85,7 +85,7 @@ def locate(
     from calm.drawing.picture import check_format, image
     from calm.locate import locate as found_at
     from calm.locate import read_ranges
-    from calm.locate.deployed import located_mooring, with_deployed
+    from calm.locate.range_fit import located_mooring, with_deployed
     from calm.records.record import parse_place
     from calm.report.folder import check_destination, write_file
     from calm.report.located_anchor import located_figure, located_part
@@ -149,7 +149,7 @@ def locate(
 def _sound(text: str) -> Sound:
     """One speed, or the profile of a file."""
     from calm.locate import Sound
-    from calm.locate.sound import FASTEST, SLOWEST, read_sound, sound_complaint
+    from calm.locate.ranges import FASTEST, SLOWEST, read_sound, sound_complaint
 
     if text.lower().endswith((".csv", ".txt", ".tsv")):
         return read_sound(Path(text))

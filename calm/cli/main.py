@@ -19,14 +19,12 @@ from calm.cli.catalog import catalog
 from calm.cli.chart import chart
 from calm.cli.check import CHECK_EXAMPLES, check
 from calm.cli.deck import DECK_EXAMPLES, deck
-from calm.cli.diff import DIFF_EXAMPLES, diff
-from calm.cli.docs import DOCS_EXAMPLES, docs
+from calm.cli.designs import DIFF_EXAMPLES, SIZE_EXAMPLES, diff, size
 from calm.cli.exchange import EXPORT_EXAMPLES, IMPORT_EXAMPLES, export, import_
 from calm.cli.locate import LOCATE_EXAMPLES, locate
 from calm.cli.motion import MOTION_EXAMPLES, motion
 from calm.cli.run import RUN_EXAMPLES, run
-from calm.cli.size import SIZE_EXAMPLES, size
-from calm.cli.starter import NEW_EXAMPLES, SCHEMA_EXAMPLES, new, schema
+from calm.cli.starter import DOCS_EXAMPLES, NEW_EXAMPLES, SCHEMA_EXAMPLES, docs, new, schema
 from calm.cli.streams import ExitCode, narrate, prepare, show
 from calm.cli.tow import STRUMMING_EXAMPLES, TOW_EXAMPLES, strumming, tow
 from calm.cli.verify import VERIFY_EXAMPLES, verify

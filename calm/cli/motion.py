@@ -102,18 +102,16 @@ def motion(
     """
     import numpy as np
 
-    from calm.batch.compiling import compile_solver
+    from calm.batch.finished import open_result, readable
     from calm.batch.profiles import Batch
-    from calm.batch.stored_result import open_result, readable
+    from calm.batch.work import compile_solver
     from calm.motion.correction import MeasuredRecord, run_motion
     from calm.motion.instrument_file import read_instruments, write_depths
     from calm.motion.matching import labels_of
     from calm.motion.study import cross_validated, judged, prepare, series_of, several
-    from calm.report.folder import check_folder, write_report
+    from calm.report.folder import check_folder, printed, write_report
     from calm.report.html import page
-    from calm.report.motion_report import motion_report
-    from calm.report.motion_tables import motion_document, motion_part
-    from calm.report.pdf import printed
+    from calm.report.motion_report import motion_document, motion_part, motion_report
 
     if workers is not None and workers < 1:
         raise UsageError(f"--workers: {workers} is not 1 or more")

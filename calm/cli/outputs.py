@@ -118,7 +118,7 @@ class FileOutcome:
 
             return page(result_report(self.result, self.uncertain)).encode("utf-8", "replace")
         if suffix == ".pdf":
-            from calm.report.pdf import printed
+            from calm.report.folder import printed
             from calm.report.result_report import result_report
 
             return printed(result_report(self.result, self.uncertain))

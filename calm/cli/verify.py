@@ -101,7 +101,7 @@ def verify_field(outputs: Outputs) -> ExitCode:
     from calm.motion.line_response import Forward
     from calm.motion.study import intervals, judge_hidden, prepare
     from calm.report.blocks import Heading, Prose, ReportPart
-    from calm.report.motion_tables import (
+    from calm.report.motion_report import (
         factors_document,
         factors_table,
         held_out_document,

@@ -13,7 +13,7 @@ from calm.cli.streams import ExitCode, narrate
 from calm.errors import NoEquilibrium, UsageError
 
 if TYPE_CHECKING:
-    from calm.waves.spectra import SeaState
+    from calm.records.sea_states import SeaState
 
 Signed = Annotated[str | None, Parameter(allow_leading_hyphen=True)]
 
@@ -35,7 +35,7 @@ def waves(
     tp: Signed = None,
     spectrum: str = "bretschneider",
     gamma: float = 3.3,
-    toward: Annotated[str, Parameter(allow_leading_hyphen=True)] = "90 deg",
+    toward: Signed = None,
     scatter: Path | None = None,
     duration: str = "3 h",
     json: OutputPath = None,
@@ -45,7 +45,8 @@ def waves(
 
     Linear: small waves about the shape in the mean current, drag linearised to
     what it dissipates. Where a piece falls slack this no longer holds: the status
-    is slack-in-waves and the exit code 3.
+    is slack-in-waves and the exit code 3. Without --hs, --scatter or a file as the
+    --spectrum the seas are those of `waves:` of the environment.
 
     Parameters
     ----------
@@ -55,14 +56,14 @@ def waves(
         Significant wave height, such as "5 m".
     tp
         Period of the peak, such as "8.4 s"; that of a full sea for
-        pierson-moskowitz.
+        pierson-moskowitz, and left out for ochi-hubble, of swell and sea.
     spectrum
-        bretschneider, jonswap, pierson-moskowitz, or a CSV file of
-        frequency[Hz],density[m^2/Hz].
+        bretschneider, jonswap, pierson-moskowitz, ochi-hubble, or a file of a
+        measured one: CSV of frequency[Hz],density[m^2/Hz], or NetCDF.
     gamma
         Peakedness of jonswap.
     toward
-        Where the waves run, clockwise from north.
+        Where the waves run, clockwise from north; 90 deg unless given.
     scatter
         A CSV file of seas: significant_wave_height[m],peak_period[s],share.
     duration
@@ -75,13 +76,21 @@ def waves(
     import calm
     from calm.case import Tow
     from calm.cli.streams import progress
+    from calm.records.sea_states import OF_HEIGHT
     from calm.report.sea_response import sea_response_part
     from calm.waves.analysis import SLACK, analyse
 
-    seas, way, length = _asked(hs, tp, spectrum, gamma, toward, scatter, duration)
+    asked, way, length = _asked(hs, tp, spectrum, gamma, toward, scatter, duration)
     mooring = calm.load(file, environment=environment, catalogs=catalog or [])
     if isinstance(mooring, Tow):
         raise UsageError(f"{file} is a tow; calm waves judges moorings")
+    given = mooring.file.environment.waves
+    if asked is None and given is None:
+        missing = "--hs: missing" if spectrum in OF_HEIGHT else "--hs, --tp: missing"
+        raise UsageError(f"{missing}; or give a --scatter table, or `waves:` in {file}")
+    seas = list(given.seas) if asked is None and given is not None else asked or []
+    if way is None:
+        way = 90.0 if given is None else given.toward
     show_units(units, [mooring.file])
     try:
         analysis = analyse(mooring, seas, way, length, lambda each: progress(each, "seas"))
@@ -105,19 +114,19 @@ def _asked(
     tp: str | None,
     spectrum: str,
     gamma: float,
-    toward: str,
+    toward: str | None,
     scatter: Path | None,
     duration: str,
-) -> tuple[list[SeaState], float, float]:
-    """Return the seas, where they run [degrees], and how long they last [s].
+) -> tuple[list[SeaState] | None, float | None, float]:
+    """Return the seas, where they run [degrees], and how long they last [s]; None: not said.
 
     Raises
     ------
     UsageError
         With all that is wrong with the options.
     """
+    from calm.records import sea_states
     from calm.suggestions import nearest
-    from calm.waves import spectra
 
     given = quantities(
         {
@@ -134,29 +143,29 @@ def _asked(
     ]
     if not 1.0 <= gamma <= 10.0:
         complaints.append("--gamma: from 1, of a full sea, to 10")
-    named, path = spectrum in spectra.SPECTRA, Path(spectrum)
+    named, path = spectrum in sea_states.SPECTRA, Path(spectrum)
     if not named and not path.is_file():
-        near = nearest(spectrum, spectra.SPECTRA)
+        near = nearest(spectrum, sea_states.SPECTRA)
         meant = f"; did you mean `{near}`?" if near else ""
         complaints.append(
-            f"--spectrum: `{spectrum}` is neither {', '.join(spectra.SPECTRA)} nor a file{meant}"
+            f"--spectrum: `{spectrum}` is neither {', '.join(sea_states.SPECTRA)} nor a file{meant}"
         )
-    asked = [name for name, each in (("--hs", hs), ("--tp", tp)) if each is not None]
-    if scatter is not None and (asked or not named):
+    chosen = [name for name, each in (("--hs", hs), ("--tp", tp)) if each is not None]
+    if scatter is not None and (chosen or not named):
         complaints.append("--scatter: gives heights and periods; leave --hs, --tp and a file out")
-    elif scatter is None and not named and asked:
-        complaints.append(f"{', '.join(asked)}: a measured spectrum has its own")
-    elif scatter is None and named:
-        needs = ["--hs", *(["--tp"] if spectrum != "pierson-moskowitz" else [])]
-        if missing := [name for name in needs if name not in asked]:
+    elif scatter is None and not named and chosen:
+        complaints.append(f"{', '.join(chosen)}: a measured spectrum has its own")
+    elif scatter is None and named and (chosen or spectrum != "bretschneider"):
+        needs = ["--hs", *(["--tp"] if spectrum not in sea_states.OF_HEIGHT else [])]
+        if missing := [name for name in needs if name not in chosen]:
             complaints.append(f"{', '.join(missing)}: missing; or give a --scatter table")
     if complaints:
         raise UsageError("\n".join(complaints))
+    seas = None
     if scatter is not None:
-        seas = spectra.scatter_states(scatter, spectrum, gamma)
-    elif named:
-        period = given.get("tp") or spectra.full_sea_period(given["hs"])
-        seas = [spectra.spectrum_of(spectrum, given["hs"], period, gamma)]
-    else:
-        seas = [spectra.measured_spectrum(path)]
-    return seas, given["toward"], given["duration"]
+        seas = sea_states.scatter_states(scatter, spectrum, gamma)
+    elif not named:
+        seas = [sea_states.measured_spectrum(path)]
+    elif chosen:
+        seas = [sea_states.spectrum_of(spectrum, given["hs"], given.get("tp"), gamma)]
+    return seas, given.get("toward"), given["duration"]

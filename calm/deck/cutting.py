@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 from calm.deck.deck_items import Order
 from calm.errors import NoEquilibrium
 from calm.files import Cable, Chain, Flexible, Piece
-from calm.files.flexible import strain_under
 from calm.solve import expect_many
 
 if TYPE_CHECKING:
@@ -94,7 +93,7 @@ def _cut(result: Result, one: DeckItem, over: int, count: int) -> Cut:
     piece = one.part
     assert isinstance(piece, Piece) and isinstance(piece.component, Flexible)
     assert one.cut_length is not None
-    longer = 1.0 + strain_under(piece.component, piece.measured_load)
+    longer = 1.0 + piece.component.strain_under(piece.measured_load)
     length = one.cut_length * longer
     return Cut(
         item=one,

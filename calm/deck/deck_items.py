@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from itertools import groupby
 from math import inf, isnan
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from calm.case.result_tables import ClampRow, rows_by_place, rows_down
 from calm.files import Flexible
@@ -19,6 +20,9 @@ if TYPE_CHECKING:
     from calm.checks.recovery import Recovery
     from calm.files import Clamp, Piece
     from calm.files.logbook import DeployedItem
+
+
+_SIZED = re.compile(r"(shackle|ring|swivel|link)(?:-[a-z]+)?-(\d+)\b.*")
 
 
 @dataclass(frozen=True)
@@ -35,6 +39,7 @@ class DeckItem:
     cut_length, stretched : of a piece [m]; of a clamp None
     depth, height : of the upper end, of a clamp of its place [m]
     tilt : from the vertical [degrees]
+    tension : the greatest in a piece [N]; of a clamp None
     serial : as designed
     deployed_serial, remark : as deployed; the serial number of the design where none is given
     """
@@ -49,6 +54,7 @@ class DeckItem:
     depth: float
     height: float
     tilt: float
+    tension: float | None
     serial: str | None
     deployed_serial: str | None
     remark: str | None
@@ -64,6 +70,12 @@ class DeckItem:
         return self.part.component.name or self.part.use
 
     @property
+    def hardware(self) -> str:
+        """Return the name of a connector in short, as people write it: `13 shackle`."""
+        sized = _SIZED.fullmatch(self.part.use)
+        return f"{sized[2]} {sized[1]}" if sized else self.name
+
+    @property
     def is_rigid(self) -> bool:
         """Return whether it is no cable or chain."""
         return not isinstance(self.part.component, Flexible)
@@ -74,22 +86,103 @@ class DeckItem:
         return self.part.component.role
 
     @property
+    def is_joint(self) -> bool:
+        """Return whether it is hardware that only joins pieces, with nothing of its own to tell."""
+        joins = self.role == "connector" and self.on is None and self.is_rigid
+        return joins and not self._is_told_of
+
+    @property
+    def _is_told_of(self) -> bool:
+        return any((self.serial, self.deployed_serial, self.remark))
+
+    @property
     def kind(self) -> tuple[object, ...]:
         """Return what is alike in items that share a row where they follow one another.
 
-        That is hardware of any kind, and floats and clamps of one component; never what has a
-        serial number or a remark, an instrument, a release, an anchor, or what is cut.
+        That is floats and clamps of one component; never what has a serial number or a remark, an
+        instrument, a release, an anchor, or what is cut.
         """
-        own = self.serial or self.deployed_serial or self.remark
-        alone = own or not self.is_rigid or self.role in ("instrument", "release", "anchor")
-        if alone:
-            return (self.label,)
-        return (
-            ("hardware",) if self.role == "connector" and self.on is None else (self.name, self.on)
-        )
+        alone = not self.is_rigid or self.role in ("instrument", "release", "anchor")
+        return (self.label,) if alone or self._is_told_of else (self.name, self.on)
 
 
-def label_of_run(items: Sequence[DeckItem]) -> str:
+@dataclass(frozen=True)
+class DeckRow:
+    """What shares a row on paper: glass on its chain, floats shackled to one another.
+
+    Attributes
+    ----------
+    items : like pieces that follow one another, or like clamps
+    floats : like floats on the one cable or chain that the items are
+    joints : hardware between the items, and that which comes after them
+    """
+
+    items: tuple[DeckItem, ...]
+    floats: tuple[DeckItem, ...] = ()
+    joints: tuple[DeckItem, ...] = ()
+
+    @property
+    def first(self) -> DeckItem:
+        """Return the first of the items."""
+        return self.items[0]
+
+    @property
+    def count(self) -> int:
+        """Return how many pieces and clamps share it."""
+        return len(self.items) + len(self.floats) + len(self.joints)
+
+    @property
+    def label(self) -> str:
+        """Label of the item, or those of the first and the last of several."""
+        return label_of_run(self.items)
+
+    @property
+    def name(self) -> str:
+        """Names of all, with how many there are of several; of a chain with floats theirs."""
+        floats = f"{len(self.floats)} × " if len(self.floats) > 1 else ""
+        return floats + self.floats[0].name if self.floats else name_of_run(self.items)
+
+    @property
+    def joined(self) -> str:
+        """Return the hardware in words, such as `2 × 13 shackle`; nothing without."""
+        counts = Counter(one.hardware for one in self.joints)
+        return ", ".join(f"{n} × {name}" if n > 1 else name for name, n in counts.items())
+
+
+def rows_on_paper(items: Sequence[DeckItem]) -> tuple[DeckRow, ...]:
+    """The rows in which items that follow one another are listed, in their order."""
+    rows: list[DeckRow] = []
+    for _, group in groupby(items, key=lambda one: one.is_joint or one.kind):
+        run = tuple(group)
+        last = rows[-1] if rows else None
+        if last is None:
+            rows.append(DeckRow(run))
+        elif run[0].is_joint:
+            rows[-1] = replace(last, joints=(*last.joints, *run))
+        elif last.first.kind == run[0].kind:
+            rows[-1] = replace(last, items=(*last.items, *run))
+        elif _lies_on(run, last, items):
+            rows[-1] = replace(last, floats=run)
+        else:
+            rows.append(DeckRow(run))
+    return tuple(rows)
+
+
+def _lies_on(run: tuple[DeckItem, ...], row: DeckRow, items: Sequence[DeckItem]) -> bool:
+    """Return whether some clamps are the only ones of a row's cable, and floats."""
+    first = run[0]
+    if first.role != "float" or first.on is None or first.kind == (first.label,):
+        return False
+    every = [one for one in items if one.on == first.on and one.index == first.index]
+    return row.items[-1].label == first.on and len(every) == len(run)
+
+
+class _Labelled(Protocol):
+    @property
+    def label(self) -> str: ...
+
+
+def label_of_run(items: Sequence[_Labelled]) -> str:
     """Return the label of an item, or those of the first and the last of several."""
     return items[0].label if len(items) == 1 else f"{items[0].label} – {items[-1].label}"
 
@@ -140,6 +233,7 @@ def _deck_item(
         depth=depth,
         height=bottom - depth,
         tilt=row.tilt,
+        tension=piece.tension if clamp is None else None,
         serial=part.serial,
         deployed_serial=(item.serial if item else None) or part.serial,
         remark=item.remark if item else None,

@@ -37,7 +37,7 @@ from calm.quantities import QUANTITIES
 if TYPE_CHECKING:
     from calm.case import Result
     from calm.checks.assessment import Assessment
-    from calm.checks.backup import Break
+    from calm.checks.recovery import Break
 
     Solved = Sequence[tuple[str, Result]]
 

@@ -111,13 +111,9 @@ def fall(
 ) -> Motion:
     """The fall of a line from where it is towed until its anchor meets the seabed.
 
-    The instant of the touchdown is interpolated within the step that passes it.
-
-    Raises
-    ------
-    NoEquilibrium
-        ``anchor-lifts`` where the anchor does not come to the seabed, ``not-converged`` where a
-        step is not found.
+    The instant of the touchdown is interpolated within the step that passes it. NoEquilibrium:
+    ``anchor-lifts`` where the anchor does not come to the seabed, ``not-converged`` where a step is
+    not found.
     """
     mover = Mover(chain_of(line, fineness.bars), _sea(water), anchor)
     bottom = line.anchor_height - water.depth
@@ -160,10 +156,7 @@ def settle(
 ) -> Motion:
     """Return how a line comes to rest on the anchor that holds it.
 
-    Raises
-    ------
-    NoEquilibrium
-        ``not-converged`` where it does not.
+    NoEquilibrium: ``not-converged`` where it does not.
     """
     mover = Mover(chain_of(line, fineness.bars), _sea(water), anchor, held=True)
     return Motion(mover, _settled(mover, landed, 0.2 * water.depth / fineness.steps))
@@ -186,13 +179,7 @@ def _passing(before: ChainState, after: ChainState, bottom: float) -> ChainState
 
 
 def _stepped(mover: Mover, state: ChainState, step: float, depth: float) -> ChainState:
-    """A step, or a shorter one where it is not found.
-
-    Raises
-    ------
-    NoEquilibrium
-        ``not-converged``
-    """
+    """A step, or a shorter one where it is not found; NoEquilibrium: ``not-converged``."""
     shortest = _SHORTEST * depth
     while step > shortest:
         for gently in (False, True):
@@ -255,11 +242,6 @@ def _slowed(mover: Mover, state: ChainState, streamed: float) -> ChainState:
     """The line in a flow so much slower that it streams to a distance [m].
 
     A free end that is pushed nearer in the whole flow would bend the line as no rope bends.
-
-    Raises
-    ------
-    UsageError
-        It streams farther in a flow that hardly moves it.
     """
     from scipy.optimize import brentq
 

@@ -79,13 +79,7 @@ class Launch:
 
 
 def launch_of(mooring: Mooring, fineness: Fineness = IN_SHORT) -> Launch:
-    """Return the launch of a mooring, anchor last.
-
-    Raises
-    ------
-    NoEquilibrium
-        As `fall`.
-    """
+    """Return the launch of a mooring, anchor last (NoEquilibrium: as `fall`)."""
     line, water, anchor = falling_line(mooring), mooring.water, falling_anchor(mooring)
     ship = ship_of(mooring, SHIP_SPEED, course_into_current(water))
     drop = mooring.memory.of(_let_go, line, water, anchor, ship, fineness)
@@ -179,12 +173,8 @@ def ship_of(mooring: Mooring, speed: float, course: float, streamed: float | Non
 
 
 def _at_last(drop: Motion, line: Line, anchor: FallingAnchor, fineness: Fineness) -> Motion:
-    """Return the last step of a fall, of another line or behind another anchor.
-
-    Parameters
-    ----------
-    line : as that of the fall, but for its drag
-    fineness : of the fall
+    """Return the last step of a fall, of another line, alike but for its drag, or behind another
+    anchor.
     """
     landed, depth = drop.states[-1], drop.mover.sea.water.depth
     # the step in which it landed ends there, and may be very short

@@ -85,14 +85,9 @@ class Mover:
     def stepped(self, state: ChainState, step: float, gently: bool = False) -> ChainState:
         """The state a time later [s].
 
-        A line at rest begins to move by rounds in which drag goes with the speed: they find the
-        way to where it goes with the square. So does one that is to be moved `gently`, as if it
-        were at rest.
-
-        Raises
-        ------
-        NoStep
-            Where Newton's method does not find it.
+        A line at rest begins to move by rounds in which drag goes with the speed: they find the way
+        to where it goes with the square. So does one that is to be moved `gently`, as if it were at
+        rest. NoStep: where Newton's method does not find it.
         """
         variation = self.variation(state)
         gently = gently or not state.velocity.any()

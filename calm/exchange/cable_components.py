@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from calm.exchange.cable_grammar import CableDefinition, KeyValue, KeyValues
-from calm.exchange.design import FigureOrWord, ImportedComponent, Remark, refused
-from calm.exchange.part_names import is_chain, role_of
+from calm.exchange.design import FigureOrWord, ImportedComponent, Remark, is_chain, refused, role_of
 from calm.files.definition import CATALOGUE_DENSITY
 from calm.units import KILOGRAM_FORCE
 
@@ -229,13 +228,7 @@ def varies(definition: CableDefinition) -> bool:
 def _displacement(
     definition: CableDefinition, shape: str
 ) -> tuple[tuple[float, float, float], ...]:
-    """Return rows of draft [m], displaced volume [m³] and immersed area [m²].
-
-    Raises
-    ------
-    InputError
-        The hull has no size, or a shape that is not known.
-    """
+    """Return rows of draft [m], displaced volume [m³] and immersed area [m²] of a known shape."""
     values = definition.values
     across = values.number("d", "diam")
     height = values.number("h", "height")

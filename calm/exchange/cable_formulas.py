@@ -146,13 +146,7 @@ def constant(text: str) -> float:
 
 
 def read_expression(words: TokenStream) -> Expression:
-    """Read a formula, as far as it goes.
-
-    Raises
-    ------
-    InputError
-        It cannot be read.
-    """
+    """Read a formula, as far as it goes (InputError: it cannot be read)."""
     token, names = words.next, set[str]()
     formula = _Reader(words, names).choice(0)
     return Expression(formula, frozenset(names), token)

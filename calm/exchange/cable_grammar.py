@@ -70,10 +70,7 @@ class KeyValues(dict[str, KeyValue]):
     def number(self, *keys: str, default: float = 0.0) -> float:
         """Return the number of the first key that has one other than 0, at the time 0.
 
-        Parameters
-        ----------
-        keys : that mean the same
-        default : where the file has none of them
+        The keys mean the same; `default` is returned where the file has none of them.
         """
         found = default
         for key in keys:
@@ -98,20 +95,15 @@ class CableDefinition:
 
 
 @dataclass
-class CableAttachment:
-    """Represent a connector hung on nodes of a segment."""
-
-    token: Token
-    nodes: list[int]
-
-
-@dataclass
 class CableSegment:
-    """Represent a length of one material, and what joins it to the next one up."""
+    """Represent a length of one material, and what joins it to the next one up.
+
+    `attachments` are connectors hung on it, each with its nodes.
+    """
 
     token: Token
     values: KeyValues
-    attachments: list[CableAttachment] = field(default_factory=list)
+    attachments: list[tuple[Token, list[int]]] = field(default_factory=list)
     connector: Token | None = None
     joint: KeyValues = field(default_factory=KeyValues)
 
@@ -350,13 +342,13 @@ def _renamed(token: Token, text: str) -> Token:
     return Token("name", text, token.path, token.line, token.column)
 
 
-def _attachments(words: TokenStream, key: Token) -> list[CableAttachment]:
+def _attachments(words: TokenStream, key: Token) -> list[tuple[Token, list[int]]]:
     """Lists such as ``meter : (3 9 27), light : [2, 2, 40]``."""
-    found: list[CableAttachment] = []
+    found: list[tuple[Token, list[int]]] = []
     while words.next.kind in ("name", "text"):
         token = words.take()
         words.comes(":")
-        found.append(CableAttachment(token, _nodes(words, token)))
+        found.append((token, _nodes(words, token)))
         words.comes(",")
     if not found:
         raise key.refuse("`attachments` names nothing")

@@ -242,10 +242,8 @@ def _pieces(
 ) -> list[ImportedPiece]:
     """Return a segment as one piece, or as several where its drag changes with depth, from below.
 
-    Parameters
-    ----------
-    lower : depth of its lower end, standing upright [m]
-    clamps : height above its lower end [m], and what hangs there
+    Its lower end is at the depth `lower` standing upright [m]; clamps have heights above that end
+    [m].
     """
     count = _PARTS if varies(material) else 1
     made: list[tuple[float, ImportedComponent]] = []
@@ -300,13 +298,11 @@ def _clamps(
         return []
     heights = _heights(segment, length)
     found = []
-    for attachment in segment.attachments:
-        component = makers.connector(_connector(problem, attachment.token))
-        for node in attachment.nodes:
+    for token, nodes in segment.attachments:
+        component = makers.connector(_connector(problem, token))
+        for node in nodes:
             if not 1 <= node <= len(heights):
-                raise attachment.token.refuse(
-                    f"node {node}: the segment has nodes 1 to {len(heights)}"
-                )
+                raise token.refuse(f"node {node}: the segment has nodes 1 to {len(heights)}")
             found.append((heights[node - 1], component))
     return found
 

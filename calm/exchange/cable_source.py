@@ -307,10 +307,7 @@ class Token:
 def tokens_of(lines: Iterable[SourceLine]) -> Iterator[Token]:
     """Return the words of the lines, and an ``end``.
 
-    Raises
-    ------
-    InputError
-        A sign that has no place in such a file.
+    InputError: a sign that has no place in such a file.
     """
     last = SourceLine("", "", 0)
     for line in lines:

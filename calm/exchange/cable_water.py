@@ -167,17 +167,6 @@ def _gridded_current(
 
     It begins with step, start and count of time, depth, x and y; the speeds to x, y and z follow,
     the depth running fastest, then x, then y, then the time.
-
-    Parameters
-    ----------
-    value : that names the file
-    folder : of the problem
-    allow_include : whether the file may lie elsewhere
-
-    Raises
-    ------
-    InputError
-        The file lies elsewhere, or its numbers do not go together.
     """
     path = folder / value.text
     if not allow_include and not path.resolve().is_relative_to(folder.resolve()):

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from math import atan2, degrees, hypot, pi, sqrt
 
+from calm.exchange.design import is_chain
 from calm.exchange.exported_parts import ExportedLine, ExportedPart, PartLoad, unique_name
-from calm.exchange.part_names import is_chain
 from calm.files import Chain, Cylinder, Rigid, Sphere
 from calm.files.rigid import Displacement
 from calm.physics.hull import Hull, cylindrical_hull, spherical_hull, tabulated_hull
@@ -258,12 +258,8 @@ def _ends(design: ExportedLine, layout: list[str]) -> list[str]:
 
 
 def _buoy_figures(part: ExportedPart, design: ExportedLine, density: float, lost: list[str]) -> str:
-    """Its size, mass, buoyancy and drag, in the words of that program.
-
-    Parameters
-    ----------
-    density : of the water there [kg/m³]
-    lost : what the other program cannot hold is added to it
+    """Its size, mass, buoyancy and drag in the words of that program; what it cannot hold is
+    `lost`.
     """
     if part.flexible:
         return "type = sphere  d = 0.001  m = 0.001  buoyancy = 0.01  Cdn = 0"
@@ -318,9 +314,7 @@ def _windage(part: ExportedPart, design: ExportedLine) -> str:
 def _drag_share(design: ExportedLine, hull: Hull, mass: float, net: float, most: float) -> float:
     """Factor on the drag of a hull with which it drags, at its draft, as in CALM.
 
-    Parameters
-    ----------
-    net, most : its net buoyancy, and what displaces all of it lifts [N]
+    `net` is its net buoyancy, `most` what displaces all of it lifts [N].
     """
     used, seen = design.riding
     immersed = min(max((mass * design.gravity + used * net) / most, 0.0), 1.0)

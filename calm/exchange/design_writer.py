@@ -14,9 +14,9 @@ from calm.exchange.design import (
     ImportedPiece,
     ImportedWater,
     Remark,
+    ids_of,
     one_line,
 )
-from calm.exchange.part_names import ids_of
 from calm.files import Catalogue
 from calm.files.components import FLEXIBLE_KINDS
 from calm.units import KILOGRAM_FORCE
@@ -31,14 +31,6 @@ _UNITS = {
     "depth_rating": "m",
 }  # fmt: skip
 _FORCES = {"buoyancy", "weight"}
-
-
-@dataclass
-class Written:
-    """Hold the text of a mooring file, and what was guessed in it."""
-
-    text: str
-    guessed: list[Remark]
 
 
 @dataclass
@@ -63,8 +55,8 @@ class _Page:
 
 def mooring_text(
     design: Design, source: str, environment: list[str] | None = None, version: str = ""
-) -> Written:
-    """Return the mooring file of a design.
+) -> tuple[str, list[Remark]]:
+    """Return the text of the mooring file of a design, and what was guessed in it.
 
     Parameters
     ----------
@@ -108,7 +100,7 @@ def mooring_text(
         page.add("components:")
     for id_, component in own.items():
         _write_component(page, component, id_, design.in_kilograms)
-    return Written("\n".join(page.lines) + "\n", page.guessed)
+    return "\n".join(page.lines) + "\n", page.guessed
 
 
 def _number(value: float) -> str:

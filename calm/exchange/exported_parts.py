@@ -222,10 +222,7 @@ class ExportedLine:
     def paths(self) -> list[PartPath]:
         """Return where each part lies in equilibrium, from the top down.
 
-        Raises
-        ------
-        NoEquilibrium
-            There is none.
+        NoEquilibrium: there is none.
         """
         result = self.solve()
         nodes = np.column_stack([result.shape.x, result.shape.y, result.shape.depth])
@@ -243,13 +240,9 @@ class ExportedLine:
     def float_as_point(self, density: float) -> tuple[float, float]:
         """Return net force [N] and drag area [m²] of a float below the surface as a point.
 
-        It is for programs in which a float is a point at the line's end: its drag is in the flow
-        there, not at its middle, and has no axis. Force and area are such that it pulls as it does
-        here; without an equilibrium they are its own.
-
-        Parameters
-        ----------
-        density : of the water there [kg/m³]
+        It is for programs in which a float is a point at the line's end, in water of a density
+        [kg/m³]: its drag is in the flow there, not at its middle, and has no axis. Force and area
+        are such that it pulls as it does here; without an equilibrium they are its own.
         """
         part = self.parts[0]
         own = part.net, part.area(density)

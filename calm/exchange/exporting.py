@@ -68,13 +68,7 @@ def export_file(
 
 
 def _exported_line(mooring: Mooring | Tow) -> ExportedLine:
-    """Return the parts of a mooring or a tow.
-
-    Raises
-    ------
-    NoEquilibrium
-        A piece is to be cut to fit, and no length does.
-    """
+    """Return the parts of a mooring or a tow."""
     file, water, line = mooring.file, mooring.water, mooring.line
     if file.environment.fluid == "air":
         raise UsageError(f"{file.path} is towed in air; the other programs know water alone")

@@ -75,7 +75,7 @@ def _pull(
     anchor.figures.pop("mass", None)
     anchor.figures["weight"] = _HOLDS
     try:
-        mooring = load(output, text=mooring_text(design, "", environment).text)
+        mooring = load(output, text=mooring_text(design, "", environment)[0])
         assert isinstance(mooring, Mooring)
         anchored = mooring.solve().anchor
     except CalmError:
@@ -169,10 +169,7 @@ def _drag(component: Component) -> float:
 def environment_lines(path: Path, output: Path) -> list[str]:
     """Return the `environment` of a file, its paths relative to the folder of the mooring file.
 
-    Raises
-    ------
-    InputError
-        The file cannot be read, or has no `environment`.
+    InputError: the file cannot be read, or has no `environment`.
     """
     found = read_document(path).data.get("environment")
     if not isinstance(found, dict) or not found:

@@ -21,8 +21,8 @@ from calm.exchange.import_completion import (
 from calm.exchange.list_cells import is_table
 from calm.exchange.list_reader import read_list
 from calm.exchange.mat_file import is_mat
+from calm.exchange.mdd_elements import is_moords, read_moords
 from calm.exchange.mdd_reader import read_mdd
-from calm.exchange.moords_reader import is_moords, read_moords
 from calm.exchange.moordyn_reader import is_moordyn, read_moordyn
 from calm.files import read_mooring
 from calm.version import __version__
@@ -148,10 +148,10 @@ def import_file(
         raise refused(path, message)
     matched = match_catalogue_entries(design) if match_catalogue else ()
     secure_anchor(design, lines, output)
-    page = mooring_text(design, path.name, lines, __version__)
-    _check(path, output, page.text)
+    text, guessed = mooring_text(design, path.name, lines, __version__)
+    _check(path, output, text)
     return Imported(
-        path, chosen.name, page.text, tuple(page.guessed + design.guessed),
+        path, chosen.name, text, tuple(guessed + design.guessed),
         tuple(design.dropped), matched, design.record,
     )  # fmt: skip
 
@@ -159,16 +159,7 @@ def import_file(
 def _format_of(path: Path, name: str | None, *, listed: bool = False) -> ImportFormat:
     """Return the format of a file: as named, or by its content.
 
-    Parameters
-    ----------
-    listed : whether a file of no other format is read as a list, even with a single column
-
-    Raises
-    ------
-    InputError
-        The file cannot be read, or is of no format that is known.
-    UsageError
-        There is no format of that name.
+    One that is `listed` is a list where it is of no other format, even with a single column.
     """
     if name is not None:
         for each in FORMATS:

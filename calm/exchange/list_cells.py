@@ -98,15 +98,8 @@ class ColumnUnit:
 def unit_called(text: str, what: str) -> ColumnUnit | None:
     """Return the unit that a text names, words such as *wet* apart; None where it names none.
 
-    Parameters
-    ----------
-    text : that stands in brackets, in a units row or after a number
-    what : the column holds
-
-    Raises
-    ------
-    ValueError
-        It is no unit of what the column holds.
+    The text stands in brackets, in a units row or after a number of a column that holds `what`.
+    ValueError: it is no unit of what the column holds.
     """
     plain = " ".join(text.replace("_", " ").split())
     while plain:
@@ -123,16 +116,14 @@ def unit_called(text: str, what: str) -> ColumnUnit | None:
         return None
     if what not in _DIMENSIONS:
         raise ValueError(f"`{text}` is not understood")
-    raise ValueError(f"`{plain}` is no unit of {_DIMENSIONS[what]} that CALM knows{_hint(plain)}")
+    hint = ": of 907, 1000 or 1016 kg" if plain.lower() in _AMBIGUOUS else ""
+    raise ValueError(f"`{plain}` is no unit of {_DIMENSIONS[what]} that CALM knows{hint}")
 
 
 def unit_of_heading(heading: str, what: str) -> ColumnUnit | None:
     """Return the unit of a heading: in brackets, or its last word; None where it has none.
 
-    Raises
-    ------
-    ValueError
-        What stands in brackets is no unit, or there are two.
+    ValueError: what stands in brackets is no unit, or there are two.
     """
     if what not in _DIMENSIONS:
         return None
@@ -193,10 +184,6 @@ def _factor(text: str, dimension: str) -> float | None:
         return None
 
 
-def _hint(text: str) -> str:
-    return ": of 907, 1000 or 1016 kg" if text.lower() in _AMBIGUOUS else ""
-
-
 class CellNumber(NamedTuple):
     """Hold the number of a cell, None where it has none; what stands behind it; what is wrong."""
 
@@ -207,11 +194,8 @@ class CellNumber(NamedTuple):
 
 
 def number(cell: str, decimal: str = "") -> CellNumber:
-    """Return the number of a cell.
-
-    Parameters
-    ----------
-    decimal : sign of the file; found in the cell itself where it is not given
+    """Return the number of a cell, by the decimal sign of the file or, without it, of the cell
+    itself.
     """
     text = cell.strip().lstrip("'")
     if text.lower() in _NOTHING:
@@ -273,14 +257,8 @@ def _either(digits: str) -> str:
 def decimal_sign(cells: Iterable[tuple[str, str]]) -> tuple[str, str]:
     """Return the decimal sign of a file, and what it was found from where it has commas.
 
-    Parameters
-    ----------
-    cells : place and text of all that hold numbers
-
-    Raises
-    ------
-    ValueError
-        Two signs are used, or nothing tells what `1,250` is.
+    The cells are the place and the text of all that hold numbers. ValueError: two signs are used,
+    or nothing tells what `1,250` is.
     """
     seen: dict[str, str] = {}
     doubtful: dict[str, tuple[str, str]] = {}  # where, and the digits
@@ -329,12 +307,8 @@ def is_table(content: bytes) -> bool:
 def read_sheets(path: Path) -> dict[str, SheetRows]:
     """Return the rows of every sheet by its name; lines that begin with # are comments.
 
-    A sheet without a cell is left out; text has one sheet, without a name.
-
-    Raises
-    ------
-    InputError
-        It cannot be read.
+    A sheet without a cell is left out; text has one sheet, without a name. InputError: it cannot be
+    read.
     """
     content = read_content(path, largest=_LARGEST)
     workbook = _is_spreadsheet(content)

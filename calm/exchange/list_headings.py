@@ -132,9 +132,7 @@ class ListHeadings:
 def headings_of(rows: SheetRows, given: Mapping[str, str]) -> ListHeadings | None:
     """Return the headings of a sheet; None where no row has a name and a length or a force.
 
-    Parameters
-    ----------
-    given : headings by what they hold, which come before those that are recognised
+    Those that are given, by what they hold, come before those that are recognised.
     """
     best: tuple[int, int, ListHeadings] | None = None
     for i in range(min(len(rows), _SEARCHED)):

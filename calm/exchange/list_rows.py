@@ -7,11 +7,10 @@ import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 
-from calm.exchange.design import FigureOrWord, ImportedComponent, Remark
-from calm.exchange.list_cells import SheetRows, number, unit_called
-from calm.exchange.list_headings import WORDS, ListColumn, ListHeadings, cell_of, decimals_of
-from calm.exchange.mdd_elements import MODULI
-from calm.exchange.part_names import (
+from calm.exchange.design import (
+    FigureOrWord,
+    ImportedComponent,
+    Remark,
     is_anchor,
     is_chain,
     is_connector,
@@ -22,6 +21,9 @@ from calm.exchange.part_names import (
     role_of,
     size_in,
 )
+from calm.exchange.list_cells import SheetRows, number, unit_called
+from calm.exchange.list_headings import WORDS, ListColumn, ListHeadings, cell_of, decimals_of
+from calm.exchange.mdd_elements import MODULI
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.units import KILOGRAM_FORCE
 
@@ -74,8 +76,7 @@ class ListRow:
     @property
     def sinks(self) -> bool:
         """Tell whether it is a line, an anchor, or what sinks by its name."""
-        fitting = is_connector(self.name) or is_release(self.name)
-        return fitting or self.is_line or self.is_anchor
+        return is_connector(self.name) or is_release(self.name) or self.is_line or self.is_anchor
 
     @property
     def is_line(self) -> bool:
@@ -346,8 +347,7 @@ def _line(row: ListRow, problems: list[str]) -> ImportedComponent:
     lift = figures.get("buoyancy", 0.0)
     if "buoyancy" not in figures:
         problems.append(f"{row.where}: its weight in water is missing{row.hint}")
-    chain = lift <= 0.0 and is_chain(f"{row.name} {row.kind}")
-    kind = "chain" if chain else "cable"
+    kind = "chain" if lift <= 0.0 and is_chain(f"{row.name} {row.kind}") else "cable"
     if across <= 0.0:
         across = size_in(row.name)
         if across <= 0.0:

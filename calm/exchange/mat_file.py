@@ -42,10 +42,7 @@ RealArray = NDArray[np.float64]
 def read_variables(path: Path, wanted: Collection[str]) -> dict[str, MatValue]:
     """Return the wanted variables that a file has.
 
-    Raises
-    ------
-    InputError
-        The file is no `.mat` file, or a damaged one.
+    InputError: the file is no `.mat` file, or a damaged one.
     """
     content = _inflated(read_content(path, largest=LARGEST), LARGEST + 1)
     if len(content) > LARGEST:
@@ -114,10 +111,7 @@ def _is_octave_text(content: bytes) -> bool:
 def read_octave_text(text: str) -> dict[str, MatValue]:
     """Every variable that can be read; the others are left out.
 
-    Raises
-    ------
-    ValueError
-        A matrix has fewer numbers than its header says, or a header cannot be read.
+    ValueError: a matrix has fewer numbers than its header says, or a header cannot be read.
     """
     variables: dict[str, MatValue] = {}
     cell: list[MatValue] | None = None
@@ -195,19 +189,7 @@ def _value(name: str, kind: str, header: dict[str, str], rows: list[str]) -> Mat
 
 
 def _spread(name: str, first: float, last: float, step: float) -> MatValue:
-    """Return the numbers of a range, the last included where a step ends at it.
-
-    Parameters
-    ----------
-    name : of the variable
-    first, last : numbers of the range
-    step : between two numbers
-
-    Raises
-    ------
-    ValueError
-        The range does not end.
-    """
+    """Return the numbers of a range, the last included where a step ends at it."""
     count = (last - first) / step * (1 + 1e-12) + 1 if step else 0.0
     if not 0.0 <= count <= _MOST:
         raise ValueError(f"the range `{name}` has {count:g} numbers")
@@ -242,13 +224,7 @@ def _is_hdf5(content: bytes) -> bool:
 
 
 def _read_hdf5(content: bytes, wanted: Collection[str]) -> dict[str, MatValue]:
-    """Return the wanted variables that a file has; links to other files are not followed.
-
-    Raises
-    ------
-    ValueError, OSError
-        The file is damaged, or a variable refers to another file.
-    """
+    """Return the wanted variables that a file has; links to other files are not followed."""
     import h5py
 
     found: dict[str, MatValue] = {}
@@ -274,11 +250,10 @@ def _variable(file: Any, node: Any, depth: int) -> MatValue:
     if not isinstance(value, h5py.Group):
         return _values(file, value, kind.removeprefix("global ").strip(), depth)
     elements = [key for key in value if key.startswith("_") and key[1:].isdigit()]
-    return [_variable(file, value[key], depth + 1) for key in sorted(elements, key=_number)]
-
-
-def _number(key: str) -> int:
-    return int(key[1:])
+    return [
+        _variable(file, value[key], depth + 1)
+        for key in sorted(elements, key=lambda key: int(key[1:]))
+    ]
 
 
 def _values(file: Any, node: Any, kind: str, depth: int) -> MatValue:
@@ -299,14 +274,11 @@ def _values(file: Any, node: Any, kind: str, depth: int) -> MatValue:
     if kind in _TEXTS:
         rows = np.atleast_2d(array)
         if array.dtype.kind == "i":
-            return [_utf_8(row) for row in rows]
+            return [
+                row.astype(np.uint8).tobytes().decode("utf-8", "replace").rstrip() for row in rows
+            ]
         return ["".join(chr(int(code)) for code in row).rstrip() for row in rows]
     return array
-
-
-def _utf_8(row: np.ndarray[Any, np.dtype[Any]]) -> str:
-    """Return a text of Octave, which writes bytes."""
-    return row.astype(np.uint8).tobytes().decode("utf-8", "replace").rstrip()
 
 
 def _text_of(value: object) -> str:
@@ -316,10 +288,7 @@ def _text_of(value: object) -> str:
 def numbers(value: MatValue | None) -> RealArray:
     """Return a variable as numbers; an empty array where there is none.
 
-    Raises
-    ------
-    ValueError
-        It holds no real numbers.
+    ValueError: it holds no real numbers.
     """
     if value is None:
         return np.zeros((0, 0))
@@ -331,13 +300,7 @@ def numbers(value: MatValue | None) -> RealArray:
 
 
 def _fits(name: str, shape: tuple[int, ...]) -> bool:
-    """Return whether a variable of a shape may be read at all.
-
-    Raises
-    ------
-    ValueError
-        It may not.
-    """
+    """Return True; raise ValueError where a variable of a shape may not be read at all."""
     if math.prod(shape) > _MOST:
         raise ValueError(f"`{name}` has {math.prod(shape)} elements")
     return True

@@ -1,19 +1,34 @@
-"""Make components of the elements of Mooring Design & Dynamics, with that program's drag."""
+"""Make components of the elements of Mooring Design & Dynamics, with that program's drag.
+
+The designs that moords exports have them as rows, from the anchor up.
+"""
 
 from __future__ import annotations
 
+import csv
+import io
 import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
-from calm.exchange.design import MOST_PIECES, FigureOrWord, ImportedComponent
+from calm.exchange.design import (
+    MOST_PIECES,
+    Design,
+    FigureOrWord,
+    ImportedComponent,
+    ImportedPiece,
+    is_chain,
+    refused,
+    role_of,
+)
 from calm.exchange.mat_file import MatValue, RealArray, names, numbers
-from calm.exchange.part_names import is_chain, role_of
 from calm.files.definition import CATALOGUE_DENSITY
 from calm.units import KILOGRAM_FORCE
+from calm.whole_file import read_text
 
 _SLIGHT = 1e-6  # by which a hull takes more than its net buoyancy
 _FLAT = 1e-3  # m: height of a float that the file gives none
@@ -166,11 +181,8 @@ def read_elements(
 ) -> tuple[list[MddElement], list[str]]:
     """Return the elements of a line in the order of the file, and what is wrong with them.
 
-    Parameters
-    ----------
-    suffix : ``t`` for the matrices of a tow, ``CO`` for what is clamped on, or nothing
+    The suffix is ``t`` for the matrices of a tow, ``CO`` for what is clamped on, or nothing.
     """
-    prefix = "moorele"
     problems: list[str] = []
     size = _matrix(variables, f"H{suffix}", problems)
     count = size.shape[1]
@@ -183,7 +195,7 @@ def read_elements(
     modulus = _optional(variables, f"ME{suffix}")
     mass = _optional(variables, f"Wt{suffix}")
     density = _densities(variables, size[0])
-    called = _names(variables, f"{prefix}{suffix}", count)
+    called = _names(variables, f"moorele{suffix}", count)
     elements = []
     for i in range(count):
         length, width, diameter, flag = (float(value) for value in size[:, i])
@@ -285,8 +297,95 @@ def _names(variables: Mapping[str, MatValue], name: str, count: int) -> list[str
 
 def _modulus(value: float) -> float | None:
     """Return a modulus of elasticity [Pa]; small whole numbers stand for a material."""
-    if math.isnan(value) or value <= 0.0:
+    if not value > 0.0:
         return None
-    if value <= len(MODULI) and value == int(value):
-        return MODULI[int(value) - 1]
+    return MODULI[int(value) - 1] if value in range(1, len(MODULI) + 1) else value
+
+
+_MARKS = {"name", "length", "buoyancy", "bool_line", "bool_clampon", "height_along_inline"}
+_OFF = 1e-6  # m by which a clamp may stand off its piece
+_NOTE = "It solves the equations of Mooring Design & Dynamics. See `calm docs import-table`."
+
+
+def is_moords(content: bytes) -> bool:
+    """Return whether a file is such a design, by its headings."""
+    head = content.split(b"\n", 1)[0].decode("utf-8", "replace")
+    return set(head.strip().split(",")) >= _MARKS
+
+
+def read_moords(path: Path) -> Design:
+    """Read a design (InputError: its headings or figures are not those of that program)."""
+    rows = list(csv.DictReader(io.StringIO(read_text(path))))
+    if not rows or not rows[0].keys() >= _MARKS:
+        raise refused(path, "is not a design of moords: its headings are others")
+    if len(rows) > MOST_PIECES:
+        raise refused(path, f"has {len(rows)} rows; more than {MOST_PIECES} are not read")
+    problems: list[str] = []
+    elements = [_element(row, place, problems) for place, row in enumerate(rows, 2)]
+    if not problems and rows[0].get("bool_clampon") == "True":
+        problems.append("row 2: a clamp stands before the first piece")
+    if problems:
+        raise refused(path, *problems)
+    anchor = anchor_of(elements[0])
+    if not elements[0].lift:
+        del anchor.figures["weight"]
+    items = [ImportedPiece(anchor)]
+    for row, element in zip(rows[1:], elements[1:], strict=True):
+        if row.get("bool_clampon") == "True":
+            _hang(items[-1], element, float(row["height_along_inline"] or 0.0))
+        else:
+            items.append(
+                ImportedPiece(component_of(element), element.length if element.is_line else None)
+            )
+    name = rows[0].get("mooring") or path.stem
+    return Design("moords", name, items[::-1], None, notes=[_NOTE], in_kilograms=True)
+
+
+def _hang(host: ImportedPiece, element: MddElement, height: float) -> None:
+    """Clamp an element on a piece, at a height above its lower end [m]."""
+    length = host.extent
+    at = length - height
+    guess = "" if -_OFF <= at <= length + _OFF else "its place was off the piece"
+    host.clamp(rigid(element), min(max(at, 0.0), length), guess)
+
+
+def _element(row: dict[str, str], place: int, problems: list[str]) -> MddElement:
+    is_line = row.get("bool_line") == "True"
+    length = _number(row, "length", place, problems)
+    lift = _number(row, "buoyancy", place, problems)
+    if is_line and length <= 0.0:
+        problems.append(f"row {place}, {row['name']}: a line needs its length")
+        length = 1.0
+    material = _number(row, "material", place, problems)
+    known = is_line and 1.0 <= material <= len(MODULI)
+    element = MddElement(
+        name=row["name"] or f"row {place}",
+        length=length,
+        width=_number(row, "width", place, problems),
+        diameter=_number(row, "diameter", place, problems),
+        is_line=is_line,
+        is_fastener=row.get("type") == "rigging",
+        lift=lift / length if is_line else lift,
+        cd=_number(row, "drag", place, problems),
+        mass=None,
+        modulus=MODULI[round(material) - 1] if known else None,
+        number=place,
+    )
+    problems += mistakes_of(element, f"row {place}, {element.name}")
+    if row.get("bool_clampon") == "True":
+        _number(row, "height_along_inline", place, problems)
+    return element
+
+
+def _number(row: dict[str, str], key: str, place: int, problems: list[str]) -> float:
+    text = (row.get(key) or "").strip()
+    if not text or text.lower() in ("nan", "none"):
+        return 0.0
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        problems.append(f"row {place}, {row.get('name')}: {key} is `{text}`")
+        return 0.0
     return value

@@ -18,7 +18,6 @@ from calm.exchange.design import (
     Remark,
     refused,
 )
-from calm.exchange.element_library import GROUPS
 from calm.exchange.mat_file import MatValue, RealArray, numbers, read_variables
 from calm.exchange.mdd_elements import (
     MddElement,
@@ -29,6 +28,9 @@ from calm.exchange.mdd_elements import (
     rigid,
 )
 from calm.quantities import bearing_of
+
+GROUPS = ("floats", "wires", "chains", "acrels", "cms", "anchors", "miscs")
+"""The variables of a library that hold elements."""
 
 _WANTED = frozenset(
     ["U", "V", "W", "z", "rho", "time", "ZCO", "Jobj", "Pobj", "mooreleCO", "HCO", "BCO", "CdCO"]
@@ -48,10 +50,7 @@ _EARLIEST, _LATEST = 500_000.0, 1_000_000.0  # datenums that are dates of this a
 def read_mdd(path: Path) -> Design:
     """Read a mooring or a tow.
 
-    Raises
-    ------
-    InputError
-        The file is damaged, is none of that program, or holds what CALM cannot represent.
+    InputError: the file is damaged, is none of that program, or holds what CALM cannot represent.
     """
     variables = read_variables(path, _WANTED)
     sized = [name for name in ("H", "Ht") if name in variables and len(_flat(variables[name]))]

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass, field
+from collections import defaultdict
+from dataclasses import dataclass
 from pathlib import Path
 
 from calm.exchange.design import (
@@ -15,10 +16,10 @@ from calm.exchange.design import (
     ImportedPiece,
     ImportedWater,
     Remark,
+    is_chain,
     refused,
     refused_at,
 )
-from calm.exchange.part_names import is_chain
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
 from calm.whole_file import read_text
 
@@ -55,29 +56,26 @@ _COLUMNS = {
 def read_moordyn(path: Path) -> Design:
     """Read a file with one line, of one or several lengths, from an anchor up.
 
-    Raises
-    ------
-    InputError
-        It cannot be read, or holds a platform, a body, a rod or several lines.
+    InputError: it cannot be read, or holds a platform, a body, a rod or several lines.
     """
-    sections = _read_sections(path)
+    tables, options = _read_sections(path)
     for name in ("bodies", "rods"):
-        for row in sections.rows.get(name, []):
+        for row in tables[name]:
             raise row.refuse(
                 f"{name}: CALM has single moorings, without bodies and rods of MoorDyn"
             )
-    points = {row.words.get("id", ""): row for row in sections.rows.get("points", [])}
-    lines = sections.rows.get("lines", [])
+    points = {row.words.get("id", ""): row for row in tables["points"]}
+    lines = tables["lines"]
     if not points or not lines:
         raise refused(path, f"has {len(points)} points and {len(lines)} lines")
     if len(lines) > MOST_PIECES:
         raise refused(path, f"has {len(lines)} lines; more than {MOST_PIECES} are not read")
     legs = _from_the_anchor(points, lines, path)
-    design = Design("MoorDyn", path.stem, [], _water(sections, points, path), notes=[_NOTE])
+    design = Design("MoorDyn", path.stem, [], _water(options, points, path), notes=[_NOTE])
     assert design.water is not None
     gravity = design.water.gravity
     assert gravity is not None
-    types = {row.words.get("name", ""): row for row in sections.rows.get("types", [])}
+    types = {row.words.get("name", ""): row for row in tables["types"]}
     anchor, items = legs[0][0], []
     for point, line in legs:
         if point is not anchor and (at_point := _point(point, design)) is not None:
@@ -144,8 +142,7 @@ def _is(point: SectionRow, words: tuple[str, ...]) -> bool:
     return point.words.get("attachment", "").lower().startswith(words)
 
 
-def _water(sections: MoorDynSections, points: dict[str, SectionRow], path: Path) -> ImportedWater:
-    options = sections.options
+def _water(options: dict[str, str], points: dict[str, SectionRow], path: Path) -> ImportedWater:
     lowest = min(point.number("z") for point in points.values())
     depth = _option(options, "wtrdpth", "depth", default=-lowest)
     if depth <= 0.0:
@@ -270,13 +267,7 @@ class SectionRow:
     words: dict[str, str]
 
     def number(self, key: str, default: float | None = None) -> float:
-        """Return a word as a number.
-
-        Raises
-        ------
-        InputError
-            It is missing, or no number.
-        """
+        """Return a word as a number (InputError: it is missing, or no number)."""
         text = self.words.get(key)
         if text is None and default is not None:
             return default
@@ -293,14 +284,6 @@ class SectionRow:
         return refused_at(self.path, self.line, 1, message)
 
 
-@dataclass
-class MoorDynSections:
-    """Hold the tables of a file, and its options."""
-
-    rows: dict[str, list[SectionRow]] = field(default_factory=dict)
-    options: dict[str, str] = field(default_factory=dict)
-
-
 def is_moordyn(content: bytes) -> bool:
     """Return whether a file has the sections that each such file must have."""
     text = content.decode("latin-1").lower()
@@ -308,15 +291,10 @@ def is_moordyn(content: bytes) -> bool:
     return b"\0" not in content and {"types", "lines"} <= found
 
 
-def _read_sections(path: Path) -> MoorDynSections:
-    """Read a file.
-
-    Raises
-    ------
-    InputError
-        A table has a row with too few words.
-    """
-    sections, current, headings, skip = MoorDynSections(), "", list[str](), 0
+def _read_sections(path: Path) -> tuple[dict[str, list[SectionRow]], dict[str, str]]:
+    """Return the tables of a file, none with a row of too few words, and its options."""
+    tables, options = defaultdict[str, list[SectionRow]](list), dict[str, str]()
+    current, headings, skip = "", list[str](), 0
     for number, text in enumerate(read_text(path).splitlines(), 1):
         line = text.split("#")[0] if not text.lstrip().startswith("(") else text
         if line.strip().startswith("---"):
@@ -326,7 +304,7 @@ def _read_sections(path: Path) -> MoorDynSections:
         elif current == "options":
             words = line.split()
             if len(words) >= 2:
-                sections.options.setdefault(words[1].lower(), words[0])
+                options.setdefault(words[1].lower(), words[0])
         elif skip:
             skip -= 1
             if skip == 1:
@@ -336,8 +314,8 @@ def _read_sections(path: Path) -> MoorDynSections:
             if len(words) < min(len(headings), 4):
                 raise refused_at(str(path), number, 1, f"the row has {len(words)} words")
             kept = dict(zip(headings, words, strict=False))
-            sections.rows.setdefault(current, []).append(SectionRow(str(path), number, kept))
-    return sections
+            tables[current].append(SectionRow(str(path), number, kept))
+    return tables, options
 
 
 def _section(line: str) -> str | None:

@@ -53,13 +53,8 @@ class _System:
         return number
 
     def line(self, name: str, figures: str, length: float, to: Coordinates) -> None:
-        """Add a length of a type, from the point that the line has reached.
-
-        Parameters
-        ----------
-        name, figures : of its type
-        length : unstretched [m]
-        to : where its upper end stands
+        """Add an unstretched length [m] of a type from the point that the line has reached up to
+        another.
         """
         below = self.end_point("Free" if self.points else "Fixed")
         chosen = unique_name(self.types, name, figures)

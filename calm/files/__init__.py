@@ -2,12 +2,11 @@
 
 from calm.files.catalogue import Assembly, Catalogue
 from calm.files.check_limits import Accept, Checks, SafetyFactors
-from calm.files.components import Anchor, Body, Cable, Chain, Component, Cylinder, Profiler, Sphere
-from calm.files.environment import Environment, Fouling, Position, Wind
-from calm.files.flexible import Flexible
+from calm.files.components import Anchor, Cable, Chain, Component, Flexible
+from calm.files.environment import Environment, Fouling, Position
 from calm.files.mooring_file import Clamp, LinePart, MooringFile, Piece, Place, Solver, TowKeys
 from calm.files.reader import read_mooring
-from calm.files.rigid import Rigid, Shaped
+from calm.files.rigid import Body, Cylinder, Profiler, Rigid, Shaped, Sphere
 from calm.files.schema import mooring_schema
 from calm.files.strumming_keys import (
     AmplitudeModel,
@@ -17,6 +16,7 @@ from calm.files.strumming_keys import (
     StrummingFactor,
 )
 from calm.files.uncertainty import Spread, Uncertainty
+from calm.files.water import WavesGiven, Wind
 from calm.records.profile_tables import CurrentTable, DepthTable, SeaWater
 
 __all__ = [
@@ -56,6 +56,7 @@ __all__ = [
     "StrummingFactor",
     "TowKeys",
     "Uncertainty",
+    "WavesGiven",
     "Wind",
     "mooring_schema",
     "read_mooring",

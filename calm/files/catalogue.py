@@ -18,9 +18,8 @@ from pydantic import Field
 
 from calm.errors import InputError, Problem, UsageError
 from calm.files.components import KINDS, Component
-from calm.files.definition import Definition
-from calm.files.mistakes import validate
-from calm.files.yaml_document import Document, SourceMapping, compose, read_document
+from calm.files.definition import Definition, described
+from calm.files.yaml_document import Document, SourceMapping, compose, read_document, validate
 from calm.shipped import shipped_folder
 from calm.suggestions import nearest, shown, unknown
 from calm.whole_file import FileCache, read_text
@@ -44,9 +43,9 @@ class Assembly(Definition):
     """Pieces that are always used together; `parts` are items as in the `line` of a mooring."""
 
     kind: Literal["assembly"] = Field(description="which kind of component it is")
-    parts: tuple[dict[str, Any], ...] = Field(
-        description="pieces as in `line`, from the top",
-        examples=[[{"use": "glass-17in", "count": 2}, {"use": "chain-13", "length": "1 m"}]],
+    parts: tuple[dict[str, Any], ...] = described(
+        "pieces as in `line`, from the top",
+        [{"use": "glass-17in", "count": 2}, {"use": "chain-13", "length": "1 m"}],
     )
 
 
@@ -60,10 +59,7 @@ class Catalogue:
     def load(cls, files: Sequence[str | Path] = ()) -> Catalogue:
         """Load the shipped catalogue, the user's own above it, and the files given on top.
 
-        Raises
-        ------
-        InputError
-            A catalogue of the user cannot be read.
+        InputError: a catalogue of the user cannot be read.
         """
         folder = user_folder()
         own = sorted(folder.glob("*.yaml")) if folder.is_dir() else []
@@ -146,10 +142,7 @@ class Catalogue:
     def all(self) -> dict[str, Component | Assembly]:
         """Return every component and assembly, validated.
 
-        Raises
-        ------
-        InputError
-            With the mistakes of all definitions.
+        InputError: with the mistakes of all definitions.
         """
         problems: list[Problem] = []
         found = {

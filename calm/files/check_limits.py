@@ -12,11 +12,19 @@ from fnmatch import fnmatchcase
 from functools import cache
 from typing import Annotated
 
-from pydantic import AfterValidator, Field, WithJsonSchema, model_validator
+from pydantic import AfterValidator, WithJsonSchema, model_validator
 from pydantic.fields import FieldInfo
 
 from calm.errors import Problem
-from calm.files.fields import LENGTH, POSITIVE_LENGTH, Model, QuantityField, Text, quantity_of
+from calm.files.definition import (
+    LENGTH,
+    POSITIVE_LENGTH,
+    Model,
+    QuantityField,
+    Text,
+    described,
+    quantity_of,
+)
 from calm.files.rule_texts import ACCEPTABLE
 from calm.files.yaml_document import SourceMapping
 from calm.suggestions import shown, unknown
@@ -52,31 +60,33 @@ _PRACTICE = "oceanographic practice: a third to a fifth of the breaking load"
 _DEWEY = "Dewey, Mooring Design & Dynamics: weight in water ≥ 1.5 (V + H/0.6)"
 _NO_FIGURE = "practice of mooring groups, 50 to 100 kgf above the release; no figure is published"
 _BERTEAUX = "Berteaux, Prindle & May, OCEANS '87: fish bite from the surface to 1000 m and more"
+_2SK = "API RP 2SK: 1.67 on breaking strength, intact, tensions found dynamically"
+_LIFE = "API RP 2SK: a fatigue life of three times the service life"
 _URI = "URI GSO mooring program"
 
 
 class SafetyFactors(Model):
     """Least breaking load over tension."""
 
-    steel: Annotated[float, _SAFETY, Limit(_UFC)] = Field(
-        default=3.0, description="of steel and everything that is not rope", examples=[3]
+    steel: Annotated[float, _SAFETY, Limit(_UFC)] = described(
+        "of steel and everything that is not rope", 3, default=3.0
     )
-    synthetic: Annotated[float, _SAFETY, Limit(_PRACTICE)] = Field(
-        default=5.0, description="of synthetic rope", examples=[5]
+    synthetic: Annotated[float, _SAFETY, Limit(_PRACTICE)] = described(
+        "of synthetic rope", 5, default=5.0
     )
-    surface: Annotated[float, _SAFETY, Limit(_PRACTICE)] = Field(
-        default=5.0, description="of all pieces of a surface mooring", examples=[5]
+    surface: Annotated[float, _SAFETY, Limit(_PRACTICE)] = described(
+        "of all pieces of a surface mooring", 5, default=5.0
     )
 
 
 class MinimumTensions(Model):
     """Least tension above the release [N]."""
 
-    wire: Annotated[float, _LEAST_TENSION, Limit(_NO_FIGURE)] = Field(
-        default=500.0, description="in wire", examples=["500 N"]
+    wire: Annotated[float, _LEAST_TENSION, Limit(_NO_FIGURE)] = described(
+        "in wire", "500 N", default=500.0
     )
-    rope: Annotated[float, _LEAST_TENSION, Limit(_NO_FIGURE)] = Field(
-        default=300.0, description="in synthetic rope", examples=["300 N"]
+    rope: Annotated[float, _LEAST_TENSION, Limit(_NO_FIGURE)] = described(
+        "in synthetic rope", "300 N", default=300.0
     )
 
 
@@ -86,79 +96,74 @@ class Checks(Model):
     A limit without a default is judged only when given.
     """
 
-    safety_factor: SafetyFactors = Field(
+    safety_factor: SafetyFactors = described(
+        "least breaking load over tension, by the material of a piece",
+        {"steel": 3, "synthetic": 5},
         default_factory=SafetyFactors,
-        description="least breaking load over tension, by the material of a piece",
-        examples=[{"steel": 3, "synthetic": 5}],
     )
-    anchor_factor: Annotated[float, _SAFETY, Limit(_DEWEY)] = Field(
+    anchor_factor: Annotated[float, _SAFETY, Limit(_DEWEY)] = described(
+        "required weight of the anchor: factor × (vertical + horizontal / friction)",
+        1.5,
         default=1.5,
-        description="required weight of the anchor: factor × (vertical + horizontal / friction)",
-        examples=[1.5],
     )
-    anchor_friction: Annotated[float, _FRICTION, Limit(_DEWEY)] = Field(
-        default=0.6, description="of an anchor on the seabed, where it gives none", examples=[0.6]
+    anchor_friction: Annotated[float, _FRICTION, Limit(_DEWEY)] = described(
+        "of an anchor on the seabed, where it gives none", 0.6, default=0.6
     )
-    minimum_tension: MinimumTensions = Field(
-        default_factory=MinimumTensions,
-        description="above the release",
-        examples=[{"wire": "500 N", "rope": "300 N"}],
+    minimum_tension: MinimumTensions = described(
+        "above the release", {"wire": "500 N", "rope": "300 N"}, default_factory=MinimumTensions
     )
-    backup_margin: Annotated[float, _SHARE, Limit(_URI)] = Field(
-        default=0.1,
-        description="of the weight lifted, left in buoyancy after any break",
-        examples=[0.1],
+    backup_margin: Annotated[float, _SHARE, Limit(_URI)] = described(
+        "of the weight lifted, left in buoyancy after any break", 0.1, default=0.1
     )
-    minimum_rise_speed: Annotated[float, _SPEED, Limit()] = Field(
-        default=0.3,
-        description="of what comes up once the release has opened",
-        examples=["0.3 m/s"],
+    minimum_rise_speed: Annotated[float, _SPEED, Limit()] = described(
+        "of what comes up once the release has opened", "0.3 m/s", default=0.3
     )
-    launch_safety_factor: Annotated[float, _SAFETY, Limit(_URI)] = Field(
-        default=2.0,
-        description="breaking load over tension, as the line falls behind its anchor",
-        examples=[2],
+    launch_safety_factor: Annotated[float, _SAFETY, Limit(_URI)] = described(
+        "breaking load over tension, as the line falls behind its anchor", 2, default=2.0
     )
-    launch_working_factor: Annotated[float, _FACTOR, Limit()] = Field(
-        default=1.0, description="working load over tension there", examples=[1]
+    launch_working_factor: Annotated[float, _FACTOR, Limit()] = described(
+        "working load over tension there", 1, default=1.0
     )
-    minimum_reserve: Annotated[float, _SHARE, Limit()] = Field(
-        default=0.3,
-        description="share of a surface float's buoyancy that must be left",
-        examples=[0.3],
+    waves_safety_factor: Annotated[float, _SAFETY, Limit(_2SK)] = described(
+        "breaking load over greatest tension in waves", 1.67, default=1.67
     )
-    rating_margin: Annotated[float, LENGTH, Limit()] = Field(
-        default=100.0, description="depth that must be left to a depth rating", examples=["100 m"]
+    fatigue_factor: Annotated[float, _SAFETY, Limit(_LIFE)] = described(
+        "life in waves over `service_time`", 3, default=3.0
     )
-    maximum_knockdown: Annotated[float | None, POSITIVE_LENGTH, Limit(THE_DESIGN)] = Field(
-        default=None, description="most that the top may be pushed down", examples=["50 m"]
+    service_time: Annotated[float, QuantityField("time", above=0), Limit()] = described(
+        "between two renewals of the line", "730 d", default=365.0 * 86_400.0
     )
-    maximum_excursion: Annotated[float | None, POSITIVE_LENGTH, Limit(THE_DESIGN)] = Field(
-        default=None, description="most that the top may go to the side", examples=["200 m"]
+    minimum_reserve: Annotated[float, _SHARE, Limit()] = described(
+        "share of a surface float's buoyancy that must be left", 0.3, default=0.3
+    )
+    rating_margin: Annotated[float, LENGTH, Limit()] = described(
+        "depth that must be left to a depth rating", "100 m", default=100.0
+    )
+    maximum_knockdown: Annotated[float | None, POSITIVE_LENGTH, Limit(THE_DESIGN)] = described(
+        "most that the top may be pushed down", "50 m", default=None
+    )
+    maximum_excursion: Annotated[float | None, POSITIVE_LENGTH, Limit(THE_DESIGN)] = described(
+        "most that the top may go to the side", "200 m", default=None
     )
     maximum_tilt: Annotated[
         float | None,
         QuantityField("angle", above=0, at_most=90),
         Limit(THE_DESIGN),
-    ] = Field(default=None, description="most that a piece may lean", examples=["30 deg"])
+    ] = described("most that a piece may lean", "30 deg", default=None)
     minimum_top_depth: Annotated[
         float | None,
         LENGTH,
         Limit(THIS_PROGRAM, default=10.0),
-    ] = Field(
-        default=None,
-        description="least depth of the top of a sub-surface line, at low water too",
-        examples=["10 m"],
+    ] = described(
+        "least depth of the top of a sub-surface line, at low water too", "10 m", default=None
     )
-    fishbite_depth: Annotated[float, LENGTH, Limit(_BERTEAUX)] = Field(
-        default=1000.0,
-        description="down to which fish bite synthetic rope; 0 m where none do",
-        examples=["1500 m"],
+    fishbite_depth: Annotated[float, LENGTH, Limit(_BERTEAUX)] = described(
+        "down to which fish bite synthetic rope; 0 m where none do", "1500 m", default=1000.0
     )
-    accept: tuple[AcceptKeys, ...] = Field(
+    accept: tuple[AcceptKeys, ...] = described(
+        "findings that this design accepts, each with its reason",
+        [{"rule": "strength", "component": "glass *", "reason": "hung on chain"}],
         default=(),
-        description="findings that this design accepts, each with its reason",
-        examples=[[{"rule": "strength", "component": "glass *", "reason": "hung on chain"}]],
     )
 
 
@@ -250,25 +255,18 @@ Reason = Annotated[Text, AfterValidator(_said)]
 class AcceptKeys(Model):
     """An item of `checks: accept:`."""
 
-    rule: Annotated[Text, WithJsonSchema({"enum": list(ACCEPTABLE)})] = Field(
-        description="of the design check", examples=["knockdown"]
+    rule: Annotated[Text, WithJsonSchema({"enum": list(ACCEPTABLE)})] = described(
+        "of the design check", "knockdown"
     )
-    reason: Reason = Field(
-        description="why the finding is accepted",
-        examples=["the maker gives no load; hung on chain"],
+    reason: Reason = described(
+        "why the finding is accepted", "the maker gives no load; hung on chain"
     )
-    component: Text | None = Field(
-        default=None,
-        description="label of the line, or a pattern of labels; all when absent",
-        examples=["glass *"],
+    component: Text | None = described(
+        "label of the line, or a pattern of labels; all when absent", "glass *", default=None
     )
-    by: Text | None = Field(default=None, description="who accepts it", examples=["A. Martin"])
-    date: Day | None = Field(
-        default=None, description="day, e.g. 2026-11-20", examples=["2026-11-22"]
-    )
-    until: Day | None = Field(
-        default=None, description="last day on which it counts", examples=["2027-12-31"]
-    )
+    by: Text | None = described("who accepts it", "A. Martin", default=None)
+    date: Day | None = described("day, e.g. 2026-11-20", "2026-11-22", default=None)
+    until: Day | None = described("last day on which it counts", "2027-12-31", default=None)
 
     @model_validator(mode="after")
     def _ends_after_it_begins(self) -> AcceptKeys:

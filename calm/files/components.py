@@ -2,7 +2,8 @@
 
 Some figures are alternatives: a body gives its drag as `kn` or as `drag_area` with `cd`; a net
 force is given, or follows from mass and volume. An override that gives one alternative drops the
-others; whatever it does not contradict stays.
+others; whatever it does not contradict stays. Lengths, masses and forces of cables and chains are
+per metre.
 """
 
 from __future__ import annotations
@@ -10,52 +11,199 @@ from __future__ import annotations
 from collections.abc import Set
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import AfterValidator, Field, ValidationInfo, model_validator
 
 from calm.files.definition import (
     CATALOGUE_DENSITY,
+    POSITIVE_FORCE,
     STANDARD_GRAVITY,
     Definition,
+    Diameter,
     Length,
     Mass,
     MaterialDensity,
+    NormalCoefficient,
+    QuantityField,
+    Role,
+    TangentialCoefficient,
     TangentialDrag,
+    described,
+    is_in_air,
     refuse_weight_above_mass,
     volume_from_weights,
 )
-from calm.files.fields import QuantityField, Role
-from calm.files.flexible import Cable, Chain, Flexible
 from calm.files.rigid import (
     DRAG_FORMS,
     Body,
     Cylinder,
-    CylinderShape,
     Profiler,
     Rigid,
-    Shaped,
     Sphere,
-    SphereShape,
 )
 from calm.physics.materials import STEEL_DENSITY, density_of
+from calm.physics.stretch import ElongationCurve
 
-__all__ = [
-    "FLEXIBLE_KINDS",
-    "KINDS",
-    "RIGID_KINDS",
-    "Anchor",
-    "Body",
-    "Cable",
-    "Chain",
-    "Component",
-    "Cylinder",
-    "CylinderShape",
-    "FlexibleComponent",
-    "Profiler",
-    "RigidComponent",
-    "Shaped",
-    "Sphere",
-    "SphereShape",
+_LOAD = QuantityField("number", at_least=0, at_most=1)
+_STRAIN = QuantityField("number", at_least=0)
+
+Points = tuple[tuple[float, float], ...]
+
+
+def _refuse_what_is_no_curve(points: Points) -> Points:
+    try:
+        ElongationCurve(points, breaking_load=1.0)
+    except ValueError as error:
+        raise ValueError(f"`elongation`: {error}") from error
+    return points
+
+
+Elongation = Annotated[
+    tuple[tuple[Annotated[float, _LOAD], Annotated[float, _STRAIN]], ...],
+    AfterValidator(_refuse_what_is_no_curve),
 ]
+"""Load over breaking load, and the strain under it: rows by growing load."""
+
+
+WeightPerMetre = Annotated[
+    float | None,
+    QuantityField("force per length"),
+    Field(description="in sea water of 1025 kg/m^3 (per metre of a cable or chain)"),
+]
+MassPerMetre = Annotated[
+    float | None,
+    QuantityField("mass per length", at_least=0),
+    Field(description="in air (per metre of a cable or chain)"),
+]
+
+
+class Flexible(Definition):
+    """A cable or chain: all its figures are per metre."""
+
+    role: Role = "line"
+    diameter: Diameter
+    weight: WeightPerMetre = Field(default=None, examples=["2.1 N/m"])
+    mass: MassPerMetre = Field(default=None, examples=["0.2 kg/m"])
+    density: MaterialDensity = None
+    cn: NormalCoefficient = None
+    ct: TangentialCoefficient = None
+    stiffness: Annotated[float | None, POSITIVE_FORCE] = described(
+        "EA, the force that would double the length, e.g. 4 MN", "4 MN", default=None
+    )
+
+    def strain_under(self, load: float) -> float:
+        """Return the strain under a load ≥ 0 [N], as the solver has it; 0 without a stiffness."""
+        return load / self.stiffness if self.stiffness is not None else 0.0
+
+
+class Cable(Flexible):
+    """A rope, wire or electrical cable."""
+
+    kind: Literal["cable"] = Field(description="which kind of component it is")
+    buoyancy: Annotated[float | None, QuantityField("force per length")] = described(
+        "net force in sea water of 1025 kg/m^3, positive up (per metre of a cable)",
+        "0.1 N/m",
+        default=None,
+    )
+    finish: Literal["smooth", "rough", "very-rough"] | None = described(
+        "of the surface of a cable", "rough", default=None
+    )
+    torque_balanced: bool | None = described(
+        "of a wire rope: whether it does not turn under load", True, default=None
+    )
+    elongation: Elongation | None = described(
+        "rows of load over breaking load and strain, e.g. [[0.1, 0.03], [0.3, 0.08]]",
+        [[0.05, 0.05], [0.1, 0.08], [0.2, 0.12]],
+        default=None,
+    )
+    dynamic_stiffness: Annotated[float | None, POSITIVE_FORCE] = described(
+        "EA under the quick loads of waves, greater than that of a slow load",
+        "600 kN",
+        default=None,
+    )
+    permanent_elongation: Annotated[
+        float | None, QuantityField("number", at_least=0, at_most=1)
+    ] = described("of a rope that has been loaded, at every tension, e.g. 4 %", "4 %", default=None)
+
+    @property
+    def net_buoyancy(self) -> float:
+        """Return the net force of a metre in water, positive up; of a mass alone, in air [N/m]."""
+        if self.buoyancy is not None:
+            return self.buoyancy
+        if self.weight is not None:
+            return -self.weight
+        assert self.mass is not None
+        borne = 0.0 if self.density is None else CATALOGUE_DENSITY / self.density
+        return (borne - 1) * self.mass * STANDARD_GRAVITY
+
+    @property
+    def displaced_volume(self) -> float | None:
+        """Return the volume displaced by a metre [m³/m], None if the mass is unknown, or is all."""
+        if self._gives_no_force and self.density is None:
+            return None
+        return volume_from_weights(self.mass, self.net_buoyancy)
+
+    @property
+    def _gives_no_force(self) -> bool:
+        return self.weight is None and self.buoyancy is None
+
+    @model_validator(mode="after")
+    def _weight_is_given_once(self, info: ValidationInfo) -> Cable:
+        if self.weight is not None and self.buoyancy is not None:
+            raise ValueError("gives both `weight` and `buoyancy`; one is the other negated")
+        if self._gives_no_force:
+            if not is_in_air(info) and (self.mass is None or self.density is None):
+                raise ValueError("needs `weight` or `buoyancy` in water, or `mass` with `density`")
+            if self.mass is None:
+                raise ValueError("needs `mass`, or `weight`")
+        refuse_weight_above_mass(self.mass, self.net_buoyancy)
+        return self
+
+    @model_validator(mode="after")
+    def _stretch_is_given_once(self) -> Cable:
+        if self.elongation is None:
+            if self.permanent_elongation is not None:
+                raise ValueError("`permanent_elongation` needs `elongation`")
+        elif self.stiffness is not None:
+            raise ValueError("gives both `stiffness` and `elongation`; one says how it stretches")
+        elif self.breaking_load is None:
+            raise ValueError("`elongation` needs `breaking_load`: its loads are shares of that")
+        return self
+
+    def strain_under(self, load: float) -> float:
+        """Return the strain under a load ≥ 0 [N]: by its `elongation`, where it gives one."""
+        if self.elongation is None:
+            return super().strain_under(load)
+        assert self.breaking_load is not None
+        permanent = self.permanent_elongation or 0.0
+        return ElongationCurve(self.elongation, self.breaking_load, permanent).strain(load)
+
+
+class Chain(Flexible):
+    """A chain; `diameter` is that of its bar."""
+
+    kind: Literal["chain"] = Field(description="which kind of component it is")
+    weight: WeightPerMetre = Field(default=None, examples=["27 N/m"])
+    mass: MassPerMetre = Field(default=None, examples=["3.2 kg/m"])
+
+    @property
+    def net_buoyancy(self) -> float:
+        """Return the net force in water of a metre, positive up [N/m]."""
+        if self.weight is not None:
+            return -self.weight
+        mass = 19.9e3 * self.diameter**2 if self.mass is None else self.mass
+        return (CATALOGUE_DENSITY / (self.density or STEEL_DENSITY) - 1) * mass * STANDARD_GRAVITY
+
+    @property
+    def displaced_volume(self) -> float | None:
+        """Return the volume displaced by a metre [m³/m], None when only its weight is known."""
+        if self.mass is not None or self.weight is not None:
+            return volume_from_weights(self.mass, self.net_buoyancy)
+        return 19.9e3 * self.diameter**2 / (self.density or STEEL_DENSITY)
+
+    @model_validator(mode="after")
+    def _weight_is_possible(self) -> Chain:
+        refuse_weight_above_mass(self.mass, self.net_buoyancy)
+        return self
 
 
 class Anchor(Definition):
@@ -64,15 +212,13 @@ class Anchor(Definition):
     role: Role = "anchor"
     kind: Literal["anchor"] = Field(description="which kind of component it is")
     mass: Mass = None
-    weight: Annotated[float | None, QuantityField("force", at_least=0)] = Field(
-        default=None,
-        description="in sea water of 1025 kg/m^3 (per metre of a cable or chain)",
-        examples=["5000 N"],
+    weight: Annotated[float | None, QuantityField("force", at_least=0)] = described(
+        "in sea water of 1025 kg/m^3 (per metre of a cable or chain)", "5000 N", default=None
     )
     density: MaterialDensity = None
     length: Length = 0.0
-    friction: Annotated[float | None, QuantityField("number", above=0)] = Field(
-        default=None, description="coefficient on the seabed", examples=[0.6]
+    friction: Annotated[float | None, QuantityField("number", above=0)] = described(
+        "coefficient on the seabed", 0.6, default=None
     )
     kt: TangentialDrag = None
 
@@ -137,8 +283,7 @@ def contradicted(kind: str, base: Set[str], override: Set[str]) -> frozenset[str
 
     Parameters
     ----------
-    kind : str
-        Of the definition.
+    kind : of the definition
     base, override : set of str
         The keys that the definition and the override give.
 

@@ -90,7 +90,7 @@ def compose(text: str) -> Composition:
                 pass  # which the parser in Python says better
         return _composed_by_python(text, start, plain)
     except _TooDeep:
-        return Composition(None, (YamlMistake(0, 0, "is nested too deeply"),))
+        return Composition(None, ((0, 0, "is nested too deeply"),))
 
 
 def _is_read_differently(text: str) -> bool:
@@ -105,14 +105,14 @@ def _composed_by_python(text: str, start: int, plain: str) -> Composition:
         return Composition(None, tuple(_syntax_mistakes(plain, error)))
     except (YAMLError, ValueError, OverflowError) as error:
         first_line = str(error).partition("\n")[0]
-        return Composition(None, (YamlMistake(0, 0, f"is not valid YAML: {first_line}"),))
+        return Composition(None, ((0, 0, f"is not valid YAML: {first_line}"),))
 
 
-def _syntax_mistakes(text: str, error: MarkedYAMLError) -> list[YamlMistake]:
+def _syntax_mistakes(text: str, error: MarkedYAMLError) -> list[Refusal]:
     """Show every tab in the indentation, the usual cause; else what the parser says."""
     if "\\t" in str(error.problem):
         found = [
-            YamlMistake(number, line.index("\t") + 1, "a tab; YAML is indented with spaces")
+            (number, line.index("\t") + 1, "a tab; YAML is indented with spaces")
             for number, line in enumerate(text.splitlines(), 1)
             if "\t" in line[: len(line) - len(line.lstrip())]
         ]
@@ -122,7 +122,7 @@ def _syntax_mistakes(text: str, error: MarkedYAMLError) -> list[YamlMistake]:
     what = error.problem or error.context
     if error.context and error.context_mark and error.problem:
         what = f"{error.context} from line {error.context_mark.line + 1}, {what}"
-    return [YamlMistake(mark.line + 1, mark.column + 1, f"is not valid YAML: {what}")]
+    return [(mark.line + 1, mark.column + 1, f"is not valid YAML: {what}")]
 
 
 class _Reader:
@@ -131,8 +131,7 @@ class _Reader:
     Parameters
     ----------
     text : str
-    start : int
-        Where in it that begins which the events are of.
+    start : where in it that begins which the events are of
     next_event : gives one after the other
     """
 
@@ -140,7 +139,7 @@ class _Reader:
         self._text = text
         self._start = start
         self._next = next_event
-        self._refusals: list[YamlMistake] = []
+        self._refusals: list[Refusal] = []
         self._anchors: set[str] = set()
 
     def read(self) -> Composition:
@@ -238,7 +237,7 @@ class _Reader:
 
     def _refuse(self, event: NodeEvent, message: str) -> None:
         mark = event.start_mark
-        self._refusals.append(YamlMistake(mark.line + 1, mark.column + 1, message))
+        self._refusals.append((mark.line + 1, mark.column + 1, message))
 
     def _skip(self, event: Event) -> None:
         """Pass over a node that an event begins."""
@@ -269,6 +268,9 @@ def _shown(value: str) -> str:
     return _CONTROL_CHARACTER.sub("\N{REPLACEMENT CHARACTER}", value)
 
 
+Refusal = tuple[int, int, str]
+"""Line and column, from 1, and what is no YAML there, or is YAML that these files do not allow."""
+
 Kind = Literal["mapping", "sequence", "scalar"]
 
 
@@ -278,18 +280,12 @@ class Node(NamedTuple):
     Attributes
     ----------
     kind : "mapping", "sequence" or "scalar"
-    start, end : int
-        Its text is ``text[start:end]``; an empty value is right after its colon or dash.
-    line, column : int
-        Of its start, counted from 1.
-    style : str
-        Of a collection `block` or `flow`; of a scalar its first sign when quoted or a block.
-    data : dict, list, str or None
-        What it says, scalars as the text the person wrote. Shared: not to be changed.
-    keys : tuple of Node
-        Of a mapping, in the order of the file.
-    children : tuple of Node
-        The values of a mapping, or the items of a sequence.
+    start, end : its text is ``text[start:end]``; an empty value is right after its colon or dash
+    line, column : of its start, counted from 1
+    style : of a collection `block` or `flow`; of a scalar its first sign when quoted or a block
+    data : what it says, scalars as the text the person wrote. Shared: not to be changed.
+    keys : of a mapping, in the order of the file
+    children : the values of a mapping, or the items of a sequence
     """
 
     kind: Kind
@@ -303,16 +299,8 @@ class Node(NamedTuple):
     children: tuple[Node, ...] = ()
 
 
-class YamlMistake(NamedTuple):
-    """Hold what is no YAML, or YAML that these files do not allow; places count from 1."""
-
-    line: int
-    column: int
-    message: str
-
-
 class Composition(NamedTuple):
     """Hold the nodes of a text (None: it is empty, or no YAML), and what in it is not allowed."""
 
     root: Node | None
-    refusals: tuple[YamlMistake, ...] = ()
+    refusals: tuple[Refusal, ...] = ()

@@ -1,38 +1,103 @@
 """What every component definition may say, and the conventions its figures follow.
 
-Figures are SI floats, angles degrees, None where the definition does not say. Net forces are those
-in sea water of `CATALOGUE_DENSITY` under standard gravity.
+A field is text with a unit in the file, and here an SI float, angles in degrees, None where the
+definition does not say. Net forces are those in sea water of `CATALOGUE_DENSITY` under standard
+gravity.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
 from pydantic import (
+    BaseModel,
     BeforeValidator,
+    ConfigDict,
     Field,
+    GetJsonSchemaHandler,
     ValidationInfo,
     WithJsonSchema,
     field_validator,
     model_validator,
 )
+from pydantic.fields import FieldInfo
+from pydantic_core import CoreSchema, core_schema
 
-from calm.files.fields import (
-    COEFFICIENT,
-    DIAMETER,
-    DRAG,
-    LENGTH,
-    POSITIVE_FORCE,
-    POSITIVE_LENGTH,
-    TILT,
-    Model,
-    QuantityField,
-    Role,
-    Text,
-)
 from calm.physics.materials import MATERIAL_NAMES
-from calm.units import DIMENSIONS, KILOGRAM_FORCE, with_unit
+from calm.positions import HEMISPHERES
+from calm.units import DIMENSIONS, KILOGRAM_FORCE, QuantityRange, with_unit
+
+
+class Model(BaseModel):
+    """Base of everything read from a file: frozen, and no key but the known ones."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
+
+
+@dataclass(frozen=True)
+class QuantityField(QuantityRange):
+    """Annotate a field that holds a quantity within limits."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(self.read)
+
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        return self.json_schema()
+
+    def json_schema(self) -> dict[str, Any]:
+        """Return the JSON Schema of the text, without the limits."""
+        kind = DIMENSIONS[self.dimension]
+        number = r"^\s*[-+]?[0-9.]+([eE][-+]?[0-9]+)?(\s*[0-9]*/[0-9]+)?"
+        if not kind.unit:
+            units = "|".join(kind.units)
+            return {"type": ["number", "string"], "pattern": rf"{number}\s*({units})$"}
+        units = ", ".join(kind.units)
+        if self.dimension in HEMISPHERES:
+            text = {"type": "string", "pattern": r"[0-9].*[A-Za-z°'′ -]"}
+            return {
+                "description": f"{kind.noun} such as 48.3 deg or 48 18.0 N",
+                "anyOf": [text, {"const": 0}],
+            }
+        return {
+            "description": f"{kind.noun} with its unit ({units})",
+            "anyOf": [{"type": "string", "pattern": number + r"\s*[A-Za-z°µ].*$"}, {"const": 0}],
+        }
+
+
+def described(description: str, example: object, **default: Any) -> Any:
+    """Return the field of a key, required without a `default` or a `default_factory`."""
+    return Field(description=description, examples=[example], **default)
+
+
+def _as_text(value: object) -> object:
+    return str(value) if isinstance(value, (int, float)) else value
+
+
+Text = Annotated[str, BeforeValidator(_as_text), WithJsonSchema({"type": ["string", "number"]})]
+"""Text; a bare number is taken as the person wrote it."""
+
+POSITIVE_LENGTH = QuantityField("length", above=0)
+DIAMETER = QuantityField("length", usual_unit="mm", above=0)
+LENGTH = QuantityField("length", at_least=0)
+POSITIVE_FORCE = QuantityField("force", usual_unit="kN", above=0)
+COEFFICIENT = QuantityField("number", at_least=0)
+DRAG = QuantityField("drag", at_least=0)
+TILT = QuantityField("angle", above=0, at_most=180)
+
+Role = Annotated[
+    Literal["float", "instrument", "release", "connector", "line", "anchor"],
+    described("what the piece is for", "instrument"),
+]
+
+
+def quantity_of(field: FieldInfo) -> QuantityField | None:
+    """Return the quantity that a field of a model holds, None where it holds none."""
+    return next((one for one in field.metadata if isinstance(one, QuantityField)), None)
+
 
 CATALOGUE_DENSITY = 1025.0
 """Density of the sea water in which net forces and drags are given [kg/m³]."""
@@ -53,41 +118,38 @@ DENSITY = QuantityField("density", above=0)
 Length = Annotated[
     float,
     LENGTH,
-    Field(
-        description="along the line, unstretched; `fit` cuts a cable to reach a depth",
-        examples=["480 m"],
-    ),
+    described("along the line, unstretched; `fit` cuts a cable to reach a depth", "480 m"),
 ]
 Diameter = Annotated[
     float,
     DIAMETER,
-    Field(description="e.g. 12 mm; of a chain, that of its bar", examples=["12 mm"]),
+    described("e.g. 12 mm; of a chain, that of its bar", "12 mm"),
 ]
 Mass = Annotated[
     float | None,
     MASS,
-    Field(description="in air (per metre of a cable or chain)", examples=["35 kg"]),
+    described("in air (per metre of a cable or chain)", "35 kg"),
 ]
 _ANY_QUANTITY = {"type": "string", "description": "with its unit"}
 MaterialDensity = Annotated[
     float | None,
     DENSITY,
-    Field(description="of the water, or of the material of a component", examples=["1025 kg/m^3"]),
+    described("of the water, or of the material of a component", "1025 kg/m^3"),
 ]
 NormalCoefficient = Annotated[
     float | None,
     COEFFICIENT,
-    Field(description="drag coefficient across the axis", examples=[1.2]),
+    described("drag coefficient across the axis", 1.2),
 ]
 TangentialCoefficient = Annotated[
     float | None,
     COEFFICIENT,
-    Field(description="drag coefficient along the axis", examples=[0.01]),
+    described("drag coefficient along the axis", 0.01),
 ]
 TangentialDrag = Annotated[
     float | None,
     DRAG,
-    Field(description="drag along the axis at 1 m/s", examples=["9 N/(m/s)^2"]),
+    described("drag along the axis at 1 m/s", "9 N/(m/s)^2"),
 ]
 
 
@@ -108,16 +170,14 @@ class EstimatedFigure(Model):
 
     quantity: Literal[
         "working_load", "breaking_load", "opening_load", "grip", "max_tilt", "depth_rating"
-    ] = Field(description="the figure that is estimated", examples=["working_load"])
-    value: Annotated[float, WithJsonSchema(_ANY_QUANTITY)] = Field(
-        description="what it is thought to be", examples=["20 kN"]
+    ] = described("the figure that is estimated", "working_load")
+    value: Annotated[float, WithJsonSchema(_ANY_QUANTITY)] = described(
+        "what it is thought to be", "20 kN"
     )
-    low: Annotated[float, WithJsonSchema(_ANY_QUANTITY)] = Field(
-        description="the least it can be, by which it is judged", examples=["12 kN"]
+    low: Annotated[float, WithJsonSchema(_ANY_QUANTITY)] = described(
+        "the least it can be, by which it is judged", "12 kN"
     )
-    source: Text = Field(
-        description="where the figures come from", examples=["the chain it hangs on"]
-    )
+    source: Text = described("where the figures come from", "the chain it hangs on")
 
     @field_validator("value", "low", mode="plain")
     @classmethod
@@ -136,6 +196,15 @@ class EstimatedFigure(Model):
         return self
 
 
+class FatigueKeys(Model):
+    """`fatigue:` of a component: by which published curve its fatigue in waves is found."""
+
+    curve: Literal[
+        "dnv-studless-chain", "dnv-stud-chain", "dnv-polyester", "api-studless-chain",
+        "api-stud-chain", "api-connecting-link", "api-stranded-wire", "api-spiral-strand",
+    ] = described("of DNV-OS-E301 or API RP 2SK", "dnv-stud-chain")  # fmt: skip
+
+
 class Definition(Model):
     """What every component may say, whatever its kind.
 
@@ -145,70 +214,52 @@ class Definition(Model):
     """
 
     role: Role = "instrument"
-    name: Text | None = Field(
-        default=None, description="what people call it", examples=["Shelf edge 2026"]
-    )
-    manufacturer: Text | None = Field(
-        default=None, description="who makes it", examples=["the maker"]
-    )
-    part_number: Text | None = Field(default=None, description="the maker's", examples=["1250-A"])
-    material: Text | None = Field(
+    name: Text | None = described("what people call it", "Shelf edge 2026", default=None)
+    manufacturer: Text | None = described("who makes it", "the maker", default=None)
+    part_number: Text | None = described("the maker's", "1250-A", default=None)
+    material: Text | None = described(
+        f"what it is made of, in words that name one of {MATERIAL_NAMES}",
+        "galvanised steel",
         default=None,
-        description=f"what it is made of, in words that name one of {MATERIAL_NAMES}",
-        examples=["galvanised steel"],
     )
-    note: Text | None = Field(
+    note: Text | None = described(
+        "anything worth knowing", "galvanised; look at it after each cruise", default=None
+    )
+    source: Text | None = described(
+        "where the figures come from", "data sheet of the maker, 2026", default=None
+    )
+    sources: dict[str, Text] | None = described(
+        "by field, where a figure comes from that is not of `source`",
+        {"breaking_load": "test of 2025"},
         default=None,
-        description="anything worth knowing",
-        examples=["galvanised; look at it after each cruise"],
     )
-    source: Text | None = Field(
-        default=None,
-        description="where the figures come from",
-        examples=["data sheet of the maker, 2026"],
+    searched: tuple[str, ...] | None = described(
+        "fields that no source prints, though they were looked for", ["breaking_load"], default=None
     )
-    sources: dict[str, Text] | None = Field(
-        default=None,
-        description="by field, where a figure comes from that is not of `source`",
-        examples=[{"breaking_load": "test of 2025"}],
+    prefer: Text | None = described(
+        "id of the definition of the same thing to use in place of this one", "sbe37", default=None
     )
-    searched: tuple[str, ...] | None = Field(
-        default=None,
-        description="fields that no source prints, though they were looked for",
-        examples=[["breaking_load"]],
+    date: Text | None = described("day, e.g. 2026-11-20", "2026-11-20", default=None)
+    depth_rating: Annotated[float | None, POSITIVE_LENGTH] = described(
+        "deepest it may be used", "2000 m", default=None
     )
-    prefer: Text | None = Field(
-        default=None,
-        description="id of the definition of the same thing to use in place of this one",
-        examples=["sbe37"],
+    working_load: Annotated[float | None, POSITIVE_FORCE] = described(
+        "load it may carry in use, e.g. 20 kN", "20 kN", default=None
     )
-    date: Text | None = Field(
-        default=None, description="day, e.g. 2026-11-20", examples=["2026-11-20"]
+    breaking_load: Annotated[float | None, POSITIVE_FORCE] = described(
+        "load at which it breaks, e.g. 40 kN", "40 kN", default=None
     )
-    depth_rating: Annotated[float | None, POSITIVE_LENGTH] = Field(
-        default=None, description="deepest it may be used", examples=["2000 m"]
+    opening_load: Annotated[float | None, POSITIVE_FORCE] = described(
+        "of a release, the greatest under which it opens, e.g. 10 kN", "10 kN", default=None
     )
-    working_load: Annotated[float | None, POSITIVE_FORCE] = Field(
-        default=None, description="load it may carry in use, e.g. 20 kN", examples=["20 kN"]
+    grip: Annotated[float | None, POSITIVE_FORCE] = described(
+        "pull at which its clamp slips along the line, e.g. 1 kN", "1 kN", default=None
     )
-    breaking_load: Annotated[float | None, POSITIVE_FORCE] = Field(
-        default=None, description="load at which it breaks, e.g. 40 kN", examples=["40 kN"]
+    max_tilt: Annotated[float | None, TILT] = described(
+        "tilt beyond which it is not to be trusted", "20 deg", default=None
     )
-    opening_load: Annotated[float | None, POSITIVE_FORCE] = Field(
-        default=None,
-        description="of a release, the greatest under which it opens, e.g. 10 kN",
-        examples=["10 kN"],
-    )
-    grip: Annotated[float | None, POSITIVE_FORCE] = Field(
-        default=None,
-        description="pull at which its clamp slips along the line, e.g. 1 kN",
-        examples=["1 kN"],
-    )
-    max_tilt: Annotated[float | None, TILT] = Field(
-        default=None, description="tilt beyond which it is not to be trusted", examples=["20 deg"]
-    )
-    warn_tilt: Annotated[float | None, TILT] = Field(
-        default=None, description="tilt to be warned of", examples=["15 deg"]
+    warn_tilt: Annotated[float | None, TILT] = described(
+        "tilt to be warned of", "15 deg", default=None
     )
     estimate: Annotated[tuple[EstimatedFigure, ...] | None, BeforeValidator(_listed)] = Field(
         default=None,
@@ -223,10 +274,13 @@ class Definition(Model):
             }
         ],
     )
-    slack: Literal["allowed"] | None = Field(
+    fatigue: FatigueKeys | None = described(
+        "curve of its fatigue in waves, where it is not that of its kind",
+        {"curve": "dnv-stud-chain"},
         default=None,
-        description="`allowed` exempts the piece from `minimum_tension`",
-        examples=["allowed"],
+    )
+    slack: Literal["allowed"] | None = described(
+        "`allowed` exempts the piece from `minimum_tension`", "allowed", default=None
     )
 
     @property

@@ -8,23 +8,25 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
+from pydantic import BeforeValidator, Discriminator, Tag
 
 from calm.errors import InputError, Problem
-from calm.files.definition import DENSITY
-from calm.files.density import (
+from calm.files.definition import DENSITY, POSITIVE_LENGTH, Model, QuantityField, Text, described
+from calm.files.water import (
     USUAL_DENSITY,
     Density,
     TableKeys,
+    WaveKeys,
+    WavesGiven,
+    Wind,
     check_density,
     density_notices,
     read_density,
+    read_waves,
     report_at,
     table_of,
 )
-from calm.files.fields import POSITIVE_LENGTH, Model, QuantityField, Text
-from calm.files.mistakes import validate
-from calm.files.yaml_document import SourceMapping
+from calm.files.yaml_document import SourceMapping, validate
 from calm.records.current_terms import DEEPEST, Terms, TimeChoiceError, too_fast
 from calm.records.profile_tables import (
     DIRECTION,
@@ -45,11 +47,11 @@ _MAXIMUM_SPEED = 5.0
 class Position(Model):
     """Where the mooring stands [degrees]."""
 
-    latitude: Annotated[float, QuantityField("latitude", at_least=-90, at_most=90)] = Field(
-        description="north positive, or degrees and minutes: 48 18.0 N", examples=["48.3 deg"]
+    latitude: Annotated[float, QuantityField("latitude", at_least=-90, at_most=90)] = described(
+        "north positive, or degrees and minutes: 48 18.0 N", "48.3 deg"
     )
-    longitude: Annotated[float, QuantityField("longitude", at_least=-360, at_most=360)] = Field(
-        description="east positive, or degrees and minutes: 5 12.0 W", examples=["-5.2 deg"]
+    longitude: Annotated[float, QuantityField("longitude", at_least=-360, at_most=360)] = described(
+        "east positive, or degrees and minutes: 5 12.0 W", "-5.2 deg"
     )
 
 
@@ -79,6 +81,7 @@ class Environment:
         What grows on the cables.
     maximum_speed : float
         A faster current counts as a mistake of its source [m/s]; inf in a tow and in air.
+    waves : WavesGiven or None
     """
 
     name: str | None
@@ -92,6 +95,7 @@ class Environment:
     depth_range: tuple[float, float] | None = None
     fouling: Fouling | None = None
     maximum_speed: float = math.inf
+    waves: WavesGiven | None = None
 
 
 class Fouling(Model):
@@ -100,58 +104,24 @@ class Fouling(Model):
     Without a density [kg/m³] it is as heavy as water.
     """
 
-    depth: Annotated[float, POSITIVE_LENGTH] = Field(
-        description="how far down it grows", examples=["50 m"]
+    depth: Annotated[float, POSITIVE_LENGTH] = described("how far down it grows", "50 m")
+    thickness: Annotated[float, QuantityField("length", usual_unit="mm", above=0)] = described(
+        "of the growth all around, e.g. 20 mm", "20 mm"
     )
-    thickness: Annotated[float, QuantityField("length", usual_unit="mm", above=0)] = Field(
-        description="of the growth all around, e.g. 20 mm", examples=["20 mm"]
+    density: Annotated[float | None, DENSITY] = described(
+        "of the growth; as heavy as water when absent", "1025 kg/m^3", default=None
     )
-    density: Annotated[float | None, DENSITY] = Field(
-        default=None,
-        description="of the growth; as heavy as water when absent",
-        examples=["1025 kg/m^3"],
-    )
-
-
-class Wind(Model):
-    """Wind over the water: speed [m/s], and where it blows to [degrees].
-
-    It drives the water at the surface at `surface_drift`, a share of its own speed, and the water
-    below ever less, linearly, down to `drift_depth` [m]: the seabed where it is None.
-    """
-
-    speed: Annotated[float, _SPEED] = Field(
-        description="of the wind, at the height of the float", examples=["12 m/s"]
-    )
-    toward: Annotated[float, QuantityField(**vars(DIRECTION))] = Field(
-        description="where it blows to, clockwise from north", examples=["90 deg"]
-    )
-    surface_drift: Annotated[float, QuantityField("number", at_least=0, at_most=0.1)] = Field(
-        default=0.0,
-        description="share of the wind's speed that the surface water drifts at",
-        examples=["2 %"],
-    )
-    drift_depth: Annotated[float | None, POSITIVE_LENGTH] = Field(
-        default=None, description="how deep the water that the wind drives goes", examples=["50 m"]
-    )
-
-    @model_validator(mode="after")
-    def _depth_of_a_drift(self) -> Wind:
-        if self.drift_depth is not None and "surface_drift" not in self.model_fields_set:
-            raise ValueError("`drift_depth` needs `surface_drift`, a share of the wind's speed")
-        return self
 
 
 class UniformCurrent(Model):
     """The same current at all depths [m/s, degrees]."""
 
-    speed: Annotated[float, _SPEED] = Field(description="of the water", examples=["0.5 m/s"])
-    toward: Annotated[float, QuantityField(**vars(DIRECTION))] = Field(
-        description="direction it flows or goes to, clockwise from north, e.g. 90 deg",
-        examples=["90 deg"],
+    speed: Annotated[float, _SPEED] = described("of the water", "0.5 m/s")
+    toward: Annotated[float, QuantityField(**vars(DIRECTION))] = described(
+        "direction it flows or goes to, clockwise from north, e.g. 90 deg", "90 deg"
     )
-    w: Annotated[float, QuantityField("speed")] = Field(
-        default=0.0, description="vertical speed, positive up", examples=["0.01 m/s"]
+    w: Annotated[float, QuantityField("speed")] = described(
+        "vertical speed, positive up", "0.01 m/s", default=0.0
     )
 
 
@@ -161,19 +131,15 @@ class CurrentFile(Model):
     `declination` [degrees], positive to the east, turns what the file says is magnetic.
     """
 
-    file: Text = Field(
-        description="CSV or CF NetCDF, beside the mooring file", examples=["adcp.nc"]
-    )
-    time: Text | None = Field(
-        default=None,
-        description="of the profile wanted, e.g. 2026-03-01T06:00",
-        examples=["2026-03-01T06:00"],
+    file: Text = described("CSV or CF NetCDF, beside the mooring file", "adcp.nc")
+    time: Text | None = described(
+        "of the profile wanted, e.g. 2026-03-01T06:00", "2026-03-01T06:00", default=None
     )
     declination: Annotated[float | None, QuantityField("angle", at_least=-180, at_most=180)] = (
-        Field(
+        described(
+            "turns directions that a file gives from magnetic north; east positive",
+            "12.5 deg",
             default=None,
-            description="turns directions that a file gives from magnetic north; east positive",
-            examples=["12.5 deg"],
         )
     )
 
@@ -204,58 +170,57 @@ def _two_depths(value: object) -> object:
 class TowEnvironmentKeys(Model):
     """The keys of `environment:` as a person writes them for a tow."""
 
-    fluid: Literal["water", "air"] = Field(
-        default="water", description="what the line is in: a tow may be in air", examples=["water"]
+    fluid: Literal["water", "air"] = described(
+        "what the line is in: a tow may be in air", "water", default="water"
     )
-    depth: Annotated[float | None, _WATER_DEPTH] = Field(
-        default=None, description="of the water, e.g. 1100 m", examples=["1100 m"]
+    depth: Annotated[float | None, _WATER_DEPTH] = described(
+        "of the water, e.g. 1100 m", "1100 m", default=None
     )
-    density: Density = Field(
+    density: Density = described(
+        "of the water: one, a table, or by temperature and salinity",
+        "1025 kg/m^3",
         default=USUAL_DENSITY["water"],
-        description="of the water: one, a table, or by temperature and salinity",
-        examples=["1025 kg/m^3"],
     )
     gravity: Annotated[float | None, QuantityField("acceleration", at_least=9.7, at_most=10)] = (
-        Field(default=None, description="acceleration", examples=["9.81 m/s^2"])
+        described("acceleration", "9.81 m/s^2", default=None)
     )
     current: Annotated[
         Annotated[TableKeys, Tag("table")]
         | Annotated[CurrentFile, Tag("file")]
         | Annotated[UniformCurrent, Tag("uniform")],
         Discriminator(_current_form),
-    ] = Field(
+    ] = described(
+        "a table, one speed for all depths, or a file",
+        {"speed": "0.5 m/s", "toward": "90 deg"},
         default=UniformCurrent.model_construct(speed=0.0, toward=0.0, w=0.0),
-        description="a table, one speed for all depths, or a file",
-        examples=[{"speed": "0.5 m/s", "toward": "90 deg"}],
     )
-    wind: Wind | None = Field(
-        default=None,
-        description="over the water",
-        examples=[{"speed": "12 m/s", "toward": "90 deg"}],
+    wind: Wind | None = described(
+        "over the water", {"speed": "12 m/s", "toward": "90 deg"}, default=None
     )
 
 
 class EnvironmentKeys(TowEnvironmentKeys):
     """The same for a mooring, which stands in water of a given depth."""
 
-    fluid: Annotated[Literal["water"], BeforeValidator(_water_only)] = Field(
-        default="water", description="what the line is in: a tow may be in air", examples=["water"]
+    fluid: Annotated[Literal["water"], BeforeValidator(_water_only)] = described(
+        "what the line is in: a tow may be in air", "water", default="water"
     )
-    depth: Annotated[float, _WATER_DEPTH] = Field(
-        description="of the water, e.g. 1100 m", examples=["1100 m"]
+    depth: Annotated[float, _WATER_DEPTH] = described("of the water, e.g. 1100 m", "1100 m")
+    maximum_speed: Annotated[float, QuantityField("speed", above=0)] = described(
+        "a faster current is an error", "3 m/s", default=_MAXIMUM_SPEED
     )
-    maximum_speed: Annotated[float, QuantityField("speed", above=0)] = Field(
-        default=_MAXIMUM_SPEED, description="a faster current is an error", examples=["3 m/s"]
+    depth_range: Annotated[_Levels | None, BeforeValidator(_two_depths)] = described(
+        "water depth at low and at high water, e.g. [98 m, 104 m]", ["98 m", "104 m"], default=None
     )
-    depth_range: Annotated[_Levels | None, BeforeValidator(_two_depths)] = Field(
+    fouling: Fouling | None = described(
+        "growth on everything from the surface down, for the design check",
+        {"depth": "50 m", "thickness": "20 mm"},
         default=None,
-        description="water depth at low and at high water, e.g. [98 m, 104 m]",
-        examples=[["98 m", "104 m"]],
     )
-    fouling: Fouling | None = Field(
+    waves: WaveKeys | None = described(
+        "seas that the design check judges: one, or a table of them",
+        {"significant_height": "5 m", "peak_period": "8.4 s"},
         default=None,
-        description="growth on everything from the surface down, for the design check",
-        examples=[{"depth": "50 m", "thickness": "20 mm"}],
     )
 
 
@@ -294,6 +259,8 @@ def read_environment(
     if open_files:  # otherwise the depth may be that of another section
         _check_depth_range(keys, section, problems)
     current = _current(keys, section, problems, notices, open_files, position)
+    given_waves = getattr(keys, "waves", None)
+    waves = None if given_waves is None else read_waves(given_waves, section, problems, open_files)
     if density is None or current is None or len(problems) > before:
         return None
     notices.extend(density_notices(density, keys.depth))
@@ -314,6 +281,7 @@ def read_environment(
         depth_range=getattr(keys, "depth_range", None),
         fouling=getattr(keys, "fouling", None),
         maximum_speed=getattr(keys, "maximum_speed", math.inf),
+        waves=waves,
     )
 
 

@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import Field
 
 from calm.errors import Problem
-from calm.files.components import Anchor, Profiler
-from calm.files.fields import LENGTH, Model, QuantityField, Text
-from calm.files.mistakes import validate
+from calm.files.components import Anchor
+from calm.files.definition import LENGTH, Model, QuantityField, Text
 from calm.files.mooring_file import Piece, numbered
-from calm.files.yaml_document import SourceMapping
+from calm.files.yaml_document import SourceMapping, validate
 from calm.suggestions import unknown
 
 if TYPE_CHECKING:

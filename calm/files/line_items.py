@@ -9,15 +9,12 @@ from dataclasses import replace
 from calm.errors import Problem
 from calm.files.catalogue import Assembly, Catalogue, CatalogueEntry, define
 from calm.files.check_limits import LimitKey
-from calm.files.components import KINDS, Anchor, Cable, Component, Profiler, contradicted
-from calm.files.definition import IN_AIR
-from calm.files.fields import LENGTH, POSITIVE_LENGTH, QuantityField, quantity_of
-from calm.files.flexible import Flexible, strain_under
+from calm.files.components import KINDS, Anchor, Cable, Component, Flexible, contradicted
+from calm.files.definition import IN_AIR, LENGTH, POSITIVE_LENGTH, QuantityField, quantity_of
 from calm.files.logbook import EQUIPMENT_KEYS, LengthAt, check_serials, read_equipment
-from calm.files.mistakes import unknown_key, validate
 from calm.files.mooring_file import Clamp, Piece, Place, placed
-from calm.files.rigid import Rigid
-from calm.files.yaml_document import SourceMapping
+from calm.files.rigid import Profiler, Rigid
+from calm.files.yaml_document import SourceMapping, unknown_key, validate
 from calm.suggestions import about_quantity, shown, unknown
 from calm.units import QuantityError
 
@@ -198,7 +195,7 @@ class LineReader:
         if breaking is not None and measured.load > breaking:
             message = f"`load` is above the breaking load of {breaking:g} N"
             self._refuse(item, ("length_at", "load"), message)
-        return measured.length / (1.0 + strain_under(component, measured.load)), measured.load
+        return measured.length / (1.0 + component.strain_under(measured.load)), measured.load
 
     def _fit_depth(self, item: SourceMapping, *, fits: bool) -> float | None:
         """Return the depth to cut a piece to: of the line's top, in a tow of its own lower end."""

@@ -9,10 +9,9 @@ from pydantic import AfterValidator, Field, WithJsonSchema
 
 from calm.errors import Problem
 from calm.files.check_limits import Day
+from calm.files.definition import POSITIVE_LENGTH, Model, QuantityField, Role, Text, described
 from calm.files.environment import Position
-from calm.files.fields import POSITIVE_LENGTH, Model, QuantityField, Role, Text
-from calm.files.mistakes import validate
-from calm.files.yaml_document import SourceMapping
+from calm.files.yaml_document import SourceMapping, validate
 from calm.records.current_terms import TimeChoiceError, parse_time
 from calm.suggestions import shown, unknown
 
@@ -36,45 +35,33 @@ Moment = Annotated[
 class Revision(Model):
     """What a revision of the document changed."""
 
-    revision: Text = Field(description="letter or number", examples=["B"])
-    date: Day | None = Field(
-        default=None, description="day, e.g. 2026-11-20", examples=["2026-11-20"]
-    )
-    by: Text | None = Field(default=None, description="who made it", examples=["A. Martin"])
-    change: Text | None = Field(
-        default=None, description="what is new", examples=["wire 20 m longer"]
-    )
+    revision: Text = described("letter or number", "B")
+    date: Day | None = described("day, e.g. 2026-11-20", "2026-11-20", default=None)
+    by: Text | None = described("who made it", "A. Martin", default=None)
+    change: Text | None = described("what is new", "wire 20 m longer", default=None)
 
 
 class DocumentKeys(Model):
     """What the title block of a drawing says."""
 
-    id: Text | None = Field(default=None, description="of the drawing", examples=["M-2026-17"])
-    revision: Text | None = Field(default=None, description="letter or number", examples=["B"])
-    date: Day | None = Field(
-        default=None, description="day, e.g. 2026-11-20", examples=["2026-11-20"]
-    )
-    author: Text | None = Field(default=None, description="who drew it", examples=["A. Martin"])
-    checked: Text | None = Field(default=None, description="by whom", examples=["B. Li"])
-    approved: Text | None = Field(default=None, description="by whom", examples=["C. Okafor"])
-    project: Text | None = Field(
-        default=None, description="what it belongs to", examples=["Slope currents"]
-    )
-    ship: Text | None = Field(
-        default=None, description="the ship that deploys the mooring", examples=["RV Example"]
-    )
-    cruise: Text | None = Field(default=None, description="its name or number", examples=["EX-142"])
-    deck_time: dict[Role, Annotated[float, QuantityField("time", at_least=0)]] | None = Field(
+    id: Text | None = described("of the drawing", "M-2026-17", default=None)
+    revision: Text | None = described("letter or number", "B", default=None)
+    date: Day | None = described("day, e.g. 2026-11-20", "2026-11-20", default=None)
+    author: Text | None = described("who drew it", "A. Martin", default=None)
+    checked: Text | None = described("by whom", "B. Li", default=None)
+    approved: Text | None = described("by whom", "C. Okafor", default=None)
+    project: Text | None = described("what it belongs to", "Slope currents", default=None)
+    ship: Text | None = described("the ship that deploys the mooring", "RV Example", default=None)
+    cruise: Text | None = described("its name or number", "EX-142", default=None)
+    deck_time: dict[Role, Annotated[float, QuantityField("time", at_least=0)]] | None = described(
+        "time that a piece takes on deck before it goes over, by its role",
+        {"float": "5 min", "instrument": "3 min", "line": "2 min"},
         default=None,
-        description="time that a piece takes on deck before it goes over, by its role",
-        examples=[{"float": "5 min", "instrument": "3 min", "line": "2 min"}],
     )
-    history: tuple[Revision, ...] = Field(
+    history: tuple[Revision, ...] = described(
+        "the revisions, and what each changed",
+        [{"revision": "A", "date": "2026-10-02", "by": "A. Martin", "change": "first issue"}],
         default=(),
-        description="the revisions, and what each changed",
-        examples=[
-            [{"revision": "A", "date": "2026-10-02", "by": "A. Martin", "change": "first issue"}]
-        ],
     )
 
     def to_dict(self) -> dict[str, Any]:
@@ -85,11 +72,11 @@ class DocumentKeys(Model):
 class ReleaseKeys(Model):
     """A release by its serial number, and its codes: one text, several, or several by name."""
 
-    serial: Text | None = Field(default=None, description="of the release", examples=[1729])
-    codes: Text | tuple[Text, ...] | dict[str, Text] | None = Field(
+    serial: Text | None = described("of the release", 1729, default=None)
+    codes: Text | tuple[Text, ...] | dict[str, Text] | None = described(
+        "one text, several, or several by name, e.g. {enable: 0123, release: 4567}",
+        {"enable": "0A51", "release": "0A55"},
         default=None,
-        description="one text, several, or several by name, e.g. {enable: 0123, release: 4567}",
-        examples=[{"enable": "0A51", "release": "0A55"}],
     )
 
     @property
@@ -103,42 +90,32 @@ class ReleaseKeys(Model):
 class DeployedItem(Model):
     """What went over the side for a piece or a clamp; `length` [m] is what a cable was cut to."""
 
-    label: Text = Field(
-        description="of the piece or clamp in results", examples=["wire-jacketed-8"]
+    label: Text = described("of the piece or clamp in results", "wire-jacketed-8")
+    serial: Text | None = described(
+        "serial number; for a count, a list with one for each", 12345, default=None
     )
-    serial: Text | None = Field(
-        default=None,
-        description="serial number; for a count, a list with one for each",
-        examples=[12345],
+    length: Annotated[float | None, POSITIVE_LENGTH] = described(
+        "what a cable was cut to", "480 m", default=None
     )
-    length: Annotated[float | None, POSITIVE_LENGTH] = Field(
-        default=None, description="what a cable was cut to", examples=["480 m"]
-    )
-    remark: Text | None = Field(
-        default=None, description="anything worth knowing", examples=["one terminal remade"]
-    )
+    remark: Text | None = described("anything worth knowing", "one terminal remade", default=None)
 
 
 class Deployed(Model):
     """Where and when the mooring was deployed, and what of it differs from the design."""
 
-    date: Moment | None = Field(
-        default=None,
-        description="day or time, e.g. 2027-03-02T10:40",
-        examples=["2027-03-02T10:40"],
+    date: Moment | None = described(
+        "day or time, e.g. 2027-03-02T10:40", "2027-03-02T10:40", default=None
     )
-    position: Position | None = Field(
-        default=None,
-        description="where it stands",
-        examples=[{"latitude": "48.3 deg", "longitude": "-5.2 deg"}],
+    position: Position | None = described(
+        "where it stands", {"latitude": "48.3 deg", "longitude": "-5.2 deg"}, default=None
     )
-    depth: Annotated[float | None, QuantityField("length", above=0)] = Field(
-        default=None, description="of the water there", examples=["1100 m"]
+    depth: Annotated[float | None, QuantityField("length", above=0)] = described(
+        "of the water there", "1100 m", default=None
     )
-    items: tuple[DeployedItem, ...] = Field(
+    items: tuple[DeployedItem, ...] = described(
+        "what differs, piece by piece",
+        [{"label": "wire-jacketed-8", "length": "479.2 m"}],
         default=(),
-        description="what differs, piece by piece",
-        examples=[[{"label": "wire-jacketed-8", "length": "479.2 m"}]],
     )
 
 
@@ -149,30 +126,20 @@ class Equipment(Model):
     each piece.
     """
 
-    serial: Text | Annotated[tuple[Text, ...], Field(min_length=1)] | None = Field(
-        default=None,
-        description="serial number; for a count, a list with one for each",
-        examples=[12345],
+    serial: Text | Annotated[tuple[Text, ...], Field(min_length=1)] | None = described(
+        "serial number; for a count, a list with one for each", 12345, default=None
     )
-    calibrated: Day | None = Field(
-        default=None,
-        description="day of its last calibration, e.g. 2026-03-01",
-        examples=["2026-03-01"],
+    calibrated: Day | None = described(
+        "day of its last calibration, e.g. 2026-03-01", "2026-03-01", default=None
     )
-    sampling: Text | None = Field(
-        default=None,
-        description="how it samples, as people read it, e.g. every 10 min",
-        examples=["every 10 min"],
+    sampling: Text | None = described(
+        "how it samples, as people read it, e.g. every 10 min", "every 10 min", default=None
     )
-    battery_until: Day | None = Field(
-        default=None,
-        description="day on which its battery is empty, e.g. 2027-06-30",
-        examples=["2028-01-31"],
+    battery_until: Day | None = described(
+        "day on which its battery is empty, e.g. 2027-06-30", "2028-01-31", default=None
     )
-    termination: Text | None = Field(
-        default=None,
-        description="how the ends of a cable are made, e.g. swaged sockets",
-        examples=["swaged sockets"],
+    termination: Text | None = described(
+        "how the ends of a cable are made, e.g. swaged sockets", "swaged sockets", default=None
     )
 
     def of(self, repeat: int) -> Equipment:
@@ -188,10 +155,8 @@ LOAD = QuantityField("force", usual_unit="kN", at_least=0)
 class LengthAt(Model):
     """A length of a cable [m] as measured under a load [N]."""
 
-    load: Annotated[float, LOAD] = Field(description="that the cable was under", examples=["2 kN"])
-    length: Annotated[float, POSITIVE_LENGTH] = Field(
-        description="as measured under `load`", examples=["480 m"]
-    )
+    load: Annotated[float, LOAD] = described("that the cable was under", "2 kN")
+    length: Annotated[float, POSITIVE_LENGTH] = described("as measured under `load`", "480 m")
 
 
 EQUIPMENT_KEYS = frozenset(Equipment.model_fields)

@@ -11,14 +11,15 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Protocol
 
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator
 
 from calm.errors import Problem
 from calm.files.check_limits import Accept, Checks, LimitKey
-from calm.files.components import Anchor, Component, Profiler
+from calm.files.components import Anchor, Component
+from calm.files.definition import LENGTH, Model, QuantityField, described
 from calm.files.environment import Environment, Position
-from calm.files.fields import LENGTH, Model, QuantityField
 from calm.files.logbook import NO_EQUIPMENT, Deployed, DocumentKeys, Equipment, ReleaseKeys
+from calm.files.rigid import Profiler
 from calm.files.strumming_keys import Strumming
 from calm.files.uncertainty import Uncertainty
 from calm.files.yaml_document import SourceMapping
@@ -31,32 +32,28 @@ if TYPE_CHECKING:
 class TowKeys(Model):
     """What tows the line: speed over ground [m/s], where to [degrees], height above water [m]."""
 
-    speed: Annotated[float, QuantityField("speed", above=0)] = Field(
-        description="of the ship over the ground", examples=["0.5 m/s"]
+    speed: Annotated[float, QuantityField("speed", above=0)] = described(
+        "of the ship over the ground", "0.5 m/s"
     )
-    toward: Annotated[float, QuantityField("angle")] = Field(
-        description="course, clockwise from north", examples=["90 deg"]
+    toward: Annotated[float, QuantityField("angle")] = described(
+        "course, clockwise from north", "90 deg"
     )
-    height: Annotated[float, LENGTH] = Field(
-        default=0.0, description="of the tow point above the water, e.g. 4 m", examples=["4 m"]
+    height: Annotated[float, LENGTH] = described(
+        "of the tow point above the water, e.g. 4 m", "4 m", default=0.0
     )
 
 
 class OutputUnits(Model):
     """Say in which units people read tables, papers and the builder; files for programs are SI."""
 
-    force: Literal["N", "kN", "kgf", "lbf"] | None = Field(
-        default=None, description="of tensions, weights and loads", examples=["kgf"]
+    force: Literal["N", "kN", "kgf", "lbf"] | None = described(
+        "of tensions, weights and loads", "kgf", default=None
     )
-    length: Literal["m", "ft"] | None = Field(
-        default=None, description="of lengths and depths", examples=["m"]
+    length: Literal["m", "ft"] | None = described("of lengths and depths", "m", default=None)
+    speed: Literal["m/s", "cm/s", "kn"] | None = described(
+        "of currents and ships", "kn", default=None
     )
-    speed: Literal["m/s", "cm/s", "kn"] | None = Field(
-        default=None, description="of currents and ships", examples=["kn"]
-    )
-    mass: Literal["kg", "lb"] | None = Field(
-        default=None, description="of masses in air", examples=["kg"]
-    )
+    mass: Literal["kg", "lb"] | None = described("of masses in air", "kg", default=None)
 
     @property
     def chosen(self) -> dict[str, str]:
@@ -69,36 +66,30 @@ class Solver(Model):
 
     angle_step: Annotated[
         float, QuantityField("angle", above=0, at_most=10), AfterValidator(math.radians)
-    ] = Field(
+    ] = described(
+        "how much a cable may turn from one segment to the next, e.g. 1 deg",
+        "1 deg",
         default=math.radians(1),
-        description="how much a cable may turn from one segment to the next, e.g. 1 deg",
-        examples=["1 deg"],
     )
-    tolerance: Annotated[float, QuantityField("number", above=0, at_most=2e-4)] = Field(
-        default=1e-7,
-        description="of the depth of the anchor, as a share of the water depth",
-        examples=[1e-07],
+    tolerance: Annotated[float, QuantityField("number", above=0, at_most=2e-4)] = described(
+        "of the depth of the anchor, as a share of the water depth", 1e-07, default=1e-7
     )
-    drag: Literal["constant", "reynolds"] = Field(
+    drag: Literal["constant", "reynolds"] = described(
+        "constant coefficients, or by Reynolds number for what is `surface: smooth`",
+        "reynolds",
         default="constant",
-        description="constant coefficients, or by Reynolds number for what is `surface: smooth`",
-        examples=["reynolds"],
     )
-    friction: Literal["berteaux", "hoerner", "constant"] = Field(
-        default="berteaux", description="law of friction along cables", examples=["berteaux"]
+    friction: Literal["berteaux", "hoerner", "constant"] = described(
+        "law of friction along cables", "berteaux", default="berteaux"
     )
-    strumming: Strumming = Field(
-        default=None,
-        description="how much vibration raises the Cn of cables",
-        examples=[{"factor": 1.5}],
+    strumming: Strumming = described(
+        "how much vibration raises the Cn of cables", {"factor": 1.5}, default=None
     )
-    buoy_drag: Literal["immersed", "full"] = Field(
-        default="immersed",
-        description="of a float at the surface: at its draft, or fully immersed",
-        examples=["immersed"],
+    buoy_drag: Literal["immersed", "full"] = described(
+        "of a float at the surface: at its draft, or fully immersed", "immersed", default="immersed"
     )
-    seabed_friction: Annotated[float, QuantityField("number", at_least=0)] = Field(
-        default=0.0, description="of line that lies on the seabed", examples=[0.3]
+    seabed_friction: Annotated[float, QuantityField("number", at_least=0)] = described(
+        "of line that lies on the seabed", 0.3, default=0.0
     )
 
 

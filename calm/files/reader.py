@@ -14,14 +14,12 @@ from pydantic import BeforeValidator, Field
 from calm.errors import InputError, Problem
 from calm.files.catalogue import Catalogue
 from calm.files.check_limits import Checks, read_accepts
-from calm.files.components import Anchor
+from calm.files.components import Anchor, Flexible
+from calm.files.definition import Model, Text, described
 from calm.files.environment import Position, read_environment
-from calm.files.fields import Model, Text
-from calm.files.flexible import Flexible
 from calm.files.legs import NET_REFUSED, Leg, LegKeys, check_held_depths, read_legs
 from calm.files.line_items import LineReader
 from calm.files.logbook import Deployed, DocumentKeys, ReleaseKeys, check_deployed
-from calm.files.mistakes import validate
 from calm.files.mooring_file import (
     MooringFile,
     OutputUnits,
@@ -35,7 +33,7 @@ from calm.files.mooring_file import (
     unknown_releases,
 )
 from calm.files.uncertainty import Uncertainty
-from calm.files.yaml_document import SourceMapping, compose, read_document
+from calm.files.yaml_document import SourceMapping, compose, read_document, validate
 from calm.suggestions import unknown
 from calm.units import QuantityError
 
@@ -52,82 +50,73 @@ def _given(value: object) -> object:
 class MooringKeys(Model):
     """The keys at the top level of a mooring file."""
 
-    name: Text | None = Field(
-        default=None, description="what people call it", examples=["Shelf edge 2026"]
+    name: Text | None = described("what people call it", "Shelf edge 2026", default=None)
+    description: Text | None = described(
+        "what it is for", "Slope currents, first year", default=None
     )
-    description: Text | None = Field(
-        default=None, description="what it is for", examples=["Slope currents, first year"]
+    document: DocumentKeys | None = described(
+        "what the title block of a drawing says", {"id": "M-2026-17", "revision": "B"}, default=None
     )
-    document: DocumentKeys | None = Field(
+    position: Position | None = described(
+        "where it stands", {"latitude": "48.3 deg", "longitude": "-5.2 deg"}, default=None
+    )
+    tow: Annotated[TowKeys | None, BeforeValidator(_given, json_schema_input_type=TowKeys)] = (
+        described(
+            "what tows the line, in place of an anchor",
+            {"speed": "4 knot", "toward": "90 deg"},
+            default=None,
+        )
+    )
+    environment: dict[str, Any] = described("the water", {"depth": "1100 m"}, default_factory=dict)
+    line: Annotated[tuple[Any, ...], Field(min_length=1)] = described(
+        "the pieces from the top to the anchor; in a tow, from the ship to the towed body",
+        [{"use": "sphere-steel-1250"}, {"use": "anchor-wheels-4"}],
+    )
+    legs: dict[str, LegKeys] | None = described(
+        "in place of `line`, several lines that meet at nodes, or are held elsewhere",
+        {"mooring": {"line": [], "bottom": {"join": "A"}}},
         default=None,
-        description="what the title block of a drawing says",
-        examples=[{"id": "M-2026-17", "revision": "B"}],
     )
-    position: Position | None = Field(
+    nodes: dict[str, dict[str, Any]] | None = described(
+        "the nodes where legs meet", {"A": {}}, default=None
+    )
+    components: dict[str, Any] | None = described(
+        "definitions of your own, used only here",
+        {"my-float": {"kind": "sphere", "diameter": "1.2 m", "buoyancy": "7000 N"}},
         default=None,
-        description="where it stands",
-        examples=[{"latitude": "48.3 deg", "longitude": "-5.2 deg"}],
     )
-    tow: Annotated[TowKeys | None, BeforeValidator(_given, json_schema_input_type=TowKeys)] = Field(
+    environments: dict[str, dict[str, Any]] | None = described(
+        "named variants, each overriding keys of `environment`",
+        {"storm": {"current": {"speed": "1.2 m/s", "toward": "90 deg"}}},
         default=None,
-        description="what tows the line, in place of an anchor",
-        examples=[{"speed": "4 knot", "toward": "90 deg"}],
     )
-    environment: dict[str, Any] = Field(
-        default_factory=dict, description="the water", examples=[{"depth": "1100 m"}]
-    )
-    line: Annotated[tuple[Any, ...], Field(min_length=1)] = Field(
-        description="the pieces from the top to the anchor; in a tow, from the ship to the towed "
-        "body",
-        examples=[[{"use": "sphere-steel-1250"}, {"use": "anchor-wheels-4"}]],
-    )
-    legs: dict[str, LegKeys] | None = Field(
+    units: OutputUnits | None = described(
+        "in which people read tables, papers and the builder",
+        {"force": "kgf", "speed": "kn"},
         default=None,
-        description="in place of `line`, several lines that meet at nodes, or are held elsewhere",
-        examples=[{"mooring": {"line": [], "bottom": {"join": "A"}}}],
     )
-    nodes: dict[str, dict[str, Any]] | None = Field(
-        default=None, description="the nodes where legs meet", examples=[{"A": {}}]
+    solver: Solver | None = described(
+        "how the line is solved", {"angle_step": "1 deg", "strumming": "vandiver"}, default=None
     )
-    components: dict[str, Any] | None = Field(
+    checks: Checks | None = described(
+        "limits of the design check",
+        {"anchor_factor": 1.5, "maximum_knockdown": "50 m"},
         default=None,
-        description="definitions of your own, used only here",
-        examples=[{"my-float": {"kind": "sphere", "diameter": "1.2 m", "buoyancy": "7000 N"}}],
     )
-    environments: dict[str, dict[str, Any]] | None = Field(
+    uncertainty: Uncertainty | None = described(
+        "how well the inputs of the design are known",
+        {"current": "10 %", "cable_drag": ["-15 %", "30 %"]},
         default=None,
-        description="named variants, each overriding keys of `environment`",
-        examples=[{"storm": {"current": {"speed": "1.2 m/s", "toward": "90 deg"}}}],
     )
-    units: OutputUnits | None = Field(
+    releases: tuple[ReleaseKeys, ...] | None = described(
+        "the codes of each release by its serial number",
+        [{"serial": 1729, "codes": {"enable": "0A51", "release": "0A55"}}],
         default=None,
-        description="in which people read tables, papers and the builder",
-        examples=[{"force": "kgf", "speed": "kn"}],
     )
-    solver: Solver | None = Field(
+    deployed: Deployed | None = described(
+        "where and when it was deployed, and what differs from the design",
+        {"date": "2027-03-02T10:40", "depth": "1103 m"},
         default=None,
-        description="how the line is solved",
-        examples=[{"angle_step": "1 deg", "strumming": "vandiver"}],
-    )
-    checks: Checks | None = Field(
-        default=None,
-        description="limits of the design check",
-        examples=[{"anchor_factor": 1.5, "maximum_knockdown": "50 m"}],
-    )
-    uncertainty: Uncertainty | None = Field(
-        default=None,
-        description="how well the inputs of the design are known",
-        examples=[{"current": "10 %", "cable_drag": ["-15 %", "30 %"]}],
-    )
-    releases: tuple[ReleaseKeys, ...] | None = Field(
-        default=None,
-        description="the codes of each release by its serial number",
-        examples=[[{"serial": 1729, "codes": {"enable": "0A51", "release": "0A55"}}]],
-    )
-    deployed: Deployed | None = Field(
-        default=None,
-        description="where and when it was deployed, and what differs from the design",
-        examples=[{"date": "2027-03-02T10:40", "depth": "1103 m"}],
     )
 
 
@@ -149,15 +138,13 @@ def read_mooring(
     environment : str or path, optional
         A variant named in the file, or an environment file; its keys replace those of the
         file's own `environment`.
-    catalogs : sequence of paths
-        Catalogue files that come before the user's own and the shipped ones, the last first.
+    catalogs : catalogue files that come before the user's own and the shipped ones, the last first
     text : str, optional
         In place of the file's content. The file need not exist; what the text refers to is looked
         for beside it.
-    stand_in : bool
-        Let a line that has no anchor yet stand on one that holds anything, of the id `STAND_IN`.
-    net : bool
-        Let the file have legs.
+    stand_in : let a line that has no anchor yet stand on one that holds anything, of the id
+        `STAND_IN`
+    net : let the file have legs
 
     Raises
     ------

@@ -16,28 +16,27 @@ from pydantic import (
 
 from calm.files.definition import (
     CATALOGUE_DENSITY,
+    COEFFICIENT,
     DISAGREEMENT,
+    DRAG,
+    LENGTH,
+    POSITIVE_FORCE,
+    POSITIVE_LENGTH,
     STANDARD_GRAVITY,
     Definition,
     Diameter,
     Length,
     Mass,
+    Model,
     NormalCoefficient,
+    QuantityField,
     TangentialCoefficient,
     TangentialDrag,
+    Text,
+    described,
     is_in_air,
     refuse_weight_above_mass,
     volume_from_weights,
-)
-from calm.files.fields import (
-    COEFFICIENT,
-    DRAG,
-    LENGTH,
-    POSITIVE_FORCE,
-    POSITIVE_LENGTH,
-    Model,
-    QuantityField,
-    Text,
 )
 from calm.physics.hull import tabulated_hull
 
@@ -45,19 +44,16 @@ _AREA = QuantityField("area", at_least=0)
 
 Inclination = Annotated[
     Literal["follows", "insensitive"] | None,
-    Field(description="whether drag follows the inclination of the piece", examples=["follows"]),
+    described("whether drag follows the inclination of the piece", "follows"),
 ]
 Surface = Annotated[
     Literal["painted", "smooth"] | None,
-    Field(
-        description="`smooth` may follow the drag curves; `painted` keeps the constant",
-        examples=["smooth"],
-    ),
+    described("`smooth` may follow the drag curves; `painted` keeps the constant", "smooth"),
 ]
 SphereCoefficient = Annotated[
     float | None,
     COEFFICIENT,
-    Field(description="drag coefficient of a sphere", examples=[0.5]),
+    described("drag coefficient of a sphere", 0.5),
 ]
 
 
@@ -71,9 +67,9 @@ class Displacement(Model):
             Annotated[float, _AREA],
         ],
         ...,
-    ] = Field(
-        description="rows of draft, volume, area seen from the side; the last is all of it",
-        examples=[[["0 m", "0 m^3", "0 m^2"], ["0.8 m", "2.4 m^3", "1.9 m^2"]]],
+    ] = described(
+        "rows of draft, volume, area seen from the side; the last is all of it",
+        [["0 m", "0 m^3", "0 m^2"], ["0.8 m", "2.4 m^3", "1.9 m^2"]],
     )
 
     @model_validator(mode="after")
@@ -109,35 +105,31 @@ class Rigid(Definition):
     """A piece of fixed length, or one clamped on a line."""
 
     mass: Mass = None
-    buoyancy: Annotated[float | None, QuantityField("force")] = Field(
+    buoyancy: Annotated[float | None, QuantityField("force")] = described(
+        "net force in sea water of 1025 kg/m^3, positive up (per metre of a cable)",
+        "7000 N",
         default=None,
-        description="net force in sea water of 1025 kg/m^3, positive up (per metre of a cable)",
-        examples=["7000 N"],
     )
-    volume: Annotated[float | None, QuantityField("volume", at_least=0)] = Field(
-        default=None, description="of water displaced, e.g. 0.9 m^3", examples=["0.9 m^3"]
+    volume: Annotated[float | None, QuantityField("volume", at_least=0)] = described(
+        "of water displaced, e.g. 0.9 m^3", "0.9 m^3", default=None
     )
-    hull: Hull | None = Field(
-        default=None,
-        description="of a float at the surface: a shape, or its displacement by draft",
-        examples=["sphere"],
+    hull: Hull | None = described(
+        "of a float at the surface: a shape, or its displacement by draft", "sphere", default=None
     )
-    k_surface: Annotated[float | None, DRAG] = Field(
-        default=None,
-        description="drag of a float at the surface at 1 m/s",
-        examples=["40 N/(m/s)^2"],
+    k_surface: Annotated[float | None, DRAG] = described(
+        "drag of a float at the surface at 1 m/s", "40 N/(m/s)^2", default=None
     )
-    wind_area: Annotated[float | None, _AREA] = Field(
-        default=None, description="area in the wind, with mast and sensors", examples=["1.4 m^2"]
+    wind_area: Annotated[float | None, _AREA] = described(
+        "area in the wind, with mast and sensors", "1.4 m^2", default=None
     )
-    wind_cd: Annotated[float | None, COEFFICIENT] = Field(
-        default=None, description="drag coefficient of `wind_area`", examples=[1.0]
+    wind_cd: Annotated[float | None, COEFFICIENT] = described(
+        "drag coefficient of `wind_area`", 1.0, default=None
     )
 
-    heave: Literal["filtered", "follows"] | None = Field(
+    heave: Literal["filtered", "follows"] | None = described(
+        "of a float at the surface in waves: by its hull, or as the water does",
+        "follows",
         default=None,
-        description="of a float at the surface in waves: by its hull, or as the water does",
-        examples=["follows"],
     )
     rao: Annotated[
         dict[
@@ -149,11 +141,11 @@ class Rigid(Definition):
         ]
         | None,
         AfterValidator(_frequencies_grow),
-    ] = Field(
-        default=None,
-        description="heave of a float over the elevation of the sea, by angular frequency in "
+    ] = described(
+        "heave of a float over the elevation of the sea, by angular frequency in "
         "rad/s: amplitude and phase",
-        examples=[{"0.5": [1.0, "0 deg"], "2": [0.6, "20 deg"]}],
+        {"0.5": [1.0, "0 deg"], "2": [0.6, "20 deg"]},
+        default=None,
     )
 
     @property
@@ -234,12 +226,10 @@ def _two_stops(value: object) -> object:
 class DragMeasurement(Model):
     """A drag measured at a speed [m/s, N]."""
 
-    speed: Annotated[float, QuantityField("speed", above=0)] = Field(
-        description="of the water past it", examples=["0.5 m/s"]
+    speed: Annotated[float, QuantityField("speed", above=0)] = described(
+        "of the water past it", "0.5 m/s"
     )
-    force: Annotated[float, QuantityField("force", at_least=0)] = Field(
-        description="measured", examples=["48 N"]
-    )
+    force: Annotated[float, QuantityField("force", at_least=0)] = described("measured", "48 N")
 
 
 class SphereShape(Model):
@@ -276,33 +266,29 @@ class Shaped(Rigid):
     """A piece of any shape that gives its drag in one of the `DRAG_FORMS`."""
 
     length: Length
-    kn: Annotated[float | None, DRAG] = Field(
-        default=None,
-        description="drag across the axis at 1 m/s, e.g. 26 N/(m/s)^2",
-        examples=["26 N/(m/s)^2"],
+    kn: Annotated[float | None, DRAG] = described(
+        "drag across the axis at 1 m/s, e.g. 26 N/(m/s)^2", "26 N/(m/s)^2", default=None
     )
     kt: TangentialDrag = None
-    drag_area: Annotated[float | None, _AREA] = Field(
-        default=None, description="area seen by the current, e.g. 0.12 m^2", examples=["0.12 m^2"]
+    drag_area: Annotated[float | None, _AREA] = described(
+        "area seen by the current, e.g. 0.12 m^2", "0.12 m^2", default=None
     )
-    cd: Annotated[float | None, COEFFICIENT] = Field(
-        default=None, description="drag coefficient of `drag_area`", examples=[1.2]
+    cd: Annotated[float | None, COEFFICIENT] = described(
+        "drag coefficient of `drag_area`", 1.2, default=None
     )
-    drag_measurements: tuple[DragMeasurement, ...] | None = Field(
+    drag_measurements: tuple[DragMeasurement, ...] | None = described(
+        "forces measured at several speeds",
+        [{"speed": "0.5 m/s", "force": "12 N"}, {"speed": "1 m/s", "force": "48 N"}],
         default=None,
-        description="forces measured at several speeds",
-        examples=[[{"speed": "0.5 m/s", "force": "12 N"}, {"speed": "1 m/s", "force": "48 N"}]],
     )
-    made_of: tuple[Shape, ...] | None = Field(
+    made_of: tuple[Shape, ...] | None = described(
+        "simple shapes whose drags add up",
+        [{"kind": "cylinder", "diameter": "80 mm", "length": "1 m"}],
         default=None,
-        description="simple shapes whose drags add up",
-        examples=[[{"kind": "cylinder", "diameter": "80 mm", "length": "1 m"}]],
     )
     inclination: Inclination = None
-    lift: Annotated[float | None, QuantityField("drag")] = Field(
-        default=None,
-        description="of a towed body at 1 m/s, positive up",
-        examples=["-30 N/(m/s)^2"],
+    lift: Annotated[float | None, QuantityField("drag")] = described(
+        "of a towed body at 1 m/s, positive up", "-30 N/(m/s)^2", default=None
     )
 
     @model_validator(mode="after")
@@ -343,23 +329,21 @@ class Profiler(Shaped):
     """A profiler that travels along a wire, from one stop to another and back."""
 
     kind: Literal["profiler"] = Field(description="which kind of component it is")
-    between: Annotated[tuple[Text, ...] | None, BeforeValidator(_two_stops)] = Field(
-        default=None,
-        description="labels of its upper and its lower stop: what is clamped on its wire, or "
+    between: Annotated[tuple[Text, ...] | None, BeforeValidator(_two_stops)] = described(
+        "labels of its upper and its lower stop: what is clamped on its wire, or "
         "pieces at the ends of that",
-        examples=[["upper bumper", "lower bumper"]],
+        ["upper bumper", "lower bumper"],
+        default=None,
     )
-    minimum_tension: Annotated[float, POSITIVE_FORCE] = Field(
-        default=LEAST_WIRE_TENSION,
-        description="that its wire needs where it travels",
-        examples=["2224 N"],
+    minimum_tension: Annotated[float, POSITIVE_FORCE] = described(
+        "that its wire needs where it travels", "2224 N", default=LEAST_WIRE_TENSION
     )
-    drive_force: Annotated[float | None, POSITIVE_FORCE] = Field(
-        default=None, description="that it can climb with", examples=["50 N"]
+    drive_force: Annotated[float | None, POSITIVE_FORCE] = described(
+        "that it can climb with", "50 N", default=None
     )
-    speed: Annotated[float | None, QuantityField("speed", above=0)] = Field(
-        default=None, description="along its wire", examples=["0.25 m/s"]
+    speed: Annotated[float | None, QuantityField("speed", above=0)] = described(
+        "along its wire", "0.25 m/s", default=None
     )
-    endurance: Annotated[float | None, POSITIVE_LENGTH] = Field(
-        default=None, description="way that its batteries last for", examples=["1000 km"]
+    endurance: Annotated[float | None, POSITIVE_LENGTH] = described(
+        "way that its batteries last for", "1000 km", default=None
     )

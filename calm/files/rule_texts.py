@@ -33,6 +33,7 @@ class RuleText:
     figures: tuple[str, ...] = ()
 
 
+_WAVES = "waves are judged of an environment, by `calm check`"
 _ONCE = "judged once of a mooring, by `calm check`"
 
 RULES = {
@@ -189,6 +190,34 @@ RULES = {
         "least tension of every wire and rope above the release that does not lie on the seabed",
         "`minimum_tension`: 500 N wire, 300 N rope; `slack: allowed` on a piece exempts it",
         "Practice of mooring groups, 50 to 100 kgf above the release; no figure is published",
+    ),
+    "wave-strength": RuleText(
+        "Strength in waves",
+        "tension",
+        "greatest tension of every piece in `waves:`, mean and most probable greatest of 3 h",
+        "the lesser of its working load and its breaking load over `waves_safety_factor`, 1.67; "
+        "unknown of a surface mooring without `waves:`",
+        "API RP 2SK: 1.67 on breaking strength, intact, tensions found dynamically",
+        _WAVES,
+        figures=("working_load", "breaking_load"),
+    ),
+    "wave-slack": RuleText(
+        "Slack in waves",
+        "tension",
+        "least tension of every piece in `waves:`, mean and most probable least of 3 h",
+        "above 0; `slack: allowed` on a piece exempts it",
+        "A line that falls slack snatches, and linear tensions no longer hold",
+        _WAVES,
+    ),
+    "fatigue": RuleText(
+        "Fatigue in waves",
+        "life",
+        "life of every piece below the float in the seas of `waves: scatter:`",
+        "`fatigue_factor`, 3, × `service_time`, 365 days; unknown without a table of seas, and "
+        "of what no curve is published for",
+        "Dirlik 1985 and Miner's sum; curves of DNV-OS-E301 (chain, polyester) and API RP 2SK "
+        "(wire); a life of three times the service",
+        _WAVES,
     ),
     "reserve": RuleText(
         "Reserve of buoyancy",

@@ -14,8 +14,8 @@ from pydantic.json_schema import models_json_schema
 
 from calm.files.catalogue import Assembly
 from calm.files.components import KINDS, Component
+from calm.files.definition import LENGTH, quantity_of
 from calm.files.environment import EnvironmentKeys, TowEnvironmentKeys, UniformCurrent
-from calm.files.fields import LENGTH, quantity_of
 from calm.files.line_items import MOST_PIECES
 from calm.files.logbook import Equipment, LengthAt
 from calm.files.reader import MooringKeys

@@ -18,9 +18,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Literal, cast, get_args
 
-from pydantic import BeforeValidator, ConfigDict, Discriminator, Field, Tag, ValidationInfo
+from pydantic import BeforeValidator, ConfigDict, Discriminator, Tag, ValidationInfo
 
-from calm.files.fields import COEFFICIENT, Model, QuantityField
+from calm.files.definition import COEFFICIENT, Model, QuantityField, described
 from calm.physics.strumming import BourgetMarichal
 from calm.suggestions import nearest, not_among, shown
 from calm.units import QuantityError
@@ -38,17 +38,15 @@ _Name = Literal["none", "bourget-marichal", AmplitudeName]
 class StrummingFactor(Model):
     """The Cn of every cable, multiplied."""
 
-    factor: Annotated[float, _RAISED] = Field(
-        description="what the Cn of every cable is multiplied by, e.g. 1.5", examples=[1.5]
+    factor: Annotated[float, _RAISED] = described(
+        "what the Cn of every cable is multiplied by, e.g. 1.5", 1.5
     )
 
 
 class ConstantCn(Model):
     """One Cn for every cable, whatever its own: the habit for towed cables, 1.8 to 1.9."""
 
-    cn: Annotated[float, COEFFICIENT] = Field(
-        description="drag coefficient across the axis", examples=[1.2]
-    )
+    cn: Annotated[float, COEFFICIENT] = described("drag coefficient across the axis", 1.2)
 
 
 class BourgetMarichalKeys(Model):
@@ -59,29 +57,27 @@ class BourgetMarichalKeys(Model):
 
     model_config = ConfigDict(json_schema_extra={"required": ["model"]})
 
-    model: Literal["bourget-marichal"] = Field(
-        default="bourget-marichal", description="the law", examples=["bourget-marichal"]
+    model: Literal["bourget-marichal"] = described(
+        "the law", "bourget-marichal", default="bourget-marichal"
     )
-    a1: Annotated[float, _NUMBER] = Field(
+    a1: Annotated[float, _NUMBER] = described(
+        "amplitude over diameter of the cable's vibration where φ is 0",
+        0.45,
         default=BourgetMarichal.a1,
-        description="amplitude over diameter of the cable's vibration where φ is 0",
-        examples=[0.45],
     )
-    b1: Annotated[float, _NUMBER] = Field(
-        default=BourgetMarichal.b1, description="what φ adds to `a1`, per degree", examples=[0.01]
+    b1: Annotated[float, _NUMBER] = described(
+        "what φ adds to `a1`, per degree", 0.01, default=BourgetMarichal.b1
     )
-    c1: Annotated[float, _NUMBER] = Field(
-        default=BourgetMarichal.c1,
-        description="what φ² adds to `a1`, per square degree",
-        examples=[0.0],
+    c1: Annotated[float, _NUMBER] = described(
+        "what φ² adds to `a1`, per square degree", 0.0, default=BourgetMarichal.c1
     )
-    c0: Annotated[float, _RESTING_CN] = Field(
-        default=BourgetMarichal.rest, description="Cn of the cable at rest", examples=[1.2]
+    c0: Annotated[float, _RESTING_CN] = described(
+        "Cn of the cable at rest", 1.2, default=BourgetMarichal.rest
     )
-    strouhal: Annotated[float, _FACTOR] = Field(
+    strouhal: Annotated[float, _FACTOR] = described(
+        "frequency of the cable times diameter over the speed across it",
+        0.2,
         default=BourgetMarichal.strouhal,
-        description="frequency of the cable times diameter over the speed across it",
-        examples=[0.2],
     )
 
 
@@ -89,7 +85,7 @@ class BourgetMarichalKeys(Model):
 class AmplitudeModel:
     """The law, by name, that raises Cn with the amplitude at which each segment vibrates."""
 
-    name: Annotated[AmplitudeName, Field(description="the law", examples=["vandiver"])]
+    name: Annotated[AmplitudeName, described("the law", "vandiver")]
 
 
 _FORMS: Mapping[str, type[Model]] = {

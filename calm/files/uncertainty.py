@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Any
 
-from pydantic import Field, GetJsonSchemaHandler
+from pydantic import GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
-from calm.files.fields import Model, QuantityField
+from calm.files.definition import Model, QuantityField, described
 from calm.units import QuantityError
 
 MOST_DEVIATION = 0.25
@@ -79,48 +79,39 @@ class SpreadOf:
         return {"anyOf": [self.one.json_schema(), pair]}
 
 
-_SHARES = (_SHARE, QuantityField("number", above=-1.0, at_most=10.0))
-_ANGLES = (
-    QuantityField("angle", at_least=0.0, at_most=180.0),
-    QuantityField("angle", at_least=-180.0, at_most=180.0),
-)
+ShareSpread = Annotated[Spread, SpreadOf(_SHARE, QuantityField("number", above=-1.0, at_most=10.0))]
+AngleSpread = Annotated[
+    Spread,
+    SpreadOf(
+        QuantityField("angle", at_least=0.0, at_most=180.0),
+        QuantityField("angle", at_least=-180.0, at_most=180.0),
+    ),
+]
 
 
 class Uncertainty(Model):
     """How sure what a design stands on is: one draw of each a mooring."""
 
-    current: Annotated[Spread, SpreadOf(*_SHARES)] = Field(
-        default=Spread(0.1), description="of the speed, at all depths alike", examples=["10 %"]
+    current: ShareSpread = described(
+        "of the speed, at all depths alike", "10 %", default=Spread(0.1)
     )
-    direction: Annotated[Spread, SpreadOf(*_ANGLES)] = Field(
-        default=Spread(5.0), description="of the current, at all depths alike", examples=["5 deg"]
+    direction: AngleSpread = described(
+        "of the current, at all depths alike", "5 deg", default=Spread(5.0)
     )
-    cable_drag: Annotated[Spread, SpreadOf(*_SHARES)] = Field(
+    cable_drag: ShareSpread = described(
+        "of cables and chains, strumming aside",
+        ["-15 %", "30 %"],
         default=Spread(between=(-0.15, 0.30)),
-        description="of cables and chains, strumming aside",
-        examples=[["-15 %", "30 %"]],
     )
-    rigid_drag: Annotated[Spread, SpreadOf(*_SHARES)] = Field(
-        default=Spread(0.15),
-        description="of rigid pieces and of what is clamped on",
-        examples=["15 %"],
+    rigid_drag: ShareSpread = described(
+        "of rigid pieces and of what is clamped on", "15 %", default=Spread(0.15)
     )
-    buoyancy: Annotated[Spread, SpreadOf(*_SHARES)] = Field(
-        default=Spread(0.02),
-        description="net, of rigid pieces and clamps that float",
-        examples=["2 %"],
+    buoyancy: ShareSpread = described(
+        "net, of rigid pieces and clamps that float", "2 %", default=Spread(0.02)
     )
-    cable_weight: Annotated[Spread, SpreadOf(*_SHARES)] = Field(
-        default=Spread(0.03),
-        description="net force of cables and chains in water",
-        examples=["3 %"],
+    cable_weight: ShareSpread = described(
+        "net force of cables and chains in water", "3 %", default=Spread(0.03)
     )
-    length: Annotated[Spread, SpreadOf(*_SHARES)] = Field(
-        default=Spread(0.003), description="of cables and chains, as cut", examples=["0.3 %"]
-    )
-    stiffness: Annotated[Spread, SpreadOf(*_SHARES)] = Field(
-        default=Spread(0.2), description="of cables and chains", examples=["20 %"]
-    )
-    depth: Annotated[Spread, SpreadOf(*_SHARES)] = Field(
-        default=Spread(0.01), description="of the water", examples=["1 %"]
-    )
+    length: ShareSpread = described("of cables and chains, as cut", "0.3 %", default=Spread(0.003))
+    stiffness: ShareSpread = described("of cables and chains", "20 %", default=Spread(0.2))
+    depth: ShareSpread = described("of the water", "1 %", default=Spread(0.01))

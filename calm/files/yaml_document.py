@@ -2,18 +2,24 @@
 
 Scalars are kept as the text the person wrote: what `1000` means is for the field to say. Anchors,
 aliases and tags have no use in these files and are refused, so that nothing can be expanded.
+
+What pydantic finds wrong is one line for people, with its place in the file.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal, TypeVar, get_args, get_origin
+
+from pydantic import BaseModel, ValidationError
 
 from calm.errors import InputError, Problem
 from calm.files import composition
 from calm.files.composition import Node
+from calm.suggestions import about_quantity, nearest, not_among, shown, unknown
+from calm.units import QuantityError
 from calm.whole_file import read_text
 
 LineAndColumn = tuple[int, int]
@@ -26,12 +32,10 @@ class Document:
 
     Attributes
     ----------
-    path : str
-        As messages show it.
-    data : dict
-        Mappings, lists, text and None.
-    values, keys : dict
-        The place of every value and of every key, by its location: ``("line", 0, "use")``.
+    path : as messages show it
+    data : mappings, lists, text and None
+    values, keys : the place of every value and of every key, by its location: ``("line", 0,
+        "use")``
     """
 
     path: str
@@ -62,25 +66,15 @@ class Document:
 def read_document(path: Path) -> Document:
     """Read a YAML file whose top level is a mapping.
 
-    Raises
-    ------
-    InputError
-        The file cannot be read, is no text, no valid YAML, or holds duplicate keys.
+    InputError: the file cannot be read, is no text, no valid YAML, or holds duplicate keys.
     """
     return compose(str(path), read_text(path))
 
 
 def compose(name: str, text: str) -> Document:
-    """Return the document of a text, as that of a file or in place of one.
+    """Return the document of a text, as that of a file of a name or in place of one.
 
-    Parameters
-    ----------
-    name : of the file, as messages show it
-
-    Raises
-    ------
-    InputError
-        It is no valid YAML, or holds duplicate keys.
+    InputError: it is no valid YAML, or holds duplicate keys.
     """
     root, refusals = composition.compose(text.removeprefix("\ufeff"))
     if root is not None and root.kind != "mapping":
@@ -116,12 +110,10 @@ class SourceMapping:
 
     Attributes
     ----------
-    document, location
-        Where the mapping (the upper one) stands; problems without a key are put there.
-    data : dict
-        The mapping, its own keys over those it overlays.
-    base : Section or None
-        What lies below.
+    document, location : where the mapping (the upper one) stands; problems without a key are put
+        there
+    data : the mapping, its own keys over those it overlays
+    base : what lies below
     """
 
     document: Document
@@ -173,3 +165,194 @@ class SourceMapping:
         home = self.home(location[0]) if location else self
         place = (*home.location, *location)
         return home.document.problem(place, message, key=key, lacks=lacks)
+
+
+M = TypeVar("M", bound=BaseModel)
+
+
+def validate(
+    model: type[M],
+    section: SourceMapping,
+    problems: list[Problem],
+    *,
+    also_allowed: Iterable[str] = (),
+    context: Mapping[str, object] | None = None,
+) -> M | None:
+    """Return the model of a mapping, or None where it has mistakes.
+
+    Parameters
+    ----------
+    model : of the mapping
+    section : the mapping
+    problems : mistakes are added to it
+    also_allowed : keys that stand in the same mapping and belong to something else
+    context : what the validators of the model may need to know
+    """
+    try:
+        return model.model_validate(section.data, context=context)
+    except ValidationError as error:
+        problems.extend(_explain(error, model, section, also_allowed))
+        return None
+
+
+def _explain(
+    error: ValidationError,
+    model: type[BaseModel],
+    section: SourceMapping,
+    also_allowed: Iterable[str],
+) -> list[Problem]:
+    found: list[Problem] = []
+    missing: list[tuple[Location, str]] = []
+    misspelt: set[tuple[Location, str]] = set()
+    for details in error.errors(include_url=False):
+        if details["type"] == "default_factory_not_called":
+            continue  # the consequence of another mistake
+        location, value = _existing(section.data, details["loc"])
+        name = str(details["loc"][-1]) if details["loc"] else ""
+        if details["type"] == "missing" and isinstance(details["loc"][-1], str):
+            missing.append((location, name))
+        elif details["type"] == "extra_forbidden":
+            forms = _models_in(_form(model, details["loc"][:-1]))
+            keys = [*(name for one in forms for name in one.model_fields), *also_allowed]
+            if also_allowed:
+                keys.remove("kind")
+            near = _meant(name, keys)
+            if near:
+                misspelt.add((location[:-1], near))
+            kind = _tag(model) if len(details["loc"]) == 1 else None
+            message = _about_key(name, value, keys, kind)
+            found.append(section.problem(location, message, key=True))
+        else:
+            field = next((part for part in reversed(location) if isinstance(part, str)), "")
+            message = _about_value(details, field, value, model)
+            lacks = f"no {field}" if value in (None, [], {}) else ""
+            found.append(section.problem(location, message, lacks=lacks))
+    # A required key that is there, misspelt, is one mistake and not two.
+    found += [
+        section.problem(location, f"`{name}` is missing", lacks=f"no {name}")
+        for location, name in missing
+        if (location, name) not in misspelt
+    ]
+    return found
+
+
+def _existing(data: Any, loc: tuple[int | str, ...]) -> tuple[Location, Any]:
+    """Return the part of a pydantic location that exists in the data (tags of unions do not)."""
+    location: list[str | int] = []
+    for part in loc:
+        if isinstance(data, dict):
+            inside = part in data
+        else:
+            inside = isinstance(data, list) and isinstance(part, int) and part < len(data)
+        if inside:
+            location.append(part)
+            data = data[part]
+    return tuple(location), data
+
+
+def _about_key(name: str, value: object, keys: list[str], kind: str | None) -> str:
+    if value is None and name[:1].isdigit():
+        return f"`{shown(name)}` is not a key; a decimal comma? (write 0.8, not 0,8)"
+    return unknown_key(name, keys, f" for kind {kind}" if kind else "")
+
+
+_OTHER_NAMES = {
+    "clamps": "instruments instrument sensors clamp loggers",
+    "label": "name id title",
+    "count": "number quantity times",
+    "use": "component type",
+    "latitude": "lat",
+    "longitude": "lon long lng",
+    "toward": "direction heading to",
+    "weight": "weight_in_water wet_weight",
+    "mass": "weight_in_air",
+    "breaking_load": "mbl breaking_strength strength",
+    "working_load": "wll swl",
+}
+"""What people call a key that has another name."""
+
+
+def unknown_key(name: str, keys: list[str], owner: str = "") -> str:
+    """Return that a key does not exist, and the one that is meant."""
+    return unknown(f"unknown key `{shown(name)}`{owner}", _meant(name, keys) or name, keys)
+
+
+def _meant(name: str, keys: list[str]) -> str | None:
+    others = (key for key, names in _OTHER_NAMES.items() if name in names.split() and key in keys)
+    return next(others, None) or nearest(name, keys)
+
+
+def _about_value(details: Any, field: str, value: object, model: type[BaseModel]) -> str:
+    context = details.get("ctx", {})
+    cause = context.get("error")
+    if isinstance(cause, QuantityError):
+        return about_quantity(field, value, cause)
+    if isinstance(cause, ValueError):
+        return str(cause)
+    kind = details["type"]
+    if value is None:
+        return f"`{field}` is empty" if kind == "tuple_type" else f"`{field}` has no value"
+    form = _form(model, details["loc"])
+    if kind == "union_tag_invalid" and isinstance(value, dict):
+        kinds = [tag for one in _models_in(form) if (tag := _tag(one))]
+        return not_among("kind", shown(value.get("kind")), kinds)
+    if kind == "literal_error":
+        return not_among(field, shown(value), _values_in(form))
+    example = _example(model, details["loc"]) if kind.endswith("_type") else ""
+    return f"`{field}` {_SHAPES.get(kind, details['msg'])}{example}"
+
+
+_SHAPES: Mapping[str, str] = {
+    "union_tag_not_found": "needs a `kind`",
+    "model_type": "must hold `key: value` entries",
+    "model_attributes_type": "must hold `key: value` entries",
+    "dict_type": "must hold `key: value` entries",
+    "tuple_type": "must be a list",
+    "too_short": "is empty",
+    "string_type": "must be plain text",
+    "missing": "has a row with too few values",
+    "too_long": "has a row with too many values",
+}
+
+
+def _example(model: type[BaseModel], loc: tuple[int | str, ...]) -> str:
+    """Return how the value of a key looks, where it holds others and has an example."""
+    field = model.model_fields.get(str(loc[0])) if len(loc) == 1 else None
+    shape = field.examples[0] if field is not None and field.examples else None
+    shape = shape[:1] if isinstance(shape, list) else shape
+    return f", as `{loc[0]}: {_flow(shape)}`" if isinstance(shape, (dict, list)) else ""
+
+
+def _flow(value: object) -> str:
+    """Return a value as YAML writes it in a line."""
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{key}: {_flow(each)}" for key, each in value.items()) + "}"
+    return f"[{', '.join(map(_flow, value))}]" if isinstance(value, list) else str(value)
+
+
+def _form(model: type[BaseModel], loc: tuple[int | str, ...]) -> Any:
+    """Return the type of what belongs at a pydantic location, in which tags of unions may stand."""
+    form: Any = model
+    for part in loc:
+        models = _models_in(form)
+        fields = [one.model_fields[part].annotation for one in models if part in one.model_fields]
+        tagged = [one for one in models if part in (_tag(one), one.__name__)]
+        form = fields[0] if fields else tagged[0] if tagged else form
+    return form
+
+
+def _models_in(form: Any) -> list[type[BaseModel]]:
+    if isinstance(form, type) and issubclass(form, BaseModel):
+        return [form]
+    return [model for argument in get_args(form) for model in _models_in(argument)]
+
+
+def _values_in(form: Any) -> list[str]:
+    if get_origin(form) is Literal:
+        return list(get_args(form))
+    return [value for argument in get_args(form) for value in _values_in(argument)]
+
+
+def _tag(model: type[BaseModel]) -> str | None:
+    kind = model.model_fields.get("kind")
+    return get_args(kind.annotation)[0] if kind else None

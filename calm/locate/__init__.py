@@ -2,6 +2,6 @@
 
 from calm.locate.range_fit import Located as Located
 from calm.locate.range_fit import locate as locate
+from calm.locate.ranges import Sound as Sound
 from calm.locate.ranges import Survey as Survey
 from calm.locate.ranges import read_ranges as read_ranges
-from calm.locate.sound import Sound as Sound

@@ -18,10 +18,9 @@ from calm.batch.dataset import laid_out, layout_of
 from calm.batch.profiles import Batch, Profiles
 from calm.batch.run import BatchOutcome, run_kept
 from calm.batch.statuses import STATUSES
-from calm.batch.store.identity import identity_of, to_text
-from calm.batch.store.store import Store, open_store
 from calm.batch.threads import processors
 from calm.batch.work import BatchWork, Progress
+from calm.batch.work_store import Store, identity_of, open_store, to_text
 from calm.case import Mooring
 from calm.dataset.netcdf import Attributes, ResultLayout, labels, numbers
 from calm.motion.common_unknowns import Common

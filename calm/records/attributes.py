@@ -114,12 +114,8 @@ def another_way(variable: xr.DataArray, way: str) -> str | None:
 
 
 def other_frame(attributes: Mapping[Any, Any]) -> str | None:
-    """Return why a current is not to the east and north, by its coordinate system; None if it may
-    be.
-
-    Parameters
-    ----------
-    attributes : those of a dataset or of a variable
+    """Return why a current is not to the east and north, by the coordinate system that a dataset or
+    a variable gives; None if it may be.
     """
     for name in filter(_FRAMES.fullmatch, map(str, attributes)):
         frame = str(attributes[name]).lower()
@@ -138,11 +134,8 @@ def other_frame(attributes: Mapping[Any, Any]) -> str | None:
 
 
 def is_magnetic(variable: xr.DataArray, dataset: Mapping[Any, Any] = MappingProxyType({})) -> bool:
-    """Return whether a velocity or direction is relative to magnetic north, as it or its file says.
-
-    Parameters
-    ----------
-    dataset : the attributes of its file
+    """Return whether a velocity or direction is relative to magnetic north, as it or its dataset
+    says.
     """
     if _MAGNETIC.search(re.sub(r"_", " ", str(variable.name).lower())):
         return True
@@ -180,12 +173,9 @@ def _says_so(said: Any, magnetic: re.Pattern[str]) -> bool:
 
 
 def way_of(variable: xr.DataArray, *attributes: str) -> str | None:
-    """Return whether a direction is where the current flows ``"to"`` or comes ``"from"``, in its
-    words.
+    """Return whether a direction is where the current flows ``"to"`` or comes ``"from"``.
 
-    Parameters
-    ----------
-    attributes : those that count; its names and its comment where none is given
+    The attributes that count say so; its names and its comment where none is given.
     """
     own = words_of(variable, *(attributes or ("long_name", "standard_name", "comment")))
     toward, origin = _TOWARD.search(own), _FROM.search(own)
@@ -287,9 +277,7 @@ def part_in_words(own: str) -> str | None:
     """Return the words by which the name of a quantity is a part of the current; None where none
     is.
 
-    Parameters
-    ----------
-    own : its names as plain lower-case words, one blank between them
+    Its own names are plain lower-case words, one blank between them.
     """
     found = _IN_TEXTS.search(own) or _IN_NAMES.search(own)
     if found is None and not _WITH_TIDES.search(own):
@@ -301,11 +289,8 @@ def part_in_texts(attributes: Mapping[Any, Any]) -> str | None:
     """Return why a current is a part of the whole, by titles, comments and filters; None if it may
     be it.
 
-    A sentence that denies it, or speaks of another variable too, does not count.
-
-    Parameters
-    ----------
-    attributes : those of a dataset or of a variable
+    They are those of a dataset or of a variable. A sentence that denies it, or speaks of another
+    variable too, does not count.
     """
     for name, words, said in _sentences(attributes):
         if _OTHER_FRAMES.search(words):
@@ -367,12 +352,9 @@ def is_local(text: str) -> bool:
 
 
 def refused_by_comments(comments: Sequence[str], *, magnetic: bool) -> str | None:
-    """Return why a table is not of the current, by its comments; None if it may be.
+    """Return why a table is not of the current, by the comments above it; None if it may be.
 
-    Parameters
-    ----------
-    comments : above the table
-    magnetic : whether its headings say that it is relative to magnetic north
+    It is `magnetic` where its headings say that it is relative to magnetic north.
     """
     said = {"comment": "\n".join(comments)}
     if not magnetic and is_magnetic_by(said):

@@ -60,10 +60,7 @@ class UnreadableError(Exception):
 def is_netcdf(path: Path) -> bool:
     """Return whether a file is NetCDF, by its first bytes.
 
-    Raises
-    ------
-    InputError
-        It is of a kind that is known, and not read.
+    InputError: it is of a kind that is known, and not read.
     """
     with path.open("rb") as file:
         signature = file.read(8)
@@ -142,10 +139,7 @@ def groups_of(path: Path) -> list[str]:
 def factor_of(variable: xr.DataArray, dimension: str) -> float:
     """Return what turns a variable into SI (angles: degrees).
 
-    Raises
-    ------
-    UnreadableError
-        It has no unit, or that of something else.
+    UnreadableError: it has no unit, or that of something else.
     """
     unit = str(variable.attrs.get("units", ""))
     plain = _NORTH_NAMED.sub("", unit.strip())
@@ -259,10 +253,8 @@ def find_times(dataset: xr.Dataset, velocity: str) -> str | None:
 def read_times(dataset: xr.Dataset, name: str) -> NDArray[np.datetime64]:
     """Return its times to the nanosecond, one-dimensional, in the order of the file.
 
-    Raises
-    ------
-    UnreadableError
-        They are no times, are missing, or follow a calendar that has other days than the real one.
+    UnreadableError: they are no times, are missing, or follow a calendar that has other days than
+    the real one.
     """
     times = dataset[name]
     calendar = str(times.attrs.get("calendar", "standard")).lower()

@@ -197,17 +197,9 @@ class CurrentDataset:
 
 
 def understand(dataset: xr.Dataset, terms: Terms) -> CurrentDataset:
-    """Return what a dataset holds, without reading its currents.
+    """Return what a dataset, its times undecoded, holds under some terms, its currents not read.
 
-    Parameters
-    ----------
-    dataset : as it stands in the file, its times undecoded
-    terms : how its currents are to be taken
-
-    Raises
-    ------
-    UnreadableError
-        It holds no current that can be understood: why, and what it holds.
+    UnreadableError: it holds no current that can be understood: why, and what it holds.
     """
     try:
         return _understood(dataset, terms)
@@ -222,7 +214,7 @@ def _understood(dataset: xr.Dataset, terms: Terms) -> CurrentDataset:
     turned = _turned(velocity, terms.declination)
     name_of_time = find_times(dataset, velocity.names[0])
     times = None if name_of_time is None else read_times(dataset, name_of_time)
-    time = _dimension(dataset, name_of_time)
+    time = None if name_of_time is None else next(map(str, dataset[name_of_time].dims), None)
     labels = _labels(dataset, velocity.names[0], time) if terms.on_the_line else ()
     column, levels = GridColumn({}, None), None
     if not labels:
@@ -283,11 +275,6 @@ def _turned(velocity: Velocity, declination: float | None) -> tuple[str, ...]:
     if declination is None:
         return ()
     return (f"{which} were relative to magnetic north, turned by {declination:g}°",)
-
-
-def _dimension(dataset: xr.Dataset, time: str | None) -> str | None:
-    """Return the dimension of the times, None where they have none."""
-    return None if time is None else next(map(str, dataset[time].dims), None)
 
 
 def _single_levels(

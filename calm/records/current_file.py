@@ -103,10 +103,7 @@ def open_record(
 def holds_arrays(path: Path) -> bool:
     """Return whether a file is NetCDF or a folder zarr; any other file is taken as CSV.
 
-    Raises
-    ------
-    InputError
-        It is a folder of something else.
+    InputError: it is a folder of something else.
     """
     if not path.is_dir():
         return is_netcdf(path)

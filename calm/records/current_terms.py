@@ -86,10 +86,7 @@ class TimeChoiceError(ValueError):
 def parse_time(text: str) -> datetime:
     """Return an ISO 8601 time, in UTC where it names no zone.
 
-    Raises
-    ------
-    TimeChoiceError
-        The text is no such time.
+    TimeChoiceError: the text is no such time.
     """
     try:
         time = datetime.fromisoformat(text.strip())
@@ -102,10 +99,8 @@ def choose_time(times: Sequence[datetime], wanted: str | None) -> tuple[int, str
     """Return the index of the time nearest to the one wanted, and a notice where it is not that
     very time.
 
-    Raises
-    ------
-    TimeChoiceError
-        There is no time to choose from, several and none is wanted, or all lie to one side.
+    TimeChoiceError: there is no time to choose from, several and none is wanted, or all lie to one
+    side.
     """
     if not times:
         raise TimeChoiceError("the file has no times")

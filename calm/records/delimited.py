@@ -163,17 +163,9 @@ class CopiedTable:
 
 
 def read_table(path: Path, example: str) -> TextTable:
-    """Return the table of a file.
+    """Return the table of a file of UTF-8 text; messages show the example of a header.
 
-    Parameters
-    ----------
-    path : of UTF-8 text
-    example : of a header, for messages
-
-    Raises
-    ------
-    InputError
-        It cannot be read, is empty, or has no header.
+    InputError: it cannot be read, is empty, or has no header.
     """
     text = decoded(path, COMMENT.sub(rb"\1", read_content(path, largest=LARGEST_CSV)))
     header, lines = table_lines(
@@ -243,12 +235,7 @@ def copied_table(text: str) -> CopiedTable:
     """Return the table of a text that was copied from a spreadsheet, a file or a page.
 
     A first line without a number is its headings. `calm.records.profile_tables` reads what it
-    holds.
-
-    Raises
-    ------
-    NoTableError
-        There are no rows, or rows of different length.
+    holds. NoTableError: there are no rows, or rows of different length.
     """
     lines = list(_content(enumerate(text.splitlines(), 1)))
     dialect = dialect_of([line.strip(" ") for _, line in lines])
@@ -278,13 +265,9 @@ def cells_in(text: str) -> list[list[str]]:
 def dialect_of(lines: Sequence[str], *, words: bool = False) -> Dialect:
     """Return how a table is written, by the sign that parts most of its lines into as many cells.
 
+    The lines are neither empty nor comments. Where cells are of several words no blank parts them.
     Numbers have decimal commas where some have a comma that is none of thousands, and none has a
     point.
-
-    Parameters
-    ----------
-    lines : without empty ones and comments
-    words : whether cells are of several words, so that no blank parts them
     """
     best, most = ",", 0
     for separator in _SEPARATORS:

@@ -97,12 +97,10 @@ def read_current(
 
     Parameters
     ----------
-    columns : sequence of str
-        Names with their unit, ``"depth m"`` or ``"depth[m]"``; without, each value has its own.
-        `depth`, with `u` and `v`, or `speed` and `toward` or `from`, and optionally `w`. A unit
-        such as ``"deg magnetic"`` says that a column is relative to magnetic north.
-    rows : sequence of rows
-        Numbers, or quantities with a unit, as text.
+    columns : names with their unit, ``"depth m"`` or ``"depth[m]"``; without, each value has its
+        own. `depth`, with `u` and `v`, or `speed` and `toward` or `from`, and optionally `w`. A
+        unit such as ``"deg magnetic"`` says that a column is relative to magnetic north.
+    rows : numbers, or quantities with a unit, as text
     terms : the declination that turns what is relative to magnetic north, the greatest speed
     """
     before = len(problems)

@@ -1,4 +1,7 @@
-"""Records of currents in NetCDF, zarr or CSV: many profiles, read as they are needed."""
+"""Records of currents in NetCDF, zarr or CSV: many profiles, read as they are needed.
+
+A made record to begin with has thirty days of a tide, a mean flow and a storm surge.
+"""
 
 from __future__ import annotations
 
@@ -73,11 +76,7 @@ class Record(ABC):
         """Return depth (k,) or (m, k) [m], and u, v, w (m, k) [m/s] of some profiles, NaN in gaps.
 
         The depths are positive down, in any order; `w` is None where the record has none.
-
-        Raises
-        ------
-        InputError
-            The file is damaged there.
+        InputError: the file is damaged there.
         """
 
     def flags(self, start: int, stop: int) -> NDArray[np.int8] | None:
@@ -91,9 +90,7 @@ class Record(ABC):
     def digest(self, check: Callable[[], None] = lambda: None) -> str:
         """SHA-256 of the times, depths and currents as they are read; the name does not count.
 
-        Parameters
-        ----------
-        check : called before each part is read
+        `check` is called before each part is read.
         """
         digest = hashlib.sha256()
         digest.update(np.ascontiguousarray(self.time, "<M8[ns]").view("<i8").data)
@@ -115,12 +112,8 @@ class Record(ABC):
 def parse_period(text: str) -> Period:
     """Return a period ``A/B`` of ISO times; a year, a month or a day as B counts whole.
 
-    Either end may be left out, or be two points: ``2026-03/``, ``../2026-03-31``.
-
-    Raises
-    ------
-    UsageError
-        The text is none, or ends before it begins.
+    Either end may be left out, or be two points: ``2026-03/``, ``../2026-03-31``. UsageError: the
+    text is none, or ends before it begins.
     """
     first, slash, last = text.partition("/")
     if not slash:
@@ -134,12 +127,8 @@ def parse_period(text: str) -> Period:
 def parse_place(text: str) -> Place:
     """Return a place ``LAT,LON`` [degrees north, degrees east], longitudes from −180 or from 0.
 
-    Either may be of degrees and minutes: ``57 28.84 N, 19 10.2 W``.
-
-    Raises
-    ------
-    UsageError
-        The text is none, or no place on the earth.
+    Either may be of degrees and minutes: ``57 28.84 N, 19 10.2 W``. UsageError: the text is none,
+    or no place on the earth.
     """
     parts = text.split(",")
     try:
@@ -252,3 +241,83 @@ def _refuse_repeats(times: Times, path: Path) -> None:
         more = f", and {len(again) - 1} more times" if len(again) > 1 else ""
         message = f"has two profiles of {time_text(times[again[0]])}{more}; leave one of them out"
         raise InputError([Problem(str(path), 0, 0, message)])
+
+
+DAYS = 30
+DEPTHS = (4.0, 12.0, 24.0, 40.0, 60.0, 90.0, 130.0, 180.0, 230.0, 290.0)
+"""Of the levels [m], for water of 300 m."""
+
+START = "2026-03-01T00:00:00"
+LATITUDE, LONGITUDE = 48.3, -5.2
+
+RESOLUTION = 1e-3
+"""Steps of the currents [m/s], which the last digits of a sine do not pass."""
+
+_SEABED = 300.0
+# period [h], to the east and to the north [m/s], phase [degrees]; M2, S2, K1
+_TIDE = ((12.4206, 0.17, 0.05, 40.0), (12.0, 0.06, 0.02, 75.0), (23.9345, 0.03, 0.02, 10.0))
+_MEAN = (0.12, 0.05, 120.0)  # to the east and to the north at the surface [m/s], fading in [m]
+_SURGE = (0.40, -0.15, 150.0)
+_SURGE_DAY, _SURGE_LENGTH = 18.5, 0.8  # its middle and its width [days]
+_MISSING = -32767
+
+
+def made_record() -> bytes:
+    """Return the record as a classic NetCDF file: the same bytes wherever it is made."""
+    import xarray as xr
+
+    hours = np.arange(24 * DAYS)
+    currents = [
+        (
+            ("time", "depth"),
+            np.rint(values / RESOLUTION).astype(np.int16),
+            {
+                "standard_name": f"{way}ward_sea_water_velocity",
+                "long_name": f"{way}ward velocity of the current",
+                "units": "m s-1",
+                "scale_factor": RESOLUTION,
+                "_FillValue": np.int16(_MISSING),
+                "coordinates": "latitude longitude",
+            },
+        )
+        for way, values in zip(("east", "north"), _currents(hours), strict=True)
+    ]
+    dataset = xr.Dataset(
+        {"u": currents[0], "v": currents[1]},
+        {
+            "time": ("time", hours.astype(np.int32), _named("time", f"hours since {START}", "T")),
+            "depth": ("depth", np.array(DEPTHS), {**_named("depth", "m", "Z"), "positive": "down"}),
+            "latitude": ((), LATITUDE, _named("latitude", "degrees_north")),
+            "longitude": ((), LONGITUDE, _named("longitude", "degrees_east")),
+        },
+        {
+            "Conventions": "CF-1.11",
+            "title": "A made record of currents: a tide, a mean flow and a storm surge",
+            "comment": "Made by a formula, not measured.",
+        },
+    )
+    dataset["time"].attrs["calendar"] = "standard"
+    for name in ("depth", "latitude", "longitude"):
+        dataset[name].encoding["_FillValue"] = None
+    return bytes(dataset.to_netcdf(engine="scipy"))
+
+
+def _currents(hours: Any) -> tuple[Any, Any]:
+    """To the east and to the north [m/s], times by levels."""
+    hours = hours[:, np.newaxis].astype(np.float64)
+    depth = np.array(DEPTHS)
+    # slower near the seabed, as the seventh power of the height has it
+    friction = ((_SEABED - depth) / _SEABED) ** (1 / 7)
+    east, north = (speed * np.exp(-depth / _MEAN[2]) for speed in _MEAN[:2])
+    surge = np.exp(-(((hours / 24 - _SURGE_DAY) / _SURGE_LENGTH) ** 2) / 2 - depth / _SURGE[2])
+    east, north = east + _SURGE[0] * surge, north + _SURGE[1] * surge
+    for period, major, minor, phase in _TIDE:
+        angle = 2 * np.pi * hours / period - np.radians(phase)
+        east = east + major * friction * np.cos(angle)
+        north = north + minor * friction * np.sin(angle)
+    return east, north
+
+
+def _named(standard_name: str, units: str, axis: str | None = None) -> dict[str, str]:
+    named = {"standard_name": standard_name, "units": units}
+    return named if axis is None else {**named, "axis": axis}

@@ -146,10 +146,7 @@ class CsvRecord(Record):
 def comment_notices(path: Path, header: CurrentHeader) -> list[str]:
     """Return what the comments above a table of currents say that a person should know.
 
-    Raises
-    ------
-    InputError
-        They say that it is a part of the current, or in other coordinates than its columns.
+    InputError: they say that it is a part of the current, or in other coordinates than its columns.
     """
     with path.open("rb") as file:
         above = (line.decode(errors="replace").strip() for line in islice(file, header.row.number))

@@ -102,10 +102,8 @@ def find_velocity(dataset: xr.Dataset, *, regular: bool) -> Velocity:
     """Return the current of a dataset; `regular` where its grid runs along latitudes and
     longitudes.
 
-    Raises
-    ------
-    UnreadableError
-        There is none, there are several, or what is there is not a current to the east and north.
+    UnreadableError: there is none, there are several, or what is there is not a current to the east
+    and north.
     """
     if (reason := other_frame(dataset.attrs) or part_in_texts(dataset.attrs)) is not None:
         raise UnreadableError(f"its current {reason}")
@@ -165,11 +163,6 @@ def _direction(
 def _find(dataset: xr.Dataset, sought: _Sought, regular: bool, notes: list[str]) -> str | None:
     """Return the variable of a standard name, else of a usual name; one to true north before
     another.
-
-    Raises
-    ------
-    UnreadableError
-        Several have the standard name, or what the variable says of itself is something else.
     """
     for standard_name in sought.standard:
         found = [str(name) for name in dataset.cf.standard_names.get(standard_name, [])]
@@ -214,10 +207,7 @@ def _believed(dataset: xr.Dataset, name: str, sought: _Sought) -> str:
 def refuse_ragged(dataset: xr.Dataset, name: str) -> None:
     """Refuse what has the readings of several instruments one after the other.
 
-    Raises
-    ------
-    UnreadableError
-        With the index that says which reading is whose.
+    UnreadableError: with the index that says which reading is whose.
     """
     for index, variable in dataset.variables.items():
         counted = variable.attrs.get("instance_dimension")
@@ -239,12 +229,8 @@ def with_components(dataset: xr.Dataset) -> xr.Dataset:
     """Return the dataset with the velocity `vel (dir, ...)` taken apart into its components.
 
     The components are called ``vel[E]`` and so on, with the standard names of velocities to the
-    east, north and up. A dataset without such a variable is returned as it is.
-
-    Raises
-    ------
-    UnreadableError
-        Its directions are those of the beams or of the instrument.
+    east, north and up. A dataset without such a variable is returned as it is. UnreadableError: its
+    directions are those of the beams or of the instrument.
     """
     name = next(
         (

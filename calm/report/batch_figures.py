@@ -8,7 +8,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from calm.batch.statistics.summary import RESPONSES
+from calm.batch.statistics.summary import (
+    RESPONSES,
+    Distribution,
+    PartDistributions,
+    Response,
+    Summary,
+)
 from calm.drawing.graph import (
     Graph,
     LegendEntry,
@@ -31,8 +37,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
     from xarray import Dataset
-
-    from calm.batch.statistics.summary import Distribution, PartDistributions, Response, Summary
 
     Floats = NDArray[np.float64]
 
@@ -166,12 +170,7 @@ def draw_shape(dataset: Dataset, time: str | np.datetime64) -> Figure:
 
     The line is drawn through the nodes of a result that has them (`--shape`), else straight from
     the upper end of one component to that of the next. The elevation is in the vertical plane of
-    the anchor and the top.
-
-    Raises
-    ------
-    UsageError
-        The profile has no equilibrium.
+    the anchor and the top. UsageError: the profile has no equilibrium.
     """
     from matplotlib.figure import Figure
 

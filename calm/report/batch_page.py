@@ -1,21 +1,22 @@
-"""The statistics of a batch as a page with its tables, and the files beside its result."""
+"""The statistics of a batch as a page with tables, in short, and the files beside its result."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from calm.batch.finished import stored_result
 from calm.batch.statistics.extremes import EXTRAPOLATION, METHODS, Fit, Level
-from calm.batch.statistics.summary import PERCENTILES, WORST, Summary, summarize
-from calm.batch.stored_result import stored_result
+from calm.batch.statistics.limits import Exceedance
+from calm.batch.statistics.summary import PERCENTILES, WORST, Distribution, Summary, summarize
 from calm.case import Mooring
 from calm.checks.finding import State
 from calm.quantities import QUANTITIES
 from calm.report.batch_figures import exceedance_figure, parts_figure, series_figure
 from calm.report.batch_summary import (
     DEFINITIONS,
+    METHODS_IN_SHORT,
     QUANTITY,
     TITLES,
     extent,
@@ -34,11 +35,13 @@ from calm.report.blocks import (
     Cell,
     Column,
     Figure,
+    Heading,
     Listing,
     Prose,
     Report,
     ReportPart,
     Section,
+    Span,
     Table,
     table_of,
 )
@@ -48,10 +51,6 @@ from calm.report.provenance import NOT_JUDGED, date, versions
 from calm.report.result_files import to_json
 from calm.report.sheet import figure_cell, quantity_column
 from calm.whole_file import put
-
-if TYPE_CHECKING:
-    from calm.batch.statistics.limits import Exceedance
-    from calm.batch.statistics.summary import Distribution, Summary
 
 
 def summary_html(summary: Summary) -> str:
@@ -260,3 +259,85 @@ def write_summary(
 def summary_paths(result: Path) -> tuple[Path, Path]:
     """Return where the summary of a result stands: its JSON and its page."""
     return result.with_suffix(".summary.json"), result.with_suffix(".summary.html")
+
+
+_QUANTITIES = ("knockdown", "tilt", "tension")
+_PERIODS = (10, 50, 100)
+_ALL = (
+    "All percentiles, limits and profiles are in the JSON and on the page. Depths and offsets are "
+    "within 1e-4 of the water depth of those of `calm run`, tensions within 2e-4; no profile is "
+    "audited."
+)
+
+
+def summary_part(summary: Summary) -> ReportPart:
+    """Return what a summary says; it fits 80 columns, where long labels wrap.
+
+    Components and clamps with the 99 % percentile and the maximum of each quantity, how often
+    each rule fails, the worst profile by each response, and return levels.
+    """
+    lost, note = summary.count - summary.solved, left_out(summary)
+    ended = Span(standing(summary), State.FAIL if lost else None)
+    missing = tuple(refusals(summary))
+    worst = [(name, one) for name, each in summary.worst.items() for one in each[:1]]
+    blocks: tuple[Block, ...] = (
+        Heading(summary.name),
+        Prose((extent(summary), (ended,))),
+        _parts(summary),
+        replace(rules_table(summary), title="", note=""),
+        *([Prose((note,), State.WARN)] if note else []),
+        *stops_tables(summary),
+        profiles_table("", worst),
+        *_levels(summary),
+        *([Prose(missing, State.WARN)] if missing else []),
+        Prose(((Span(_ALL, quiet=True),),)),
+    )
+    return ReportPart("", blocks)
+
+
+def _parts(summary: Summary) -> Table:
+    columns = [Column("")]
+    for name in _QUANTITIES:
+        quantity = QUANTITIES[name]
+        columns.append(Column(f"{quantity.heading}\n99 %", numeric=True))
+        columns.append(Column(f"{quantity.display_unit}\nmaximum", numeric=True))
+    rows = tuple(
+        (
+            Cell(part.label, indented=part.clamped),
+            *(Cell(text) for name in _QUANTITIES for text in _extremes(name, getattr(part, name))),
+        )
+        for part in summary.parts
+    )
+    return Table("", tuple(columns), rows)
+
+
+def _extremes(name: str, one: Distribution | None) -> tuple[str, str]:
+    if one is None:
+        return "-", "-"
+    quantity = QUANTITIES[name]
+    return quantity.format(one.percentiles[2]), quantity.format(one.maximum)
+
+
+def _levels(summary: Summary) -> Iterator[Table]:
+    """Return levels, where there are any."""
+    columns = [Column("return level, and 95 % interval")]
+    columns += [Column(f"{period} years", numeric=True) for period in _PERIODS]
+    rows = []
+    for response in summary.responses:
+        quantity = QUANTITIES[QUANTITY[response.name]]
+        for fit in response.return_levels:
+            if isinstance(fit, Fit):
+                levels = {level.period: level for level in fit.levels}
+                said = (_level_text(response.name, levels.get(period)) for period in _PERIODS)
+                of = f"{TITLES[response.name]} [{quantity.display_unit}]"
+                rows.append(tuple(map(Cell, (f"{of}, {METHODS_IN_SHORT[fit.method]}", *said))))
+    if rows:
+        yield Table("", tuple(columns), tuple(rows))
+
+
+def _level_text(name: str, level: Level | None) -> str:
+    if level is None:
+        return "-"
+    quantity = QUANTITIES[QUANTITY[name]]
+    low, high = ("?" if end is None else quantity.format(end) for end in (level.low, level.high))
+    return f"{quantity.format(level.level)}\n{low}–{high}"

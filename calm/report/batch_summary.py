@@ -4,28 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from calm.batch.statistics.extremes import Fit, LevelsRefused
-from calm.batch.statistics.summary import PERCENTILES, STOP_SHARES, Summary
+from calm.batch.statistics.limits import Exceedance, RuleShare
+from calm.batch.statistics.summary import (
+    PERCENTILES,
+    STOP_SHARES,
+    Distribution,
+    PartDistributions,
+    Response,
+    Summary,
+    WorstProfile,
+)
 from calm.checks.finding import State
 from calm.report.blocks import Cell, Column, Field, Table, table_of
-from calm.report.check_documents import limit_document
+from calm.report.check_report import limit_document
 from calm.report.result_files import members
 from calm.report.sheet import figure_cell, quantity_column
-
-if TYPE_CHECKING:
-    from calm.batch.statistics.limits import Exceedance, RuleShare
-    from calm.batch.statistics.summary import (
-        Distribution,
-        PartDistributions,
-        Response,
-        Summary,
-        WorstProfile,
-    )
 
 
 def summary_document(summary: Summary) -> dict[str, Any]:
@@ -63,7 +62,7 @@ def summary_document(summary: Summary) -> dict[str, Any]:
         "not_judged": dict(summary.not_judged),
         "responses": {response.name: _response(response) for response in summary.responses},
         "worst": {
-            name: [_profile(profile) for profile in profiles]
+            name: [asdict(profile) | {"time": _time(profile.time)} for profile in profiles]
             for name, profiles in summary.worst.items()
         },
     }
@@ -123,10 +122,6 @@ def _limit(rule: RuleShare, one: Exceedance) -> dict[str, Any]:
         **members(one, "share", "worst"),
         "time": _time(one.time),
     }
-
-
-def _profile(profile: WorstProfile) -> dict[str, Any]:
-    return asdict(profile) | {"time": _time(profile.time)}
 
 
 def _time(time: np.datetime64 | None) -> str | None:

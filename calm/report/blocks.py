@@ -9,10 +9,9 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeVar
 
-from calm.checks.finding import State
+from calm.checks.finding import Finding, State
 
 if TYPE_CHECKING:
-    from calm.checks.finding import Finding
     from calm.report.check_facts import CheckFacts
 
 Item = TypeVar("Item")
@@ -44,7 +43,8 @@ class Cell:
     """A cell: its text, a smaller line below it, and the state it shows in colour and word.
 
     `mark` is the sign after a figure that is near a limit or beyond it. A cell may be indented
-    below the row above it, and `strong` where the reader looks for it.
+    below the row above it, and `strong` where the reader looks for it. On paper the detail of
+    one that `goes_on` follows in the same line.
     """
 
     text: str = ""
@@ -53,6 +53,7 @@ class Cell:
     mark: str = ""
     indented: bool = False
     strong: bool = False
+    goes_on: bool = False
 
 
 @dataclass(frozen=True)
@@ -227,6 +228,8 @@ class Report:
     sections : one for each mooring or tow
     date : in words, None where no date was given
     plates : drawings before all else
+    verdict : at the head of every page, with its state
+    foot : at the foot of every page
     """
 
     title: str
@@ -235,6 +238,8 @@ class Report:
     sections: tuple[Section, ...]
     date: str | None = None
     plates: tuple[Plate, ...] = ()
+    verdict: Span | None = None
+    foot: str = ""
 
 
 Field = tuple[Column, Callable[[Item], Cell | str]]

@@ -3,28 +3,32 @@
 The curve carries its graduations in the angle φ and the arc s′. Three families of loci of the point
 P = (y′ of A, z′ of B) give length, distance and tension of the cable between two of its points A
 and B, A the lower: L/H, D/H and T_A/(wH) are constant along them.
+
+The cables that fit three quantities are a table and a document too.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from calm.analytic.chart_branch import CurvePoints, critical_angle, curve
 from calm.drawing.picture import image
 from calm.errors import UsageError
+from calm.physics.line import Floats
+from calm.report.blocks import Cell, Column, Note, ReportPart, Table
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
     from matplotlib.text import Text
     from matplotlib.transforms import Bbox
+    from numpy.typing import NDArray
 
+    from calm.analytic.chart import ChartAnswer, ChartSolution
 
 CHART_FORMATS = (".svg", ".png", ".pdf")
 """The endings a chart's file name may have."""
@@ -60,33 +64,17 @@ def chart_picture(k: float, lower_end: str, suffix: str) -> bytes:
 
     Parameters
     ----------
-    k, lower_end
-        As in `draw_chart`.
-    suffix : str
-        One of `CHART_FORMATS`.
+    k, lower_end : as in `draw_chart`
+    suffix : one of `CHART_FORMATS`
     """
     return image(draw_chart(k, lower_end), suffix)
 
 
 def draw_chart(k: float, lower_end: str = "below-90") -> Figure:
-    """The chart of one K.
+    """The chart of one K, 0 to 100: a page of A4 that belongs to no window; no text covers another.
 
-    Parameters
-    ----------
-    k : float
-        0 ≤ K ≤ 100.
-    lower_end : str
-        ``below-90`` or ``above-90``: the angle at the lower ends of the cables to be read [deg].
-
-    Returns
-    -------
-    Figure
-        A page of A4 that belongs to no window. No text on it covers another.
-
-    Raises
-    ------
-    UsageError
-        K out of range; ``above-90`` at K = 0, whose curve ends at 90°.
+    The lower ends of the cables to be read are at angles ``below-90`` or ``above-90``. UsageError:
+    K out of range; ``above-90`` at K = 0, whose curve ends at 90°.
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -230,14 +218,9 @@ _TRIALS = 41
 
 
 class Labels:
-    """Labels and ticks of one pair of axes, whose limits are final.
+    """Labels and ticks of one pair of axes, whose limits are final, of a figure with a canvas.
 
     A text that finds no free place is left out.
-
-    Parameters
-    ----------
-    axes : Axes
-        Of a figure that has a canvas to measure texts on.
     """
 
     def __init__(self, axes: Axes) -> None:
@@ -343,3 +326,61 @@ class Labels:
 def _lengths(line: Floats) -> Floats:
     """Length along a line of points, from its first."""
     return np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
+
+
+_ROWS = (
+    ("phi_a", "angle at A", "°", 3),
+    ("phi_b", "angle at B", "°", 3),
+    ("tension_a", "tension at A", "N", 2),
+    ("tension_b", "tension at B", "N", 2),
+    ("height", "height H", "m", 3),
+    ("distance", "distance D", "m", 3),
+    ("length", "length L", "m", 3),
+    ("h0", "H₀ of the chart", "m", 3),
+)
+_NOTE = "A lower end, B upper end; D positive when B is downstream of A; angles to the current."
+
+
+def answer_document(answer: ChartAnswer) -> dict[str, Any]:
+    """The JSON object: `status`, `k`, `solutions` (SI, degrees); without any, the reason too."""
+    document: dict[str, Any] = {
+        "status": answer.status,
+        "k": answer.k,
+        "solutions": [_figures(solution) for solution in answer.solutions],
+    }
+    if not answer.solutions:
+        document |= {"message": answer.message, "advice": answer.advice}
+    return document
+
+
+def answer_part(answer: ChartAnswer) -> ReportPart:
+    """A column for each cable."""
+    figures = [_figures(solution) for solution in answer.solutions]
+    several = len(figures) > 1
+    columns = (
+        Column(""),
+        Column("", share=0.0),
+        *(
+            Column(str(number) if several else "", numeric=True)
+            for number, _ in enumerate(figures, start=1)
+        ),
+    )
+    rows = tuple(
+        (Cell(heading), Cell(unit), *(Cell(f"{cable[name]:z.{decimals}f}") for cable in figures))
+        for name, heading, unit, decimals in _ROWS
+    )
+    notes = [_NOTE]
+    if several:
+        notes.append("Each of these cables fits what is given.")
+    if any(min(cable["phi_a"], cable["phi_b"]) < 0.0 for cable in figures):
+        notes.append("A negative angle: the cable goes down there, beyond the level of that end.")
+    title = f"Uniform current, K = {answer.k:.6g}"
+    return ReportPart(title, (Table("", columns, rows), Note(tuple(notes))))
+
+
+def _figures(solution: ChartSolution) -> dict[str, float]:
+    """The figures in SI and degrees."""
+    return {
+        name: math.degrees(value) if name.startswith("phi") else value
+        for name, value in vars(solution).items()
+    }

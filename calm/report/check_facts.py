@@ -9,12 +9,14 @@ from itertools import accumulate
 from math import ceil, hypot
 from operator import attrgetter
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from calm.checks.assess import RULES
+from calm.checks.assessment import Assessment
 from calm.checks.finding import AS_GIVEN, Finding, State
-from calm.checks.rules import RULES
+from calm.files.check_limits import LimitKey
 from calm.quantities import say
 from calm.report.blocks import ON_THE_WAY, Cell, Column, Pairs, ReportPart, Section, Table, table_of
 from calm.report.check_summary import (
@@ -33,10 +35,6 @@ from calm.report.check_summary import (
 from calm.report.provenance import title_pairs
 from calm.report.result_files import members
 from calm.units import KILOGRAM_FORCE, KNOT
-
-if TYPE_CHECKING:
-    from calm.checks.assessment import Assessment
-    from calm.files.check_limits import LimitKey
 
 PAGE_ONE = 9.0
 """Size of the smallest text of page one [pt]."""
@@ -259,9 +257,7 @@ def _cut(table: Table, lines: float) -> Table:
 def _lines_of(row: Sequence[Cell], columns: Sequence[Column], signs: float) -> float:
     """About how many lines a row takes on page one; its rule and room count as a half.
 
-    Parameters
-    ----------
-    signs : that a line of a column has for each of its shares of the width
+    A line of a column has so many signs for each of its shares of the width.
     """
     pairs = [pair for pair in zip(row, columns, strict=True) if pair[1].share]
     return 0.5 + max(ceil(len(f"{cell.text} {cell.detail}") / (signs * column.share))

@@ -7,11 +7,11 @@ import re
 from collections import Counter
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from itertools import groupby
-from typing import TYPE_CHECKING
 
+from calm.checks.assess import RULES
+from calm.checks.assessment import Assessment
 from calm.checks.criterion import said
 from calm.checks.finding import AS_GIVEN, OWN, Finding, State, worst_state
-from calm.checks.rules import RULES
 from calm.files.check_limits import LimitKey
 from calm.quantities import QUANTITIES
 from calm.report.blocks import (
@@ -25,9 +25,6 @@ from calm.report.blocks import (
     Worst,
     table_of,
 )
-
-if TYPE_CHECKING:
-    from calm.checks.assessment import Assessment
 
 _ABREAST = 5
 """Environments beside each other in a table; more of them take another table."""
@@ -109,12 +106,9 @@ def _states(
     detail: Callable[[Finding], str],
     note: str,
 ) -> Iterator[Table]:
-    """Tables of the worst state of each row in each column.
+    """Tables of the worst state of each row, a name and what was found of it, in each column.
 
-    Parameters
-    ----------
-    rows : name, and what was found of it
-    detail : of a state, to stand under it
+    The detail of a state stands under it.
     """
 
     def cell(found: Sequence[Worst]) -> Cell:
@@ -215,9 +209,7 @@ def rules_of(findings: Iterable[Finding]) -> list[str]:
 def named(labels: Iterable[str], most: int = 3) -> str:
     """Name labels, each once, such as ``glass 1 to 4, cable``.
 
-    Parameters
-    ----------
-    most : names shown, successive numbers as one; how many labels are left is said
+    Of more than `most` names, successive numbers as one, how many are left is said.
     """
     numbered: dict[str, list[int]] = {}
     for label in labels:
@@ -307,6 +299,15 @@ def verdict_prose(findings: Iterable[Finding]) -> Prose:
     """The verdict with its sign, such as ``? nothing fails, 34 figures unknown``."""
     state, words = verdict_of(findings)
     return Prose(((Span(f"{SIGNS[state]} {words}", state),),), state)
+
+
+def short_verdict(findings: Iterable[Finding]) -> Span:
+    """The verdict for the head of a page, such as ``? 0 fail, 34 unknown, 1 warn``."""
+    given = [*findings]
+    counts = Counter(finding.state for finding in given)
+    states = (State.FAIL, State.UNKNOWN, State.WARN)
+    state, _ = verdict_of(given)
+    return Span(f"{SIGNS[state]} {', '.join(f'{counts[one]} {one}' for one in states)}", state)
 
 
 def limits_table(limits: Iterable[LimitKey], title: str = "Limits as used") -> Table:

@@ -1,37 +1,59 @@
-"""The tables of one mooring in a design check: findings, handling, parts, likelihood."""
+"""The tables of one mooring in a design check: findings, handling, parts, likelihood.
+
+In short they are the matrix, the worst of each rule, and what to mend.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import replace
+from itertools import groupby
 from math import hypot, inf, isnan
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from calm.case import Result
+from calm.checks.assess import RULES
+from calm.checks.assessment import Assessment, MooringInEnvironment
 from calm.checks.finding import Finding, State
-from calm.checks.rules import RULES
+from calm.checks.inventory import InventoryItem
+from calm.checks.recovery import Break
 from calm.drawing.schematic.shown_parts import place_text
+from calm.files import Piece
 from calm.files.components import FLEXIBLE_KINDS
+from calm.physics.line import Floats
 from calm.quantities import QUANTITIES, say
-from calm.report.blocks import Cell, Column, Field, Pairs, Prose, Table, table_of
+from calm.report.blocks import (
+    Block,
+    Cell,
+    Column,
+    Field,
+    Heading,
+    Line,
+    Note,
+    Pairs,
+    Prose,
+    ReportPart,
+    Span,
+    Table,
+    table_of,
+)
+from calm.report.check_facts import CheckFacts, judged_section, key_pairs, settled_tables
 from calm.report.check_summary import (
     joined,
     margin_of,
+    matrix_tables,
+    named,
     named_components,
     place_of,
     said_of,
     say_in_unit,
     state_cell,
+    verdict_prose,
     worst_by_part,
+    worst_table,
 )
+from calm.report.provenance import unseen
 from calm.report.sheet import figure_cell, quantity_column, quantity_field
-
-if TYPE_CHECKING:
-    from calm.case import Result
-    from calm.checks.assessment import Assessment, MooringInEnvironment
-    from calm.checks.backup import Break
-    from calm.checks.finding import Finding
-    from calm.checks.inventory import InventoryItem
-    from calm.files import Piece
-    from calm.physics.line import Floats
 
 _RESULTS: dict[str, Callable[[Result], float | None]] = {
     "depth": lambda result: result.top.depth,
@@ -75,7 +97,12 @@ def checks_table(findings: Iterable[Finding]) -> Iterator[Table | Prose]:
         "Worst finding of each rule on each component",
         joined(kept),
         (Column("state", share=0.0), lambda found: state_cell(found[0])),
-        (Column("rule"), lambda found: _with_source(found, sources)),
+        (
+            Column("rule"),
+            lambda found: Cell(
+                RULES[found[0].rule].title, f"[{sources.index(found[0].source) + 1}]"
+            ),
+        ),
         (Column("component", share=1.8), _placed),
         (Column("value", numeric=True), lambda found: say_in_unit(found[0], found[0].value)),
         (Column("limit", numeric=True), lambda found: say_in_unit(found[0], found[0].limit)),
@@ -86,10 +113,6 @@ def checks_table(findings: Iterable[Finding]) -> Iterator[Table | Prose]:
         sortable=True,
     )
     yield Prose(tuple(f"[{number}] {source}" for number, source in enumerate(sources, 1)))
-
-
-def _with_source(found: Sequence[Finding], sources: Sequence[str]) -> Cell:
-    return Cell(RULES[found[0].rule].title, f"[{sources.index(found[0].source) + 1}]")
 
 
 def _placed(found: Sequence[Finding]) -> Cell:
@@ -240,12 +263,7 @@ _NOTE = (
 
 
 def likelihood_tables(named: Iterable[tuple[str, Sequence[Finding]]]) -> Iterator[Table]:
-    """The designs by their greatest probability; nothing where none was counted.
-
-    Parameters
-    ----------
-    named : name and findings of each design
-    """
+    """The designs, by name, by their greatest probability; nothing where none was counted."""
     designs = [(name, _likeliest(findings)) for name, findings in named]
     if not any(found for _, found in designs):
         return
@@ -298,3 +316,70 @@ def _likeliest(findings: Sequence[Finding]) -> list[Finding]:
     return sorted(
         found.values(), key=lambda one: (-(one.probability or 0.0), order.index(one.rule))
     )
+
+
+_SIGNS = {State.FAIL: "!", State.WARN: "~", State.UNKNOWN: "?"}
+_TOLD = 12
+"""Most failures, or warnings, shown of a mooring; a report has them all."""
+_LACKING = 60
+"""Most components named that lack a figure."""
+
+
+def check_part(assessments: Sequence[Assessment]) -> ReportPart:
+    """Everything that a design check says in short.
+
+    Moorings by environments with the worst state in each; what decides, what is accepted and what
+    departs of each; of each rule the finding with the worst margin; every failure and warning with
+    its figures and remedy. No rule hangs on colour.
+    """
+    sections = [judged_section(each) for each in assessments]
+    facts = [each.facts for each in sections if each.facts is not None]
+    blocks = (
+        *(replace(each, title="", note="") for each in matrix_tables(sections)),
+        verdict_prose(finding for each in facts for finding in each.findings),
+        *(block for each in facts for block in _decisive(each, several=len(facts) > 1)),
+        replace(worst_table(sections), title=""),
+        *likelihood_tables([(each.name, [*each.all_findings()]) for each in assessments]),
+        *(block for each in facts for block in _told(each)),
+    )
+    return ReportPart(
+        "", (*blocks, Note(unseen(each for one in facts for each in one.findings)[:1]))
+    )
+
+
+def _decisive(facts: CheckFacts, *, several: bool) -> Iterator[Block]:
+    """What decides of a mooring, what is accepted, and what departs."""
+    if several:
+        yield Heading(facts.mooring)
+    yield key_pairs(facts)
+    yield from settled_tables(facts)
+
+
+def _told(facts: CheckFacts) -> Iterator[Block]:
+    """Return what a mooring fails or is warned of, the gravest first with its remedy; what is
+    missing.
+    """
+    listed = joined(one for one in worst_by_part(facts.findings) if one.state in _SIGNS)
+    if not listed:
+        return
+    lines: list[Line] = []
+    for state, groups in groupby(listed, key=lambda found: found[0].state):
+        found = list(groups)
+        most = len(found) if state is State.UNKNOWN else _TOLD
+        lines += map(_sentence, found[:most])
+        if len(found) > most:
+            lines.append(f"  and {len(found) - most} more that {state}; --json has them")
+    yield Heading(facts.mooring)
+    yield Prose(tuple(lines))
+
+
+def _sentence(found: Sequence[Finding]) -> Line:
+    """What is found alike of some components, told of the worst of them."""
+    worst = found[0]
+    sign, quiet = Span(f"{_SIGNS[worst.state]} ", worst.state), worst.state is not State.FAIL
+    if worst.state is State.UNKNOWN and worst.component is not None:
+        names = named((one.component or "" for one in found), _LACKING)
+        return sign, Span(f"{worst.rule} of {names} is unknown. {worst.remedy}", quiet=True)
+    others = "" if len(found) == 1 else f" The same holds for {named_components(found[1:])}."
+    told = Span(f"{worst.rule}, {place_of(worst)}: {worst.message}{others}")
+    return (sign, told, Span(f" {worst.remedy}", quiet=quiet)) if worst.remedy else (sign, told)

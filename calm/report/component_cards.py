@@ -11,14 +11,13 @@ from typing import TYPE_CHECKING, Any
 from pydantic import BaseModel
 
 from calm.assemble.datasheet import Datasheet, datasheet
-from calm.files import Flexible
+from calm.files import Catalogue, Component, Flexible
+from calm.files.catalogue import Assembly
 from calm.quantities import QUANTITIES
 from calm.report.blocks import Cell, Column, Heading, Pairs, ReportPart, Table
 
 if TYPE_CHECKING:
     from calm.checks.catalogue_rules import CatalogueFinding, MissingFigures
-    from calm.files import Catalogue, Component
-    from calm.files.catalogue import Assembly
 
     Definition = Component | Assembly
 

@@ -6,13 +6,13 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from datetime import datetime
 from io import BytesIO
-from typing import TYPE_CHECKING
 
 from calm.checks.finding import State
+from calm.deck import Deck
 from calm.drop import DropPlan
 from calm.records.delimited import table_csv
 from calm.report.blocks import PageBreak, Plate, Prose, Report, ReportPart, Section
-from calm.report.check_summary import verdict_prose
+from calm.report.check_summary import short_verdict
 from calm.report.deck_lists import (
     cutting_part,
     hardware_part,
@@ -22,12 +22,9 @@ from calm.report.deck_lists import (
 )
 from calm.report.deck_logs import deployment_part, recovery_part
 from calm.report.diagram import diagram_pages
+from calm.report.diagram_layout import Paper
 from calm.report.drop_sheet import drop_part
-from calm.report.provenance import date, document_part, moment, origin
-
-if TYPE_CHECKING:
-    from calm.deck import Deck
-    from calm.report.diagram_layout import Paper
+from calm.report.provenance import date, document_part, input_hash, moment, versions
 
 Rows = Iterable[Sequence[object]]
 
@@ -203,12 +200,18 @@ def deck_report(deck: Deck, paper: Paper, notes: tuple[str, ...] = ()) -> Report
     said = (*deck.notes, *notes)
     if said:
         parts.append(ReportPart("To be known", (Prose(said, State.WARN),)))
-    verdict = verdict_prose(deck.assessment.all_findings())
-    parts += (ReportPart(part.title, (verdict, *part.blocks)) for part in _sheets(deck))
-    parts.append(ReportPart("Inputs", (origin([deck.file]),)))
-    subtitle = f"{deck.order}, environment: {deck.environment}"
-    section = Section(deck.file.name, tuple(parts))
-    return Report(deck.file.name, subtitle, (), (section,), date(), plates(deck, paper))
+    parts += _sheets(deck)
+    (made_by,) = (f"{name} {number}" for name, number in versions()[:1])
+    return Report(
+        deck.file.name,
+        f"{deck.order}, environment: {deck.environment}",
+        (),
+        (Section(deck.file.name, tuple(parts)),),
+        date(),
+        plates(deck, paper),
+        verdict=short_verdict(deck.assessment.all_findings()),
+        foot=f"{made_by}, inputs SHA-256 {input_hash([deck.file])}",
+    )
 
 
 def diagram_report(deck: Deck, paper: Paper) -> Report:
@@ -226,14 +229,14 @@ def plates(deck: Deck, paper: Paper) -> tuple[Plate, ...]:
 
 
 def _sheets(deck: Deck) -> Iterator[ReportPart]:
-    """Yield the logs and the drop plan on pages of their own, the lists one below the other."""
+    """Yield the logs on pages of their own, the lists and the drop plan one below the other."""
     yield _last(deployment_part(deck))
     yield _last(recovery_part(deck))
     yield instruments_part(deck)
     yield cutting_part(deck)
     yield hardware_part(deck)
     yield shipping_part(deck)
-    yield _last(lifts_part(deck))
+    yield lifts_part(deck)
     if isinstance(deck.plan, DropPlan):
         yield drop_part(deck.plan)
 

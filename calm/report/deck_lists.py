@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING
 
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from calm.deck import Deck
     from calm.deck.cutting import Mark
     from calm.deck.deck_items import DeckInstrument, DeckItem, Extreme
-    from calm.deck.shipping import Lift
 
 _SHARE = f"{LENGTH_ERROR:.1%}".replace("%", " %")
 _SPARES = (
@@ -37,11 +36,11 @@ def cutting_part(deck: Deck) -> ReportPart:
     rows: list[tuple[Cell, ...]] = []
     kinds = {one.label: one for one in deck.parts}
     for cut in deck.cuts:
-        load = "without load" if cut.load == 0.0 else f"at {say('tension', cut.load)}"
+        load = "" if cut.load == 0.0 else f"at {say('tension', cut.load)}"
         effect = "-" if cut.effect is None else f"{cut.effect:+.2f}"
         rows.append(
             (
-                Cell(cut.item.label, cut.item.name),
+                Cell(cut.item.label, cut.item.name, strong=True, goes_on=True),
                 Cell(f"{cut.length:.2f}", load),
                 Cell(f"± {cut.tolerance:.2f}"),
                 Cell(effect),
@@ -54,31 +53,29 @@ def cutting_part(deck: Deck) -> ReportPart:
         )
         rows += [
             (
-                Cell(label_of_run([kinds[mark.label] for mark in marks]), indented=True),
-                Cell(
-                    ", ".join(f"{mark.at:.2f}" for mark in marks), "mark" + "s" * (len(marks) > 1)
-                ),
+                Cell(_marked(marks, kinds), indented=True),
+                Cell(),
                 *[Cell()] * 6,
                 Cell("☐"),
             )
             for marks in _alike(cut.marks, kinds)
         ]
     columns = (
-        Column("wire or rope, marks below", share=1.6),
-        Column("cut length, or\nfrom upper end", "m", numeric=True),
+        Column("wire or rope, marks below", share=2.4),
+        Column("length", "m", numeric=True),
         Column("tolerance", "m", numeric=True),
-        Column("depth of\nthe top", "m", numeric=True),
-        Column("terminations", share=1.0),
-        Column("over\nthe side", numeric=True),
-        Column("onto\nthe drum", numeric=True),
+        Column("top deeper", "m", numeric=True),
+        Column("terminations", share=0.9),
+        Column("over side", numeric=True),
+        Column("onto drum", numeric=True),
         Column("drum", share=0.5),
         Column("done", share=0.0),
     )
     note = (
-        f"Tolerance: {_SHARE} of the length. Depth of the top: how it changes where this alone is "
-        f"longer by {_SHARE}, in the environment {deck.environment}. Marks are measured from the "
-        "upper end, under the load at which the length is. Onto the drum: what goes over the side "
-        "last is spooled first."
+        "Lengths are without load where none is given; marks are measured from the upper end, "
+        f"under the same load. Tolerance: {_SHARE} of the length. Top deeper: by how much where "
+        f"this alone is longer by {_SHARE}, in the environment {deck.environment}. Over side, onto "
+        "drum: in which order; what goes over the side last is spooled first."
     )
     table = Table("Wires and ropes", columns, tuple(rows), note, by_hand=True)
     return ReportPart("Cutting and marking list", (table,))
@@ -95,7 +92,7 @@ def hardware_part(deck: Deck) -> ReportPart:
         length = "" if stock.length is None else f"{stock.length:.2f}"
         rows.append(
             (
-                Cell(stock.name, stock.basis),
+                Cell(stock.name, stock.basis, goes_on=True),
                 Cell(stock.use),
                 Cell(str(stock.count)),
                 Cell(length),
@@ -105,8 +102,8 @@ def hardware_part(deck: Deck) -> ReportPart:
             )
         )
     columns = (
-        Column("hardware", share=1.6),
-        Column("id"),
+        Column("hardware", share=2.4),
+        Column("id", share=0.8),
         Column("in the line", numeric=True),
         Column("length", "m", numeric=True),
         Column("spares", numeric=True),
@@ -185,20 +182,13 @@ def lifts_part(deck: Deck) -> ReportPart:
         "from the ship; below 0 it floats. Neither drag nor the swell is in it. Shackles, links "
         "and swivels are lifted with what is beside them; each has its row in the files."
     )
-    hardware = {one.label for one in deck.parts if one.kind == ("hardware",)}
+    return ReportPart("Lifts", (Prose(tuple(said)), _stages(deck), Note((note,))))
 
-    def lifted(stages: Iterable[Lift]) -> list[Lift]:
-        return [one for one in stages if one.label not in hardware]
 
-    return ReportPart(
-        "Lifts",
-        (
-            Prose(tuple(said)),
-            _stages("Deployment, in the order over the side", lifted(lifts.deployment)),
-            _stages("Recovery, from the top to the release", lifted(lifts.recovery)),
-            Note((note,)),
-        ),
-    )
+def _marked(marks: Sequence[Mark], items: Mapping[str, DeckItem]) -> str:
+    """Return the places of some marks, and what is clamped there."""
+    places = ", ".join(f"{mark.at:.2f}" for mark in marks)
+    return f"mark at {places}: {label_of_run([items[mark.label] for mark in marks])}"
 
 
 def _alike(marks: Iterable[Mark], items: Mapping[str, DeckItem]) -> list[list[Mark]]:
@@ -206,10 +196,13 @@ def _alike(marks: Iterable[Mark], items: Mapping[str, DeckItem]) -> list[list[Ma
     return [[*group] for _, group in groupby(marks, key=lambda mark: items[mark.label].kind)]
 
 
-def _stages(title: str, lifts: Iterable[Lift]) -> Table:
+def _stages(deck: Deck) -> Table:
+    """Each lift once, with what hangs below it on the way down and on the way up."""
+    joints = {one.label for one in deck.parts if one.is_joint}
+    recovery = {one.label: one.hanging for one in deck.lifts.recovery}
     return table_of(
-        title,
-        lifts,
+        "In the order over the side",
+        [one for one in deck.lifts.deployment if one.label not in joints],
         (Column("no.", numeric=True), lambda one: str(one.index)),
         (Column("at the rail", share=2.0), lambda one: one.label),
         (
@@ -221,8 +214,12 @@ def _stages(title: str, lifts: Iterable[Lift]) -> Table:
             lambda one: figure_cell("wet_weight", one.weight),
         ),
         (
-            quantity_column("wet_weight", "hanging\nin water"),
+            quantity_column("wet_weight", "hangs at\ndeployment"),
             lambda one: figure_cell("wet_weight", one.hanging),
+        ),
+        (
+            quantity_column("wet_weight", "hangs at\nrecovery"),
+            lambda one: figure_cell("wet_weight", recovery.get(one.label)),
         ),
     )
 
@@ -232,7 +229,7 @@ def instruments_part(deck: Deck) -> ReportPart:
     several = len(deck.environments) > 1
     rows = tuple(_instrument_row(one, several) for one in deck.instruments)
     columns = (
-        Column("instrument", share=1.4),
+        Column("instrument", share=2.0),
         Column("serial number", share=0.8),
         quantity_column("depth", "depth"),
         quantity_column("depth", "still\nwater"),
@@ -264,7 +261,13 @@ def _instrument_row(one: DeckInstrument, several: bool) -> tuple[Cell, ...]:
         for limit in (component.warn_tilt, component.max_tilt)
     ]
     return (
-        Cell(one.item.label, one.item.name, indented=one.item.on is not None),
+        Cell(
+            one.item.label,
+            one.item.name,
+            indented=one.item.on is not None,
+            strong=True,
+            goes_on=True,
+        ),
         Cell(one.item.serial or ""),
         figure_cell("depth", one.item.depth),
         figure_cell("depth", one.still),

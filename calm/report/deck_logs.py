@@ -2,45 +2,47 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from itertools import groupby
-from typing import TYPE_CHECKING, TypeVar
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
-from calm.deck.deck_items import Order, label_of_run, name_of_run
+from calm.deck.deck_items import Order, rows_on_paper
 from calm.drop import DropPlan
 from calm.quantities import QUANTITIES, say
 from calm.report.blocks import Block, Cell, Column, Pairs, Prose, ReportPart, Table, table_of
 from calm.report.drop_sheet import whereabouts
-from calm.report.provenance import position_text, title_pairs
+from calm.report.provenance import position_text
 
 if TYPE_CHECKING:
     from calm.deck import Deck
-    from calm.deck.deck_items import DeckItem, RecoveredItem
-
-_Listed = TypeVar("_Listed")
+    from calm.deck.deck_items import DeckItem, DeckRow, RecoveredItem
 
 _BOX = Cell("☐")
-_SOUNDINGS = 6
+_BLANK = Cell("\u00a0", "\u00a0")
+"""Room to write, as high as two lines of text."""
+_SOUNDINGS = 4
+_LEAST = 9.0
+"""Size of the texts of a log, which is read and filled in on deck [pt]."""
 
 
 def deployment_part(deck: Deck) -> ReportPart:
     """Return what is done before, the order over the side, and where the anchor went."""
     last = deck.order is Order.ANCHOR_LAST
+    deployed = deck.file.deployed
     blocks: tuple[Block, ...] = (
-        *(() if deck.file.document else (Pairs(tuple(title_pairs(deck.file))),)),
+        _station(deck, "" if deployed is None else deployed.date or ""),
         Prose(
             (
-                "Anchor last: the top goes over the side first."
-                if last
-                else "Anchor first: the lower end goes over the side first.",
+                ("Anchor last: the top" if last else "Anchor first: the lower end")
+                + " goes over the side first. Lengths are as cut; clamps are at a place on their "
+                "piece, from its upper end, unstretched.",
             )
         ),
-        _releases(deck),
+        _releases(deck, _TESTED, [_BOX] * len(_TESTED)),
         _over_the_side(deck),
         _positions(deck),
         _soundings(),
     )
-    return ReportPart("Deployment log", blocks)
+    return ReportPart("Deployment log", blocks, _LEAST)
 
 
 def recovery_part(deck: Deck) -> ReportPart:
@@ -65,14 +67,50 @@ def recovery_part(deck: Deck) -> ReportPart:
             said.append("It may double back in the rise: the order may be another.")
         if rise.in_still_water:
             said.append("The rise is that in still water.")
-    blocks = (Prose(tuple(said)), _events(_AT_THE_RELEASE), _surfacing(deck))
-    return ReportPart("Recovery log", blocks)
+    blocks: tuple[Block, ...] = (
+        _station(deck, ""),
+        *_as_deployed(deck),
+        Prose(tuple(said)),
+        _releases(deck, _FIRED, ()),
+        _events(),
+        _surfacing(deck),
+    )
+    return ReportPart("Recovery log", blocks, _LEAST)
 
 
-_AT_THE_RELEASE = (
-    "On station", "Release enabled, range", "Release command sent", "Release confirmed",
-    "First float seen, bearing", "All floats counted", "Hooked", "All on board",
+_EVENTS = (
+    "On station", "First float seen, bearing", "All floats counted", "Hooked", "All on board",
 )  # fmt: skip
+_TESTED = ("tested in\nthe laboratory", "tested\nat depth", "armed,\non deck")
+_FIRED = ("enabled\nUTC", "range\nm", "command\nsent, UTC", "confirmed\nUTC")
+
+
+def _station(deck: Deck, day: str) -> Table:
+    """Who was where and in what weather; what the file does not say is written in by hand."""
+    document = deck.file.document
+    fields = (
+        (Column("ship"), document.ship if document else None),
+        (Column("cruise"), document.cruise if document else None),
+        (Column("station", share=0.7), None),
+        (Column("date, UTC"), day),
+        (Column("observer"), None),
+        (Column("wind, sea, current, weather", share=2.4), None),
+    )
+    row = tuple(Cell(text) if text else _BLANK for _, text in fields)
+    return Table("", tuple(column for column, _ in fields), (row,), by_hand=True)
+
+
+def _as_deployed(deck: Deck) -> tuple[Pairs, ...]:
+    deployed = deck.file.deployed
+    if deployed is None:
+        return ()
+    pairs = [
+        ("deployed", deployed.date or ""),
+        ("position", "" if deployed.position is None else position_text(deployed.position)),
+        ("water depth", "" if deployed.depth is None else say("depth", deployed.depth)),
+    ]
+    known = tuple((name, text) for name, text in pairs if text)
+    return (Pairs(known),) if known else ()
 
 
 def placed(items: Sequence[DeckItem], deck: Deck) -> str:
@@ -82,10 +120,10 @@ def placed(items: Sequence[DeckItem], deck: Deck) -> str:
     places = [one.at for one in items if one.on is not None and one.at is not None]
     if not places:
         return ""
-    text = f"{_span(places)} m from the upper end"
+    text = f"at {_span(places)}"
     length = items[0].of_length
     if deck.order is Order.ANCHOR_FIRST and length is not None:
-        text += f", {_span([length - at for at in places])} m from the lower end"
+        text += f", {_span([length - at for at in places])} from the lower end"
     return text
 
 
@@ -94,61 +132,58 @@ def _span(values: Sequence[float]) -> str:
     return " to ".join(ends)
 
 
-def _runs(
-    items: Sequence[_Listed], item: Callable[[_Listed], DeckItem]
-) -> list[tuple[str, list[_Listed]]]:
-    """Return like items that follow one another, with their numbers in the list."""
-    runs = []
-    for _, group in groupby(enumerate(items, 1), key=lambda pair: item(pair[1]).kind):
-        numbers, listed = zip(*group, strict=True)
-        ends = dict.fromkeys((str(numbers[0]), str(numbers[-1])))
-        runs.append(("–".join(ends), [*listed]))
-    return runs
+def _numbers(row: DeckRow, order: dict[int, int]) -> str:
+    """Return the first and the last number that the items of a row have in the list."""
+    numbers = [order[id(one)] for one in (*row.items, *row.floats, *row.joints)]
+    return "–".join(dict.fromkeys((str(min(numbers)), str(max(numbers)))))
 
 
-def _piece(items: Sequence[DeckItem]) -> Cell:
-    return Cell(label_of_run(items), name_of_run(items), indented=items[0].on is not None)
+def _piece(row: DeckRow) -> Cell:
+    detail = f"{row.name}; with {row.joined}" if row.joined else row.name
+    return Cell(row.label, detail, indented=row.first.on is not None, strong=True, goes_on=True)
 
 
-def _releases(deck: Deck) -> Table:
+def _releases(deck: Deck, checks: Sequence[str], boxes: Sequence[Cell]) -> Table:
+    """The releases with their codes, and what is checked of each: in boxes or in writing."""
+    empty = [*boxes, *[Cell()] * (len(checks) - len(boxes) + 1)]
     rows = [
-        (Cell(release.serial or ""), Cell("\n".join(release.code_lines)), *[_BOX] * 3, Cell())
+        (Cell(release.serial or ""), Cell("\n".join(release.code_lines)), *empty)
         for release in deck.file.releases
     ]
     known = {release.serial for release in deck.file.releases}
     rows += [
-        (Cell(one.serial or "", one.label), Cell(), *[_BOX] * 3, Cell())
+        (Cell(one.serial or "", one.label), Cell(), *empty)
         for one in deck.parts
         if one.role == "release" and (one.serial is None or one.serial not in known)
     ]
     columns = (
         Column("release, serial number"),
         Column("codes"),
-        Column("tested in\nthe laboratory", share=0.0),
-        Column("tested\nat depth", share=0.0),
-        Column("armed,\non deck", share=0.0),
+        *(Column(check, share=0.0 if boxes else 0.7) for check in checks),
         Column("battery, remarks"),
     )
     return Table("Releases", columns, tuple(rows), by_hand=True)
 
 
 def _over_the_side(deck: Deck) -> Table:
-    def length(one: DeckItem) -> str:
-        return "" if one.cut_length is None or one.is_rigid else f"{one.cut_length:.2f}"
+    order = {id(one): number for number, one in enumerate(deck.deployment, 1)}
+
+    def length(row: DeckRow) -> str:
+        first = row.first
+        if first.on is not None or first.is_rigid:
+            return placed(row.items, deck)
+        return "\n".join(filter(None, (f"{first.cut_length:.2f}", placed(row.floats, deck))))
 
     return table_of(
         "Order over the side",
-        _runs(deck.deployment, lambda one: one),
-        (Column("no.", numeric=True), lambda run: run[0]),
-        (Column("piece", share=2.6), lambda run: _piece(run[1])),
-        (
-            Column("length cut, or place on its wire", "m"),
-            lambda run: placed(run[1], deck) or length(run[1][0]),
-        ),
-        (Column("serial number", share=0.7), lambda run: run[1][0].serial or ""),
-        (Column("time over", "UTC", share=0.7), lambda one: ""),
-        (Column("remarks"), lambda one: ""),
-        (Column("checked", share=0.0), lambda one: _BOX),
+        rows_on_paper(deck.deployment),
+        (Column("no.", numeric=True), lambda row: _numbers(row, order)),
+        (Column("piece", share=3.2), _piece),
+        (Column("length,\nor place", "m", share=0.9), length),
+        (Column("serial\nnumber", share=0.7), lambda row: row.first.serial or ""),
+        (Column("over", "UTC", share=0.6), lambda row: ""),
+        (Column("remarks"), lambda row: ""),
+        (Column("☐", share=0.0), lambda row: _BOX),
         by_hand=True,
     )
 
@@ -167,16 +202,25 @@ def _positions(deck: Deck) -> Table:
         (Cell("Fall-back target"), Cell(), Cell(), Cell(), Cell()),
         (Cell("First piece over"), Cell(start), Cell(), Cell(), Cell()),
         (Cell("Anchor let go"), Cell(let_go), Cell(), Cell(), Cell()),
-        (Cell("Anchor on the bottom, ranged"), Cell(), Cell(), Cell(), Cell()),
+        (Cell("Anchor, ranged"), Cell(), *_where_it_stands(deck), Cell()),
     )
     columns = (
         Column(""),
-        Column("planned, from the target"),
-        Column("position", share=1.5),
-        Column("depth", share=0.8),
-        Column("time", "UTC", share=0.8),
+        Column("planned, from the target", share=1.9),
+        Column("position", share=1.9),
+        Column("depth,\ncorrected", share=0.8),
+        Column("time", "UTC", share=0.6),
     )
     return Table("Positions", columns, rows, by_hand=True)
+
+
+def _where_it_stands(deck: Deck) -> tuple[Cell, Cell]:
+    """Position and depth as deployed."""
+    deployed = deck.file.deployed
+    if deployed is None:
+        return Cell(), Cell()
+    position = "" if deployed.position is None else position_text(deployed.position)
+    return Cell(position), Cell("" if deployed.depth is None else say("depth", deployed.depth))
 
 
 def _soundings() -> Table:
@@ -186,17 +230,17 @@ def _soundings() -> Table:
         (Column("sounding", share=0.0), str),
         (Column("time", "UTC"), lambda one: ""),
         (Column("position", share=2.0), lambda one: ""),
-        (Column("depth as read", "m"), lambda one: ""),
+        (Column("uncorrected", "m"), lambda one: ""),
         (Column("correction", "m"), lambda one: ""),
-        (Column("depth", "m"), lambda one: ""),
+        (Column("corrected", "m"), lambda one: ""),
         by_hand=True,
     )
 
 
-def _events(events: tuple[str, ...]) -> Table:
+def _events() -> Table:
     return table_of(
         "At the release",
-        events,
+        _EVENTS,
         (Column("event"), str),
         (Column("time", "UTC", share=0.7), lambda one: ""),
         (Column("position"), lambda one: ""),
@@ -206,21 +250,25 @@ def _events(events: tuple[str, ...]) -> Table:
 
 
 def _surfacing(deck: Deck) -> Table:
+    order = {id(one.item): number for number, one in enumerate(deck.recovery, 1)}
+    risen = {id(one.item): one for one in deck.recovery}
     return table_of(
         "Order of surfacing",
-        _runs(deck.recovery, lambda one: one.item),
-        (Column("no.", numeric=True), lambda run: run[0]),
-        (Column("piece", share=3.0), lambda run: _piece([one.item for one in run[1]])),
-        (Column("serial number", share=0.8), lambda run: run[1][0].item.deployed_serial or ""),
-        (Column("expected after\nthe release", share=1.3), lambda run: _expected(run[1])),
-        (Column("seen", "UTC", share=0.6), lambda one: ""),
-        (Column("on deck", "UTC", share=0.6), lambda one: ""),
-        (Column("whole", share=0.0), lambda one: _BOX),
-        (Column("fouled", share=0.0), lambda one: _BOX),
-        (Column("runs", share=0.0), lambda one: _BOX),
-        (Column("remarks", share=1.2), lambda run: run[1][0].item.remark or ""),
-        note="By itself: what is buoyant enough; the rest comes with it, or hangs below when all "
-        "is up. The order is that of surfacing, not of hauling.",
+        rows_on_paper([one.item for one in deck.recovery if not one.item.is_joint]),
+        (Column("no.", numeric=True), lambda row: _numbers(row, order)),
+        (Column("piece", share=3.4), _piece),
+        (Column("serial\nnumber", share=0.8), lambda row: row.first.deployed_serial or ""),
+        (
+            Column("up after,\nor hangs", share=0.0),
+            lambda row: _expected([risen[id(one)] for one in (*row.items, *row.floats)]),
+        ),
+        (Column("seen", "UTC", share=0.6), lambda row: ""),
+        (Column("on deck", "UTC", share=0.6), lambda row: ""),
+        (Column("whole, runs,\nfouled", share=0.0), lambda row: Cell("☐   ☐   ☐")),
+        (Column("remarks", share=0.9), lambda row: row.first.remark or ""),
+        note="After the release, or the depth at which it hangs when all is up. By itself: buoyant "
+        "enough to come up alone; the rest comes with it. The order is that of surfacing, not of "
+        "hauling. Shackles, links and swivels come with the pieces they join.",
         by_hand=True,
     )
 
@@ -232,6 +280,6 @@ def _expected(items: Sequence[RecoveredItem]) -> Cell:
         if one.time is not None:
             said.append(f"{one.time / 60.0:.1f} min")
         elif one.hangs_at is not None:
-            said.append(f"hangs at {say('depth', one.hangs_at)}")
+            said.append(f"at {say('depth', one.hangs_at)}")
     text = " to ".join(dict.fromkeys(said))
     return Cell(text, "by itself" if any(one.by_itself for one in items) else "")

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
-from calm.drawing.schematic.pen import FAINT, INK, SOFT, Pen, wrapped
+from calm.drawing.schematic.pen import FAINT, INK, SOFT, Pen, text_width, wrapped
 from calm.drawing.schematic.shown_parts import one_line
 from calm.drawing.schematic.sign import LINES, Sign, Symbol
 from calm.drawing.schematic.symbols import (
@@ -17,7 +17,8 @@ from calm.drawing.schematic.symbols import (
     draw_surface,
     figure_of,
 )
-from calm.quantities import QUANTITIES
+from calm.quantities import QUANTITIES, say
+from calm.report.check_summary import short_verdict
 from calm.report.diagram_layout import (
     CLAMP_SCALE,
     CONTINUED,
@@ -28,7 +29,6 @@ from calm.report.diagram_layout import (
     LEADING,
     MARGIN,
     PICTURE,
-    SMALL,
     SYMBOL_SCALE,
     ColumnOf,
     Paper,
@@ -45,8 +45,12 @@ _FONTS = "'DejaVu Sans', Helvetica, Arial, 'Liberation Sans', sans-serif"
 _TITLE = 13.0
 _LINE_AT = 26.0
 _CLAMP_AT = 16.0
-_HEADINGS = (("cut,", "or place"), ("stretched", ""), ("depth", ""), ("above", "seabed"))
-_LEGEND_ROW, _LEGEND_COLUMNS = 25.0, 3
+_HEADINGS = (
+    (("cut,", "or place"), "length"), (("stretched",), "length"), (("depth",), "depth"),
+    (("above", "seabed"), "height"), (("tension",), "tension"),
+    (("net", "buoyancy"), "wet_weight"),
+)  # fmt: skip
+_LEGEND_ROW, _LEGEND_COLUMNS = 21.0, 4
 _GROUND = 44.0
 _WORDS = {
     Symbol.SPHERE: "float", Symbol.BALL: "ball", Symbol.GLASS: "glass float",
@@ -93,7 +97,7 @@ class TitleBlock:
                     "rect", x=x, y=y, width=step, height=height, fill="none", stroke=INK,
                     stroke_width=0.6,
                 )  # fmt: skip
-                page.letters(x + _PAD, y + 6.0, name, size=SMALL, colour=SOFT)
+                page.letters(x + _PAD, y + 6.0, name, size=FONT, colour=SOFT)
                 shown = (self.sheet,) if name == "sheet" else lines
                 for line, text in enumerate(shown):
                     page.letters(x + _PAD, y + 6.0 + LEADING * (line + 1), text, size=FONT)
@@ -104,7 +108,7 @@ _Page = tuple[str, Paper, TitleBlock, list[tuple[int, ColumnOf]], tuple[Sign, ..
 
 
 def diagram_pages(deck: Deck, paper: Paper) -> list[str]:
-    """The pages as SVG pictures at their own size, no text below 7 pt.
+    """The pages as SVG pictures at their own size, no text below 8 pt.
 
     Pages end above a junction where one is near their end, else between two pieces, else between
     two clamps; where a line goes on, both ends carry the same letter. No text is cut: long ones
@@ -131,18 +135,20 @@ def diagram_svg(deck: Deck, paper: Paper) -> str:
 def _drawn(deck: Deck, paper: Paper) -> list[_Page]:
     entries = entries_of(deck)
     block = title_block_of(deck, paper)
-    columns = columns_of(entries, paper, block.height)
     legend = tuple({entry.sign.symbol: entry.sign for entry in entries}.values())
     rows = -(-len(legend) // _LEGEND_COLUMNS)
     need = _GROUND + LEADING + rows * _LEGEND_ROW
     bottom = paper.size[1] - MARGIN - block.height
+    foot = block.height
+    while True:  # a page that had nothing but the legend takes over some entries
+        columns = columns_of(entries, paper, foot)
+        if len(columns) % paper.columns or columns[-1].end + need <= bottom:
+            break
+        foot += 2 * LEADING
     placed = [*enumerate(columns)]
     pages = [
         placed[start : start + paper.columns] for start in range(0, len(placed), paper.columns)
     ]
-    free = len(pages[-1]) < paper.columns or columns[-1].end + need <= bottom
-    if not free:
-        pages.append([])
     title = one_line(deck.file.name)
     count = len(pages)
     return [
@@ -160,7 +166,7 @@ def _fill(
     legend: tuple[Sign, ...],
     is_last: bool,
 ) -> None:
-    """Draw a page: its head, its columns, its title block, on the last one the legend."""
+    """Draw a page: its head, its columns, its title block, and the legend on the last one."""
     width, height = paper.size
     page.letters(MARGIN, MARGIN + 0.4 * _TITLE, title, size=_TITLE, bold=True)
     for number, column in columns:
@@ -174,13 +180,11 @@ def _fill(
 def _column(page: Pen, column: ColumnOf, paper: Paper, left: float, *, first: bool) -> None:
     rights = _rights(paper, left)
     top = MARGIN + HEAD
-    for words, name, right in zip(
-        _HEADINGS, ("length", "length", "depth", "height"), rights, strict=True
-    ):
-        lines = (*filter(None, words), QUANTITIES[name].display_unit)
+    for (words, name), right in zip(_HEADINGS, rights, strict=True):
+        lines = (*words, QUANTITIES[name].display_unit)
         for number, word in enumerate(lines):
-            y = top - 8.0 - 8.4 * (len(lines) - 1 - number)
-            page.letters(right, y, word, size=SMALL, colour=SOFT, anchor="end")
+            y = top - 8.0 - 9.0 * (len(lines) - 1 - number)
+            page.letters(right, y, word, size=FONT, colour=SOFT, anchor="end")
     page.line(left, top - 2.0, left + paper.column_width, top - 2.0, stroke=FAINT)
     pen = page.draw("g", stroke=INK, stroke_width=0.9, stroke_linejoin="round", fill=INK)
     x = left + _LINE_AT
@@ -229,16 +233,38 @@ def _entry(
         clamp = group.group(x, middle)
         draw_clamp(clamp, _CLAMP_AT)
         figure_of(entry.sign).draw(clamp.group(_CLAMP_AT, 0.0, CLAMP_SCALE))
+    elif entry.floats is not None:
+        clamp = group.group(x, middle)
+        draw_clamp(clamp, _CLAMP_AT)
+        figure_of(entry.floats).draw(clamp.group(_CLAMP_AT, 0.0, CLAMP_SCALE))
     elif entry.sign.symbol not in LINES:
         figure_of(entry.sign).draw(group.group(x, middle, SYMBOL_SCALE))
     start = left + PICTURE + (INDENT if entry.clamped else 0.0)
-    lines = [(text, INK, entry.strong) for text in placed.label]
-    lines += [(text, SOFT, False) for text in placed.name]
-    y = middle - LEADING * (len(lines) - 1) / 2
-    for number, (text, colour, bold) in enumerate(lines):
-        page.letters(start, y + LEADING * number, text, size=FONT, colour=colour, bold=bold)
+    lines = [(text, INK, entry.strong, 0.0) for text in placed.label]
+    lines += [(text, SOFT, False, placed.abreast) for text in placed.name]
+    last = len(lines) - 1 - (placed.abreast > 0.0)
+    ends = start
+    for number, (text, colour, bold, aside) in enumerate(lines):
+        below = LEADING * (min(number, last) - last / 2)
+        place = start + aside
+        page.letters(place, middle + below, text, size=FONT, colour=colour, bold=bold)
+        if abs(below) < LEADING:
+            ends = max(ends, place + text_width(text, FONT, bold=bold))
+    _leaders(page, (x, start), (ends, rights[0] - FIGURES[0]), middle)
     for text, right in zip(entry.cells, rights, strict=True):
-        page.letters(right, y, text, size=FONT, anchor="end")
+        page.letters(right, middle - LEADING * last / 2, text, size=FONT, anchor="end")
+
+
+def _leaders(
+    page: Pen, symbol: tuple[float, float], text: tuple[float, float], middle: float
+) -> None:
+    """Lead the eye from a symbol to its words, and from these to their figures."""
+    for (left, right), room in ((symbol, 18.0), (text, 3.0)):
+        if right - left > room + 5.0:
+            page.line(
+                left + room, middle, right - 3.0, middle, stroke=SOFT, stroke_width=0.6,
+                stroke_dasharray="0.6 2.4",
+            )  # fmt: skip
 
 
 def _rights(paper: Paper, left: float) -> list[float]:
@@ -255,9 +281,9 @@ def _legend(
     bottom: float,
 ) -> None:
     """The symbols that are drawn, each in words, at the foot of the last column."""
-    number = columns[-1][0] if columns else 0
+    number = columns[-1][0]
     shared = len(columns) == paper.columns
-    left = paper.left(number if not columns or shared else number + 1)
+    left = paper.left(number if shared else number + 1)
     rows = -(-len(legend) // _LEGEND_COLUMNS)
     top = bottom - rows * _LEGEND_ROW
     page.letters(left, top - LEADING, "Symbols", size=FONT, bold=True)
@@ -299,21 +325,38 @@ def _written(picture: Pen) -> str:
 
 _FIELDS = (
     "mooring", "document", "revision", "date", "project", "ship", "cruise", "position",
-    "water depth", "environment", "author", "checked", "approved", "sheet",
+    "water depth", "environment", "author", "checked", "approved", "anchor in air, in water",
+    "least backup", "design check", "sheet",
 )  # fmt: skip
-_COLUMNS = {Paper.A4: 4, Paper.LETTER: 4, Paper.A3: 7}
+_COLUMNS = {Paper.A4: 5, Paper.LETTER: 5, Paper.A3: 9}
 _PAD = 4.0
 
 
 def title_block_of(deck: Deck, paper: Paper) -> TitleBlock:
     """The title block of a mooring, without the number of its page."""
-    known = dict(title_pairs(deck.file)) | {"environment": deck.environment}
+    known = {**dict(title_pairs(deck.file)), **_known(deck), "environment": deck.environment}
     columns = _COLUMNS[paper]
     room = (paper.size[0] - 2 * MARGIN) / columns - 2 * _PAD
     fields = [(name, tuple(wrapped(one_line(known.get(name, "")), room, FONT))) for name in _FIELDS]
     fields += [("", ())] * (-len(fields) % columns)
     rows = tuple(tuple(fields[start : start + columns]) for start in range(0, len(fields), columns))
     return TitleBlock(rows, columns, sum(map(_height, rows)))
+
+
+def _known(deck: Deck) -> dict[str, str]:
+    """The anchor's weights, what floats the release after the worst break, and the verdict."""
+    anchor = deck.assessment.inventory[-1]
+    for one in deck.assessment.inventory:
+        if one.role == "anchor":
+            anchor = one
+    mass = "unknown" if anchor.dry_mass is None else say("dry_mass", anchor.dry_mass)
+    weight = "unknown" if anchor.wet_weight is None else say("wet_weight", anchor.wet_weight)
+    breaks = [one.margin for one in deck.assessment.backup if one.judged]
+    return {
+        "anchor in air, in water": f"{mass}, {weight}",
+        "least backup": say("tension", min(breaks)) if breaks else "none",
+        "design check": short_verdict(deck.assessment.all_findings()).text,
+    }
 
 
 def _height(row: tuple[tuple[str, tuple[str, ...]], ...]) -> float:

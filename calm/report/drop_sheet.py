@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from itertools import groupby
 from math import ceil
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from calm.checks.finding import State
+from calm.deck.deck_items import label_of_run
 from calm.drawing.picture import figure_svg
 from calm.drop.plan import DRAG_BAND
 from calm.quantities import QUANTITIES, bearing_text, duration, say
@@ -31,9 +34,10 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from calm.drop import DropPlan
+    from calm.drop.fall_record import DepthReached
 
 _DRAG_BAND = f"{DRAG_BAND:g} times smaller or larger"
-_ROWS = 11
+_ROWS = 6
 """Of the table of the fall."""
 _DEEPER = 0.5
 """By how much deeper than at rest a float has to come to be listed [m]."""
@@ -45,10 +49,10 @@ def drop_part(plan: DropPlan) -> ReportPart:
         _instructions(plan),
         *([Prose(plan.warnings, state=State.WARN)] if plan.warnings else []),
         Pairs(_figures(plan)),
+        Note(_notes(plan)),
         Figure("Anchor drop", drop_figure(plan)),
         _fall_table(plan),
         *_depth_blocks(plan),
-        Note(_notes(plan)),
     ]
     return ReportPart("Anchor drop plan", tuple(blocks))
 
@@ -186,17 +190,29 @@ def _depth_blocks(plan: DropPlan) -> list[Block]:
     depth = QUANTITIES["depth"]
     table = table_of(
         "Depths in the drop",
-        listed,
-        (Column("piece or clamp"), lambda one: one.label),
+        [[*run] for _, run in groupby(listed, key=_shared)],
+        (Column("piece or clamp"), label_of_run),
         (
             quantity_column("depth", "greatest depth"),
-            lambda one: Cell(depth.format(one.greatest), state=State.FAIL if one.beyond else None),
+            lambda run: Cell(
+                depth.format(_deepest(run).greatest),
+                state=State.FAIL if any(one.beyond for one in run) else None,
+            ),
         ),
-        (Column("after", "s", numeric=True), lambda one: f"{one.time:.0f}"),
-        (quantity_column("depth", "at rest"), lambda one: depth.format(one.rest)),
-        (quantity_column("depth", "rated to"), lambda one: depth.format(one.rating)),
+        (Column("after", "s", numeric=True), lambda run: f"{_deepest(run).time:.0f}"),
+        (quantity_column("depth", "at rest"), lambda run: depth.format(_deepest(run).rest)),
+        (quantity_column("depth", "rated to"), lambda run: depth.format(run[0].rating)),
     )
     return [table]
+
+
+def _shared(one: DepthReached) -> str:
+    """Return what floats that follow one another have in common; an instrument has its own row."""
+    return one.part.use if one.part.component.role == "float" else one.label
+
+
+def _deepest(run: Sequence[DepthReached]) -> DepthReached:
+    return max(run, key=lambda one: one.greatest)
 
 
 def _notes(plan: DropPlan) -> tuple[str, ...]:
@@ -232,8 +248,8 @@ def whereabouts(plan: DropPlan, place: tuple[float, float]) -> str:
     )
 
 
-_WIDTH, _HEIGHT = 7.4, 4.2  # inches: an A4 page between its margins
-_FONT_SIZE = 7.5  # points
+_WIDTH, _HEIGHT = 7.05, 3.5  # inches: an A4 page between its margins
+_FONT_SIZE = 8.0  # points
 _WATER, _SEABED = "#2b7bba", "#b8a07e"
 _DASHES = ("-", (0, (6, 2)), (0, (4, 2, 1, 2)), (0, (1, 1.5)), (0, (2, 1)), "-")
 

@@ -1,18 +1,27 @@
-"""What causes a knockdown and what would change it, as a person reads it."""
+"""What causes a knockdown and what would change it; what to change; and what a change does.
+
+An explanation, a sizing and a comparison of two designs, as a person reads them.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import floor, log10
 from typing import TYPE_CHECKING
 
 from calm.checks.finding import State
-from calm.quantities import QUANTITIES
-from calm.report.blocks import Block, Cell, Column, Prose, ReportPart, Span, Table
+from calm.quantities import QUANTITIES, Quantity
+from calm.report.blocks import Block, Cell, Column, Line, Prose, ReportPart, Span, Table
+from calm.report.check_summary import SIGNS
+from calm.units import with_unit
 
 if TYPE_CHECKING:
     from calm.case.explain import Causes, Explanation
+    from calm.case.size import Sizing, Trial
     from calm.case.targets import Figures
+    from calm.checks.comparison import Compared, Comparison
+    from calm.files.file_differences import Change
 
 SMALLEST_SHARE = 0.005
 """Of every whole; drags that cause less of all of them are summed up in one row."""
@@ -59,7 +68,7 @@ def explanation_part(explanation: Explanation) -> ReportPart:
     columns.
     """
     wholes = [
-        f"{name} {_figure(_COLUMNS[name], explanation.figures)} m"
+        f"{name} {_figure_text(_COLUMNS[name], explanation.figures)} m"
         for name in explanation.quantities
         if name != "used_buoyancy"
     ]
@@ -122,7 +131,7 @@ def _changes(explanation: Explanation) -> Table:
     columns = [_COLUMNS[name] for name in (*explanation.quantities, *_ANCHOR)]
     heads = (Column(""), *(Column(each.heading, each.unit, numeric=True) for each in columns))
     now = explanation.figures
-    as_it_is = (Cell(_figure(column, now), strong=True) for column in columns)
+    as_it_is = (Cell(_figure_text(column, now), strong=True) for column in columns)
     rows = [(Cell("as it is", strong=True), *as_it_is)]
     for change in explanation.changes:
         if change.figures is None:
@@ -135,7 +144,7 @@ def _changes(explanation: Explanation) -> Table:
     return Table("", heads, tuple(rows))
 
 
-def _figure(column: _Column, figures: Figures) -> str:
+def _figure_text(column: _Column, figures: Figures) -> str:
     value = getattr(figures, column.name)
     return f"{value * column.scale:z.{_decimals(column, value)}f}"
 
@@ -154,3 +163,162 @@ def _decimals(column: _Column, whole: float) -> int:
     if whole == 0.0:
         return usual
     return max(usual, min(2 - floor(log10(abs(whole * column.scale))), 4))
+
+
+_ROWS = (
+    ("depth", "depth", "depth of the top"),
+    ("knockdown", "knockdown", "knockdown of the top"),
+    ("excursion", "offset", "excursion of the top"),
+    ("used_buoyancy", "used_buoyancy", "buoyancy used, of 1"),
+    ("tension", "tension", "pull on the anchor"),
+    ("vertical", "vertical", "  up"),
+    ("horizontal", "horizontal", "  sideways"),
+    ("required_weight", "required_weight", "anchor weight needed"),
+)
+"""Rows: name in `Figures`, quantity, words."""
+
+
+def sizing_part(sizing: Sizing) -> ReportPart:
+    """Return what to change so that a target that can be met is met, and what else that changes."""
+    assert sizing.after is not None
+    lines: list[Line] = []
+    if sizing.before.failure is not None:
+        lines.append((Span(f"As it is: {sizing.before.failure}", State.WARN),))
+    lines += [(Span(f"! {text}", State.FAIL),) for text in _new_warnings(sizing)]
+    lines += [*sizing.notes, (Span(_effort(sizing), quiet=True),)]
+    table = _comparison(sizing, sizing.before, sizing.after)
+    title = f"{sizing.change.file.name}: {sizing.target.text}"
+    return ReportPart(title, (Prose((_answer(sizing),)), table, Prose(tuple(lines))))
+
+
+def refusal(sizing: Sizing) -> str:
+    """Return why a target is not met, and what to do, in a line."""
+    return f"{sizing.target.text} is not met. {sizing.message} {sizing.advice}"
+
+
+def _answer(sizing: Sizing) -> str:
+    change, before, after = sizing.change, sizing.before, sizing.after
+    assert after is not None
+    if after.value == before.value:
+        return f"Nothing to change: the target is met with {change.text} as it is."
+    growth = after.value - before.value
+    several = len(change.parts) > 1 and not change.whole
+    each = f", each of {len(change.parts)}" if several else ""
+    share = f" ({growth / abs(before.value):+.1%})".replace("%", " %") if before.value else ""
+    return (
+        f"{change.text}: {with_unit(before.value, change.unit)} → "
+        f"{with_unit(after.value, change.unit)}, {growth:+.6g}{share}{each}"
+    )
+
+
+def _comparison(sizing: Sizing, before: Trial, after: Trial) -> Table:
+    target, both = sizing.target, (before, after)
+    words_of = {field: words for field, _, words in _ROWS}
+    name = words_of.get(target.quantity, f"{target.quantity} of the top")
+    if target.label is not None:
+        name = f"{target.quantity} of {target.label}"
+    measured = ("-" if one.measured is None else f"{one.measured:.6g}" for one in both)
+    aimed = (name, target.unit.replace("deg", "°"), *measured)
+    rows = [tuple(Cell(text, strong=True) for text in aimed)]
+    afloat = after.result is not None and after.result.type == "surface"
+    for field, quantity, words in _ROWS:
+        if words == name or (field == "used_buoyancy" and not afloat):
+            continue
+        shown = QUANTITIES[quantity]
+        figures = (getattr(one.figures, field, None) for one in both)
+        rows.append((Cell(words), Cell(shown.display_unit), *map(Cell, map(shown.format, figures))))
+    heads = (Column(name, numeric=True) for name in _SHORT)
+    return Table("", (Column(""), Column("", share=0.0), *heads), tuple(rows))
+
+
+def _new_warnings(sizing: Sizing) -> list[str]:
+    """Return those of the mooring after the change that it did not have before."""
+    old = sizing.before.result.warnings if sizing.before.result is not None else ()
+    new = sizing.after.result.warnings if sizing.after and sizing.after.result else ()
+    return [warning for warning in new if warning not in old]
+
+
+def _effort(sizing: Sizing) -> str:
+    if sizing.solves == 1:
+        return "Solved as it is."
+    return f"Found by {sizing.solves} solves, with the settings of the file."
+
+
+def comparison_part(comparison: Comparison) -> ReportPart:
+    """The differences, then the figures side by side."""
+    before, after = comparison.names
+    return ReportPart(f"{before} → {after}", tuple(_blocks(comparison)))
+
+
+def _blocks(comparison: Comparison) -> Iterator[Block]:
+    found, (before, after) = comparison.differences, comparison.names
+    if not found.any:
+        yield Prose(("Nothing differs.",))
+    else:
+        rows = [
+            *(_row("changed", one) for one in found.changed),
+            *(_row("moved", one) for one in found.moved),
+            *((Cell("removed"), Cell(label), Cell(), Cell()) for label in found.removed),
+            *((Cell("added"), Cell(label), Cell(), Cell()) for label in found.added),
+        ]
+        columns = (Column("", share=0.0), Column("what"), Column(before), Column(after))
+        yield Table("What differs", columns, tuple(rows))
+    if comparison.notes:
+        yield Prose(comparison.notes, State.FAIL)
+    whole = [one for one in comparison.figures if not one.of_a_part and one.states is None]
+    yield _figures("What it does", comparison.names, whole, all_rows=True)
+    parts = [one for one in comparison.figures if one.of_a_part]
+    yield _figures("Pieces and instruments", comparison.names, parts)
+    margins = [one for one in comparison.figures if one.states is not None]
+    yield _figures("Margins of the design check", comparison.names, margins, all_rows=True)
+
+
+def _row(kind: str, change: Change) -> tuple[Cell, ...]:
+    return Cell(kind), Cell(change.where), Cell(change.before.text), Cell(change.after.text)
+
+
+def _figures(
+    title: str, names: tuple[str, str], figures: Sequence[Compared], *, all_rows: bool = False
+) -> Table:
+    """Figures side by side; of those that are not shown, how many stay as they are."""
+    rows = [_figure(one) for one in figures]
+    shown = [row for row in rows if all_rows or row[2].text != row[3].text]
+    same = len(rows) - len(shown)
+    columns = (
+        Column(""),
+        Column("", share=0.0),
+        *(Column(name, numeric=True, short=_SHORT[n]) for n, name in enumerate(names)),
+        Column("change", numeric=True),
+    )
+    return Table(
+        title, columns, tuple(shown), f"The other {same} stay as they are." if same else ""
+    )
+
+
+_SHORT = "before", "after"
+
+
+def _figure(one: Compared) -> tuple[Cell, ...]:
+    quantity = QUANTITIES.get(one.quantity)
+    states, both = one.states or (None, None), (one.before, one.after)
+    texts = [_text(value, quantity, state) for value, state in zip(both, states, strict=True)]
+    values = [
+        Cell(text, state=state, mark="" if state is None or value is None else SIGNS[state])
+        for text, value, state in zip(texts, both, states, strict=True)
+    ]
+    change = ""
+    if isinstance(one.before, float) and isinstance(one.after, float) and texts[0] != texts[1]:
+        assert quantity is not None
+        text = quantity.format(one.after - one.before)
+        change = text if text.startswith("-") else f"+{text}"
+    unit = quantity.display_unit if quantity else ""
+    return Cell(one.title), Cell(unit), *values, Cell(change)
+
+
+def _text(value: float | str | None, quantity: Quantity | None, state: State | None) -> str:
+    """A figure; of a margin that is not known, how its rule judges."""
+    if isinstance(value, str):
+        return value
+    if value is None or quantity is None:
+        return "-" if state is None else state.value
+    return quantity.format(value)

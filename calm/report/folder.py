@@ -1,13 +1,23 @@
-"""Files and folders of reports: looked at before anything is solved, and whole or not there."""
+"""Files and folders of reports: looked at before anything is solved, and whole or not there.
+
+A report as PDF is set by typst.
+"""
 
 from __future__ import annotations
 
 import contextlib
+import json
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from functools import cache
+from importlib.resources import files
 from pathlib import Path
+from typing import Any
 
 from calm.errors import UsageError
+from calm.report.blocks import Report, Section
+from calm.report.provenance import moment
 from calm.whole_file import put
 
 REPORT_FILES = ("report.html", "report.pdf", "report.json", "checks.csv", "inventory.csv")
@@ -17,10 +27,8 @@ REPORT_FILES = ("report.html", "report.pdf", "report.json", "checks.csv", "inven
 def check_folder(folder: Path) -> None:
     """Refuse a folder in which nothing could be written, before the work for it is done.
 
-    Raises
-    ------
-    UsageError
-        It is no folder, or lies in none; it or the nearest one that exists may not be written.
+    UsageError: it is no folder, or lies in none; it or the nearest one that exists may not be
+    written.
     """
     try:
         with contextlib.suppress(FileNotFoundError):
@@ -46,8 +54,7 @@ def write_report(folder: Path, files: Mapping[str, bytes]) -> None:
 
     Parameters
     ----------
-    files : mapping
-        Of the name in the folder to the content.
+    files : of the name in the folder to the content
 
     Raises
     ------
@@ -96,10 +103,7 @@ def _restore(folder: Path, parts: Mapping[str, Path], kept: Mapping[str, Path]) 
 def check_destination(path: Path) -> None:
     """Refuse a file that could not be written, before the work for it is done.
 
-    Raises
-    ------
-    UsageError
-        The folder is missing, or the file or its folder may not be written.
+    UsageError: the folder is missing, or the file or its folder may not be written.
     """
     folder = os.path.dirname(os.path.realpath(path))
     if os.path.isdir(path):
@@ -114,11 +118,7 @@ def write_file(path: Path, content: bytes) -> None:
     """Write a file whole: a reader sees the old content or the new, never a part.
 
     A device or a pipe is written as it is, and a symbolic link keeps pointing where it did.
-
-    Raises
-    ------
-    UsageError
-        The system refuses, e.g. because the disk is full; the old file is then untouched.
+    UsageError: the system refuses, e.g. because the disk is full; the old file is then untouched.
     """
     try:
         if os.path.exists(path) and not os.path.isfile(path):
@@ -127,3 +127,85 @@ def write_file(path: Path, content: bytes) -> None:
             put(Path(os.path.realpath(path)), content)
     except OSError as error:
         raise UsageError(f"cannot write {path}: {error.strerror}") from None
+
+
+def printed(
+    report: Report,
+    paper: str = "a4",
+    least: float = 0.0,
+    leaves: Sequence[str] | None = None,
+) -> bytes:
+    """Any report on pages; its texts reach the template as data, never as markup.
+
+    The same report gives the same bytes: the fonts are those that typst and matplotlib bring, and
+    the only date is that of SOURCE_DATE_EPOCH. A sign that no font has shows as �.
+
+    Parameters
+    ----------
+    paper : a4, a3 (lying) or letter
+    least : size of the smallest text of its tables and notes [pt]
+    leaves : its sections as `pdf_leaf` has them, where they are made already
+    """
+    import typst
+
+    leaves = leaves or [pdf_leaf(section) for section in report.sections]
+    fonts = typst.Fonts(include_system_fonts=False, font_paths=[font_folder()])
+    when = moment()
+    return typst.compile(
+        (files("calm.report") / "report.typ").read_bytes(),
+        font_paths=fonts,
+        sys_inputs={
+            "report": pdf_leaf(replace(report, sections=())),
+            "sections": f"[{','.join(leaves)}]",
+            "paper": "us-letter" if paper == "letter" else paper,
+            "least": f"{least:g}",
+        },
+        pdf_tags=False,  # they make the file ten times as large; the page for a browser has its own
+        timestamp=None if when is None else int(when.timestamp()),
+    )
+
+
+def pdf_leaf(part: Report | Section) -> str:
+    """A report or a section as the template takes it."""
+    text = legible(json.dumps(part, default=_members, ensure_ascii=False))
+    return text.encode("utf-8", "replace").decode("utf-8")
+
+
+def _members(part: Any) -> dict[str, Any]:
+    """A part of the report with its kind, which the template goes by; of a section its parts."""
+    if isinstance(part, Section):
+        return {"name": part.name, "parts": part.parts}
+    return {"kind": type(part).__name__, **vars(part)}
+
+
+def font_folder() -> Path:
+    """The fonts that are always there: those that matplotlib brings."""
+    import matplotlib
+
+    return Path(matplotlib.get_data_path(), "fonts", "ttf")
+
+
+def lacking(texts: Iterable[str]) -> str:
+    """The signs of some texts that no font of a PDF has, each once, in order."""
+    held, known = list(texts), _signs()
+    unknown = {sign for sign in set().union(*held) if sign.isprintable() and ord(sign) not in known}
+    if not unknown:  # as nearly always: a report has millions of signs
+        return ""
+    return "".join(dict.fromkeys(sign for text in held for sign in text if sign in unknown))
+
+
+def legible(text: str) -> str:
+    """A text for a PDF: a sign that no font has is a question mark in a lozenge.
+
+    A single one would otherwise have all of a drawing's label shown in boxes.
+    """
+    unknown = lacking([text])
+    return text.translate(dict.fromkeys(map(ord, unknown), "\ufffd")) if unknown else text
+
+
+@cache
+def _signs() -> frozenset[int]:
+    from matplotlib.ft2font import FT2Font
+
+    fonts = sorted(font_folder().glob("DejaVuSans*.ttf"))
+    return frozenset(code for font in fonts for code in FT2Font(str(font)).get_charmap())

@@ -22,12 +22,7 @@ _ROUND = np.linspace(0.0, 2.0 * np.pi, 1441)
 
 
 def located_part(located: Located, water_depth: float) -> ReportPart:
-    """The place, how well it is known, and the residual of every range.
-
-    Parameters
-    ----------
-    water_depth : at the anchor [m]
-    """
+    """The place, how well it is known, and the residual of every range; in a depth of water [m]."""
     blocks: list[Block] = [Pairs(_figures(located, water_depth))]
     if located.warnings:
         blocks.append(Prose(located.warnings, state=State.WARN))

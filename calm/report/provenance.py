@@ -6,27 +6,24 @@ import hashlib
 import json
 import os
 import platform
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from datetime import UTC, datetime
 from importlib.metadata import version
 from math import hypot
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from pydantic import BaseModel
 
-from calm.checks.finding import State
+from calm.checks.finding import Finding, State
 from calm.errors import InputError, UsageError
-from calm.files import MooringFile
+from calm.files import MooringFile, Position
+from calm.physics.line import Water
 from calm.quantities import QUANTITIES, bearing_of, say
 from calm.report.blocks import Cell, Column, Listing, Pairs, Prose, ReportPart, Table, table_of
 from calm.report.sheet import quantity_column
 from calm.whole_file import read_text
-
-if TYPE_CHECKING:
-    from calm.files import MooringFile, Position
-    from calm.physics.line import Water
 
 _LIBRARIES = ("numpy", "pydantic", "matplotlib", "jinja2", "typst")
 
@@ -45,10 +42,7 @@ _LATEST = 253_402_300_799  # the last second of the year 9999
 def moment() -> datetime | None:
     """The time that SOURCE_DATE_EPOCH gives, in UTC; None without it: a report has no other date.
 
-    Raises
-    ------
-    UsageError
-        It is no number of seconds that a calendar has.
+    UsageError: it is no number of seconds that a calendar has.
     """
     text = os.environ.get("SOURCE_DATE_EPOCH")
     if not text:
@@ -73,15 +67,11 @@ def source_text(file: MooringFile) -> str | None:
 
 
 def input_hash(files: Sequence[MooringFile]) -> str:
-    """SHA-256 of the inputs, in hexadecimal digits.
-
-    Parameters
-    ----------
-    files : one mooring or tow as read in each of its environments
+    """SHA-256 of the inputs, in hexadecimal digits, as read in each of the environments.
 
     It covers the text of the mooring file, and as JSON with sorted keys the components with every
-    figure of the catalogue, the settings, and each environment with its currents: what came from
-    a file of currents, too. Where the files lie does not count.
+    figure of the catalogue, the settings, and each environment with its currents: what came from a
+    file of currents, too. Where the files lie does not count.
     """
     digest = hashlib.sha256((source_text(files[0]) or "").encode("utf-8", "replace"))
     for file in files:
@@ -115,6 +105,18 @@ UNSEEN = (
 )
 """What is printed in every report."""
 
+IN_WAVES = (
+    UNSEEN[0]
+    .replace(
+        "waves and the tensions they cause; snap",
+        "waves where an environment gives no `waves:`, and linear tensions in them do not see snap",
+    )
+    .replace("fatigue, by waves and by vortices", "fatigue by vortices"),
+    UNSEEN[1].replace("static tension", "tension"),
+    UNSEEN[2],
+)
+"""The same where waves are judged."""
+
 UNJUDGED = (
     "waves", "snap loads", "fatigue", "creep, corrosion and wear",
     "the jerk and the swing of a launch", "hauling and lifts on recovery", *_BESIDE,
@@ -123,6 +125,12 @@ UNJUDGED = (
 
 NOT_JUDGED = ReportPart("What is not judged", (Prose(UNSEEN, State.UNKNOWN),))
 """The part of every report that says so."""
+
+
+def unseen(findings: Iterable[Finding]) -> tuple[str, ...]:
+    """Return what is printed beside the findings of a design check."""
+    return IN_WAVES if any(each.rule == "wave-slack" for each in findings) else UNSEEN
+
 
 _MOST_LEVELS = 40
 

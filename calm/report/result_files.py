@@ -7,13 +7,14 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.case import Result
-from calm.case.result_tables import Components, rows_down
+from calm.case import Result, TowResult
+from calm.case.net import NetResult
+from calm.case.result_tables import ClampRow, ComponentRow, Components, rows_down
 from calm.dataset.netcdf import (
     CLAMPS,
     OF_CLAMP,
@@ -31,11 +32,6 @@ from calm.dataset.netcdf import (
 )
 from calm.quantities import QUANTITIES
 from calm.records.delimited import table_csv
-
-if TYPE_CHECKING:
-    from calm.case import Result, TowResult
-    from calm.case.net import NetResult
-    from calm.case.result_tables import ClampRow, ComponentRow
 
 _WORDS = ("mooring", "part", "index", "use", "label")
 _WITHIN = {"tension", "least_tension", "reynolds"}
@@ -62,7 +58,9 @@ def _rows(result: Result | TowResult | NetResult) -> Iterator[list[object]]:
         numbers = (getattr(component, name) for name in _NUMBERS)
         yield [*_words(result, "component", component), *numbers]
         for clamp in clamps:
-            numbers = (getattr(clamp, _at_a_point(name), None) for name in _NUMBERS)
+            # a clamp has one figure where a component has one for each end
+            names = (name.removesuffix("_top").removesuffix("_bottom") for name in _NUMBERS)
+            numbers = (getattr(clamp, name, None) for name in names)
             yield [*_words(result, "clamp", clamp), *numbers]
 
 
@@ -70,11 +68,6 @@ def _words(
     result: Result | TowResult | NetResult, part: str, row: ComponentRow | ClampRow
 ) -> list[object]:
     return [result.name, part, row.index, row.use, row.label]
-
-
-def _at_a_point(name: str) -> str:
-    """Name of the one figure that a clamp has where a component has one for each end."""
-    return name.removesuffix("_top").removesuffix("_bottom")
 
 
 _MORE: dict[str, tuple[str, str, Attributes]] = {

@@ -6,12 +6,13 @@ from dataclasses import replace
 from math import isnan
 from typing import TYPE_CHECKING
 
-from calm.case import TowResult
+from calm.case import Result, TowResult
 from calm.checks.criterion import limits_used
 from calm.checks.finding import State
 from calm.checks.posture import reaches_the_surface
 from calm.drawing.picture import figure_svg
 from calm.drawing.plot import draw
+from calm.files import Uncertainty
 from calm.files.uncertainty import Spread
 from calm.report.blocks import (
     Block,
@@ -31,9 +32,7 @@ from calm.report.provenance import NOT_JUDGED, date, document_part, inputs_part
 from calm.report.sheet import sheet
 
 if TYPE_CHECKING:
-    from calm.case import Result
     from calm.case.uncertain import Uncertain
-    from calm.files import Uncertainty
 
 
 def result_report(result: Result | TowResult, uncertain: Uncertain | None = None) -> Report:

@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 from math import isnan
-from typing import TYPE_CHECKING
 
 from calm.checks.finding import State
 from calm.quantities import QUANTITIES, say
 from calm.report.blocks import Block, Cell, Column, Prose, ReportPart, Span, Table
-from calm.waves.analysis import SLACK
-
-if TYPE_CHECKING:
-    from calm.waves.analysis import MooringInSea, WaveAnalysis
+from calm.waves.analysis import SLACK, MooringInSea, WaveAnalysis
 
 _NOTE = (
     "Tension at the upper end: mean, standard deviation, most probable greatest and least. "

@@ -6,26 +6,22 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from calm.case import Result, TowResult
-from calm.case.result_tables import rows_down
+from calm.case.net import NetResult
+from calm.case.profilers import ProfilerTravel
+from calm.case.result_tables import ClampRow, ComponentRow, rows_down
+from calm.case.strumming import StrummingBand
 from calm.checks.finding import State
 from calm.checks.posture import reaches_the_surface
 from calm.checks.strength import safety_factor
 from calm.drawing.schematic.shown_parts import place_text
+from calm.files import Component
 from calm.files.strumming_keys import BourgetMarichalKeys
 from calm.quantities import QUANTITIES, duration, say
 from calm.report.blocks import Cell, Column, Field, Line, Note, Prose, ReportPart, Span, Table
 from calm.solve import Status
-
-if TYPE_CHECKING:
-    from calm.case import Result, TowResult
-    from calm.case.net import NetResult
-    from calm.case.profilers import ProfilerTravel
-    from calm.case.result_tables import ClampRow, ComponentRow
-    from calm.case.strumming import StrummingBand
-    from calm.files import Component
 
 _MOORING_COLUMNS = (
     "length",

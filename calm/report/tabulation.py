@@ -155,7 +155,12 @@ def to_csv(tabulations: Sequence[Tabulation]) -> str:
     chosen = list(tabulations[0].rows[0].chosen) if tabulations else []
     figures = [QUANTITIES[name].header for name in FIGURES]
     return table_csv(
-        ["tow", *map(_header, chosen), "status", *figures],
+        [
+            "tow",
+            *(QUANTITIES[name].header if name in QUANTITIES else name for name in chosen),
+            "status",
+            *figures,
+        ],
         (
             [tabulation.name, *row.chosen.values(), row.outcome.status, *row.figures.values()]
             for tabulation in tabulations
@@ -168,10 +173,6 @@ def _changed(variation: Variation) -> str:
     if not variation.coefficient:
         return "nothing"
     return f"{variation.coefficient.upper()} {variation.change:+.0%}"
-
-
-def _header(name: str) -> str:
-    return QUANTITIES[name].header if name in QUANTITIES else name
 
 
 def _row_document(tabulation: Tabulation, row: TabulationRow) -> dict[str, Any]:

@@ -41,12 +41,9 @@ _WARNED = _STYLES[State.FAIL]
 
 
 def shown(part: ReportPart, *, plain: bool = False) -> RenderableType:
-    """A part for a rich console; its figures are left to what draws them there.
+    """A part for a rich console, or with the signs of ASCII alone where it is to be plain.
 
-    Parameters
-    ----------
-    part : title, tables and sentences
-    plain : with the signs of ASCII alone
+    Its figures are left to what draws them there.
     """
     return Group(*_Printer(plain).part(part))
 
@@ -89,7 +86,7 @@ class _Printer:
         if block.title:
             yield self._text(block.title, "bold")
         gap = 1 if block.dense else 2
-        grid = _grid(gap=gap)
+        grid = table.Table(box=None, padding=(0, 0, 0, gap), pad_edge=False)
         chosen = [number for number, column in enumerate(block.columns) if column.narrow]
         for number in chosen:
             self._add_column(grid, block.columns[number])
@@ -159,11 +156,6 @@ def _together(block: Block, following: Block) -> bool:
     if isinstance(following, Prose):
         return isinstance(block, Prose | Heading)
     return isinstance(block, Heading)
-
-
-def _grid(*, gap: int) -> table.Table:
-    """A table without rules, `gap` blanks between its columns."""
-    return table.Table(box=None, padding=(0, 0, 0, gap), pad_edge=False)
 
 
 MANY = 100

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import xarray as xr
 
-from calm.batch.stored_result import place_of
+from calm.batch.finished import place_of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -29,10 +29,7 @@ class BatchAccessor:
     def depth(self, label: str) -> xr.DataArray:
         """(time) depth of a clamp, or of the upper end of a component [m].
 
-        Raises
-        ------
-        UsageError
-            No part of the line is called so, here and below.
+        UsageError: no part of the line is called so, here and below.
         """
         prefix, index = place_of(self._dataset, label)
         return self._named("clamp_depth" if prefix else "depth_top", prefix, index, "depth", label)
@@ -60,10 +57,7 @@ class BatchAccessor:
     def plot_shape(self, *, time: str | np.datetime64) -> Figure:
         """Draw the line at the time of the profile nearest to one.
 
-        Raises
-        ------
-        UsageError
-            The profile has no equilibrium.
+        UsageError: the profile has no equilibrium.
         """
         from calm.report.batch_figures import draw_shape
 

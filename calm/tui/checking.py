@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from datetime import date
 
+from calm.files.definition import LENGTH, POSITIVE_LENGTH, QuantityField
 from calm.files.editing import Value
-from calm.files.fields import LENGTH, POSITIVE_LENGTH, QuantityField
 from calm.files.logbook import LOAD
 from calm.records.current_terms import TimeChoiceError, parse_time
 from calm.units import QuantityError, QuantityRange

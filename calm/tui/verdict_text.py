@@ -169,8 +169,8 @@ def _figures(
 
 def _mooring(result: Result, findings: Sequence[Finding], pending: bool) -> Iterator[Saying]:
     """Return what the line does as given; what is judged shows the worst of its findings."""
-    from calm.checks.anchor_rules import anchor_weight
     from calm.checks.posture import knockdown, reserve
+    from calm.checks.strength import anchor_weight
 
     anchor, top = result.anchor, result.top
     pull = f"{_say('tension', anchor.tension)}, {_say('angle', anchor.angle)} off the vertical"
@@ -292,7 +292,7 @@ def _unknown(findings: list[Finding]) -> Iterator[Saying]:
 
 
 def _title(finding: Finding) -> str:
-    from calm.checks.rules import RULES
+    from calm.checks.assess import RULES
 
     rule = RULES.get(finding.rule)
     return rule.title if rule else finding.rule

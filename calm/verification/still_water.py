@@ -286,10 +286,6 @@ def _fall() -> Motion:
     return fall(_wire_below_a_sphere(), _SEA, _DROPPED, _start(), _FINE)
 
 
-def _back() -> float:
-    return -float(_fall().states[-1].node[-1, 1])
-
-
 def _moved() -> float:
     first, last = (state.node[0, 1] for state in (_start(), _fall().states[-1]))
     return float(last - first)
@@ -341,7 +337,8 @@ of WHOI Cable's own static solution. Then the terminal speed, against that of th
              lambda: float(-_start().node[0, 1]), Kind.INDEPENDENT),
         Case("fall time", 238.4, "s", 0.03 * 238.4, _INERTIA, lambda: _fall().states[-1].time,
              Kind.INDEPENDENT),
-        Case("fall-back", 64.1, "m", 0.08 * 64.1, _INERTIA, _back, Kind.INDEPENDENT),
+        Case("fall-back", 64.1, "m", 0.08 * 64.1, _INERTIA,
+             lambda: -float(_fall().states[-1].node[-1, 1]), Kind.INDEPENDENT),
         Case("way of the float", 431.0, "m", 0.03 * 431.0, _INERTIA, _moved, Kind.INDEPENDENT),
         Case("greatest tension at the anchor", 6245.0, "N", 0.03 * 6245.0, _INERTIA,
              lambda: _pull(-1, 1), Kind.INDEPENDENT),

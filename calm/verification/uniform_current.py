@@ -10,8 +10,13 @@ from dataclasses import replace
 from functools import cache, partial
 from math import degrees, hypot, radians
 
-from calm.analytic.pode import CableFunctions, cable_functions
-from calm.analytic.uniform import critical_angle, critical_weight_ratio, tension_ratio
+from calm.analytic.uniform import (
+    CableFunctions,
+    cable_functions,
+    critical_angle,
+    critical_weight_ratio,
+    tension_ratio,
+)
 from calm.physics.drag import Friction
 from calm.physics.line import Line, Water
 from calm.solve import Settings
@@ -343,8 +348,8 @@ PODE = Source(
     """L. Pode's functions of a heavy cable in a uniform stream (David Taylor Model Basin reports
 687 and 717, 1951), constant friction F = f R along it (C6): τ, σ, ξ, η between φ and 90°, as
 evaluated by quadrature to 1e-10 from his integrals, not copied from his tables. They are held
-against `calm.analytic.pode` and τ − 1 = p η + f σ; those with friction against the march of a towed
-body, the tensions without against their closed form. The critical angle,
+against `calm.analytic.uniform` and τ − 1 = p η + f σ; those with friction against the march of a
+towed body, the tensions without against their closed form. The critical angle,
 cos φc = √(1 + p²/4) − p/2, is E. E. Zajac's, too (Bell System Technical Journal 36, 1957).""",
     (
         *table(

@@ -11,10 +11,17 @@ import numpy as np
 
 from calm.errors import UsageError
 from calm.physics.line import Floats
+from calm.records.sea_states import SeaState
 from calm.waves.buoy import Buoy, buoy_of
+from calm.waves.fatigue import (
+    PieceFatigue,
+    fatigue_of,
+    greatest_of,
+    moments_of,
+    passing_probability,
+)
 from calm.waves.lumped_line import LumpedLine, lumped_line
 from calm.waves.response import WaveResponse, Waves, respond
-from calm.waves.spectra import SeaState, greatest_of, passing_probability
 
 if TYPE_CHECKING:
     from calm.case import Mooring
@@ -42,7 +49,7 @@ class PieceInWaves:
     """Hold a piece of the line in a sea: tensions [N] at its upper end, motions [m], [degrees].
 
     Greatest and least are the most probable ones of the duration; `slack_probability` that of
-    falling slack in it.
+    falling slack in it. `greatest` and `least` are those anywhere along the piece.
     """
 
     index: int
@@ -55,12 +62,17 @@ class PieceInWaves:
     slack_probability: float
     heave_std: float
     tilt_std: float
+    greatest: float
+    least: float
 
 
 @dataclass(frozen=True)
 class MooringInSea:
     """Hold a mooring in a sea: its pieces down the line, and the labels of those that fall slack.
 
+    `worst` are the mean of the tension and its moments m0, m1, m2, m4 by frequency where each piece
+    is pulled about most. `spectrum` is that of the tension at the top, N² s/rad at rad/s, and
+    `along` the depth [m], mean, standard deviation and greatest tension down the line.
     `follower_std` is the deviation of the tension below a float that follows every wave [N], of
     the highest of several seas alone; None of a line below the surface.
     """
@@ -69,6 +81,9 @@ class MooringInSea:
     components: tuple[PieceInWaves, ...]
     slack: tuple[str, ...]
     follower_std: float | None
+    worst: tuple[tuple[float, Floats], ...]
+    spectrum: tuple[Floats, Floats]
+    along: tuple[Floats, Floats, Floats, Floats]
 
 
 @dataclass(frozen=True)
@@ -93,11 +108,13 @@ class WaveAnalysis:
     name : of the mooring
     states : in the order given
     accuracy : in the highest of them
+    fatigue : of each piece, by the shares of the seas; a single one lasts all the year
     warnings : what rests on assumptions
     """
 
     name: str
     states: tuple[MooringInSea, ...]
+    fatigue: tuple[PieceFatigue, ...]
     accuracy: WaveAccuracy
     warnings: tuple[str, ...]
 
@@ -125,7 +142,7 @@ class WaveAnalysis:
                 }
                 for state in self.states
             ],
-            "fatigue": None,
+            "fatigue": [asdict(one) for one in self.fatigue],
             "accuracy": asdict(self.accuracy),
             "warnings": list(self.warnings),
         }
@@ -203,7 +220,14 @@ def analyse(
         f"{label} gives no `stiffness` and is taken as inextensible: its tensions are too great."
         for label in setting.line.inextensible
     ]
-    return WaveAnalysis(mooring.file.name, tuple(states), accuracy, tuple(warnings))
+    fatigue = tuple(
+        fatigue_of(
+            mooring.file.pieces[index].component, index, mooring.file.pieces[index].label,
+            [(state.sea.share, *state.worst[index]) for state in states],
+        )
+        for index in range(setting.line.top_pieces, len(mooring.file.pieces) - 1)
+    )  # fmt: skip
+    return WaveAnalysis(mooring.file.name, tuple(states), fatigue, accuracy, tuple(warnings))
 
 
 def _settled(
@@ -259,48 +283,66 @@ def _in_sea(
     beside: bool,
 ) -> MooringInSea:
     line = setting.line
+    spectral = np.abs(response.pull) ** 2 * response.weight[:, None]
+    moments = moments_of(response.omega, spectral)
     tension, period = response.moments(response.pull)
+    departs = np.array([_most(*each, duration) for each in zip(tension, period, strict=True)])
     motion, _ = response.moments(response.motion)
     turn = np.diff(response.motion, axis=1)
     turn = turn - (turn * line.spring).sum(2, keepdims=True) * line.spring
     lean, _ = response.moments(turn / line.span[:, None])
-    rows = []
+    rows: list[PieceInWaves] = []
+    worst: list[tuple[float, Floats]] = []
     for piece in mooring.file.pieces[:-1]:
         spring, node = int(line.piece_spring[piece.index]), int(line.piece_node[piece.index])
         mean = float(solution.tension[int(solution.piece_nodes[piece.index, 0])])
         if piece.index < line.top_pieces:  # nothing pulls at the upper end of what floats on top
             mean = float(solution.tension[int(solution.piece_nodes[line.top_pieces - 1, 1])])
         if spring < 0:  # on the seabed
-            rows.append(_row(piece.index, piece.label, mean, 0.0, np.nan, 0.0, 0.0, duration))
+            still = (mean, 0.0, mean, mean, np.nan, 0.0, 0.0, 0.0, mean, mean)
+            rows.append(PieceInWaves(piece.index, piece.label, *still))
+            worst.append((mean, np.zeros(4)))
             continue
-        tilt = degrees(float(np.linalg.norm(lean[spring])))
+        below = line.piece_spring[line.piece_spring > spring]
+        own = slice(spring, int(below.min()) if len(below) else len(tension))
+        at = spring + int(tension[own].argmax())
+        worst.append((float(line.tension[at]), moments[:, at]))
+        deviation, most = float(tension[spring]), float(departs[spring])
         rows.append(
-            _row(
-                piece.index, piece.label, mean, float(tension[spring]), float(period[spring]),
-                float(motion[node, 2]), tilt, duration,
+            PieceInWaves(
+                index=piece.index,
+                label=piece.label,
+                tension_mean=mean,
+                tension_std=deviation,
+                tension_max=mean + most,
+                tension_min=mean - most,
+                zero_crossing_period=float(period[spring]),
+                slack_probability=passing_probability(
+                    mean, deviation, float(period[spring]), duration
+                ),
+                heave_std=float(motion[node, 2]),
+                tilt_std=degrees(float(np.linalg.norm(lean[spring]))),
+                greatest=max(mean + most, float((line.tension + departs)[own].max())),
+                least=min(mean - most, float((line.tension - departs)[own].min())),
             )
-        )  # fmt: skip
+        )
     follower = None
     if setting.buoy is not None and beside:
         following = replace(setting, buoy=replace(setting.buoy, follows=True))
         follower = float(_by_piece(line, following.respond(sea, damping)[0])[0])
-    slack = tuple(row.label for row in rows if row.tension_min < 0.0 < row.tension_std)
-    return MooringInSea(sea, tuple(rows), slack, follower)
-
-
-def _row(
-    index: int,
-    label: str,
-    mean: float,
-    deviation: float,
-    period: float,
-    heave: float,
-    tilt: float,
-    duration: float,
-) -> PieceInWaves:
-    moves = deviation > 0.0 and not isnan(period)
-    most = greatest_of(deviation, period, duration) if moves else 0.0
-    probability = passing_probability(mean, deviation, period, duration) if moves else 0.0
-    return PieceInWaves(
-        index, label, mean, deviation, mean + most, mean - most, period, probability, heave, tilt
+    slack = tuple(row.label for row in rows if row.least < 0.0 < row.tension_std)
+    depth = -0.5 * (line.position[1:, 2] + line.position[:-1, 2])
+    return MooringInSea(
+        sea,
+        tuple(rows),
+        slack,
+        follower,
+        worst=tuple(worst),
+        spectrum=(response.omega, np.abs(response.pull[:, 0]) ** 2 * sea.density(response.omega)),
+        along=(depth, line.tension, tension, line.tension + departs),
     )
+
+
+def _most(deviation: float, period: float, duration: float) -> float:
+    moves = deviation > 0.0 and not isnan(period)
+    return greatest_of(deviation, period, duration) if moves else 0.0

@@ -10,7 +10,6 @@ import numpy as np
 
 from calm.assemble import mass_in_air
 from calm.files import Cable, Chain, Cylinder, Flexible
-from calm.files.flexible import strain_under
 from calm.physics.line import Floats, Integers
 from calm.physics.seawater import REFERENCE_DENSITY
 
@@ -243,6 +242,6 @@ def _axial(component: Component, tension: float) -> float:
         if component.elongation is not None:
             step = max(0.01 * tension, 1.0)
             below = max(tension - step, 0.0)
-            strained = strain_under(component, tension + step) - strain_under(component, below)
+            strained = component.strain_under(tension + step) - component.strain_under(below)
             return (tension + step - below) / strained if strained > 0.0 else RIGID
     return RIGID

@@ -8,9 +8,9 @@ from math import erf, exp, pi, radians, sqrt
 import numpy as np
 
 from calm.physics.line import Floats
+from calm.records.sea_states import SeaState
 from calm.waves.buoy import SIDEWAYS_ADDED, Buoy, Complexes
 from calm.waves.lumped_line import LumpedLine
-from calm.waves.spectra import SeaState, wave_numbers
 
 SETTLED = 2e-3
 """Relative change of the standard deviations below which the drag is linearised well enough."""
@@ -284,3 +284,21 @@ def _pull(line: LumpedLine, motion: Complexes) -> Complexes:
     """Return (f, n-1) tension in the springs beyond that of equilibrium [N/m]."""
     stretched = ((motion[:, 1:] - motion[:, :-1]) * line.spring).sum(2)
     return np.asarray(line.stiffness * stretched)
+
+
+def wave_numbers(omega: Floats, depth: float, gravity: float) -> Floats:
+    """Return the wave numbers of linear waves [1/m]: ω² = g k tanh(k h), by Newton's method.
+
+    Parameters
+    ----------
+    omega : (f,) angular frequencies [rad/s]
+    depth : of the water [m]
+    gravity : [m/s²]
+    """
+    deep = omega**2 / gravity
+    k = deep / np.sqrt(np.tanh(np.minimum(deep * depth, 50.0)))
+    for _ in range(20):
+        tanh = np.tanh(np.minimum(k * depth, 50.0))
+        slope = gravity * (tanh + k * depth * (1.0 - tanh**2))
+        k = k - (gravity * k * tanh - omega**2) / slope
+    return k

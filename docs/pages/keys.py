@@ -4,9 +4,10 @@ import json
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from pages.markdown import code, table
+
 from calm.files import mooring_schema
 from calm.files.components import KINDS
-from pages.markdown import code, table
 
 Schema = Mapping[str, Any]
 
@@ -32,6 +33,7 @@ _SECTIONS = {
     "SeaWaterKeys": "`density:`, by temperature and salinity",
     "Wind": "`wind:`",
     "Fouling": "`fouling:`",
+    "WaveKeys": "`waves:`",
     "Item": "`line:`, an item",
     "LengthAt": "`length_at:`",
     "LegKeys": "`legs:`, a leg",
@@ -40,6 +42,7 @@ _SECTIONS = {
     "HeldKeys": "`held:` of a leg",
     "Clamp": "`clamps:`, an item",
     "Definition": "`components:`, what every kind has",
+    "FatigueKeys": "`fatigue:`",
     "EstimatedFigure": "`estimate:`, or an item of it",
     "Sphere": "`kind: sphere`",
     "Cylinder": "`kind: cylinder`",

@@ -48,7 +48,10 @@ def test_the_table_and_the_object(calm, buoy):
         rope["tension_mean"] - rope["tension_min"]
     )
     assert set(told["accuracy"]) == {"mesh", "frequencies", "linearisation"}
-    assert told["fatigue"] is None
+    assert [(one["label"], one["curve"]) for one in told["fatigue"]] == [
+        ("rope", None),
+        ("chain", "dnv-studless-chain"),
+    ]
     assert told["units"]["force"] == "N"
 
 
@@ -154,3 +157,115 @@ def test_a_sea_breaks_in_shallow_water(calm, buoy, tmp_path):
     shown = calm("waves", path, "--hs", "6 m", "--tp", "12 s")
     assert shown.code == 2
     assert "breaks in 9 m of water, where it is 5.4 m high at most" in shown.err
+
+
+def in_its_file(buoy, waves, **more):
+    from pathlib import Path
+
+    path = Path(buoy(**more))
+    text = path.read_text().replace("toward: 90 deg}}", f"toward: 90 deg}}, waves: {waves}}}")
+    path.write_text(text)
+    return str(path)
+
+
+TABLE = "significant_wave_height[m],peak_period[s],share\n0.5,4,3\n1.5,6,1\n"
+
+
+def test_the_seas_of_the_file(calm, buoy, tmp_path):
+    """What the file gives is what the options would; an option comes before it."""
+    path = in_its_file(buoy, "{significant_height: 1.5 m, peak_period: 6 s}")
+    assert calm("waves", path).out == calm("waves", buoy(), *SEA).out
+    path = in_its_file(buoy, "{significant_height: 1.5 m, peak_period: 6 s}")
+    assert "Hs 0.5 m" in calm("waves", path, "--hs", "0.5 m", "--tp", "4 s").out
+    (tmp_path / "seas.csv").write_text(TABLE)
+    both = "{significant_height: 2 m, peak_period: 7 s, scatter: seas.csv}"
+    told = json.loads(calm("waves", in_its_file(buoy, both), "--json", "-").out)
+    assert [state["share"] for state in told["states"]] == [0.75, 0.25, 0.0]
+    alone = json.loads(calm("waves", in_its_file(buoy, "{scatter: seas.csv}"), "--json", "-").out)
+    # the sea to be survived adds nothing to the damage of the table
+    assert told["fatigue"][1]["damage_per_year"] == pytest.approx(
+        alone["fatigue"][1]["damage_per_year"], rel=1e-3
+    )
+
+
+@pytest.mark.parametrize(
+    ("waves", "message"),
+    [
+        ("{}", "needs `significant_height`"),
+        ("{significant_height: 2 m}", "needs a `peak_period`"),
+        ("{peak_period: 6 s, scatter: seas.csv}", "needs `significant_height`"),
+        ("{significant_height: 0 m, peak_period: 6 s}", "more than 0 m"),
+        ("{significant_height: 2, peak_period: 6 s}", "did you mean `significant_height: 2 m`"),
+        ("{significant_height: 9 m, peak_period: 4 s}", "would break"),
+        ("{significant_heigth: 2 m, peak_period: 4 s}", "significant_height"),
+        ("{significant_height: 2 m, peak_period: 6 s, spectrum: jonswop}", "mean `jonswap`"),
+        ("{significant_height: 2 m, peak_period: 6 s, gamma: 30}", "at most 10"),
+        ("{significant_height: 2 m, peak_period: 6 s, spectrum: ochi-hubble}", "no period"),
+        ("{spectrum: sea.csv, significant_height: 2 m}", "leave them out"),
+        ("{scatter: none.csv}", "no such file"),
+        ("{scatter: bad.csv}", "not numbers"),
+        ("{scatter: seas.csv, spectrum: ochi-hubble}", "periods of its own"),
+    ],
+)
+def test_seas_of_the_file_that_cannot_be(calm, buoy, tmp_path, waves, message):
+    (tmp_path / "seas.csv").write_text(TABLE)
+    (tmp_path / "bad.csv").write_text(TABLE + "2,x,1\n")
+    shown = calm("waves", in_its_file(buoy, waves))
+    assert shown.code == 2
+    assert message in " ".join(shown.err.split())
+    assert "Traceback" not in shown.err
+    assert calm("check", in_its_file(buoy, waves)).code == 2
+
+
+RULES = ("wave-strength", "wave-slack", "fatigue")
+
+
+def judged(calm, path):
+    told = json.loads(calm("check", path, "--json", "-").out)
+    found = [one for one in told["findings"] if one["rule"] in RULES]
+    return {(one["rule"], one["component"]): one for one in found}
+
+
+LOADS = "stiffness: 12 kN, breaking_load: BREAK"
+
+
+def test_a_surface_mooring_without_waves_is_unknown(calm, buoy):
+    found = judged(calm, buoy())
+    assert [(key, one["state"]) for key, one in found.items()] == [
+        (("wave-strength", None), "unknown")
+    ]
+
+
+def test_the_check_judges_the_waves_of_the_file(calm, buoy, tmp_path):
+    """The tension of `calm waves` against breaking load over 1.67, slack, and the life."""
+    (tmp_path / "seas.csv").write_text(TABLE)
+    strong = LOADS.replace("BREAK", "60 kN")
+    path = in_its_file(buoy, "{scatter: seas.csv}", stiff=strong)
+    told = json.loads(calm("waves", path, "--json", "-").out)
+    rope = max(state["components"][1]["greatest"] for state in told["states"])
+    found = judged(calm, path)
+    strength = found["wave-strength", "rope"]
+    assert strength["value"] == pytest.approx(rope, rel=1e-6)
+    assert strength["limit"] == pytest.approx(60e3 / 1.67)
+    assert strength["state"] == "pass"
+    assert found["fatigue", "rope"]["state"] == "unknown"  # no curve of nylon is published
+    chain = found["fatigue", "chain"]
+    (life,) = [one["life"] for one in told["fatigue"] if one["label"] == "chain"]
+    assert chain["value"] == pytest.approx(life * 365.25 * 86400.0, rel=1e-6)
+    assert chain["limit"] == pytest.approx(3.0 * 365.0 * 86400.0)
+    assert chain["state"] == "pass"
+    weak = LOADS.replace("BREAK", "0.5 kN")
+    found = judged(calm, in_its_file(buoy, "{scatter: seas.csv}", stiff=weak))
+    assert found["wave-strength", "rope"]["state"] == "fail"
+    one_sea = "{significant_height: 1.5 m, peak_period: 6 s}"
+    found = judged(calm, in_its_file(buoy, one_sea, stiff=strong))
+    assert found["fatigue", None]["state"] == "unknown"
+
+
+def test_the_check_says_what_falls_slack(calm, buoy):
+    sea = "{significant_height: 6 m, peak_period: 9 s}"
+    found = judged(calm, in_its_file(buoy, sea))
+    states = {one["state"] for key, one in found.items() if key[0] == "wave-slack"}
+    assert "fail" in states
+    slack = [one for one in found.values() if one["rule"] == "wave-slack"]
+    assert all((one["value"] < 0.0) == (one["state"] == "fail") for one in slack)

@@ -4,7 +4,7 @@ import pytest
 
 from calm.assemble.catalogue_search import Index
 from calm.files import Catalogue
-from calm.files.fields import QuantityField
+from calm.files.definition import QuantityField
 from calm.tui import checking
 from calm.tui.catalogue.component_screen import defined, form_fields
 

@@ -6,9 +6,8 @@ import pytest
 
 import calm
 from calm.case import Mooring, Result
-from calm.checks.assess import assessment_of, stand_of
+from calm.checks.assess import RULES, assessment_of, stand_of
 from calm.checks.finding import AS_GIVEN, State
-from calm.checks.rules import RULES
 from calm.cli.check_files import read_designs
 from calm.errors import NoEquilibrium
 from calm.files import Place

@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 
 from calm.case import load
+from calm.records.sea_states import spectrum_of
 from calm.waves.analysis import analyse
 from calm.waves.buoy import buoy_of
 from calm.waves.lumped_line import lumped_line
 from calm.waves.response import Waves, respond
-from calm.waves.spectra import spectrum_of
 
 MEASURED = (
     (1.5, 5.28, 129.0), (2.5, 6.10, 157.0), (3.5, 7.07, 190.0), (4.5, 7.96, 212.0),

@@ -22,8 +22,7 @@ from math import cos, degrees, hypot, pi, radians, sin
 import numpy as np
 import pytest
 
-from calm.analytic.pode import cable_functions
-from calm.analytic.uniform import critical_angle, critical_weight_ratio, heavy_line
+from calm.analytic.uniform import cable_functions, critical_angle, critical_weight_ratio, heavy_line
 from calm.physics.drag import Friction
 from calm.physics.line import Line, Water
 from calm.physics.strumming import BourgetMarichal

@@ -120,7 +120,7 @@ def return_levels(
     ----------
     time : (n,) ascending, as evenly as a record with gaps is
     values : (n,) NaN where there is none
-    statuses : profiles by their status, as `calm.batch.stored_result.statuses_of` counts them; of
+    statuses : profiles by their status, as `calm.batch.finished.statuses_of` counts them; of
         those that were not solved, only `calm.batch.statuses.IN_WEAK_CURRENT` and profiles
         without data are passed over
     step : `median_step` of the times, where it is known already
@@ -321,10 +321,8 @@ def peaks_over(
 def extremal_index(intervals: NDArray[np.float64]) -> float:
     """θ, the share of exceedances that are independent of those before them.
 
-    Parameters
-    ----------
-    intervals : (N - 1,) between exceedances [steps], each 1 or more; the form of the estimate
-        changes where one of them is beyond 2
+    The intervals between exceedances, (N - 1,), are 1 step or more; the form of the estimate
+    changes where one of them is beyond 2.
     """
     one, two = (1.0, 2.0) if intervals.max() > 2.0 else (0.0, 0.0)
     below = float(((intervals - one) * (intervals - two)).sum())

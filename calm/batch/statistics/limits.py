@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from calm.batch.statistics.series import Column, ResultColumns, Seat
 from calm.batch.statuses import Ending
 from calm.case import Mooring
+from calm.checks.assess import RULES, equilibrium
 from calm.checks.criterion import AT_SURFACE, Criterion, JudgedPart
 from calm.checks.finding import Rule, State
 from calm.checks.posture import reaches_the_surface
-from calm.checks.rules import RULES, equilibrium
 from calm.files.rule_texts import RULES as TEXTS
 from calm.physics.seabed import required_weight
 
@@ -221,12 +221,7 @@ class RuleShare:
 
 
 def equilibrium_share(ended: Mapping[Ending, int]) -> RuleShare:
-    """Return how often the line has no equilibrium; a profile that did not converge is not judged.
-
-    Parameters
-    ----------
-    ended : profiles by how they ended
-    """
+    """Return how often the line has no equilibrium; what did not converge is not judged."""
     without = ended[Ending.NO_EQUILIBRIUM]
     judged = ended[Ending.SOLVED] + without
     return _rule_share(equilibrium, judged, without, 0, ended[Ending.NOT_CONVERGED], ())

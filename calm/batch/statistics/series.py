@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from tempfile import TemporaryFile
-from types import TracebackType
 from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.batch.stored_result import Stored, labels_of, readable, statuses_of, times_of
+from calm.batch.finished import Stored, labels_of, readable, statuses_of, times_of
 
 Column = NDArray[np.floating[Any]]
 Times = NDArray[np.datetime64]
@@ -91,12 +90,7 @@ class ResultColumns:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         self._turned.close()
 
     def __len__(self) -> int:

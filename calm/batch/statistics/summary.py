@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from calm.batch.finished import Stored
 from calm.batch.statistics.extremes import Fit, LevelsRefused, median_step, return_levels, years_of
 from calm.batch.statistics.limits import (
     NOT_JUDGED,
@@ -22,7 +23,6 @@ from calm.batch.statistics.limits import (
 )
 from calm.batch.statistics.series import Column, ResultColumns, Seat, Times
 from calm.batch.statuses import Ending, endings
-from calm.batch.stored_result import Stored
 from calm.case import Mooring
 from calm.case.profilers import profilers_in
 from calm.checks.criterion import limits_used
@@ -230,10 +230,6 @@ def _stops(series: ResultColumns, mooring: Mooring) -> Iterator[StopDepths]:
             )
 
 
-def _anchor_tension(series: ResultColumns) -> Column:
-    return series.column("tension_top", -1)
-
-
 def _greatest_tilt(series: ResultColumns) -> Column:
     greatest = np.full(len(series), np.nan, np.float32)
     for seat in series.seats:
@@ -243,7 +239,7 @@ def _greatest_tilt(series: ResultColumns) -> Column:
 
 RESPONSES: Mapping[str, Callable[[ResultColumns], Column]] = {
     "knockdown": top_knockdown,
-    "anchor_tension": _anchor_tension,
+    "anchor_tension": lambda series: series.column("tension_top", -1),
     "tilt": _greatest_tilt,
     "offset": top_offset,
 }

@@ -62,10 +62,8 @@ class Tail:
     def level(self, growth: float) -> float:
         """The return level μ + σ (e^{ξ g} - 1)/ξ of a period of T years.
 
-        Parameters
-        ----------
-        growth : g, -log(-log(1 - 1/T)) for maxima of years (Coles 2001, eq. 3.4), log(λ T) for
-            λ independent peaks a year (eq. 4.12 with λ in place of the rate of exceedances)
+        Its growth g is -log(-log(1 - 1/T)) for maxima of years (Coles 2001, eq. 3.4), log(λ T) for
+        λ independent peaks a year (eq. 4.12 with λ in place of the rate of exceedances).
         """
         return self.location + self.scale * _grown(self.shape, growth)
 
@@ -75,12 +73,8 @@ class Tail:
         For each possible level the likelihood is maximised over the other parameters. The interval
         holds the levels for which twice the logarithm of this is less than `CHI_SQUARE` below that
         of the fit (Coles 2001, §2.6.6, §3.3.4, §4.3.3). An end is None where none is found within
-        100 standard deviations of the values: the data do not bound the level there.
-
-        Raises
-        ------
-        NotFitted
-            The search for a maximum failed.
+        100 standard deviations of the values: the data do not bound the level there. NotFitted: the
+        search for a maximum failed.
         """
         best, estimate = self._loss(self.location, self.scale, self.shape), self.level(growth)
 
@@ -197,13 +191,7 @@ def _apart(shape: float) -> float:
 
 
 def _least(loss: Callable[[Any], float], *starts: list[float]) -> tuple[Floats, float]:
-    """Return where a loss is least, and how much it is there, from the best of some starts.
-
-    Raises
-    ------
-    NotFitted
-        The search did not end.
-    """
+    """Return where a loss is least, and how much it is there, from the best of some starts."""
     from scipy.optimize import minimize
 
     start = min(starts, key=lambda one: loss(np.array(one)))

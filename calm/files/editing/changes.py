@@ -50,7 +50,9 @@ class Page:
                     opened = _opens(location[:depth], node)
                     return add_entry(self.text, node, name, new_value, self.style, open=opened)
                 if outer is None or node.kind == "sequence":
-                    raise EditError(f"{_shown(location)} cannot be set: there is a list above it")
+                    raise EditError(
+                        f"`{'.'.join(map(str, location))}` cannot be set: there is a list above it"
+                    )
                 return self._set(outer, location[depth - 1], new)
             outer, node = node, child
         assert outer is not None
@@ -150,10 +152,6 @@ def _opens(location: Location, node: Node) -> bool:
     if location not in [(name,) for name in NAMED]:
         return False
     return not node.children or any(child.style == "block" for child in node.children)
-
-
-def _shown(location: Location) -> str:
-    return "`" + ".".join(map(str, location)) + "`"
 
 
 def _child_of(node: Node, step: str | int) -> Node | None:

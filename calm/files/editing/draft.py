@@ -65,8 +65,7 @@ class Draft:
 
     Parameters
     ----------
-    text : str
-        With its own line breaks, and its byte order mark if it has one.
+    text : with its own line breaks, and its byte order mark if it has one
 
     Raises
     ------
@@ -330,8 +329,7 @@ class History:
 
     Parameters
     ----------
-    draft : Draft
-        As it is saved.
+    draft : as it is saved
     """
 
     def __init__(self, draft: Draft) -> None:

@@ -33,14 +33,11 @@ class LineItem:
 
     Attributes
     ----------
-    line, column : int
-        Where it stands, counted from 1: those of the pieces that it is read as.
-    values : dict
-        Its keys with plain values, as written; empty text where there is no value. A `length_at`
-        is in it as people say it, `480 m at 2 kN`.
+    line, column : where it stands, counted from 1: those of the pieces that it is read as
+    values : its keys with plain values, as written; empty text where there is no value. A
+        `length_at` is in it as people say it, `480 m at 2 kN`.
     clamps : tuple of Item
-    text : str
-        The lines it takes, with the comments that belong to it.
+    text : the lines it takes, with the comments that belong to it
     """
 
     line: int
@@ -166,19 +163,13 @@ class Items:
 
     Attributes
     ----------
-    start, end : int
-        What is rearranged of the text.
-    form : "block", "rows" or "inline"
-        A block list; one in brackets whose items have lines of their own; any other in brackets.
-    column : int
-        Of the dashes, or of the items where there are none, counted from 1.
+    start, end : what is rearranged of the text
+    form : a block list; one in brackets whose items have lines of their own; any other in brackets
+    column : of the dashes, or of the items where there are none, counted from 1
     slots : list of Slot
-    gaps : list of str
-        What stands before each item and is not its own (between two `inline` ones their comma).
-    rest : str
-        What follows the last.
-    ends_in_comma : bool
-        There is a comma after the last of the `rows`.
+    gaps : what stands before each item and is not its own (between two `inline` ones their comma)
+    rest : what follows the last
+    ends_in_comma : there is a comma after the last of the `rows`
     """
 
     start: int

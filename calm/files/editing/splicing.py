@@ -187,13 +187,9 @@ def _without_flow_entry(text: str, mapping: Node, at: int) -> list[Patch]:
     between = text[before:start]
     if "#" not in between:
         return [Patch(before, end, "")]
-    comma = before + between.index(",") if _comma_first(between) else before
+    comma = before + between.index(",") if between.lstrip(" \t\r\n").startswith(",") else before
     start, end = _with_lines(text, start, end)
     return [Patch(comma, comma + (text[comma] == ","), ""), Patch(start, end, "")]
-
-
-def _comma_first(between: str) -> bool:
-    return between.lstrip(" \t\r\n").startswith(",")
 
 
 def _with_lines(text: str, start: int, end: int) -> tuple[int, int]:

@@ -40,14 +40,12 @@ class WorkingFile:
 
     Parameters
     ----------
-    path : path or None
-        None: it has no name yet; its copy is then kept in the user's state folder
-        (`XDG_STATE_HOME`), where also go copies that cannot be written beside the file.
+    path : None: it has no name yet; its copy is then kept in the user's state folder
+        (`XDG_STATE_HOME`), where also go copies that cannot be written beside the file
 
     Attributes
     ----------
-    unsaved : text or None
-        What `keep` is to keep; None where nothing is unsaved.
+    unsaved : what `keep` is to keep; None where nothing is unsaved
     """
 
     def __init__(self, path: str | Path | None) -> None:
@@ -56,17 +54,16 @@ class WorkingFile:
         self._seen: bytes | None = None
         self._looked: Stamp | None = None
         self._differs = False
-        self._places = [_place_of(*each) for each in self._folders()]
+        self._places = [
+            folder / f"{stem}.{os.urandom(4).hex()}{SUFFIX}" for folder, stem in self._folders()
+        ]
         self._adopted: Path | None = None
         self._lock = RLock()  # a signal may ask for the copy while it is being removed
 
     def read(self) -> str:
         """Return the text of the file, with its byte order mark and line breaks.
 
-        Raises
-        ------
-        InputError
-            It cannot be read, or is no text.
+        InputError: it cannot be read, or is no text.
         """
         assert self.path is not None
         content = read_content(self.path)
@@ -131,12 +128,8 @@ class WorkingFile:
     def keep(self) -> Path | None:
         """Bring the copy in line with `unsaved`; where it is. For any thread.
 
-        A copy that this session made goes where nothing is unsaved; none but that.
-
-        Raises
-        ------
-        NotWritten
-            Neither beside the file nor in the state folder.
+        A copy that this session made goes where nothing is unsaved; none but that. NotWritten:
+        neither beside the file nor in the state folder.
         """
         with self._lock:
             if self.unsaved is None:
@@ -332,11 +325,6 @@ class KeptWork:
 def _digest(content: bytes | None) -> str:
     """Return a short sign of a content; empty of none."""
     return "" if content is None else hashlib.sha256(content).hexdigest()[:16]
-
-
-def _place_of(folder: Path, stem: str) -> Path:
-    """Return a new name for a copy in a folder."""
-    return folder / f"{stem}.{os.urandom(4).hex()}{SUFFIX}"
 
 
 def _with_record(text: str, base: str) -> bytes:

@@ -11,11 +11,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from calm.files.composition import Node
-from calm.files.density import TableKeys
 from calm.files.environment import Position
 from calm.files.logbook import DocumentKeys
 from calm.files.mooring_file import Solver
 from calm.files.reader import MooringKeys
+from calm.files.water import TableKeys
 
 # Read otherwise by YAML, or by other programs that read it.
 _WORD = re.compile(r"(?:~|=|<<|null|true|false|yes|no|on|off)?", re.IGNORECASE)
@@ -37,10 +37,9 @@ class Wording(NamedTuple):
     Attributes
     ----------
     value : Value
-    lines : str
-        In a block list that begins in column 1, with its comments.
-    above, inline, behind : str
-        The comments above it, its text within brackets, and what follows that on its line.
+    lines : in a block list that begins in column 1, with its comments
+    above, inline, behind : the comments above it, its text within brackets, and what follows that
+        on its line
     """
 
     value: Value
@@ -85,10 +84,8 @@ class WritingStyle:
     Attributes
     ----------
     line_break : str
-    step : int
-        Columns by which what is below a key is indented.
-    dash : int
-        The same for the dashes of a list.
+    step : columns by which what is below a key is indented
+    dash : the same for the dashes of a list
     """
 
     line_break: str = "\n"
@@ -228,16 +225,17 @@ def written(text: str, *, flow: bool, quote: str = "") -> str:
     Parameters
     ----------
     text : str
-    flow : bool
-        It is to stand within brackets, where commas and brackets end a plain text.
-    quote : str
-        The sign it was quoted with so far, which is kept.
+    flow : it is to stand within brackets, where commas and brackets end a plain text
+    quote : the sign it was quoted with so far, which is kept
     """
     if quote == "'" and text.isprintable():
         return "'" + text.replace("'", "''") + "'"
     if quote != '"' and _stands_plain(text, flow):
         return text
-    escaped = "".join(_ESCAPED.get(sign) or _escaped(sign) for sign in text)
+    escaped = "".join(
+        _ESCAPED.get(sign) or (sign if sign.isprintable() else f"\\U{ord(sign):08x}")
+        for sign in text
+    )
     return f'"{escaped}"'
 
 
@@ -245,7 +243,3 @@ def _stands_plain(text: str, flow: bool) -> bool:
     if _WORD.fullmatch(text) or text.startswith(("---", "...")) or not text.isprintable():
         return False
     return bool(_PLAIN.fullmatch(text)) and not (flow and _NOT_IN_FLOW.search(text))
-
-
-def _escaped(sign: str) -> str:
-    return sign if sign.isprintable() else f"\\U{ord(sign):08x}"

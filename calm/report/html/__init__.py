@@ -7,15 +7,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
 from importlib.resources import files
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from calm.drawing.picture import set_apart
-from calm.report.blocks import Block, Table
+from calm.report.blocks import Block, Column, Report, ReportPart, Section, Table
 
 if TYPE_CHECKING:
     from jinja2 import Environment
 
-    from calm.report.blocks import Column, Report, ReportPart, Section
 
 _LONG_WORD = re.compile(r"(\S{20,})")
 _STEPS = re.compile(r"[^_./-]{1,10}[_./-]*|[_./-]+")
@@ -74,7 +73,7 @@ def _environment() -> Environment:
         lstrip_blocks=True,
     )
     environment.filters |= {"set_apart": set_apart, "breakable": _breakable, "kinds": _kinds}
-    environment.tests["of"] = _is_of
+    environment.tests["of"] = lambda block, kind: type(block).__name__ == kind
     return environment
 
 
@@ -98,11 +97,6 @@ def _kinds(columns: Sequence[Column]) -> list[str]:
 
     kinds = map(kind, columns)
     return [Markup(f' class="{each}"' if each else "") for each in kinds]
-
-
-def _is_of(block: Any, kind: str) -> bool:
-    """Return whether a block of a report is of a kind."""
-    return type(block).__name__ == kind
 
 
 def _text(name: str) -> str:

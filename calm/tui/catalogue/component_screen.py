@@ -16,7 +16,7 @@ from textual.widgets import Static
 
 from calm.files.catalogue import defined, tidy_id
 from calm.files.components import KINDS
-from calm.files.fields import QuantityField
+from calm.files.definition import QuantityField
 from calm.tui.actions import bindings, hints
 from calm.tui.bars import KeyBar, TitleBar
 from calm.tui.checking import Check, Reading, anything, quantity

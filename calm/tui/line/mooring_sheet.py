@@ -8,8 +8,8 @@ from typing import Any
 
 from calm.case.parts import parts_of
 from calm.files import Flexible, MooringFile, Piece, Place
+from calm.files.definition import LENGTH, POSITIVE_LENGTH, QuantityField
 from calm.files.editing import Draft, EditError, Value
-from calm.files.fields import LENGTH, POSITIVE_LENGTH, QuantityField
 from calm.files.yaml_document import Location
 from calm.templates import TEMPLATES
 from calm.tui.checking import Reading, anything, day, moment, quantity

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from calm.errors import Problem
-from calm.files.fields import QuantityField
+from calm.files.definition import QuantityField
 from calm.records.headings import heading
 from calm.records.profile_tables import (
     DIRECTION,

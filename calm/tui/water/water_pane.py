@@ -14,8 +14,8 @@ from textual.message import Message
 from textual.widget import Widget
 from textual.widgets import Static
 
+from calm.files.definition import POSITIVE_LENGTH, QuantityField
 from calm.files.editing import Draft, Value
-from calm.files.fields import POSITIVE_LENGTH, QuantityField
 from calm.records.profile_tables import DIRECTION, SALINITY, TEMPERATURE, WATER_DENSITY
 from calm.tui.checking import needed, quantity
 from calm.tui.field import Field

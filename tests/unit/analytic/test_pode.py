@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from calm.analytic.pode import cable_functions
-from calm.analytic.uniform import critical_weight_ratio
+from calm.analytic.uniform import cable_functions, critical_weight_ratio
 from tests.unit.analytic.integration import integrate
 
 # critical angle, f, φ (degrees); τ, σ, ξ, η

@@ -4,13 +4,14 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from calm.analytic.unequal_drag import linear_tension_ratio, unequal_cable
 from calm.analytic.uniform import tension_ratio
 from calm.analytic.villain_guillot import (
     body_pull,
     linear_cable,
+    linear_tension_ratio,
     quadratic_cable,
     straight_angle,
+    unequal_cable,
 )
 from tests.unit.analytic.integration import difference, integrate
 

@@ -19,9 +19,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[3]))
 import h5netcdf
 import h5py
 
-from calm.batch.compiling import compile_solver
 from calm.batch.profiles import Batch
 from calm.batch.run import run_batch
+from calm.batch.work import compile_solver
 from tests.unit.batch.made import PLAIN, MadeRecord, content, made_mooring
 
 TOUCHES = {"open", "os.rename", "os.remove", "os.rmdir", "os.mkdir", "os.truncate", "shutil.rmtree"}

@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 import calm.report.xarray_accessor  # noqa: F401  every dataset has `.calm` from here on
-from calm.batch.stored_result import open_result
+from calm.batch.finished import open_result
 from calm.errors import UsageError
 from tests.unit.batch.made_result import COMPONENTS, make_result
 

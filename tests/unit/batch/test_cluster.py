@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from calm.batch import cluster as cluster_module
+from calm.batch import work as cluster_module
 from calm.batch.run import run_batch
 from calm.errors import UsageError
 from tests.unit.batch.made import MadeRecord, content, made_mooring
@@ -171,7 +171,7 @@ def test_calm_missing_there_is_told(tmp_path, started):
 
 
 def test_nobody_at_the_address(tmp_path, monkeypatch):
-    monkeypatch.setattr("calm.batch.cluster.PATIENCE", "0.2s")
+    monkeypatch.setattr("calm.batch.work.PATIENCE", "0.2s")
     mooring, record = made_mooring(tmp_path), MadeRecord(20)
     for address in ("tcp://127.0.0.1:9", "nonsense"):
         with pytest.raises(UsageError, match="no scheduler answers"):
@@ -183,7 +183,7 @@ def test_without_dask_it_says_what_to_install(tmp_path):
     program = (
         "import sys; sys.modules['distributed'] = None\n"
         "from pathlib import Path\n"
-        "from calm.batch.cluster import solved_on\n"
+        "from calm.batch.work import solved_on\n"
         "from calm.errors import UsageError\n"
         "try:\n"
         "    next(solved_on('tcp://127.0.0.1:9', None, iter(()), print, None))\n"

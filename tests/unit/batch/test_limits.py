@@ -10,9 +10,9 @@ import calm
 from calm.batch.statistics.limits import NOT_JUDGED, limits_of
 from calm.batch.statistics.series import ResultColumns
 from calm.case import Mooring
+from calm.checks.assess import RULES, STANDING
 from calm.checks.finding import State
 from calm.checks.posture import reaches_the_surface
-from calm.checks.rules import RULES, STANDING
 from calm.files.check_limits import Checks, MinimumTensions
 from calm.shipped import shipped_folder
 from tests.unit.batch.made_result import make_result, one_profile

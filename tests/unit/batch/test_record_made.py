@@ -4,7 +4,7 @@ from pathlib import Path
 import numpy as np
 
 from calm.records.current_file import open_record
-from calm.records.made_record import DEPTHS, LATITUDE, LONGITUDE, made_record
+from calm.records.record import DEPTHS, LATITUDE, LONGITUDE, made_record
 
 
 def test_made_record_is_the_same_everywhere() -> None:

@@ -11,12 +11,12 @@ import pytest
 
 import calm
 from calm.batch import run as run_module
-from calm.batch.compiling import compile_solver
+from calm.batch.finished import open_result
 from calm.batch.profiles import Batch
 from calm.batch.run import LARGEST_BLOCK, run_batch
 from calm.batch.statuses import STATUSES, Ending
-from calm.batch.stored_result import open_result
 from calm.batch.threads import in_threads
+from calm.batch.work import compile_solver
 from calm.errors import UsageError
 from tests.unit.batch.made import MOORING, MadeRecord, content, made_mooring
 
@@ -116,7 +116,7 @@ def test_compiling_is_told_when_it_takes_place(tmp_path, mooring):
     program = (
         "import sys\n"
         "from pathlib import Path\n"
-        "from calm.batch.compiling import compile_solver\n"
+        "from calm.batch.work import compile_solver\n"
         "from numba.core.dispatcher import _FunctionCompiler\n"
         "from calm.batch.profiles import Batch\n"
         "from tests.unit.batch.made import made_mooring\n"

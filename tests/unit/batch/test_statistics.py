@@ -6,6 +6,7 @@ import tracemalloc
 import numpy as np
 import pytest
 
+from calm.batch.finished import open_result
 from calm.batch.statistics import series
 from calm.batch.statistics.extremes import Fit, LevelsRefused
 from calm.batch.statistics.summary import (
@@ -16,7 +17,6 @@ from calm.batch.statistics.summary import (
     envelope_of,
     summarize,
 )
-from calm.batch.stored_result import open_result
 from calm.errors import UsageError
 from calm.report.batch_summary import summary_document
 from tests.unit.batch.made_result import FILE, made_mooring, make_result, stormy

@@ -7,8 +7,7 @@ import zarr
 
 from calm.batch.dataset import arrays_of, layout_of
 from calm.batch.profiles import solve_profiles
-from calm.batch.store.identity import differences, identity_of, to_text
-from calm.batch.store.store import open_store
+from calm.batch.work_store import differences, identity_of, open_store, to_text
 from tests.unit.batch.made import MadeRecord, content, made_mooring
 
 pytestmark = pytest.mark.thorough

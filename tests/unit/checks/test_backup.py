@@ -4,7 +4,7 @@ import pytest
 
 import calm
 from calm.checks.assess import check
-from calm.checks.backup import breaks_of, losses_of
+from calm.checks.recovery import breaks_of, losses_of
 
 FILE = """
 name: By hand

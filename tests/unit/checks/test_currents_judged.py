@@ -4,7 +4,7 @@ import pytest
 
 from calm.case import load
 from calm.checks.assess import assessment_of, stand_of
-from calm.checks.currents import currents
+from calm.checks.situations import currents
 from calm.errors import InputError
 from calm.files.strumming_keys import StrummingFactor
 

@@ -9,7 +9,7 @@ from calm.checks.assess import check
 from calm.checks.assessment import Assessment
 from calm.checks.finding import State
 from calm.errors import InputError
-from calm.report.check_documents import check_document
+from calm.report.check_report import check_document
 
 LINE = """\
 name: estimates

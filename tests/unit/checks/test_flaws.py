@@ -8,10 +8,9 @@ from pathlib import Path
 import pytest
 
 from calm.case import Mooring, load
-from calm.checks.assess import assessment_of, stand_of
+from calm.checks.assess import RULES, assessment_of, stand_of
 from calm.checks.assessment import Assessment
 from calm.checks.finding import Finding
-from calm.checks.rules import RULES
 from calm.shipped import shipped_folder
 
 
@@ -35,6 +34,8 @@ AT_LEAST = (
     "strength-steps",
     "anchor-weight",
     "slack",
+    "wave-slack",
+    "fatigue",
     "reserve",
     "freeboard",
     "backup",
@@ -55,7 +56,63 @@ UNDER = (
 
 CDMS, SLOPE, NYLON, FIT = "cdms-1", "upward-adcp-300m", "taut-nylon-surface", "fit-top-depth"
 
+GUARD = "chain-and-rope-surface"
+IN_WAVES = (
+    ("depth: 60 m", "depth: 60 m\n  waves: {significant_height: 3 m, peak_period: 7 s}"),
+    ("label: marker buoy}", "label: marker buoy, heave: follows, mass: 200 kg}"),
+)
+STRETCHING = ("label: floating rope}", "label: floating rope, stiffness: 60 kN}")
+
 FLAWS = (
+    Flaw(
+        "a buoy that nobody looked at in waves",
+        GUARD,
+        (),
+        "wave-strength",
+        None,
+        "unknown",
+        "no `waves:` are given",
+    ),
+    Flaw(
+        "a link too weak for a sea",
+        GUARD,
+        (
+            *IN_WAVES,
+            ("{use: polypropylene-22", "{use: polypropylene-22, working_load: 4 kN"),
+            STRETCHING,
+        ),
+        "wave-strength",
+        "floating rope",
+        "fail",
+        "in waves of Hs 3.0 m; its loads allow 4000 N",
+    ),
+    Flaw(
+        "a rope whose stretch in waves is not known",
+        GUARD,
+        IN_WAVES,
+        "wave-strength",
+        "floating rope",
+        "unknown",
+        "gives no `stiffness`",
+    ),
+    Flaw(
+        "a line that snatches",
+        GUARD,
+        (*IN_WAVES, STRETCHING, ("significant_height: 3 m", "significant_height: 6 m")),
+        "wave-slack",
+        "floating rope",
+        "fail",
+        "it falls slack and snatches",
+    ),
+    Flaw(
+        "a life without a climate",
+        GUARD,
+        (*IN_WAVES, STRETCHING),
+        "fatigue",
+        None,
+        "unknown",
+        "one sea is no climate",
+    ),
     Flaw(
         "a wire too weak",
         CDMS,

@@ -6,7 +6,7 @@ import pytest
 
 import calm
 from calm.case.draws import CAUSES
-from calm.checks.likelihood import HANDLED, with_probabilities
+from calm.checks.assess import HANDLED, with_probabilities
 
 PLUMB = """
 name: {name}

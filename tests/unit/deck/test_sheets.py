@@ -6,7 +6,7 @@ import pytest
 
 import calm
 from calm.deck import Deck, deck_of
-from calm.deck.deck_items import Order
+from calm.deck.deck_items import Order, rows_on_paper
 from calm.deck.hardware import Stock
 from calm.deck.shipping import total_of
 
@@ -66,6 +66,35 @@ def test_the_order_over_the_side(moorings, deck):
     assert first[:2] == ["weight", "rope"]
     assert first[first.index("wire") :][:3] == ["wire", "low", "high"]
     assert sorted(first) == sorted(down)
+
+
+def test_what_shares_a_row_on_paper(tmp_path, deck):
+    told = [(row.label, row.name, row.joined) for row in rows_on_paper(deck.deployment)]
+    assert told[:3] == [
+        # the shackle with a serial number is a row of its own
+        ("top float", "ball", "13 shackle, 22 ring"),
+        ("shackle-16", deck.parts[3].name, ""),
+        ("wire", "wire", ""),
+    ]
+    chain = "{use: chain, length: 2 m, label: cluster, clamps: [{use: pack, at: 0.5 m},{use: pack,"
+    chain += " at: 1.5 m}]}\n  - {use: shackle-13}"
+    floats = "\n  - {use: shackle-13}\n  - ".join(3 * ["{use: pack}"])
+    text = MOORING.replace("{use: pack, count: 3, serial: [a, b, c], label: glass}",
+                           f"{chain}\n  - {floats}\n  - {{use: shackle-16}}")  # fmt: skip
+    text = text.replace("  wire: {kind", "  chain: {kind: chain, diameter: 13 mm, weight: 30 N/m}\n"
+                        "  wire: {kind")  # fmt: skip
+    (tmp_path / "m.yaml").write_text(text)
+    sheets = deck_of([calm.load(tmp_path / "m.yaml")])
+    rows = {row.label: row for row in rows_on_paper(sheets.deployment)}
+    assert (rows["cluster"].name, rows["cluster"].joined, rows["cluster"].count) == (
+        "2 × pack", "13 shackle", 4,
+    )  # fmt: skip
+    (shared,) = (row for row in rows.values() if len(row.items) == 3)
+    assert (shared.name, shared.joined) == ("3 × pack", "2 × 13 shackle, 16 shackle")
+    # nothing is lost, nothing counted twice; the other way round the same clusters
+    for order in Order:
+        listed = deck_of([sheets.result.mooring], order).deployment
+        assert sum(row.count for row in rows_on_paper(listed)) == len(sheets.parts)
 
 
 def test_depths_and_heights_are_those_of_the_result(deck):

@@ -1,6 +1,7 @@
 """Moorings given to other programs, and read back: the same equilibrium."""
 
 import re
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -85,6 +86,26 @@ def test_the_points_of_moordyn_stand_in_equilibrium():
     assert -float(last[4]) == pytest.approx(answer["top"]["depth"], abs=1e-3)
     lift = (1025 * float(last[6]) - float(last[5])) * 9.81
     assert lift == pytest.approx(682 * 9.80665, rel=2e-3)
+
+
+@pytest.mark.parametrize("name", ["s1000", "tidal-adcp", "taut-nylon-surface"])
+def test_the_damping_of_moordyn_spares_what_waves_do(name):
+    """Of MoorDyn's BA = ζ l √(EA w) a wave at 1 rad/s feels ω BA / EA: below 1 % in each segment.
+
+    ζ is of the highest mode of a segment, 2/l √(EA/w), far above every wave; its manual advises
+    one near 1 there (MoorDyn documentation, troubleshooting: segment damping).
+    """
+    lines = export_file(LINES / f"{name}.yaml", "moordyn").content.decode().splitlines()
+    heads = [number for number, line in enumerate(lines) if line.startswith("-----")]
+    tables = [lines[a + 3 : b] for a, b in pairwise(heads[1:])]
+    types = {row.split()[0]: [float(cell) for cell in row.split()[1:]] for row in tables[0]}
+    for row in tables[2]:
+        _, kind, _, _, length, segments, _ = row.split()
+        _, mass, stiffness, damping, *_ = types[kind]
+        assert damping == -0.8
+        segment = float(length) / int(segments)
+        assert 0.8 * segment * (mass / stiffness) ** 0.5 < 0.01
+        assert 2.0 / segment * (stiffness / mass) ** 0.5 > 20.0
 
 
 def test_moordyn_is_given_no_tow():

@@ -2,7 +2,7 @@
 
 import pytest
 
-from calm.files.alignment import Alignment, Known, align, own_labels
+from calm.files.file_differences import Alignment, Known, align, own_labels
 
 
 def line(words: str) -> list[Known]:

@@ -9,8 +9,15 @@ from scipy.stats import t as student
 
 from calm.errors import UsageError
 from calm.locate import Sound, Survey, locate
-from calm.locate.range_model import BY_CHANCE, FLOOR, RangeModel, _judged, least_squares_of, scatter
-from calm.locate.survey_warnings import mirrored
+from calm.locate.range_model import (
+    BY_CHANCE,
+    FLOOR,
+    RangeModel,
+    _judged,
+    least_squares_of,
+    mirrored,
+    scatter,
+)
 from calm.positions import FLATTENING, SEMI_MAJOR, Frame
 
 LATITUDE, LONGITUDE, DEPTH, TRANSDUCER = 48.3, -5.2, 2000.0, 5.0

@@ -11,8 +11,7 @@ import xarray as xr
 from calm.errors import InputError
 from calm.records.current_file import open_record, read_current_file
 from calm.records.current_terms import Terms
-from calm.records.made_record import made_record
-from calm.records.record import RULES
+from calm.records.record import RULES, made_record
 
 SEABED = 300.0
 MANY = 7200

@@ -14,8 +14,7 @@ import calm
 from calm.batch.statistics.summary import RANKED, RESPONSES, summarize
 from calm.case import Mooring
 from calm.report import folder
-from calm.report.batch_brief import summary_part
-from calm.report.batch_page import summary_html, summary_paths, write_summary
+from calm.report.batch_page import summary_html, summary_part, summary_paths, write_summary
 from calm.report.batch_summary import percent, summary_document
 from calm.report.result_files import to_json
 from calm.report.terminal import shown

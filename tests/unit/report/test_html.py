@@ -250,7 +250,7 @@ from tests.judged import judged
 from calm.drawing.check_figures import check_figure
 from calm.report.check_report import check_report, mooring_section
 import calm.report.html
-from calm.report.pdf import printed
+from calm.report.folder import printed
 sections = [mooring_section(judged(Path(sys.argv[1]), "ebb"))]
 report = check_report(sections)
 for content in (calm.report.html.page(report).encode(), printed(report)):

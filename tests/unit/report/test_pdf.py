@@ -6,7 +6,7 @@ import pytest
 import calm
 from calm.report.blocks import Prose, Report, ReportPart, Section
 from calm.report.check_report import check_report, mooring_section
-from calm.report.pdf import pdf_leaf, printed
+from calm.report.folder import pdf_leaf, printed
 from calm.report.result_report import result_report
 from tests.judged import FORMULA, LINES, judged, judged_hostile
 

@@ -2,33 +2,41 @@
 
 Beside the arrays it has a folder of its own, `.batch`: the identity of what is solved, and a flag
 for every block that is done, which is made after the block's data. What the data have come to
-since is for the codecs of zarr to find out: zlib has a checksum.
+since is for the codecs of zarr to find out: zlib has a checksum. By its identity a result
+is never continued with something else than what it is made from.
 """
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import shutil
 import zlib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from threading import Event
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import BaseModel
 
-from calm.batch.store.identity import differences, sha256_of
+from calm.batch.threads import go_on
+from calm.case import Mooring
 from calm.dataset.netcdf import LEVEL, Chunk, ResultLayout, chunk_shape
 from calm.errors import UsageError
+from calm.version import __version__
 from calm.whole_file import flush_to_disk, put
 
 if TYPE_CHECKING:
     import zarr
+
+    from calm.records.record import Record
 
 WORK = ".batch"
 """The folder of a store that its result is without."""
@@ -109,9 +117,7 @@ class Store:
     def forget_damaged(self, check: Callable[[], None]) -> list[int]:
         """The blocks that are not as they were written: they are missing again.
 
-        Parameters
-        ----------
-        check : called before each block is read again
+        `check` is called before each block is read again.
         """
 
         def is_whole(number: int) -> bool:
@@ -158,7 +164,7 @@ def open_store(folder: Path, layout: ResultLayout, block: int, identity: str) ->
     Parameters
     ----------
     folder : of the store
-    identity : the text of what it is made from, see `calm.batch.store.identity`
+    identity : the text of what it is made from, see `calm.batch.work_store`
 
     Raises
     ------
@@ -187,10 +193,7 @@ def open_store(folder: Path, layout: ResultLayout, block: int, identity: str) ->
 def refuse_another(path: Path, before: str, now: str) -> None:
     """Refuse to go on with what was made from another input, and report what differs.
 
-    Raises
-    ------
-    UsageError
-        Where the two identities are not the same, or the first cannot be read.
+    UsageError: where the two identities are not the same, or the first cannot be read.
     """
     if before == now:
         return
@@ -241,3 +244,92 @@ def _lay_out(store: Store) -> None:
             os.replace(path, place)
     with suppress(OSError):
         shutil.rmtree(apart)
+
+
+MOST_TOLD = 5
+"""So many differences are reported, and how many more there are."""
+
+_NO_MATTER = frozenset(
+    {"path", "line", "column", "checks", "notices", "variants", "description", "current"}
+    | {"sources", "searched", "prefer"}
+)
+"""What of a mooring file changes no figure of its results: every profile has its own current."""
+
+
+def identity_of(
+    mooring: Mooring, record: Record, options: Mapping[str, Any], stop: Event
+) -> dict[str, Any]:
+    """All that the figures of a result follow from, as JSON has it.
+
+    calm.batch.threads.Stopped: while the record is read through, which may take long.
+    """
+    ends = (record.time[0], record.time[-1])
+    identity = {
+        "calm": __version__,
+        "mooring": _plain(mooring.file),
+        "record": {
+            "profiles": record.count,
+            "from": str(ends[0].astype("datetime64[s]")),
+            "to": str(ends[1].astype("datetime64[s]")),
+            "sha256": record.digest(lambda: go_on(stop)),
+        },
+        "options": dict(options),
+    }
+    decoded: dict[str, Any] = json.loads(to_text(identity))
+    return decoded
+
+
+def to_text(identity: Mapping[str, Any]) -> str:
+    """The JSON text of an identity: the same for the same."""
+    return json.dumps(identity, sort_keys=True, separators=(",", ":"), ensure_ascii=False)
+
+
+def sha256_of(text: str) -> str:
+    """Return the SHA-256 of a text, in hexadecimal."""
+    return hashlib.sha256(text.encode("utf-8", "surrogateescape")).hexdigest()
+
+
+def differences(before: Any, now: Any) -> str:
+    """Return what differs between two identities, in words."""
+    found = list(_differing("", before, now))
+    listed = "; ".join(found[:MOST_TOLD])
+    return f"{listed}; and {len(found) - MOST_TOLD} more" if len(found) > MOST_TOLD else listed
+
+
+def _differing(place: str, before: Any, now: Any) -> Iterator[str]:
+    if isinstance(before, dict) and isinstance(now, dict):
+        for key in sorted({*before, *now}):
+            inner = f"{place}.{key}" if place else key
+            yield from _differing(inner, before.get(key), now.get(key))
+    elif isinstance(before, list) and isinstance(now, list) and len(before) == len(now):
+        for index, pair in enumerate(zip(before, now, strict=True)):
+            yield from _differing(f"{place}[{index}]", *pair)
+    elif before != now:
+        yield f"{place} was {_shown(before)}, is now {_shown(now)}"
+
+
+def _shown(value: Any) -> str:
+    if isinstance(value, list):
+        return f"a list of {len(value)}"
+    if isinstance(value, dict):
+        return "something else" if len(value) > 1 else str(value)
+    return "absent" if value is None else str(value)
+
+
+def _plain(value: Any) -> Any:
+    """A model as mappings, lists, text and numbers; without what is None or does not matter."""
+    if isinstance(value, BaseModel):
+        return _known({name: getattr(value, name) for name in type(value).model_fields})
+    if is_dataclass(value):
+        return _known({each.name: getattr(value, each.name) for each in fields(value)})
+    if isinstance(value, tuple | list):
+        return [_plain(member) for member in value]
+    return value
+
+
+def _known(members: Mapping[str, Any]) -> dict[str, Any]:
+    return {
+        name: _plain(member)
+        for name, member in members.items()
+        if member is not None and name not in _NO_MATTER
+    }

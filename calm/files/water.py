@@ -1,21 +1,32 @@
-"""The density of the water: a constant, a table, or from temperature and salinity."""
+"""What is in the water and on it: its density, the wind over it, the waves that run on it."""
 
 from __future__ import annotations
 
 import math
+import os.path
 from collections.abc import Iterator, Mapping
-from typing import Annotated
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Annotated, Self
 
 import numpy as np
-from pydantic import Discriminator, Field, Tag, ValidationError
+from pydantic import Discriminator, Tag, ValidationError, model_validator
 
-from calm.errors import Problem
-from calm.files.definition import CATALOGUE_DENSITY, DENSITY
-from calm.files.fields import Model, QuantityField, Text
+from calm.errors import InputError, Problem, UsageError
+from calm.files.definition import (
+    CATALOGUE_DENSITY,
+    DENSITY,
+    POSITIVE_LENGTH,
+    Model,
+    QuantityField,
+    Text,
+    described,
+)
 from calm.files.yaml_document import SourceMapping
 from calm.physics import seawater
 from calm.records.current_terms import left_out
 from calm.records.profile_tables import (
+    DIRECTION,
     SALINITY,
     TEMPERATURE,
     WATER_DENSITY,
@@ -25,7 +36,15 @@ from calm.records.profile_tables import (
     read_profile,
     read_water,
 )
-from calm.suggestions import about_quantity
+from calm.records.sea_states import (
+    OF_HEIGHT,
+    SPECTRA,
+    SeaState,
+    measured_spectrum,
+    scatter_states,
+    spectrum_of,
+)
+from calm.suggestions import about_quantity, nearest, shown
 from calm.units import QuantityError, QuantityRange
 
 USUAL_DENSITY = {"water": CATALOGUE_DENSITY, "air": 1.225}
@@ -45,13 +64,12 @@ def _table_or_constant(value: object) -> str:
 class TableKeys(Model):
     """Columns, each a name and its unit, and rows of values."""
 
-    columns: tuple[Text, ...] = Field(
-        description="each a name and its unit: depth m, speed m/s, toward deg; or u m/s, v m/s, "
-        "w m/s",
-        examples=[["depth m", "speed m/s", "toward deg"]],
+    columns: tuple[Text, ...] = described(
+        "each a name and its unit: depth m, speed m/s, toward deg; or u m/s, v m/s, w m/s",
+        ["depth m", "speed m/s", "toward deg"],
     )
-    rows: tuple[tuple[Text | None, ...], ...] = Field(
-        description="values, top to bottom", examples=[[[0, 0.8, 90], [1100, 0.05, 60]]]
+    rows: tuple[tuple[Text | None, ...], ...] = described(
+        "values, top to bottom", [[0, 0.8, 90], [1100, 0.05, 60]]
     )
 
 
@@ -62,12 +80,12 @@ class SeaWaterKeys(Model):
         Annotated[float, QuantityField(**vars(TEMPERATURE)), Tag("constant")]
         | Annotated[TableKeys, Tag("table")],
         Discriminator(_table_or_constant),
-    ] = Field(description="in situ, a constant or a table", examples=["10 degC"])
+    ] = described("in situ, a constant or a table", "10 degC")
     salinity: Annotated[
         Annotated[float, QuantityField(**vars(SALINITY)), Tag("constant")]
         | Annotated[TableKeys, Tag("table")],
         Discriminator(_table_or_constant),
-    ] = Field(description="practical, a constant or a table", examples=[35])
+    ] = described("practical, a constant or a table", 35)
 
 
 Density = Annotated[
@@ -133,12 +151,9 @@ def report_at(section: SourceMapping, *place: str) -> Report:
 
 
 def density_notices(density: float | DepthTable | SeaWater, depth: float | None) -> Iterator[str]:
-    """Yield what is odd about the density of the water, in sentences.
+    """Yield what is odd about the density of the water as it was read, in sentences.
 
-    Parameters
-    ----------
-    density : as it was read
-    depth : of the water [m], None where it is not known
+    Its depth [m] is None where it is not known.
     """
     if isinstance(density, SeaWater):
         profiles = {"temperature": density.temperature, "salinity": density.salinity}
@@ -210,3 +225,134 @@ def _profile(
         report = report_at(section, "density", name)
         return read_profile(name, given.columns, given.rows, report, problems)
     return DepthTable((0.0,), (given,))
+
+
+_SPEED = QuantityField("speed", at_least=0)
+
+
+class Wind(Model):
+    """Wind over the water: speed [m/s], and where it blows to [degrees].
+
+    It drives the water at the surface at `surface_drift`, a share of its own speed, and the water
+    below ever less, linearly, down to `drift_depth` [m]: the seabed where it is None.
+    """
+
+    speed: Annotated[float, _SPEED] = described("of the wind, at the height of the float", "12 m/s")
+    toward: Annotated[float, QuantityField(**vars(DIRECTION))] = described(
+        "where it blows to, clockwise from north", "90 deg"
+    )
+    surface_drift: Annotated[float, QuantityField("number", at_least=0, at_most=0.1)] = described(
+        "share of the wind's speed that the surface water drifts at", "2 %", default=0.0
+    )
+    drift_depth: Annotated[float | None, POSITIVE_LENGTH] = described(
+        "how deep the water that the wind drives goes", "50 m", default=None
+    )
+
+    @model_validator(mode="after")
+    def _depth_of_a_drift(self) -> Wind:
+        if self.drift_depth is not None and "surface_drift" not in self.model_fields_set:
+            raise ValueError("`drift_depth` needs `surface_drift`, a share of the wind's speed")
+        return self
+
+
+class WaveKeys(Model):
+    """The keys of `waves:`: one sea, a table of seas with their shares of the time, or both."""
+
+    significant_height: Annotated[float | None, POSITIVE_LENGTH] = described(
+        "Hs of the sea to be survived", "5 m", default=None
+    )
+    peak_period: Annotated[float | None, QuantityField("time", above=0)] = described(
+        "Tp of that sea; pierson-moskowitz and ochi-hubble have their own", "8.4 s", default=None
+    )
+    spectrum: Text = described(
+        f"{', '.join(SPECTRA)}, or a CSV or NetCDF file of a measured one",
+        "jonswap",
+        default="bretschneider",
+    )
+    gamma: Annotated[float, QuantityField("number", at_least=1, at_most=10)] = described(
+        "peakedness of jonswap", 3.3, default=3.3
+    )
+    toward: Annotated[float, QuantityField(**vars(DIRECTION))] = described(
+        "where they run, clockwise from north", "90 deg", default=90.0
+    )
+    scatter: Text | None = described(
+        "CSV: significant_wave_height[m],peak_period[s],share; fatigue needs it",
+        "seas.csv",
+        default=None,
+    )
+
+    @model_validator(mode="after")
+    def _some_sea(self) -> Self:
+        height, period, named = self.significant_height, self.peak_period, self.spectrum in SPECTRA
+        if not named and (height, period) != (None, None):
+            near = nearest(self.spectrum, SPECTRA)
+            raise ValueError(
+                f"`{shown(self.spectrum)}` is none of {', '.join(SPECTRA)}; did you mean `{near}`?"
+                if near
+                else "a measured `spectrum` has its own height and period; leave them out"
+            )
+        if named and height is None and (self.scatter is None or period is not None):
+            raise ValueError("`waves` needs `significant_height`, a `scatter` table, or both")
+        if height is not None and period is None and self.spectrum not in OF_HEIGHT:
+            raise ValueError(f"`significant_height` needs a `peak_period` with {self.spectrum}")
+        return self
+
+
+@dataclass(frozen=True)
+class WavesGiven:
+    """Hold the seas of an environment, and where they run [degrees].
+
+    Those of a scatter table have their shares of the time; one beside them has a share of 0.
+    `climate` says whether there is such a table.
+    """
+
+    seas: tuple[SeaState, ...]
+    toward: float
+    climate: bool
+
+
+def read_waves(
+    keys: WaveKeys, section: SourceMapping, problems: list[Problem], open_files: bool
+) -> WavesGiven | None:
+    """Return the seas of `waves:`; None, with its mistakes in `problems`, if it has any.
+
+    Parameters
+    ----------
+    section : the environment
+    open_files : read its files, which are beside the mooring file; where not, None is returned
+    """
+    before = len(problems)
+    measured = keys.spectrum not in SPECTRA
+    files = {"scatter": keys.scatter, "spectrum": keys.spectrum if measured else None}
+    paths: dict[str, Path] = {}
+    for name, text in files.items():
+        if text is None:
+            continue
+        path = Path(section.home("waves").document.path).parent / text
+        if os.path.isfile(path):
+            paths[name] = path
+            continue
+        near = nearest(text, SPECTRA) if name == "spectrum" else None
+        what = "no such file" if name == "scatter" else f"neither {', '.join(SPECTRA)} nor a file"
+        meant = f"; did you mean `{near}`?" if near else ""
+        message = f"`{name}: {shown(text)}`: {what}{meant}"
+        problems.append(section.problem(("waves", name), message))
+    if len(problems) > before or not open_files:
+        return None
+    form = "bretschneider" if measured else keys.spectrum
+    seas: list[SeaState] = []
+    try:
+        if "scatter" in paths:
+            seas += scatter_states(paths["scatter"], form, keys.gamma)
+        if keys.significant_height is not None:
+            sea = spectrum_of(form, keys.significant_height, keys.peak_period, keys.gamma)
+            seas.append(replace(sea, share=0.0 if seas else 1.0))
+        if "spectrum" in paths:
+            seas.append(replace(measured_spectrum(paths["spectrum"]), share=0.0 if seas else 1.0))
+    except UsageError as error:
+        problems.append(section.problem(("waves",), str(error), key=True))
+    except InputError as error:
+        problems.extend(error.problems)
+    if len(problems) > before:
+        return None
+    return WavesGiven(tuple(seas), keys.toward, "scatter" in paths)

@@ -1,0 +1,137 @@
+"""What waves do to a mooring: its greatest tension, whether it falls slack, how long it lasts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from calm.checks.criterion import Citing
+from calm.checks.finding import State, Verdict, at_least, at_most, rule, unknown
+from calm.checks.posture import reaches_the_surface
+from calm.checks.strength import lesser_load, passes_load_on
+from calm.errors import UsageError
+from calm.quantities import say
+from calm.waves.analysis import WaveAnalysis, analyse
+from calm.waves.fatigue import YEAR
+
+if TYPE_CHECKING:
+    from calm.case import Mooring
+
+_HOW = "Give `waves:` in the environment: a design sea, and a scatter table for its life."
+
+
+@dataclass(frozen=True)
+class MooringInWaves:
+    """A mooring in the waves of its environment; None where it is given none, or why unknown."""
+
+    mooring: Mooring
+    waves: WaveAnalysis | str | None
+
+    @classmethod
+    def of(cls, mooring: Mooring) -> MooringInWaves:
+        """Of a mooring that stands."""
+        given = mooring.file.environment.waves
+        if given is None:
+            return cls(mooring, None)
+        try:
+            return cls(mooring, analyse(mooring, given.seas, given.toward))
+        except UsageError as error:
+            return cls(mooring, str(error))
+
+
+@rule("wave-strength")
+def wave_strength(evidence: MooringInWaves) -> Iterator[Verdict]:
+    """Judge the greatest tension of every piece in waves.
+
+    By its working load, and its breaking load over the factor that API RP 2SK asks of tensions
+    found dynamically. A mooring that reaches the surface is not known without waves.
+    """
+    mooring, waves = evidence.mooring, evidence.waves
+    if not isinstance(waves, WaveAnalysis):
+        if waves is not None:
+            yield unknown(None, f"Not judged in waves: {waves}.", "Give what is missing.")
+        elif reaches_the_surface(mooring):
+            yield unknown(None, "What waves do to it is not judged: no `waves:` are given.", _HOW)
+        return
+    checks = mooring.file.checks
+    factor, source = checks.waves_safety_factor, Citing.of(mooring.file)("waves_safety_factor")
+    for piece in mooring.file.pieces[:-1]:
+        state = max(waves.states, key=lambda each: each.components[piece.index].greatest)
+        tension = state.components[piece.index].greatest
+        limit = lesser_load(piece.component, 1.0, factor)
+        sea = f"Hs {state.sea.significant_height:.1f} m"
+        bears = f"{piece.label} bears {say('tension', tension)} in waves of {sea}"
+        if limit is None:
+            if passes_load_on(mooring.file.pieces, piece.index):
+                message = f"{bears}; neither its working nor its breaking load is known."
+                yield unknown(piece, message, "Give its `breaking_load`.", tension)
+            continue
+        message = f"{bears}; its loads allow {say('tension', limit)}."
+        remedy = "Take a stronger one, or let the line stretch more."
+        yield _sure(waves, at_most(piece, tension, limit, message, remedy, source=source))
+
+
+@rule("wave-slack")
+def wave_slack(evidence: MooringInWaves) -> Iterator[Verdict]:
+    """Judge the least tension of every piece in waves: a line that falls slack snatches."""
+    mooring, waves = evidence.mooring, evidence.waves
+    if not isinstance(waves, WaveAnalysis):
+        return
+    for piece in mooring.file.pieces[:-1]:
+        state = min(waves.states, key=lambda each: each.components[piece.index].least)
+        row = state.components[piece.index]
+        if row.tension_std > 0.0 and piece.component.slack != "allowed":
+            message = (
+                f"{piece.label} has {say('tension', row.least)} at the least in waves of "
+                f"Hs {state.sea.significant_height:.1f} m; below 0 it falls slack and snatches."
+            )
+            remedy = "Give the line more weight or more stretch, or solve it in time: `calm export`"
+            yield _sure(waves, at_least(piece, row.least, 0.0, message, f"{remedy}."))
+
+
+@rule("fatigue")
+def fatigue(evidence: MooringInWaves) -> Iterator[Verdict]:
+    """Judge the life of every piece whose curve is published, by the service time × the factor."""
+    mooring, waves = evidence.mooring, evidence.waves
+    if not isinstance(waves, WaveAnalysis):
+        return
+    given, checks = mooring.file.environment.waves, mooring.file.checks
+    if given is None or not given.climate:
+        message = "How long it lasts in waves is not known: one sea is no climate."
+        yield unknown(None, message, "Give `waves: {scatter: FILE}`, seas with their shares.")
+        return
+    limit = checks.fatigue_factor * checks.service_time
+    source = Citing.of(mooring.file)("fatigue_factor", "service_time")
+    for one in waves.fatigue:
+        piece = mooring.file.pieces[one.index]
+        if one.unknown is not None:
+            message = f"How long {one.label} lasts in waves is not known: {one.unknown}."
+            yield unknown(piece, message, "Give its `fatigue: {curve: NAME}` and its loads.")
+        elif one.life is not None and one.life_low is not None and one.life_high is not None:
+            message = (
+                f"{one.label} lasts {_years(one.life)} in waves ({_years(one.life_low)} to "
+                f"{_years(one.life_high)}), by {one.curve}; {_years(limit / YEAR)} are asked for."
+            )
+            remedy = "Take a thicker one, let the line stretch more, or renew it sooner."
+            life = one.life * YEAR
+            yield _sure(waves, at_least(piece, life, limit, message, remedy, source=source))
+
+
+def _sure(waves: WaveAnalysis, verdict: Verdict) -> Verdict:
+    """Return a failure as unknown where a rope without stiffness makes the tensions too great."""
+    if verdict.state is not State.FAIL or not waves.warnings:
+        return verdict
+    message = f"{verdict.message} {' '.join(waves.warnings)}"
+    return replace(
+        verdict, state=State.UNKNOWN, message=message, remedy="Give the rope's `stiffness`.",
+        limit=None, margin=None,
+    )  # fmt: skip
+
+
+def _years(count: float) -> str:
+    return "more than 1000 years" if count > 1000.0 else f"{count:.2g} years"
+
+
+IN_WAVES = (wave_strength, wave_slack, fatigue)
+"""What is judged of a `MooringInWaves`, once in every environment."""

@@ -1,0 +1,301 @@
+"""Sea states: spectra of the elevation of the sea, and the waves that they are made of."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from math import exp, pi, sqrt
+from math import gamma as gamma_function
+from pathlib import Path
+
+import numpy as np
+
+from calm.errors import InputError, Problem, UsageError
+from calm.physics.line import Floats
+from calm.records.cf_files import UnreadableError, is_netcdf, known_values, open_current, reading
+from calm.records.delimited import read_table
+
+Density = Callable[[Floats], Floats]
+
+SPECTRA = ("bretschneider", "jonswap", "pierson-moskowitz", "ochi-hubble")
+"""Spectra by name."""
+
+OF_HEIGHT = ("pierson-moskowitz", "ochi-hubble")
+"""Those that follow from the significant height alone."""
+
+STEEPEST = 1.0 / 7.0
+"""Height over length of a wave that breaks (Michell 1893); a sea is far below it."""
+
+HIGHEST, LONGEST_PERIOD = 30.0, 30.0
+"""Beyond every significant height and peak period measured: 19 m by a buoy (WMO 2016) [m], [s]."""
+
+BETWEEN = 0.5, 12.0
+"""Frequencies solved for, as multiples of that of the peak: beyond them a sea of Bretschneider's
+form has less than 1e-4 of its variance."""
+
+UNSEEN = 1e-3
+"""Share of the variance of a measured sea that is longer than all that is solved for."""
+
+_STANDARD_NAMES = (
+    "sea_surface_wave_variance_spectral_density",
+    "sea_surface_wave_directional_variance_spectral_density",
+)
+_SPECTRAL_NAMES = ("spectral_wave_density", "ef", "efth")
+
+LARGEST_FREQUENCY = 10.0
+"""Above it lines are not solved for [rad/s]."""
+
+
+@dataclass(frozen=True)
+class SeaState:
+    """Represent a sea by its spectrum.
+
+    Attributes
+    ----------
+    significant_height : Hs, four times the standard deviation of the elevation [m]
+    peak_period : Tp [s]
+    density : spectrum of the elevation by angular frequency [rad/s], one-sided [m² s/rad]
+    share : of the time, where it is one of several
+    longest : period of the longest waves that count, where it is not that of the peak [s]
+    """
+
+    significant_height: float
+    peak_period: float
+    density: Density
+    share: float = 1.0
+    longest: float | None = None
+
+    def frequencies(self, count: int) -> Floats:
+        """Return angular frequencies to solve for [rad/s], evenly spread in their logarithm."""
+        peak = 2.0 * pi / self.peak_period
+        low, high = BETWEEN
+        first = 2.0 * pi / (self.longest or self.peak_period)
+        return np.geomspace(low * first, min(high * peak, LARGEST_FREQUENCY), count)
+
+
+def bretschneider(height: float, period: float) -> Density:
+    """Return the spectrum of a growing or a full sea, by Hs [m] and Tp [s].
+
+    S = 5/16 Hs² ωp⁴ ω⁻⁵ exp(-5/4 (ωp/ω)⁴): Bretschneider 1959, the ITTC spectrum of two parameters.
+    """
+    return partial(_gamma_form, ((height, 2.0 * pi / period, 1.0),))
+
+
+def ochi_hubble(parts: Sequence[tuple[float, float, float]]) -> Density:
+    """Return the spectrum of swell and sea together; Ochi and Hubble 1976.
+
+    S = Σ ¼ ((4λ + 1)/4 ωp⁴)^λ / Γ(λ) Hs² ω^-(4λ+1) exp(-(4λ + 1)/4 (ωp/ω)⁴).
+
+    Parameters
+    ----------
+    parts : Hs [m], Tp [s] and λ of each; λ of 1 is Bretschneider's form, more is narrower
+    """
+    return partial(
+        _gamma_form, tuple((h, 2.0 * pi / period, narrow) for h, period, narrow in parts)
+    )
+
+
+def _gamma_form(parts: tuple[tuple[float, float, float], ...], omega: Floats) -> Floats:
+    total = np.zeros(np.shape(omega))
+    for height, peak, narrow in parts:
+        ratio = (narrow + 0.25) * (peak / omega) ** 4
+        total += 0.25 * height**2 / gamma_function(narrow) * ratio**narrow * np.exp(-ratio) / omega
+    return total
+
+
+def jonswap(height: float, period: float, gamma: float = 3.3) -> Density:
+    """Return the spectrum of a sea short of its fetch, by Hs [m], Tp [s] and its peakedness.
+
+    Bretschneider's times gamma^exp(-(ω - ωp)²/(2 σ² ωp²)), σ 0.07 below the peak and 0.09 above it
+    (Hasselmann and others 1973), normalised so that Hs is kept.
+    """
+    peak = 2.0 * pi / period
+    fine = np.geomspace(0.3 * peak, 30.0 * peak, 4000)
+    whole = float(np.trapezoid(_peaked(height, peak, gamma, fine), fine))
+    return partial(_peaked, height**2 / 4.0 / sqrt(whole), peak, gamma)
+
+
+def _peaked(height: float, peak: float, gamma: float, omega: Floats) -> Floats:
+    width = np.where(omega <= peak, 0.07, 0.09)
+    raised = np.exp(-((omega / peak - 1.0) ** 2) / (2.0 * width**2))
+    return _gamma_form(((height, peak, 1.0),), omega) * gamma**raised
+
+
+def full_sea_period(height: float) -> float:
+    """Return Tp of a fully grown sea by Hs [s]; Pierson and Moskowitz 1964: ωp² = 0.16 g/Hs."""
+    return 2.0 * pi / sqrt(0.16 * 9.80665 / height)
+
+
+def spectrum_of(kind: str, height: float, period: float | None, gamma: float) -> SeaState:
+    """Return the sea of a named spectrum.
+
+    Parameters
+    ----------
+    kind : of `SPECTRA`
+    height, period : Hs [m] and Tp [s]; of those of `OF_HEIGHT` None stands for its own period
+    gamma : peakedness of "jonswap"
+
+    Raises
+    ------
+    UsageError
+        Waves higher, longer or steeper than there are; a period that follows from the height.
+    """
+    if kind == "ochi-hubble":
+        if period is not None:
+            raise UsageError("ochi-hubble has the periods that go with its height; give no period")
+        return _most_probable(height)
+    period = full_sea_period(height) if period is None else period
+    if height > HIGHEST or period > LONGEST_PERIOD:
+        raise UsageError(
+            f"waves of {height:g} m and {period:g} s: no sea is higher than {HIGHEST:g} m or "
+            f"longer than {LONGEST_PERIOD:g} s"
+        )
+    length = 9.80665 * period**2 / (2.0 * pi)
+    if height > STEEPEST * length:
+        raise UsageError(
+            f"waves of {height:g} m and {period:g} s would break: {length:.1f} m long, they are "
+            f"{STEEPEST * length:.1f} m high at most"
+        )
+    form = jonswap(height, period, gamma) if kind == "jonswap" else bretschneider(height, period)
+    return SeaState(height, period, form)
+
+
+def _most_probable(height: float) -> SeaState:
+    """Return swell and sea as they most probably go with a height; Ochi and Hubble 1976, table 2b.
+
+    Raises
+    ------
+    UsageError
+        Waves higher than there are.
+    """
+    if height > HIGHEST:
+        raise UsageError(f"waves of {height:g} m: no sea is higher than {HIGHEST:g} m")
+    swell = 0.84 * height, 2.0 * pi / (0.70 * exp(-0.046 * height)), 3.0
+    sea = 0.54 * height, 2.0 * pi / (1.15 * exp(-0.039 * height)), 1.54 * exp(-0.062 * height)
+    form = ochi_hubble((swell, sea))
+    at = 2.0 * pi / np.array([swell[1], sea[1]])
+    peak = (swell, sea)[int(form(at).argmax())][1]
+    return SeaState(height, peak, form, longest=swell[1])
+
+
+def measured_spectrum(path: Path) -> SeaState:
+    """Return the sea of a spectrum in CSV, ``frequency[Hz],density[m^2/Hz]``, or in NetCDF.
+
+    NetCDF as of NDBC or WAVEWATCH III, of one place; of several times that of the highest sea.
+
+    Raises
+    ------
+    InputError
+        It is no spectrum, or its frequencies do not grow.
+    """
+    if is_netcdf(path):
+        return _sea_of(path, *_spectral_arrays(path))
+    rows = _figures(path, ("frequency[Hz]", "density[m^2/Hz]"))
+    return _sea_of(path, *np.array(rows).T)
+
+
+def _sea_of(path: Path, frequency: Floats, density: Floats) -> SeaState:
+    """Return the sea of densities [m²/Hz] at frequencies [Hz]."""
+    if len(frequency) < 3 or np.any(np.diff(frequency) <= 0.0) or not frequency[0] >= 0.0:
+        raise InputError([Problem(str(path), 2, 1, "needs three frequencies or more that grow")])
+    if not np.all(density >= 0.0) or not density.any():
+        raise InputError([Problem(str(path), 2, 2, "densities are not negative, nor all zero")])
+    omega, spectral = 2.0 * pi * frequency, density / (2.0 * pi)
+    parts = 0.5 * (spectral[1:] + spectral[:-1]) * np.diff(omega)
+    height = 4.0 * sqrt(float(parts.sum()))
+    if height > HIGHEST:
+        message = f"waves of {height:.3g} m: no sea is higher than {HIGHEST:g} m; look at its unit"
+        raise InputError([Problem(str(path), 0, 0, message)])
+    lowest = omega[int(np.searchsorted(parts.cumsum(), UNSEEN * parts.sum()))]
+    peak = float(omega[int(density.argmax())])
+    first = max(float(lowest), 0.02 * peak)
+    form = partial(_between, omega, spectral)
+    return SeaState(height, 2.0 * pi / peak, form, longest=2.0 * pi * BETWEEN[0] / first)
+
+
+def _between(omega: Floats, spectral: Floats, at: Floats) -> Floats:
+    return np.interp(at, omega, spectral, left=0.0, right=0.0)
+
+
+def _spectral_arrays(path: Path) -> tuple[Floats, Floats]:
+    """Return frequencies [Hz] and densities [m²/Hz] of a dataset, over all directions."""
+    with reading(path), open_current(path) as data:
+        names = [
+            str(name)
+            for name, variable in data.data_vars.items()
+            if variable.attrs.get("standard_name") in _STANDARD_NAMES or name in _SPECTRAL_NAMES
+        ]
+        if not names:
+            raise UnreadableError(
+                "no spectrum of waves: none of its variables has the standard name "
+                f"{' or '.join(_STANDARD_NAMES)}, nor is called {', '.join(_SPECTRAL_NAMES)}"
+            )
+        spectrum = data[names[0]]
+        along = [str(each) for each in spectrum.dims if str(each).startswith("freq")]
+        if not along or along[0] not in data.coords:
+            raise UnreadableError(f"{names[0]} has no dimension of frequencies with its values")
+        values = spectrum.transpose(along[0], ...)
+        for name in [str(each) for each in spectrum.dims if str(each).startswith("dir")]:
+            count, unit = data.sizes[name], str(spectrum.attrs.get("units", ""))
+            step = (2.0 * pi if "rad" in unit else 360.0) / count
+            values = values.sum(name, skipna=False) * step
+        density = known_values(values).reshape(values.sizes[along[0]], -1)
+        frequency = np.asarray(data[along[0]].values, float)
+    density = density[:, np.isfinite(density).all(axis=0)]
+    if not density.size:
+        raise InputError([Problem(str(path), 0, 0, "no spectrum of it is without gaps")])
+    return frequency, density[:, int(np.trapezoid(density, frequency, axis=0).argmax())]
+
+
+def scatter_states(path: Path, kind: str, gamma: float) -> list[SeaState]:
+    """Return the seas of a scatter table, each with its share of the time.
+
+    Its columns are ``significant_wave_height[m],peak_period[s],share``; shares may also be counts.
+
+    Raises
+    ------
+    InputError
+        It is no such table; every mistake with its line.
+    """
+    rows = _figures(path, ("significant_wave_height[m]", "peak_period[s]", "share"))
+    if kind == "ochi-hubble":
+        raise UsageError("ochi-hubble has periods of its own; a scatter table gives them")
+    problems, states = [], []
+    whole = sum(max(row[2], 0.0) for row in rows)
+    for number, (height, period, share) in enumerate(rows, 2):
+        if height <= 0.0 or period <= 0.0 or share < 0.0:
+            message = "height and period are above 0, and a share is not negative"
+            problems.append(Problem(str(path), number, 1, message))
+            continue
+        try:
+            sea = spectrum_of(kind, height, period, gamma)
+        except UsageError as error:
+            problems.append(Problem(str(path), number, 1, str(error)))
+            continue
+        if share > 0.0:
+            states.append(SeaState(height, period, sea.density, share / whole))
+    if problems or not states:
+        raise InputError(problems or [Problem(str(path), 1, 1, "no sea has a share of the time")])
+    return states
+
+
+def _figures(path: Path, names: tuple[str, ...]) -> list[tuple[float, ...]]:
+    """Return the rows of a table by the names of its columns."""
+    example = ",".join(names)
+    table = read_table(path, example)
+    header = [cell.strip() for cell in table.header.cells]
+    missing = [name for name in names if name not in header]
+    if missing:
+        message = f"no column `{'`, `'.join(missing)}`; write {example}"
+        raise InputError([Problem(str(path), table.header.number, 1, message)])
+    places = [header.index(name) for name in names]
+    rows, problems = [], []
+    for row in table.rows:
+        try:
+            rows.append(tuple(float(row.cells[place]) for place in places))
+        except (ValueError, IndexError):
+            problems.append(Problem(str(path), row.number, 1, f"not numbers as in {example}"))
+    if problems:
+        raise InputError(problems)
+    return rows

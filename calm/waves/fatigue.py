@@ -1,0 +1,216 @@
+"""Extremes of a Gaussian tension, and the fatigue it does: cycles by Dirlik, damage by Miner."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import exp, gamma, inf, log, pi, sqrt
+from typing import Literal
+
+import numpy as np
+
+from calm.files import Cable, Chain, Component
+from calm.physics.line import Floats
+from calm.physics.materials import fibre_of, materials_in
+
+
+def greatest_of(deviation: float, period: float, duration: float) -> float:
+    """Return the most probable greatest departure of a Gaussian process from its mean.
+
+    σ √(2 ln N) of N = duration / zero-crossing period (Longuet-Higgins 1952).
+
+    Parameters
+    ----------
+    deviation : standard deviation σ, in the unit of the result
+    period : between upward crossings of the mean [s]
+    duration : [s]
+    """
+    return deviation * sqrt(2.0 * log(max(duration / period, 1.0 + 1e-9)))
+
+
+def passing_probability(margin: float, deviation: float, period: float, duration: float) -> float:
+    """Return how probable it is that a Gaussian process passes a margin from its mean in a time.
+
+    1 - exp(-N exp(-½ (margin/σ)²)), N as in `greatest_of` (Rice 1945).
+
+    Parameters
+    ----------
+    margin, deviation : from the mean, and the standard deviation, in one unit
+    period, duration : [s]
+    """
+    if deviation <= 0.0:
+        return 0.0 if margin > 0.0 else 1.0
+    if margin <= 0.0:
+        return 1.0
+    return 1.0 - exp(-duration / period * exp(-0.5 * (margin / deviation) ** 2))
+
+
+YEAR = 365.25 * 86_400.0
+"""[s]"""
+
+BAND = 0.15
+"""How far off deviations of tension may be, as a share: SOFS-5 is met within it at every height."""
+
+
+@dataclass(frozen=True)
+class FatigueCurve:
+    """Represent how many cycles of a tension range a piece bears: N = K R^-slope.
+
+    Attributes
+    ----------
+    slope : m of the curve
+    logarithm : log10 of K
+    by_mean : log10 of K falls by this times the mean tension over the breaking load
+    range : whether R is the stress in the steel [MPa], or a share of the breaking load
+    source : who prints it
+    """
+
+    slope: float
+    logarithm: float
+    by_mean: float
+    range: Literal["stress", "share"]
+    source: str
+
+
+_E301 = "DNV-OS-E301, fatigue limit state"
+_2SK = "API RP 2SK, fatigue resistance"
+
+CURVES = {
+    "dnv-studless-chain": FatigueCurve(3.0, log(6.0e10, 10), 0.0, "stress", _E301),
+    "dnv-stud-chain": FatigueCurve(3.0, log(1.2e11, 10), 0.0, "stress", _E301),
+    "dnv-polyester": FatigueCurve(13.46, log(0.259, 10), 0.0, "share", _E301),
+    "api-studless-chain": FatigueCurve(3.0, log(316.0, 10), 0.0, "share", _2SK),
+    "api-stud-chain": FatigueCurve(3.0, 3.0, 0.0, "share", _2SK),
+    "api-connecting-link": FatigueCurve(3.0, log(178.0, 10), 0.0, "share", _2SK),
+    "api-stranded-wire": FatigueCurve(4.09, 3.20, 2.79, "share", _2SK),
+    "api-spiral-strand": FatigueCurve(5.05, 3.25, 3.43, "share", _2SK),
+}
+"""Published design curves, two standard deviations below the mean of the tests, by name."""
+
+
+@dataclass(frozen=True)
+class PieceFatigue:
+    """Hold what fatigue does to a piece; without a curve, or a figure it needs, None.
+
+    `life` is in years to a damage of 1; `life_low` and `life_high` with deviations of tension
+    greater and less by `BAND`. `unknown` says what is missing.
+    """
+
+    index: int
+    label: str
+    damage_per_year: float | None
+    life: float | None
+    life_low: float | None
+    life_high: float | None
+    curve: str | None
+    source: str | None
+    unknown: str | None
+
+
+def moments_of(omega: Floats, spectral: Floats) -> Floats:
+    """Return the moments m0, m1, m2 and m4 of variances (f, …) at frequencies (f,) [rad/s]."""
+    shape = (-1,) + (1,) * (spectral.ndim - 1)
+    powers = [(spectral * omega.reshape(shape) ** power).sum(0) for power in (0, 1, 2, 4)]
+    return np.array(powers)
+
+
+def dirlik(moments: Sequence[float], slope: float) -> float:
+    """Return the sum of ranges to a power, per second, that rainflow counts in a Gaussian process.
+
+    Dirlik 1985, Application of computers in fatigue analysis (University of Warwick): ranges are
+    an exponential and two Rayleigh distributions, fitted to simulations.
+
+    Parameters
+    ----------
+    moments : m0, m1, m2, m4 by angular frequency
+    slope : the power
+    """
+    zeroth, first, second, fourth = moments
+    if not zeroth > 0.0:
+        return 0.0
+    peaks = sqrt(fourth / second) / (2.0 * pi)
+    regular = second / sqrt(zeroth * fourth)
+    if regular > 1.0 - 1e-9:
+        return narrow_band(moments, slope)
+    mean = first / zeroth * sqrt(second / fourth)
+    one = 2.0 * (mean - regular**2) / (1.0 + regular**2)
+    width = (regular - mean - one**2) / (1.0 - regular - one + one**2)
+    two = (1.0 - regular - one + one**2) / (1.0 - width)
+    three = 1.0 - one - two
+    scale = 1.25 * (regular - three - two * width) / one
+    ranges = one * scale**slope * gamma(1.0 + slope) + 2.0 ** (0.5 * slope) * gamma(
+        1.0 + 0.5 * slope
+    ) * (two * abs(width) ** slope + three)
+    return float(peaks * (2.0 * sqrt(zeroth)) ** slope * ranges)
+
+
+def narrow_band(moments: Sequence[float], slope: float) -> float:
+    """Return the same of a narrow band, whose ranges are Rayleigh's: ν0 (2 √(2 m0))^m Γ(1 + m/2).
+
+    It is not passed by a process of the same moments m0 and m2 (Rychlik 1993).
+    """
+    zeroth, _, second, _ = moments
+    if not zeroth > 0.0:
+        return 0.0
+    crossings = sqrt(second / zeroth) / (2.0 * pi)
+    ranges = (2.0 * sqrt(2.0 * zeroth)) ** slope * gamma(1.0 + 0.5 * slope)
+    return float(crossings * ranges)
+
+
+def curve_of(component: Component) -> str | None:
+    """Return the name of the curve of a component: its own, or by what it is; None unknown."""
+    if component.fatigue is not None:
+        return component.fatigue.curve
+    if isinstance(component, Chain):
+        return "dnv-studless-chain"
+    if isinstance(component, Cable):
+        fibre, named = fibre_of(component.material), materials_in(component.material)
+        if fibre is not None:
+            return "dnv-polyester" if fibre.name == "polyester" else None
+        return "api-stranded-wire" if any(each.family == "metal" for each in named) else None
+    return None
+
+
+def fatigue_of(
+    component: Component, index: int, label: str, seas: Sequence[tuple[float, float, Floats]]
+) -> PieceFatigue:
+    """Return the damage of a year, the seas' shares added up as Miner does.
+
+    Parameters
+    ----------
+    component, index, label : of the piece
+    seas : share of the time, mean tension [N] and the moments of the tension of each
+    """
+    name = curve_of(component)
+    if name is None:
+        return _not_known(index, label, None, "no curve is published for it: give its `fatigue`")
+    curve, strength = CURVES[name], component.breaking_load
+    if curve.range == "share" and strength is None:
+        return _not_known(index, label, name, "its breaking load is not known")
+    bar = getattr(component, "diameter", None)
+    if curve.range == "stress" and not (isinstance(component, Chain) and bar):
+        return _not_known(index, label, name, "the stress in it is not known: it is no chain")
+    damage = 0.0
+    for share, mean, moments in seas:
+        logarithm = curve.logarithm
+        if curve.range == "share":
+            assert strength is not None
+            unit = strength
+            logarithm -= curve.by_mean * mean / strength
+        else:  # both bars of a link, in mm²
+            assert bar is not None
+            unit = 2.0 * pi / 4.0 * (1e3 * bar) ** 2
+        scaled = moments / unit**2
+        damage += share * YEAR * dirlik(scaled.tolist(), curve.slope) / 10.0**logarithm
+    life = 1.0 / damage if damage > 0.0 else inf
+    low, high = ((1.0 + off) ** -curve.slope for off in (BAND, -BAND))
+    if life == inf:
+        return PieceFatigue(index, label, 0.0, None, None, None, name, curve.source, None)
+    return PieceFatigue(
+        index, label, damage, life, low * life, high * life, name, curve.source, None
+    )
+
+
+def _not_known(index: int, label: str, name: str | None, why: str) -> PieceFatigue:
+    source = None if name is None else CURVES[name].source
+    return PieceFatigue(index, label, None, None, None, None, name, source, why)
