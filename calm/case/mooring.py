@@ -28,7 +28,7 @@ from calm.physics.materials import STEEL_DENSITY
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.solve import Settings, Solution, Status, fit_length, solve_mooring
 from calm.solve.problem import COARSE_STEP
-from calm.solve.standing import standing_lift, too_heavy
+from calm.solve.solution import standing_lift, too_heavy
 from calm.suggestions import unknown
 from calm.whole_file import read_text
 

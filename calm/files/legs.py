@@ -12,6 +12,7 @@ from calm.errors import Problem
 from calm.files.components import Anchor
 from calm.files.definition import LENGTH, Model, QuantityField, Text
 from calm.files.mooring_file import Piece, numbered
+from calm.files.rigid import Profiler
 from calm.files.yaml_document import SourceMapping, validate
 from calm.suggestions import unknown
 
@@ -63,7 +64,8 @@ class LegKeys(Model):
     """List the pieces of a leg from its upper to its lower end, and say what holds its ends."""
 
     line: Annotated[tuple[Any, ...], Field(min_length=1)] = Field(
-        description="the pieces from the upper to the lower end"
+        description="the pieces from the upper to the lower end",
+        examples=[[{"use": "wire-jacketed-8", "length": "150 m"}]],
     )
     top: Literal["free"] | EndKeys = Field(
         default="free", description="what holds its upper end", examples=["free", {"join": "A"}]
