@@ -64,6 +64,7 @@ class FileOutcome:
     explanation: Explanation | None = None
     schematic: TerminalSchematic | None = None
     uncertain: Uncertain | None = None
+    verbose: bool = False
 
     @property
     def code(self) -> ExitCode:
@@ -93,9 +94,19 @@ class FileOutcome:
         if self.schematic is not None:
             parts.append(self.schematic)
         if self.result is not None:
-            from calm.report.net_sheet import any_part
+            from calm.case.net import NetResult
 
-            parts.append(any_part(self.result))
+            if isinstance(self.result, NetResult):
+                from calm.report.net_sheet import net_part
+
+                parts.append(net_part(self.result))
+            else:
+                from calm.case import Result
+                from calm.report.explanation import line_facts
+                from calm.report.sheet import result_part
+
+                facts = line_facts(self.result) if isinstance(self.result, Result) else ()
+                parts.append(result_part(self.result, facts, verbose=self.verbose))
         if self.explanation is not None:
             from calm.report.explanation import explanation_part
 

@@ -74,7 +74,7 @@ class MooringKeys(Model):
     )
     legs: dict[str, LegKeys] | None = described(
         "in place of `line`, several lines that meet at nodes, or are held elsewhere",
-        {"mooring": {"line": [], "bottom": {"join": "A"}}},
+        {"main": {"line": [{"use": "sphere-steel-1250"}], "bottom": {"join": "A"}}},
         default=None,
     )
     nodes: dict[str, dict[str, Any]] | None = described(

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from calm.case import Result, TowResult
 from calm.checks.finding import State
 from calm.quantities import say
 from calm.report.blocks import Cell, Column, Note, Prose, ReportPart, Table, table_of
-from calm.report.sheet import line_rows, quantity_column, quantity_field, result_part
+from calm.report.sheet import line_table, quantity_field
 
 if TYPE_CHECKING:
     from calm.case.net import LegResult, NetResult
@@ -17,32 +16,19 @@ if TYPE_CHECKING:
 _COLUMNS = ("length", "depth", "x", "y", "knockdown", "tilt", "tension", "safety_factor")
 
 
-def any_part(result: Result | TowResult | NetResult) -> ReportPart:
-    """A mooring, a tow or a net in short."""
-    return result_part(result) if isinstance(result, Result | TowResult) else net_part(result)
-
-
 def net_part(result: NetResult) -> ReportPart:
     """A net in short: a table of the pieces leg by leg, its nodes, its anchors and held ends."""
     depth = say("depth", result.file.environment.depth)
     title = f"{result.name}: net of {len(result.legs)} legs, {depth} of water"
-    columns = (Column("no.", numeric=True, narrow=False), Column("piece", short=""),
-               *map(quantity_column, _COLUMNS))  # fmt: skip
-    rows: list[tuple[Cell, ...]] = []
-    own = list(line_rows(result, _COLUMNS))
-    legs = {leg.first: leg for leg in result.legs}
-    for index, row in own:
-        leg = legs.pop(index, None)
-        if leg is not None:
-            rows.append((Cell(_head(result, leg), strong=True),))
-        rows.append(row)
+    heads = {leg.first: Cell(_head(result, leg), strong=True) for leg in result.legs}
+    table = line_table(result, _COLUMNS, "", heads=heads)
     note = Note((
         "Depth, east and north: of the upper end. Tension: the greatest in the piece. "
         "~ near a limit, ! beyond it.",
         _convergence(result),
     ))  # fmt: skip
     warned = (Prose(result.warnings, State.WARN),) if result.warnings else ()
-    parts = (Table("", columns, tuple(rows), dense=True), *_ends(result), *warned, note)
+    parts = (table, *_ends(result), *warned, note)
     return ReportPart(title, parts)
 
 
