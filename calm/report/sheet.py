@@ -37,16 +37,8 @@ from calm.solve import Status
 AnyResult = Result | TowResult | NetResult
 NO_HEADS: Mapping[int, Cell] = {}
 
-_MOORING_COLUMNS = (
-    "length",
-    "depth",
-    "height",
-    "knockdown",
-    "offset",
-    "tilt",
-    "tension",
-    "safety_factor",
-)
+_OF_MOORINGS = "length depth height knockdown offset tilt tension safety_factor"
+_MOORING_COLUMNS = tuple(_OF_MOORINGS.split())
 _TOW_COLUMNS = ("length", "depth", "layback", "tilt", "tension", "safety_factor")
 _NOTE = "of the upper end. Tension: the greatest in the piece. ~ near a limit, ! beyond it."
 _TYPES = {"subsurface": "sub-surface mooring", "surface": "surface mooring"}
