@@ -4,10 +4,9 @@ import json
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from pages.markdown import code, table
-
 from calm.files import mooring_schema
 from calm.files.components import KINDS
+from pages.markdown import code, table
 
 Schema = Mapping[str, Any]
 
