@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import Any
 
 from calm.case import Result, TowResult
+from calm.case.net import NetResult
 from calm.case.profilers import ProfilerTravel
 from calm.case.result_tables import ClampRow, ComponentRow, rows_down
 from calm.case.strumming import StrummingBand
@@ -19,19 +20,25 @@ from calm.drawing.schematic.shown_parts import place_text
 from calm.files import Component
 from calm.files.strumming_keys import BourgetMarichalKeys
 from calm.quantities import QUANTITIES, duration, say
-from calm.report.blocks import Cell, Column, Field, Line, Note, Prose, ReportPart, Span, Table
+from calm.report.blocks import (
+    Block,
+    Cell,
+    Column,
+    Field,
+    Line,
+    Note,
+    Prose,
+    ReportPart,
+    Span,
+    Table,
+)
 from calm.solve import Status
 
-_MOORING_COLUMNS = (
-    "length",
-    "depth",
-    "height",
-    "knockdown",
-    "offset",
-    "tilt",
-    "tension",
-    "safety_factor",
-)
+AnyResult = Result | TowResult | NetResult
+NO_HEADS: Mapping[int, Cell] = {}
+
+_OF_MOORINGS = "length depth height knockdown offset tilt tension safety_factor"
+_MOORING_COLUMNS = tuple(_OF_MOORINGS.split())
 _TOW_COLUMNS = ("length", "depth", "layback", "tilt", "tension", "safety_factor")
 _NOTE = "of the upper end. Tension: the greatest in the piece. ~ near a limit, ! beyond it."
 _TYPES = {"subsurface": "sub-surface mooring", "surface": "surface mooring"}
@@ -46,32 +53,45 @@ class Sheet:
     title : name and kind
     table : a row for each component and each clamped instrument, in file order
     summary : the two ends of the line in words, the warnings below them
-    convergence : how the solution was reached and how good it is
+    accuracy : how good the solution is
+    convergence : how it was reached
     """
 
     title: str
     table: Table
     summary: tuple[Prose, ...]
+    accuracy: str
     convergence: str
 
 
 def sheet(result: Result | TowResult, *, places: bool = False) -> Sheet:
-    """Return what a mooring or a tow says; in a report its clamps have their places on their
-    pieces.
-    """
+    """Return what a mooring or a tow says; in a report clamps have their places on pieces."""
     if isinstance(result, TowResult):
         return _tow(result, places)
     return _mooring(result, places)
 
 
-def result_part(result: Result | TowResult) -> ReportPart:
+def result_part(
+    result: Result | TowResult, facts: Sequence[Line] = (), *, verbose: bool = False
+) -> ReportPart:
     """A result in short: it fits 80 columns, where long labels wrap.
 
     A figure beyond its limit carries ``!`` and one near it ``~``, so that nothing hangs on colour.
+
+    Parameters
+    ----------
+    facts : more about the line, after its summary
+    verbose : say how the solution was reached
     """
     said = sheet(result)
-    note = Note((said.table.note, said.convergence))
-    return ReportPart(said.title, (replace(said.table, note=""), *said.summary, note))
+    summary, *warned = said.summary
+    notes = (said.table.note, said.accuracy, *([said.convergence] if verbose else []))
+    blocks: tuple[Block, ...] = (
+        replace(summary, lines=(*summary.lines, *facts)),
+        *warned,
+        Note(notes),
+    )
+    return ReportPart(said.title, (replace(said.table, note=""), *blocks))
 
 
 def _summary(result: Result | TowResult, *lines: Line) -> tuple[Prose, ...]:
@@ -87,6 +107,7 @@ def _mooring(result: Result, places: bool) -> Sheet:
             result, _MOORING_COLUMNS, f"Depth, height and offset: {_NOTE}", places=places
         ),
         summary=_mooring_summary(result),
+        accuracy=_accuracy(result),
         convergence=_convergence(result, "anchor"),
     )
 
@@ -141,6 +162,7 @@ def _tow(result: TowResult, places: bool) -> Sheet:
         title=f"{result.name}: tow at {say('speed', result.speed)} towards {result.toward:.0f}°",
         table=line_table(result, _TOW_COLUMNS, f"Depth and layback: {_NOTE}", places=places),
         summary=_tow_summary(result),
+        accuracy=_accuracy(result),
         convergence=_convergence(result, "tow point"),
     )
 
@@ -165,9 +187,7 @@ def _tow_summary(result: TowResult) -> tuple[Prose, ...]:
 
 
 def _strumming(result: Result | TowResult) -> tuple[str, ...]:
-    """Return how fast the cables vibrate and what that makes of their drag; or what it would
-    make.
-    """
+    """Return how fast cables vibrate and what that makes, or would make, of their drag."""
     strumming, band = result.strumming, result.strumming_band
     if strumming is not None:
         together = isinstance(result.file.solver.strumming, BourgetMarichalKeys)
@@ -206,14 +226,19 @@ def _level(result: TowResult, depth: float) -> str:
     return f"{say('depth', depth)} deep" if depth >= 0.0 else f"{say('depth', -depth)} in the air"
 
 
+def _accuracy(result: Result | TowResult) -> str:
+    """Return how good the solution is."""
+    good = result.accuracy
+    pull = "" if good.anchor is None else f", at the anchor {good.anchor:.2g} N"
+    return f"Good to {good.depth:.2g} m and {good.tension:.2g} N{pull}."
+
+
 def _convergence(result: Result | TowResult, end: str) -> str:
-    """Return how the solution was reached and how good it is; `end` is where the line is held."""
-    accuracy = result.accuracy
-    pull = "" if accuracy.anchor is None else f", at the anchor {accuracy.anchor:.2g} N"
+    """Return how the solution was reached; `end` is where the line is held."""
     return (
         f"{result.status.capitalize()} in {result.iterations} marches of {result.segments} "
-        f"segments, good to {accuracy.depth:.2g} m and {accuracy.tension:.2g} N{pull}; {end} "
-        f"missed by {abs(result.miss):.1g} m, forces closed to {result.closure:.1g}."
+        f"segments; {end} missed by {abs(result.miss):.1g} m, forces closed to "
+        f"{result.closure:.1g}."
     )
 
 
@@ -243,7 +268,12 @@ _STATES = {FigureMark.NONE: None, FigureMark.NEAR: State.WARN, FigureMark.BEYOND
 
 
 def line_table(
-    result: Result | TowResult, names: tuple[str, ...], note: str, *, places: bool = False
+    result: AnyResult,
+    names: tuple[str, ...],
+    note: str,
+    *,
+    places: bool = False,
+    heads: Mapping[int, Cell] = NO_HEADS,
 ) -> Table:
     """The line from its first-listed end, each clamped instrument indented below its piece.
 
@@ -252,13 +282,11 @@ def line_table(
     names : of the quantities in each row
     note : how to read them
     places : whether a clamp says where on its piece it sits, in place of a length
+    heads : what stands above pieces, by their index
     """
-    columns = (
-        Column("no.", numeric=True, narrow=False),
-        Column("piece", short=""),
-        *map(quantity_column, names),
-    )
-    return Table("", columns, tuple(_rows(result, names, places)), note, dense=True)
+    columns = (Column("no.", numeric=True, narrow=False), Column("piece", short=""))
+    rows = tuple(_rows(result, names, places, heads))
+    return Table("", (*columns, *map(quantity_column, names)), rows, note, dense=True)
 
 
 def quantity_field(name: str, attribute: str = "", heading: str | None = None) -> Field[Any]:
@@ -307,7 +335,7 @@ def tilt_mark(component: Component, tilt: float) -> FigureMark:
     return FigureMark.NONE
 
 
-def safety_mark(result: Result | TowResult, record: ComponentRow) -> FigureMark:
+def safety_mark(result: AnyResult, record: ComponentRow) -> FigureMark:
     """Mark of a safety factor: too small, or the piece bears more than its working load.
 
     The factor asked on the breaking load is the file's `checks.safety_factor`, for a surface
@@ -321,9 +349,11 @@ def safety_mark(result: Result | TowResult, record: ComponentRow) -> FigureMark:
 
 
 def _rows(
-    result: Result | TowResult, names: tuple[str, ...], places: bool
+    result: AnyResult, names: tuple[str, ...], places: bool, heads: Mapping[int, Cell]
 ) -> Iterator[tuple[Cell, ...]]:
     for number, (piece, clamps) in enumerate(rows_down(result)):
+        if piece.index in heads:
+            yield (heads[piece.index],)
         where = _where(result, piece.depth_top, piece.x_top, piece.y_top)
         marks = {
             "tilt": tilt_mark(piece.part.component, piece.tilt),
@@ -343,7 +373,7 @@ def _rows(
             yield Cell(), label, *cells
 
 
-def _where(result: Result | TowResult, depth: float, x: float, y: float) -> dict[str, float]:
+def _where(result: AnyResult, depth: float, x: float, y: float) -> dict[str, float]:
     """Return where a clamped instrument is, or the upper end of a piece."""
     bottom = result.file.environment.depth
     return {
@@ -351,6 +381,8 @@ def _where(result: Result | TowResult, depth: float, x: float, y: float) -> dict
         "height": math.nan if bottom is None else bottom - depth,
         "offset": math.hypot(x, y),
         "layback": math.hypot(x, y),
+        "x": x,
+        "y": y,
     }
 
 
