@@ -91,11 +91,10 @@ def waves(
     mooring = calm.load(file, environment=environment, catalogs=catalog or [])
     if isinstance(mooring, Tow):
         raise UsageError(f"{file} is a tow; calm waves judges moorings")
-    given = mooring.file.environment.waves
-    if asked is None and given is None:
+    given, seas = mooring.file.environment.waves, asked or mooring.file.environment.seas
+    if not seas:
         missing = "--hs: missing" if spectrum in OF_HEIGHT else "--hs, --tp: missing"
         raise UsageError(f"{missing}; or give a --scatter table, or `waves:` in {file}")
-    seas = list(given.seas) if asked is None and given is not None else asked or []
     if way is None:
         way = 90.0 if given is None else given.toward
     show_units(units, [mooring.file])
