@@ -250,9 +250,7 @@ def check(known: Mapping[str, float], weight: float) -> None:
 
 
 def mirrored(values: Mapping[str, float]) -> dict[str, float]:
-    """Return the same cable upside down: a floating one becomes a sinking one and the other way
-    round.
-    """
+    """Return the same cable upside down: what floats then sinks, and what sinks floats."""
     swapped = {"a": "b", "b": "a"}
     mirrored = {}
     for name, value in values.items():

@@ -337,9 +337,7 @@ def solve_there(mooring: Mooring, levels: Levels) -> Profiles:
 
 @lru_cache(maxsize=2)
 def _ready(mooring: Mooring) -> Batch:
-    """Return the same for every block, as the mooring comes anew with each and is long in the
-    making.
-    """
+    """Return the same for every block: the mooring comes anew with each, and is long in making."""
     from distributed import get_worker
 
     worker, batch = get_worker(), Batch(mooring)

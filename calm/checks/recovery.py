@@ -18,6 +18,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
+from itertools import islice
 from math import ceil, isnan, nan
 from typing import TYPE_CHECKING, Any
 
@@ -109,12 +110,13 @@ class Recovery:
         ]
 
 
-def recovery_of(mooring: Mooring, result: Result) -> Recovery:
+def recovery_of(mooring: Mooring, result: Result, *, first_only: bool = False) -> Recovery:
     """The recovery of a mooring from where it stands.
 
     Parameters
     ----------
     result : of the mooring; tells where it stands and how long its pieces are
+    first_only : follow the first float alone: one solve in place of one for each
 
     Raises
     ------
@@ -137,7 +139,8 @@ def recovery_of(mooring: Mooring, result: Result) -> Recovery:
     if not speed > 0.0:
         return at_rest
     length = result.components.length[: released + 1]
-    risers = dict(_risers(line, water.still(), length, lifts, top, speed, mooring.settings))
+    risen = _risers(line, water.still(), length, lifts, top, speed, mooring.settings)
+    risers = dict(islice(risen, 1 if first_only else None))
     arrival = none.copy()
     head = head_count(line)
     for piece, time in risers.items():

@@ -63,6 +63,7 @@ class FileOutcome:
     explanation: Explanation | None = None
     schematic: TerminalSchematic | None = None
     uncertain: Uncertain | None = None
+    verbose: bool = False
 
     @property
     def code(self) -> ExitCode:
@@ -92,9 +93,12 @@ class FileOutcome:
         if self.schematic is not None:
             parts.append(self.schematic)
         if self.result is not None:
+            from calm.case import Result
+            from calm.report.explanation import line_facts
             from calm.report.sheet import result_part
 
-            parts.append(result_part(self.result))
+            facts = line_facts(self.result) if isinstance(self.result, Result) else ()
+            parts.append(result_part(self.result, facts, verbose=self.verbose))
         if self.explanation is not None:
             from calm.report.explanation import explanation_part
 

@@ -7,7 +7,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
+
+from cyclopts import Parameter
 
 from calm.cli.options import CatalogFiles, EnvironmentName, Samples, Seed, Units, show_units
 from calm.cli.outputs import FileOutcome, OutputPath, Outputs
@@ -47,6 +49,7 @@ def run(
     samples: Samples = 2048,
     seed: Seed = 0,
     units: Units = None,
+    verbose: Annotated[bool, Parameter(name=["--verbose", "-v"], negative=())] = False,
 ) -> ExitCode:
     """Solve moorings and tows, and print the table of each line.
 
@@ -82,6 +85,8 @@ def run(
         Solve each mooring for many draws of what its file gives under uncertainty (current,
         drags, buoyancy, lengths, depth), and show the 5, 50 and 95 % of its figures and
         where their spread comes from; in the JSON, the picture and the reports too.
+    verbose
+        Say below the table how the solution was reached, too.
     """
     outputs = Outputs(tuple(files), json, csv, plot, html, pdf, netcdf)
     outputs.check()
@@ -91,7 +96,9 @@ def run(
     for option, is_asked in (("--explain", explain), ("--uncertainty", uncertainty)):
         if is_asked:
             _refuse_tows(option, files, lines)
-    return solve_and_show(lines, outputs, explain=explain, schematic=schematic, draws=draws)
+    return solve_and_show(
+        lines, outputs, explain=explain, schematic=schematic, draws=draws, verbose=verbose
+    )
 
 
 def draws_of(uncertainty: bool, samples: int, seed: int) -> tuple[int, int] | None:
@@ -141,6 +148,7 @@ def solve_and_show(
     explain: bool = False,
     schematic: bool = False,
     draws: tuple[int, int] | None = None,
+    verbose: bool = False,
 ) -> ExitCode:
     """Solve what was read from the files of the outputs, and write those.
 
@@ -150,9 +158,12 @@ def solve_and_show(
         Explain what was solved; draw each line for the terminal.
     draws : pair of int, optional
         Samples and seed by which to say how sure the figures are.
+    verbose : bool
+        Say how each solution was reached.
     """
     drawn_often = None if draws is None else _to_draw_often(*draws)
-    outcomes = [_solve(file, line) for file, line in zip(outputs.files, lines, strict=True)]
+    solved = [_solve(file, line) for file, line in zip(outputs.files, lines, strict=True)]
+    outcomes = [replace(outcome, verbose=verbose) for outcome in solved]
     if explain:
         outcomes = [_explained(outcome) for outcome in outcomes]
     if drawn_often is not None:

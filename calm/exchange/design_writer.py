@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import re
 from dataclasses import dataclass, field
 from textwrap import wrap
 
@@ -19,11 +17,10 @@ from calm.exchange.design import (
 )
 from calm.files import Catalogue
 from calm.files.components import FLEXIBLE_KINDS
+from calm.files.editing.writing import written
 from calm.units import KILOGRAM_FORCE
 
 _WIDTH = 100
-_PLAIN = re.compile(r"[A-Za-z][A-Za-z0-9 ./()-]*\Z")
-_WORDS_OF_YAML = {"y", "n", "yes", "no", "on", "off", "true", "false", "null"}
 _UNITS = {
     "diameter": "m", "length": "m", "volume": "m^3", "drag_area": "m^2", "wind_area": "m^2",
     "kn": "N/(m/s)^2", "kt": "N/(m/s)^2", "k_surface": "N/(m/s)^2", "lift": "N/(m/s)^2",
@@ -109,11 +106,8 @@ def _number(value: float) -> str:
 
 
 def quoted(text: str) -> str:
-    """Return a text as YAML has it, plain where it can be."""
-    text = one_line(text)
-    if _PLAIN.match(text) and text == text.strip() and text.lower() not in _WORDS_OF_YAML:
-        return text
-    return json.dumps(text, ensure_ascii=False)
+    """Return a text in one line as YAML has it, plain where it can be."""
+    return written(one_line(text), flow=True)
 
 
 def _write_water(page: _Page, water: ImportedWater) -> None:

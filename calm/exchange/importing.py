@@ -1,30 +1,46 @@
-"""Import a file of another program: its format is found, it is read, written, and read back."""
+"""Import a file of another program: its format is found, it is read, written, and read back.
+
+The design is completed: an anchor that holds, entries of the catalogue, an environment.
+"""
 
 from __future__ import annotations
 
+import os
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+from pydantic import ValidationError
 
-from calm.errors import InputError, Problem, UsageError
+from calm.assemble.line_arrays import drag_of
+from calm.case import Mooring, load
+from calm.errors import CalmError, InputError, Problem, UsageError
 from calm.exchange.cable_reader import is_cbl, read_cbl
-from calm.exchange.design import MOST_PIECES, CurrentRecord, Design, Remark, refused
-from calm.exchange.design_writer import mooring_text
-from calm.exchange.import_completion import (
-    CatalogueMatch,
-    environment_lines,
-    match_catalogue_entries,
-    secure_anchor,
+from calm.exchange.design import (
+    MOST_PIECES,
+    CurrentRecord,
+    Design,
+    ImportedComponent,
+    Remark,
+    one_line,
+    refused,
 )
+from calm.exchange.design_writer import figure_text, mooring_text
 from calm.exchange.list_cells import is_table
 from calm.exchange.list_reader import read_list
 from calm.exchange.mat_file import is_mat
 from calm.exchange.mdd_elements import is_moords, read_moords
 from calm.exchange.mdd_reader import read_mdd
 from calm.exchange.moordyn_reader import is_moordyn, read_moordyn
-from calm.files import read_mooring
+from calm.files import Anchor, Assembly, Catalogue, Rigid, read_mooring
+from calm.files.components import FLEXIBLE_KINDS, KINDS, Component
+from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
+from calm.files.editing.writing import WritingStyle
+from calm.files.yaml_document import read_document
+from calm.physics.materials import STEEL_DENSITY
+from calm.quantities import rounded
 from calm.version import __version__
 
 _HEAD = 70_000  # bytes from which a format is recognised
@@ -165,8 +181,7 @@ def _format_of(path: Path, name: str | None, *, listed: bool = False) -> ImportF
         for each in FORMATS:
             if each.name == name:
                 return each
-        known = ", ".join(each.name for each in FORMATS)
-        raise UsageError(f"--format: `{name}` is none of {known}")
+        raise UsageError(f"--format: `{name}` is none of {', '.join(one.name for one in FORMATS)}")
     try:
         with path.open("rb") as file:
             content = file.read(_HEAD)
@@ -229,3 +244,157 @@ def record_file(record: CurrentRecord, source: str) -> bytes:
         {"Conventions": "CF-1.11", "title": "Currents", "source": source},
     )
     return bytes(dataset.to_netcdf(engine="scipy"))
+
+
+_TOLERANCE = 0.05
+"""Share by which size, net force and drag may differ from those of a catalogue entry."""
+
+_COMMON_WORDS = 0.5  # share of the words of a name that an entry must have, two at least
+_HOLDS = 1e8  # N: holds whatever is tied to it
+_IN_WATER = (1.0 - CATALOGUE_DENSITY / STEEL_DENSITY) * STANDARD_GRAVITY  # N of a kilogram of steel
+_DIGITS = 2  # that a guessed weight keeps
+_LEAST = 100.0  # N of a guessed weight
+
+
+def secure_anchor(design: Design, environment: list[str] | None, output: Path) -> None:
+    """Give the anchor a weight where the file gives none, or one that the line would lift.
+
+    The shape of the line does not depend on it. The weight is what `calm check` asks for in this
+    current. A line without an equilibrium is left to `calm run`, which says so.
+
+    Parameters
+    ----------
+    design : whose anchor is changed
+    environment : lines in place of the water of the design
+    output : path of the mooring file to come
+    """
+    anchor = design.items[-1].component if design.items and design.tow is None else None
+    if anchor is None or anchor.kind != "anchor":
+        return
+    mass, weight = anchor.figures.get("mass"), anchor.figures.get("weight")
+    given = weight if weight is not None or mass is None else _IN_WATER * float(mass)
+    pull, required = _pull(design, anchor, environment, output)
+    if isinstance(given, float) and (pull is None or pull <= given):
+        return
+    anchor.figures.pop("mass", None)
+    anchor.guesses.pop("mass", None)
+    if pull is None:
+        anchor.figures["weight"], reason = _HOLDS, "the file gives no weight; this holds anything"
+    else:
+        anchor.figures["weight"] = rounded(max(required, _LEAST), _DIGITS, up=True)
+        reason = (
+            "the file gives no weight; 1.5 × (V + H/0.6) in this current"
+            if given is None
+            else f"the file's {given:.5g} N would be lifted: the line pulls up with {pull:.5g} N"
+        )
+    anchor.guesses["weight"] = reason
+
+
+def _pull(
+    design: Design, anchor: ImportedComponent, environment: list[str] | None, output: Path
+) -> tuple[float | None, float]:
+    """Return the upward pull of the line, and the weight that holds it [N]."""
+    figures = dict(anchor.figures)
+    anchor.figures.pop("mass", None)
+    anchor.figures["weight"] = _HOLDS
+    try:
+        mooring = load(output, text=mooring_text(design, "", environment)[0])
+        assert isinstance(mooring, Mooring)
+        anchored = mooring.solve().anchor
+    except CalmError:
+        return None, 0.0
+    finally:
+        anchor.figures = figures
+    return anchored.vertical, anchored.required_weight
+
+
+@dataclass(frozen=True)
+class CatalogueMatch:
+    """Name a component, as the file has it, and the catalogue entry used in its place."""
+
+    name: str
+    entry: str
+
+
+def match_catalogue_entries(design: Design) -> tuple[CatalogueMatch, ...]:
+    """Use catalogue entries for the components whose name and figures agree with one.
+
+    A component is of the same kind, shares half the words of its name, and is within `_TOLERANCE`
+    in diameter, length, net force, normal drag and stiffness, as far as both give them.
+    """
+    catalogue = Catalogue.load()
+    entries = {
+        id: entry for id, entry in catalogue.all().items() if not isinstance(entry, Assembly)
+    }
+    matched: dict[str, CatalogueMatch] = {}
+    for component in design.components():
+        model = _model(component)
+        if model is None or component.entry:
+            continue
+        for id, entry in entries.items():
+            sizeless = "drag_area" in component.guesses
+            if _alike(component.name, f"{id} {entry.name or ''}") and (
+                _weighs_alike(model, entry) if sizeless else _agree(model, entry)
+            ):
+                component.entry = id
+                matched[id + component.name] = CatalogueMatch(component.name, id)
+                break
+    return tuple(matched.values())
+
+
+def _model(component: ImportedComponent) -> Component | None:
+    per_metre = component.kind in FLEXIBLE_KINDS
+    fields = {
+        key: figure_text(key, value, per_metre=per_metre, in_kilograms=False)
+        for key, value in component.figures.items()
+    }
+    try:
+        return KINDS[component.kind].model_validate({"kind": component.kind, **fields})
+    except ValidationError:
+        return None
+
+
+def _alike(name: str, other: str) -> bool:
+    words, others = (
+        set(re.findall(r"[a-z]+|\d+(?:[./]\d+)?", text.lower())) for text in (name, other)
+    )
+    shared = words & others
+    return len(shared) >= 2 and len(shared) >= _COMMON_WORDS * len(words)
+
+
+def _weighs_alike(one: Component, other: Component) -> bool:
+    """Return whether a component without a size in the file has the net force of an entry."""
+    if not isinstance(other, Rigid):
+        return False
+    a, b = one.net_buoyancy, other.net_buoyancy
+    return abs(a - b) <= _TOLERANCE * max(abs(a), abs(b))
+
+
+def _agree(one: Component, other: Component) -> bool:
+    if one.kind != other.kind or isinstance(one, Anchor) or isinstance(other, Anchor):
+        return False
+    pairs = [(one.net_buoyancy, other.net_buoyancy)]
+    for key in ("diameter", "length", "stiffness"):
+        values = getattr(one, key, None), getattr(other, key, None)
+        if values[0] is not None and values[1] is not None:
+            pairs.append((values[0], values[1]))
+    # at 1 m/s across it [N], of a cable or chain per metre
+    drags = [drag_of(each, getattr(each, "length", 1.0))[0] for each in (one, other)]
+    pairs.append((drags[0], drags[1]))
+    return all(abs(a - b) <= _TOLERANCE * max(abs(a), abs(b)) for a, b in pairs)
+
+
+def environment_lines(path: Path, output: Path) -> list[str]:
+    """Return the `environment` of a file, its paths relative to the folder of the mooring file.
+
+    InputError: the file cannot be read, or has no `environment`.
+    """
+    found = read_document(path).data.get("environment")
+    if not isinstance(found, dict) or not found:
+        raise refused(path, "has no `environment`")
+    current = found.get("current")
+    if isinstance(current, dict) and isinstance(current.get("file"), str):
+        target = os.path.join(path.parent, current["file"])
+        found["current"] = {**current, "file": os.path.relpath(target, str(output.parent))}
+    _, *below = WritingStyle().entry("environment", found, 1).splitlines()
+    return [f"environment:  # that of {one_line(path.name)}", *below]

@@ -275,9 +275,22 @@ def placed(piece: Piece, place: Place) -> Piece:
 def numbered(pieces: Iterable[Piece]) -> tuple[Piece, ...]:
     """Give the pieces their index, and number labels that occur more than once down the line."""
     pieces = tuple(pieces)
-    labels = [[piece.label, *(clamp.label for clamp in piece.clamps)] for piece in pieces]
-    total = Counter(label for group in labels for label in group)
-    seen: Counter[str] = Counter()
+    groups = [[piece.label, *(clamp.label for clamp in piece.clamps)] for piece in pieces]
+    labels = iter(numbered_labels([label for group in groups for label in group]))
+    return tuple(
+        replace(
+            piece,
+            index=index,
+            label=next(labels),
+            clamps=tuple(replace(clamp, label=next(labels)) for clamp in piece.clamps),
+        )
+        for index, piece in enumerate(pieces)
+    )
+
+
+def numbered_labels(texts: Sequence[str]) -> list[str]:
+    """Number labels that occur more than once down a line, clamps below their piece."""
+    total, seen = Counter(texts), Counter[str]()
 
     def numbered_label(text: str) -> str:
         if total[text] == 1:
@@ -287,17 +300,7 @@ def numbered(pieces: Iterable[Piece]) -> tuple[Piece, ...]:
             seen[text] += 1
         return f"{text} {seen[text]}"
 
-    return tuple(
-        replace(
-            piece,
-            index=index,
-            label=numbered_label(piece.label),
-            clamps=tuple(
-                replace(clamp, label=numbered_label(clamp.label)) for clamp in piece.clamps
-            ),
-        )
-        for index, piece in enumerate(pieces)
-    )
+    return [numbered_label(text) for text in texts]
 
 
 def travelling(

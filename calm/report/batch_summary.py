@@ -196,12 +196,7 @@ TITLES = {
 }
 """Of the responses, by their names."""
 
-QUANTITY = {
-    "knockdown": "knockdown",
-    "anchor_tension": "tension",
-    "tilt": "tilt",
-    "offset": "offset",
-}
+QUANTITY = {name: name for name in TITLES} | {"anchor_tension": "tension"}
 """Of a response, in `calm.quantities`."""
 
 METHODS_IN_SHORT = {"gev": "GEV", "pot": "POT"}
@@ -252,9 +247,7 @@ def standing(summary: Summary) -> str:
 
 
 def left_out(summary: Summary) -> str:
-    """Return how many profiles with a current were not solved, and what that does to figures, if
-    any.
-    """
+    """Return how many profiles with a current were not solved, and what that does to figures."""
     if not summary.unsolved:
         return ""
     with_current = summary.solved + summary.unsolved
@@ -267,9 +260,7 @@ def left_out(summary: Summary) -> str:
 
 
 def refusals(summary: Summary) -> Iterator[str]:
-    """Return why there are no return levels: each reason once, with the responses that it holds
-    for.
-    """
+    """Yield why there are no return levels: each reason once, with the responses it is for."""
     reasons: dict[str, list[str]] = {}
     for response in summary.responses:
         for fit in response.return_levels:
@@ -281,9 +272,7 @@ def refusals(summary: Summary) -> Iterator[str]:
 
 
 def stops_tables(summary: Summary) -> Iterator[Table]:
-    """Return the depths of the stops of the profilers, as they are typed into these; none where
-    there are none.
-    """
+    """Yield the depths of the stops of the profilers, as they are typed into these."""
     if not summary.stops:
         return
     columns = [Column("profiler"), Column("stop")]

@@ -148,7 +148,7 @@ def _line(assessment: Assessment) -> Iterator[Block]:
     if stand is not None and result is not None:
         said = sheet(result, places=True)
         yield replace(said.table, title=f"Table of the line, environment: {stand.environment}")
-        yield from (*said.summary, Prose((said.convergence,)))
+        yield from (*said.summary, Prose((said.accuracy, said.convergence)))
 
 
 def _drawn(assessment: Assessment) -> Iterator[Block]:

@@ -206,7 +206,7 @@ def deck_table(items: Sequence[InventoryItem]) -> Table:
             lambda one: "" if one.at is None else place_text(one.at),
         ),
         *map(quantity_field, ("cut_length", "dry_mass", "wet_weight", "lift_mass")),
-        note="On its piece: where a clamp sits, from the top of it. Weight in water: + down. Mass "
+        note="On its piece: where a clamp sits, from its upper end. Weight in water: + down. Mass "
         "of the lift: of the piece with what is clamped on it.",
     )
 

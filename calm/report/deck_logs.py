@@ -50,9 +50,9 @@ def recovery_part(deck: Deck) -> ReportPart:
     rise = deck.rise
     said = []
     if rise is None:
-        said.append("The rise of the line is not known; the order is that of the line.")
+        said.append("The rise is not known: the list goes down the line.")
     elif rise.time_to_surface is None:
-        said.append("Freed, the line does not rise by itself; the order is that of the line.")
+        said.append("Freed, the line does not rise by itself: the list goes down the line.")
     elif rise.time_to_surface == 0.0:
         said.append(
             "Its float is at the surface; what comes up from below is listed with its time."

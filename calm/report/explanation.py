@@ -1,22 +1,28 @@
-"""What causes a knockdown and what would change it; what to change; and what a change does.
+"""What a line weighs, what causes its knockdown, what would change it, and what a change does.
 
-An explanation, a sizing and a comparison of two designs, as a person reads them.
+The facts of a result, an explanation, a sizing and a comparison of two designs, as a person reads
+them.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
-from math import floor, log10
+from math import floor, hypot, log10
 from typing import TYPE_CHECKING
 
 from calm.checks.finding import State
-from calm.quantities import QUANTITIES, Quantity
+from calm.checks.inventory import inventory_of
+from calm.checks.recovery import recovery_of
+from calm.errors import NoEquilibrium
+from calm.quantities import QUANTITIES, Quantity, duration, say
 from calm.report.blocks import Block, Cell, Column, Line, Prose, ReportPart, Span, Table
 from calm.report.check_summary import SIGNS
 from calm.units import with_unit
 
 if TYPE_CHECKING:
+    from calm.case import Result
     from calm.case.explain import Causes, Explanation
     from calm.case.size import Sizing, Trial
     from calm.case.targets import Figures
@@ -33,6 +39,37 @@ _SHARES = (
 _CHANGES = (
     "Buoyancy: of everything buoyant in the line. Drag: of everything. Lengths stay as they are."
 )
+
+
+def line_facts(result: Result) -> tuple[str, ...]:
+    """The weights of a mooring, its length and watch circle, and how it rises when freed."""
+    items = inventory_of(result.mooring)
+    masses = [one.dry_mass for one in items if one.role != "anchor"]
+    weights = [one.wet_weight or 0.0 for one in items if one.role != "anchor"]
+    unknown = masses.count(None)
+    mass = f"{say('dry_mass', sum(filter(None, masses)))} in air"
+    if unknown:
+        mass = f"at least {mass} ({unknown} not known)"
+    if unknown == len(masses):
+        mass = "no mass in air is known"
+    floats = -sum(weight for weight in weights if weight < 0.0)
+    length = float(result.components.cut_length.sum())
+    depth = result.mooring.water.depth
+    rises = []
+    with suppress(NoEquilibrium):
+        rise = recovery_of(result.mooring, result, first_only=True)
+        if rise.time_to_surface is None:
+            rises = ["Freed, it does not rise by itself"]
+        elif rise.time_to_surface > 0.0:
+            up = duration(rise.time_to_surface)
+            rises = [f"Freed, it rises with {say('speed', rise.rise_speed)}: the top is up in {up}"]
+    return (
+        f"Without the anchor {mass}; what floats lifts {say('wet_weight', floats)}, net "
+        f"{say('wet_weight', -sum(weights))}",
+        f"Line of {say('length', length)}, scope {length / depth:.3f}; watch circle of "
+        f"{say('offset', hypot(result.top.x, result.top.y))} in this current",
+        *rises,
+    )
 
 
 @dataclass(frozen=True)

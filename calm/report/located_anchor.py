@@ -88,7 +88,7 @@ def _residuals(located: Located) -> Table:
 
 def _notes(located: Located) -> tuple[str, ...]:
     notes = [
-        "Rays are taken as straight, and the ship's surface as that of the ellipsoid WGS 84.",
+        "Rays are taken as straight, and the sea surface as the ellipsoid WGS 84.",
     ]
     if located.survey.timed:
         notes.append("Times are taken as those there and back, without any delay of what answers.")

@@ -216,20 +216,10 @@ def history_part(file: MooringFile) -> tuple[ReportPart, ...]:
 def title_pairs(file: MooringFile) -> list[tuple[str, str]]:
     """Return what is known of the names under which a mooring goes, and where it is."""
     document = file.document
-    names = (
-        ("document", "id"),
-        ("revision", "revision"),
-        ("date", "date"),
-        ("project", "project"),
-        ("ship", "ship"),
-        ("cruise", "cruise"),
-        ("author", "author"),
-        ("checked", "checked"),
-        ("approved", "approved"),
-    )
+    names = ("revision", "date", "project", "ship", "cruise", "author", "checked", "approved")
     pairs = [("mooring", file.name)]
     if document is not None:
-        given = ((title, getattr(document, key)) for title, key in names)
+        given = [("document", document.id), *((name, getattr(document, name)) for name in names)]
         pairs += [(title, text) for title, text in given if text is not None]
     if file.position is not None:
         pairs.append(("position", position_text(file.position)))

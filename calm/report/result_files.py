@@ -170,8 +170,7 @@ def to_json(documents: list[dict[str, Any]]) -> str:
 
 
 def _indented(value: Any, line: str) -> str:
-    """Return what `json.dumps` writes with an indent of two; `line` is what begins a line at this
-    depth.
+    """Return what `json.dumps` writes with an indent of two; `line` begins a line at this depth.
 
     Its encoder is fast only without an indent: so it writes all that has no further level in it.
     """

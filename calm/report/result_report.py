@@ -46,7 +46,7 @@ def result_report(result: Result | TowResult, uncertain: Uncertain | None = None
     described = (Prose((file.description,)),) if file.description else ()
     parts = (
         *document_part(file),
-        ReportPart("Result", (*described, *said.summary, Prose((said.convergence,)))),
+        ReportPart("Result", (*described, *said.summary, Prose((said.accuracy, said.convergence)))),
         ReportPart("The line", (Figure("Schematic", schematic_svg(file, result), tall=True),
                           replace(said.table, title="Table of the line"))),
         ReportPart("Shape", (Figure("Elevation, current and plan", drawing),)),
@@ -138,7 +138,7 @@ def _pieces(uncertain: Uncertain) -> Table:
 
 def _contributions(uncertain: Uncertain) -> Table:
     quantity, unexplained = uncertain.contributions[0].quantity, uncertain.unexplained
-    note = f"{unexplained:.0%} of it no index explains: the line answers unevenly."
+    note = f"No index explains {unexplained:.0%} of the spread: the line answers unevenly."
     return table_of(
         "",
         uncertain.contributions,

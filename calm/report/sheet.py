@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import Any
@@ -19,7 +19,18 @@ from calm.drawing.schematic.shown_parts import place_text
 from calm.files import Component
 from calm.files.strumming_keys import BourgetMarichalKeys
 from calm.quantities import QUANTITIES, duration, say
-from calm.report.blocks import Cell, Column, Field, Line, Note, Prose, ReportPart, Span, Table
+from calm.report.blocks import (
+    Block,
+    Cell,
+    Column,
+    Field,
+    Line,
+    Note,
+    Prose,
+    ReportPart,
+    Span,
+    Table,
+)
 from calm.solve import Status
 
 _MOORING_COLUMNS = (
@@ -46,32 +57,45 @@ class Sheet:
     title : name and kind
     table : a row for each component and each clamped instrument, in file order
     summary : the two ends of the line in words, the warnings below them
-    convergence : how the solution was reached and how good it is
+    accuracy : how good the solution is
+    convergence : how it was reached
     """
 
     title: str
     table: Table
     summary: tuple[Prose, ...]
+    accuracy: str
     convergence: str
 
 
 def sheet(result: Result | TowResult, *, places: bool = False) -> Sheet:
-    """Return what a mooring or a tow says; in a report its clamps have their places on their
-    pieces.
-    """
+    """Return what a mooring or a tow says; in a report clamps have their places on pieces."""
     if isinstance(result, TowResult):
         return _tow(result, places)
     return _mooring(result, places)
 
 
-def result_part(result: Result | TowResult) -> ReportPart:
+def result_part(
+    result: Result | TowResult, facts: Sequence[Line] = (), *, verbose: bool = False
+) -> ReportPart:
     """A result in short: it fits 80 columns, where long labels wrap.
 
     A figure beyond its limit carries ``!`` and one near it ``~``, so that nothing hangs on colour.
+
+    Parameters
+    ----------
+    facts : more about the line, after its summary
+    verbose : say how the solution was reached
     """
     said = sheet(result)
-    note = Note((said.table.note, said.convergence))
-    return ReportPart(said.title, (replace(said.table, note=""), *said.summary, note))
+    summary, *warned = said.summary
+    notes = (said.table.note, said.accuracy, *([said.convergence] if verbose else []))
+    blocks: tuple[Block, ...] = (
+        replace(summary, lines=(*summary.lines, *facts)),
+        *warned,
+        Note(notes),
+    )
+    return ReportPart(said.title, (replace(said.table, note=""), *blocks))
 
 
 def _summary(result: Result | TowResult, *lines: Line) -> tuple[Prose, ...]:
@@ -87,6 +111,7 @@ def _mooring(result: Result, places: bool) -> Sheet:
             result, _MOORING_COLUMNS, f"Depth, height and offset: {_NOTE}", places=places
         ),
         summary=_mooring_summary(result),
+        accuracy=_accuracy(result),
         convergence=_convergence(result, "anchor"),
     )
 
@@ -141,6 +166,7 @@ def _tow(result: TowResult, places: bool) -> Sheet:
         title=f"{result.name}: tow at {say('speed', result.speed)} towards {result.toward:.0f}°",
         table=line_table(result, _TOW_COLUMNS, f"Depth and layback: {_NOTE}", places=places),
         summary=_tow_summary(result),
+        accuracy=_accuracy(result),
         convergence=_convergence(result, "tow point"),
     )
 
@@ -165,9 +191,7 @@ def _tow_summary(result: TowResult) -> tuple[Prose, ...]:
 
 
 def _strumming(result: Result | TowResult) -> tuple[str, ...]:
-    """Return how fast the cables vibrate and what that makes of their drag; or what it would
-    make.
-    """
+    """Return how fast cables vibrate and what that makes, or would make, of their drag."""
     strumming, band = result.strumming, result.strumming_band
     if strumming is not None:
         together = isinstance(result.file.solver.strumming, BourgetMarichalKeys)
@@ -206,14 +230,19 @@ def _level(result: TowResult, depth: float) -> str:
     return f"{say('depth', depth)} deep" if depth >= 0.0 else f"{say('depth', -depth)} in the air"
 
 
+def _accuracy(result: Result | TowResult) -> str:
+    """Return how good the solution is."""
+    good = result.accuracy
+    pull = "" if good.anchor is None else f", at the anchor {good.anchor:.2g} N"
+    return f"Good to {good.depth:.2g} m and {good.tension:.2g} N{pull}."
+
+
 def _convergence(result: Result | TowResult, end: str) -> str:
-    """Return how the solution was reached and how good it is; `end` is where the line is held."""
-    accuracy = result.accuracy
-    pull = "" if accuracy.anchor is None else f", at the anchor {accuracy.anchor:.2g} N"
+    """Return how the solution was reached; `end` is where the line is held."""
     return (
         f"{result.status.capitalize()} in {result.iterations} marches of {result.segments} "
-        f"segments, good to {accuracy.depth:.2g} m and {accuracy.tension:.2g} N{pull}; {end} "
-        f"missed by {abs(result.miss):.1g} m, forces closed to {result.closure:.1g}."
+        f"segments; {end} missed by {abs(result.miss):.1g} m, forces closed to "
+        f"{result.closure:.1g}."
     )
 
 

@@ -50,9 +50,7 @@ def verification_document(findings: Findings) -> dict[str, Any]:
 
 
 def by_kind(cases: Iterable[Case]) -> dict[Kind, int]:
-    """Return how many cases there are of each kind, in the order of `Kind`; kinds without one left
-    out.
-    """
+    """Return how many cases there are of each kind that has any, in the order of `Kind`."""
     from calm.verification import Kind
 
     number = Counter(case.kind for case in cases)

@@ -11,6 +11,7 @@ from rich.console import RenderableType
 from textual import on, work
 from textual._compositor import CompositorUpdate
 from textual.app import SystemCommand
+from textual.command import CommandPalette
 from textual.filter import LineFilter, NoColor
 from textual.screen import Screen
 from textual.timer import Timer
@@ -18,7 +19,7 @@ from textual.timer import Timer
 from calm.errors import CalmError
 from calm.files.editing import KeptWork, WorkingFile
 from calm.tui import saving
-from calm.tui.help_screen import Actions
+from calm.tui.help_screen import Actions, Commands
 from calm.tui.judging import Judging
 from calm.tui.line.builder import BuilderScreen
 from calm.tui.messages import CatalogueRead, Edited, Judged, JudgingFailed, Workspace
@@ -26,7 +27,7 @@ from calm.tui.painted import Painted, PlainSigns, shows_all_signs
 from calm.tui.saving import Saving
 from calm.tui.screen import DraftScreen
 from calm.tui.session import Session
-from calm.tui.theme import PICTURE_DARK, PICTURE_LIGHT, choose_theme, themes
+from calm.tui.theme import PICTURE_DARK, PICTURE_LIGHT, choose_theme, legible, themes
 from calm.tui.turns import InTurn
 
 _AUTOSAVED_AFTER = 0.3  # seconds
@@ -104,19 +105,25 @@ class BuildApp(InTurn):
             self._offer(self._offered)
         else:
             self._mend()
-        if self.session.file.is_open_elsewhere():
-            self.tell(f"{self.session.name} is open elsewhere, with work not saved", wrong=True)
+        is_unsaved = self.session.file.is_open_elsewhere()
+        others = self.saving.presence.say(self.session.file.path)
+        if is_unsaved or others:
+            what = "with work not saved" if is_unsaved else "in another builder"
+            who = f" (process {others[0]})" if others else ""
+            self.tell(f"{self.session.name} is open elsewhere{who}, {what}", wrong=True)
 
     def get_system_commands(self, screen: Screen[Any]) -> Iterable[SystemCommand]:
         """The command for colours; the other commands of textual have keys of their own here."""
         yield SystemCommand("colours", "Choose other colours.", self.action_change_theme)
 
     def get_line_filters(self) -> Sequence[LineFilter]:
-        """Return those of textual; one that takes all colours off, one for terminals of plain
-        signs.
+        """Return those of textual and one for colours that can be read; or one that takes all
+        colours off; and one for terminals of plain signs.
         """
-        filters = [_COLOURLESS] if self.no_color else super().get_line_filters()
-        return [*filters, *self._plain]
+        if self.no_color:
+            return [_COLOURLESS, *self._plain]
+        theme = self.current_theme
+        return [*super().get_line_filters(), legible(theme.dark, theme.ansi), *self._plain]
 
     def _display(self, screen: Screen[Any], renderable: RenderableType | None) -> None:
         """Send the terminal what it does not show yet."""
@@ -162,6 +169,11 @@ class BuildApp(InTurn):
     async def action_quit(self) -> None:
         """Leave; unsaved work is asked about."""
         self.saving.quit()
+
+    def action_command_palette(self) -> None:
+        """Find a command by its name."""
+        if not isinstance(self.screen, CommandPalette):
+            self.push_screen(Commands(id="--command-palette"))
 
     def action_help(self) -> None:
         """All keys."""
@@ -275,6 +287,7 @@ class BuildApp(InTurn):
 
     def on_unmount(self) -> None:
         """Keep what is not saved whatever has ended the application, a closed page or a failure."""
+        self.saving.presence.say(None)
         self.keep_at_the_end()
 
     def take_typed(self) -> None:

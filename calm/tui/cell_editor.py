@@ -10,8 +10,8 @@ from textual.binding import BindingType
 from textual.geometry import Region
 from textual.message import Message
 
-from calm.tui.actions import bindings
 from calm.tui.checking import Check, Reading, anything
+from calm.tui.key_table import bindings
 from calm.tui.scrolled import ScrolledEntry
 
 Then = Literal["stay", "edit next", "right", "up", "down"]
@@ -61,13 +61,7 @@ class CellEditor(ScrolledEntry):
         return self.has_class("-open")
 
     def open(
-        self,
-        text: str,
-        check: Check,
-        region: Region,
-        *,
-        least_width: int = 10,
-        begun: bool = False,
+        self, text: str, check: Check, region: Region, *, least_width: int = 10, begun: bool = False
     ) -> None:
         """Begin to edit a text over a part of the screen [cells of the parent].
 

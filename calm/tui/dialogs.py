@@ -15,16 +15,16 @@ from textual.markup import escape
 from textual.screen import ModalScreen
 from textual.widgets import Static
 
-from calm.tui.actions import bindings
 from calm.tui.checking import Check, Reading, anything
 from calm.tui.field import Field, all_settled
+from calm.tui.key_table import bindings
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
 _FRAME = """
     align: center middle;
-    & > Vertical {
+    & > Vertical, & > VerticalScroll {
         width: 72; max-width: 100%; height: auto; max-height: 100%; padding: 1 2;
         background: $panel; border-left: outer $primary;
     }
@@ -115,7 +115,7 @@ class InputSheet(ModalScreen[dict[str, str] | None]):
 
     def compose(self) -> ComposeResult:
         """Return what is asked, and where it is typed."""
-        with Vertical():
+        with VerticalScroll(can_focus=False):
             yield Static(self._title, classes="title", markup=False)
             if self._text:
                 yield Static(self._text, classes="text", markup=False)

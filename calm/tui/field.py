@@ -15,8 +15,8 @@ from textual.message import Message
 from textual.widget import Widget
 from textual.widgets import Input, Static
 
-from calm.tui.actions import bindings
 from calm.tui.checking import Check, Reading, anything
+from calm.tui.key_table import bindings
 from calm.tui.scrolled import ScrolledEntry
 
 

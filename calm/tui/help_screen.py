@@ -9,13 +9,12 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 from textual.binding import Binding, BindingType
-from textual.command import DiscoveryHit, Hit, Hits, Provider
+from textual.command import CommandList, CommandPalette, DiscoveryHit, Hit, Hits, Provider
 from textual.containers import ScrollableContainer
 from textual.screen import Screen
 from textual.widgets import Input, TextArea
 
-from calm.tui.actions import actions_in, shown_key, shown_keys
-from calm.tui.key_table import ACTIONS, Action, Place
+from calm.tui.key_table import ACTIONS, Action, Place, actions_in, shown_key, shown_keys
 from calm.tui.theme import LOOKS
 
 _SIGNS = "Signs: " + ", ".join(f"{look.sign} {look.word}" for look in LOOKS.values())
@@ -79,6 +78,15 @@ PLACES: dict[Place, str] = {
     "help": "This help",
 }
 """The headings of the help, in its order."""
+
+
+class Commands(CommandPalette):
+    """The palette of textual, in terminals of any height."""
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """A list without a line on the screen has no pages."""
+        is_page = action == "command_list" and str(parameters[0]).startswith("page")
+        return not is_page or self.query_one(CommandList).size.height > 0
 
 
 class Actions(Provider):

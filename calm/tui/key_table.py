@@ -1,9 +1,12 @@
-"""All actions of the builder: where their keys work, and the order of the help and the palette."""
+"""All actions of the builder and their keys: where they work, as hints, in help and palette."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, cast, get_args
+
+from textual.binding import Binding
 
 Place = Literal[
     "anywhere", "line", "verdict", "catalogue", "cell", "water", "grid", "choice", "given", "text",
@@ -36,307 +39,269 @@ class Action:
     palette: bool = True
 
 
-BUILDER: tuple[Action, ...] = (
-    # anywhere
-    Action("anywhere", "undo", "u", "undo", "Undo the last change, as often as there is one.", 3),
-    Action(
-        "anywhere",
-        "suspend",
-        "ctrl+z",
-        "suspend",
-        "Suspend to the shell, `fg` returns; while a value is edited, and in a browser: undo.",
-    ),
-    Action("anywhere", "redo", "U,ctrl+y", "redo", "Redo what was undone."),
-    Action("anywhere", "water", "w", "water", "Depth, density, current, wind; environments.", 4),
-    Action(
-        "anywhere", "next_environment", "e", "environment", "Show the line in the next environment."
-    ),
-    Action(
-        "anywhere",
-        "advise",
-        "p",
-        "advice",
-        "Changes that correct a finding or meet a target; shown before you accept them.",
-        10,
-    ),
-    Action("anywhere", "compare", "D", "compare", "What has changed since the file was saved."),
-    Action(
-        "anywhere",
-        "compare_file",
-        "C",
-        "compare with",
-        "Another file beside this one: differences, and its line in the pictures.",
-    ),
-    Action(
-        "anywhere",
-        "overlay",
-        "0",
-        "overlay",
-        "Draw the line in all its environments, in still water dotted; or in its own alone.",
-    ),
-    Action(
-        "anywhere",
-        "figures",
-        "f",
-        "missing figures",
-        "Fill in the figures that are not known, piece by piece, with their source.",
-    ),
-    Action(
-        "anywhere",
-        "verdict",
-        "G",
-        "verdict",
-        "The verdict line by line: Enter goes to the row that a line is about, Esc back.",
-    ),
-    Action("anywhere", "search", "slash", "catalogue", "Search the catalogue."),
-    Action("anywhere", "define", "o", "own component", "Define a component of your own."),
-    Action("anywhere", "picture('elevation')", "1", "elevation", "The line seen from the side."),
-    Action("anywhere", "picture('plan')", "2", "plan", "The line seen from above."),
-    Action("anywhere", "picture('tension')", "3", "tension", "Tension along the line."),
-    Action("anywhere", "picture('schematic')", "4", "schematic", "The parts, not to scale."),
-    Action("anywhere", "zoom", "z", "zoom", "Give the picture the whole screen, or take it back."),
-    Action("anywhere", "mooring", "m", "name, place", "Name, description and position."),
-    Action(
-        "anywhere",
-        "document",
-        "M",
-        "document",
-        "Number, revision and what it changed, author, ship and cruise, for the title block.",
-    ),
-    Action(
-        "anywhere",
-        "deployed",
-        "L",
-        "as deployed",
-        "Date, position and depth of the deployment; of the row its number, length, remark, codes.",
-    ),
-    Action(
-        "anywhere",
-        "tow",
-        "T",
-        "tow",
-        "Speed and course of a tow; makes the line one, which hangs from a ship.",
-    ),
-    Action(
-        "anywhere",
-        "begin",
-        "b",
-        "begin",
-        "Begin an empty line with a mooring: deep, shelf, ADCP, taut or slack surface; a tow.",
-    ),
-    Action(
-        "anywhere",
-        "papers",
-        "P",
-        "papers",
-        "Bill and totals; write the report of the check, or the sheets for the deck.",
-    ),
-    Action(
-        "anywhere", "history", "h", "history", "History of changes, and back to before any of them."
-    ),
-    Action("anywhere", "text", "t", "text", "The file as text, with its mistakes."),
-    Action("anywhere", "app.save", "ctrl+s,s", "save", "Save the file.", 9),
-    Action("anywhere", "app.save_as", "S", "save as", "Save it under another name."),
-    Action("anywhere", "app.help", "question_mark,f1", "help", "All keys.", 2),
-    Action(
-        "anywhere",
-        "app.command_palette",
-        "ctrl+p,colon",
-        "commands",
-        "Find any of these by its name.",
-        palette=False,
-    ),
-    Action("anywhere", "app.repaint", "ctrl+l", "repaint", "Redraw the whole screen."),
-    Action("anywhere", "app.quit", "q,ctrl+q", "quit", "Leave; unsaved work is asked about.", 11),
-)
+_TABLE = """
+[line]
+edit | enter,f2 | edit | 1 | Edit the value under the cursor in place; on the component, choose
+  another one.
+add(1) | a,insert | add | 0 | Add a piece below, from the catalogue.
+add(0) | A | add above |  | Add a piece above.
+clamp | i | clamp on | 5 | Clamp an instrument on this piece.
+duplicate | d | duplicate | 6 | Repeat the piece, or those marked, below.
+delete | delete,backspace | delete | 7 | Delete the piece, or those marked.
+move_piece(-1) | alt+up,ctrl+up,K | move up | 8 | Move the piece up the line.
+move_piece(1) | alt+down,ctrl+down,J | move down |  | Move it down the line.
+mark(0) | space | mark |  | Mark the piece, or remove its mark.
+mark(-1) | shift+up | mark up | - | Mark it and go up.
+mark(1) | shift+down | mark down | - | Mark it and go down.
+mark_all | ctrl+a | mark all |  | Mark every piece.
+cut | x,ctrl+x | cut |  | Cut the piece, or those marked.
+copy | c,ctrl+c | copy |  | Copy them.
+paste(1) | v,ctrl+v | paste |  | Paste below the cursor.
+paste(0) | V | paste above |  | Paste above the cursor.
+edit_column('length') | l | length |  | Edit its length, or where it is clamped.
+edit_column('label') | n | label |  | Edit its label.
+edit_column('count') | equals_sign,asterisk | count |  | Edit its count.
+assemble | k | assembly |  | Make the marked pieces an assembly of the file, to be used again
+  under one name.
+change_component | O | change component |  | Change the component of the row, one of the file's
+  own, in its form.
+equipment | N | serial number |  | Serial number, calibration, sampling, battery and termination
+  of the row.
+find | slash | find | 12 | Find words in the line: id, label, serial number, maker.
+find_next(1) | greater_than_sign,f3 | find next |  | To the next row that has them.
+find_next(-1) | less_than_sign,shift+f3 | find last |  | To the one before.
+alike(1) | right_square_bracket | next alike |  | To the next piece of the same kind.
+alike(-1) | left_square_bracket | last alike |  | To the one before.
+least(1) | W | weakest |  | To the piece with the least margin of its strength.
+least(0) | E | lowest margin |  | To the row with the lowest margin of all.
+column | number_sign | fill column |  | Serial numbers, lengths, labels or codes of the marked rows,
+  or of all of the component under the cursor, one below the other or pasted.
+repeat | R | repeat |  | Repeat the piece, or those marked, as often as you say.
+next_finding | f8,g | next finding |  | To the next row with the most serious finding; the last
+  line of the screen shows it.
+why | y | why |  | All findings of this row, with remedies.
+replace | r | replace |  | Use another component in its place.
+move_cursor(-1) | up | up | - | To the row above.
+move_cursor(1) | down | down | - | To the row below.
+move_page(-1) | pageup | page up | - | A page up.
+move_page(1) | pagedown | page down | - | A page down.
+move_to_end(-1) | home | top | - | To the top of the line.
+move_to_end(1) | end | bottom | - | To the bottom.
+move_column(-1) | left | left | - | To the column on the left.
+move_column(1) | right | right | - | To the one on the right.
+back | escape | back | - | Back to the line of the verdict that led here.
+[verdict]
+move(-1) | up | up |  | To the line above that leads to a row.
+move(1) | down | down |  | To the one below.
+go | enter | its row | 0 | To the row it is about; Esc leads back.
+leave | escape | line | 1 | To the line.
+[cell]
+done | enter | done | 0 | Accept the value.
+done('edit next') | tab | next | 1 | Accept it and edit the next value.
+done('up') | up | take, up |  | Accept it and go up.
+done('down') | down | take, down |  | Accept it and go down.
+right | right | take, right |  | At the end of the text: accept it and go to the right.
+abandon | escape | leave it | 2 | Leave the value as it was.
+[catalogue]
+choose(-1) | up | up |  | To the one above.
+choose(1) | down | down |  | To the one below.
+choose(-10) | pageup | page up |  | Ten up.
+choose(10) | pagedown | page down |  | Ten down.
+sort | f4 | sort | 1 | Sort by net force, loads, depth rating, drag or mass.
+mark | f3 | favourite | 2 | Make it a favourite, or not; favourites come first, in every file.
+take | enter | insert | 0 | Put it into the line.
+close | escape | close | 3 | Back to the line.
+[anywhere]
+undo | u | undo | 3 | Undo the last change, as often as there is one.
+suspend | ctrl+z | suspend |  | Suspend to the shell, `fg` returns; while a value is edited, and
+  in a browser: undo.
+redo | U,ctrl+y | redo |  | Redo what was undone.
+water | w | water | 4 | Depth, density, current, wind; environments.
+next_environment | e | environment |  | Show the line in the next environment.
+advise | p | advice | 10 | Changes that correct a finding or meet a target; shown before you
+  accept them.
+compare | D | compare |  | What has changed since the file was saved.
+compare_file | C | compare with |  | Another file beside this one: differences, and its line in
+  the pictures.
+overlay | 0 | overlay |  | Draw the line in all its environments, in still water dotted; or in its
+  own alone.
+figures | f | missing figures |  | Fill in the figures that are not known, piece by piece, with
+  their source.
+verdict | G | verdict |  | The verdict line by line: Enter goes to the row that a line is about,
+  Esc back.
+search | B | catalogue |  | Browse the catalogue.
+define | o | own component |  | Define a component of your own.
+picture('elevation') | 1 | elevation |  | The line seen from the side.
+picture('plan') | 2 | plan |  | The line seen from above.
+picture('tension') | 3 | tension |  | Tension along the line.
+picture('schematic') | 4 | schematic |  | The parts, not to scale.
+zoom | z | zoom |  | Give the picture the whole screen, or take it back.
+mooring | m | name, place |  | Name, description and position.
+document | M | document |  | Number, revision and what it changed, author, ship and cruise, for
+  the title block.
+deployed | L | as deployed |  | Date, position and depth of the deployment; of the row its number,
+  length, remark, codes.
+tow | T | tow |  | Speed and course of a tow; makes the line one, which hangs from a ship.
+begin | b | begin |  | Begin an empty line with a mooring: deep, shelf, ADCP, taut or slack
+  surface; a tow.
+papers | P | papers |  | Bill and totals; write the report of the check, or the sheets for the
+  deck.
+history | h | history |  | History of changes, and back to before any of them.
+text | t | text |  | The file as text, with its mistakes.
+app.save | ctrl+s,s | save | 9 | Save the file.
+app.save_as | S | save as |  | Save it under another name.
+app.help | question_mark,f1 | help | 2 | All keys.
+app.command_palette | ctrl+p,colon | commands | - | Find any of these by its name.
+app.repaint | ctrl+l | repaint |  | Redraw the whole screen.
+app.quit | q,ctrl+q | quit | 11 | Leave; unsaved work is asked about.
+[water]
+next_environment | f5 | environment | 3 | The next environment.
+new_environment | f6,ctrl+n | new environment | 4 | Add a named one.
+drop_environment | f7 | drop it |  | Remove the named environment.
+preset | ctrl+t | presets | 2 | Typical currents to start from.
+load_current | ctrl+o | read a file | 1 | A current from CSV or NetCDF.
+app.focus_next | down | next |  | To what is below.
+app.focus_previous | up | last |  | To what is above.
+undo | ctrl+z | undo |  | Undo the last change.
+redo | ctrl+y | redo |  | Do it again.
+app.save | ctrl+s | save |  | Save the file.
+app.help | f1 | help | 5 | All keys.
+back | escape | back | 0 | Back to the line.
+[grid]
+move_row(-1) | up | up |  | To the row above; from the first one to what is before.
+move_row(1) | down | down |  | To the row below; from the last one on to what follows.
+move_cell(1) | tab | next cell |  | To the next value of the table.
+move_cell(-1) | shift+tab | last cell |  | To the one before.
+move_column(-1) | left | left |  | To the left.
+move_column(1) | right | right |  | To the right.
+edit | enter,f2 | edit | 0 | Edit the number; typing begins at once.
+add_row(1) | a,insert | add row | 1 | Add a row below.
+add_row(0) | A | add above |  | Add a row above.
+drop_row | delete,backspace | delete row | 2 | Delete the row.
+[text]
+app.save | ctrl+s | save | 1 | Save the file as it stands.
+find | ctrl+f | find | 4 | Find words in the text.
+find_next | f3,ctrl+g | find next | 5 | To where they are next.
+next_problem | f8 | next mistake | 2 | To the next mistake.
+back | escape | to the line | 0 | To the line, once the text can be read.
+app.help | f1 | help | 3 | All keys.
+[area]
+end(-1) | ctrl+home | top |  | To the beginning of the text.
+end(1) | ctrl+end | bottom |  | To the end of the text.
+indent | tab | indent |  | Blanks to the next even column.
+[form]
+accept | ctrl+s | keep it | 0 | Write the component into the file.
+cancel | escape | leave | 1 | Leave without it.
+app.help | f1 | help | 2 | All keys.
+app.focus_next | down | next |  | To the next figure.
+app.focus_previous | up | last |  | To the one before.
+[choice]
+turn(-1) | left | last |  | The word before.
+turn(1) | right,space | next |  | The next word.
+app.focus_next | enter | go on |  | To what is below.
+[given]
+take | enter | take it |  | Choose the form shown, and go on.
+[sheet]
+take | ctrl+s | done |  | Accept all values.
+leave | escape | leave |  | Leave everything as it was.
+app.focus_next | down | next |  | To the next value.
+app.focus_previous | up | last |  | To the one before.
+[question]
+answer('') | escape | go back |  | Go back, where possible.
+[help]
+dismiss | escape,q,enter,question_mark,f1 | close |  | Close it.
+"""
+"""Below its place each action: name | keys | title | rank of its hint | meaning, which may go on in
+lines that begin with a blank. A ``-`` in place of the rank keeps it out of the palette."""
 
 
-SCREENS: tuple[Action, ...] = (
-    # the water
-    Action("water", "next_environment", "f5", "environment", "The next environment.", 3),
-    Action("water", "new_environment", "f6,ctrl+n", "new environment", "Add a named one.", 4),
-    Action("water", "drop_environment", "f7", "drop it", "Remove the named environment."),
-    Action("water", "preset", "ctrl+t", "presets", "Typical currents to start from.", 2),
-    Action("water", "load_current", "ctrl+o", "read a file", "A current from CSV or NetCDF.", 1),
-    Action("water", "app.focus_next", "down", "next", "To what is below."),
-    Action("water", "app.focus_previous", "up", "last", "To what is above."),
-    Action("water", "undo", "ctrl+z", "undo", "Undo the last change."),
-    Action("water", "redo", "ctrl+y", "redo", "Do it again."),
-    Action("water", "app.save", "ctrl+s", "save", "Save the file."),
-    Action("water", "app.help", "f1", "help", "All keys.", 5),
-    Action("water", "back", "escape", "back", "Back to the line.", 0),
-    Action(
-        "grid",
-        "move_row(-1)",
-        "up",
-        "up",
-        "To the row above; from the first one to what is before.",
-    ),
-    Action(
-        "grid",
-        "move_row(1)",
-        "down",
-        "down",
-        "To the row below; from the last one on to what follows.",
-    ),
-    Action("grid", "move_cell(1)", "tab", "next cell", "To the next value of the table."),
-    Action("grid", "move_cell(-1)", "shift+tab", "last cell", "To the one before."),
-    Action("grid", "move_column(-1)", "left", "left", "To the left."),
-    Action("grid", "move_column(1)", "right", "right", "To the right."),
-    Action("grid", "edit", "enter,f2", "edit", "Edit the number; typing begins at once.", 0),
-    Action("grid", "add_row(1)", "a,insert", "add row", "Add a row below.", 1),
-    Action("grid", "add_row(0)", "A", "add above", "Add a row above."),
-    Action("grid", "drop_row", "delete,backspace", "delete row", "Delete the row.", 2),
-    # the text
-    Action("text", "app.save", "ctrl+s", "save", "Save the file as it stands.", 1),
-    Action("text", "find", "ctrl+f", "find", "Find words in the text.", 4),
-    Action("text", "find_next", "f3,ctrl+g", "find next", "To where they are next.", 5),
-    Action("text", "next_problem", "f8", "next mistake", "To the next mistake.", 2),
-    Action("text", "back", "escape", "to the line", "To the line, once the text can be read.", 0),
-    Action("text", "app.help", "f1", "help", "All keys.", 3),
-    Action("area", "end(-1)", "ctrl+home", "top", "To the beginning of the text."),
-    Action("area", "end(1)", "ctrl+end", "bottom", "To the end of the text."),
-    Action("area", "indent", "tab", "indent", "Blanks to the next even column."),
-    # a component of one's own
-    Action("form", "accept", "ctrl+s", "keep it", "Write the component into the file.", 0),
-    Action("form", "cancel", "escape", "leave", "Leave without it.", 1),
-    Action("form", "app.help", "f1", "help", "All keys.", 2),
-    Action("form", "app.focus_next", "down", "next", "To the next figure."),
-    Action("form", "app.focus_previous", "up", "last", "To the one before."),
-    # what is put over a screen, or beside a name
-    Action("choice", "turn(-1)", "left", "last", "The word before."),
-    Action("choice", "turn(1)", "right,space", "next", "The next word."),
-    Action("choice", "app.focus_next", "enter", "go on", "To what is below."),
-    Action("given", "take", "enter", "take it", "Choose the form shown, and go on."),
-    Action("sheet", "take", "ctrl+s", "done", "Accept all values."),
-    Action("sheet", "leave", "escape", "leave", "Leave everything as it was."),
-    Action("sheet", "app.focus_next", "down", "next", "To the next value."),
-    Action("sheet", "app.focus_previous", "up", "last", "To the one before."),
-    Action("question", "answer('')", "escape", "go back", "Go back, where possible."),
-    Action("help", "dismiss", "escape,q,enter,question_mark,f1", "close", "Close it."),
-)
+def _read(table: str) -> Iterator[Action]:
+    """The actions of a table in the order in which it has them."""
+    place = ""
+    for row in table.strip().replace("\n  ", " ").splitlines():
+        if row.startswith("["):
+            place = row.strip("[]")
+            assert place in get_args(Place), place
+            continue
+        name, keys, title, rank, meaning = row.split(" | ")
+        hint = int(rank) if rank.isdecimal() else None
+        yield Action(cast(Place, place), name, keys, title, meaning, hint, rank != "-")
 
 
-LINE: tuple[Action, ...] = (
-    # the line
-    Action(
-        "line",
-        "edit",
-        "enter,f2",
-        "edit",
-        "Edit the value under the cursor in place; on the component, choose another one.",
-        1,
-    ),
-    Action("line", "add(1)", "a,insert", "add", "Add a piece below, from the catalogue.", 0),
-    Action("line", "add(0)", "A", "add above", "Add a piece above."),
-    Action("line", "clamp", "i", "clamp on", "Clamp an instrument on this piece.", 5),
-    Action("line", "duplicate", "d", "duplicate", "Repeat the piece, or those marked, below.", 6),
-    Action("line", "delete", "delete,backspace", "delete", "Delete the piece, or those marked.", 7),
-    Action(
-        "line", "move_piece(-1)", "alt+up,ctrl+up,K", "move up", "Move the piece up the line.", 8
-    ),
-    Action("line", "move_piece(1)", "alt+down,ctrl+down,J", "move down", "Move it down the line."),
-    Action("line", "mark(0)", "space", "mark", "Mark the piece, or remove its mark."),
-    Action("line", "mark(-1)", "shift+up", "mark up", "Mark it and go up.", palette=False),
-    Action("line", "mark(1)", "shift+down", "mark down", "Mark it and go down.", palette=False),
-    Action("line", "mark_all", "ctrl+a", "mark all", "Mark every piece."),
-    Action("line", "cut", "x,ctrl+x", "cut", "Cut the piece, or those marked."),
-    Action("line", "copy", "c,ctrl+c", "copy", "Copy them."),
-    Action("line", "paste(1)", "v,ctrl+v", "paste", "Paste below the cursor."),
-    Action("line", "paste(0)", "V", "paste above", "Paste above the cursor."),
-    Action(
-        "line", "edit_column('length')", "l", "length", "Edit its length, or where it is clamped."
-    ),
-    Action("line", "edit_column('label')", "n", "label", "Edit its label."),
-    Action("line", "edit_column('count')", "equals_sign,asterisk", "count", "Edit its count."),
-    Action(
-        "line",
-        "assemble",
-        "k",
-        "assembly",
-        "Make the marked pieces an assembly of the file, to be used again under one name.",
-    ),
-    Action(
-        "line",
-        "change_component",
-        "O",
-        "change component",
-        "Change the component of the row, one of the file's own, in its form.",
-    ),
-    Action(
-        "line",
-        "equipment",
-        "N",
-        "serial number",
-        "Serial number, calibration, sampling, battery and termination of the row.",
-    ),
-    Action(
-        "line",
-        "next_finding",
-        "f8,g",
-        "next finding",
-        "To the next row with the most serious finding; the last line of the screen shows it.",
-    ),
-    Action("line", "why", "y", "why", "All findings of this row, with remedies."),
-    Action("line", "replace", "r", "replace", "Use another component in its place."),
-    Action("line", "move_cursor(-1)", "up", "up", "To the row above.", palette=False),
-    Action("line", "move_cursor(1)", "down", "down", "To the row below.", palette=False),
-    Action("line", "move_page(-1)", "pageup", "page up", "A page up.", palette=False),
-    Action("line", "move_page(1)", "pagedown", "page down", "A page down.", palette=False),
-    Action("line", "move_to_end(-1)", "home", "top", "To the top of the line.", palette=False),
-    Action("line", "move_to_end(1)", "end", "bottom", "To the bottom.", palette=False),
-    Action("line", "move_column(-1)", "left", "left", "To the column on the left.", palette=False),
-    Action("line", "move_column(1)", "right", "right", "To the one on the right.", palette=False),
-    Action(
-        "line",
-        "back",
-        "escape",
-        "back",
-        "Back to the line of the verdict that led here.",
-        palette=False,
-    ),
-    # the verdict
-    Action("verdict", "move(-1)", "up", "up", "To the line above that leads to a row."),
-    Action("verdict", "move(1)", "down", "down", "To the one below."),
-    Action("verdict", "go", "enter", "its row", "To the row it is about; Esc leads back.", 0),
-    Action("verdict", "leave", "escape", "line", "To the line.", 1),
-    # a value in place
-    Action("cell", "done", "enter", "done", "Accept the value.", 0),
-    Action("cell", "done('edit next')", "tab", "next", "Accept it and edit the next value.", 1),
-    Action("cell", "done('up')", "up", "take, up", "Accept it and go up."),
-    Action("cell", "done('down')", "down", "take, down", "Accept it and go down."),
-    Action(
-        "cell",
-        "right",
-        "right",
-        "take, right",
-        "At the end of the text: accept it and go to the right.",
-    ),
-    Action("cell", "abandon", "escape", "leave it", "Leave the value as it was.", 2),
-    # the catalogue
-    Action("catalogue", "choose(-1)", "up", "up", "To the one above."),
-    Action("catalogue", "choose(1)", "down", "down", "To the one below."),
-    Action("catalogue", "choose(-10)", "pageup", "page up", "Ten up."),
-    Action("catalogue", "choose(10)", "pagedown", "page down", "Ten down."),
-    Action(
-        "catalogue",
-        "sort",
-        "f4",
-        "sort",
-        "Sort by net force, loads, depth rating, drag or mass.",
-        1,
-    ),
-    Action(
-        "catalogue",
-        "mark",
-        "f3",
-        "favourite",
-        "Make it a favourite, or not; favourites come first, in every file.",
-        2,
-    ),
-    Action("catalogue", "take", "enter", "insert", "Put it into the line.", 0),
-    Action("catalogue", "close", "escape", "close", "Back to the line.", 3),
-)
+ACTIONS: tuple[Action, ...] = (*_read(_TABLE),)
 
 
-ACTIONS: tuple[Action, ...] = (*LINE, *BUILDER, *SCREENS)
+_SIGNS = {
+    "up": "↑",
+    "down": "↓",
+    "left": "←",
+    "right": "→",
+    "enter": "Enter",
+    "escape": "Esc",
+    "delete": "Del",
+    "insert": "Ins",
+    "space": "Space",
+    "tab": "Tab",
+    "home": "Home",
+    "end": "End",
+    "pageup": "PgUp",
+    "pagedown": "PgDn",
+    "question_mark": "?",
+    "slash": "/",
+    "plus": "+",
+    "minus": "-",
+    "equals_sign": "=",
+    "asterisk": "*",
+    "colon": ":",
+    "greater_than_sign": ">",
+    "less_than_sign": "<",
+    "left_square_bracket": "[",
+    "right_square_bracket": "]",
+    "number_sign": "#",
+}
+
+
+def shown_key(key: str) -> str:
+    """A key as it is written on a keyboard: ``ctrl+s`` → ``Ctrl+S``, ``question_mark`` → ``?``."""
+    *held, last = key.split("+")
+    if len(last) == 1:
+        last = last.upper() if held else last
+    else:
+        last = _SIGNS.get(last, last.capitalize())
+    return "+".join([*(part.capitalize() for part in held), last])
+
+
+def shown_keys(keys: str) -> str:
+    """Keys separated by commas as people read them."""
+    return "  ".join(map(shown_key, keys.split(",")))
+
+
+def actions_in(place: Place) -> Iterator[Action]:
+    """The actions of one place, in order."""
+    return (action for action in ACTIONS if action.place == place)
+
+
+def bindings(place: Place, target: str = "") -> list[Binding]:
+    """The keys of a place for a widget or screen.
+
+    Parameters
+    ----------
+    target : the textual namespace that has the methods, such as ``screen.``; empty for its own
+    """
+    return [
+        Binding(
+            action.keys,
+            action.name if action.name.startswith("app.") else target + action.name,
+            action.title,
+            show=False,
+        )
+        for action in actions_in(place)
+    ]
+
+
+def hints(place: Place) -> list[Action]:
+    """The actions shown while a place has the focus, the most used first."""
+    own = [action for action in actions_in(place) if action.hint is not None]
+    if place == "line":
+        own += [action for action in actions_in("anywhere") if action.hint is not None]
+    return sorted(own, key=lambda action: action.hint or 0)

@@ -51,9 +51,7 @@ class FoundRow:
 
 
 def rows_of(
-    file: MooringFile,
-    result: Result | TowResult | None,
-    findings: Iterable[Finding] = (),
+    file: MooringFile, result: Result | TowResult | None, findings: Iterable[Finding] = ()
 ) -> Iterator[FoundRow]:
     """Down the file; with figures where there is a result, and what the findings say of each."""
     figures: dict[Place, _Figures] = {}

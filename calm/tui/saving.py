@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
+import contextlib
+import hashlib
+import json
 import os
 import time
 from collections.abc import Callable
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from calm.errors import CalmError
-from calm.files.editing import KeptWork
+from calm import whole_file
+from calm.errors import CalmError, InputError
+from calm.files import read_mooring
+from calm.files.editing import KeptWork, state_folder
+from calm.files.editing.working_file import Keeper
 from calm.tui.checking import Reading
 from calm.tui.dialogs import Answer, Asked, InputSheet, Question
-from calm.tui.messages import Workspace
+from calm.tui.messages import Workspace, place_of
 from calm.tui.screen import DraftScreen
 from calm.tui.session import Session
 
@@ -38,6 +45,7 @@ class Saving:
 
     def __init__(self, app: BuildApp, workspace: Workspace) -> None:
         self._app, self._workspace, self._session = app, workspace, workspace.session
+        self.presence = Presence()
         self._told: tuple[object] | None = None  # the state of the file on the disk, told already
 
     def save(self) -> None:
@@ -69,10 +77,28 @@ class Saving:
             folder = "" if self._session.file.path is None else f"{self._session.file.path.parent}/"
             self._workspace.tell(f"Not saved: {str(error).replace(folder, '')}", wrong=True)
             return
-        self._workspace.tell(f"{self._session.name} saved" + (f", but {lost}" if lost else ""))
+        self.presence.say(self._session.file.path)
+        wrong = self._mistake()
+        but = "; ".join(filter(None, [lost, wrong]))
+        told = f"{self._session.name} saved" + (f", but {but}" if but else "")
+        self._workspace.tell(told, wrong=bool(wrong))
         self._workspace.edited()  # what it names may be another file in another folder
-        if then is not None:
+        if then is not None and not wrong:
             then()
+
+    def _mistake(self) -> str:
+        """Return why no command can open the file as it was saved; what it lacks yet is none."""
+        session = self._session
+        path = session.file.path or Path(session.name)
+        try:
+            read_mooring(path, catalogs=session.catalogs, text=session.draft.text, stand_in=True)
+        except InputError as error:
+            found = [each for each in error.problems if not each.lacks]
+            if found:
+                place = place_of(found[0], path)
+                said = ", ".join(filter(None, [place, found[0].message]))
+                return f"it cannot be opened as it is: {said}"
+        return ""
 
     def _ask_for_name(self, then: Then | None = None, begin: Path | None = None) -> None:
         path = self._session.file.path
@@ -196,6 +222,43 @@ class Saving:
         is_gone = file.stamp is None and file.changed_on_disk()
         told = "is gone from the disk" if is_gone else "has changes that are not saved"
         self._app.push_screen(Question("Not saved", f"{name} {told}.", answers), take)
+
+
+class Presence:
+    """Says in the state folder which file is open here."""
+
+    def __init__(self) -> None:
+        self._place: Path | None = None
+
+    def say(self, path: Path | None) -> list[int]:
+        """Say it of another file, or of none; the processes that have that one open, too."""
+        if self._place is not None:
+            with contextlib.suppress(OSError):
+                self._place.unlink(missing_ok=True)
+        self._place = None
+        if path is None:
+            return []
+        own, folder, others = Keeper.this(), state_folder(), []
+        sign = hashlib.sha256(os.fsencode(os.path.realpath(path))).hexdigest()[:12]
+        with contextlib.suppress(OSError):
+            folder.mkdir(parents=True, exist_ok=True)
+            for place in folder.glob(f"open-{sign}-*.json"):
+                keeper = _keeper(place)
+                if keeper is not None and keeper.is_here and not keeper.is_running:
+                    place.unlink(missing_ok=True)
+                elif keeper is not None and keeper != own:
+                    others.append(keeper.process)
+            self._place = folder / f"open-{sign}-{own.process}.json"
+            whole_file.put(self._place, json.dumps(asdict(own)).encode())
+        return others
+
+
+def _keeper(place: Path) -> Keeper | None:
+    """Who wrote a file of the state folder; None where it cannot be read."""
+    try:
+        return Keeper(**json.loads(place.read_text(encoding="utf-8")))
+    except (OSError, ValueError, TypeError):
+        return None
 
 
 def chosen_path(text: str) -> Path:

@@ -5,7 +5,6 @@ Nothing here knows of the screen; nothing is computed here.
 
 from __future__ import annotations
 
-import os.path
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,6 +20,7 @@ from calm.files.editing import (
     WorkingFile,
     clamps_of,
 )
+from calm.tui.names import Named, Standing, followed, widened
 
 Location = tuple[str | int, ...]
 
@@ -53,6 +53,7 @@ class Session:
     catalogs : catalogue files given with the command
     copied : what `paste` puts in
     standing : the environment that the line stands in
+    followed : what the last change of the line made of labels that the file names elsewhere
 
     Raises
     ------
@@ -75,6 +76,7 @@ class Session:
         self.file = file
         self.catalogs = tuple(catalogs)
         self.copied = Copied()
+        self.followed: list[str] = []
         self.standing = Standing(self.history, environment)
 
     @property
@@ -97,11 +99,7 @@ class Session:
 
     def spots(self) -> list[Place]:
         """Every row of the line, clamps below their piece."""
-        return [
-            Place(number, clamp=clamp)
-            for number, item in enumerate(self.draft.items)
-            for clamp in range(-1, len(item.clamps))
-        ]
+        return _spots(self.draft)
 
     def item(self, spot: Place) -> LineItem:
         """The item, or clamp, of a row."""
@@ -113,6 +111,20 @@ class Session:
         if draft.text != self.draft.text:
             self.history.do(draft, label)
 
+    def _edit(
+        self, draft: Draft, label: str, *, gone: Iterable[Place] = (), new: Iterable[Place] = ()
+    ) -> None:
+        """Take a draft of which rows are `gone` and others `new`; what names the others follows."""
+        gone, new, then = list(gone), set(new), _spots(draft)
+        pairs = zip(
+            [spot for spot in self.spots() if spot not in gone],
+            [spot for spot in then if spot not in new],
+            strict=False,
+        )
+        moved = dict(pairs) | (dict(zip(gone, sorted(new), strict=False)) if gone and new else {})
+        draft, self.followed = followed(self.draft, draft, moved)
+        self.do(draft, label)
+
     def write(self, text: str, label: str = "edit the text", *, further: bool = False) -> None:
         """Take another text; `further` where it goes on with the last step."""
         if further:
@@ -122,22 +134,30 @@ class Session:
     def insert(self, spot: Place | None, values: Mapping[str, str], *, below: bool) -> Place:
         """A new piece beside a row; at the top of an empty line."""
         index = 0 if spot is None else spot.item + below
-        self.do(self.draft.insert(index, dict(values)), f"add {values['use']}")
+        draft = self.draft.insert(index, dict(values))
+        self._edit(draft, f"add {values['use']}", new=_rows_of(draft, index, 1))
         return Place(index)
 
     def clamp(self, spot: Place, values: Mapping[str, str]) -> Place:
         """A new instrument on the piece of a row, below the other ones."""
         index = spot.clamp + 1 if spot.is_clamp else len(self.draft.items[spot.item].clamps)
         draft = self.draft.insert(index, dict(values), clamps_of(spot.item))
-        self.do(draft, f"clamp {values['use']}")
-        return Place(spot.item, clamp=index)
+        at = Place(spot.item, clamp=index)
+        self._edit(draft, f"clamp {values['use']}", new=[at])
+        return at
 
     def put(self, spot: Place, values: Mapping[str, Value | None], label: str) -> None:
         """Set keys of a row; None takes one away."""
-        draft, (rows, index) = self.draft, _listed(spot)
-        for key, value in values.items():
-            draft = draft.put(index, key, value, rows)
-        self.do(draft, label)
+        self.put_rows({spot: values}, label)
+
+    def put_rows(self, given: Mapping[Place, Mapping[str, Value | None]], label: str) -> None:
+        """Set keys of several rows in one step."""
+        draft = self.draft
+        for spot, values in given.items():
+            rows, index = _listed(spot)
+            for key, value in values.items():
+                draft = draft.put(index, key, value, rows)
+        self._edit(draft, label)
 
     def replace(self, spot: Place, values: Mapping[str, str]) -> list[str]:
         """Put another component on a row; returns what the row still overrides of the old one."""
@@ -158,23 +178,37 @@ class Session:
             return None
         rows = self.spots()
         first = rows.index(chosen[0])
-        self.do(self._without(chosen), f"delete {self._called(chosen)}")
+        pieces = {spot.item for spot in chosen if not spot.is_clamp}
+        gone = [spot for spot in rows if spot in chosen or spot.item in pieces]
+        self._edit(self._without(chosen), f"delete {self._called(chosen)}", gone=gone)
         left = self.spots()
         return left[min(first, len(left) - 1)] if left else None
 
-    def duplicate(self, spots: Iterable[Place]) -> Place | None:
-        """Repeat rows below the last of them; the first of the copies."""
+    def duplicate(
+        self, spots: Iterable[Place], also: Sequence[Named] = (), times: int = 1
+    ) -> Place | None:
+        """Repeat rows below the last of them, once or several times; the first of the copies.
+
+        Of what names them, `also` names the copies then.
+        """
         chosen = _whole(spots)
         if not chosen:
             return None
         items = [spot.item for spot in chosen if not spot.is_clamp]
         label = f"duplicate {self._called(chosen)}"
         if items:
-            self.do(self.draft.duplicate(items), label)
+            copies = self.draft.copy(items) * times
+            draft = widened(self.draft.paste(items[-1] + 1, copies), also)
+            self._edit(draft, label, new=_rows_of(draft, items[-1] + 1, len(copies)))
             return Place(items[-1] + 1)
-        rows, last = _listed(chosen[-1])
-        self.do(self.draft.paste(last + 1, self._clamps(chosen), rows), label)
-        return Place(chosen[-1].item, clamp=last + 1)
+        last, clamps = chosen[-1], self._clamps(chosen) * times
+        return self._put_clamps(last, last.clamp + 1, clamps, label)[0]
+
+    def _put_clamps(self, spot: Place, first: int, texts: Sequence[str], label: str) -> list[Place]:
+        """Put clamps on the piece of a row, as the `first` and below; where they are."""
+        new = [Place(spot.item, clamp=first + each) for each in range(len(texts))]
+        self._edit(self.draft.paste(first, texts, clamps_of(spot.item)), label, new=new)
+        return new
 
     def move(self, spots: Iterable[Place], by: int) -> tuple[Place, ...]:
         """Move rows up (-1) or down (1); where they are then. At the end of the line they stay."""
@@ -193,7 +227,9 @@ class Session:
         draft = self.draft
         for index in items if by < 0 else reversed(items):
             draft = draft.move(index, index + by)
-        self.do(draft, label)
+        gone = [spot for spot in self.spots() if spot.item in items]
+        new = [Place(spot.item + by, clamp=spot.clamp) for spot in gone]
+        self._edit(draft, label, gone=gone, new=new)
         return tuple(Place(index + by) for index in items)
 
     def _move_clamp(self, spot: Place, by: int) -> tuple[Place, ...]:
@@ -201,8 +237,9 @@ class Session:
         if not 0 <= to < len(self.draft.items[spot.item].clamps):
             return (spot,)
         draft = self.draft.move(spot.clamp, to, clamps_of(spot.item))
-        self.do(draft, f"move {_label(self.item(spot))}")
-        return (Place(spot.item, clamp=to),)
+        there = Place(spot.item, clamp=to)
+        self._edit(draft, f"move {_label(self.item(spot))}", gone=[spot], new=[there])
+        return (there,)
 
     def copy(self, spots: Iterable[Place]) -> int:
         """Keep rows for pasting; how many."""
@@ -215,18 +252,20 @@ class Session:
         return len(self.copied) if chosen else 0
 
     def paste(self, spot: Place | None, *, below: bool) -> Place | None:
-        """Put what was copied beside a row; the first row of it, None where nothing was."""
+        """Put what was copied beside a row; its last row, where the next comes below, or its
+        first; None where nothing was copied.
+        """
         count = len(self.copied)
         label = f"paste {count} row{'s' * (count != 1)}"
         if self.copied.items:
             index = 0 if spot is None else spot.item + below
-            self.do(self.draft.paste(index, self.copied.items), label)
-            return Place(index)
+            draft = self.draft.paste(index, self.copied.items)
+            self._edit(draft, label, new=_rows_of(draft, index, count))
+            return Place(index + (count - 1) * below)
         if not self.copied.clamps or spot is None:
             return None
         first = spot.clamp + below if spot.is_clamp else len(self.draft.items[spot.item].clamps)
-        self.do(self.draft.paste(first, self.copied.clamps, clamps_of(spot.item)), label)
-        return Place(spot.item, clamp=first)
+        return self._put_clamps(spot, first, self.copied.clamps, label)[-1 if below else 0]
 
     def assemble(self, spots: Iterable[Place], id: str) -> Place:
         """Make pieces that follow one another an assembly of the file, which stands for them then.
@@ -310,6 +349,20 @@ class Session:
         self.write(kept.text, "recover what was not saved")
 
 
+def _spots(draft: Draft) -> list[Place]:
+    """Every row of a line, clamps below their piece."""
+    return _rows_of(draft, 0, len(draft.items))
+
+
+def _rows_of(draft: Draft, first: int, count: int) -> list[Place]:
+    """The rows of some items that follow one another."""
+    return [
+        Place(number, clamp=clamp)
+        for number in range(first, first + count)
+        for clamp in range(-1, len(draft.items[number].clamps))
+    ]
+
+
 def _whole(spots: Iterable[Place]) -> list[Place]:
     """The rows in order, without clamps whose piece is among them."""
     chosen = sorted(set(spots))
@@ -324,47 +377,3 @@ def _listed(spot: Place) -> tuple[Location, int]:
 
 def _label(item: LineItem) -> str:
     return item.values.get("label") or item.values.get("use") or "a row"
-
-
-class Standing:
-    """A line that stands in its file's own environment, in a named one or in that of a file.
-
-    Parameters
-    ----------
-    history : of the file
-    environment : the name of one of its environments, or an environment file; None of its own
-    """
-
-    def __init__(self, history: History, environment: str | None) -> None:
-        self._history, self._environment = history, environment
-        self._is_file = environment not in self.environments and os.path.isfile(environment or "")
-
-    @property
-    def environments(self) -> list[str | None]:
-        """Return those of the file; None is its own, the first."""
-        named = self._history.draft.value(("environments",))
-        return [None, *(named if isinstance(named, dict) else ())]
-
-    @property
-    def environment(self) -> str | None:
-        """Return what the line stands in: the own one, too, where that chosen is in the file no
-        more.
-        """
-        return None if self.lost_environment else self._environment
-
-    @environment.setter
-    def environment(self, name: str | None) -> None:
-        self._environment, self._is_file = name, False
-
-    @property
-    def lost_environment(self) -> str | None:
-        """The chosen environment, where the file, as far as it can be read, does not have it."""
-        here = self._environment
-        is_there = self._is_file or self._history.draft.problems or here in self.environments
-        return None if is_there else here
-
-    @property
-    def next_environment(self) -> str | None:
-        """The one after that, the own one after the last."""
-        names, here = self.environments, self.environment
-        return names[(names.index(here) + 1) % len(names)] if here in names else None

@@ -15,11 +15,10 @@ from textual.widgets import Static, TextArea
 
 from calm.errors import Problem
 from calm.files.editing.changes import retyped
-from calm.tui.actions import bindings, hints
-from calm.tui.bars import KeyBar
 from calm.tui.dialogs import Asked, InputSheet
+from calm.tui.key_table import bindings, hints
 from calm.tui.messages import Workspace, is_elsewhere, mistakes, said
-from calm.tui.screen import DraftScreen
+from calm.tui.screen import DraftScreen, KeyBar
 
 _INDENT = 2
 _LINE_BREAK = re.compile(r"\r\n?|\n")

@@ -4,8 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 
+from rich.color import Color as Ink
+from rich.color import ColorSystem
+from rich.color_triplet import ColorTriplet
+from rich.segment import Segment
+from rich.style import Style
 from rich.terminal_theme import TerminalTheme
+from textual.color import Color
+from textual.filter import LineFilter
 from textual.theme import Theme
 
 from calm.checks.finding import State
@@ -13,15 +21,9 @@ from calm.checks.finding import State
 
 def _bars(ground: str, bar: str, lit: str) -> dict[str, str]:
     """Scroll bars that do not shout."""
-    return {
-        "scrollbar": bar,
-        "scrollbar-hover": lit,
-        "scrollbar-active": lit,
-        "scrollbar-background": ground,
-        "scrollbar-background-hover": ground,
-        "scrollbar-background-active": ground,
-        "scrollbar-corner-color": ground,
-    }
+    grounds = ("background", "background-hover", "background-active", "corner-color")
+    bars = {"scrollbar": bar, "scrollbar-hover": lit, "scrollbar-active": lit}
+    return bars | {f"scrollbar-{each}": ground for each in grounds}
 
 
 DARK = Theme(
@@ -59,33 +61,17 @@ _MANY = frozenset({"truecolor", "24bit", "256"})
 _LIGHT_GROUNDS = frozenset({"7", *map(str, range(9, 16))})
 
 
-PICTURE_DARK = TerminalTheme(
-    (0x10, 0x17, 0x1D),
-    (0xD6, 0xDE, 0xE4),
-    [
-        (0x10, 0x17, 0x1D),
-        (0xE5, 0x74, 0x6B),
-        (0x7C, 0xC5, 0x8A),
-        (0xC9, 0xA2, 0x5C),
-        (0x5A, 0x8F, 0xD6),
-        (0xB3, 0x9D, 0xDB),
-        (0x7F, 0xD1, 0xC7),
-        (0xD6, 0xDE, 0xE4),
-    ],
+def _palette(ground: str, text: str, colours: str) -> TerminalTheme:
+    """A ground, what is written on it, and eight colours, each as red, green and blue."""
+    own, ink, *eight = (tuple(bytes.fromhex(each)) for each in (ground, text, *colours.split()))
+    return TerminalTheme(own, ink, eight)  # type: ignore[arg-type]
+
+
+PICTURE_DARK = _palette(
+    "10171d", "d6dee4", "10171d e5746b 7cc58a c9a25c 5a8fd6 b39ddb 7fd1c7 d6dee4"
 )
-PICTURE_LIGHT = TerminalTheme(
-    (0xF7, 0xF9, 0xFA),
-    (0x16, 0x22, 0x2B),
-    [
-        (0x16, 0x22, 0x2B),
-        (0xB3, 0x26, 0x1E),
-        (0x1E, 0x7D, 0x34),
-        (0x8A, 0x61, 0x00),
-        (0x1F, 0x56, 0xA8),
-        (0x6A, 0x3F, 0xA0),
-        (0x0C, 0x7A, 0x70),
-        (0xE6, 0xEC, 0xF0),
-    ],
+PICTURE_LIGHT = _palette(
+    "f7f9fa", "16222b", "16222b b3261e 1e7d34 8a6100 1f56a8 6a3fa0 0c7a70 e6ecf0"
 )
 """What the eight colours of the pictures and of the verdict are in these themes."""
 
@@ -109,6 +95,101 @@ def choose_theme(environ: Mapping[str, str]) -> str:
     return DARK.name if many else "ansi-dark"
 
 
+_LEAST_CONTRAST = 4.5
+"""Of text (WCAG 2.2, success criterion 1.4.3)."""
+_OWN = Ink.default()
+_ON_DARK = {1: 9, 2: 2, 3: 11, 4: 6, 6: 6, 7: 7, 9: 9, 10: 10, 11: 11, 12: 6, 14: 14, 15: 15}
+_ON_LIGHT = {0: 0, 1: 1, 4: 4}
+"""What of the sixteen colours is shown on a ground; for all others the terminal's own of text.
+
+The bright ones are not known to a terminal of eight colours, which keeps its own, too."""
+
+
+class Legible(LineFilter):
+    """Keeps every sign apart from its ground, whatever colours a theme or a picture asks for.
+
+    Parameters
+    ----------
+    dark : whether the terminal's own ground is dark
+    sixteen : whether its own colours are used: its ground is not known more closely then
+    """
+
+    def __init__(self, *, dark: bool, sixteen: bool) -> None:
+        super().__init__()
+        self._dark, self._sixteen = dark, sixteen
+
+    def apply(self, segments: list[Segment], background: Color) -> list[Segment]:
+        """Return the same in colours that can be read."""
+        ground = background.rich_color
+        return [
+            each
+            if each.style is None or each.text.isspace()
+            else Segment(each.text, self._style(each.style, ground), each.control)
+            for each in segments
+        ]
+
+    def _style(self, style: Style, ground: Ink) -> Style:
+        return _of_sixteen(style, self._dark) if self._sixteen else _apart(style, ground)
+
+
+@lru_cache(4)
+def legible(dark: bool, sixteen: bool) -> Legible:
+    """The one for a ground: strips keep what it made of them."""
+    return Legible(dark=dark, sixteen=sixteen)
+
+
+@lru_cache(1024)
+def _of_sixteen(style: Style, dark: bool) -> Style:
+    """Return a style of the terminal's own colours; on a ground of colour, and dimmed, none are
+    sure.
+    """
+    ink = style.color or _OWN
+    if style.bgcolor is not None and not style.bgcolor.is_default:
+        return style + Style(color=_OWN, bgcolor=_OWN, reverse=True, dim=False)
+    number = (_ON_DARK if dark else _ON_LIGHT).get(-1 if ink.number is None else ink.number)
+    return style + Style(color=_OWN if number is None else Ink.from_ansi(number), dim=False)
+
+
+@lru_cache(4096)
+def _apart(style: Style, ground: Ink) -> Style:
+    """Return a style whose colour is moved away from that of its ground, as far as is needed."""
+    on, ink = (style.bgcolor or ground).triplet, style.color and style.color.triplet
+    if on is None or ink is None or _is_legible(ink, on):
+        return style
+    end = max(((0, 0, 0), (255, 255, 255)), key=lambda each: contrast(ColorTriplet(*each), on))
+    for tenth in range(1, 11):
+        moved = ColorTriplet(
+            *(here + (there - here) * tenth // 10 for here, there in zip(ink, end, strict=True))
+        )
+        if _is_legible(moved, on):
+            break
+    return style + Style(color=Ink.from_triplet(moved))
+
+
+def _is_legible(ink: ColorTriplet, on: ColorTriplet) -> bool:
+    """Return whether it is so in all colours, and in those of a terminal that has 256."""
+    few = (
+        Ink.from_triplet(each).downgrade(ColorSystem.EIGHT_BIT).get_truecolor()
+        for each in (ink, on)
+    )
+    return min(contrast(ink, on), contrast(*few)) >= _LEAST_CONTRAST
+
+
+def contrast(one: ColorTriplet, other: ColorTriplet) -> float:
+    """The contrast of two colours, from 1 to 21 (WCAG 2.2, *contrast ratio*)."""
+    less, more = sorted(map(_luminance, (one, other)))
+    return (more + 0.05) / (less + 0.05)
+
+
+def _luminance(colour: ColorTriplet) -> float:
+    """The relative luminance (WCAG 2.2)."""
+    red, green, blue = (
+        part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4
+        for part in colour.normalized
+    )
+    return 0.2126 * red + 0.7152 * green + 0.0722 * blue
+
+
 @dataclass(frozen=True)
 class Look:
     """The sign and the word of a state, and the style of rich that goes with them."""
@@ -121,7 +202,7 @@ class Look:
 LOOKS = {
     State.FAIL: Look("!", "FAIL", "bold red"),
     State.WARN: Look("~", "warning", "yellow"),
-    State.UNKNOWN: Look("?", "unknown", "dim"),
+    State.UNKNOWN: Look("?", "unknown", "bold"),
     State.ESTIMATED: Look("≈", "estimated", "green"),
     State.ACCEPTED: Look("·", "accepted", "dim"),
     State.PASS: Look("✓", "pass", "green"),

@@ -18,7 +18,7 @@ from textual.strip import Strip
 
 from calm.checks.finding import State
 from calm.files import Place
-from calm.tui.actions import bindings
+from calm.tui.key_table import bindings
 from calm.tui.scrolled import Scrolled
 from calm.tui.theme import ELLIPSIS, LOOKS
 from calm.tui.verdict_text import Saying, headline, sayings

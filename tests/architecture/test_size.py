@@ -6,8 +6,8 @@ from collections import Counter
 from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parents[2] / "calm"
-MOST_LINES = 82_279
-MOST_MODULES = 357
+MOST_LINES = 82706
+MOST_MODULES = 356
 MOST_IMPORTS = 0.105
 """Share of the lines of code that import something."""
 

@@ -16,6 +16,25 @@ def test_table_goes_to_the_standard_output(calm, write_mooring):
     assert "Anchor pulled by" in done.out
 
 
+def test_what_a_technician_asks_for_stands_below_the_table(calm, folder):
+    (folder / "m.yaml").write_text(
+        "name: Facts\nenvironment: {depth: 100 m, current: {speed: 0.3 m/s, toward: 90 deg}}\n"
+        "line: [{use: ball}, {use: rope, length: 60 m, label: rope}, {use: weight}]\n"
+        "components:\n"
+        "  ball: {kind: sphere, role: float, diameter: 0.5 m, mass: 30 kg, buoyancy: 400 N}\n"
+        "  rope: {kind: cable, diameter: 10 mm, weight: 0.5 N/m, mass: 0.1 kg/m}\n"
+        "  weight: {kind: anchor, weight: 2 kN}\n"
+    )
+    lines = " ".join(calm("run", "m.yaml").out.split())
+    # 30 kg + 60 m of 0.1 kg/m; 400 N less 60 m of 0.5 N/m; 0.5 m of float and 60 m in 100 m
+    assert "Without the anchor 36.0 kg in air; what floats lifts 400 N, net 370 N" in lines
+    assert "Line of 60.50 m, scope 0.605; watch circle of " in lines
+    assert "Freed, it rises with " in lines
+    assert "Good to " in lines
+    assert "marches" not in lines
+    assert "marches of" in calm("run", "m.yaml", "-v").out
+
+
 def test_json_dash_prints_json_only(calm, write_mooring):
     done = calm("run", write_mooring(), "--json", "-")
     assert done.code == 0

@@ -6,8 +6,8 @@ from contextlib import contextmanager
 import pytest
 
 from calm.tui import live
-from calm.tui.bars import TitleBar
 from calm.tui.pictures import Picture, ProfilePicture
+from calm.tui.screen import TitleBar
 from calm.tui.verdict_pane import VerdictPane
 from tests.tui.conftest import MOORING
 

@@ -2,13 +2,13 @@
 
 import pytest
 
-from calm.tui.actions import actions_in, shown_key, shown_keys
 from calm.tui.catalogue.catalogue_pane import CataloguePane
 from calm.tui.catalogue.component_screen import ComponentScreen
 from calm.tui.cell_editor import CellEditor
 from calm.tui.dialogs import InputSheet, LongText, Question
 from calm.tui.field import Cycle
 from calm.tui.help_screen import PLACES
+from calm.tui.key_table import actions_in, shown_key, shown_keys
 from calm.tui.line.builder import BuilderScreen
 from calm.tui.line.line_pane import LinePane
 from calm.tui.text_screen import TextScreen, YamlArea

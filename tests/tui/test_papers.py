@@ -4,7 +4,7 @@ import subprocess
 
 import pytest
 
-from calm.tui.line import papers
+from calm.tui.line import comparing
 
 
 def test_the_bill_has_totals(drive, small):
@@ -29,7 +29,7 @@ def test_papers_are_written_of_the_saved_file(drive, small, monkeypatch, key, co
         asked.append(words[3:])
         return subprocess.CompletedProcess(words, 1, "", "first\nthe report is in there\n")
 
-    monkeypatch.setattr(papers.subprocess, "run", run)
+    monkeypatch.setattr(comparing.subprocess, "run", run)
 
     async def story(driver):
         await driver.press("n", "x", "enter")

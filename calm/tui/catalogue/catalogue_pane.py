@@ -16,10 +16,10 @@ from textual.widgets import Input, Static
 from calm.assemble.catalogue_search import COLUMNS, Index, Listed
 from calm.errors import CalmError
 from calm.files.components import FLEXIBLE_KINDS, RIGID_KINDS
-from calm.tui.actions import bindings
 from calm.tui.catalogue.component_list import ComponentList, Remembered
 from calm.tui.checking import anything, distance, length
 from calm.tui.field import Field
+from calm.tui.key_table import bindings
 from calm.tui.scrolled import ScrolledEntry, ScrolledText
 
 Purpose = Literal["below", "above", "clamp", "replace"]

@@ -17,10 +17,10 @@ from textual.widgets import Static
 from calm.files.catalogue import defined, tidy_id
 from calm.files.components import KINDS
 from calm.files.definition import QuantityField
-from calm.tui.actions import bindings, hints
-from calm.tui.bars import KeyBar, TitleBar
 from calm.tui.checking import Check, Reading, anything, quantity
 from calm.tui.field import Cycle, Field, all_settled
+from calm.tui.key_table import bindings, hints
+from calm.tui.screen import KeyBar, TitleBar
 from calm.units import DIMENSIONS
 
 Defined = tuple[str, dict[str, str]]

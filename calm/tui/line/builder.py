@@ -11,12 +11,10 @@ from textual.events import DescendantFocus, Key
 
 from calm.files.components import KINDS
 from calm.files.editing import Draft
-from calm.tui.actions import bindings, hints
-from calm.tui.bars import KeyBar
 from calm.tui.catalogue.catalogue_pane import CataloguePane
 from calm.tui.cell_editor import CellEditor
 from calm.tui.dialogs import InputSheet
-from calm.tui.key_table import Place
+from calm.tui.key_table import Place, bindings, hints
 from calm.tui.line.advising import Advising
 from calm.tui.line.body import LineBody
 from calm.tui.line.comparing import Comparing
@@ -33,7 +31,7 @@ from calm.tui.line.mooring_sheet import (
 )
 from calm.tui.messages import Workspace
 from calm.tui.pictures import Picture, Tab
-from calm.tui.screen import DraftScreen
+from calm.tui.screen import DraftScreen, KeyBar
 from calm.tui.session import Location
 from calm.tui.verdict_pane import VerdictPane
 
@@ -173,7 +171,7 @@ class BuilderScreen(DraftScreen):
 
     def action_papers(self) -> None:
         """Show the bill, or have report and sheets written."""
-        from calm.tui.line.papers import Papers
+        from calm.tui.line.comparing import Papers
 
         Papers(self.app, self.body.line).offer()
 

@@ -60,13 +60,17 @@ class LineCell:
         ------
         EditError
         """
-        written = self._values
-        if text == self.text:
-            return
-        given = {k: new for k, new in self._keys(text).items() if new is not None or k in written}
-        if any(written.get(key) != new for key, new in given.items()):
+        if given := self.values_of(text):
             name = "place" if self.spot.is_clamp and self.column == "length" else self.column
             self.workspace.session.put(self.spot, given, f"change the {name}")
+
+    def values_of(self, text: str) -> dict[str, Value | None]:
+        """The keys of the file that another text changes; None takes one away."""
+        written = self._values
+        if text == self.text:
+            return {}
+        given = {k: new for k, new in self._keys(text).items() if new is not None or k in written}
+        return given if any(written.get(key) != new for key, new in given.items()) else {}
 
     def onward(self) -> LineCell | None:
         """The next one of the row that can be edited."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -12,16 +12,19 @@ from textual.message import Message
 
 from calm.checks.finding import State
 from calm.files import Place
-from calm.tui.actions import bindings
 from calm.tui.catalogue.catalogue_pane import Purpose
 from calm.tui.cell_editor import CellEditor
 from calm.tui.checking import Reading
 from calm.tui.dialogs import Answer, Question
+from calm.tui.key_table import bindings
+from calm.tui.line.column_sheet import ask_column, ask_equipment, ask_times, rows_meant
+from calm.tui.line.going import Going
 from calm.tui.line.line_cell import LineCell
-from calm.tui.line.mooring_sheet import equipment_changes, equipment_sheet, naming
+from calm.tui.line.mooring_sheet import naming
 from calm.tui.line.rows import table_rows
 from calm.tui.line.table import EDITABLE, Column, LineTable
 from calm.tui.messages import Workspace
+from calm.tui.names import Named, namings
 from calm.tui.table import EditableTable
 from calm.tui.verdict_text import Saying, why
 
@@ -56,6 +59,7 @@ class LinePane(EditableTable):
         super().__init__(self.table, editor_id="cell", id="line-pane")
         self.workspace, self.session = workspace, workspace.session
         self.came_from_verdict = False
+        self.going = Going(workspace, self.table)
         self._cell: LineCell | None = None  # what is edited, or was last
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
@@ -86,6 +90,7 @@ class LinePane(EditableTable):
         """Make a change, after what is typed in place is taken. Whether it was made."""
         if not self.settle():
             return False
+        self.session.followed = []
         is_made, spot = self.workspace.attempt(change)
         if is_made:
             self._show_edited(spot, message)
@@ -94,7 +99,7 @@ class LinePane(EditableTable):
     def _show_edited(self, spot: Place | None = None, message: str = "") -> None:
         """Show the draft, which was edited, and have it judged."""
         self.show_draft(spot)
-        self.workspace.tell(message)
+        self.workspace.tell("; ".join([*filter(None, [message]), *self.session.followed]))
         self.workspace.edited()
 
     # the cursor and the marks
@@ -194,19 +199,8 @@ class LinePane(EditableTable):
 
     def action_equipment(self) -> None:
         """Serial number, calibration and more of the row."""
-        spot = self.table.spot
-        if spot is None or not self.settle():
-            return
-        place = ("line", spot.item, *(("clamps", spot.clamp) if spot.is_clamp else ()))
-        values = self.session.draft.value(place)
-        label = str(values.get("label") or values.get("use") or "")
-
-        def take(texts: dict[str, str] | None) -> None:
-            changed = equipment_changes(values, texts or {})
-            if changed:
-                self.attempt(lambda: self.session.put(spot, changed, f"equipment of {label}"))
-
-        self.app.push_screen(equipment_sheet(label, values, is_clamp=spot.is_clamp), take)
+        if self.table.spot is not None and self.settle():
+            ask_equipment(self, self.table.spot)
 
     def action_assemble(self) -> None:
         """Make an assembly of what is chosen."""
@@ -223,11 +217,59 @@ class LinePane(EditableTable):
 
         self.app.push_screen(naming(self.session), take)
 
+    def action_find(self) -> None:
+        """Find words in the line."""
+        if self.settle():
+            self.going.ask()
+
+    def action_find_next(self, by: int) -> None:
+        """Go to the next row with these words, or the one before."""
+        self.going.to_words(by)
+
+    def action_alike(self, by: int) -> None:
+        """Go to the next row of the same kind, or the one before."""
+        self.going.to_alike(by)
+
+    def action_least(self, loads: int) -> None:
+        """Go to the least margin of the strength of pieces, or of all."""
+        self.going.to_least(loads=bool(loads))
+
+    def action_column(self) -> None:
+        """Fill a column of the rows that are meant."""
+        if self.table.rows and self.settle():
+            ask_column(self, rows_meant(self.table))
+
+    def action_repeat(self) -> None:
+        """Repeat what is chosen several times."""
+        chosen = self._chosen_of_a_kind()
+        if chosen and self.settle():
+            ask_times(self, chosen)
+
     def action_duplicate(self) -> None:
         """Repeat what is chosen."""
         chosen = self._chosen_of_a_kind()
+        named = [each for spot in chosen for each in namings(self.session.draft, spot)]
+        if not named:
+            self._duplicate(chosen)
+            return
+
+        def take(answer: str | None) -> None:
+            if answer:
+                self._duplicate(chosen, named if answer == "both" else ())
+
+        text = "\n".join(f"{each.where} names {each.text}" for each in named)
+        answers = [
+            Answer("o", "the one that is there; the copy stands for itself", "one"),
+            Answer("b", "both (`NAME *`) in what is accepted", "both"),
+        ]
+        self.app.push_screen(Question("Is the copy meant, too?", text, answers), take)
+
+    def _duplicate(self, chosen: tuple[Place, ...], also: Sequence[Named] = ()) -> None:
+        def change() -> Place | None:
+            return self.session.duplicate(chosen, also)
+
         if chosen:
-            self.attempt(lambda: self.session.duplicate(chosen))
+            self.attempt(change)
 
     def action_delete(self) -> None:
         """Take out what is chosen."""

@@ -20,12 +20,12 @@ from calm.files import Place
 from calm.files.editing import Draft, clamps_of
 from calm.files.rule_texts import RULES
 from calm.files.yaml_document import Location
-from calm.tui.actions import bindings, hints
-from calm.tui.bars import KeyBar, TitleBar
 from calm.tui.catalogue.component_screen import FormField, form_fields
 from calm.tui.field import Field, all_settled
+from calm.tui.key_table import bindings, hints
 from calm.tui.line.line_pane import LinePane
 from calm.tui.live import View
+from calm.tui.screen import KeyBar, TitleBar
 
 Filled = tuple[dict[tuple[str, str], str], str]
 """What was typed by component and key, and the source of it."""

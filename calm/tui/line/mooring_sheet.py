@@ -16,7 +16,7 @@ from calm.tui.checking import Reading, anything, day, moment, quantity
 from calm.tui.dialogs import Answer, Asked, InputSheet, Question
 from calm.tui.session import Session
 
-_PLACES: dict[str, Location] = {
+_PLACES: Mapping[str, Location] = {
     "name": ("name",),
     "description": ("description",),
     "latitude": ("position", "latitude"),
@@ -24,20 +24,9 @@ _PLACES: dict[str, Location] = {
     "speed": ("tow", "speed"),
     "toward": ("tow", "toward"),
     "height": ("tow", "height"),
-    **{
-        key: ("document", key)
-        for key in (
-            "id",
-            "revision",
-            "date",
-            "author",
-            "checked",
-            "approved",
-            "project",
-            "ship",
-            "cruise",
-        )
-    },
+} | {
+    each: ("document", each)
+    for each in "id revision date author checked approved project ship cruise".split()  # noqa: SIM905
 }
 
 _HISTORY: Location = ("document", "history")
@@ -50,19 +39,10 @@ _NAME_AND_PLACE = (
     Asked("latitude", "Latitude", check=LATITUDE, placeholder="e.g. 48.3 deg, + north"),
     Asked("longitude", "Longitude", check=LONGITUDE, placeholder="e.g. -5.2 deg, + east"),
 )
+_SPEED, _COURSE = QuantityField("speed", above=0), QuantityField("angle")
 _TOW = (
-    Asked(
-        "speed",
-        "Tow speed",
-        check=quantity(QuantityField("speed", above=0)),
-        placeholder="e.g. 4 knot",
-    ),
-    Asked(
-        "toward",
-        "Towards",
-        check=quantity(QuantityField("angle")),
-        placeholder="e.g. 90 deg for east",
-    ),
+    Asked("speed", "Tow speed", check=quantity(_SPEED), placeholder="e.g. 4 knot"),
+    Asked("toward", "Towards", check=quantity(_COURSE), placeholder="e.g. 90 deg for east"),
     Asked("height", "Sheave height", check=quantity(LENGTH, optional=True), placeholder="e.g. 3 m"),
 )
 _DOCUMENT = (
@@ -136,16 +116,11 @@ _DEPLOYED_PLACES: dict[str, Location] = {
     "longitude": ("deployed", "position", "longitude"),
     "depth": ("deployed", "depth"),
 }
+_DEPTH = quantity(QuantityField("length", above=0), optional=True)
 _WHOLE = (
     Asked("date", "Date", check=moment, placeholder="e.g. 2027-06-30 14:05"),
-    Asked("latitude", "Latitude", check=LATITUDE, placeholder="e.g. 48.3 deg, + north"),
-    Asked("longitude", "Longitude", check=LONGITUDE, placeholder="e.g. -5.2 deg, + east"),
-    Asked(
-        "depth",
-        "Depth there",
-        check=quantity(QuantityField("length", above=0), optional=True),
-        placeholder="e.g. 1187 m",
-    ),
+    *_NAME_AND_PLACE[2:],
+    Asked("depth", "Depth there", check=_DEPTH, placeholder="e.g. 1187 m"),
 )
 _OF_A_ROW = (
     ("serial", "Serial number", anything),
@@ -154,7 +129,7 @@ _OF_A_ROW = (
 )
 _COMPARED = "Compared with the design by calm diff."
 _ITEMS: Location = ("deployed", "items")
-_RELEASES: Location = ("releases",)
+RELEASES: Location = ("releases",)
 
 
 @dataclass(frozen=True)
@@ -201,7 +176,7 @@ def deployed_sheet(draft: Draft, hung: DeployedRow | None) -> InputSheet:
             text = said(draft, _ITEMS, ("label", hung.label), key)
             asked.append(Asked(f"item {key}", title, text, check))
     if hung.is_release:
-        codes = said(draft, _RELEASES, ("serial", _serial(draft, hung)), "codes")
+        codes = said(draft, RELEASES, ("serial", _serial(draft, hung)), "codes")
         asked.append(Asked("codes", "Codes", codes, placeholder="arm 0A1B, release 0A55"))
     return InputSheet("As deployed", f"{_COMPARED} Below the depth: {hung.label}.", asked)
 
@@ -217,7 +192,7 @@ def as_deployed(draft: Draft, hung: DeployedRow | None, texts: Mapping[str, str]
         called = "serial", _serial(draft, hung)
         if texts["codes"] and not called[1]:
             raise EditError(f"{hung.label} needs its serial number, by which its codes are known")
-        draft = entered(draft, _RELEASES, called, {"codes": texts["codes"]})
+        draft = entered(draft, RELEASES, called, {"codes": texts["codes"]})
     return draft
 
 
@@ -238,13 +213,29 @@ def equipment_sheet(label: str, values: Mapping[str, Any], *, is_clamp: bool) ->
     values : what the file says of it
     """
     asked = [
-        Asked("serial", "Serial number", _said(values, "serial"), _serial_of_equipment, "4711"),
-        Asked("calibrated", "Calibrated", _said(values, "calibrated"), day, "2027-06-30"),
-        Asked("sampling", "Sampling", _said(values, "sampling"), anything, "every 10 min"),
-        Asked("battery_until", "Battery until", _said(values, "battery_until"), day, "2028-06-30"),
+        Asked(
+            "serial",
+            "Serial number",
+            texts_of_equipment(values, "serial"),
+            serial_of_equipment,
+            "4711",
+        ),
+        Asked(
+            "calibrated", "Calibrated", texts_of_equipment(values, "calibrated"), day, "2027-06-30"
+        ),
+        Asked(
+            "sampling", "Sampling", texts_of_equipment(values, "sampling"), anything, "every 10 min"
+        ),
+        Asked(
+            "battery_until",
+            "Battery until",
+            texts_of_equipment(values, "battery_until"),
+            day,
+            "2028-06-30",
+        ),
     ]
     if not is_clamp:
-        made = _said(values, "termination")
+        made = texts_of_equipment(values, "termination")
         asked.append(Asked("termination", "Termination", made, anything, "swaged, thimbles"))
     return InputSheet(label, _SEVERAL, asked)
 
@@ -255,18 +246,20 @@ def equipment_changes(
     """Return what of the texts differs from what the file says; None takes a key away."""
     changed: dict[str, Value | None] = {}
     for key, new in texts.items():
-        if new != _said(values, key):
+        if new != texts_of_equipment(values, key):
             several = key == "serial" and "," in new and "count" in values
             changed[key] = [one.strip() for one in new.split(",")] if several else new or None
     return changed
 
 
-def _said(values: Mapping[str, Any], key: str) -> str:
+def texts_of_equipment(values: Mapping[str, Any], key: str) -> str:
+    """A value of the equipment as it is typed: several are parted by commas."""
     value = values.get(key)
     return ", ".join(map(str, value)) if isinstance(value, list) else str(value or "")
 
 
-def _serial_of_equipment(text: str) -> Reading:
+def serial_of_equipment(text: str) -> Reading:
+    """Check a serial number, or one for each of a count."""
     numbers = [" ".join(one.split()) for one in text.split(",")]
     if len(numbers) > 1 and not all(numbers):
         return Reading("", "a number is blank")

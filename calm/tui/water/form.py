@@ -16,8 +16,8 @@ from calm.files.water import USUAL_DENSITY
 from calm.files.yaml_document import Location
 from calm.records.headings import heading
 from calm.records.profile_tables import SALINITY, TEMPERATURE, speed_and_direction
-from calm.tui.actions import bindings
 from calm.tui.field import Cycle
+from calm.tui.key_table import bindings
 from calm.units import QuantityError, QuantityRange
 
 CURRENT_FORMS = ("still", "uniform", "table", "file")

@@ -12,7 +12,7 @@ from textual import events
 from textual.binding import BindingType
 from textual.message import Message
 
-from calm.tui.actions import bindings
+from calm.tui.key_table import bindings
 from calm.tui.table import TableCells, TableColumn
 from calm.tui.theme import CURSOR
 from calm.tui.water.pasted import Rows, half_way

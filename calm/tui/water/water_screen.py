@@ -9,13 +9,12 @@ from textual.app import App
 from textual.binding import BindingType
 from textual.events import DescendantFocus
 
-from calm.tui.actions import bindings, hints
-from calm.tui.bars import KeyBar
 from calm.tui.cell_editor import CellEditor
 from calm.tui.checking import needed
 from calm.tui.dialogs import Asked, InputSheet
+from calm.tui.key_table import bindings, hints
 from calm.tui.messages import Workspace
-from calm.tui.screen import DraftScreen
+from calm.tui.screen import DraftScreen, KeyBar
 from calm.tui.water.currents_to_begin import Currents
 from calm.tui.water.form import Place
 from calm.tui.water.grid_cells import GridCells

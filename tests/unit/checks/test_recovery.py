@@ -176,3 +176,13 @@ def test_what_hangs_right_below_a_float_hangs_there_whatever_the_rounding():
     )
     assert recovery.hangs_at == pytest.approx([0.0, 0.0, 0.0, 0.0, 100.0])
     assert recovery.depth_at(3, 0.5) == pytest.approx(25.0)
+
+
+def test_the_first_float_alone_rises_as_with_the_others(tmp_path, recovered):
+    for text in (FILE, FILE.replace("buoyancy: 2000 N", "buoyancy: 1200 N")):
+        whole = recovered(text)
+        mooring = calm.load(tmp_path / "m.yaml")
+        first = recovery_of(mooring, mooring.solve(), first_only=True)
+        assert first.rise_speed == whole.rise_speed
+        assert first.time_to_surface == whole.time_to_surface
+        assert first.order == whole.order[:1]

@@ -11,15 +11,19 @@ from calm.report.terminal import shown
 GOLDEN = Path(__file__).parent / "golden"
 
 
-def text(result, width, **console):
+def text(result, width, verbose=False, **console):
     stream = io.StringIO()
-    Console(file=stream, width=width, **console).print(shown(result_part(result)))
+    part = result_part(result, verbose=verbose)
+    Console(file=stream, width=width, **console).print(shown(part))
     return "\n".join(line.rstrip() for line in stream.getvalue().splitlines()) + "\n"
 
 
 @pytest.mark.parametrize("width", [80, 100])
 def test_table_is_as_it_was(result, width):
-    assert text(result, width) == (GOLDEN / f"table-{width}.txt").read_text(encoding="utf-8")
+    # the narrow one says how it was reached, too
+    assert text(result, width, verbose=width == 80) == (GOLDEN / f"table-{width}.txt").read_text(
+        encoding="utf-8"
+    )
 
 
 def test_no_line_is_wider_than_the_terminal(make_result):

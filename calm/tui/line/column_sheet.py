@@ -1,0 +1,171 @@
+"""One column of several rows, entered one below the other or pasted as a list."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from textual.events import Paste
+
+from calm.files import Place
+from calm.files.editing import Value
+from calm.tui.checking import anything, count
+from calm.tui.dialogs import Answer, Asked, InputSheet, Question
+from calm.tui.field import Field
+from calm.tui.line.going import location
+from calm.tui.line.line_cell import LineCell
+from calm.tui.line.mooring_sheet import (
+    RELEASES,
+    entered,
+    equipment_changes,
+    equipment_sheet,
+    said,
+    serial_of_equipment,
+    texts_of_equipment,
+)
+from calm.tui.line.table import Column, LineTable
+from calm.tui.messages import Workspace
+
+if TYPE_CHECKING:
+    from calm.tui.line.line_pane import LinePane
+
+_TITLES = {"serial": "Serial numbers", "length": "Lengths", "label": "Labels", "codes": "Codes"}
+
+
+class ColumnSheet(InputSheet):
+    """A field for each row; a list that is pasted fills them downwards."""
+
+    def on_paste(self, event: Paste) -> None:
+        """Fill the fields from the one that is edited on."""
+        lines = [line.split("\t")[0].strip() for line in event.text.splitlines()]
+        fields = list(self.query(Field))
+        first = next((i for i, field in enumerate(fields) if field.input.has_focus), 0)
+        if len(lines) < 2:
+            return
+        event.stop()
+        for field, text in zip(fields[first:], lines, strict=False):
+            field.input.value = text
+        last = min(first + len(lines), len(fields)) - 1
+        fields[last].focus_input()
+        if len(lines) > len(fields) - first:
+            self.app.bell()
+
+
+def ask_column(pane: LinePane, spots: Sequence[Place]) -> None:
+    """Ask which column of some rows is to be filled, and for its values."""
+
+    def fill(answer: str | None) -> None:
+        filling = ColumnFilling(pane.workspace, spots, answer or "")
+        if answer is not None and (sheet := filling.sheet) is not None:
+            pane.app.push_screen(sheet, take_into(filling))
+        elif answer is not None:
+            pane.workspace.tell("None of these rows has such a value")
+
+    def take_into(filling: ColumnFilling) -> Callable[[dict[str, str] | None], None]:
+        def take(texts: dict[str, str] | None) -> None:
+            if texts is not None:
+                pane.attempt(lambda: filling.write(texts))
+
+        return take
+
+    answers = [
+        Answer("s", "serial numbers", "serial"),
+        Answer("l", "lengths", "length"),
+        Answer("n", "labels", "label"),
+        Answer("c", "codes of releases that have serial numbers", "codes"),
+    ]
+    text = f"Of {len(spots)} rows, one below the other; a list copied elsewhere can be pasted."
+    pane.app.push_screen(Question("Fill a column", text, answers), fill)
+
+
+def ask_times(pane: LinePane, chosen: Sequence[Place]) -> None:
+    """Ask how often rows are to be repeated, and do it."""
+
+    def take(texts: dict[str, str] | None) -> None:
+        if texts is not None:
+            times = int(texts["count"])
+            pane.attempt(lambda: pane.session.duplicate(chosen, times=times))
+
+    asked = [Asked("count", "Copies below", check=count)]
+    pane.app.push_screen(InputSheet("Repeat", "", asked), take)
+
+
+def ask_equipment(pane: LinePane, spot: Place) -> None:
+    """Ask for the equipment of a row: serial number, calibration and more."""
+    values = pane.session.draft.value(location(spot))
+    label = str(values.get("label") or values.get("use") or "")
+
+    def take(texts: dict[str, str] | None) -> None:
+        changed = equipment_changes(values, texts or {})
+        if changed:
+            pane.attempt(lambda: pane.session.put(spot, changed, f"equipment of {label}"))
+
+    pane.app.push_screen(equipment_sheet(label, values, is_clamp=spot.is_clamp), take)
+
+
+def rows_meant(table: LineTable) -> tuple[Place, ...]:
+    """Those marked; else all of the component under the cursor."""
+    if table.marked or table.row is None:
+        return table.chosen
+    use = table.row.texts["component"]
+    return tuple(row.spot for row in table.rows if row.texts["component"] == use)
+
+
+class ColumnFilling:
+    """A column of some rows: what it has now, and what is entered."""
+
+    def __init__(self, workspace: Workspace, spots: Sequence[Place], column: str) -> None:
+        self._workspace, self._session, self.column = workspace, workspace.session, column
+        self._spots = {str(number): spot for number, spot in enumerate(spots)}
+        self._asked = [each for key in self._spots if (each := self._ask(key)) is not None]
+
+    @property
+    def sheet(self) -> ColumnSheet | None:
+        """Where it is entered; None where none of the rows has such a value."""
+        return ColumnSheet(_TITLES[self.column], "", self._asked) if self._asked else None
+
+    def write(self, texts: Mapping[str, str]) -> None:
+        """Write what is another now, in one step."""
+        begun, session = {each.key: each.text for each in self._asked}, self._session
+        texts = {key: text for key, text in texts.items() if text != begun[key]}
+        label = f"fill in {_TITLES[self.column].lower()}"
+        if self.column == "codes":
+            draft = session.draft
+            for key, text in texts.items():
+                draft = entered(draft, RELEASES, ("serial", self._serial(key)), {"codes": text})
+            session.do(draft, label)
+        else:
+            rows = {self._spots[key]: self._values(key, text) for key, text in texts.items()}
+            session.put_rows(rows, label)
+
+    def _ask(self, key: str) -> Asked | None:
+        item = self._session.item(self._spots[key])
+        title = item.values.get("label") or item.values.get("use", "")
+        if self.column == "serial":
+            text = texts_of_equipment(self._written(key), "serial")
+            return Asked(key, title, text, serial_of_equipment)
+        if self.column == "codes":
+            listed = self._workspace.index and self._workspace.index.get(item.values.get("use", ""))
+            serial = self._serial(key)
+            if not (listed and listed.role == "release" and serial):
+                return None
+            return Asked(
+                key, title, said(self._session.draft, RELEASES, ("serial", serial), "codes")
+            )
+        if self.column == "label":
+            return Asked(key, title, item.values.get("label", ""), anything)
+        cell = LineCell(self._workspace, self._spots[key], "length")
+        return None if cell.refused else Asked(key, title, cell.text, cell.check)
+
+    def _values(self, key: str, text: str) -> Mapping[str, Value | None]:
+        if self.column == "serial":
+            return equipment_changes(self._written(key), {"serial": text})
+        column: Column = "label" if self.column == "label" else "length"
+        return LineCell(self._workspace, self._spots[key], column).values_of(text)
+
+    def _serial(self, key: str) -> str:
+        return texts_of_equipment(self._written(key), "serial")
+
+    def _written(self, key: str) -> dict[str, Value]:
+        values = self._session.draft.value(location(self._spots[key]))
+        return values if isinstance(values, dict) else {}
