@@ -201,7 +201,7 @@ def fatigue_of(
     for share, mean, moments in seas:
         bears = 10.0 ** (curve.logarithm - (curve.by_mean * mean / unit if by_load else 0.0))
         damage += share * YEAR * dirlik((moments / unit**2).tolist(), curve.slope) / bears
-    lives: tuple[float | None, ...] = (None, None, None)
-    if damage > 0.0:
-        lives = tuple((1.0 + off) ** -curve.slope / damage for off in (0.0, BAND, -BAND))
-    return PieceFatigue(index, label, damage, *lives, name, source, None)
+    if not damage > 0.0:
+        return PieceFatigue(index, label, 0.0, None, None, None, name, source, None)
+    life, low, high = ((1.0 + off) ** -curve.slope / damage for off in (0.0, BAND, -BAND))
+    return PieceFatigue(index, label, damage, life, low, high, name, source, None)
