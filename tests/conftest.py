@@ -5,7 +5,7 @@ import os
 import pytest
 from hypothesis import settings
 
-from calm.solve.speed import COLD, expect_many
+from calm.solve.solution import COLD, expect_many
 
 settings.register_profile("ci", derandomize=True, deadline=None, database=None)
 settings.register_profile("explore", deadline=None, max_examples=2000)

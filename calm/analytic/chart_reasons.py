@@ -31,8 +31,7 @@ def family(what: str) -> ChartRefusal:
 
 
 def contradiction(known: Mapping[str, float]) -> ChartRefusal | None:
-    """Return what is wrong with the quantities of a sinking cable whatever K is; None if nothing
-    is.
+    """Return what is wrong with the quantities of a sinking cable whatever K is, if anything.
 
     Tensions are over w [m]. A cable that floats comes here upside down; messages hold for both.
     """
@@ -139,9 +138,7 @@ class StraightCable:
 
 
 def straight(k: float, known: Mapping[str, float]) -> StraightCable | None:
-    """The straight cable that has three known quantities [rad, m] to 1e-9, tensions over w; or
-    None.
-    """
+    """The straight cable of three quantities [rad, m] to 1e-9, tensions over w; None if none."""
     angle = float(critical_angle(k))
     sine, cosine = math.sin(angle), 0.0 if k == 0.0 else math.cos(angle)
     if any(abs(known[name] - angle) > _AGREEMENT for name in ("phi_a", "phi_b") if name in known):

@@ -20,8 +20,7 @@ from calm.solve.mooring import HANGING, LANDED, NODES, SOUGHT, UNKNOWN_VALUE, As
 from calm.solve.problem import BELOW, COARSE, FINE, Limits, LineProblem, Search
 from calm.solve.refine import is_segment
 from calm.solve.search import Referee
-from calm.solve.solution import FOLDED, FOUND, MARCH_STOPPED, UNSUPPORTED
-from calm.solve.standing import SUPPORTED, TOO_HEAVY
+from calm.solve.solution import FOLDED, FOUND, MARCH_STOPPED, SUPPORTED, TOO_HEAVY, UNSUPPORTED
 
 DEPTH, EAST, NORTH, TENSION_TOP, TENSION_BOTTOM, TILT = range(6)
 OF_PIECE = ("depth_top", "x_top", "y_top", "tension_top", "tension_bottom", "tilt")

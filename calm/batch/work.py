@@ -96,8 +96,6 @@ class BatchWork:
 
     def on_cluster(self, address: str, tell: Callable[[str], None]) -> None:
         """Solve it on the workers of a dask scheduler; this process reads and writes."""
-        pass
-
         self.tell()
 
         def blocks() -> Iterator[tuple[int, Levels]]:
@@ -337,9 +335,7 @@ def solve_there(mooring: Mooring, levels: Levels) -> Profiles:
 
 @lru_cache(maxsize=2)
 def _ready(mooring: Mooring) -> Batch:
-    """Return the same for every block, as the mooring comes anew with each and is long in the
-    making.
-    """
+    """Return the same for every block: the mooring comes anew with each, and is long in making."""
     from distributed import get_worker
 
     worker, batch = get_worker(), Batch(mooring)

@@ -9,14 +9,16 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from calm.case.parts import clamps_down, clamps_in
+from calm.assemble import net_buoyancy
+from calm.case.parts import clamps_down, clamps_in, parts_of
 from calm.case.result import Accuracy, AnchorLoad, Result, Top
 from calm.case.result_tables import ClampRow, Clamps, ComponentRow, Components, Shape
 from calm.case.strumming import strumming_of
 from calm.case.warnings import warnings_of
 from calm.files import Clamp, Piece
-from calm.physics.line import Floats
+from calm.physics.line import Floats, Water
 from calm.physics.seabed import required_weight
+from calm.physics.seawater import REFERENCE_DENSITY
 from calm.physics.track import head_count
 from calm.solve import Solution, Status
 
@@ -63,12 +65,13 @@ def measured(solution: Solution, still: Solution | None = None) -> PieceMeasures
     lean = np.where(
         np.linalg.norm(chord, axis=1) > 0, _tilt(chord), _tilt(-pull if towed else pull)
     )
-    head = head_count(solution.line)
+    head = 0 if solution.pulled else head_count(solution.line)
     if head and (top[0] != bottom[head - 1]).any():
         lean[:head] = _tilt(top[0] - bottom[head - 1])
     knockdown = np.full(len(first), np.nan)
     if still is not None:
-        knockdown = still.position[still.piece_nodes[:, 0], 2] - top[:, 2]
+        before = still.piece_nodes[ahead, 1 if towed else 0]
+        knockdown = still.position[before, 2] - top[:, 2]
     return PieceMeasures(
         top=top,
         bottom=bottom,
@@ -136,7 +139,8 @@ def clamps_of(pieces: Sequence[Piece], solution: Solution, still: Solution | Non
     knockdown = np.full(len(elements), np.nan)
     if still is not None:
         before = still.position[np.flatnonzero(still.element_clamp >= 0)]
-        knockdown = before[:, 2] - position[:, 2]
+        ahead = slice(None, None, -1) if solution.line.towed else slice(None)
+        knockdown = before[ahead, 2] - position[:, 2]
     # on a rigid piece it leans as that does, on a cable as the line pulls, above and below it alike
     pull = solution.force[elements] + solution.force[elements + 1]
     towed = solution.line.towed
@@ -180,10 +184,10 @@ def result_of(mooring: Mooring, solution: Solution, still: Solution | None) -> R
     """The result of a solution; `still` is None where the shape in still water is not unique."""
     pieces = mooring.file.pieces
     above = components_of(pieces[:-1], solution, still)
-    components = _with_anchor(above, pieces[-1], mooring.water.depth)
+    components = with_anchor(above, pieces[-1], mooring.water.depth)
     clamps = clamps_of(pieces[:-1], solution, still)
     for clamp in clamps_down(pieces[-1:]):
-        clamps = clamps.with_row(_on_anchor(clamp, components[-1]))
+        clamps = clamps.with_row(on_anchor(clamp, components[-1]))
     knockdown, riding = float(components.knockdown[0]), solution.riding
     shape = shape_of(solution)
     still_shape = shape if still is solution else None if still is None else shape_of(still)
@@ -219,7 +223,7 @@ def result_of(mooring: Mooring, solution: Solution, still: Solution | None) -> R
     return replace(result, warnings=warnings_of(result, solution))
 
 
-def _with_anchor(above: Components, anchor: Piece, depth: float) -> Components:
+def with_anchor(above: Components, anchor: Piece, depth: float) -> Components:
     """The components with the anchor, which stands upright below the line's end."""
     line_end = above[-1]
     pull, height = line_end.tension_bottom, anchor.length or 0.0
@@ -237,8 +241,8 @@ def _with_anchor(above: Components, anchor: Piece, depth: float) -> Components:
         depth_bottom=depth,
         x_top=line_end.x_bottom,
         y_top=line_end.y_bottom,
-        x_bottom=0.0,
-        y_bottom=0.0,
+        x_bottom=line_end.x_bottom,
+        y_bottom=line_end.y_bottom,
         tension_top=pull,
         tension_bottom=pull,
         tension=pull,
@@ -252,7 +256,7 @@ def _with_anchor(above: Components, anchor: Piece, depth: float) -> Components:
     return above.with_row(row)
 
 
-def _on_anchor(clamp: Clamp, anchor: ComponentRow) -> ClampRow:
+def on_anchor(clamp: Clamp, anchor: ComponentRow) -> ClampRow:
     """Return what is clamped on the anchor stands still with it, and is held with the line's
     pull.
     """
@@ -267,6 +271,17 @@ def _on_anchor(clamp: Clamp, anchor: ComponentRow) -> ClampRow:
         tension=anchor.tension,
         tilt=anchor.tilt,
         knockdown=anchor.knockdown,
+    )
+
+
+def anchor_weight_of(anchor: Piece, water: Water) -> float:
+    """Weight in the water at the seabed of an anchor with what is clamped on it [N]."""
+    _, density = water.at(np.array(water.depth))
+    excess = (float(density) - REFERENCE_DENSITY) * water.gravity
+    return -sum(
+        net_buoyancy(part.component, water.gravity)
+        + excess * (part.component.displaced_volume or 0.0)
+        for part in parts_of([anchor])
     )
 
 

@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from calm.assemble import assemble_floating, assemble_line, assemble_water, net_buoyancy
-from calm.case.measure import result_of
+from calm.assemble import assemble_floating, assemble_line, assemble_water
+from calm.case.measure import anchor_weight_of, result_of
 from calm.case.memory import Forgetful, Memory
 from calm.case.parts import naming_the_piece, parts_of
 from calm.case.profilers import profilers_of
@@ -28,7 +28,7 @@ from calm.physics.materials import STEEL_DENSITY
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.solve import Settings, Solution, Status, fit_length, solve_mooring
 from calm.solve.problem import COARSE_STEP
-from calm.solve.standing import standing_lift, too_heavy
+from calm.solve.solution import standing_lift, too_heavy
 from calm.suggestions import unknown
 from calm.whole_file import read_text
 
@@ -136,14 +136,7 @@ class Mooring:
     @cached_property
     def anchor_weight(self) -> float:
         """Weight in the water at the seabed of the anchor with what is clamped on it [N]."""
-        water = self.water
-        _, density = water.at(np.array(water.depth))
-        excess = (float(density) - REFERENCE_DENSITY) * water.gravity
-        return -sum(
-            net_buoyancy(part.component, water.gravity)
-            + excess * (part.component.displaced_volume or 0.0)
-            for part in parts_of(self.file.pieces[-1:])
-        )
+        return anchor_weight_of(self.file.pieces[-1], self.water)
 
     @cached_property
     def anchor_drag(self) -> float:

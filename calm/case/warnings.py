@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterator, Sequence
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,7 +17,9 @@ from calm.solve import Solution
 from calm.solve.audit import flow_across
 
 if TYPE_CHECKING:
+    from calm.case.net import NetResult
     from calm.case.result import Result
+    from calm.case.result_tables import Components
     from calm.case.tow import TowResult
 
 LARGEST_REYNOLDS = 2e5
@@ -45,6 +48,28 @@ def tow_warnings_of(result: TowResult, solution: Solution) -> tuple[str, ...]:
     of_any = [warning for worry in _WORRIES for warning in worry(result, solution)]
     own = [warning for worry in _TOW_WORRIES for warning in worry(result, solution)]
     return (*result.file.notices, *of_any, *own)
+
+
+def net_warnings_of(
+    result: NetResult, legs: Sequence[tuple[Components, Solution]]
+) -> tuple[str, ...]:
+    """Every warning of a net's result, the file's own notices first; legs without their anchors."""
+    whole: Any = result
+    found = [*result.file.notices]
+    for worry in (_overloaded, _tilted, _stiffness_unknown):
+        found += worry(whole, legs[0][1])
+    for components, solution in legs:
+        one: Any = SimpleNamespace(components=components, file=result.file)
+        for own in (_overstretched, _beyond_the_table, _fast_flow, _hull_unknown, _wind_ignored):
+            found += own(one, solution)
+    for anchor in result.anchors:
+        weight, needed = anchor.weight or 0.0, anchor.required_weight or 0.0
+        if weight < needed:
+            found.append(
+                f"The anchor of {anchor.leg} weighs {say('wet_weight', weight)} in water; "
+                f"{say('required_weight', needed)} are required to hold its leg."
+            )
+    return tuple(found)
 
 
 def _overloaded(result: Result | TowResult, _: Solution) -> Iterator[str]:

@@ -223,9 +223,7 @@ def metals(handling: Handling) -> Iterator[Verdict]:
 def unlike_metals(
     pieces: Sequence[Piece],
 ) -> Iterator[tuple[Piece | Clamp, Piece | Clamp, float]]:
-    """Return what touches of metals far apart in the galvanic series: base, noble, and how far
-    [V].
-    """
+    """Return what touches far apart in the galvanic series: base, noble, and how far [V]."""
     pairs: list[tuple[Piece | Clamp, Piece | Clamp]] = [*pairwise(pieces)]
     for piece in pieces:
         if not _has(piece, _INSULATED):

@@ -233,8 +233,7 @@ def _envelope(component: Component) -> float | None:
 
 @rule("figures", once=True)
 def figures(handling: Handling) -> Iterator[Verdict]:
-    """Return what no component of its size and material can have, such as a load in N that was in
-    kN.
+    """Return what no component of its size and material has, as a load in N that was in kN.
 
     What hangs several times on the line is named once.
     """

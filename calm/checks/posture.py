@@ -41,8 +41,7 @@ JUDGED_ROLES = ("float", "instrument", "release")
 
 
 def reaches_the_surface(mooring: Mooring) -> bool:
-    """Return whether a line is meant to have its float at the surface: whether it has in still
-    water.
+    """Return whether a line is meant to have its float at the surface, as it has in still water.
 
     A line that reaches it has no unique shape in still water where it is longer than that is deep.
     """

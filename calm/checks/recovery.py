@@ -33,7 +33,7 @@ from calm.physics.materials import materials_in
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.physics.track import head_count
 from calm.solve import FreeMotion, Settings, part_of, solve_rise
-from calm.solve.standing import standing_lift
+from calm.solve.solution import standing_lift
 
 if TYPE_CHECKING:
     from calm.case import Mooring, Result

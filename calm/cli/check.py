@@ -233,7 +233,7 @@ def _ready(stands: int, drawn: bool) -> None:
     import calm.checks.assess
     import calm.checks.recovery
     from calm.checks.situations import SOLVES
-    from calm.solve.speed import COLD, expect_many
+    from calm.solve.solution import COLD, expect_many
 
     expect_many(min(SOLVES * stands, COLD - 1))
     if drawn:

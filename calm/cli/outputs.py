@@ -18,6 +18,7 @@ from calm.version import __version__
 if TYPE_CHECKING:
     from calm.case import Result, TowResult
     from calm.case.explain import Explanation
+    from calm.case.net import NetResult
     from calm.case.uncertain import Uncertain
     from calm.drawing.schematic.in_terminal import TerminalSchematic
     from calm.report.blocks import ReportPart
@@ -58,7 +59,7 @@ class FileOutcome:
 
     file: Path
     name: str
-    result: Result | TowResult | None = None
+    result: Result | TowResult | NetResult | None = None
     failure: NoEquilibrium | None = None
     explanation: Explanation | None = None
     schematic: TerminalSchematic | None = None
@@ -93,12 +94,19 @@ class FileOutcome:
         if self.schematic is not None:
             parts.append(self.schematic)
         if self.result is not None:
-            from calm.case import Result
-            from calm.report.explanation import line_facts
-            from calm.report.sheet import result_part
+            from calm.case.net import NetResult
 
-            facts = line_facts(self.result) if isinstance(self.result, Result) else ()
-            parts.append(result_part(self.result, facts, verbose=self.verbose))
+            if isinstance(self.result, NetResult):
+                from calm.report.net_sheet import net_part
+
+                parts.append(net_part(self.result))
+            else:
+                from calm.case import Result
+                from calm.report.explanation import line_facts
+                from calm.report.sheet import result_part
+
+                facts = line_facts(self.result) if isinstance(self.result, Result) else ()
+                parts.append(result_part(self.result, facts, verbose=self.verbose))
         if self.explanation is not None:
             from calm.report.explanation import explanation_part
 
@@ -111,7 +119,9 @@ class FileOutcome:
 
     def rendered(self, suffix: str) -> bytes | None:
         """The line drawn, or its report."""
-        if self.result is None:
+        from calm.case import Result, TowResult
+
+        if not isinstance(self.result, Result | TowResult):
             return None
         if suffix == ".html":
             from calm.report.html import page

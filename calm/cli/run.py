@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, TypeVar
 
 from cyclopts import Parameter
 
@@ -18,6 +18,9 @@ from calm.errors import InputError, NoEquilibrium, Problem, UsageError
 
 if TYPE_CHECKING:
     from calm.case import Mooring, Tow
+    from calm.case.net import Net
+
+Line = TypeVar("Line")
 
 RUN_EXAMPLES = """Examples:
 
@@ -51,7 +54,7 @@ def run(
     units: Units = None,
     verbose: Annotated[bool, Parameter(name=["--verbose", "-v"], negative=())] = False,
 ) -> ExitCode:
-    """Solve moorings and tows, and print the table of each line.
+    """Solve moorings, tows and nets of legs, and print the table of each line.
 
     All files are read first: if one cannot be used, its mistakes are listed and
     nothing is solved. The table is printed unless `-` asks for JSON or CSV; errors
@@ -60,7 +63,7 @@ def run(
     Parameters
     ----------
     files
-        Mooring files; one with `tow:` is a tow.
+        Mooring files; one with `tow:` is a tow, one with `legs:` a net.
     json
         Write the result as JSON, - to print it; several files give an array.
     csv
@@ -91,11 +94,20 @@ def run(
     outputs = Outputs(tuple(files), json, csv, plot, html, pdf, netcdf)
     outputs.check()
     draws = draws_of(uncertainty, samples, seed)
-    lines = read_files(files, environment, catalog or [])
+    from calm.case.net import load_any
+
+    lines = _all_of(load_any, files, environment, catalog or [])
     show_units(units, [line.file for line in lines])
     for option, is_asked in (("--explain", explain), ("--uncertainty", uncertainty)):
         if is_asked:
             _refuse_tows(option, files, lines)
+    asked: dict[str, object] = {
+        "--explain": explain,
+        "--uncertainty": uncertainty,
+        "--schematic": schematic,
+    }
+    asked |= {"--plot": plot, "--html": html, "--pdf": pdf, "--netcdf": netcdf}
+    _refuse_nets([option for option, is_asked in asked.items() if is_asked], files, lines)
     return solve_and_show(
         lines, outputs, explain=explain, schematic=schematic, draws=draws, verbose=verbose
     )
@@ -126,13 +138,22 @@ def read_files(
     files: Sequence[Path], environment: str | None, catalogs: Sequence[Path]
 ) -> list[Mooring | Tow]:
     """All moorings and tows, or an `InputError` with the mistakes of all of them."""
-    import calm
+    from calm.case import load
 
-    read: list[Mooring | Tow] = []
+    return _all_of(load, files, environment, catalogs)
+
+
+def _all_of(
+    load: Callable[[Path, str | None, Sequence[Path]], Line],
+    files: Sequence[Path],
+    environment: str | None,
+    catalogs: Sequence[Path],
+) -> list[Line]:
+    read: list[Line] = []
     problems: dict[Problem, None] = {}
     for file in files:
         try:
-            read.append(calm.load(file, environment=environment, catalogs=catalogs))
+            read.append(load(file, environment, catalogs))
         except InputError as error:
             # A catalogue that all files share has its mistakes told once.
             problems |= dict.fromkeys(error.problems)
@@ -142,7 +163,7 @@ def read_files(
 
 
 def solve_and_show(
-    lines: Sequence[Mooring | Tow],
+    lines: Sequence[Mooring | Tow | Net],
     outputs: Outputs,
     *,
     explain: bool = False,
@@ -180,7 +201,7 @@ def solve_and_show(
     return gravest(outcome.code for outcome in outcomes)
 
 
-def _solve(file: Path, line: Mooring | Tow) -> FileOutcome:
+def _solve(file: Path, line: Mooring | Tow | Net) -> FileOutcome:
     try:
         return FileOutcome(file, line.file.name, result=line.solve())
     except NoEquilibrium as failure:
@@ -190,12 +211,25 @@ def _solve(file: Path, line: Mooring | Tow) -> FileOutcome:
         return FileOutcome(file, line.file.name, failure=failure)
 
 
-def _refuse_tows(option: str, files: Sequence[Path], lines: Sequence[Mooring | Tow]) -> None:
+def _refuse_tows(option: str, files: Sequence[Path], lines: Sequence[Mooring | Tow | Net]) -> None:
     from calm.case import Tow
 
     tows = [str(file) for file, line in zip(files, lines, strict=True) if isinstance(line, Tow)]
     if tows:
         raise UsageError(f"{option} is for moorings; these are tows: {', '.join(tows)}")
+
+
+def _refuse_nets(
+    options: Sequence[str], files: Sequence[Path], lines: Sequence[Mooring | Tow | Net]
+) -> None:
+    from calm.case.net import Net
+
+    nets = [str(file) for file, line in zip(files, lines, strict=True) if isinstance(line, Net)]
+    if nets and options:
+        raise UsageError(
+            f"{options[0]} is for single lines; these are nets of legs: {', '.join(nets)} "
+            "(their tables, --json and --csv can be had)"
+        )
 
 
 def _explained(outcome: FileOutcome) -> FileOutcome:
@@ -230,9 +264,11 @@ def _to_draw_often(samples: int, seed: int) -> Callable[[FileOutcome], FileOutco
     return drawn_often
 
 
-def _drawn(outcome: FileOutcome, line: Mooring | Tow) -> FileOutcome:
+def _drawn(outcome: FileOutcome, line: Mooring | Tow | Net) -> FileOutcome:
     """The outcome with its line drawn in the signs that the standard output can carry."""
+    from calm.case.net import NetResult
     from calm.drawing.schematic.in_terminal import TerminalSchematic, can_carry
 
+    assert not isinstance(outcome.result, NetResult)  # refused beforehand
     plain = not can_carry(getattr(sys.stdout, "encoding", None))
     return replace(outcome, schematic=TerminalSchematic(line.file, outcome.result, plain))

@@ -173,9 +173,7 @@ def ship_of(mooring: Mooring, speed: float, course: float, streamed: float | Non
 
 
 def _at_last(drop: Motion, line: Line, anchor: FallingAnchor, fineness: Fineness) -> Motion:
-    """Return the last step of a fall, of another line, alike but for its drag, or behind another
-    anchor.
-    """
+    """Return the last step of a fall, of a line of other drag, or behind another anchor."""
     landed, depth = drop.states[-1], drop.mover.sea.water.depth
     # the step in which it landed ends there, and may be very short
     before = next(

@@ -38,9 +38,7 @@ class NoStep(ArithmeticError):
 
 
 def _overturned(before: Floats, after: Floats) -> bool:
-    """Return whether a bar has turned by more than 120°: then it may be one that is pushed, not
-    pulled.
-    """
+    """Return whether a bar has turned by more than 120°: it may then be pushed, not pulled."""
     chords = np.diff(before, axis=0), np.diff(after, axis=0)
     sizes = np.prod([np.linalg.norm(chord, axis=1) for chord in chords], axis=0)
     return bool((np.einsum("ij,ij->i", *chords) < -0.5 * sizes).any())
@@ -196,9 +194,7 @@ class Mover:
         step: float,
         slowest: float,
     ) -> Floats:
-        """Return what the nodes and tensions are too much by, one node and one tension after
-        another.
-        """
+        """Return what nodes and tensions are too much by, one of each after another."""
         chain, place = self.chain, self.chain.elements.place
         velocity = (node - before) / step
         loads, axis = self.loads(node, velocity, tension, variation, slowest)

@@ -258,9 +258,7 @@ def _ends(design: ExportedLine, layout: list[str]) -> list[str]:
 
 
 def _buoy_figures(part: ExportedPart, design: ExportedLine, density: float, lost: list[str]) -> str:
-    """Its size, mass, buoyancy and drag in the words of that program; what it cannot hold is
-    `lost`.
-    """
+    """Its size, mass, buoyancy and drag in the words of that program; `lost` is what has none."""
     if part.flexible:
         return "type = sphere  d = 0.001  m = 0.001  buoyancy = 0.01  Cdn = 0"
     floating, gravity = design.afloat, design.gravity

@@ -194,9 +194,7 @@ class CellNumber(NamedTuple):
 
 
 def number(cell: str, decimal: str = "") -> CellNumber:
-    """Return the number of a cell, by the decimal sign of the file or, without it, of the cell
-    itself.
-    """
+    """Return the number of a cell, by the decimal sign of the file, or else its own."""
     text = cell.strip().lstrip("'")
     if text.lower() in _NOTHING:
         return CellNumber(None)

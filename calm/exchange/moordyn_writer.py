@@ -53,9 +53,7 @@ class _System:
         return number
 
     def line(self, name: str, figures: str, length: float, to: Coordinates) -> None:
-        """Add an unstretched length [m] of a type from the point that the line has reached up to
-        another.
-        """
+        """Add an unstretched length [m] of a type from the point reached up to another."""
         below = self.end_point("Free" if self.points else "Fixed")
         chosen = unique_name(self.types, name, figures)
         segments = _SEGMENTS if length > 1.0 else 1

@@ -9,7 +9,7 @@ import math
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Annotated, Any, Literal, Protocol
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Protocol
 
 from pydantic import AfterValidator
 
@@ -24,6 +24,9 @@ from calm.files.strumming_keys import Strumming
 from calm.files.uncertainty import Uncertainty
 from calm.files.yaml_document import SourceMapping
 from calm.suggestions import unknown
+
+if TYPE_CHECKING:
+    from calm.files.legs import Leg
 
 
 class TowKeys(Model):
@@ -219,7 +222,7 @@ class MooringFile:
     check, `uncertainty` how uncertain its inputs are, `looser` the limits of components that its
     line sets beyond those of their definitions. `document` is what its title block says, `releases`
     the codes of the releases, `deployed` what went over the side, `units` those in which people
-    read it.
+    read it. A net has `legs`, whose pieces follow one another.
     """
 
     path: str
@@ -240,6 +243,7 @@ class MooringFile:
     releases: tuple[ReleaseKeys, ...] = field(default=(), hash=False)
     deployed: Deployed | None = None
     units: Mapping[str, str] = field(default_factory=dict, hash=False)
+    legs: tuple[Leg, ...] = ()
 
     def __repr__(self) -> str:
         """Return its name, where it is, and how many pieces it has."""
@@ -301,6 +305,32 @@ def numbered_labels(texts: Sequence[str]) -> list[str]:
         return f"{text} {seen[text]}"
 
     return [numbered_label(text) for text in texts]
+
+
+def labels_of(pieces: Sequence[Piece]) -> list[str]:
+    """Return the labels of pieces and clamps, down the line."""
+    return [
+        label
+        for piece in pieces
+        for label in (piece.label, *(clamp.label for clamp in piece.clamps))
+    ]
+
+
+def unknown_releases(
+    releases: Sequence[ReleaseKeys], pieces: Sequence[Piece], deployed: Deployed | None
+) -> list[str]:
+    """Note the releases whose serial number nothing in the line has, designed or deployed."""
+    parts: list[Piece | Clamp] = []
+    for piece in pieces:
+        parts += (piece, *piece.clamps)
+    designed = {part.label: part.serial for part in parts if part.component.role == "release"}
+    items = () if deployed is None else deployed.items
+    serials = {*designed.values(), *(one.serial for one in items if one.label in designed)}
+    return [
+        f"`releases`: no release of the line has the serial number {release.serial}"
+        for release in releases
+        if serials != {None} and release.serial is not None and release.serial not in serials
+    ]
 
 
 def travelling(

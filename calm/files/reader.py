@@ -17,18 +17,20 @@ from calm.files.check_limits import Checks, read_accepts
 from calm.files.components import Anchor, Flexible
 from calm.files.definition import Model, Text, described
 from calm.files.environment import Position, read_environment
+from calm.files.legs import NET_REFUSED, Leg, LegKeys, check_held_depths, read_legs
 from calm.files.line_items import LineReader
 from calm.files.logbook import Deployed, DocumentKeys, ReleaseKeys, check_deployed
 from calm.files.mooring_file import (
-    Clamp,
     MooringFile,
     OutputUnits,
     Piece,
     Place,
     Solver,
     TowKeys,
+    labels_of,
     numbered,
     travelling,
+    unknown_releases,
 )
 from calm.files.uncertainty import Uncertainty
 from calm.files.yaml_document import SourceMapping, compose, read_document, validate
@@ -69,6 +71,14 @@ class MooringKeys(Model):
     line: Annotated[tuple[Any, ...], Field(min_length=1)] = described(
         "the pieces from the top to the anchor; in a tow, from the ship to the towed body",
         [{"use": "sphere-steel-1250"}, {"use": "anchor-wheels-4"}],
+    )
+    legs: dict[str, LegKeys] | None = described(
+        "in place of `line`, several lines that meet at nodes, or are held elsewhere",
+        {"main": {"line": [{"use": "sphere-steel-1250"}], "bottom": {"join": "A"}}},
+        default=None,
+    )
+    nodes: dict[str, dict[str, Any]] | None = described(
+        "the nodes where legs meet", {"A": {}}, default=None
     )
     components: dict[str, Any] | None = described(
         "definitions of your own, used only here",
@@ -117,6 +127,7 @@ def read_mooring(
     catalogs: Sequence[str | Path] = (),
     text: str | None = None,
     stand_in: bool = False,
+    net: bool = False,
 ) -> MooringFile:
     """Read a mooring file and all it refers to.
 
@@ -133,6 +144,7 @@ def read_mooring(
         for beside it.
     stand_in : let a line that has no anchor yet stand on one that holds anything, of the id
         `STAND_IN`
+    net : let the file have legs
 
     Raises
     ------
@@ -144,8 +156,10 @@ def read_mooring(
     catalogue = Catalogue.load(catalogs)
     document = read_document(Path(path)) if text is None else compose(str(path), text)
     top = SourceMapping.of(document, (), document.data)
-    towed = "tow" in top.data
-    keys = validate(MooringKeys, top, problems, context={"towed": towed})
+    towed, legged = "tow" in top.data, "legs" in top.data
+    if legged and not net:
+        raise InputError([top.problem(("legs",), NET_REFUSED, key=True)])
+    keys = _keys_of(top, problems, {"towed": towed}, legged=legged)
     definitions = _child(top, "components")
     if definitions is not None:
         catalogue = catalogue.under(definitions, problems)
@@ -155,26 +169,32 @@ def read_mooring(
     reader = LineReader(catalogue, problems, notices, towed=towed, in_air=in_air)
     reader.check(definitions.data if definitions is not None else ())
     before = len(problems)
+    legs: tuple[Leg, ...] = ()
     pieces = reader.read(top, "line") if isinstance(top.data.get("line"), list) else ()
     line_is_whole = bool(pieces) and len(problems) == before
     if stand_in and not towed and pieces and not _anchored(pieces):
         pieces = (*pieces, _stand_in(len(top.data["line"])))
-    (_check_tow if towed else _check_anchor)(pieces, top, problems)
-    _check_one_fit(pieces, top, problems)
-    pieces = travelling(numbered(pieces), top, problems) if line_is_whole else numbered(pieces)
+    if legged:
+        legs, pieces = read_legs(top, reader, problems)
+    else:
+        (_check_tow if towed else _check_anchor)(pieces, top, problems)
+        _check_one_fit(pieces, top, problems)
+        pieces = travelling(numbered(pieces), top, problems) if line_is_whole else numbered(pieces)
     checks = (keys and keys.checks) or Checks()
-    labels = _labels(pieces) if line_is_whole else None
+    labels = labels_of(pieces) if line_is_whole else None
     accepts = read_accepts(checks.accept, labels, top, problems)
     if keys and keys.deployed and labels is not None:
         cut = [p.label for p in pieces if isinstance(p.component, Flexible)]
         check_deployed(keys.deployed, labels, cut, top, problems)
     if keys and keys.releases and labels is not None:
-        notices += _unknown_releases(keys.releases, pieces, keys.deployed)
+        notices += unknown_releases(keys.releases, pieces, keys.deployed)
     surroundings = None
     if chosen:
         position = keys.position if keys else None
         surroundings = read_environment(*chosen, problems, notices, towed=towed, position=position)
-    if surroundings is not None:
+    if surroundings is not None and legged:
+        check_held_depths(legs, top, surroundings.depth, problems)
+    elif surroundings is not None:
         _check_fit(pieces, surroundings.depth, keys.tow if keys else None, top, problems)
     if problems or keys is None or surroundings is None:
         raise InputError(_in_order(problems, str(path)))
@@ -186,6 +206,7 @@ def read_mooring(
         tow=keys.tow,
         environment=surroundings,
         pieces=pieces,
+        legs=legs,
         solver=keys.solver or Solver(),
         checks=checks,
         uncertainty=keys.uncertainty or Uncertainty(),
@@ -200,30 +221,14 @@ def read_mooring(
     )
 
 
-def _labels(pieces: Sequence[Piece]) -> list[str]:
-    """Return the labels of pieces and clamps, down the line."""
-    return [
-        label
-        for piece in pieces
-        for label in (piece.label, *(clamp.label for clamp in piece.clamps))
-    ]
-
-
-def _unknown_releases(
-    releases: Sequence[ReleaseKeys], pieces: Sequence[Piece], deployed: Deployed | None
-) -> list[str]:
-    """Note the releases whose serial number nothing in the line has, designed or deployed."""
-    parts: list[Piece | Clamp] = []
-    for piece in pieces:
-        parts += (piece, *piece.clamps)
-    designed = {part.label: part.serial for part in parts if part.component.role == "release"}
-    items = () if deployed is None else deployed.items
-    serials = {*designed.values(), *(one.serial for one in items if one.label in designed)}
-    return [
-        f"`releases`: no release of the line has the serial number {release.serial}"
-        for release in releases
-        if serials != {None} and release.serial is not None and release.serial not in serials
-    ]
+def _keys_of(
+    top: SourceMapping, problems: list[Problem], context: dict[str, Any], *, legged: bool
+) -> MooringKeys | None:
+    """Return the keys of a file; one with legs has no line, and its legs are read one by one."""
+    if legged:
+        ours = {key: value for key, value in top.data.items() if key not in ("legs", "nodes")}
+        top = SourceMapping.of(top.document, top.location, {"line": ["legs"], **ours})
+    return validate(MooringKeys, top, problems, context=context)
 
 
 def _stand_in(item: int) -> Piece:

@@ -56,7 +56,10 @@ def mooring_schema() -> Schema:
     }
     known |= {name: form | _words_of(known[name]) for name, form in forms.items()}
     # Only a tow may do without an environment, or without a depth in it; a variant always may.
-    top["required"] = ["line"]
+    del top["required"]
+    top["oneOf"] = [{"required": ["line"]}, {"required": ["legs"]}]
+    leg = schemas["LegKeys"]["properties"]
+    leg["line"] = items | _words_of(leg["line"])
     top["if"] = {"required": ["tow"]}
     water = _words_of(known["environment"])
     top["then"] = {"properties": {"environment": refs[TowEnvironmentKeys] | water}}

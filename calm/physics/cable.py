@@ -6,8 +6,17 @@ from collections.abc import Sequence
 from math import inf, sqrt
 
 from calm.physics.compiled import within
-from calm.physics.drag import BERTEAUX, HOERNER, friction_force, turning_friction
-from calm.physics.element import Vector, axis_along, drag_force, drag_share, few_steps_share
+from calm.physics.drag import (
+    BERTEAUX,
+    HOERNER,
+    Vector,
+    axis_along,
+    drag_force,
+    drag_share,
+    few_steps_share,
+    friction_force,
+    turning_friction,
+)
 from calm.physics.profile import Sea, distance_to_level, water_at
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.physics.state import NO_BALANCE, State

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from calm.physics.compiled import entry
-from calm.physics.element import Vector
+from calm.physics.drag import Vector
 from calm.physics.line import Floats, Integers
 from calm.physics.passing import (
     FAILURE,

@@ -11,8 +11,7 @@ from math import atan2, pow, sqrt
 from sys import float_info
 from typing import NamedTuple
 
-from calm.physics.drag import BERTEAUX, CONSTANT, interpolated
-from calm.physics.element import Vector
+from calm.physics.drag import BERTEAUX, CONSTANT, Vector, interpolated
 from calm.physics.reynolds import Smooth, drag_variation
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.physics.state import Record

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from math import inf, sqrt
 
 from calm.physics.compiled import within
-from calm.physics.element import Vector, axis_along, drag_force, drag_share
+from calm.physics.drag import Vector, axis_along, drag_force, drag_share
 from calm.physics.profile import Sea, viscosity_at, water_at
 from calm.physics.reynolds import Smooth, drag_variation, varying_share
 from calm.physics.seawater import REFERENCE_DENSITY

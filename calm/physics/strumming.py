@@ -13,7 +13,7 @@ from math import asin, cbrt, cos, inf, pi, pow, radians, sin, sqrt
 from types import MappingProxyType
 from typing import NamedTuple
 
-from calm.physics.element import drag_share
+from calm.physics.drag import drag_share
 
 STROUHAL = 0.2
 """Strouhal number for static work, whatever the Reynolds number."""

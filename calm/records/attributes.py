@@ -87,8 +87,7 @@ def words_of(variable: xr.DataArray, *attributes: str) -> str:
 
 
 def not_a_current(variable: xr.DataArray) -> str | None:
-    """Return why a variable is no velocity of the water to the east, the north or up; None if it
-    may be.
+    """Return why a variable is no velocity of water to the east, north or up; None if it may be.
 
     Only what it says of itself counts: its long name, standard name, frame and cell methods.
     """
@@ -134,9 +133,7 @@ def other_frame(attributes: Mapping[Any, Any]) -> str | None:
 
 
 def is_magnetic(variable: xr.DataArray, dataset: Mapping[Any, Any] = MappingProxyType({})) -> bool:
-    """Return whether a velocity or direction is relative to magnetic north, as it or its dataset
-    says.
-    """
+    """Return whether a velocity or direction is relative to magnetic north by its own words."""
     if _MAGNETIC.search(re.sub(r"_", " ", str(variable.name).lower())):
         return True
     own = words_of(variable, "long_name", "standard_name", "reference_datum", "units", "reference")
@@ -160,9 +157,7 @@ def _counts_from_it(name: str, said: Any) -> bool:
 
 
 def _says_so(said: Any, magnetic: re.Pattern[str]) -> bool:
-    """Return whether a text speaks of magnetic north in a sentence, and of its correction in
-    none.
-    """
+    """Return whether a text speaks of magnetic north in a sentence, and corrects it in none."""
     if not isinstance(said, str):
         return False
     sentences = [" ".join(re.split(r"[_\W]+", one)) for one in _SENTENCE.split(said.lower())]
@@ -274,8 +269,7 @@ _OVER_YEARS = re.compile(r"\b(within|over) (years|days)\b")
 
 
 def part_in_words(own: str) -> str | None:
-    """Return the words by which the name of a quantity is a part of the current; None where none
-    is.
+    """Return the words by which a quantity's name is a part of the current; None without.
 
     Its own names are plain lower-case words, one blank between them.
     """
@@ -286,8 +280,7 @@ def part_in_words(own: str) -> str | None:
 
 
 def part_in_texts(attributes: Mapping[Any, Any]) -> str | None:
-    """Return why a current is a part of the whole, by titles, comments and filters; None if it may
-    be it.
+    """Return why a current is a part of the whole, by what its texts say; None if it may be it.
 
     They are those of a dataset or of a variable. A sentence that denies it, or speaks of another
     variable too, does not count.

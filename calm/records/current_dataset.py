@@ -139,9 +139,7 @@ class CurrentDataset:
         return CurrentArrays(depth, first, second, up[0] if up else None)
 
     def flags(self, index: slice | NDArray[np.intp]) -> NDArray[np.int8] | None:
-        """Return (n, k) the worse quality flags of both components at some times; None without
-        flags.
-        """
+        """Return (n, k) the worse quality flags of both components; None without flags."""
         if not self._flags:
             return None
         every = [self._along(one, index, flags_of) for one in self._flags]
@@ -149,9 +147,7 @@ class CurrentDataset:
         return worst
 
     def remarks(self, index: slice | NDArray[np.intp]) -> list[str]:
-        """Return what is odd about the currents of some times, with counts; of a part where they
-        are many.
-        """
+        """Return what is odd about the currents of some times; of a part where they are many."""
         said, times = [], self.times
         if times is not None:
             sparse = max(len(times[index]) * self.size // LOOKED_AT, 1)
@@ -183,9 +179,7 @@ class CurrentDataset:
     def _along(
         self, variable: xr.DataArray, index: Any, read: Callable[[xr.DataArray], Any]
     ) -> Any:
-        """Return times by levels, contiguous, so that equal values give equal results in any
-        company.
-        """
+        """Return times by levels, contiguous, so that equal values give equal results anywhere."""
         like = self._parts[0][0]
         if set(variable.dims) != set(like.dims):
             variable = variable.broadcast_like(like)
@@ -360,9 +354,7 @@ class ArrayRecord(Record):
             return self._current.flags(part(self._index, start, stop))
 
     def _window(self, start: int, stop: int) -> tuple[int, int, CurrentArrays]:
-        """Return the profiles around those wanted that are decompressed with them, and which they
-        are.
-        """
+        """Return which profiles are decompressed with those wanted, and these profiles."""
         if self._ahead is not None and self._ahead[0] <= start and stop <= self._ahead[1]:
             return self._ahead
         self._ahead = None

@@ -50,8 +50,7 @@ class Terms:
 
 
 def too_fast(u: float, v: float, w: float, maximum_speed: float) -> str | None:
-    """Return what is wrong with a current faster than the greatest that is plausible; None if it
-    is not.
+    """Return what is wrong with a current beyond the greatest plausible speed; None if nothing is.
 
     Parameters
     ----------
@@ -96,8 +95,7 @@ def parse_time(text: str) -> datetime:
 
 
 def choose_time(times: Sequence[datetime], wanted: str | None) -> tuple[int, str | None]:
-    """Return the index of the time nearest to the one wanted, and a notice where it is not that
-    very time.
+    """Return the index of the time nearest to the one wanted, and a notice where it is another.
 
     TimeChoiceError: there is no time to choose from, several and none is wanted, or all lie to one
     side.

@@ -305,9 +305,7 @@ def abridged(problems: list[Problem]) -> list[Problem]:
 
 
 def _content(lines: Iterable[NumberedLine]) -> Iterator[NumberedLine]:
-    """Return those of the lines that are neither blank nor a comment, cells of several lines in
-    one.
-    """
+    """Return the lines that are neither blank nor comments, cells of several lines in one."""
     begun: list[NumberedLine] = []
     for number, line in lines:
         if not begun and (not line.strip() or line.lstrip().startswith("#")):

@@ -28,8 +28,7 @@ _MAGNETIC = re.compile(r"(?i)\s*\bmag(netic)?$")
 
 
 def heading(column: str, dimensions: Sequence[str] = ()) -> tuple[str, str]:
-    """Return the name and the unit of a heading as it stands; the unit is empty where it gives
-    none.
+    """Return the name and the unit of a heading; the unit is empty where it gives none.
 
     A name of several words ends where a unit of one of the dimensions of `calm.units.DIMENSIONS`
     begins.

@@ -63,9 +63,7 @@ class LevelDepths:
         return any(time in one.dims for one in moving)
 
     def depths(self, time: str | None, index: Any) -> NDArray[Any]:
-        """Return the depths [m] at some times: times by levels, or levels only where they never
-        move.
-        """
+        """Return the depths [m], times by levels; levels alone where they never move."""
 
         def values(variable: xr.DataArray) -> NDArray[Any]:
             chosen = variable.isel({time: index}) if time in variable.dims else variable
@@ -233,9 +231,7 @@ def _from_instrument(
 
 
 def _offset_by_hand(dataset: xr.Dataset) -> bool:
-    """Return whether MHKiT was given the place of the instrument; Teledyne's offsets are of its
-    head.
-    """
+    """Return whether MHKiT was given the instrument's place; Teledyne's offsets are of its head."""
     given = any(dataset.attrs.get(name) for name in ("range_offset", "h_deploy"))
     return given and "rdi" not in str(dataset.attrs.get("inst_make", "")).lower()
 

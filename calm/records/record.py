@@ -227,9 +227,7 @@ def _end(text: str, *, whole: bool) -> np.datetime64 | None:
 
 
 def _in_reach(moment: np.datetime64) -> np.datetime64:
-    """Return a time to the nanosecond; one before or after those of any record as the first or
-    last.
-    """
+    """Return a time to the nanosecond; one beyond those of any record as the first or last."""
     first, last = (np.datetime64(end, "us") for end in REACH)
     near: Any = min(max(moment, first), last)
     return np.datetime64(near, "ns")

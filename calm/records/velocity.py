@@ -99,8 +99,7 @@ class Velocity:
 
 
 def find_velocity(dataset: xr.Dataset, *, regular: bool) -> Velocity:
-    """Return the current of a dataset; `regular` where its grid runs along latitudes and
-    longitudes.
+    """Return the current of a dataset, whose `regular` grid runs along latitudes and longitudes.
 
     UnreadableError: there is none, there are several, or what is there is not a current to the east
     and north.
@@ -161,9 +160,7 @@ def _direction(
 
 
 def _find(dataset: xr.Dataset, sought: _Sought, regular: bool, notes: list[str]) -> str | None:
-    """Return the variable of a standard name, else of a usual name; one to true north before
-    another.
-    """
+    """Return the variable of a standard name, else of a usual one; one to true north first."""
     for standard_name in sought.standard:
         found = [str(name) for name in dataset.cf.standard_names.get(standard_name, [])]
         true = [name for name in found if not is_magnetic(dataset[name])]

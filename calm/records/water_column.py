@@ -44,9 +44,7 @@ class GridColumn:
 
 
 def is_regular(dataset: xr.Dataset) -> bool:
-    """Return whether latitude and longitude are axes of their own, so that x is east and y is
-    north.
-    """
+    """Return whether latitude and longitude are axes of their own: x is east, y is north."""
     latitudes, longitudes = (
         {dataset[name].dims for name in _named(dataset, *which)}
         for which in (("latitude", _LATITUDES), ("longitude", _LONGITUDES))
@@ -231,9 +229,7 @@ def _spacing(latitude: NDArray[Any], longitude: NDArray[Any], at: tuple[Any, ...
 
 
 def _drift(dataset: xr.Dataset, time: str | None, wanted: Place | None) -> tuple[str, ...]:
-    """Return what to report about a record whose place changes with time, such as that of a
-    drifter.
-    """
+    """Return what to report about a record whose place changes, such as that of a drifter."""
     found = []
     for which in (("latitude", _LATITUDES), ("longitude", _LONGITUDES)):
         moving = [name for name in _named(dataset, *which) if dataset[name].dims == (time,)]

@@ -59,9 +59,7 @@ def summary_html(summary: Summary) -> str:
 
 
 def summary_report(summary: Summary) -> Report:
-    """Return how often limits are broken, drawings, distributions, worst profiles, return
-    levels.
-    """
+    """Return how often limits are broken, distributions, worst profiles, return levels, drawn."""
     not_judged = (f"Not judged: {name}, {why}." for name, why in summary.not_judged.items())
     moving = [part for part in summary.parts if part.clamped] or list(summary.parts[:-1])
     parts = (

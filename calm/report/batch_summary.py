@@ -30,13 +30,10 @@ from calm.report.sheet import figure_cell, quantity_column
 def summary_document(summary: Summary) -> dict[str, Any]:
     """The JSON object of a summary: SI and degrees, times in UTC, shares of 1; null is unknown.
 
-    Returns
-    -------
-    dict
-        `profiles`, how many and how they ended; `components` and `clamps` with their
-        distributions; `rules` and `limits`, how often each is broken, and `limits_used`, by which
-        they judge; `responses` of the line as a whole with their exceedance curves and return
-        levels; `worst` profiles of each response.
+    It has `profiles`, how many and how they ended; `components` and `clamps` with their
+    distributions; `rules` and `limits`, how often each is broken, and `limits_used`, by which they
+    judge; `responses` of the line as a whole with their exceedance curves and return levels;
+    `worst` profiles of each response.
     """
     from calm.version import __version__
 
@@ -247,9 +244,7 @@ def standing(summary: Summary) -> str:
 
 
 def left_out(summary: Summary) -> str:
-    """Return how many profiles with a current were not solved, and what that does to figures, if
-    any.
-    """
+    """Return how many profiles with a current were not solved, and what that does to figures."""
     if not summary.unsolved:
         return ""
     with_current = summary.solved + summary.unsolved
@@ -262,9 +257,7 @@ def left_out(summary: Summary) -> str:
 
 
 def refusals(summary: Summary) -> Iterator[str]:
-    """Return why there are no return levels: each reason once, with the responses that it holds
-    for.
-    """
+    """Yield why there are no return levels: each reason once, with the responses it is for."""
     reasons: dict[str, list[str]] = {}
     for response in summary.responses:
         for fit in response.return_levels:
@@ -276,9 +269,7 @@ def refusals(summary: Summary) -> Iterator[str]:
 
 
 def stops_tables(summary: Summary) -> Iterator[Table]:
-    """Return the depths of the stops of the profilers, as they are typed into these; none where
-    there are none.
-    """
+    """Yield the depths of the stops of the profilers, as they are typed into these."""
     if not summary.stops:
         return
     columns = [Column("profiler"), Column("stop")]

@@ -233,9 +233,7 @@ def factors_table(factors: Mapping[str, tuple[float, float, float]], datum: floa
 
 
 def sensors_table(study: Study) -> Table:
-    """Return how the sensors that are used agree with the currents alone, and with what is
-    estimated.
-    """
+    """Return how sensors in use agree with the currents alone, and with what is estimated."""
     return table_of(
         "",
         study.plain.items(),

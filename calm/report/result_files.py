@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.case import Result, TowResult
+from calm.case.net import NetResult
 from calm.case.result_tables import ClampRow, ComponentRow, Components, rows_down
 from calm.dataset.netcdf import (
     CLAMPS,
@@ -43,7 +44,7 @@ HEADER = (*_WORDS, *(QUANTITIES[name].header for name in _NUMBERS))
 """The first row: names, with the unit in brackets where there is one."""
 
 
-def to_csv(results: Sequence[Result | TowResult]) -> str:
+def to_csv(results: Sequence[Result | TowResult | NetResult]) -> str:
     """The components of one mooring or tow, or of several, as CSV text (UTF-8, comma, point, LF).
 
     `part` is ``component`` or ``clamp``; the rows of clamped instruments follow the piece they sit
@@ -52,7 +53,7 @@ def to_csv(results: Sequence[Result | TowResult]) -> str:
     return table_csv(HEADER, (row for result in results for row in _rows(result)))
 
 
-def _rows(result: Result | TowResult) -> Iterator[list[object]]:
+def _rows(result: Result | TowResult | NetResult) -> Iterator[list[object]]:
     for component, clamps in rows_down(result):
         numbers = (getattr(component, name) for name in _NUMBERS)
         yield [*_words(result, "component", component), *numbers]
@@ -63,7 +64,9 @@ def _rows(result: Result | TowResult) -> Iterator[list[object]]:
             yield [*_words(result, "clamp", clamp), *numbers]
 
 
-def _words(result: Result | TowResult, part: str, row: ComponentRow | ClampRow) -> list[object]:
+def _words(
+    result: Result | TowResult | NetResult, part: str, row: ComponentRow | ClampRow
+) -> list[object]:
     return [result.name, part, row.index, row.use, row.label]
 
 
@@ -170,8 +173,7 @@ def to_json(documents: list[dict[str, Any]]) -> str:
 
 
 def _indented(value: Any, line: str) -> str:
-    """Return what `json.dumps` writes with an indent of two; `line` is what begins a line at this
-    depth.
+    """Return what `json.dumps` writes with an indent of two; `line` begins a line at this depth.
 
     Its encoder is fast only without an indent: so it writes all that has no further level in it.
     """

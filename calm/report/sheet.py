@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import Any
 
 from calm.case import Result, TowResult
+from calm.case.net import NetResult
 from calm.case.profilers import ProfilerTravel
 from calm.case.result_tables import ClampRow, ComponentRow, rows_down
 from calm.case.strumming import StrummingBand
@@ -33,16 +34,11 @@ from calm.report.blocks import (
 )
 from calm.solve import Status
 
-_MOORING_COLUMNS = (
-    "length",
-    "depth",
-    "height",
-    "knockdown",
-    "offset",
-    "tilt",
-    "tension",
-    "safety_factor",
-)
+AnyResult = Result | TowResult | NetResult
+NO_HEADS: Mapping[int, Cell] = {}
+
+_OF_MOORINGS = "length depth height knockdown offset tilt tension safety_factor"
+_MOORING_COLUMNS = tuple(_OF_MOORINGS.split())
 _TOW_COLUMNS = ("length", "depth", "layback", "tilt", "tension", "safety_factor")
 _NOTE = "of the upper end. Tension: the greatest in the piece. ~ near a limit, ! beyond it."
 _TYPES = {"subsurface": "sub-surface mooring", "surface": "surface mooring"}
@@ -69,9 +65,7 @@ class Sheet:
 
 
 def sheet(result: Result | TowResult, *, places: bool = False) -> Sheet:
-    """Return what a mooring or a tow says; in a report its clamps have their places on their
-    pieces.
-    """
+    """Return what a mooring or a tow says; in a report clamps have their places on pieces."""
     if isinstance(result, TowResult):
         return _tow(result, places)
     return _mooring(result, places)
@@ -193,9 +187,7 @@ def _tow_summary(result: TowResult) -> tuple[Prose, ...]:
 
 
 def _strumming(result: Result | TowResult) -> tuple[str, ...]:
-    """Return how fast the cables vibrate and what that makes of their drag; or what it would
-    make.
-    """
+    """Return how fast cables vibrate and what that makes, or would make, of their drag."""
     strumming, band = result.strumming, result.strumming_band
     if strumming is not None:
         together = isinstance(result.file.solver.strumming, BourgetMarichalKeys)
@@ -276,7 +268,12 @@ _STATES = {FigureMark.NONE: None, FigureMark.NEAR: State.WARN, FigureMark.BEYOND
 
 
 def line_table(
-    result: Result | TowResult, names: tuple[str, ...], note: str, *, places: bool = False
+    result: AnyResult,
+    names: tuple[str, ...],
+    note: str,
+    *,
+    places: bool = False,
+    heads: Mapping[int, Cell] = NO_HEADS,
 ) -> Table:
     """The line from its first-listed end, each clamped instrument indented below its piece.
 
@@ -285,13 +282,11 @@ def line_table(
     names : of the quantities in each row
     note : how to read them
     places : whether a clamp says where on its piece it sits, in place of a length
+    heads : what stands above pieces, by their index
     """
-    columns = (
-        Column("no.", numeric=True, narrow=False),
-        Column("piece", short=""),
-        *map(quantity_column, names),
-    )
-    return Table("", columns, tuple(_rows(result, names, places)), note, dense=True)
+    columns = (Column("no.", numeric=True, narrow=False), Column("piece", short=""))
+    rows = tuple(_rows(result, names, places, heads))
+    return Table("", (*columns, *map(quantity_column, names)), rows, note, dense=True)
 
 
 def quantity_field(name: str, attribute: str = "", heading: str | None = None) -> Field[Any]:
@@ -340,7 +335,7 @@ def tilt_mark(component: Component, tilt: float) -> FigureMark:
     return FigureMark.NONE
 
 
-def safety_mark(result: Result | TowResult, record: ComponentRow) -> FigureMark:
+def safety_mark(result: AnyResult, record: ComponentRow) -> FigureMark:
     """Mark of a safety factor: too small, or the piece bears more than its working load.
 
     The factor asked on the breaking load is the file's `checks.safety_factor`, for a surface
@@ -354,9 +349,11 @@ def safety_mark(result: Result | TowResult, record: ComponentRow) -> FigureMark:
 
 
 def _rows(
-    result: Result | TowResult, names: tuple[str, ...], places: bool
+    result: AnyResult, names: tuple[str, ...], places: bool, heads: Mapping[int, Cell]
 ) -> Iterator[tuple[Cell, ...]]:
     for number, (piece, clamps) in enumerate(rows_down(result)):
+        if piece.index in heads:
+            yield (heads[piece.index],)
         where = _where(result, piece.depth_top, piece.x_top, piece.y_top)
         marks = {
             "tilt": tilt_mark(piece.part.component, piece.tilt),
@@ -376,7 +373,7 @@ def _rows(
             yield Cell(), label, *cells
 
 
-def _where(result: Result | TowResult, depth: float, x: float, y: float) -> dict[str, float]:
+def _where(result: AnyResult, depth: float, x: float, y: float) -> dict[str, float]:
     """Return where a clamped instrument is, or the upper end of a piece."""
     bottom = result.file.environment.depth
     return {
@@ -384,6 +381,8 @@ def _where(result: Result | TowResult, depth: float, x: float, y: float) -> dict
         "height": math.nan if bottom is None else bottom - depth,
         "offset": math.hypot(x, y),
         "layback": math.hypot(x, y),
+        "x": x,
+        "y": y,
     }
 
 

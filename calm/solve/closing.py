@@ -17,6 +17,7 @@ from calm.physics.seabed import lay_line
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.physics.state import GOES_ON
 from calm.physics.track import Load
+from calm.solve.least_change import bracketed_root, root_near
 from calm.solve.problem import (
     BELOW,
     CHANGED,
@@ -32,7 +33,6 @@ from calm.solve.problem import (
     Unknown,
     reach_of,
 )
-from calm.solve.root import bracketed_root, root_near
 from calm.solve.solution import (
     FOUND,
     MARCH_STOPPED,

@@ -38,8 +38,9 @@ from calm.solve.solution import (
     Settings,
     Solution,
     Status,
+    standing_lift,
+    too_heavy,
 )
-from calm.solve.standing import standing_lift, too_heavy
 
 STATUS_OF = {
     FOUND: Status.CONVERGED,

@@ -11,12 +11,17 @@ from calm.physics.march import march
 from calm.physics.profile import Profile
 from calm.physics.state import MarchError
 from calm.physics.track import Track
+from calm.solve.least_change import root_near
 from calm.solve.mooring import solve_mooring
 from calm.solve.problem import COARSE_STEP, REACH
-from calm.solve.root import root_near
-from calm.solve.solution import Settings, Status
-from calm.solve.speed import runs_compiled
-from calm.solve.standing import refuse_unsupported, standing_lift, too_heavy
+from calm.solve.solution import (
+    Settings,
+    Status,
+    refuse_unsupported,
+    runs_compiled,
+    standing_lift,
+    too_heavy,
+)
 from calm.solve.tow import Towing, solve_tow
 
 

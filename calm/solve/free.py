@@ -30,8 +30,7 @@ from calm.solve.audit import loads_of
 from calm.solve.free_march import Falling, FallingAnchor, Moving, Rising
 from calm.solve.free_search import FreePlace, terminal
 from calm.solve.search import LARGEST_CLOSURE
-from calm.solve.solution import Settings, Solution, Status, nodes_of
-from calm.solve.speed import runs_compiled
+from calm.solve.solution import Settings, Solution, Status, nodes_of, runs_compiled
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from calm.physics.line import Floats
 from calm.physics.march import NO_CUTS, Cuts
 from calm.physics.state import MarchError
 from calm.solve.free_march import Moving
-from calm.solve.root import root_near
+from calm.solve.least_change import root_near
 from calm.solve.solution import Status
 
 FASTEST = 100.0

@@ -24,9 +24,14 @@ from calm.solve.problem import (
 )
 from calm.solve.refine import Errors, Refined
 from calm.solve.search import FoundShape, Referee, find_shape
-from calm.solve.solution import Settings, Solution, Status
-from calm.solve.speed import runs_compiled
-from calm.solve.standing import refuse_unsupported, standing_lift
+from calm.solve.solution import (
+    Settings,
+    Solution,
+    Status,
+    refuse_unsupported,
+    runs_compiled,
+    standing_lift,
+)
 
 MOST_DEPTHS = 500
 """The longest line that is solved, in depths: segments are no longer than a hundredth of one."""

@@ -24,8 +24,7 @@ from calm.solve.mooring import search_of, solve_mooring
 from calm.solve.problem import BELOW, CHOSEN, FINE, LineProblem, Search, Unknown, problem_of
 from calm.solve.refine import Errors, Refined
 from calm.solve.search import audited
-from calm.solve.solution import FOUND, MARCH_STOPPED, Settings, Solution, Status
-from calm.solve.speed import runs_compiled
+from calm.solve.solution import FOUND, MARCH_STOPPED, Settings, Solution, Status, runs_compiled
 
 
 class Nearby:

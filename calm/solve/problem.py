@@ -15,8 +15,7 @@ from calm.physics.passing import LEFT
 from calm.physics.profile import Interval, Profile, Sea
 from calm.physics.state import COLUMNS
 from calm.physics.track import Course, Load, Rod, Track
-from calm.solve.solution import Settings
-from calm.solve.standing import SUPPORTED, standing_length, standing_lift, support_of
+from calm.solve.solution import SUPPORTED, Settings, standing_length, standing_lift, support_of
 
 COARSE_STEP = np.radians(4.0).item()
 """Angle step of the marches that only look for the neighbourhood of a root."""

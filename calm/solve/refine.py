@@ -14,7 +14,7 @@ from __future__ import annotations
 from math import degrees, isnan, sqrt
 from typing import Any, NamedTuple
 
-from calm.physics.element import Vector
+from calm.physics.drag import Vector
 from calm.physics.passing import FAILURE, NODES
 from calm.physics.profile import interval_at
 from calm.physics.state import Record

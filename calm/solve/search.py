@@ -10,7 +10,6 @@ from collections.abc import MutableSequence, Sequence
 from math import isnan, nan
 from typing import NamedTuple
 
-from calm.physics.closure import closure
 from calm.physics.compiled import set_row
 from calm.physics.passing import FAILURE
 from calm.physics.passing import LANDED as CAME_DOWN
@@ -22,6 +21,7 @@ from calm.physics.referee import (
     find_ends,
     worst_moment,
 )
+from calm.physics.seabed import closure
 from calm.physics.track import Load
 from calm.solve.closing import Closed, Root, coarse_miss, not_closed, place, planned, whole_line
 from calm.solve.locate import locate

@@ -1,17 +1,26 @@
-"""The settings of a solve and what it returns: a solution, or the status of having none."""
+"""The settings of a solve and what it returns: a solution, or the status of having none.
+
+Where the settings leave open at which of its two speeds the solver runs, as it stands or compiled
+by numba, it is compiled once that pays: fetching it costs as much as `WARM` moorings, compiling it
+first as much as `COLD`. `CALM_COMPILED=never` and `always` settle what is left open.
+"""
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
+from importlib.util import find_spec
 from math import nan, radians
 
 import numpy as np
 
 from calm.errors import NoEquilibrium
+from calm.physics.compiled import is_kept
 from calm.physics.hull import Riding
 from calm.physics.line import Floats, Integers, Line, Water
+from calm.physics.seawater import REFERENCE_DENSITY
 from calm.physics.state import Trace
 
 LOOSEST_TOLERANCE = 2e-4
@@ -28,7 +37,7 @@ class Settings:
     tolerance : allowed miss of the anchor, as a share of the water depth
     seabed_friction : of a line that lies on the seabed [-]
     compiled : whether the solver is compiled, or interpreted as it stands, which gives the same
-        digits; None leaves it to `calm.solve.speed`
+        digits; None leaves it to `runs_compiled`
     """
 
     angle_step: float = radians(1.0)
@@ -77,6 +86,7 @@ class Solution:
     other_depth, other_grounded_length : depth of the free end in another equilibrium that the
         solver came upon, and its unstretched length on the seabed [m]
     frequency : of the cables that strum [Hz]; 0 where none does
+    pulled : whether its first end is not free but pulled: a leg of a net
     """
 
     line: Line
@@ -108,6 +118,7 @@ class Solution:
     riding: Riding | None = None
     closure: float = nan
     moment_residual: float = nan
+    pulled: bool = False
 
     @property
     def surface(self) -> bool:
@@ -215,3 +226,133 @@ class Status(Enum):
     # it folds in still water
     FOLDED,
 ) = range(16)  # fmt: skip
+
+
+WARM, COLD = 60, 1200
+"""Moorings to be solved for which it pays to fetch the compiled solver, and to compile it."""
+AS_MANY = 8
+"""Pieces and clamps of which a line's solve takes as long as one of an ordinary mooring."""
+
+
+class _Count:
+    """How many lines have been solved, or are expected, by this process; and what that says."""
+
+    def __init__(self) -> None:
+        self.solves = 0.0
+        self.asked_at = 0.0
+        self.pays = False
+
+
+_count = _Count()
+
+
+def expect_many(solves: float) -> None:
+    """Notice that so many lines are going to be solved."""
+    _add(solves)
+    _count.pays = _count.pays or solves >= COLD
+
+
+def runs_compiled(settings: Settings, line: Line | None = None) -> bool:
+    """Return whether the solver is to be compiled for a line that is now solved."""
+    if settings.compiled is not None:
+        return settings.compiled
+    if line is not None:
+        _add(max((len(line.length) + len(line.clamp_piece)) / AS_MANY, 1.0))
+    wish = os.environ.get("CALM_COMPILED")
+    if wish == "never" or not (_count.pays or wish == "always"):
+        return False
+    return find_spec("numba") is not None
+
+
+def _add(solves: float) -> None:
+    _count.solves += solves
+    if not _count.pays and _count.solves >= max(WARM, 2.0 * _count.asked_at):
+        _count.asked_at = _count.solves
+        _count.pays = is_kept()
+
+
+def standing_lift(line: Line, water: Water) -> Floats:
+    """(n,) net force of every piece with its clamps where it would stand upright, + up [N].
+
+    Upright is unstretched, from the anchor up; what would stand out of the water counts as just
+    below the surface.
+    """
+    below = np.cumsum(line.length[::-1])[::-1] - 0.5 * line.length
+    depth = np.maximum(water.depth - line.anchor_height - below, 0.0)
+    _, density = water.at(depth)
+    return line.net_force((density - REFERENCE_DENSITY) * water.gravity)
+
+
+def surface_lift(line: Line, water: Water) -> Floats:
+    """(n,) net force of every piece without its clamps in the water of the surface, + up [N]."""
+    _, density = water.at(np.zeros(1))
+    return line.buoyancy + (float(density[0]) - REFERENCE_DENSITY) * water.gravity * line.volume
+
+
+def standing_length(line: Line, lift: Floats) -> float:
+    """Length of the line standing upright in still water, each piece stretched by its mean
+    tension [m]; where a clamp hangs on a piece makes no difference here. `lift` is the
+    `standing_lift`."""
+    tension = np.maximum(np.cumsum(lift) - 0.5 * lift, 0.0)
+    strain: Floats = line.compliance * tension
+    for piece, curve in enumerate(line.elongation):
+        if curve is not None:
+            strain[piece] = curve.strain(float(tension[piece]))
+    return float(((1.0 + strain) * line.length).sum())
+
+
+SUPPORTED, TOO_HEAVY, FOLDS = range(3)
+"""Whether a line is held up, or why not."""
+
+
+def support_of(lift: Floats, at_rest: bool) -> tuple[int, int, float]:
+    """Return whether a line is held up, else the piece below which it folds and what is lacking
+    [N].
+
+    Parameters
+    ----------
+    lift : the `standing_lift`
+    at_rest : whether nothing moves; then it must stay held up down to its lowest float
+    """
+    above = np.cumsum(lift)
+    if not (above > 0.0).any():
+        return TOO_HEAVY, -1, 0.0
+    if not at_rest:
+        return SUPPORTED, -1, 0.0
+    first, last = int(np.argmax(above > 0.0)), int(np.flatnonzero(lift > 0.0)[-1])
+    short = np.flatnonzero(above[first:last] <= 0.0)
+    if not len(short):
+        return SUPPORTED, -1, 0.0
+    piece = first + int(short[0])
+    return (TOO_HEAVY if above[-1] <= 0.0 else FOLDS), piece, -float(above[piece])
+
+
+def refuse_unsupported(line: Line, water: Water, lift: Floats) -> None:
+    """Refuse a line that nothing holds up or, in still water, one that folds.
+
+    Once held up it must stay so, down to its lowest float. `lift` is the `standing_lift`.
+
+    Raises
+    ------
+    NoEquilibrium
+        ``slack``, or ``no-equilibrium`` where too little holds the line up.
+    """
+    blown = line.floating is not None and line.floating.blown
+    support, piece, lacking = support_of(lift, not (water.moving or blown))
+    if support == TOO_HEAVY:
+        raise too_heavy(lift)
+    if support == FOLDS:
+        raise Status.SLACK.because(
+            f"In still water the line is slack below {{piece}}: {lacking:.0f} N are "
+            "lacking to hold up what is above.",
+            piece,
+        )
+
+
+def too_heavy(lift: Floats) -> NoEquilibrium:
+    """The exception for a line that its buoyancy does not hold up, piece by piece [N]."""
+    up, down = float(lift[lift > 0.0].sum()), float(-lift[lift < 0.0].sum())
+    return Status.NO_EQUILIBRIUM.because(
+        f"Too little buoyancy to hold the line up: its buoyant pieces lift {up:.0f} N, the "
+        f"others weigh {down:.0f} N in water."
+    )

@@ -12,11 +12,10 @@ from calm.physics.hull import AIR_DENSITY
 from calm.physics.line import Floats, Line, Water
 from calm.physics.state import MarchError
 from calm.solve.finish import refuse_unbalanced, solution_of
-from calm.solve.root import bracketed_root
+from calm.solve.least_change import bracketed_root
 from calm.solve.search import audit_shape, stated_errors
 from calm.solve.solution import Settings, Solution, Status
-from calm.solve.towing import Towed
-from calm.solve.waterline import Waterline, half_out
+from calm.solve.towing import Towed, Waterline, half_out
 
 SURFACE_BAND = 1e-7
 """Thickness of the band from water to air, as a share of the line out."""

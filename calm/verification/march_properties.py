@@ -275,9 +275,7 @@ _BUOYANCY, _WEIGHT = 4905.0, 2.0
 
 @cache
 def heavy_line_error(degrees: float) -> float:
-    """Miss of the free end of a heavy line, against its closed form [m], at an angle step
-    [degrees].
-    """
+    """Miss of a heavy line's free end, against its closed form [m], at an angle step [degrees]."""
     drag, rope = sphere_drag(1.0, 0.65), cable(LENGTH, 0.0127, _WEIGHT, 1.3, 0.01)
     line = line_of(point(_BUOYANCY, drag), rope)
     solution = solve_mooring(line, stream(1010.0, 1.0), Settings(radians(degrees), 1e-9))

@@ -182,8 +182,7 @@ _LYING = 1e-6  # of the depth: what is no further above the seabed lies on it
 
 @dataclass(frozen=True)
 class Exceedance:
-    """Describe how often a limit is broken: `share` of the `count` profiles in which it can be
-    judged.
+    """Describe how often a limit is broken: `share` of the `count` profiles that it can judge.
 
     `worst` is the value furthest beyond the limit, or nearest to it, and `time` its time; None
     where there is no limit or nothing to judge.
@@ -277,9 +276,7 @@ def _rule_share(
 def _exceedance(
     series: ResultColumns, limit: CountedLimit, beyond: NDArray[np.bool_], judged: NDArray[np.bool_]
 ) -> Exceedance:
-    """Return how often a limit is broken; adds the profiles beyond it, and those judged, to the
-    others.
-    """
+    """Return how often a limit is broken; add the profiles beyond it and judged to the others."""
     if limit.limit is None:
         return Exceedance(limit, 0, None, None, None)
     values = limit.values(series)

@@ -205,9 +205,7 @@ def _least(loss: Callable[[Any], float], *starts: list[float]) -> tuple[Floats, 
 
 
 def _end(excess: Callable[[float], float], estimate: float, step: float) -> float | None:
-    """Return where a function that is negative at an estimate turns positive on the side of a
-    step.
-    """
+    """Return where a function, negative at an estimate, turns positive on the side of a step."""
     from scipy.optimize import brentq
 
     within, reach = estimate, abs(step) * _FURTHEST

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from calm.physics.element import axis_along, drag_force, drag_share
+from calm.physics.drag import axis_along, drag_force, drag_share
 from calm.physics.reynolds import DragCurve, Smooth, varying_share
 
 component = st.floats(-3, 3)

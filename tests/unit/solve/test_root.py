@@ -4,7 +4,7 @@ from math import atan, exp, tanh
 
 import pytest
 
-from calm.solve.root import bracketed_root, root_near
+from calm.solve.least_change import bracketed_root, root_near
 
 
 class Counted:

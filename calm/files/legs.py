@@ -1,0 +1,275 @@
+"""The `legs` of a mooring file: lines that meet at nodes, hang free, are anchored or held."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from pydantic import Field
+
+from calm.errors import Problem
+from calm.files.components import Anchor
+from calm.files.definition import LENGTH, Model, QuantityField, Text
+from calm.files.mooring_file import Piece, numbered
+from calm.files.rigid import Profiler
+from calm.files.yaml_document import SourceMapping, validate
+from calm.suggestions import unknown
+
+if TYPE_CHECKING:
+    from calm.files.line_items import LineReader
+
+MOST_LEGS = 40
+NET_REFUSED = (
+    "this is a net of legs; `calm run` solves it, the other commands take a single line: one free "
+    "end, one anchor"
+)
+
+_Offset = Annotated[float, QuantityField("length")]
+_At = Annotated[
+    tuple[_Offset, _Offset],
+    Field(description="metres east and north of the origin", examples=[["30 m", "0 m"]]),
+]
+
+
+class HeldKeys(Model):
+    """Say where an end is held: by a ship, a pier, a platform."""
+
+    depth: Annotated[float, LENGTH] = Field(description="below the surface", examples=["2 m"])
+    at: _At = (0.0, 0.0)
+
+
+class AnchoredKeys(Model):
+    """Say where a leg is anchored."""
+
+    at: _At = (0.0, 0.0)
+    depth: Annotated[float, QuantityField("length", above=0)] | None = Field(
+        default=None, description="of the seabed there, if not that of the water", examples=["44 m"]
+    )
+
+
+class EndKeys(Model):
+    """Say what holds an end of a leg: one of these."""
+
+    join: Text | None = Field(default=None, description="a node where legs meet", examples=["A"])
+    anchor: AnchoredKeys | None = Field(
+        default=None, description="the seabed", examples=[{"at": ["30 m", "0 m"]}]
+    )
+    held: HeldKeys | None = Field(
+        default=None, description="a fixed place", examples=[{"depth": "2 m"}]
+    )
+
+
+class LegKeys(Model):
+    """List the pieces of a leg from its upper to its lower end, and say what holds its ends."""
+
+    line: Annotated[tuple[Any, ...], Field(min_length=1)] = Field(
+        description="the pieces from the upper to the lower end",
+        examples=[[{"use": "wire-jacketed-8", "length": "150 m"}]],
+    )
+    top: Literal["free"] | EndKeys = Field(
+        default="free", description="what holds its upper end", examples=["free", {"join": "A"}]
+    )
+    bottom: Literal["free"] | EndKeys | None = Field(
+        default=None,
+        description="what holds its lower end; a leg that ends in an anchor is anchored",
+        examples=[{"join": "A"}, {"anchor": {"at": ["30 m", "0 m"]}}, "free"],
+    )
+
+
+@dataclass(frozen=True)
+class Leg:
+    """Represent a leg: the pieces `first` to `end` (not itself) of the file, and its two ends.
+
+    An end with no key is free.
+    """
+
+    name: str
+    first: int
+    end: int
+    top: EndKeys
+    bottom: EndKeys
+
+    def of(self, pieces: Sequence[Piece]) -> tuple[Piece, ...]:
+        """Return its pieces among those of the file."""
+        return tuple(pieces[self.first : self.end])
+
+    @property
+    def ends(self) -> tuple[EndKeys, EndKeys]:
+        """Return its upper and its lower end."""
+        return self.top, self.bottom
+
+
+_FREE = EndKeys()
+
+
+def read_legs(
+    top: SourceMapping, reader: LineReader, problems: list[Problem]
+) -> tuple[tuple[Leg, ...], tuple[Piece, ...]]:
+    """Read the legs of a file, and the pieces of all of them one after another.
+
+    Parameters
+    ----------
+    top : the file; mistakes are added to `problems`
+    reader : of the items of a line
+    """
+    if "line" in top.data:
+        message = "`line` and `legs` in one file; give the line as one of the legs"
+        problems.append(top.problem(("line",), message, key=True))
+    if "tow" in top.data:
+        problems.append(top.problem(("tow",), "a tow has no `legs`", key=True))
+    found = top.data["legs"]
+    if not isinstance(found, dict) or not found:
+        problems.append(top.problem(("legs",), "`legs` must name legs, each with its `line`"))
+        return (), ()
+    if len(found) > MOST_LEGS:
+        problems.append(top.problem(("legs",), f"more than {MOST_LEGS} legs", key=True))
+        return (), ()
+    legs: list[Leg] = []
+    pieces: list[Piece] = []
+    section, whole, items = top.child("legs"), True, 0
+    for name in found:
+        if not isinstance(found[name], dict):
+            problems.append(section.problem((name,), f"leg `{name}` must have a `line`"))
+            whole = False
+            continue
+        own = section.child(name)
+        keys = validate(LegKeys, own, problems)
+        before, first = len(problems), len(pieces)
+        if isinstance(own.data.get("line"), list):
+            read = reader.read(own, "line")
+            pieces += [_moved(piece, items) for piece in read]
+            items += len(own.data["line"])
+        whole = whole and keys is not None and len(problems) == before
+        if keys is not None and len(problems) == before:
+            ends = _ends(keys, own, pieces[first:], problems)
+            legs.append(Leg(str(name), first, len(pieces), *ends))
+    if whole:
+        _check_net(legs, top, problems)
+    return tuple(legs), numbered(pieces)
+
+
+def _moved(piece: Piece, items: int) -> Piece:
+    """Return a piece whose place counts the items of the legs before its own."""
+    place = replace(piece.place, item=piece.place.item + items)
+    clamps = tuple(
+        replace(clamp, place=replace(place, clamp=clamp.place.clamp)) for clamp in piece.clamps
+    )
+    return replace(piece, place=place, clamps=clamps)
+
+
+def _ends(
+    keys: LegKeys, own: SourceMapping, pieces: Sequence[Piece], problems: list[Problem]
+) -> tuple[EndKeys, EndKeys]:
+    """Return the ends of a leg, one that ends in an anchor on the seabed."""
+
+    def refuse(place: tuple[str | int, ...], message: str) -> None:
+        problems.append(own.problem(place, message, key=bool(place)))
+
+    ends = []
+    for name, end in (("top", keys.top), ("bottom", keys.bottom)):
+        end = _FREE if end is None or end == "free" else end
+        given = sorted(end.model_fields_set)
+        if len(given) != 1 and name in own.data and own.data[name] != "free":
+            each = " and ".join(f"`{one}`" for one in given) or "nothing"
+            refuse((name,), f"`{name}` gives {each}; give one of `join`, `anchor` and `held`")
+        ends.append(end)
+    upper, lower = ends
+    anchors = [piece for piece in pieces if isinstance(piece.component, Anchor)]
+    stands = bool(anchors) and anchors[-1] is pieces[-1]
+    if upper.anchor is not None:
+        refuse(("top",), "the upper end of a leg is not anchored; list it the other way round")
+    for anchor in anchors[: len(anchors) - stands]:
+        message = f"anchor `{anchor.use}` is not the last item of its leg"
+        problems.append(Problem(own.document.path, anchor.line, anchor.column, message))
+    if stands and keys.bottom is None:
+        lower = EndKeys(anchor=AnchoredKeys())
+    elif stands and lower.anchor is None:
+        refuse(("bottom",), "the leg ends in an anchor; `bottom` must be `{anchor: …}`")
+    elif lower.anchor is not None and not anchors:
+        refuse(("bottom",), "the leg has no anchor; its last item must be one (`kind: anchor`)")
+    elif keys.bottom is None:
+        refuse((), "`bottom` is missing: `{join: NODE}`, `free`, or an anchor as the last item")
+    if len(anchors) == len(pieces) > 0:
+        refuse(("line",), "nothing stands above the anchor")
+    if upper == lower == _FREE and (keys.bottom is not None or not stands):
+        refuse(("bottom",), "both ends are free: join one to another leg, or hold it")
+    for piece in pieces:
+        here = piece.line, piece.column
+        if piece.length is None:
+            message = "a piece of a net cannot be cut to fit; give its length"
+            problems.append(Problem(own.document.path, *here, message))
+        if any(isinstance(clamp.component, Profiler) for clamp in piece.clamps):
+            message = "a profiler in a net is not solved"
+            problems.append(Problem(own.document.path, *here, message))
+    return upper, lower
+
+
+def check_held_depths(
+    legs: Sequence[Leg], top: SourceMapping, depth: float | None, problems: list[Problem]
+) -> None:
+    """Check that what is held is above the seabed, at a depth [m]."""
+    for leg in legs:
+        for name, end in zip(("top", "bottom"), leg.ends, strict=True):
+            if end.held is not None and depth is not None and end.held.depth >= depth:
+                message = f"`depth` is not above the seabed, {depth:g} m deep"
+                problems.append(top.problem(("legs", leg.name, name, "held", "depth"), message))
+
+
+def _check_net(legs: Sequence[Leg], top: SourceMapping, problems: list[Problem]) -> None:
+    """Check that every node joins legs, and that something holds each of them."""
+    section = top.child("legs")
+    joins = [
+        (leg, name, end.join)
+        for leg in legs
+        for name, end in zip(("top", "bottom"), leg.ends, strict=True)
+        if end.join is not None
+    ]
+    known = top.data.get("nodes")
+    if known is not None and not isinstance(known, dict):
+        message = "`nodes` must name nodes: `nodes: {A: {}}`"
+        problems.append(top.problem(("nodes",), message))
+        known = None
+    meeting = [join for *_, join in joins]
+    for leg, end, join in joins:
+        place = (leg.name, end, "join")
+        if known is not None and join not in known:
+            message = unknown(f"no node is called `{join}`", join, known)
+            problems.append(section.problem(place, message))
+        elif meeting.count(join) == 1:
+            others = [other for other in meeting if other != join]
+            message = unknown(f"no other leg joins at `{join}`", join, others)
+            problems.append(section.problem(place, message))
+    for name, keys in (known or {}).items():
+        if keys:
+            problems.append(top.problem(("nodes", name), "a node has no keys: `A: {}`"))
+        if name not in meeting:
+            message = f"no leg joins at node `{name}`"
+            problems.append(top.problem(("nodes", name), message, key=True))
+    _check_held(legs, section, problems)
+
+
+def _check_held(legs: Sequence[Leg], section: SourceMapping, problems: list[Problem]) -> None:
+    """Check that no part of the net is without a hold."""
+    held: set[str] = set()
+    reached: set[str | None] = set()
+    while True:
+        more = {
+            leg.name
+            for leg in legs
+            if any(end.anchor or end.held or end.join in reached for end in leg.ends)
+        }
+        reached |= {end.join for leg in legs if leg.name in more for end in leg.ends} - {None}
+        if more == held:
+            break
+        held = more
+    for leg in legs:
+        if leg.name not in held:
+            message = f"nothing holds leg `{leg.name}`: no anchor, no held end"
+            problems.append(section.problem((leg.name,), message, key=True))
+
+
+def nodes_of(legs: Sequence[Leg]) -> Mapping[str, int]:
+    """Return the number of every node by its name, as they come up in the legs."""
+    names = dict.fromkeys(end.join for leg in legs for end in leg.ends if end.join is not None)
+    return {name: number for number, name in enumerate(names)}

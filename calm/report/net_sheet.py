@@ -1,0 +1,85 @@
+"""What the result of a net says: the table of its legs, its nodes, and what its ends bear."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from calm.checks.finding import State
+from calm.quantities import say
+from calm.report.blocks import Cell, Column, Note, Prose, ReportPart, Table, table_of
+from calm.report.sheet import line_table, quantity_field
+
+if TYPE_CHECKING:
+    from calm.case.net import LegResult, NetResult
+    from calm.files.legs import EndKeys
+
+_COLUMNS = ("length", "depth", "x", "y", "knockdown", "tilt", "tension", "safety_factor")
+
+
+def net_part(result: NetResult) -> ReportPart:
+    """A net in short: a table of the pieces leg by leg, its nodes, its anchors and held ends."""
+    depth = say("depth", result.file.environment.depth)
+    title = f"{result.name}: net of {len(result.legs)} legs, {depth} of water"
+    heads = {leg.first: Cell(_head(result, leg), strong=True) for leg in result.legs}
+    table = line_table(result, _COLUMNS, "", heads=heads)
+    note = Note((
+        "Depth, east and north: of the upper end. Tension: the greatest in the piece. "
+        "~ near a limit, ! beyond it.",
+        _convergence(result),
+    ))  # fmt: skip
+    warned = (Prose(result.warnings, State.WARN),) if result.warnings else ()
+    parts = (table, *_ends(result), *warned, note)
+    return ReportPart(title, parts)
+
+
+def _head(result: NetResult, leg: LegResult) -> str:
+    """Name of a leg and what holds its ends."""
+    keys = next(each for each in result.file.legs if each.name == leg.name)
+    top = "at the surface" if leg.afloat else _held(keys.top)
+    return f"{leg.name}: {top} to {_held(keys.bottom)}"
+
+
+def _held(end: EndKeys) -> str:
+    if end.join is not None:
+        return f"node {end.join}"
+    if end.held is not None:
+        return "held end"
+    return "free end" if end.anchor is None else "anchor"
+
+
+def _ends(result: NetResult) -> list[Table | Prose]:
+    """Nodes, anchors and held ends, and floats at the surface."""
+    blocks: list[Table | Prose] = []
+    if result.nodes:
+        fields = [quantity_field(name) for name in ("depth", "x", "y")]
+        blocks.append(table_of("Nodes", result.nodes, (Column(""), lambda one: one.name), *fields))
+    for title, loads in (("Anchors", result.anchors), ("Held ends", result.held)):
+        if not loads:
+            continue
+        heads = {"tension": "pull", "vertical": "up", "horizontal": "sideways"}
+        heads |= {"depth": "depth", "x": "east", "y": "north"}
+        if loads is result.anchors:
+            heads["required_weight"] = "needs"
+        fields = [quantity_field(name, heading=head) for name, head in heads.items()]
+        blocks.append(table_of(title, loads, (Column("leg"), lambda one: one.leg), *fields))
+    afloat = [
+        f"{leg.name}: float at the surface, {leg.used_buoyancy:.1%} of its buoyancy used, "
+        f"{say('reserve', leg.reserve)} in reserve"
+        for leg in result.legs
+        if leg.afloat
+    ]
+    if afloat:
+        blocks.append(Prose(tuple(afloat)))
+    return blocks
+
+
+def _convergence(result: NetResult) -> str:
+    """How the net was solved and how good that is."""
+    accuracy = result.accuracy
+    left = max((node.imbalance for node in result.nodes), default=0.0)
+    return (
+        f"{result.status.capitalize()} in {result.iterations} marches of its legs, "
+        f"{result.segments} segments, good to {accuracy.depth:.2g} m and {accuracy.tension:.2g} N; "
+        f"ends missed by {result.miss:.1g} m, nodes in balance to {left:.1g} N, forces closed to "
+        f"{result.closure:.1g}."
+    )
