@@ -82,7 +82,7 @@ def chart_solve(
     distance: float | None = None,
     length: float | None = None,
 ) -> ChartAnswer:
-    """Every cable that has three given quantities, to 1e-9.
+    """Every cable that has three given quantities, to 1e-9; or why there is none.
 
     A cable that turns by less than a hundredth of a radian is so nearly straight that its shape
     (angles, height, distance, length) gives its tension with fewer digits than it has itself.
@@ -91,20 +91,12 @@ def chart_solve(
     ----------
     k : K = ρ Cx D V²/(2|w|), from 0 to 100
     weight : weight in water of a metre, w [N/m]; negative for a cable that floats
-    phi_a, phi_b : float, optional
-        Angles to the current [rad], −π to π. At most the end the cable hangs from below (A; B
-        where w < 0) can have a negative one.
-    tension_a, tension_b : float, optional
-        Tensions [N], not negative; the tension of the lighter end (A; B where w < 0) may be 0.
-    height, length : float, optional
-        Positive [m].
-    distance : float, optional
-        Positive when B lies downstream of A [m].
-
-    Returns
-    -------
-    ChartAnswer
-        All solutions, or why there is none.
+    phi_a, phi_b : angles to the current [rad], −π to π. At most the end the cable hangs from below
+        (A; B where w < 0) can have a negative one.
+    tension_a, tension_b : tensions [N], not negative; that of the lighter end (A; B where w < 0)
+        may be 0
+    height, length : positive [m]
+    distance : positive when B lies downstream of A [m]
 
     Raises
     ------

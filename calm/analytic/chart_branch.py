@@ -265,10 +265,6 @@ def curve(k: float, phi: ArrayLike) -> CurvePoints:
     phi : angles to the current [rad], each from −π to π and none of them critical. Between φ_c − π
         and φ_c a point lies on the first branch, otherwise on the second.
 
-    Returns
-    -------
-    CurvePoints
-
     Raises
     ------
     UsageError

@@ -96,8 +96,6 @@ class BatchWork:
 
     def on_cluster(self, address: str, tell: Callable[[str], None]) -> None:
         """Solve it on the workers of a dask scheduler; this process reads and writes."""
-        pass
-
         self.tell()
 
         def blocks() -> Iterator[tuple[int, Levels]]:

@@ -47,8 +47,6 @@ def verify(
     outputs = Outputs(json=json)
     outputs.check()
     if field:
-        pass
-
         if words:
             raise UsageError("--field takes no words")
         return verify_field(outputs)

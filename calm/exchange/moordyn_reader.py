@@ -166,8 +166,6 @@ def _option(options: dict[str, str], *names: str, default: float) -> float:
 
 
 def _currents(path: Path) -> tuple[tuple[float, float, float, float], ...]:
-    from calm.whole_file import read_text
-
     rows = []
     for line in read_text(path).splitlines():
         try:

@@ -30,13 +30,10 @@ from calm.report.sheet import figure_cell, quantity_column
 def summary_document(summary: Summary) -> dict[str, Any]:
     """The JSON object of a summary: SI and degrees, times in UTC, shares of 1; null is unknown.
 
-    Returns
-    -------
-    dict
-        `profiles`, how many and how they ended; `components` and `clamps` with their
-        distributions; `rules` and `limits`, how often each is broken, and `limits_used`, by which
-        they judge; `responses` of the line as a whole with their exceedance curves and return
-        levels; `worst` profiles of each response.
+    It has `profiles`, how many and how they ended; `components` and `clamps` with their
+    distributions; `rules` and `limits`, how often each is broken, and `limits_used`, by which they
+    judge; `responses` of the line as a whole with their exceedance curves and return levels;
+    `worst` profiles of each response.
     """
     from calm.version import __version__
 

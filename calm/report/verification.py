@@ -24,17 +24,10 @@ _SMALL = 1e-3
 def verification_document(findings: Findings) -> dict[str, Any]:
     """The JSON object: `calm`, how many figures verify and were `checked`, how many are `out`.
 
-    Parameters
-    ----------
-    findings : the outcomes of each source
-
-    Returns
-    -------
-    dict
-        `kinds` has the number of figures of each kind; those by construction are not `checked`.
-        `cases` has an object each: `source`, `name`, `kind`, `expected`, `got`, `difference`,
-        `tolerance`, `unit`, `why` (the reason for the tolerance), `within`, and `reason` where
-        nothing was got.
+    `kinds` has the number of figures of each kind; those by construction are not `checked`.
+    `cases` has an object each: `source`, `name`, `kind`, `expected`, `got`, `difference`,
+    `tolerance`, `unit`, `why` (the reason for the tolerance), `within`, and `reason` where nothing
+    was got.
     """
     from calm.version import __version__
 

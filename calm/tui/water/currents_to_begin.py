@@ -90,7 +90,6 @@ class Currents:
 
     def ask_for_file(self) -> None:
         """A current from CSV or NetCDF: referred to, or its profile copied."""
-        pass
 
         def take(texts: dict[str, str] | None) -> None:
             if texts is None:
@@ -111,8 +110,6 @@ class Currents:
 
     def _read(self, file: _File) -> None:
         """Read a file in a thread; what comes of it is taken by the form."""
-        pass
-
         tell, later = self._workspace.tell, self._pane.call_later
         try:
             columns, rows = imported(self._folder / file.path, file.time, file.depth)
