@@ -1,8 +1,9 @@
-"""Seconds of `calm waves` for a sea and for sixty, beside the equilibrium in the same run.
+"""Seconds and memory of `calm waves` for a sea and for sixty, beside the equilibrium.
 
 python benchmarks/waves.py [--smoke]
 """
 
+import resource
 import sys
 import time
 from pathlib import Path
@@ -29,6 +30,8 @@ def main() -> None:
     one = least(lambda: analyse(mooring, seas[-1:], 90.0), 1 if smoke else 3)
     table = least(lambda: analyse(mooring, seas, 90.0), 1)
     print(f"equilibrium {solve:.2f} s, one sea {one:.2f} s ({one / solve:.1f} times that)")
+    megabytes = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    print(f"greatest memory of the process {megabytes:.0f} MB")
     print(f"{len(seas)} seas {table:.1f} s, {table / len(seas):.2f} s each")
 
 

@@ -31,11 +31,11 @@ class MooringInWaves:
     @classmethod
     def of(cls, mooring: Mooring) -> MooringInWaves:
         """Of a mooring that stands."""
-        given = mooring.file.environment.waves
-        if given is None:
+        around = mooring.file.environment
+        if around.waves is None:
             return cls(mooring, None)
         try:
-            return cls(mooring, analyse(mooring, given.seas, given.toward))
+            return cls(mooring, analyse(mooring, around.seas, around.waves.toward))
         except UsageError as error:
             return cls(mooring, str(error))
 
@@ -97,7 +97,7 @@ def fatigue(evidence: MooringInWaves) -> Iterator[Verdict]:
     if not isinstance(waves, WaveAnalysis):
         return
     given, checks = mooring.file.environment.waves, mooring.file.checks
-    if given is None or not given.climate:
+    if given is None or given.scatter is None:
         message = "How long it lasts in waves is not known: one sea is no climate."
         yield unknown(None, message, "Give `waves: {scatter: FILE}`, seas with their shares.")
         return

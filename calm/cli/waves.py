@@ -39,6 +39,7 @@ def waves(
     scatter: Path | None = None,
     duration: str = "3 h",
     json: OutputPath = None,
+    report: Path | None = None,
     units: Units = None,
 ) -> ExitCode:
     """Estimate tensions and motions of a mooring in waves, about its equilibrium.
@@ -70,6 +71,8 @@ def waves(
         Of the greatest and the least tension.
     json
         Write the answer as JSON, - to print it.
+    report
+        A folder for waves.html and waves.pdf, with pictures of the tension.
     """
     outputs = Outputs((file,), json)
     outputs.check()
@@ -77,18 +80,21 @@ def waves(
     from calm.case import Tow
     from calm.cli.streams import progress
     from calm.records.sea_states import OF_HEIGHT
-    from calm.report.sea_response import sea_response_part
+    from calm.report.folder import check_folder, printed, write_report
+    from calm.report.html import page
+    from calm.report.sea_response import sea_response_part, sea_response_report
     from calm.waves.analysis import SLACK, analyse
 
+    if report is not None:
+        check_folder(report)
     asked, way, length = _asked(hs, tp, spectrum, gamma, toward, scatter, duration)
     mooring = calm.load(file, environment=environment, catalogs=catalog or [])
     if isinstance(mooring, Tow):
         raise UsageError(f"{file} is a tow; calm waves judges moorings")
-    given = mooring.file.environment.waves
-    if asked is None and given is None:
+    given, seas = mooring.file.environment.waves, asked or mooring.file.environment.seas
+    if not seas:
         missing = "--hs: missing" if spectrum in OF_HEIGHT else "--hs, --tp: missing"
         raise UsageError(f"{missing}; or give a --scatter table, or `waves:` in {file}")
-    seas = list(given.seas) if asked is None and given is not None else asked or []
     if way is None:
         way = 90.0 if given is None else given.toward
     show_units(units, [mooring.file])
@@ -100,6 +106,9 @@ def waves(
         narrate(f"{file}: {failure.status}: {failure.message} {failure.advice}")
         return ExitCode.NO_EQUILIBRIUM
     outputs.write_answer(analysis.to_dict, sea_response_part(analysis))
+    if report is not None:
+        said = sea_response_report(analysis)
+        write_report(report, {"waves.html": page(said).encode(), "waves.pdf": printed(said)})
     if analysis.status != SLACK:
         return ExitCode.DONE
     narrate(

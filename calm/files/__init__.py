@@ -16,7 +16,7 @@ from calm.files.strumming_keys import (
     StrummingFactor,
 )
 from calm.files.uncertainty import Spread, Uncertainty
-from calm.files.water import WavesGiven, Wind
+from calm.files.water import Wind
 from calm.records.profile_tables import CurrentTable, DepthTable, SeaWater
 
 __all__ = [
@@ -56,7 +56,6 @@ __all__ = [
     "StrummingFactor",
     "TowKeys",
     "Uncertainty",
-    "WavesGiven",
     "Wind",
     "mooring_schema",
     "read_mooring",

@@ -17,7 +17,6 @@ from calm.files.water import (
     Density,
     TableKeys,
     WaveKeys,
-    WavesGiven,
     Wind,
     check_density,
     density_notices,
@@ -36,6 +35,7 @@ from calm.records.profile_tables import (
     components,
     read_current,
 )
+from calm.records.sea_states import SeaState
 from calm.suggestions import shown
 from calm.units import QuantityError
 
@@ -81,7 +81,10 @@ class Environment:
         What grows on the cables.
     maximum_speed : float
         A faster current counts as a mistake of its source [m/s]; inf in a tow and in air.
-    waves : WavesGiven or None
+    waves : WaveKeys or None
+        As they are written.
+    seas : tuple of SeaState
+        Those of `waves`.
     """
 
     name: str | None
@@ -95,7 +98,8 @@ class Environment:
     depth_range: tuple[float, float] | None = None
     fouling: Fouling | None = None
     maximum_speed: float = math.inf
-    waves: WavesGiven | None = None
+    waves: WaveKeys | None = None
+    seas: tuple[SeaState, ...] = ()
 
 
 class Fouling(Model):
@@ -259,8 +263,8 @@ def read_environment(
     if open_files:  # otherwise the depth may be that of another section
         _check_depth_range(keys, section, problems)
     current = _current(keys, section, problems, notices, open_files, position)
-    given_waves = getattr(keys, "waves", None)
-    waves = None if given_waves is None else read_waves(given_waves, section, problems, open_files)
+    waves = getattr(keys, "waves", None)
+    seas = () if waves is None else read_waves(waves, section, problems, open_files)
     if density is None or current is None or len(problems) > before:
         return None
     notices.extend(density_notices(density, keys.depth))
@@ -282,6 +286,7 @@ def read_environment(
         fouling=getattr(keys, "fouling", None),
         maximum_speed=getattr(keys, "maximum_speed", math.inf),
         waves=waves,
+        seas=seas,
     )
 
 

@@ -196,7 +196,7 @@ def _around(file: MooringFile) -> dict[str, ComparedValue]:
     """Return all that is not the line."""
     found = {"name": _figure("name", file.name)}
     found["description"] = _figure("description", file.description or None)
-    around = _figures(file.environment, frozenset({"position"}))  # it follows from the file's own
+    around = _figures(file.environment, frozenset({"position", "seas"}))  # they follow from others
     found |= {f"environment.{key}": one for key, one in around.items()}
     for name in ("position", "tow", "solver", "checks", "uncertainty", "document", "deployed"):
         if (part := getattr(file, name)) is not None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os.path
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Self
 
@@ -298,28 +298,17 @@ class WaveKeys(Model):
         return self
 
 
-@dataclass(frozen=True)
-class WavesGiven:
-    """Hold the seas of an environment, and where they run [degrees].
-
-    Those of a scatter table have their shares of the time; one beside them has a share of 0.
-    `climate` says whether there is such a table.
-    """
-
-    seas: tuple[SeaState, ...]
-    toward: float
-    climate: bool
-
-
 def read_waves(
     keys: WaveKeys, section: SourceMapping, problems: list[Problem], open_files: bool
-) -> WavesGiven | None:
-    """Return the seas of `waves:`; None, with its mistakes in `problems`, if it has any.
+) -> tuple[SeaState, ...]:
+    """Return the seas of `waves:`; none, with its mistakes in `problems`, if it has any.
+
+    Those of a scatter table have their shares of the time; one beside them has a share of 0.
 
     Parameters
     ----------
     section : the environment
-    open_files : read its files, which are beside the mooring file; where not, None is returned
+    open_files : read its files, which are beside the mooring file; where not, none is returned
     """
     before = len(problems)
     measured = keys.spectrum not in SPECTRA
@@ -338,7 +327,7 @@ def read_waves(
         message = f"`{name}: {shown(text)}`: {what}{meant}"
         problems.append(section.problem(("waves", name), message))
     if len(problems) > before or not open_files:
-        return None
+        return ()
     form = "bretschneider" if measured else keys.spectrum
     seas: list[SeaState] = []
     try:
@@ -353,6 +342,4 @@ def read_waves(
         problems.append(section.problem(("waves",), str(error), key=True))
     except InputError as error:
         problems.extend(error.problems)
-    if len(problems) > before:
-        return None
-    return WavesGiven(tuple(seas), keys.toward, "scatter" in paths)
+    return tuple(seas)

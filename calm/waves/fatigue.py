@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import exp, gamma, inf, log, pi, sqrt
+from math import exp, gamma, log, pi, sqrt
 from typing import Literal
 
 import numpy as np
@@ -181,36 +181,27 @@ def fatigue_of(
     component, index, label : of the piece
     seas : share of the time, mean tension [N] and the moments of the tension of each
     """
-    name = curve_of(component)
-    if name is None:
-        return _not_known(index, label, None, "no curve is published for it: give its `fatigue`")
-    curve, strength = CURVES[name], component.breaking_load
-    if curve.range == "share" and strength is None:
-        return _not_known(index, label, name, "its breaking load is not known")
-    bar = getattr(component, "diameter", None)
-    if curve.range == "stress" and not (isinstance(component, Chain) and bar):
-        return _not_known(index, label, name, "the stress in it is not known: it is no chain")
+    name, strength = curve_of(component), component.breaking_load
+    bar = component.diameter if isinstance(component, Chain) else None
+    curve = None if name is None else CURVES[name]
+    unknown = None
+    if curve is None:
+        unknown = "no curve is published for it: give its `fatigue`"
+    elif curve.range == "share" and strength is None:
+        unknown = "its breaking load is not known"
+    elif curve.range == "stress" and bar is None:
+        unknown = "the stress in it is not known: it is no chain"
+    source = None if curve is None else curve.source
+    if unknown is not None or curve is None:
+        return PieceFatigue(index, label, None, None, None, None, name, source, unknown)
+    # a stress is that in both bars of a link, in mm²
+    by_load = curve.range == "share"
+    unit = (strength if by_load else 2.0 * pi / 4.0 * (1e3 * (bar or 0.0)) ** 2) or 1.0
     damage = 0.0
     for share, mean, moments in seas:
-        logarithm = curve.logarithm
-        if curve.range == "share":
-            assert strength is not None
-            unit = strength
-            logarithm -= curve.by_mean * mean / strength
-        else:  # both bars of a link, in mm²
-            assert bar is not None
-            unit = 2.0 * pi / 4.0 * (1e3 * bar) ** 2
-        scaled = moments / unit**2
-        damage += share * YEAR * dirlik(scaled.tolist(), curve.slope) / 10.0**logarithm
-    life = 1.0 / damage if damage > 0.0 else inf
-    low, high = ((1.0 + off) ** -curve.slope for off in (BAND, -BAND))
-    if life == inf:
-        return PieceFatigue(index, label, 0.0, None, None, None, name, curve.source, None)
-    return PieceFatigue(
-        index, label, damage, life, low * life, high * life, name, curve.source, None
-    )
-
-
-def _not_known(index: int, label: str, name: str | None, why: str) -> PieceFatigue:
-    source = None if name is None else CURVES[name].source
-    return PieceFatigue(index, label, None, None, None, None, name, source, why)
+        bears = 10.0 ** (curve.logarithm - (curve.by_mean * mean / unit if by_load else 0.0))
+        damage += share * YEAR * dirlik((moments / unit**2).tolist(), curve.slope) / bears
+    if not damage > 0.0:
+        return PieceFatigue(index, label, 0.0, None, None, None, name, source, None)
+    life, low, high = ((1.0 + off) ** -curve.slope / damage for off in (0.0, BAND, -BAND))
+    return PieceFatigue(index, label, damage, life, low, high, name, source, None)

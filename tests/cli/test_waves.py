@@ -188,6 +188,21 @@ def test_the_seas_of_the_file(calm, buoy, tmp_path):
     )
 
 
+def test_a_report_has_the_life_and_its_pictures(calm, buoy, tmp_path):
+    (tmp_path / "seas.csv").write_text(TABLE)
+    path = in_its_file(buoy, "{scatter: seas.csv}")
+    shown = calm("waves", path, "--report", str(tmp_path / "report"))
+    assert shown.code in (0, 3)
+    assert "dnv-studless-chain" in shown.out
+    assert "Of unknown life: rope." in shown.out
+    page = (tmp_path / "report" / "waves.html").read_text()
+    assert page.count("<svg") == 1
+    assert "dnv-studless-chain" in page
+    assert (tmp_path / "report" / "waves.pdf").read_bytes().startswith(b"%PDF")
+    (tmp_path / "file").write_text("")
+    assert calm("waves", path, "--report", str(tmp_path / "file" / "in")).code == 2
+
+
 @pytest.mark.parametrize(
     ("waves", "message"),
     [
