@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from calm.checks.assess import check
     from calm.drop.plan import drop_plan
     from calm.errors import CalmError, InputError, NoEquilibrium, UsageError
+    from calm.ranging import locate
 
 __all__ = [
     "CalmError",
@@ -38,6 +39,7 @@ __all__ = [
     "drop_plan",
     "explain",
     "load",
+    "locate",
     "size",
     "solve_profiles",
 ]
@@ -47,6 +49,7 @@ _HOMES = {
     "check": "calm.checks.assess",
     "drop_plan": "calm.drop.plan",
     "explain": "calm.case.explain",
+    "locate": "calm.ranging",
     "size": "calm.case.size",
     "Profiles": "calm.batch.profiles",
     "solve_profiles": "calm.batch.profiles",
@@ -68,13 +71,13 @@ def __getattr__(name: str) -> object:
 
     value = getattr(import_module(_HOMES[name]), name)
     if _HOMES[name] == "calm.case":
-        _show_in_notebooks()
+        _give_results_their_forms()
     globals()[name] = value
     return value
 
 
-def _show_in_notebooks() -> None:
-    """Tell results how a notebook shows them."""
+def _give_results_their_forms() -> None:
+    """Tell results how a notebook shows them, and how they become a dataset."""
     from calm.case.result import Solved
 
     def html(result: Result | TowResult) -> str:
@@ -83,7 +86,13 @@ def _show_in_notebooks() -> None:
 
         return fragment(result_part(result))
 
+    def netcdf(result: Result | TowResult) -> bytes:
+        from calm.report.result_files import result_netcdf
+
+        return result_netcdf(result)
+
     Solved.notebook_form = staticmethod(html)
+    Solved.netcdf_form = staticmethod(netcdf)
 
 
 def __dir__() -> list[str]:

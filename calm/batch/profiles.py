@@ -6,7 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import prod
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -29,6 +29,7 @@ from calm.batch.threads import processors
 from calm.case import Mooring
 from calm.case.measure import clamps_of, components_of
 from calm.case.parts import clamps_down
+from calm.dataset import netcdf
 from calm.files import CurrentTable
 from calm.physics.compiled import by_address, entry, record_type
 from calm.physics.line import Floats, Integers, Water
@@ -40,6 +41,9 @@ from calm.solve.mooring import MORE_ROOM, AskedSearch, find_asked, search_of
 from calm.solve.problem import MANY_ROOM, problem_of
 from calm.solve.solution import FOUND
 from calm.solve.starts import fill_starts
+
+if TYPE_CHECKING:
+    from xarray import Dataset
 
 BLOCK = 1024
 """Profiles that a worker takes at a time."""
@@ -88,6 +92,31 @@ class Profiles:
     anchor_horizontal: Floats
     used_buoyancy: Floats
     status: NDArray[np.int8]
+
+    def to_xarray(self) -> Dataset:
+        """Return a dataset with labels and units, its dimensions `profile` (or `profile_0`, …),
+        `component` and `clamp`.
+        """
+        from xarray import Dataset
+
+        many = self.status.ndim > 1
+        profile = tuple(f"profile_{n}" if many else "profile" for n in range(self.status.ndim))
+        kinds = (
+            (netcdf.OF_COMPONENT, ("component",)),
+            (netcdf.OF_CLAMP, ("clamp",)),
+            (netcdf.OF_ENDS, ()),
+        )
+        variables: dict[str, Any] = {
+            name: (
+                (*profile, *part), getattr(self, name), {"units": unit, "long_name": said, **more}
+            )
+            for quantities, part in kinds
+            for name, (unit, said, more) in quantities.items()
+        }  # fmt: skip
+        meanings = {"flag_values": range(len(STATUSES)), "flag_meanings": " ".join(STATUSES)}
+        variables["status"] = (profile, self.status, meanings)
+        labels = {"component": [*self.component_label], "clamp": [*self.clamp_label]}
+        return Dataset(variables, coords=labels)
 
 
 def solve_profiles(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, field, fields, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -309,13 +309,10 @@ def _result_of(net: Net, found: NetSolution, still: Sequence[Solution | None]) -
 def joined(tables: Sequence[Any]) -> Any:
     """Tables one after another."""
     columns = {}
-    for name, column in vars(tables[0]).items():
-        parts = [getattr(table, name) for table in tables]
-        columns[name] = (
-            [each for part in parts for each in part]
-            if isinstance(column, list)
-            else np.concatenate(parts)
-        )
+    for each in fields(tables[0]):
+        parts = [getattr(table, each.name) for table in tables]
+        whole = [row for part in parts for row in part]
+        columns[each.name] = whole if isinstance(parts[0], list) else np.concatenate(parts)
     return type(tables[0])(**columns)
 
 

@@ -117,7 +117,8 @@ class Solved:
     `iterations` counts marches, `segments` the cuts of the final one, `miss` is the height
     of the line's end above the anchor's top, `closure` the relative force residual recomputed
     from the final coordinates. `other_depth` is that of the free end in another equilibrium that
-    was found. `notebook_form` makes HTML of a result; the rooms above set it.
+    was found. `notebook_form` makes HTML of a result, `netcdf_form` a file; the rooms above set
+    them.
     """
 
     name: str
@@ -135,10 +136,21 @@ class Solved:
     other_depth: float | None = None
     warnings: tuple[str, ...] = ()
     notebook_form: ClassVar[Callable[[Any], str] | None] = None
+    netcdf_form: ClassVar[Callable[[Any], bytes] | None] = None
 
     def to_dataframe(self) -> Any:
         """The components as a pandas data frame (pandas is not installed with CALM)."""
         return self.components.to_dataframe()
+
+    def to_xarray(self) -> Any:
+        """The dataset that `calm run --netcdf` writes: components, clamps and shape, with units."""
+        from io import BytesIO
+
+        from xarray import load_dataset
+
+        form = type(self).netcdf_form
+        assert form is not None, "a mooring is read by calm.load"
+        return load_dataset(BytesIO(form(self)))
 
     def _repr_html_(self) -> str | None:
         """The table of the line, for notebooks; None where nothing makes it."""

@@ -13,7 +13,7 @@ from calm.cli.streams import ExitCode, narrate
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
-    from calm.locate import Sound
+    from calm.ranging import Sound
 
 DEFAULT_SPEED = "1500 m/s"
 
@@ -83,9 +83,9 @@ def locate(
         Write the place in spite of a doubt.
     """
     from calm.drawing.picture import check_format, image
-    from calm.locate import locate as found_at
-    from calm.locate import read_ranges
-    from calm.locate.range_fit import located_mooring, with_deployed
+    from calm.ranging import locate as found_at
+    from calm.ranging import read_ranges
+    from calm.ranging.range_fit import located_mooring, with_deployed
     from calm.records.record import parse_place
     from calm.report.folder import check_destination, write_file
     from calm.report.located_anchor import located_figure, located_part
@@ -148,8 +148,8 @@ def locate(
 
 def _sound(text: str) -> Sound:
     """One speed, or the profile of a file."""
-    from calm.locate import Sound
-    from calm.locate.ranges import FASTEST, SLOWEST, read_sound, sound_complaint
+    from calm.ranging import Sound
+    from calm.ranging.ranges import FASTEST, SLOWEST, read_sound, sound_complaint
 
     if text.lower().endswith((".csv", ".txt", ".tsv")):
         return read_sound(Path(text))

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field
 
 from calm.errors import Problem
 from calm.files.components import Anchor
@@ -15,6 +15,7 @@ from calm.files.mooring_file import Piece, numbered
 from calm.files.rigid import Profiler
 from calm.files.yaml_document import SourceMapping, validate
 from calm.suggestions import unknown
+from calm.units import QuantityError
 
 if TYPE_CHECKING:
     from calm.files.line_items import LineReader
@@ -60,6 +61,23 @@ class EndKeys(Model):
     )
 
 
+_FREE = EndKeys()
+
+
+def _end_given(value: object) -> object:
+    """Return an end as its keys; `free` has none."""
+    if value == "free":
+        return {}
+    if not isinstance(value, dict):
+        raise QuantityError("must be `free`, or one of `{join: …}`, `{anchor: …}`, `{held: …}`")
+    return value
+
+
+_End = Annotated[
+    EndKeys, BeforeValidator(_end_given, json_schema_input_type=Literal["free"] | EndKeys)
+]
+
+
 class LegKeys(Model):
     """List the pieces of a leg from its upper to its lower end, and say what holds its ends."""
 
@@ -67,10 +85,10 @@ class LegKeys(Model):
         description="the pieces from the upper to the lower end",
         examples=[[{"use": "wire-jacketed-8", "length": "150 m"}]],
     )
-    top: Literal["free"] | EndKeys = Field(
-        default="free", description="what holds its upper end", examples=["free", {"join": "A"}]
+    top: _End = Field(
+        default=_FREE, description="what holds its upper end", examples=["free", {"join": "A"}]
     )
-    bottom: Literal["free"] | EndKeys | None = Field(
+    bottom: _End | None = Field(
         default=None,
         description="what holds its lower end; a leg that ends in an anchor is anchored",
         examples=[{"join": "A"}, {"anchor": {"at": ["30 m", "0 m"]}}, "free"],
@@ -98,9 +116,6 @@ class Leg:
     def ends(self) -> tuple[EndKeys, EndKeys]:
         """Return its upper and its lower end."""
         return self.top, self.bottom
-
-
-_FREE = EndKeys()
 
 
 def read_legs(
@@ -140,10 +155,13 @@ def read_legs(
             read = reader.read(own, "line")
             pieces += [_moved(piece, items) for piece in read]
             items += len(own.data["line"])
-        whole = whole and keys is not None and len(problems) == before
-        if keys is not None and len(problems) == before:
+        if keys is None:
+            whole = False
+            continue
+        ends = keys.top, keys.bottom or _FREE
+        if len(problems) == before:
             ends = _ends(keys, own, pieces[first:], problems)
-            legs.append(Leg(str(name), first, len(pieces), *ends))
+        legs.append(Leg(str(name), first, len(pieces), *ends))
     if whole:
         _check_net(legs, top, problems)
     return tuple(legs), numbered(pieces)
@@ -168,7 +186,7 @@ def _ends(
 
     ends = []
     for name, end in (("top", keys.top), ("bottom", keys.bottom)):
-        end = _FREE if end is None or end == "free" else end
+        end = _FREE if end is None else end
         given = sorted(end.model_fields_set)
         if len(given) != 1 and name in own.data and own.data[name] != "free":
             each = " and ".join(f"`{one}`" for one in given) or "nothing"
@@ -246,7 +264,8 @@ def _check_net(legs: Sequence[Leg], top: SourceMapping, problems: list[Problem])
         if name not in meeting:
             message = f"no leg joins at node `{name}`"
             problems.append(top.problem(("nodes", name), message, key=True))
-    _check_held(legs, section, problems)
+    if not problems:
+        _check_held(legs, section, problems)
 
 
 def _check_held(legs: Sequence[Leg], section: SourceMapping, problems: list[Problem]) -> None:

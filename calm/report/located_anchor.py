@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from calm.locate import Located
+    from calm.ranging import Located
 
 _FONT_SIZE = 8.0
 _CIRCLE, _LEFT_OUT, _PLACE = "#2b7bba", "#999999", "#c0392b"

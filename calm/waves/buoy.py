@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import j1
 
 from calm.errors import UsageError
 from calm.files import Cylinder, Sphere
@@ -73,6 +72,8 @@ class Buoy:
         omega, number : (f,) angular frequencies [rad/s] and wave numbers [1/m]
         density, gravity : of the water [kg/m³], [m/s²]
         """
+        from scipy.special import j1
+
         if self.follows:
             return np.full(omega.shape, FOLLOWING + 0j), np.full(omega.shape, FOLLOWING + 0j)
         if self.rao:

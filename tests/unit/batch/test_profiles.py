@@ -5,6 +5,7 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
+import calm
 from calm.batch import profiles
 from calm.batch.profiles import Profiles, solve_profiles
 from calm.batch.statuses import STATUSES
@@ -175,3 +176,19 @@ def test_shapes_that_do_not_fit_are_refused(
     u, v, depth = (np.ones(shape) for shape in shapes)
     with pytest.raises(ValueError, match=message):
         solve_profiles(subsurface, u, v, depth)
+
+
+def test_a_dataset_has_labels_and_units(subsurface: Mooring) -> None:
+    depth, u, v, _ = drawn(5, 6, subsurface.water.depth)
+    found = solve_profiles(subsurface, u, v, depth)
+    dataset = found.to_xarray()
+    top = dataset.depth_top.sel(component=found.component_label[0])
+    assert np.array_equal(top, found.depth_top[:, 0], equal_nan=True)
+    assert (top.dims, top.attrs["units"]) == (("profile",), "m")
+    assert dataset.clamp_tension.dims == ("profile", "clamp")
+    assert dataset.tension_top.attrs["units"] == "N"
+    assert dataset.status.attrs["flag_meanings"].split()[0] == STATUSES[0]
+    square = solve_profiles(subsurface, u.reshape(2, 3, -1), v.reshape(2, 3, -1), depth).to_xarray()
+    assert square.tilt.dims == ("profile_0", "profile_1", "component")
+    one = calm.load(shipped_folder("lines") / "s1000.yaml").solve()
+    assert float(one.to_xarray().top_depth) == one.top.depth

@@ -8,9 +8,9 @@ import pytest
 
 from calm.errors import InputError
 from calm.exchange.list_cells import read_sheets
-from calm.locate.ranges import read_ranges, read_sound
 from calm.motion.measurements import read_currents
 from calm.motion.sensors import depth_of, read_sea_level, read_sensors
+from calm.ranging.ranges import read_ranges, read_sound
 from calm.records.current_file import open_record, read_current_file
 from calm.records.current_terms import Terms
 from calm.records.delimited import copied_table

@@ -18,7 +18,10 @@ import numpy as np
 from calm.errors import UsageError
 from calm.files import MooringFile, read_mooring
 from calm.files.editing import Draft, EditError, WorkingFile
-from calm.locate.range_model import (
+from calm.physics.line import Booleans, Floats
+from calm.positions import Frame, read_as_minutes
+from calm.quantities import bearing_of, bearing_text
+from calm.ranging.range_model import (
     FLOOR,
     RangeModel,
     another_place,
@@ -26,10 +29,7 @@ from calm.locate.range_model import (
     fitted,
     geometry_warnings,
 )
-from calm.locate.ranges import Sound, Survey
-from calm.physics.line import Booleans, Floats
-from calm.positions import Frame, read_as_minutes
-from calm.quantities import bearing_of, bearing_text
+from calm.ranging.ranges import Sound, Survey, read_ranges
 
 CONFIDENCE = 0.95
 MISSED = 0.25
@@ -134,8 +134,8 @@ def _known(value: float) -> float | None:
 
 
 def locate(
-    survey: Survey,
-    sound: Sound,
+    survey: Survey | str | Path,
+    sound: Sound | float = 1500.0,
     depth: float | None = None,
     near: tuple[float, float] | None = None,
 ) -> Located:
@@ -143,17 +143,22 @@ def locate(
 
     Parameters
     ----------
-    sound : its speed, for times
+    survey : ranges as read, or their file, by a transducer at the surface
+    sound : its speed, for times: by depth, or one for all depths [m/s]
     depth : of what answers [m], where it is known; else it is found too
     near : latitude and longitude [degrees] of about where it was dropped: of two places that fit
         alike the nearer is taken
 
     Raises
     ------
+    InputError
+        The file holds no ranges.
     UsageError
         Fewer ranges than unknowns, a depth that no range reaches, ranges that meet nowhere, or
         ranges along the horizontal.
     """
+    survey = survey if isinstance(survey, Survey) else read_ranges(Path(survey))
+    sound = sound if isinstance(sound, Sound) else Sound.constant(sound)
     unknowns = 2 if depth is not None else 3
     count = len(survey.line)
     if count < unknowns:

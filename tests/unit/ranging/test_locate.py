@@ -7,9 +7,11 @@ import numpy as np
 import pytest
 from scipy.stats import t as student
 
+import calm
 from calm.errors import UsageError
-from calm.locate import Sound, Survey, locate
-from calm.locate.range_model import (
+from calm.positions import FLATTENING, SEMI_MAJOR, Frame
+from calm.ranging import Sound, Survey, locate
+from calm.ranging.range_model import (
     BY_CHANCE,
     FLOOR,
     RangeModel,
@@ -18,7 +20,6 @@ from calm.locate.range_model import (
     mirrored,
     scatter,
 )
-from calm.positions import FLATTENING, SEMI_MAJOR, Frame
 
 LATITUDE, LONGITUDE, DEPTH, TRANSDUCER = 48.3, -5.2, 2000.0, 5.0
 HERE = Frame(LATITUDE, LONGITUDE)
@@ -55,6 +56,19 @@ def test_exact_ranges_give_the_place():
     assert located.depth == pytest.approx(DEPTH, abs=1e-3)
     assert located.used.all()
     assert located.warnings == ()
+
+
+def test_from_a_file(tmp_path):
+    known = survey(ROUND, 1500.0)
+    rows = zip(known.latitude, known.longitude, known.measured, strict=True)
+    text = "latitude,longitude,range[m]\n" + "".join(
+        f"{latitude:.8f},{longitude:.8f},{measured:.4f}\n" for latitude, longitude, measured in rows
+    )
+    (tmp_path / "r.csv").write_text(text)
+    located = calm.ranging(tmp_path / "r.csv", 1500.0)
+    # the transducer lies 5 m deep, which a file does not tell: that moves the depth alone
+    assert np.linalg.norm(missed(located)) < 0.1
+    assert located.depth == pytest.approx(DEPTH - TRANSDUCER, abs=0.1)
 
 
 def test_two_way_times_and_a_profile():

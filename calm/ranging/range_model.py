@@ -15,9 +15,9 @@ from math import sqrt
 import numpy as np
 
 from calm.errors import UsageError
-from calm.locate.ranges import Sound, Survey
 from calm.physics.line import Booleans, Floats
 from calm.positions import Frame
+from calm.ranging.ranges import Sound, Survey
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,249 @@
+"""`calm run` of nets of legs, their mistakes, and the other commands, which refuse them."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from calm.case.net import load_net
+from calm.cli.main import main
+from calm.errors import InputError
+
+NET = """\
+name: Two floats and a pennant
+environment:
+  depth: 500 m
+  current: {speed: 0.4 m/s, toward: 90 deg}
+legs:
+  main:
+    line:
+      - {use: sphere-steel-1250, label: main float}
+      - {use: wire-jacketed-8, length: 150 m, clamps: [{use: sbe37, at: 20 m}]}
+    bottom: {join: A}
+  second:
+    line:
+      - {use: glass-17in, count: 4}
+      - {use: wire-jacketed-8, length: 60 m}
+    bottom: {join: A}
+  pennant:
+    line:
+      - {use: wire-jacketed-8, length: 10 m, clamps: [{use: sbe37, at: 2 m}]}
+      - {use: rcm11}
+    top: {join: A}
+    bottom: free
+  stem:
+    line:
+      - {use: release-ar861}
+      - {use: wire-jacketed-8, length: 200 m}
+      - {use: anchor-wheels-4}
+    top: {join: A}
+"""
+
+
+def run(*arguments: str | Path) -> int:
+    return int(main([str(each) for each in arguments]))
+
+
+@pytest.fixture
+def net(tmp_path: Path) -> Path:
+    file = tmp_path / "net.yaml"
+    file.write_text(NET)
+    return file
+
+
+def document(file: Path, capsys: pytest.CaptureFixture[str]) -> dict[str, Any]:
+    assert run("run", file, "--json", "-") == 0
+    found: dict[str, Any] = json.loads(capsys.readouterr().out)
+    return found
+
+
+def test_the_table_goes_leg_by_leg(net: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run("run", net) == 0
+    said = capsys.readouterr().out
+    for leg in (
+        "main: free end to node A",
+        "pennant: node A to free end",
+        "stem: node A to anchor",
+    ):
+        assert leg in said
+    assert "Converged" in said
+    assert "nodes in balance" in said
+    assert max(map(len, said.splitlines())) <= 80
+
+
+def test_json_has_the_legs(net: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    found = document(net, capsys)
+    assert (found["type"], found["status"]) == ("net", "converged")
+    by_leg = {row["label"]: row["leg"] for row in (*found["components"], *found["clamps"])}
+    assert by_leg["main float"] == by_leg["sbe37 1"] == "main"
+    assert by_leg["rcm11"] == by_leg["sbe37 2"] == "pennant"
+    (node,) = found["nodes"]
+    ends = [
+        (row["depth_top"], row["x_top"]) for row in found["components"]
+        if row["label"] in ("wire-jacketed-8 3", "release-ar861")
+    ]  # fmt: skip
+    for depth, east in ends:  # both begin at the node
+        assert depth == pytest.approx(node["depth"], abs=1e-6)
+        assert east == pytest.approx(node["x"], abs=1e-6)
+    (anchor,) = found["anchors"]
+    assert anchor == found["anchor"]
+    assert (anchor["leg"], anchor["x"], anchor["y"]) == ("stem", 0.0, 0.0)
+    assert [leg["name"] for leg in found["legs"]] == ["main", "second", "pennant", "stem"]
+
+
+def test_the_anchor_bears_all_that_floats_and_hangs(
+    net: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Vertically the net is a sum of net forces, wherever it stands: currents are level here."""
+    found = document(net, capsys)
+    total = 0.0
+    case = load_net(net)
+    for leg in case.legs:
+        total += float(leg.line.total_buoyancy.sum())
+    # what drag lifts and presses is some newtons of the seven thousand
+    assert found["anchors"][0]["vertical"] == pytest.approx(total, rel=0.01)
+
+
+def test_an_instrument_that_hangs_is_below_the_node(
+    net: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    found = document(net, capsys)
+    clamp = next(row for row in found["clamps"] if row["label"] == "sbe37 2")
+    assert clamp["depth"] == pytest.approx(found["nodes"][0]["depth"] + 2.0, abs=0.05)
+    meter = next(row for row in found["components"] if row["label"] == "rcm11")
+    assert meter["depth_top"] == pytest.approx(found["nodes"][0]["depth"] + 10.0, abs=0.2)
+    assert all(-1.0 < row["knockdown"] < 5.0 for row in found["components"])
+
+
+def test_in_still_water_nothing_is_knocked_down(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "still.yaml"
+    file.write_text(NET.replace("0.4 m/s", "0 m/s"))
+    found = document(file, capsys)
+    assert [row["knockdown"] for row in found["components"]] == pytest.approx(
+        [0.0] * len(found["components"]), abs=1e-9
+    )
+    # straight up: 199.3 m of stem and the release above an anchor of 0.7 m, a little stretched
+    assert found["nodes"][0]["depth"] == pytest.approx(500.0 - 0.7 - 200.0 - 0.83, abs=1.5)
+
+
+@pytest.mark.parametrize("command", ["check", "size", "waves", "deck", "diff", "export"])
+def test_other_commands_say_which_one_solves_nets(
+    command: str, net: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    more: dict[str, list[str | Path]] = {
+        "size": ["--target", "top.depth=100 m", "--change", "main float.buoyancy"],
+        "waves": ["--hs", "2 m", "--tp", "8 s"],
+        "deck": ["-o", tmp_path / "deck"],
+        "diff": [net],
+        "export": ["--to", "csv", "-o", tmp_path / "out.csv"],
+    }
+    assert run(command, net, *more.get(command, [])) == 2
+    told = capsys.readouterr().err
+    assert f"{net}:5:1" in told
+    assert "`calm run` solves it" in told
+    assert not (tmp_path / "out.csv").exists()
+
+
+@pytest.mark.parametrize(
+    "option", ["--explain", "--schematic", "--plot", "--html", "--uncertainty"]
+)
+def test_options_for_single_lines_are_refused(
+    option: str, net: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    endings = {"--plot": "a.png", "--html": "a.html"}
+    value = [tmp_path / endings[option]] if option in endings else []
+    assert run("run", net, option, *value) == 2
+    assert f"{option} is for single lines" in capsys.readouterr().err
+    assert not list(tmp_path.glob("a.*"))
+
+
+def test_an_anchor_that_is_lifted_is_no_result(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "light.yaml"
+    file.write_text(NET.replace("anchor-wheels-4", "anchor-wheels-1"))
+    assert run("run", file) == 3
+    assert "anchor-lifts: Leg stem pulls up" in capsys.readouterr().err
+
+
+MISTAKES = {
+    "bottom: {join: A}\n  second": ("bottom: {join: B}\n  second", "no other leg joins at `B`"),
+    "top: {join: A}\n    bottom: free": ("bottom: free", "both ends are free"),
+    "bottom: free": ("bottom: fre", "must be `free`, or one of"),
+    "top: {join: A}\n    bottom": ("top: {join: A, held: {depth: 1 m}}\n    bottom", "give one of"),
+    "      - {use: anchor-wheels-4}\n": ("", "`bottom` is missing"),
+    "      - {use: release-ar861}\n": (
+        "      - {use: anchor-wheels-1}\n", "is not the last item of its leg"),
+    "length: 60 m": ("length: fit, top_depth: 100 m", "cannot be cut to fit"),
+    "legs:\n": ("nodes: {A: {}, X: {}}\nlegs:\n", "no leg joins at node `X`"),
+    "name: Two floats and a pennant\n": (
+        "line: [{use: anchor-wheels-1}]\n", "`line` and `legs` in one file"),
+    "  pennant:\n    line:": ("  pennant:\n    lin:", "did you mean `line`?"),
+    "top: {join: A}\n    bottom: fr": (
+        "top: {held: {depth: 600 m}}\n    bottom: fr", "not above the seabed, 500 m deep"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("place", MISTAKES)
+def test_mistakes_have_their_place(place: str, tmp_path: Path) -> None:
+    right, expected = MISTAKES[place]
+    assert place in NET
+    with pytest.raises(InputError) as refused:
+        load_net(tmp_path / "bad.yaml", text=NET.replace(place, right, 1))
+    told = [str(problem) for problem in refused.value.problems]
+    hits = [each for each in told if expected in each]
+    assert len(hits) == 1, told
+    assert re.search(r"bad\.yaml:\d+:\d+: ", hits[0])
+
+
+def test_all_mistakes_come_at_once(tmp_path: Path) -> None:
+    text = NET.replace("glass-17in", "glas-17in").replace("length: 10 m", "length: 10")
+    text = text.replace("bottom: {join: A}\n  second", "bottom: {join: B}\n  second")
+    with pytest.raises(InputError) as refused:
+        load_net(tmp_path / "bad.yaml", text=text)
+    assert len(refused.value.problems) == 3
+
+
+def test_what_nothing_holds_is_refused(tmp_path: Path) -> None:
+    loose = NET[: NET.index("  stem:")]
+    with pytest.raises(InputError, match="nothing holds leg `main`"):
+        load_net(tmp_path / "loose.yaml", text=loose)
+
+
+def test_ends_that_are_held_bear_what_pulls_them(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A wire between a pier and a second anchor, and a string that hangs from a ship."""
+    file = tmp_path / "held.yaml"
+    file.write_text("""\
+environment: {depth: 100 m}
+legs:
+  hang:
+    line: [{use: wire-jacketed-8, length: 20 m}, {use: rcm11}]
+    top: {held: {depth: 3 m, at: [5 m, -2 m]}}
+    bottom: free
+  span:
+    line: [{use: wire-jacketed-8, length: 120 m}, {use: anchor-wheels-4}]
+    top: {held: {depth: 3 m}}
+    bottom: {anchor: {at: [60 m, 0 m], depth: 95 m}}
+""")
+    found = document(file, capsys)
+    hang, span = found["held"]
+    case = load_net(file)
+    weight = -float(case.legs[0].line.total_buoyancy.sum())
+    assert hang["vertical"] == pytest.approx(-weight, rel=1e-9)
+    assert hang["horizontal"] == pytest.approx(0.0, abs=1e-6)
+    assert (hang["x"], hang["y"], hang["depth"]) == pytest.approx((5.0, -2.0, 3.0))
+    weight = -float(case.legs[1].line.total_buoyancy.sum())
+    (anchor,) = found["anchors"]
+    # in still water the pulls at both ends bear the weight between them, less what lies on the bed
+    lying = weight * anchor["grounded_length"] / 120.0
+    assert span["vertical"] + anchor["vertical"] == pytest.approx(lying - weight, rel=1e-6)
+    assert span["horizontal"] == pytest.approx(anchor["horizontal"], rel=1e-6)
+    assert "anchor" in found
