@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
+from calm.case import Mooring
 from calm.checks.criterion import Citing
 from calm.checks.finding import State, Verdict, at_least, at_most, rule, unknown
 from calm.checks.posture import reaches_the_surface
@@ -14,9 +14,6 @@ from calm.errors import UsageError
 from calm.quantities import say
 from calm.waves.analysis import WaveAnalysis, analyse
 from calm.waves.fatigue import YEAR
-
-if TYPE_CHECKING:
-    from calm.case import Mooring
 
 _HOW = "Give `waves:` in the environment: a design sea, and a scatter table for its life."
 

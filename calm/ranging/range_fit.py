@@ -254,12 +254,9 @@ def _nearer(
 def _second(model: RangeModel, x: Floats, other: Floats, used: Booleans) -> SecondPlace:
     latitude, longitude, _ = model.frame.position(model.place(other))
     freedom = int(used.sum()) - model.unknowns
-    return SecondPlace(
-        latitude,
-        longitude,
-        float(np.linalg.norm((other - x)[:2])),
-        _scatter(model.residuals(other)[used], freedom),
-    )
+    distance = float(np.linalg.norm((other - x)[:2]))
+    rms = _scatter(model.residuals(other)[used], freedom)
+    return SecondPlace(latitude, longitude, distance, rms)
 
 
 def _scatter(residuals: Floats, freedom: int) -> float:

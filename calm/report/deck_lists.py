@@ -4,19 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import groupby
-from typing import TYPE_CHECKING
 
-from calm.deck.cutting import LENGTH_ERROR
-from calm.deck.deck_items import label_of_run
+from calm.deck import Deck
+from calm.deck.cutting import LENGTH_ERROR, Mark
+from calm.deck.deck_items import DeckInstrument, DeckItem, Extreme, label_of_run
 from calm.deck.shipping import total_of
 from calm.quantities import QUANTITIES, say
 from calm.report.blocks import Block, Cell, Column, Note, Prose, ReportPart, Table, table_of
 from calm.report.sheet import figure_cell, quantity_column
-
-if TYPE_CHECKING:
-    from calm.deck import Deck
-    from calm.deck.cutting import Mark
-    from calm.deck.deck_items import DeckInstrument, DeckItem, Extreme
 
 _SHARE = f"{LENGTH_ERROR:.1%}".replace("%", " %")
 _SPARES = (

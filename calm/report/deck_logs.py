@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
-from calm.deck.deck_items import Order, rows_on_paper
+from calm.deck import Deck
+from calm.deck.deck_items import DeckItem, DeckRow, Order, RecoveredItem, rows_on_paper
 from calm.drop import DropPlan
 from calm.quantities import QUANTITIES, say
 from calm.report.blocks import Block, Cell, Column, Pairs, Prose, ReportPart, Table, table_of
 from calm.report.drop_sheet import whereabouts
 from calm.report.provenance import position_text
-
-if TYPE_CHECKING:
-    from calm.deck import Deck
-    from calm.deck.deck_items import DeckItem, DeckRow, RecoveredItem
 
 _BOX = Cell("☐")
 _BLANK = Cell("\u00a0", "\u00a0")

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
+from calm.deck import Deck
 from calm.drawing.schematic.pen import FAINT, INK, SOFT, Pen, text_width, wrapped
 from calm.drawing.schematic.shown_parts import one_line
 from calm.drawing.schematic.sign import LINES, Sign, Symbol
@@ -37,9 +37,6 @@ from calm.report.diagram_layout import (
     entries_of,
 )
 from calm.report.provenance import title_pairs
-
-if TYPE_CHECKING:
-    from calm.deck import Deck
 
 _FONTS = "'DejaVu Sans', Helvetica, Arial, 'Liberation Sans', sans-serif"
 _TITLE = 13.0

@@ -6,19 +6,15 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from itertools import count, groupby
-from typing import TYPE_CHECKING
 
-from calm.deck.deck_items import rows_on_paper
+from calm.deck import Deck
+from calm.deck.deck_items import DeckItem, DeckRow, rows_on_paper
 from calm.drawing.schematic.pen import text_width, wrapped
 from calm.drawing.schematic.shown_parts import one_line, place_text
 from calm.drawing.schematic.sign import LINES, Sign, Symbol, sign_of
 from calm.drawing.schematic.symbols import figure_of
 from calm.files.file_differences import own_labels
 from calm.quantities import QUANTITIES
-
-if TYPE_CHECKING:
-    from calm.deck import Deck
-    from calm.deck.deck_items import DeckItem, DeckRow
 
 
 @dataclass(frozen=True)

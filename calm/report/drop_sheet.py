@@ -12,6 +12,8 @@ import numpy as np
 from calm.checks.finding import State
 from calm.deck.deck_items import label_of_run
 from calm.drawing.picture import figure_svg
+from calm.drop import DropPlan
+from calm.drop.fall_record import DepthReached
 from calm.drop.plan import DRAG_BAND
 from calm.quantities import QUANTITIES, bearing_text, duration, say
 from calm.report.blocks import (
@@ -33,8 +35,6 @@ from calm.units import KNOT
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from calm.drop import DropPlan
-    from calm.drop.fall_record import DepthReached
 
 _DRAG_BAND = f"{DRAG_BAND:g} times smaller or larger"
 _ROWS = 6

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from math import floor, hypot, log10
 from typing import TYPE_CHECKING
 
+from calm.case import Result
 from calm.checks.finding import State
 from calm.checks.inventory import inventory_of
 from calm.checks.recovery import recovery_of
@@ -22,7 +23,6 @@ from calm.report.check_summary import SIGNS
 from calm.units import with_unit
 
 if TYPE_CHECKING:
-    from calm.case import Result
     from calm.case.explain import Causes, Explanation
     from calm.case.size import Sizing, Trial
     from calm.case.targets import Figures

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from calm.case.net import LegResult, NetResult
 from calm.checks.finding import State
+from calm.files.legs import EndKeys
 from calm.quantities import say
 from calm.report.blocks import Cell, Column, Note, Prose, ReportPart, Table, table_of
 from calm.report.sheet import line_table, quantity_field
-
-if TYPE_CHECKING:
-    from calm.case.net import LegResult, NetResult
-    from calm.files.legs import EndKeys
 
 _COLUMNS = ("length", "depth", "x", "y", "knockdown", "tilt", "tension", "safety_factor")
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import isnan
-from typing import TYPE_CHECKING
 
 from calm.case import Result, TowResult
+from calm.case.uncertain import Uncertain
 from calm.checks.criterion import limits_used
 from calm.checks.finding import State
 from calm.checks.posture import reaches_the_surface
@@ -30,9 +30,6 @@ from calm.report.blocks import (
 from calm.report.check_summary import limits_table
 from calm.report.provenance import NOT_JUDGED, date, document_part, inputs_part
 from calm.report.sheet import sheet
-
-if TYPE_CHECKING:
-    from calm.case.uncertain import Uncertain
 
 
 def result_report(result: Result | TowResult, uncertain: Uncertain | None = None) -> Report:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from math import isnan
-from typing import TYPE_CHECKING
 
 from calm.checks.finding import State
 from calm.drawing.picture import figure_svg
@@ -22,11 +21,8 @@ from calm.report.blocks import (
     table_of,
 )
 from calm.report.provenance import date
-from calm.waves.analysis import SLACK
-
-if TYPE_CHECKING:
-    from calm.waves.analysis import MooringInSea, PieceInWaves, WaveAnalysis
-    from calm.waves.fatigue import PieceFatigue
+from calm.waves.analysis import SLACK, MooringInSea, PieceInWaves, WaveAnalysis
+from calm.waves.fatigue import PieceFatigue
 
 _NOTE = (
     "Tension at the upper end: mean, standard deviation, most probable greatest and least. "
