@@ -105,18 +105,6 @@ UNSEEN = (
 )
 """What is printed in every report."""
 
-IN_WAVES = (
-    UNSEEN[0]
-    .replace(
-        "waves and the tensions they cause; snap",
-        "waves where an environment gives no `waves:`, and linear tensions in them do not see snap",
-    )
-    .replace("fatigue, by waves and by vortices", "fatigue by vortices"),
-    UNSEEN[1].replace("static tension", "tension"),
-    UNSEEN[2],
-)
-"""The same where waves are judged."""
-
 UNJUDGED = (
     "waves", "snap loads", "fatigue", "creep, corrosion and wear",
     "the jerk and the swing of a launch", "hauling and lifts on recovery", *_BESIDE,
@@ -129,7 +117,14 @@ NOT_JUDGED = ReportPart("What is not judged", (Prose(UNSEEN, State.UNKNOWN),))
 
 def unseen(findings: Iterable[Finding]) -> tuple[str, ...]:
     """Return what is printed beside the findings of a design check."""
-    return IN_WAVES if any(each.rule == "wave-slack" for each in findings) else UNSEEN
+    if not any(each.rule == "wave-slack" for each in findings):
+        return UNSEEN
+    static, no_margin, beside = UNSEEN
+    waves = "waves where no `waves:` are given, and linear tensions in them do not see"
+    static = static.replace("waves and the tensions they cause;", waves).replace(
+        "by waves and ", ""
+    )
+    return static, no_margin.replace("static tension", "tension"), beside
 
 
 _MOST_LEVELS = 40
