@@ -56,7 +56,15 @@ from calm.report.check_tables import (
     results_table,
 )
 from calm.report.explanation import comparison_part
-from calm.report.provenance import NOT_JUDGED, UNJUDGED, date, history_part, inputs_part, unseen
+from calm.report.provenance import (
+    BY_WAVES,
+    NOT_JUDGED,
+    UNJUDGED,
+    date,
+    history_part,
+    inputs_part,
+    unseen,
+)
 from calm.report.result_files import members
 from calm.report.sheet import sheet
 
@@ -228,7 +236,7 @@ def check_document(assessments: Sequence[Assessment]) -> dict[str, Any]:
         "not_judged": [
             one
             for one in UNJUDGED
-            if one != "waves"
+            if one not in BY_WAVES
             or not all(
                 stand.mooring.file.environment.waves
                 for each in assessments

@@ -15,7 +15,8 @@ _COLUMNS = ("length", "depth", "x", "y", "knockdown", "tilt", "tension", "safety
 def net_part(result: NetResult) -> ReportPart:
     """A net in short: a table of the pieces leg by leg, its nodes, its anchors and held ends."""
     depth = say("depth", result.file.environment.depth)
-    title = f"{result.name}: net of {len(result.legs)} legs, {depth} of water"
+    count = len(result.legs)
+    title = f"{result.name}: net of {count} leg{'s' * (count != 1)}, {depth} of water"
     heads = {leg.first: Cell(_head(result, leg), strong=True) for leg in result.legs}
     table = line_table(result, _COLUMNS, "", heads=heads)
     note = Note((

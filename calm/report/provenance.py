@@ -105,8 +105,11 @@ UNSEEN = (
 )
 """What is printed in every report."""
 
+BY_WAVES = ("waves", "fatigue by waves")
+"""What is judged where environments give their `waves:`."""
+
 UNJUDGED = (
-    "waves", "snap loads", "fatigue", "creep, corrosion and wear",
+    *BY_WAVES, "snap loads", "fatigue by vortices", "creep, corrosion and wear",
     "the jerk and the swing of a launch", "hauling and lifts on recovery", *_BESIDE,
 )  # fmt: skip
 """What no rule judges, in the JSON of a check."""

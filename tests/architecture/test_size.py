@@ -6,7 +6,7 @@ from collections import Counter
 from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parents[2] / "calm"
-MOST_LINES = 84_633
+MOST_LINES = 84_645
 MOST_MODULES = 356
 MOST_IMPORTS = 0.105
 """Share of the lines of code that import something."""
