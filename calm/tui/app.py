@@ -126,7 +126,8 @@ class BuildApp(InTurn):
         if self.no_color:
             return [_COLOURLESS, *self._plain]
         theme = self.current_theme
-        return [*super().get_line_filters(), legible(theme.dark, theme.ansi), *self._plain]
+        own = legible(theme.dark, "ansi" in theme.name)
+        return [*super().get_line_filters(), own, *self._plain]
 
     def _display(self, screen: Screen[Any], renderable: RenderableType | None) -> None:
         """Send the terminal what it does not show yet, once it has shown what was sent before."""
