@@ -92,12 +92,15 @@ class NetResult:
     @cached_property
     def components(self) -> Components:
         """The pieces of the file, leg by leg."""
-        return _joined([leg.components for leg in self.legs], self.file.legs, self.file.pieces)
+        tables = [leg.components for leg in self.legs]
+        whole: Components = _joined(tables, self.file.legs, self.file.pieces)
+        return whole
 
     @cached_property
     def clamps(self) -> Clamps:
         """What is clamped on them."""
-        return _joined([leg.clamps for leg in self.legs], self.file.legs)
+        whole: Clamps = _joined([leg.clamps for leg in self.legs], self.file.legs)
+        return whole
 
     def to_dict(self) -> dict[str, Any]:
         """The JSON object of the result format; None stands where a figure is unknown."""

@@ -137,7 +137,7 @@ def elevation_of(
         )
     lines = [] if uncertain is None else [_band(uncertain)]
     lines += [from_the_side(shape, plane, LineKind.BESIDE) for shape in beside]
-    legs = lines_of(result)
+    legs = legs_of(result)
     still = [leg.still_shape for leg in legs if leg.still_shape is not None]
     for kind, shapes, label in (
         (LineKind.STILL, still, "in still water"),
@@ -165,6 +165,11 @@ def water_of(result: AnyResult) -> Water:
 
 def lines_of(result: AnyResult) -> Sequence[Result | TowResult]:
     """Return the lines of a result: the legs of a net, else the result itself."""
+    return (result,) if isinstance(result, TowResult) else legs_of(result)
+
+
+def legs_of(result: Result | NetResult) -> Sequence[Result]:
+    """Return the legs of a net; a mooring is one."""
     return result.legs if isinstance(result, NetResult) else (result,)
 
 
@@ -241,7 +246,7 @@ def levels_of(result: AnyResult) -> tuple[float, float]:
 
 def seabed_of(result: Result | NetResult) -> float:
     """Return the depth of the water, of a net at its deepest anchor [m]."""
-    return max(float(line.mooring.water.depth) for line in (result, *lines_of(result)))
+    return max(float(line.mooring.water.depth) for line in (result, *legs_of(result)))
 
 
 def along(x: Floats | float, y: Floats | float, plane: Floats) -> Floats:
