@@ -10,7 +10,9 @@ from pydantic import AfterValidator, Field, WithJsonSchema
 from calm.errors import Problem
 from calm.files.check_limits import Day
 from calm.files.definition import (
+    LENGTH,
     POSITIVE_LENGTH,
+    Length,
     Model,
     PositiveLength,
     QuantityField,
@@ -156,6 +158,49 @@ class LengthAt(Model):
 
     load: Annotated[float, LOAD] = described("that the cable was under", "2 kN")
     length: Annotated[float, POSITIVE_LENGTH] = described("as measured under `load`", "480 m")
+
+
+MOST_PIECES = 10_000
+"""Pieces a line may have, after assemblies and counts are expanded."""
+
+
+Label = Annotated[
+    Text, described("name of the piece in results; the id when there is none", "top float")
+]
+
+
+class ClampKeys(Equipment):
+    """An instrument fixed to a piece."""
+
+    use: str = described("id of a component of the catalogue or of `components`", "sbe37")
+    label: Label = ""
+    at: Annotated[float, LENGTH] = described(
+        "distance from the top of the piece, unstretched", "20 m"
+    )
+
+
+class ItemKeys(Equipment):
+    """A piece of the line; other fields override the component's."""
+
+    use: str = described("id of a component of the catalogue or of `components`", "wire-jacketed-8")
+    label: Label = ""
+    count: Annotated[int, Field(ge=1, le=MOST_PIECES)] = described(
+        "how many follow one another in the line", 6, default=1
+    )
+    length: Length = 0.0
+    length_at: LengthAt = described(
+        "a length measured under a load, e.g. {load: 2 kN, length: 480 m}",
+        {"load": "2 kN", "length": "480 m"},
+    )
+    top_depth: Annotated[float, LENGTH] = described(
+        "depth wanted in still water for the top of the line", "105 m"
+    )
+    body_depth: Annotated[float, LENGTH] = described(
+        "depth wanted in a tow for the lower end of this cable, at the tow's speed", "70 m"
+    )
+    clamps: tuple[ClampKeys, ...] = described(
+        "instruments fixed to this piece", [{"use": "sbe37", "at": "20 m"}]
+    )
 
 
 EQUIPMENT_KEYS = frozenset(Equipment.model_fields)
