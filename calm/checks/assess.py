@@ -37,6 +37,7 @@ from calm.checks.wave_rules import IN_WAVES, MooringInWaves
 from calm.drop.launch import launch_of
 from calm.errors import NoEquilibrium
 from calm.files import Clamp, MooringFile, Piece, Place
+from calm.files.mooring_file import STAND_IN
 from calm.files.rule_texts import RULES as TEXTS
 from calm.solve import expect_many
 
@@ -70,9 +71,20 @@ def stand_of(mooring: Mooring, name: str, day: date | None = None) -> MooringInE
     fails only as the cables strum is a warning: they may not.
     """
     environment = mooring.file.environment.name or OWN
-    situations = situations_of(mooring)
+    return judged_stand(situations_of(mooring), mooring, name, environment, day)
+
+
+def judged_stand(
+    situations: tuple[Situation, ...],
+    mooring: Mooring,
+    name: str,
+    environment: str,
+    day: date | None = None,
+) -> MooringInEnvironment:
+    """Judge a mooring, or a leg of a net, in the situations that it was solved in."""
     given, *changed = ([*findings_of(each, name, environment, day=day)] for each in situations)
-    given += _findings_in_waves(situations[0], name, environment, day)
+    if not mooring.file.legs:
+        given += _findings_in_waves(situations[0], name, environment, day)
     states = {_of(finding): finding.state.severity for finding in given}
     others = [_softened(finding) for findings in changed for finding in findings]
     graver = [each for each in others if each.state.severity > states.get(_of(each), -1)]
@@ -142,16 +154,16 @@ def findings_of(
     mooring: str,
     environment: str,
     *,
-    anchored: bool = True,
     day: date | None = None,
 ) -> Iterator[Finding]:
     """Return what the rules of a standing line find in one situation.
 
+    Of an anchor that is only a stand-in nothing is found, nor of the top of a leg that is held
+    there.
+
     Parameters
     ----------
     mooring, environment : their names in the findings
-    anchored : whether the last piece is an anchor; of one that only stands in for it, nothing is
-        found
     day : see `check`
     """
     if situation.failure is not None:
@@ -160,11 +172,21 @@ def findings_of(
     if situation.result is not None:
         file, result = situation.result.file, _estimated_result(situation.result)
         end, acceptance = file.pieces[-1].place, _acceptance(file, day)
+        anchored, left_out = file.pieces[-1].use != STAND_IN, _beside_a_leg(file)
         for rule in (each for each in STANDING if anchored or not each.of_anchor):
-            for verdict in rule.judge(result):
+            for verdict in rule.judge(result) if rule.name not in left_out else ():
                 if anchored or verdict.place != end:
                     finding = rule.find(verdict, mooring, environment, situation.name)
                     yield acceptance.of(finding)
+
+
+def _beside_a_leg(file: MooringFile) -> tuple[str, ...]:
+    """Return the rules of a whole line that say nothing of a leg with these ends."""
+    if not file.legs:
+        return ()
+    top, bottom = file.legs[0].ends
+    of_both_ends = () if top.free and bottom.anchor is not None else ("watch-circle", "scope")
+    return of_both_ends if top.free else (*of_both_ends, "top-depth", "knockdown", "excursion")
 
 
 def _findings_in_waves(
