@@ -97,9 +97,8 @@ def check(
     if tows:
         narrate(f"not checked, because they are tows: {', '.join(map(str, tows))}")
     nets = [design.path for design in designs if design.moorings[0].file.legs]
-    for option, asked in (("--uncertainty", uncertainty), ("--against", against)):
-        if nets and asked:
-            raise UsageError(f"{option} is for single lines; {nets[0]} is a net of legs")
+    if nets and uncertainty:
+        raise UsageError(f"--uncertainty is for single lines; {nets[0]} is a net of legs")
     show_units(units, [one.file for design in designs for one in design.moorings])
     judged = _judged(designs, workers, drawn, draws)
     assessments = [each.assessment for each in judged]

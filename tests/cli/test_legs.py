@@ -170,17 +170,11 @@ def test_check_judges_every_leg(
     assert "The launch and the recovery of a net of legs are not judged." in page
 
 
-@pytest.mark.parametrize("option", ["--uncertainty", "--against"])
-def test_check_refuses_of_nets_what_is_for_lines(
-    option: str, net: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+def test_check_refuses_to_count_samples_of_a_net(
+    net: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    line = tmp_path / "line.yaml"
-    line.write_text(
-        "environment: {depth: 99 m}\nline: [{use: glass-17in}, {use: anchor-wheels-1}]\n"
-    )
-    more = [line, "--report", tmp_path / "r"] if option == "--against" else []
-    assert run("check", net, option, *more) == 2
-    assert f"{option} is for single lines" in capsys.readouterr().err
+    assert run("check", net, "--uncertainty") == 2
+    assert "--uncertainty is for single lines" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("option", ["--explain", "--netcdf", "--uncertainty"])
