@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, field, fields, replace
+from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -267,7 +267,7 @@ def _result_of(net: Net, found: NetSolution, still: Sequence[Solution | None]) -
         components = components_of(above, solution, before)
         instruments = clamps_of(above, solution, before)
         solved.append((components, solution))
-        instruments = replace(instruments, index=instruments.index + leg.first)
+        instruments = instruments.with_columns(index=instruments.index + leg.first)
         for borne in _end_loads(net, leg, solution, components):
             (held if borne.weight is None else anchors).append(borne)
         if len(above) < len(pieces):
@@ -294,8 +294,8 @@ def _result_of(net: Net, found: NetSolution, still: Sequence[Solution | None]) -
         closure=max(leg.closure for leg in legs),
         accuracy=Accuracy(found.depth_error, found.tension_error),
         legs=tuple(legs),
-        components=joined(tables),
-        clamps=joined(clamps),
+        components=Components.joined(tables),
+        clamps=Clamps.joined(clamps),
         nodes=tuple(
             NodePlace(name, -float(at[2]), float(at[0]), float(at[1]), float(left))
             for name, at, left in zip(names, found.nodes, found.imbalance, strict=True)
@@ -304,16 +304,6 @@ def _result_of(net: Net, found: NetSolution, still: Sequence[Solution | None]) -
         held=tuple(held),
     )
     return replace(result, warnings=net_warnings_of(result, solved))
-
-
-def joined(tables: Sequence[Any]) -> Any:
-    """Tables one after another."""
-    columns = {}
-    for each in fields(tables[0]):
-        parts = [getattr(table, each.name) for table in tables]
-        whole = [row for part in parts for row in part]
-        columns[each.name] = whole if isinstance(parts[0], list) else np.concatenate(parts)
-    return type(tables[0])(**columns)
 
 
 def _end_loads(net: Net, leg: Leg, solution: Solution, components: Components) -> list[EndLoad]:
