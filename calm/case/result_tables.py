@@ -65,10 +65,7 @@ class ColumnTable(Generic[Row]):
     def __getitem__(self, row: int | str) -> Row:
         """Return a row by its number or its label, as a record with the columns' names.
 
-        Raises
-        ------
-        KeyError
-            No row has the label; the one most like it is named.
+        KeyError: no row has the label; the one most like it is named.
         """
         if isinstance(row, int):
             return self._records[row]

@@ -198,10 +198,8 @@ def _texts(deck: Deck) -> Iterator[tuple[str, str]]:
 def _folders(designs: Sequence[DesignFile], output: Path) -> list[Path]:
     """Where each mooring's sheets go.
 
-    Raises
-    ------
-    UsageError
-        Two moorings would have the same folder, or a file that is read stands where one goes.
+    UsageError: two moorings would have the same folder, or a file that is read stands where one
+    goes.
     """
     if len(designs) == 1:
         return [output]
