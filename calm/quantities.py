@@ -111,7 +111,10 @@ class Quantity:
         return f"{text}{space}{self.display_unit}"
 
 
-_USUAL = {"": 1.0, "°": 1.0, "mm": 1e3, "l": 1e3, "kN": 1e-3, "years": 1.0 / (365.25 * 86_400.0)}
+_USUAL = {
+    **{"": 1.0, "°": 1.0, "mm": 1e3, "l": 1e3, "kN": 1e-3, "knot": 1.0 / (1852 / 3600)},
+    "years": 1.0 / (365.25 * 86_400.0),
+}
 """How many of a unit that people usually read make one of that of results."""
 
 _TABLE = (
