@@ -12,6 +12,7 @@ from calm.drawing.line_picture import alike, together
 from calm.drawing.picture import printable
 from calm.drawing.schematic.sign import BALLS, LINES, Sign, Symbol, sign_of
 from calm.files import Place, Rigid
+from calm.files.mooring_file import STAND_IN
 from calm.quantities import QUANTITIES, say
 
 if TYPE_CHECKING:
@@ -110,17 +111,19 @@ def schematic_of(file: MooringFile, result: Result | TowResult | None = None) ->
     levels = levels_of(file, result)
     bottom = file.environment.depth
     cells = _Cells(bottom)
+    stands = file.pieces[-1].use != STAND_IN
+    pieces = file.pieces if stands else file.pieces[:-1]
     sea = TextRow("sea surface", "", cells.at(0.0))
     return Schematic(
         title=one_line(file.name),
         subtitle=_subtitle(file),
         note=levels.note,
         columns=cells.columns,
-        parts=tuple(_parts(file.pieces, cells, levels)),
+        parts=tuple(_parts(pieces, cells, levels)),
         surface=levels.surface,
         towed_by=_towed_by(file, cells),
         sea=sea if file.environment.fluid == "water" else None,
-        seabed=None if bottom is None else TextRow("seabed", "", cells.at(bottom)),
+        seabed=None if bottom is None or not stands else TextRow("seabed", "", cells.at(bottom)),
     )
 
 
@@ -186,9 +189,11 @@ def _part(run: list[Piece], cells: _Cells, levels: Levels) -> Iterator[ShownPart
     """Yield what is drawn of pieces that are alike, and what is clamped on a single one."""
     first, sign = run[0], _sign(run[0], levels)
     cable = sign.symbol if sign.symbol in LINES else None
-    length = levels.lengths[first.index]
+    start = first.index - levels.first.index
+    length = levels.lengths[start]
     rows = [
-        _row(each, cells.of(levels.lengths[each.index], levels.depths[each.index])) for each in run
+        _row(each, cells.of(levels.lengths[at], levels.depths[at]))
+        for at, each in enumerate(run, start)
     ]
     labels = tuple(row.label for row in rows)
     if sign.symbol is Symbol.RELEASE and len(run) == 2:
