@@ -6,16 +6,20 @@ import math
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 from pathlib import Path
 from typing import TypeVar
 
+import numpy as np
+
 from calm.errors import Problem
-from calm.physics.line import Floats
+from calm.physics.line import Booleans, Floats, Integers
 from calm.quantities import bearing_of
-from calm.records.current_terms import Terms, too_deep, too_fast
+from calm.records.current_terms import DEEPEST, Terms, too_deep, too_fast
+from calm.records.delimited import is_gap, plain_numbers
 from calm.records.headings import column_unit, heading, magnetic_columns
 from calm.suggestions import about_quantity, shown, unknown
-from calm.units import QuantityError, QuantityRange
+from calm.units import QuantityError, QuantityRange, unit_factor
 
 Report = Callable[[Sequence[str | int], str], Problem]
 """Makes a problem of a message, at ``("columns", j)`` or ``("rows", i, j)``."""
@@ -103,9 +107,39 @@ def read_current(
     rows : numbers, or quantities with a unit, as text
     terms : the declination that turns what is relative to magnetic north, the greatest speed
     """
+    found = read_currents(columns, rows, report, problems, terms)
+    if found is None:
+        return None
+    depth, u, v, w = (tuple(values.tolist()) for values in found.T)
+    return CurrentTable(depth, u, v, w)
+
+
+def read_currents(
+    columns: Sequence[str],
+    rows: Sequence[Sequence[str | None]],
+    report: Report,
+    problems: list[Problem],
+    terms: Terms,
+    profile: Integers | None = None,
+) -> Floats | None:
+    """Return (n, 4) depths [m] and u, v, w [m/s] of a table as that of `read_current`.
+
+    None, with its mistakes in `problems`, if it has any.
+
+    Parameters
+    ----------
+    columns, rows, report, problems, terms : as for `read_current`
+    profile : (n,) growing number of the profile of a record that a row is of, which may have gaps,
+        NaN then; None where all are of one
+    """
     before = len(problems)
     plain, turned = _from_magnetic_north(columns, terms, report, problems)
-    values = _read_columns(plain, rows, _CURRENT, report, problems)
+    gaps = np.zeros(len(rows), bool)
+    if profile is not None:
+        names = [heading(column)[0].lower() for column in plain]
+        current = [j for j, name in enumerate(names) if name != "depth"]
+        gaps |= [len(row) == len(names) and any(is_gap(row[j]) for j in current) for row in rows]
+    values = _read_columns(plain, rows, _CURRENT, report, problems, gaps)
     given = values.keys()
     if len(given) == len(columns):
         ways = [given & {"u", "v"}, given & {"speed", "toward", "from"}]
@@ -119,31 +153,28 @@ def read_current(
         ):
             message = "a current needs `u` and `v`, or `speed` and `toward`; the columns are "
             problems.append(report(("columns",), message + ", ".join(given)))
-    for i, speed in enumerate(values.get("speed", ())):
-        if speed < 0:
-            place = ("rows", i, list(values).index("speed"))
-            problems.append(report(place, f"`speed` {speed:g} m/s is negative; turn `toward`"))
-    _check_depths(values, report, problems)
+    speeds = values.get("speed", np.zeros(0))
+    for i in np.flatnonzero(speeds < 0.0).tolist():
+        place = ("rows", i, list(values).index("speed"))
+        problems.append(report(place, f"`speed` {speeds[i]:g} m/s is negative; turn `toward`"))
+    _check_depths(values, report, problems, np.flatnonzero(~gaps), profile)
     if len(problems) > before:
         return None
     if "u" in values:
-        flows = (
-            turned_by(turned, *flow) if turned else flow
-            for flow in zip(values["u"], values["v"], strict=True)
-        )
+        u, v = values["u"], values["v"]
+        if turned:
+            u, v = turned_by(turned, u, v)
     else:
         way, turn = ("from", 180.0 + turned) if "from" in values else ("toward", turned)
-        directions = [direction + turn for direction in values[way]]
-        flows = (components(*flow) for flow in zip(values["speed"], directions, strict=True))
-    u, v = map(list, zip(*flows, strict=True))
-    w = values.get("w", [0.0] * len(u))
-    for i, flow in enumerate(zip(u, v, w, strict=True)):
-        if reason := too_fast(*flow, terms.maximum_speed):
+        angle = np.radians(values[way] + turn)
+        u, v = speeds * np.sin(angle), speeds * np.cos(angle)
+    u, w = np.where(gaps, np.nan, u), values.get("w", np.zeros(len(u)))
+    fastest = np.hypot(np.hypot(u, v), w)
+    for i in np.flatnonzero((fastest > 0.999 * terms.maximum_speed) | np.isinf(fastest)).tolist():
+        if reason := too_fast(u[i], v[i], w[i], terms.maximum_speed):
             place = ("rows", i, list(values).index("u" if "u" in values else "speed"))
             problems.append(report(place, reason))
-    if len(problems) > before:
-        return None
-    return CurrentTable(tuple(values["depth"]), tuple(u), tuple(v), tuple(w))
+    return None if len(problems) > before else np.column_stack([values["depth"], u, v, w])
 
 
 def turned_notices(columns: Sequence[str], terms: Terms) -> tuple[str, ...]:
@@ -249,10 +280,11 @@ def _by_depth(
         elif len(alone) > 1 and given not in ({"density"}, {"temperature", "salinity"}):
             message = "needs `density`, or `temperature` and `salinity`; the columns are "
             problems.append(report(("columns",), f"a density {message}{', '.join(values)}"))
-    _check_depths(values, report, problems)
+    _check_depths(values, report, problems, np.arange(len(rows)))
     if len(problems) > before:
         return None
-    return {name: DepthTable(tuple(values["depth"]), tuple(values[name])) for name in given}
+    depth = tuple(values["depth"].tolist())
+    return {name: DepthTable(depth, tuple(values[name].tolist())) for name in given}
 
 
 def components(speed: float, toward: float) -> tuple[float, float]:
@@ -284,28 +316,56 @@ def _read_columns(
     known: Mapping[str, QuantityRange],
     report: Report,
     problems: list[Problem],
-) -> dict[str, list[float]]:
-    """Return the known columns by name, in SI, NaN where a value is wrong."""
+    gaps: Booleans | None = None,
+) -> dict[str, Floats]:
+    """Return the known columns by name, in SI, NaN where a value is wrong, or lacks in `gaps`."""
     units = _read_headings(columns, known, report, problems)
     if len(units) == len(columns) and "depth" not in units:
         problems.append(report(("columns",), "the table has no `depth` column"))
-    values: dict[str, list[float]] = {name: [] for name in units}
+    values = {name: np.full(len(rows), np.nan) for name in units}
     if not rows:
         problems.append(report(("rows",), "the table has no rows"))
+    whole = []
     for i, row in enumerate(rows):
-        for name in units:
-            values[name].append(math.nan)
-        if len(row) != len(columns):
-            hint = "; a decimal comma? (write 0.8, not 0,8)" if len(row) > len(columns) else ""
-            message = f"the row has {len(row)} values, {len(columns)} are needed{hint}"
-            problems.append(report(("rows", i), message))
-        elif len(units) == len(columns):
-            for j, (name, unit) in enumerate(units.items()):
-                try:
-                    values[name][i] = _read_cell(row[j], unit, known[name])
-                except QuantityError as error:
-                    problems.append(report(("rows", i, j), about_quantity(name, row[j], error)))
+        if len(row) == len(columns):
+            whole.append(i)
+            continue
+        hint = "; a decimal comma? (write 0.8, not 0,8)" if len(row) > len(columns) else ""
+        message = f"the row has {len(row)} values, {len(columns)} are needed{hint}"
+        problems.append(report(("rows", i), message))
+    if len(units) < len(columns):
+        return values
+    for j, (name, unit) in enumerate(units.items()):
+        cells = [rows[i][j] for i in whole]
+        if gaps is not None and gaps.any():
+            lacking = gaps[whole].tolist()
+            cells = [
+                "nan" if lacks and is_gap(cell) else cell
+                for cell, lacks in zip(cells, lacking, strict=True)
+            ]
+        together = _read_together(cells, unit, known[name], gaps is not None)
+        if together is not None:
+            values[name][whole] = together
+            continue
+        for i, cell in zip(whole, cells, strict=True):
+            try:
+                if gaps is None or not (gaps[i] and cell == "nan"):
+                    values[name][i] = _read_cell(cell, unit, known[name])
+            except QuantityError as error:
+                problems.append(report(("rows", i, j), about_quantity(name, cell, error)))
     return values
+
+
+def _read_together(
+    cells: Sequence[str | None], unit: str, quantity: QuantityRange, gaps: bool
+) -> Floats | None:
+    """Return a column in SI; None where a cell is no plain number, or beyond the limits."""
+    numbers = plain_numbers(cells) if unit else None
+    if numbers is None or (not gaps and np.isnan(numbers).any()):
+        return None
+    numbers = numbers * unit_factor(unit, quantity.dimension)
+    beyond = (numbers <= quantity.above) | (numbers < quantity.at_least)
+    return None if (beyond | (numbers > quantity.at_most)).any() else numbers
 
 
 def _read_headings(
@@ -348,26 +408,40 @@ def _read_cell(text: str | None, unit: str, quantity: QuantityRange) -> float:
 
 
 def _check_depths(
-    values: Mapping[str, list[float]], report: Report, problems: list[Problem]
+    values: Mapping[str, Floats],
+    report: Report,
+    problems: list[Problem],
+    rows: Integers,
+    profile: Integers | None = None,
 ) -> None:
-    """Depths must not be negative and must increase from row to row."""
+    """Depths must not be negative, and must increase from one of the rows of a profile to another.
+
+    Rows that are not among `rows` are not looked at.
+    """
     if "depth" not in values:
         return
     column = list(values).index("depth")
-    depths = values["depth"]
-    if len(depths) > 1 and all(depth <= 0 for depth in depths) and any(depths):
-        message = "the depths count upwards; depth is positive down, so leave the sign out"
-        first = next(i for i, depth in enumerate(depths) if depth < 0)
-        problems.append(report(("rows", first, column), message))
+    depths = values["depth"][rows]
+    ends = np.flatnonzero(np.diff(np.zeros(len(rows)) if profile is None else profile[rows])) + 1
+    inside = np.delete(np.diff(depths), ends - 1)
+    if ((depths >= 0.0) & (depths <= DEEPEST)).all() and (inside > 0.0).all():
         return
-    previous = -math.inf
-    for i, depth in enumerate(depths):
-        if depth < 0:
-            problems.append(report(("rows", i, column), f"depth {depth:g} m is above the surface"))
-        elif reason := too_deep(depth):
-            problems.append(report(("rows", i, column), reason))
-        elif depth <= previous:
-            word = "repeats" if depth == previous else "comes after"
-            message = f"depth {depth:g} m {word} {previous:g} m; depths must increase"
-            problems.append(report(("rows", i, column), message))
-        previous = depth
+    for start, stop in pairwise([0, *ends.tolist(), len(depths)]):
+        mine = depths[start:stop]
+        if len(mine) > 1 and (mine <= 0.0).all() and mine.any():
+            message = "the depths count upwards; depth is positive down, so leave the sign out"
+            first = int(rows[start + int(np.argmax(mine < 0.0))])
+            problems.append(report(("rows", first, column), message))
+            continue
+        previous = -math.inf
+        for i, depth in zip(rows[start:stop].tolist(), mine.tolist(), strict=True):
+            place = ("rows", i, column)
+            if depth < 0:
+                problems.append(report(place, f"depth {depth:g} m is above the surface"))
+            elif reason := too_deep(depth):
+                problems.append(report(place, reason))
+            elif depth <= previous:
+                word = "repeats" if depth == previous else "comes after"
+                message = f"depth {depth:g} m {word} {previous:g} m; depths must increase"
+                problems.append(report(place, message))
+            previous = depth
