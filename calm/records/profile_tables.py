@@ -135,10 +135,11 @@ def read_currents(
     before = len(problems)
     plain, turned = _from_magnetic_north(columns, terms, report, problems)
     gaps = np.zeros(len(rows), bool)
-    if profile is not None:
-        names = [heading(column)[0].lower() for column in plain]
-        current = [j for j, name in enumerate(names) if name != "depth"]
-        gaps |= [len(row) == len(names) and any(is_gap(row[j]) for j in current) for row in rows]
+    for j, column in enumerate(plain):
+        if profile is not None and heading(column)[0].lower() != "depth":
+            cells = [row[j] if len(row) == len(plain) else "" for row in rows]
+            blank = {cell for cell in set(cells) if is_gap(cell)}
+            gaps |= [cell in blank for cell in cells] if blank else False
     values = _read_columns(plain, rows, _CURRENT, report, problems, gaps)
     given = values.keys()
     if len(given) == len(columns):
@@ -168,7 +169,8 @@ def read_currents(
         way, turn = ("from", 180.0 + turned) if "from" in values else ("toward", turned)
         angle = np.radians(values[way] + turn)
         u, v = speeds * np.sin(angle), speeds * np.cos(angle)
-    u, w = np.where(gaps, np.nan, u), values.get("w", np.zeros(len(u)))
+    w = values.get("w", np.zeros(len(u)))
+    u = np.where(np.isnan(w), np.nan, u)
     fastest = np.hypot(np.hypot(u, v), w)
     for i in np.flatnonzero((fastest > 0.999 * terms.maximum_speed) | np.isinf(fastest)).tolist():
         if reason := too_fast(u[i], v[i], w[i], terms.maximum_speed):

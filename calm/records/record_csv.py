@@ -225,7 +225,7 @@ class CurrentHeader:
             return Problem(str(self.path), row.number, column, message)
 
         before = len(problems)
-        for row in rows:
+        for row in rows if self.row.dialect.decimal == "," else ():
             problems += row.mixed_decimals(self.path)
         cells = [[cell or None for cell in row.cells[first:]] for row in rows]
         found = read_currents(self.columns, cells, report, problems, terms, profile)
