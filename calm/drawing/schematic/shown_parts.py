@@ -12,6 +12,7 @@ from calm.drawing.line_picture import alike, together
 from calm.drawing.picture import printable
 from calm.drawing.schematic.sign import BALLS, Sign, Symbol, sign_of
 from calm.files import Place, Rigid
+from calm.files.mooring_file import STAND_IN
 from calm.quantities import QUANTITIES, say
 
 if TYPE_CHECKING:
@@ -117,18 +118,20 @@ def schematic_of(file: MooringFile, result: Result | TowResult | None = None) ->
     bottom = file.environment.depth
     cells = _Cells(bottom)
     pieces = list(zip(file.pieces, levels.lengths, levels.depths, strict=True))
-    parts = [_part(cells, levels, *piece) for piece in pieces]
+    stands = file.pieces[-1].use != STAND_IN
+    shown = file.pieces if stands else file.pieces[:-1]
+    parts = [_part(cells, levels, *piece) for piece in pieces[: len(shown)]]
     sea = TextRow("sea surface", "", cells.at(0.0))
     return Schematic(
         title=one_line(file.name),
         subtitle=_subtitle(file),
         note=levels.note,
         columns=cells.columns,
-        parts=tuple(_joined(parts, file.pieces)),
+        parts=tuple(_joined(parts, shown)),
         surface=levels.surface,
         towed_by=_towed_by(file, cells),
         sea=sea if file.environment.fluid == "water" else None,
-        seabed=None if bottom is None else TextRow("seabed", "", cells.at(bottom)),
+        seabed=None if bottom is None or not stands else TextRow("seabed", "", cells.at(bottom)),
     )
 
 
