@@ -91,6 +91,10 @@ class ColumnTable(Generic[Row]):
         """Return the same table with other columns in place of some of its own."""
         return type(self)(**{**self.__getstate__(), **columns})
 
+    def head(self, count: int) -> Self:
+        """Return the first rows."""
+        return type(self)(**{name: part[:count] for name, part in self.__getstate__().items()})
+
     def with_row(self, row: Row) -> Self:
         """Return the same table with one more row."""
         last = {name: [getattr(row, name)] for name in self.names()}

@@ -216,7 +216,7 @@ def mooring_of(file: Path, environment: str | None, catalogs: list[Path], comman
 
 
 def check_output(output: Path, *inputs: Path) -> None:
-    """Refuse a result that could not be written, or would take the place of what it is made from."""
+    """Refuse a result that cannot be written, or would take the place of what it is made from."""
     # unlike `Path.resolve`, it takes links that lead round in a circle
     place = os.path.realpath(output)
     if output.is_symlink() and not output.exists():

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
+from calm.cli.streams import narrate
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
@@ -67,7 +68,10 @@ def show_units(given: str | None, files: Iterable[MooringFile] = ()) -> None:
 
     if given is None:
         asked = [file.units for file in files]
-        show_in(asked[0] if asked and all(one == asked[0] for one in asked) else {})
+        alike = all(one == asked[0] for one in asked)
+        if not alike:
+            narrate("the files ask for different units; SI is shown: choose with --units")
+        show_in(asked[0] if asked and alike else {})
         return
     chosen: dict[str, str] = {}
     for part in given.split(","):

@@ -29,6 +29,10 @@ if TYPE_CHECKING:
     from calm.files.legs import Leg
 
 
+STAND_IN = ""
+"""Id of what holds a line whose anchor is yet to be chosen, or a leg that has none."""
+
+
 class TowKeys(Model):
     """What tows the line: speed over ground [m/s], where to [degrees], height above water [m]."""
 
@@ -257,6 +261,12 @@ class MooringFile:
         anchor = self.pieces[-1].component
         assert isinstance(anchor, Anchor)
         return anchor
+
+
+def stand_in_anchor(index: int, item: int) -> Piece:
+    """Return an anchor without height that holds anything, of an id like no other."""
+    component = Anchor.model_validate({"kind": "anchor", "weight": "1e6 kN"})
+    return Piece(index, STAND_IN, "anchor", component, 0.0, None, (), 0, 0, Place(item))
 
 
 def placed(piece: Piece, place: Place) -> Piece:

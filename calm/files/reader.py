@@ -24,11 +24,11 @@ from calm.files.mooring_file import (
     MooringFile,
     OutputUnits,
     Piece,
-    Place,
     Solver,
     TowKeys,
     labels_of,
     numbered,
+    stand_in_anchor,
     travelling,
     unknown_releases,
 )
@@ -36,9 +36,6 @@ from calm.files.uncertainty import Uncertainty
 from calm.files.yaml_document import SourceMapping, compose, read_document, validate
 from calm.suggestions import unknown
 from calm.units import QuantityError
-
-STAND_IN = ""
-"""Id of what holds a line whose anchor is yet to be chosen."""
 
 
 def _given(value: object) -> object:
@@ -157,7 +154,7 @@ def read_mooring(
     pieces = reader.read(top, "line") if isinstance(top.data.get("line"), list) else ()
     line_is_whole = bool(pieces) and len(problems) == before
     if stand_in and not towed and pieces and not _anchored(pieces):
-        pieces = (*pieces, _stand_in(len(top.data["line"])))
+        pieces = (*pieces, stand_in_anchor(0, len(top.data["line"])))
     if legged:
         legs, pieces = read_legs(top, reader, problems)
     else:
@@ -213,12 +210,6 @@ def _keys_of(
         ours = {key: value for key, value in top.data.items() if key not in ("legs", "nodes")}
         top = SourceMapping.of(top.document, top.location, {"line": ["legs"], **ours})
     return validate(MooringKeys, top, problems, context=context)
-
-
-def _stand_in(item: int) -> Piece:
-    """Return an anchor without height that holds anything, as an item below the last."""
-    component = Anchor.model_validate({"kind": "anchor", "weight": "1e6 kN"})
-    return Piece(0, STAND_IN, "anchor", component, 0.0, None, (), 0, 0, Place(item))
 
 
 def _child(section: SourceMapping, key: str) -> SourceMapping | None:
