@@ -30,9 +30,16 @@ from calm.checks.criterion import limits_used
 from calm.checks.finding import AS_GIVEN, OWN, Finding, Rule, State, Verdict, rule, verdict_on
 from calm.checks.handling import Handling
 from calm.checks.inventory import inventory_of
-from calm.checks.posture import reaches_the_surface
+from calm.checks.posture import left_out_of_a_leg, reaches_the_surface
 from calm.checks.recovery import breaks_of, losses_of, recovery_of
-from calm.checks.situations import LEAST_CURRENT, SOLVES, STRUMMING, currents, situations_of
+from calm.checks.situations import (
+    LEAST_CURRENT,
+    SOLVES,
+    STILL_ONLY,
+    STRUMMING,
+    currents,
+    situations_of,
+)
 from calm.checks.wave_rules import IN_WAVES, MooringInWaves
 from calm.drop.launch import launch_of
 from calm.errors import NoEquilibrium
@@ -172,21 +179,12 @@ def findings_of(
     if situation.result is not None:
         file, result = situation.result.file, _estimated_result(situation.result)
         end, acceptance = file.pieces[-1].place, _acceptance(file, day)
-        anchored, left_out = file.pieces[-1].use != STAND_IN, _beside_a_leg(file)
+        anchored, left_out = file.pieces[-1].use != STAND_IN, left_out_of_a_leg(file)
         for rule in (each for each in STANDING if anchored or not each.of_anchor):
             for verdict in rule.judge(result) if rule.name not in left_out else ():
                 if anchored or verdict.place != end:
                     finding = rule.find(verdict, mooring, environment, situation.name)
                     yield acceptance.of(finding)
-
-
-def _beside_a_leg(file: MooringFile) -> tuple[str, ...]:
-    """Return the rules of a whole line that say nothing of a leg with these ends."""
-    if not file.legs:
-        return ()
-    top, bottom = file.legs[0].ends
-    of_both_ends = () if top.free and bottom.anchor is not None else ("watch-circle", "scope")
-    return of_both_ends if top.free else (*of_both_ends, "top-depth", "knockdown", "excursion")
 
 
 def _findings_in_waves(
@@ -280,15 +278,6 @@ def equilibrium(failure: NoEquilibrium) -> Iterator[Verdict]:
     message = f"{failure.status}: {failure.message}"
     yield verdict_on(None, State.FAIL, message, failure.advice)
 
-
-STILL_ONLY = verdict_on(
-    None,
-    State.WARN,
-    "No environment has a current of 1 cm/s: what tilts, is knocked down and pulls in one is not "
-    "judged.",
-    "Give the current, or an environment that has one.",
-)
-"""What `equilibrium` says of a mooring without a current to speak of."""
 
 _ORDER = list(TEXTS)
 

@@ -21,7 +21,7 @@ from calm.checks.arrangement import (
     release_present,
     swivel,
 )
-from calm.checks.assess import STILL_ONLY, equilibrium, failed_stand, judged_stand
+from calm.checks.assess import equilibrium, failed_stand, judged_stand
 from calm.checks.assessment import Acceptance, Assessment, MooringInEnvironment, Situation
 from calm.checks.catalogue_rules import figures
 from calm.checks.criterion import limits_used
@@ -33,6 +33,7 @@ from calm.checks.recovery import Break, Loss, losses_among, required_margin
 from calm.checks.situations import (
     FOULED,
     LEAST_CURRENT,
+    STILL_ONLY,
     STRUMMING,
     currents,
     in_other_waters,

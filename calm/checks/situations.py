@@ -259,6 +259,15 @@ def _numbered(part: _Part, items: dict[str, DeployedItem]) -> _Part:
 LEAST_CURRENT = 0.01
 """Speed below which a current counts as none [m/s]."""
 
+STILL_ONLY = verdict_on(
+    None,
+    State.WARN,
+    "No environment has a current of 1 cm/s: what tilts, is knocked down and pulls in one is not "
+    "judged.",
+    "Give the current, or an environment that has one.",
+)
+"""What `equilibrium` says of a mooring without a current to speak of."""
+
 USUAL_CURRENT = 0.2
 """What a wind of 7 m/s alone drives at the surface, 0.03 of it by DNV-RP-C205 [m/s]."""
 
