@@ -22,7 +22,13 @@ from calm.checks.arrangement import (
     swivel,
 )
 from calm.checks.assess import equilibrium, failed_stand, judged_stand
-from calm.checks.assessment import Acceptance, Assessment, MooringInEnvironment, Situation
+from calm.checks.assessment import (
+    Acceptance,
+    Assessment,
+    MooringInEnvironment,
+    Situation,
+    estimated,
+)
 from calm.checks.catalogue_rules import figures
 from calm.checks.criterion import limits_used
 from calm.checks.finding import AS_GIVEN, OWN, State, Verdict, unknown, verdict_on
@@ -122,17 +128,17 @@ def assessment_of_net(
     legs = [stand.result for stand in own.values() if stand.result is not None]
     lines = [leg.mooring for leg in legs] or [stands[0].mooring]
     whole = _whole(lines, any(leg.type == "surface" for leg in legs))
-    acceptance = Acceptance(whole.file.accepts, day or date.today(), {})
+    acceptance = Acceptance.of_file(whole.file, day)
     graph = NetGraph(legs)
     breaks, losses = graph.breaks(whole), graph.losses(whole)
-    handling = Handling(whole, _NOT_SOLVED, _NOT_SOLVED, breaks, losses)
+    handling = Handling(estimated(whole), _NOT_SOLVED, _NOT_SOLVED, breaks, losses)
     first = whole.file.environment.name or OWN
     once = [(hardware, hardware.judge(handling), first), (figures, figures.judge(handling), first)]
     if graph.anchored:
         once.append((release_present, graph.release_verdicts(), first))
         once.append((backup, backup.judge(handling), first))
     for stand in own.values():
-        leg = Handling(stand.mooring, _NOT_SOLVED, _NOT_SOLVED, ())
+        leg = Handling(estimated(stand.mooring), _NOT_SOLVED, _NOT_SOLVED, ())
         once += [(each, each.judge(leg), stand.environment)
                  for each in (swivel, clamp_place, metals)]  # fmt: skip
     waters = {stand.mooring.file.environment.name: stand.mooring for stand in stands}
