@@ -28,6 +28,7 @@ from calm.records.cf_files import (
 )
 from calm.records.current_file import holds_arrays
 from calm.records.headings import read_time_columns
+from calm.records.instrument_text import read_instrument_text
 from calm.records.velocity import MISSING, flag_variable, flags_of, refuse_ragged
 
 if TYPE_CHECKING:
@@ -225,16 +226,22 @@ def _find(dataset: xr.Dataset) -> tuple[str, bool]:
 
 def _from_csv(path: Path, latitude: float) -> list[Sensor]:
     """Return a table ``time,LABEL[dbar],…``; a label may come with a unit of length instead."""
-    table = read_time_columns(path, ("pressure", "length"), "LABEL[dbar]")
+    instrument = read_instrument_text(path)
+    if instrument is not None:
+        lines = instrument.lines(("pressure",))
+        table = read_time_columns(path, ("pressure",), "pressure[dbar]", lines)
+    else:
+        table = read_time_columns(path, ("pressure", "length"), "LABEL[dbar]")
     time, values = table.time, table.values
     return [
         Sensor(
-            label,
+            label if instrument is None else "",
             time,
             depth_of(values[:, j] / PASCALS_PER_DBAR, latitude)
             if dimension == "pressure"
             else values[:, j],
             path.name,
+            float("nan") if instrument is None else instrument.nominal,
         )
         for j, (label, dimension) in enumerate(zip(table.names, table.dimensions, strict=True))
     ]

@@ -7,7 +7,7 @@ several words needs brackets around its unit, or a unit that is known.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,7 +18,15 @@ from calm.errors import InputError, Problem
 from calm.physics.line import Floats
 from calm.positions import HEMISPHERES
 from calm.records.current_terms import ZONES_OF_UTC, TimeChoiceError, parse_time
-from calm.records.delimited import GAPS, NUMBER, CellRow, TextTable, abridged, read_table
+from calm.records.delimited import (
+    GAPS,
+    NUMBER,
+    CellRow,
+    NumberedLine,
+    TextTable,
+    abridged,
+    read_table,
+)
 from calm.suggestions import about_quantity, shown, unknown
 from calm.units import DIMENSIONS, QuantityError, QuantityRange, unit_factor
 
@@ -240,7 +248,12 @@ def read_named_columns(
     return NamedColumns(factors, rows, others, header.number)
 
 
-def read_time_columns(path: Path, dimensions: Sequence[str], example: str) -> TimeColumns:
+def read_time_columns(
+    path: Path,
+    dimensions: Sequence[str],
+    example: str,
+    lines: Iterable[NumberedLine] | None = None,
+) -> TimeColumns:
     """Return a table of times and quantities, each column headed by a label and its unit.
 
     Parameters
@@ -248,13 +261,14 @@ def read_time_columns(path: Path, dimensions: Sequence[str], example: str) -> Ti
     path : of the table
     dimensions : what the columns may be, of `calm.units.DIMENSIONS`
     example : of a heading, for messages
+    lines : of the table, where they are not those of the file
 
     Raises
     ------
     InputError
         With every mistake.
     """
-    table = read_table(path, f"time,{example}")
+    table = read_table(path, f"time,{example}", lines)
     header = table.header
     if not is_time(header.cells[0]):
         message = f"is not a table over time; its heading should be `time,{example}`"
