@@ -10,6 +10,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -204,7 +205,13 @@ class TimeColumns:
 
 
 def read_named_columns(
-    path: Path, known: Mapping[str, str], example: str, problems: list[Problem]
+    path: Path,
+    known: Mapping[str, str],
+    example: str,
+    problems: list[Problem],
+    *,
+    table: TextTable | None = None,
+    other_names: Mapping[str, str] = MappingProxyType({}),
 ) -> NamedColumns:
     """Return the cells of a table as they stand; mistakes of its form are added to `problems`.
 
@@ -214,15 +221,18 @@ def read_named_columns(
     known : dimensions of the columns by their names, blanks in which may be underscores
     example : of a header, for messages
     problems : to add to
+    table : of the file, where it is read already
+    other_names : what columns may be called too
 
     Raises
     ------
     InputError
         It cannot be read, is empty, or has no header.
     """
-    table = read_table(path, example)
+    table = table or read_table(path, example)
     header = table.header
     names = [heading(column)[0].lower().replace(" ", "_") for column in header.cells]
+    names = [name if name in known else other_names.get(name, name) for name in names]
     factors: dict[str, float] = {}
     for j, (column, name) in enumerate(zip(header.cells, names, strict=True)):
         if name not in known:
@@ -244,7 +254,11 @@ def read_named_columns(
                 {names[j]: row.column(j) for j in mine},
             )
         )
-    others = [column for column, name in zip(header.cells, names, strict=True) if name not in known]
+    others = [
+        column
+        for column, name in zip(header.cells, names, strict=True)
+        if column and name not in known
+    ]
     return NamedColumns(factors, rows, others, header.number)
 
 
