@@ -11,7 +11,7 @@ from pydantic import BeforeValidator, Field
 from calm.errors import Problem
 from calm.files.components import Anchor
 from calm.files.definition import LENGTH, Model, QuantityField, Text
-from calm.files.mooring_file import Piece, numbered
+from calm.files.mooring_file import MooringFile, Piece, numbered, stand_in_anchor
 from calm.files.rigid import Profiler
 from calm.files.yaml_document import SourceMapping, validate
 from calm.suggestions import unknown
@@ -108,9 +108,27 @@ class Leg:
     top: EndKeys
     bottom: EndKeys
 
-    def of(self, pieces: Sequence[Piece]) -> tuple[Piece, ...]:
-        """Return its pieces among those of the file."""
-        return tuple(pieces[self.first : self.end])
+    def line_of(self, file: MooringFile) -> MooringFile:
+        """Return the leg as the file of a single line: its pieces, counted from its upper end.
+
+        One without an anchor has a stand-in for it, of the id `STAND_IN`.
+        """
+        own = file.pieces[self.first : self.end]
+        pieces = [replace(piece, index=index) for index, piece in enumerate(own)]
+        if self.bottom.anchor is None:
+            pieces.append(stand_in_anchor(len(pieces), own[-1].place.item + 1))
+        depth = None if self.bottom.anchor is None else self.bottom.anchor.depth
+        environment = file.environment
+        if depth is not None:
+            environment = replace(environment, depth=depth)
+        return replace(
+            file,
+            name=self.name,
+            environment=environment,
+            pieces=tuple(pieces),
+            legs=(self,),
+            notices=(),
+        )
 
     @property
     def ends(self) -> tuple[EndKeys, EndKeys]:

@@ -14,8 +14,12 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import chain, islice
 from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
 
 from calm.errors import InputError, Problem
+from calm.physics.line import Floats
 from calm.suggestions import shown
 from calm.whole_file import decoded, read_content
 
@@ -68,7 +72,12 @@ class Dialect:
 
     def cells(self, line: str) -> list[str]:
         """Return the cells of a line without blanks and quotation marks, decimals with a point."""
-        found = [text for _, text in self._placed(line)]
+        if '"' in line:
+            found = [text for _, text in self._placed(line)]
+        elif self.separator == " ":
+            found = line.split()
+        else:
+            found = [cell.strip() for cell in line.split(self.separator)]
         return [self.with_point(text) for text in found] if self.decimal == "," else found
 
     def column(self, line: str, cell: int) -> int:
@@ -100,8 +109,7 @@ class Dialect:
                 return found
 
 
-@dataclass(frozen=True)
-class CellRow:
+class CellRow(NamedTuple):
     """Hold a line of a table as cells.
 
     Attributes
@@ -292,6 +300,21 @@ def no_number(cell: str) -> str | None:
     if NUMBER.fullmatch(pointed):
         return f"has a decimal comma; did you mean `{pointed}`?"
     return "is no number"
+
+
+def is_gap(cell: str | None) -> bool:
+    """Return whether a cell says that nothing was measured."""
+    return cell is None or cell.lower() in GAPS
+
+
+def plain_numbers(cells: Sequence[str | None]) -> Floats | None:
+    """Return cells as numbers, NaN where they say so; None where one is anything else."""
+    try:
+        found = np.array([float(cell) for cell in cells], np.float64)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        return None
+    plain = not np.isinf(found).any() and not any("_" in cell for cell in cells if cell)
+    return found if plain else None
 
 
 def abridged(problems: list[Problem]) -> list[Problem]:

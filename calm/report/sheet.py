@@ -9,7 +9,7 @@ from enum import StrEnum
 from typing import Any
 
 from calm.case import Result, TowResult
-from calm.case.net import NetResult
+from calm.case.net import AnyResult
 from calm.case.profilers import ProfilerTravel
 from calm.case.result_tables import ClampRow, ComponentRow, rows_down
 from calm.case.strumming import StrummingBand
@@ -34,7 +34,6 @@ from calm.report.blocks import (
 )
 from calm.solve import Status
 
-AnyResult = Result | TowResult | NetResult
 NO_HEADS: Mapping[int, Cell] = {}
 
 _OF_MOORINGS = "length depth height knockdown offset tilt tension safety_factor"

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import json
 import re
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from calm.case.net import load_net
 from calm.cli.main import main
+from calm.drawing.line_picture import LineKind, elevation_of, plan_of
 from calm.errors import InputError
 
 NET = """\
@@ -150,17 +153,49 @@ def test_other_commands_say_which_one_solves_nets(
     assert not (tmp_path / "out.csv").exists()
 
 
-@pytest.mark.parametrize(
-    "option", ["--explain", "--schematic", "--plot", "--html", "--uncertainty"]
-)
+@pytest.mark.parametrize("option", ["--explain", "--netcdf", "--uncertainty"])
 def test_options_for_single_lines_are_refused(
     option: str, net: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    endings = {"--plot": "a.png", "--html": "a.html"}
-    value = [tmp_path / endings[option]] if option in endings else []
+    value = [tmp_path / "a.nc"] if option == "--netcdf" else []
     assert run("run", net, option, *value) == 2
     assert f"{option} is for single lines" in capsys.readouterr().err
     assert not list(tmp_path.glob("a.*"))
+
+
+def test_a_net_is_drawn_from_the_side_and_above(net: Path) -> None:
+    result = load_net(net).solve()
+    side, above = elevation_of(result), plan_of(result)
+    kinds = Counter(line.kind for line in side.lines)
+    assert kinds == {LineKind.STILL: 4, LineKind.LINE: 4}
+    assert [line.label for line in side.lines if line.label] == [
+        "in still water", "in the current"
+    ]  # fmt: skip
+    (node,) = result.nodes
+    drawn = [line for line in side.lines if line.kind is LineKind.LINE]
+    for line in drawn:  # every leg has an end at the node
+        gaps = [np.hypot(line.x[end] - node.x, line.y[end] - node.depth) for end in (0, -1)]
+        assert min(gaps) == pytest.approx(0.0, abs=1e-6)
+    # the current goes east, and so does the plane; nothing leaves it
+    assert side.across.endswith("towards 090°")
+    assert max(np.abs(line.y).max() for line in above.lines) < 1e-9
+    roles = Counter(mark.role for mark in side.marks)
+    assert roles == {"float": 5, "instrument": 3, "release": 1, "anchor": 1}
+    assert side.seabed == 500.0
+
+
+def test_a_net_has_its_page_and_its_schematics(
+    net: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    page = tmp_path / "net.html"
+    assert run("run", net, "--schematic", "--html", page) == 0
+    said, html = capsys.readouterr().out, page.read_text()
+    assert html.count("<svg") == 5  # of four legs, and the picture of all
+    for leg in ("main: free end to node A", "stem: node A to anchor"):
+        assert f"Schematic of leg {leg}" in html
+    # only the leg that is anchored stands on the seabed
+    assert said.count("▒ seabed") == 1
+    assert said.count("~ sea surface") == 4
 
 
 def test_an_anchor_that_is_lifted_is_no_result(
