@@ -76,12 +76,8 @@ def grid(
     from calm.grid.depths import read_depths
     from calm.grid.product import grid_layout, parse_levels, write_grid
     from calm.motion.sensors import parse_flags
-    from calm.records.instrument_series import (
-        QUANTITIES_MEASURED,
-        chosen_quantities,
-        files_given,
-        read_series,
-    )
+    from calm.records.instrument_series import files_given, read_series
+    from calm.records.measured_quantities import QUANTITIES_MEASURED, chosen_quantities
     from calm.report.folder import check_folder, printed, write_report
     from calm.report.grid_report import grid_part, grid_report
     from calm.report.html import page
@@ -160,7 +156,7 @@ def fields_of(
     from calm.grid.depths import points_of
     from calm.grid.field import field_of
     from calm.grid.samples import common_times, gather
-    from calm.records.instrument_series import QUANTITIES_MEASURED
+    from calm.records.measured_quantities import QUANTITIES_MEASURED
 
     matched = {name: points_of(each, where) for name, each in series.items() if each}
     told = [line for _, said in matched.values() for line in said]

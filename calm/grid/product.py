@@ -27,7 +27,7 @@ from calm.dataset.netcdf import (
 from calm.errors import UsageError
 from calm.grid.depths import MooringDepths
 from calm.grid.field import BLOCK, Field, estimate
-from calm.records.instrument_series import QUANTITIES_MEASURED
+from calm.records.measured_quantities import QUANTITIES_MEASURED
 from calm.units import QuantityError, parse_quantity
 from calm.version import __version__
 from calm.whole_file import beside

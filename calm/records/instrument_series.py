@@ -30,6 +30,11 @@ from calm.records.cf_files import (
     read_times,
     reading,
 )
+from calm.records.measured_quantities import (
+    QUANTITIES_MEASURED,
+    celsius_zero,
+    practical_factor,
+)
 from calm.records.velocity import (
     find_velocity,
     flag_variable,
@@ -37,7 +42,6 @@ from calm.records.velocity import (
     refuse_ragged,
     with_components,
 )
-from calm.suggestions import unknown
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -50,52 +54,6 @@ INTERPOLATED = 8
 _SERIALS = ("serial", "serial_number", "SERIAL", "instrument_serial", "instrument_serial_number")
 _ONE_SERIAL = (*_SERIALS, "sensor_serial_number")
 _ONE_PLACE = ("instrument_nominal_depth", "nominal_depth", "sensor_depth")
-
-
-@dataclass(frozen=True)
-class Measured:
-    """A quantity that is put on levels.
-
-    Attributes
-    ----------
-    archive : its name in files of OceanSITES
-    standard_name, long_name, units : of what is written
-    dimension : of its unit, in the sense of `calm.units`
-    sought, usual : CF standard names, and usual names, by which it is found
-    noise : standard deviation of a good sensor that a user has not told otherwise
-    """
-
-    archive: str
-    standard_name: str
-    long_name: str
-    units: str
-    dimension: str
-    sought: tuple[str, ...]
-    usual: tuple[str, ...]
-    noise: float
-
-
-QUANTITIES_MEASURED = {
-    "temperature": Measured(
-        "TEMP", "sea_water_temperature", "temperature of the sea water", "degree_Celsius",
-        "temperature", ("sea_water_temperature",),
-        ("TEMP", "temperature", "temp", "Temperature"), 0.002,
-    ),
-    "salinity": Measured(
-        "PSAL", "sea_water_practical_salinity", "practical salinity", "1", "salinity",
-        ("sea_water_practical_salinity", "sea_water_salinity"),
-        ("PSAL", "salinity", "psal", "Salinity"), 0.003,
-    ),
-    "u": Measured(
-        "UCUR", "eastward_sea_water_velocity", "velocity of the water to the east", "m s-1",
-        "speed", ("eastward_sea_water_velocity",), (), 0.01,
-    ),
-    "v": Measured(
-        "VCUR", "northward_sea_water_velocity", "velocity of the water to the north", "m s-1",
-        "speed", ("northward_sea_water_velocity",), (), 0.01,
-    ),
-}  # fmt: skip
-"""By the names that commands take; noise: what makers state of the usual instruments."""
 
 
 @dataclass(frozen=True)
@@ -188,23 +146,6 @@ def files_given(given: Sequence[str]) -> list[tuple[str, Path]]:
     return found
 
 
-def chosen_quantities(text: str | None) -> tuple[str, ...]:
-    """Return the names of a text such as ``temperature,salinity``; without one, all.
-
-    Raises
-    ------
-    UsageError
-        A name is none of `QUANTITIES_MEASURED`, neither there nor in the archive.
-    """
-    archived = {one.archive: name for name, one in QUANTITIES_MEASURED.items()}
-    wanted = [part.strip() for part in (text or ",".join(QUANTITIES_MEASURED)).split(",")]
-    for name in wanted:
-        if name not in QUANTITIES_MEASURED and name not in archived:
-            known = (*QUANTITIES_MEASURED, *archived)
-            raise UsageError(unknown(f"--variables: `{name}` is not gridded", name, known))
-    return tuple(dict.fromkeys(archived.get(name, name) for name in wanted))
-
-
 def _of_file(
     path: Path, names: Sequence[str], flags: frozenset[int], seabed: float
 ) -> dict[str, list[InstrumentSeries]]:
@@ -276,9 +217,9 @@ def _instruments(
     if quantity.dimension == "speed":
         value = _velocity(dataset, variables, parts, name)
     elif quantity.dimension == "temperature":
-        value = parts[0] - _zero(dataset[first])
+        value = parts[0] - celsius_zero(dataset[first])
     elif quantity.dimension == "salinity":
-        value = parts[0] * _practical(dataset[first])
+        value = parts[0] * practical_factor(dataset[first])
     else:
         value = parts[0] * factor_of(dataset[first], quantity.dimension)
     value = np.where(dropped, np.nan, value)
@@ -396,31 +337,3 @@ def _velocity(
     angle = np.radians(parts[1] * factor_of(dataset[variables[1]], "angle") + turn)
     component: Floats = speed * (np.sin(angle) if name == "u" else np.cos(angle))
     return component
-
-
-_CELSIUS = ("degree_celsius", "degrees_celsius", "celsius", "degc", "deg_c", "°c", "degree_c", "c",
-            "degrees celsius", "degree celsius", "degrees_c")  # fmt: skip
-_KELVIN = ("k", "kelvin", "degree_kelvin", "degrees_kelvin")
-
-
-def _zero(variable: xr.DataArray) -> float:
-    """Return what is taken from a temperature to have it in °C."""
-    unit = str(variable.attrs.get("units", "")).strip()
-    if unit.lower() in _CELSIUS:
-        return 0.0
-    if unit.lower() in _KELVIN:
-        return 273.15
-    said = f"`{unit}`, is not degree_Celsius or K" if unit else "is missing: degree_Celsius or K"
-    raise UnreadableError(f"`{variable.name}`: its unit, {said}")
-
-
-_PRACTICAL = ("", "1", "psu", "pss", "pss-78", "pss78", "1e-3", "0.001", "ppt", "psal")
-
-
-def _practical(variable: xr.DataArray) -> float:
-    """Return 1 for a practical salinity, by whatever name its unit goes."""
-    unit = str(variable.attrs.get("units", "")).strip()
-    if unit.lower() not in _PRACTICAL:
-        raise UnreadableError(f"`{variable.name}`: its unit, `{unit}`, is not that of a practical "
-                              "salinity: 1 (or PSU)")  # fmt: skip
-    return 1.0

@@ -137,7 +137,7 @@ def _section(
     from matplotlib.figure import Figure as Drawing
 
     from calm.grid.field import DOUBTFUL
-    from calm.records.instrument_series import QUANTITIES_MEASURED
+    from calm.records.measured_quantities import QUANTITIES_MEASURED
 
     every = max(len(value) // MOST_DRAWN, 1)
     time = field.samples.time[::every].astype("datetime64[s]").astype(object)
