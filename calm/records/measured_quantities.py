@@ -1,4 +1,4 @@
-"""The quantities that instruments of a mooring measure and that are put on levels, and their units."""
+"""Quantities that instruments of a mooring measure and that go onto levels, and their units."""
 
 from __future__ import annotations
 
