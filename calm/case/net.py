@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field, fields, replace
+from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -18,8 +18,8 @@ from calm.case.result import Accuracy, Result
 from calm.case.result_tables import Clamps, Components
 from calm.case.tow import Tow, TowResult
 from calm.errors import InputError, NoEquilibrium
-from calm.files import MooringFile, Piece, read_mooring
-from calm.files.legs import NET_REFUSED, EndKeys, Leg, nodes_of
+from calm.files import MooringFile, read_mooring
+from calm.files.legs import NET_REFUSED, EndKeys, nodes_of
 from calm.physics.line import Floats, Water
 from calm.solve import Settings, Solution, Status
 from calm.solve.net import NetSolution, solve_net
@@ -92,15 +92,21 @@ class NetResult:
     @cached_property
     def components(self) -> Components:
         """The pieces of the file, leg by leg."""
-        tables = [leg.components for leg in self.legs]
-        whole: Components = _joined(tables, self.file.legs, self.file.pieces)
-        return whole
+        pairs = zip(self.file.legs, self.legs, strict=True)  # a leg that is joined has a stand-in
+        whole = Components.joined(
+            [leg.components.head(keys.end - keys.first) for keys, leg in pairs]
+        )
+        pieces = self.file.pieces
+        return whole.with_columns(part=list(pieces), index=np.arange(len(pieces)))
 
     @cached_property
     def clamps(self) -> Clamps:
         """What is clamped on them."""
-        whole: Clamps = _joined([leg.clamps for leg in self.legs], self.file.legs)
-        return whole
+        tables = [
+            leg.clamps.with_columns(index=leg.clamps.index + keys.first)
+            for keys, leg in zip(self.file.legs, self.legs, strict=True)
+        ]
+        return Clamps.joined(tables)
 
     def to_dict(self) -> dict[str, Any]:
         """The JSON object of the result format; None stands where a figure is unknown."""
@@ -270,23 +276,6 @@ def _result_of(net: Net, found: NetSolution, still: Sequence[Solution | None]) -
         held=tuple(end for end in ends if end.weight is None),
         warnings=(*net.file.notices, *(said for leg in legs for said in leg.warnings)),
     )
-
-
-def _joined(tables: Sequence[Any], legs: Sequence[Leg], pieces: Sequence[Piece] = ()) -> Any:
-    """The tables of legs one after another, rows counted as in the file and without stand-ins."""
-    columns: dict[str, Any] = {}
-    for each in fields(tables[0]):
-        parts = [getattr(table, each.name) for table in tables]
-        if pieces:
-            parts = [part[: leg.end - leg.first] for part, leg in zip(parts, legs, strict=True)]
-        whole = [row for part in parts for row in part]
-        columns[each.name] = whole if isinstance(parts[0], list) else np.concatenate(parts)
-    shifts = [np.full(len(table), leg.first) for table, leg in zip(tables, legs, strict=True)]
-    if pieces:
-        columns |= {"part": list(pieces), "index": np.arange(len(pieces))}
-    else:
-        columns["index"] = columns["index"] + np.concatenate(shifts)
-    return type(tables[0])(**columns)
 
 
 def _end_loads(leg: Result, solution: Solution) -> Iterator[EndLoad]:

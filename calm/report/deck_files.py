@@ -21,8 +21,7 @@ from calm.report.deck_lists import (
     shipping_part,
 )
 from calm.report.deck_logs import deployment_part, recovery_part
-from calm.report.diagram import diagram_pages
-from calm.report.diagram_layout import Paper
+from calm.report.diagram import Paper, diagram_pages
 from calm.report.drop_sheet import drop_part
 from calm.report.provenance import date, document_part, input_hash, moment, versions
 
