@@ -287,7 +287,7 @@ def anchor_weight_of(anchor: Piece, water: Water) -> float:
 
 def anchor_load(mooring: Mooring, solution: Solution) -> AnchorLoad:
     """Return what the line of a mooring does to its anchor."""
-    force, friction = solution.force[-1], _friction(mooring)
+    force, friction = solution.force[-1], mooring.file.anchor_friction
     vertical, horizontal = float(force[2]), float(np.hypot(force[0], force[1]))
     factor = mooring.file.checks.anchor_factor
     return AnchorLoad(
@@ -312,14 +312,8 @@ def _accuracy(mooring: Mooring, solution: Solution) -> Accuracy:
         depth=solution.depth_error,
         tension=solution.tension_error,
         anchor=max(lift, pull),
-        required_weight=float(required_weight(lift, pull, factor, _friction(mooring))),
+        required_weight=float(required_weight(lift, pull, factor, mooring.file.anchor_friction)),
     )
-
-
-def _friction(mooring: Mooring) -> float:
-    """Return the friction of the anchor on the bed: its own, or that of the checks."""
-    own = mooring.file.anchor.friction
-    return mooring.file.checks.anchor_friction if own is None else own
 
 
 def _tilt(vector: Floats) -> Floats:

@@ -208,6 +208,7 @@ class Mooring:
             solution = self.memory.of(solve_mooring, self.line, water, self.settings)
         self._refuse_a_lifted_anchor(solution)
         self._refuse_a_heap(solution)
+        refuse_in_the_slope(self.file, solution, self.water.depth)
         return solution
 
     def _refuse_a_lifted_anchor(self, solution: Solution) -> None:
@@ -260,6 +261,32 @@ class Mooring:
             return self.memory.of(solve_mooring, line, self.water.still(), settings)
         except NoEquilibrium:
             return None
+
+
+def refuse_in_the_slope(file: MooringFile, solution: Solution, depth: float) -> None:
+    """Refuse a line that hangs into a seabed that slopes.
+
+    Parameters
+    ----------
+    solution : of the line of the file; what lies on the seabed is not looked at
+    depth : of the water at the origin, or of a leg at its anchor [m]
+    """
+    seabed = file.environment.seabed
+    if seabed is None:
+        return
+    anchor = file.legs[0].bottom.anchor if file.legs else None
+    origin = (0.0, 0.0) if anchor is None else anchor.at
+    place = solution.position[: solution.hanging + 1]
+    below = -place[:, 2] - depth - (place[:, :2] - np.array(origin)) @ np.array(seabed.deepening)
+    worst = int(np.argmax(below))
+    if below[worst] > solution.depth_error + 1e-6 * depth:
+        number = solution.piece_at(worst)
+        pieces = len(file.pieces) - 1
+        piece = file.pieces[pieces - 1 - number if solution.line.towed else number]
+        raise Status.GROUNDED.because(
+            f"{piece.label} comes {below[worst]:.2f} m below the seabed, which slopes.",
+            advice="Raise it, or move it down the slope: what lies on a slope is not solved.",
+        )
 
 
 @dataclass(frozen=True)

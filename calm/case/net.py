@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
 from functools import cached_property
-from math import nan
+from itertools import combinations, permutations, product
+from math import dist, inf, nan
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ import numpy as np
 
 from calm.assemble import assemble_water
 from calm.case.measure import result_of
-from calm.case.mooring import Mooring, load
+from calm.case.mooring import Mooring, load, refuse_in_the_slope
 from calm.case.parts import naming_the_piece
 from calm.case.result import Accuracy, AnchorLoad, Result
 from calm.case.result_tables import Clamps, Components
@@ -23,6 +24,7 @@ from calm.files import MooringFile, Piece, read_mooring
 from calm.files.legs import NET_REFUSED, EndKeys, Leg, nodes_of
 from calm.files.mooring_file import STAND_IN
 from calm.physics.line import Floats, Water
+from calm.quantities import say
 from calm.solve import Settings, Solution, Status
 from calm.solve.net import NetSolution, solve_net
 from calm.solve.net_leg import LegEnd, NetLeg
@@ -173,6 +175,10 @@ def load_net(
     )
 
 
+Way = tuple[float, tuple[str, ...]]
+"""Along legs: how long they are in all [m], and their names."""
+
+
 @dataclass(frozen=True)
 class Net:
     """A net of legs as read from its file."""
@@ -236,8 +242,40 @@ class Net:
         NoEquilibrium
         """
         solved_for = [piece for line in self.lines for piece in line.file.pieces[:-1]]
-        with naming_the_piece(solved_for):
-            return solve_net(self.legs, len(nodes_of(self.file.legs)), water, self.settings)
+        try:
+            with naming_the_piece(solved_for):
+                return solve_net(self.legs, len(nodes_of(self.file.legs)), water, self.settings)
+        except NoEquilibrium as failure:
+            raise self._too_short() or failure from None
+
+    def _too_short(self) -> NoEquilibrium | None:
+        """Why held ends cannot be reached, where the lengths of the legs between them say so.
+
+        Between every two ends the shortest way through the net counts (Floyd and Warshall).
+        """
+        ways: dict[tuple[Any, Any], Way] = {}
+        for leg, keys in zip(self.legs, self.file.legs, strict=True):
+            ends = [end.node if end.place is None else end.place for end in (leg.upper, leg.lower)]
+            way: Way = float(leg.line.length.sum()), (keys.name,)
+            for pair in permutations(ends):
+                ways[pair[0], pair[1]] = min(way, ways.get((pair[0], pair[1]), way))
+        points = dict.fromkeys(end for pair in ways for end in pair if end != -1)  # -1: free
+        for by, first, last in product(points, repeat=3):
+            if (first, by) in ways and (by, last) in ways:
+                (one, some), (other, more) = ways[first, by], ways[by, last]
+                way = one + other, some + more
+                ways[first, last] = min(way, ways.get((first, last), way))
+        held = combinations((point for point in points if isinstance(point, tuple)), 2)
+        for first, last in held:
+            length, names = ways.get((first, last), (inf, ()))
+            if length < dist(first, last):
+                legs = f"Leg {names[0]} is" if len(names) == 1 else f"Legs {', '.join(names)} are"
+                return Status.NO_EQUILIBRIUM.because(
+                    f"{legs} {say('length', length)} long in all; the ends are held "
+                    f"{say('length', dist(first, last))} apart.",
+                    advice="Lengthen a leg, or put the ends nearer to each other.",
+                )
+        return None
 
     def solve(self) -> NetResult:
         """Find the static equilibrium.
@@ -265,6 +303,7 @@ def _result_of(net: Net, found: NetSolution, still: Sequence[Solution | None]) -
     ends: list[EndLoad] = []
     for mooring, solution, before in zip(net.lines, found.legs, still, strict=True):
         _refuse_a_lifted_anchor(mooring, solution)
+        refuse_in_the_slope(mooring.file, solution, mooring.water.depth)
         upright = before or solution
         meant = Mooring(mooring.file, bool(upright.afloat), line=mooring.line, water=mooring.water)
         result = result_of(meant, solution, before)

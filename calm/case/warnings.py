@@ -197,6 +197,14 @@ def _on_the_seabed(result: Result, solution: Solution) -> Iterator[str]:
     names = [result.components.label[p] for p in rigid] + [known[m] for m in clamps]
     if names:
         yield f"On the seabed: {', '.join(names)}."
+    seabed = result.file.environment.seabed
+    if seabed is not None and solution.grounded_length > 0.0:
+        rise = solution.grounded_length * np.sin(np.radians(seabed.slope))
+        yield (
+            f"{say('grounded_length', solution.grounded_length)} of line lie on the seabed, taken "
+            f"as level there: on its slope of {seabed.slope:g}° depths differ by up to "
+            f"{say('depth', float(rise))}."
+        )
     if solution.landed and result.still_shape is result.shape:
         yield "In still water the part on the seabed has no direction: the offset is its greatest."
 

@@ -47,7 +47,8 @@ from calm.checks.situations import (
 )
 from calm.errors import NoEquilibrium
 from calm.files import Flexible, Piece
-from calm.files.mooring_file import STAND_IN, stand_in_anchor
+from calm.files.legs import stand_in_anchor
+from calm.files.mooring_file import STAND_IN
 from calm.physics.line import Floats
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.solve import Status

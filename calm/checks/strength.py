@@ -264,9 +264,9 @@ def anchor_uplift(mooring: Mooring) -> Iterator[Criterion]:
 @criteria("anchor-sliding", of_anchor=True)
 def anchor_sliding(mooring: Mooring) -> Iterator[Criterion]:
     """Horizontal pull H ≤ friction (weight in water / factor - V)."""
-    weight, checks, anchor = _weight(mooring), mooring.file.checks, mooring.file.anchor
-    friction = checks.anchor_friction if anchor.friction is None else anchor.friction
-    factor = checks.anchor_factor
+    weight, factor = _weight(mooring), mooring.file.checks.anchor_factor
+    friction, seabed = mooring.file.anchor_friction, mooring.file.environment.seabed
+    down = "" if seabed is None else f" down a slope of {seabed.slope:g}°"
 
     def held(result: Result) -> float:
         assert weight is not None
@@ -277,7 +277,8 @@ def anchor_sliding(mooring: Mooring) -> Iterator[Criterion]:
         if weight is None:
             return f"{pulls}; the anchor's weight in water is not known.", _WHAT_IS_IT
         return (
-            f"{pulls}; friction of {friction:g} holds {say('tension', max(held(result), 0.0))}.",
+            f"{pulls}; friction of {friction:.4g}{down} holds "
+            f"{say('tension', max(held(result), 0.0))}.",
             _heavier(mooring, result.anchor.required_weight),
         )
 

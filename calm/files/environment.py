@@ -89,6 +89,8 @@ class Environment:
         What grows on the cables.
     maximum_speed : float
         A faster current counts as a mistake of its source [m/s]; inf in a tow and in air.
+    seabed : SeabedKeys or None
+        How it slopes; level where it is not given.
     waves : WaveKeys or None
         As they are written.
     seas : tuple of SeaState
@@ -108,6 +110,7 @@ class Environment:
     maximum_speed: float = math.inf
     waves: WaveKeys | None = None
     seas: tuple[SeaState, ...] = ()
+    seabed: SeabedKeys | None = None
 
 
 class Fouling(Model):
@@ -123,6 +126,23 @@ class Fouling(Model):
     density: Annotated[float | None, DENSITY] = optional(
         "of the growth; as heavy as water when absent", "1025 kg/m^3"
     )
+
+
+class SeabedKeys(Model):
+    """A seabed that slopes, as a plane: how steep, and towards where it gets deeper [degrees]."""
+
+    slope: Annotated[float, QuantityField("angle", at_least=0, at_most=45)] = described(
+        "from the horizontal", "3 deg"
+    )
+    toward: Annotated[float, QuantityField(**vars(DIRECTION))] = described(
+        "where it gets deeper, clockwise from north", "120 deg"
+    )
+
+    @property
+    def deepening(self) -> tuple[float, float]:
+        """Return by how much the depth grows with each metre to the east and to the north."""
+        way, steep = math.radians(self.toward), math.tan(math.radians(self.slope))
+        return steep * math.sin(way), steep * math.cos(way)
 
 
 class UniformCurrent(Model):
@@ -220,6 +240,9 @@ class EnvironmentKeys(TowEnvironmentKeys):
         "growth on everything from the surface down, for the design check",
         {"depth": "50 m", "thickness": "20 mm"},
     )
+    seabed: SeabedKeys | None = optional(
+        "how the seabed slopes below the anchors", {"slope": "3 deg", "toward": "120 deg"}
+    )
     waves: WaveKeys | None = optional(
         "seas that the design check judges: one, or a table of them",
         {"significant_height": "5 m", "peak_period": "8.4 s"},
@@ -285,6 +308,7 @@ def read_environment(
         maximum_speed=getattr(keys, "maximum_speed", math.inf),
         waves=waves,
         seas=seas,
+        seabed=getattr(keys, "seabed", None),
     )
 
 

@@ -11,7 +11,7 @@ from pydantic import BeforeValidator, Field
 from calm.errors import Problem
 from calm.files.components import Anchor
 from calm.files.definition import LENGTH, Model, QuantityField, Text
-from calm.files.mooring_file import MooringFile, Piece, numbered, stand_in_anchor
+from calm.files.mooring_file import STAND_IN, MooringFile, Piece, Place, numbered
 from calm.files.rigid import Profiler
 from calm.files.yaml_document import SourceMapping, validate
 from calm.suggestions import unknown
@@ -122,9 +122,12 @@ class Leg:
         pieces = [replace(piece, index=index) for index, piece in enumerate(own)]
         if self.bottom.anchor is None:
             pieces.append(stand_in_anchor(len(pieces), own[-1].place.item + 1))
-        depth = None if self.bottom.anchor is None else self.bottom.anchor.depth
-        environment = file.environment
-        if depth is not None:
+        environment, anchor = file.environment, self.bottom.anchor
+        if anchor is not None and anchor.depth is not None:
+            environment = replace(environment, depth=anchor.depth)
+        elif anchor is not None and environment.seabed is not None and environment.depth:
+            (east, north), (by_east, by_north) = anchor.at, environment.seabed.deepening
+            depth = environment.depth + east * by_east + north * by_north
             environment = replace(environment, depth=depth)
         return replace(
             file,
@@ -139,6 +142,12 @@ class Leg:
     def ends(self) -> tuple[EndKeys, EndKeys]:
         """Return its upper and its lower end."""
         return self.top, self.bottom
+
+
+def stand_in_anchor(index: int, item: int) -> Piece:
+    """Return an anchor without height that holds anything, of an id like no other."""
+    component = Anchor.model_validate({"kind": "anchor", "weight": "1e6 kN"})
+    return Piece(index, STAND_IN, "anchor", component, 0.0, None, (), 0, 0, Place(item))
 
 
 def read_legs(

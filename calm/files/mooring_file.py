@@ -262,11 +262,18 @@ class MooringFile:
         assert isinstance(anchor, Anchor)
         return anchor
 
+    @property
+    def anchor_friction(self) -> float:
+        """Return the friction of the anchor on the bed: its own, or that of the checks.
 
-def stand_in_anchor(index: int, item: int) -> Piece:
-    """Return an anchor without height that holds anything, of an id like no other."""
-    component = Anchor.model_validate({"kind": "anchor", "weight": "1e6 kN"})
-    return Piece(index, STAND_IN, "anchor", component, 0.0, None, (), 0, 0, Place(item))
+        On a slope b a weight w that H pulls down holds as long as H cos b + w sin b <= friction (w
+        cos b - H sin b): by tan(arctan(friction) - b), the worst of all directions.
+        """
+        own, seabed = self.anchor.friction, self.environment.seabed
+        friction = self.checks.anchor_friction if own is None else own
+        if seabed is None or not seabed.slope:
+            return friction
+        return math.tan(math.atan(friction) - math.radians(seabed.slope))
 
 
 def placed(piece: Piece, place: Place) -> Piece:

@@ -32,6 +32,7 @@ _SECTIONS = {
     "SeaWaterKeys": "`density:`, by temperature and salinity",
     "Wind": "`wind:`",
     "Fouling": "`fouling:`",
+    "SeabedKeys": "`seabed:`",
     "WaveKeys": "`waves:`",
     "Item": "`line:`, an item",
     "LengthAt": "`length_at:`",

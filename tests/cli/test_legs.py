@@ -14,7 +14,7 @@ import pytest
 from calm.case.net import load_net
 from calm.cli.main import main
 from calm.drawing.line_picture import LineKind, elevation_of, plan_of
-from calm.errors import InputError
+from calm.errors import InputError, NoEquilibrium
 
 NET = """\
 name: Two floats and a pennant
@@ -306,3 +306,112 @@ legs:
     assert span["vertical"] + anchor["vertical"] == pytest.approx(lying - weight, rel=1e-6)
     assert span["horizontal"] == pytest.approx(anchor["horizontal"], rel=1e-6)
     assert "anchor" in found
+
+
+def test_legs_that_are_too_short_are_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """80 m and 60 m of wire meet between anchors 200 m apart; the third leg goes nowhere else."""
+    file = tmp_path / "short.yaml"
+    file.write_text("""\
+environment: {depth: 100 m}
+legs:
+  west:
+    line: [{use: wire-jacketed-8, length: 80 m}, {use: anchor-wheels-4}]
+    top: {join: A}
+  east:
+    line: [{use: wire-jacketed-8, length: 60 m}, {use: anchor-wheels-4}]
+    top: {join: A}
+    bottom: {anchor: {at: [200 m, 0 m]}}
+  float:
+    line: [{use: sphere-steel-1250}]
+    bottom: {join: A}
+""")
+    assert run("run", file) == 3
+    told = capsys.readouterr().err
+    assert "no-equilibrium: Legs" in told
+    assert "140.00 m long in all; the ends are held 200.00 m apart" in told
+
+
+SLOPE = """\
+environment:
+  depth: 100 m
+  current: {speed: 0.2 m/s, toward: 0 deg}
+  seabed: {slope: 10 deg, toward: 90 deg}
+legs:
+  west:
+    line: [{use: wire-jacketed-8, length: 60 m}, {use: anchor-wheels-4, label: west}]
+    top: {join: A}
+    bottom: {anchor: {at: [-30 m, 0 m]}}
+  east:
+    line: [{use: wire-jacketed-8, length: 60 m}, {use: anchor-wheels-4, label: east}]
+    top: {join: A}
+    bottom: {anchor: {at: [30 m, 0 m]}}
+  float:
+    line: [{use: sphere-steel-1250}]
+    bottom: {join: A}
+"""
+
+
+def test_anchors_stand_on_a_seabed_that_slopes_and_hold_less(tmp_path: Path) -> None:
+    """Depths by the plane; the weight against that of which H pulls straight down the slope."""
+    result = load_net(tmp_path / "slope.yaml", text=SLOPE).solve()
+    rise = 30.0 * np.tan(np.radians(10.0))
+    west, east = (anchor.depth for anchor in result.anchors)
+    assert (west, east) == pytest.approx((100.0 - rise - 0.7, 100.0 + rise - 0.7), abs=1e-6)
+    slope = np.radians(10.0)
+    for anchor in result.anchors:
+        # the least weight w, 1.5 of which is asked for: along the slope H cos + w sin, and friction
+        # 0.6 of w cos - H sin on it
+        pull = anchor.horizontal
+        w = pull * (np.cos(slope) + 0.6 * np.sin(slope)) / (0.6 * np.cos(slope) - np.sin(slope))
+        assert anchor.required_weight == pytest.approx(1.5 * (anchor.vertical + w), rel=1e-9)
+
+
+def test_an_anchor_that_slides_by_itself_is_a_mistake(tmp_path: Path) -> None:
+    """The angle of friction of 0.6 is 31 degrees."""
+    text = SLOPE.replace("slope: 10 deg", "slope: 32 deg")
+    with pytest.raises(InputError, match=r"slides by itself .* it holds on less than 31°"):
+        load_net(tmp_path / "slope.yaml", text=text)
+
+
+def test_a_line_that_hangs_into_the_slope_is_refused(tmp_path: Path) -> None:
+    """A wire held over the bed sags below it where the water is shallower than at its end."""
+    text = (
+        SLOPE[: SLOPE.index("legs:")].replace("10 deg", "25 deg")
+        + """\
+legs:
+  span:
+    line: [{use: wire-jacketed-8, length: 130 m}]
+    top: {held: {depth: 60 m, at: [-60 m, 0 m]}}
+    bottom: {held: {depth: 60 m, at: [40 m, 0 m]}}
+"""
+    )
+    with pytest.raises(NoEquilibrium, match=r"wire-jacketed-8 comes .* below the seabed"):
+        load_net(tmp_path / "slope.yaml", text=text).solve()
+    level = text.replace("slope: 25 deg", "slope: 0 deg")
+    assert load_net(tmp_path / "level.yaml", text=level).solve().status == "converged"
+
+
+def test_the_anchor_of_a_line_is_judged_on_the_slope(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Level, 0.6 of friction; on 10 degrees tan(arctan 0.6 - 10°), in every rule and figure."""
+    file = tmp_path / "line.yaml"
+    above = "{use: sphere-steel-1250}, {use: wire-jacketed-8, length: 60 m}"
+    line = f"line: [{above}, {{use: anchor-wheels-4}}]"
+    file.write_text(SLOPE[: SLOPE.index("legs:")] + line)
+    anchor = document(file, capsys)["anchor"]
+    friction = np.tan(np.arctan(0.6) - np.radians(10.0))
+    assert anchor["friction"] == pytest.approx(friction, rel=1e-12)
+    needed = 1.5 * (anchor["vertical"] + anchor["horizontal"] / friction)
+    assert anchor["required_weight"] == pytest.approx(needed, rel=1e-9)
+    run("check", file, "--json", "-", "--workers", 1)
+    findings = json.loads(capsys.readouterr().out)["findings"]
+    (sliding,) = (
+        each for each in findings
+        if each["rule"] == "anchor-sliding" and each["situation"] == "as given"
+    )  # fmt: skip
+    assert "down a slope of 10°" in sliding["message"]
+    held = friction * (anchor["weight"] / 1.5 - anchor["vertical"])
+    assert sliding["limit"] == pytest.approx(held, rel=1e-9)

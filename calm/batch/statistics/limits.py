@@ -139,20 +139,15 @@ def _required_weight(series: ResultColumns, _: JudgedPart, mooring: Mooring) -> 
         series.ends("anchor_vertical"),
         series.ends("anchor_horizontal"),
         mooring.file.checks.anchor_factor,
-        _friction(mooring),
+        mooring.file.anchor_friction,
     )
 
 
 def _slide(series: ResultColumns, _: JudgedPart, mooring: Mooring) -> Column:
     slide = series.ends("anchor_vertical")
-    slide *= _friction(mooring)
+    slide *= mooring.file.anchor_friction
     slide += series.ends("anchor_horizontal")
     return slide
-
-
-def _friction(mooring: Mooring) -> float:
-    own = mooring.file.anchor.friction
-    return mooring.file.checks.anchor_friction if own is None else own
 
 
 def _reserve_left(series: ResultColumns, _: JudgedPart, __: Mooring) -> Column:

@@ -62,7 +62,7 @@ SECTIONS = frozenset(MooringKeys.model_fields) - {"name", "description", "positi
 
 _ORDERS: tuple[tuple[str, ...], ...] = (
     tuple(MooringKeys.model_fields),
-    ("fluid", "depth", "depth_range", "density", "gravity", "current", "wind", "fouling"),
+    ("fluid", "depth", "depth_range", "density", "gravity", "current", "wind", "seabed", "fouling"),
     (
         *("use", "at", "label", "count", "length", "top_depth", "body_depth", "length_at"),
         *("termination", "serial", "calibrated", "sampling", "battery_until"),

@@ -8,13 +8,16 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import asinh, sinh
+from typing import Any
 
 import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+import calm.solve.net as net_module
 from calm.errors import NoEquilibrium
 from calm.physics.hull import Floating, spherical_hull
+from calm.physics.line import Floats
 from calm.solve import Settings, solve_mooring
 from calm.solve.net import NetSolution, solve_net
 from calm.solve.net_leg import LegCourse, LegEnd, NetLeg
@@ -255,6 +258,38 @@ def test_stated_errors_hold() -> None:
         assert np.abs(mine - its).max() <= usual.depth_error
     for a, b in zip(usual.legs, fine.legs, strict=True):
         assert abs(a.tension[-1] - b.tension[-1]) <= usual.tension_error
+
+
+@pytest.mark.parametrize("seed", [0, 3, 4, 7, 11])
+def test_stated_errors_hold_of_random_nets(seed: int) -> None:
+    """Of all pieces' ends, against a quarter of the step; what both round off is 1e-6 m and N."""
+    legs, nodes, _, depth = random_net(seed)
+    water = water_of(depth, (0.0, 0.5, 0.1), (150.0, 0.2, -0.3), (400.0, 0.0, 0.1))
+    usual = solve_net(legs, nodes, water)
+    fine = solve_net(legs, nodes, water, Settings(angle_step=np.radians(0.25)))
+    for a, b in zip(usual.legs, fine.legs, strict=True):
+        mine, its = a.piece_nodes.ravel(), b.piece_nodes.ravel()
+        off = np.abs(a.position[mine] - b.position[its]).max()
+        assert off <= usual.depth_error + 1e-6
+        assert np.abs(a.tension[mine] - b.tension[its]).max() <= usual.tension_error + 1e-6
+
+
+def test_from_still_water_it_comes_to_the_same_rest(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where the first start leads nowhere, the current is raised by steps from still water."""
+    water = water_of(300.0, *SHEAR)
+    straight = solve_net(y_net(), 1, water)
+    closed, shares = net_module._Net.closed, []
+
+    def lost(net: Any, x: Floats, step: float, enough: float) -> Floats | None:
+        shares.append(float(np.abs(net.water.u).max()) / 0.6)
+        return None if len(shares) == 1 else closed(net, x, step, enough)
+
+    monkeypatch.setattr(net_module._Net, "closed", lost)
+    stepped = solve_net(y_net(), 1, water)
+    assert shares[:6] == pytest.approx([1.0, 0.0, 0.25, 0.5, 0.75, 1.0])
+    assert stepped.nodes == pytest.approx(straight.nodes, abs=1e-6)
+    for a, b in zip(stepped.legs, straight.legs, strict=True):
+        assert a.tension[-1] == pytest.approx(b.tension[-1], rel=1e-6)
 
 
 def test_the_audit_sees_a_moved_node(monkeypatch: pytest.MonkeyPatch) -> None:
