@@ -79,7 +79,7 @@ def _of_component(component: Component, metres: float) -> Datasheet:
     """Return the figures of some metres of a cable or chain; a rigid piece has its own length."""
     if isinstance(component, Anchor):
         return Datasheet(component.net_buoyancy, None, component.kt, None)
-    kn, kt, along = drag_of(component, getattr(component, "length", metres))
+    kn, kt, along = drag_of(component)
     times = metres if isinstance(component, Flexible) else 1.0
     return Datasheet(
         times * component.net_buoyancy,
