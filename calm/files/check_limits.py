@@ -26,7 +26,7 @@ from calm.files.definition import (
     optional,
     quantity_of,
 )
-from calm.files.rule_texts import ACCEPTABLE
+from calm.files.rule_texts import ACCEPTABLE, RULES
 from calm.files.yaml_document import SourceMapping
 from calm.suggestions import shown, unknown
 
@@ -58,10 +58,10 @@ class Limit:
 
 _UFC = "UFC 4-159-03, table 3-7: 3 on new breaking strength of chain and wire"
 _PRACTICE = "oceanographic practice: a third to a fifth of the breaking load"
-_DEWEY = "Dewey, Mooring Design & Dynamics: weight in water ≥ 1.5 (V + H/0.6)"
+_DEWEY = RULES["anchor-weight"].source
 _NO_FIGURE = "practice of mooring groups, 50 to 100 kgf above the release; no figure is published"
 _BERTEAUX = "Berteaux, Prindle & May, OCEANS '87: fish bite from the surface to 1000 m and more"
-_2SK = "API RP 2SK: 1.67 on breaking strength, intact, tensions found dynamically"
+_2SK = RULES["wave-strength"].source
 _LIFE = "API RP 2SK: a fatigue life of three times the service life"
 _URI = "URI GSO mooring program"
 
