@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any
 
 from calm.assemble.line_arrays import drag_of
@@ -56,7 +56,8 @@ def datasheet(
         except QuantityError:
             return None
         sheets.append(_of_component(component, metres))
-    return _total(sheets)
+    names = [each.name for each in fields(Datasheet)]
+    return Datasheet(*(sum(getattr(sheet, name) or 0.0 for sheet in sheets) for name in names))
 
 
 def _items(parts: tuple[dict[str, Any], ...]) -> Iterator[Mapping[str, Any]]:
@@ -86,13 +87,4 @@ def _of_component(component: Component, metres: float) -> Datasheet:
         times * kn,
         times * (kt if along else kn),
         times * kn / (0.5 * CATALOGUE_DENSITY),
-    )
-
-
-def _total(sheets: list[Datasheet]) -> Datasheet:
-    return Datasheet(
-        sum(sheet.net_buoyancy for sheet in sheets),
-        sum(sheet.kn or 0.0 for sheet in sheets),
-        sum(sheet.kt or 0.0 for sheet in sheets),
-        sum(sheet.cd_area or 0.0 for sheet in sheets),
     )
