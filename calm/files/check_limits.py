@@ -274,28 +274,14 @@ class AcceptKeys(Model):
         return self
 
 
-@dataclass(frozen=True)
-class Accept:
-    """Hold what is accepted of a mooring.
+class Accept(AcceptKeys):
+    """Say what is accepted of a mooring.
 
-    Attributes
-    ----------
-    rule : its id
-    component : as written, a label or a pattern of labels; None for every finding of the rule
-    labels : of the pieces and clamps that it stands for; None as above
-    reason : why
-    by, date : who accepted it, and when; None where it is not said
-    until : the last day on which it counts; None where it does not end
-    line : of the mooring file
+    `labels` are those of the pieces and clamps that it stands for, None for every finding of the
+    rule; `line` is its own in the mooring file.
     """
 
-    rule: str
-    component: str | None
     labels: tuple[str, ...] | None
-    reason: str
-    by: str | None
-    date: str | None
-    until: str | None
     line: int
 
     def covers(self, rule: str, component: str | None) -> bool:
@@ -348,9 +334,7 @@ def _accept(
         if not covered:
             wrong("component", _nothing_called(keys.component, labels))
     line = top.problem(("checks", "accept", number), "").line
-    return Accept(
-        keys.rule, keys.component, covered, keys.reason, keys.by, keys.date, keys.until, line
-    )
+    return Accept.model_construct(**dict(keys), labels=covered, line=line)
 
 
 def matching(component: str, labels: Iterable[str]) -> list[str]:
