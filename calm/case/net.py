@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
 from functools import cached_property
+from math import nan
 from pathlib import Path
 from typing import Any
 
@@ -14,12 +15,13 @@ from calm.assemble import assemble_water
 from calm.case.measure import result_of
 from calm.case.mooring import Mooring, load
 from calm.case.parts import naming_the_piece
-from calm.case.result import Accuracy, Result
+from calm.case.result import Accuracy, AnchorLoad, Result
 from calm.case.result_tables import Clamps, Components
 from calm.case.tow import Tow, TowResult
 from calm.errors import InputError, NoEquilibrium
 from calm.files import MooringFile, Piece, read_mooring
 from calm.files.legs import NET_REFUSED, EndKeys, Leg, nodes_of
+from calm.files.mooring_file import STAND_IN
 from calm.physics.line import Floats, Water
 from calm.solve import Settings, Solution, Status
 from calm.solve.net import NetSolution, solve_net
@@ -92,15 +94,21 @@ class NetResult:
     @cached_property
     def components(self) -> Components:
         """The pieces of the file, leg by leg."""
-        tables = [leg.components for leg in self.legs]
-        whole: Components = _joined(tables, self.file.legs, self.file.pieces)
-        return whole
+        pairs = zip(self.file.legs, self.legs, strict=True)  # a leg that is joined has a stand-in
+        whole = Components.joined(
+            [leg.components.head(keys.end - keys.first) for keys, leg in pairs]
+        )
+        pieces = self.file.pieces
+        return whole.with_columns(part=list(pieces), index=np.arange(len(pieces)))
 
     @cached_property
     def clamps(self) -> Clamps:
         """What is clamped on them."""
-        whole: Clamps = _joined([leg.clamps for leg in self.legs], self.file.legs)
-        return whole
+        tables = [
+            leg.clamps.with_columns(index=leg.clamps.index + keys.first)
+            for keys, leg in zip(self.file.legs, self.legs, strict=True)
+        ]
+        return Clamps.joined(tables)
 
     def to_dict(self) -> dict[str, Any]:
         """The JSON object of the result format; None stands where a figure is unknown."""
@@ -197,6 +205,17 @@ class Net:
             found.append(NetLeg(line, upper, lower))
         return tuple(found)
 
+    def with_lines(self, lines: Sequence[Sequence[Piece]]) -> Net:
+        """Return the net with other pieces in its legs, stand-ins for anchors among them."""
+        legs: list[Leg] = []
+        pieces: list[Piece] = []
+        for leg, own in zip(self.file.legs, lines, strict=True):
+            first = len(pieces)
+            pieces += [piece for piece in own if piece.use != STAND_IN]
+            legs.append(replace(leg, first=first, end=len(pieces)))
+        listed = tuple(replace(piece, index=index) for index, piece in enumerate(pieces))
+        return Net(replace(self.file, pieces=listed, legs=tuple(legs)))
+
     def _end(self, end: EndKeys, nodes: Mapping[str, int], mooring: Mooring) -> LegEnd:
         if end.join is not None:
             return LegEnd(node=nodes[end.join])
@@ -249,6 +268,9 @@ def _result_of(net: Net, found: NetSolution, still: Sequence[Solution | None]) -
         upright = before or solution
         meant = Mooring(mooring.file, bool(upright.afloat), line=mooring.line, water=mooring.water)
         result = result_of(meant, solution, before)
+        if mooring.file.pieces[-1].use == STAND_IN:
+            none = {each.name: nan for each in fields(result.anchor)}
+            result = replace(result, anchor=AnchorLoad(**none))
         legs.append(result)
         ends += _end_loads(result, solution)
     places = zip(nodes_of(net.file.legs), found.nodes, found.imbalance, strict=True)
@@ -270,23 +292,6 @@ def _result_of(net: Net, found: NetSolution, still: Sequence[Solution | None]) -
         held=tuple(end for end in ends if end.weight is None),
         warnings=(*net.file.notices, *(said for leg in legs for said in leg.warnings)),
     )
-
-
-def _joined(tables: Sequence[Any], legs: Sequence[Leg], pieces: Sequence[Piece] = ()) -> Any:
-    """The tables of legs one after another, rows counted as in the file and without stand-ins."""
-    columns: dict[str, Any] = {}
-    for each in fields(tables[0]):
-        parts = [getattr(table, each.name) for table in tables]
-        if pieces:
-            parts = [part[: leg.end - leg.first] for part, leg in zip(parts, legs, strict=True)]
-        whole = [row for part in parts for row in part]
-        columns[each.name] = whole if isinstance(parts[0], list) else np.concatenate(parts)
-    shifts = [np.full(len(table), leg.first) for table, leg in zip(tables, legs, strict=True)]
-    if pieces:
-        columns |= {"part": list(pieces), "index": np.arange(len(pieces))}
-    else:
-        columns["index"] = columns["index"] + np.concatenate(shifts)
-    return type(tables[0])(**columns)
 
 
 def _end_loads(leg: Result, solution: Solution) -> Iterator[EndLoad]:

@@ -174,11 +174,8 @@ class Outputs:
     def check(self) -> None:
         """Refuse outputs that could not be written, before anything is solved.
 
-        Raises
-        ------
-        UsageError
-            A path that cannot be written, that another output or a mooring file has already, or
-            that looks like an option; a picture of an unknown format.
+        UsageError: a path that cannot be written, that another output or a mooring file has
+        already, or that looks like an option; a picture of an unknown format.
         """
         from calm.report.folder import check_destination
         from calm.report.provenance import moment

@@ -116,10 +116,8 @@ def run(
 def draws_of(uncertainty: bool, samples: int, seed: int) -> tuple[int, int] | None:
     """Samples and seed by which to say how sure the figures are; None where that is not asked.
 
-    Raises
-    ------
-    UsageError
-        A number of samples that is not a power of two; a seed below zero; either without need.
+    UsageError: a number of samples that is not a power of two; a seed below zero; either without
+    need.
     """
     from calm.case.draws import SAMPLES, checked_samples
 

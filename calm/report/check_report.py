@@ -180,7 +180,10 @@ def _on_the_way(assessment: Assessment) -> Iterator[Block]:
         yield handling_summary(assessment)
         yield handling_table(assessment)
     else:
-        yield Prose(("Neither the launch nor the recovery could be solved.",), State.UNKNOWN)
+        net = bool(assessment.mooring.file.legs)
+        said = "The launch and the recovery of a net of legs are not judged."
+        said = said if net else "Neither the launch nor the recovery could be solved."
+        yield Prose((said,), State.UNKNOWN)
     if assessment.backup:
         yield breaks_table(assessment.backup)
 

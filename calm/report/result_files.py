@@ -37,9 +37,7 @@ _WORDS = ("mooring", "part", "index", "use", "label")
 _WITHIN = {"tension", "least_tension", "reynolds"}
 """What is greatest or least within a piece: a row has the figures of its ends."""
 
-_NUMBERS = tuple(
-    name for name in Components.__annotations__ if name in QUANTITIES and name not in _WITHIN
-)
+_NUMBERS = tuple(name for name in Components.names() if name in QUANTITIES and name not in _WITHIN)
 HEADER = (*_WORDS, *(QUANTITIES[name].header for name in _NUMBERS))
 """The first row: names, with the unit in brackets where there is one."""
 

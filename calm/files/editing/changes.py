@@ -45,7 +45,7 @@ class Page:
         """Return what stands at a location, None where nothing does."""
         node: Node | None = self.root
         for step in location:
-            node = _child_of(node, step) if node else None
+            node = node.entry(step)[1] if node else None
         return node
 
     def put(self, location: Location, value: Value) -> list[Patch]:
@@ -53,7 +53,7 @@ class Page:
         outer: Node | None = None
         node = self.root
         for depth, step in enumerate(location):
-            child = _child_of(node, step)
+            _, child = node.entry(step)
             if child is None:
                 new = nested(location[depth:], value)
                 if node.kind == "mapping" and (node.keys or outer is None or not depth):
@@ -185,16 +185,6 @@ def _opens(location: Location, node: Node) -> bool:
     if location not in [(name,) for name in NAMED]:
         return False
     return not node.children or any(child.style == "block" for child in node.children)
-
-
-def _child_of(node: Node, step: str | int) -> Node | None:
-    """Return what stands below a node under a key or number."""
-    if node.kind == "mapping":
-        named = zip(node.keys, node.children, strict=True)
-        return next((child for key, child in named if key.data == step), None)
-    if node.kind == "sequence" and isinstance(step, int) and 0 <= step < len(node.children):
-        return node.children[step]
-    return None
 
 
 def nested(location: Location, value: Value) -> dict[str, Value]:
