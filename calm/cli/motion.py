@@ -243,6 +243,7 @@ def read_measured(
         labels_of,
         matched_by_label,
         matched_by_place,
+        named_by_serial,
         plausible,
         unusable,
     )
@@ -264,6 +265,7 @@ def read_measured(
     labels, still = labels_of(mooring), Forward(mooring, {}).still
     notes: list[str] = []
     if match == "label":
+        sensors = named_by_serial(sensors, mooring)
         points, notes = matched_by_label(sensors, labels)
     else:
         points = matched_by_place(sensors, instruments_of(mooring), still, labels)

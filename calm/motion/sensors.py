@@ -25,6 +25,7 @@ from calm.records.cf_files import (
     places_along,
     read_times,
     reading,
+    serials_along,
 )
 from calm.records.current_file import holds_arrays
 from calm.records.headings import read_time_columns
@@ -56,6 +57,7 @@ class Sensor:
     nominal : depth where it was meant to hang [m]; NaN where its file does not say
     dropped : readings that were left out for their flag
     note : what a person should know before trusting it
+    serial : number of the instrument; empty where its file does not say
     """
 
     label: str
@@ -65,6 +67,7 @@ class Sensor:
     nominal: float = float("nan")
     dropped: int = 0
     note: str = ""
+    serial: str = ""
 
 
 def read_sensors(
@@ -187,6 +190,7 @@ def _understood(
     depth = depth_of(values, latitude) if is_pressure else values
     labels = None if along is None else labels_along(dataset, along)
     places = places_along(dataset, along, seabed)
+    serials = serials_along(dataset, along)
     return [
         Sensor(
             "" if labels is None else labels[j],
@@ -196,6 +200,7 @@ def _understood(
             float("nan") if places is None else float(places[j]),
             int(dropped[:, j].sum()),
             note,
+            serials[j] if j < len(serials) else "",
         )
         for j in range(values.shape[1])
         if not note or np.isfinite(depth[:, j]).any()
@@ -251,6 +256,7 @@ def _from_csv(path: Path, latitude: float) -> list[Sensor]:
             else values[:, j],
             path.name,
             float("nan") if instrument is None else instrument.nominal,
+            serial="" if instrument is None else instrument.serial,
         )
         for j, (label, dimension) in enumerate(zip(table.names, table.dimensions, strict=True))
     ]

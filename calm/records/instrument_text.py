@@ -56,6 +56,7 @@ class InstrumentText:
     line : (n,) number of the line of each row
     nominal : depth where it was meant to hang [m]; NaN where the file does not say
     latitude : [degrees]; NaN where the file does not say
+    serial : number of the instrument; empty where the file does not say
     """
 
     time: NDArray[np.datetime64]
@@ -63,6 +64,7 @@ class InstrumentText:
     line: NDArray[np.intp]
     nominal: float
     latitude: float
+    serial: str
 
     def lines(self, names: Sequence[str]) -> Iterator[tuple[int, str]]:
         """Yield the numbered lines of a table of the time and some of the columns, by their name.
@@ -134,6 +136,7 @@ def _rodb(path: Path) -> InstrumentText:
         return InstrumentText(
             time + seconds.astype("m8[s]"), columns, line,
             float(said.get("instrdepth", "nan")), plain_degrees(latitude, "latitude"),
+            said.get("serialnumber", ""),
         )  # fmt: skip
     except ValueError:
         raise _refused(path, 0, "its `InstrDepth` or `Latitude` is no number") from None
@@ -177,7 +180,8 @@ def _cnv(path: Path) -> InstrumentText:
         if clock[1].startswith("timeJ"):  # days of the year, its first being 1
             epoch, seconds = epoch.astype("M8[Y]").astype("M8[us]"), seconds - 86_400.0
     time = epoch + np.rint(seconds * 1e3).astype("m8[ms]")
-    return InstrumentText(time, columns, line, float("nan"), degrees)
+    serial = re.search(r"(?m)^\* (?:Temperature|Conductivity) SN = (\S+)", head)
+    return InstrumentText(time, columns, line, float("nan"), degrees, serial[1] if serial else "")
 
 
 def _numbers(

@@ -54,7 +54,7 @@ def test_pressures_of_rodb(tmp_path: Path) -> None:
     path = tmp_path / "wb1_12_2015_6123.use"
     path.write_text(USE)
     (one,) = read_sensors([f"CTD={path}"], frozenset({1}), 26.5, 1401.0)
-    assert (one.label, one.nominal) == ("CTD", 800.0)
+    assert (one.label, one.nominal, one.serial) == ("CTD", 800.0, "6123")
     expected = ["2015-11-30T23:00:01", "2015-12-01T00:00:01", "2016-02-29T01:30:00"]
     assert one.time.astype("M8[s]").astype(str).tolist() == expected
     depth = depth_of(np.array([828.9, np.nan, 831.3]), 26.5)
