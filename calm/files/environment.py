@@ -134,9 +134,7 @@ class SeabedKeys(Model):
     slope: Annotated[float, QuantityField("angle", at_least=0, at_most=45)] = described(
         "from the horizontal", "3 deg"
     )
-    toward: Annotated[float, QuantityField(**vars(DIRECTION))] = described(
-        "where it gets deeper, clockwise from north", "120 deg"
-    )
+    toward: Toward = described("where it gets deeper, clockwise from north", "120 deg")
 
     @property
     def deepening(self) -> tuple[float, float]:
