@@ -97,6 +97,10 @@ class LineResponse:
         common : what is common to the record
         without : groups whose currents are taken from the others
         """
+        if common.law is not None:
+            u = np.tile(np.exp(common.law.mean), (len(level), 1))
+            spread = np.tile(common.law.covariance, (len(level), 1, 1))
+            return ReadCurrents(level, u, np.zeros_like(u), spread)
         u, v, known = self.read(level, without)
         speed = np.maximum(np.hypot(u, v), 1e-3)
         own = np.hypot(
