@@ -33,9 +33,9 @@ from calm.physics.line import Floats, Integers
 KNOTS, FINER = 6, 2.2
 """Depths at which the speed is unknown; the power of their share of the depth below the top of the
 line by which they are closer together above, as currents change most there."""
-SURFACE, DECAY, LEAST = 0.3, 0.2, 0.03
-"""The speeds that are assumed [m/s]: at the top, decaying over this share of the depth, and what
-is added everywhere."""
+SURFACE, DECAY, LEAST = 0.3, 500.0, 0.03
+"""The speeds that are assumed: at the top [m/s], decaying over this depth [m], the scale of the
+thermocline, and what is added everywhere [m/s]."""
 ALL, EACH, ALIKE = 0.7, 1.4, 0.5
 """Deviations of the logarithm of the speed that is assumed: of all knots alike, of each, and the
 share of the knots over which these are alike."""
@@ -53,7 +53,7 @@ SHARES = (0.01, 0.02, 0.03, 0.05, 0.07, 0.1, 0.15)
 USUAL, WITHIN = 0.05, 0.7
 """The one that is assumed, and the deviation of its logarithm."""
 SEABED = 0.0005
-"""Of the depth of the water, as a share of it: where the pressures alone place a line, a wrong length
+"""Of the depth of the water, as a share of it: where pressures alone place a line, a wrong length
 stands for what is wrong by more."""
 AGAIN = 3
 """Steps from a fit that is kept to that of another time."""
@@ -93,8 +93,7 @@ def with_knots(measured: MooringMeasurements, mooring: Mooring) -> MooringMeasur
 def assumed_law(measured: MooringMeasurements) -> tuple[Floats, Floats]:
     """Return (k,), (k, k) mean and covariance of the logarithms of the speeds beforehand."""
     knots = measured.level_depth[0]
-    share = (knots - knots[0]) / (knots[-1] - knots[0])
-    mean = np.log(SURFACE * np.exp(-share / DECAY) + LEAST)
+    mean = np.log(SURFACE * np.exp(-(knots - knots[0]) / DECAY) + LEAST)
     place = np.linspace(0.0, 1.0, len(knots))
     near = np.exp(-np.abs(place[:, None] - place) / ALIKE)
     return mean, ALL**2 + EACH**2 * near
