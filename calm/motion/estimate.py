@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from calm.motion import common_unknowns
 from calm.motion.common_unknowns import Common
-from calm.motion.line_response import LineResponse, ReadCurrents
+from calm.motion.line_response import Linear, LineResponse, ReadCurrents
 from calm.motion.measurements import MooringMeasurements
 from calm.physics.line import Floats
 
@@ -219,33 +219,6 @@ FURTHEST = 0.7
 """Of a logarithm of a current's factor, at most."""
 UNMEASURED = 1e4
 """Of a sensor that measured nothing at a time [m]."""
-
-
-@dataclass(frozen=True)
-class Linear:
-    """The depths of the points near a state of the currents.
-
-    Attributes
-    ----------
-    logs : (n, g) the state
-    depth : (n, p) there [m]
-    slope : (n, p, g) with the state
-    common : (n, p, f) with the logarithms of the common factors
-    """
-
-    logs: Floats
-    depth: Floats
-    slope: Floats
-    common: Floats
-
-    def moved(self, logs: Floats, depth: Floats) -> Linear:
-        """Return the line at another state, with slopes that lead there from this one (Broyden)."""
-        step = logs - self.logs
-        size = (step**2).sum(axis=1)[:, None]
-        miss = depth - self.depth - np.einsum("npg,ng->np", self.slope, step)
-        share = np.divide(step, size, out=np.zeros_like(step), where=size > 1e-6)
-        slope = self.slope + np.nan_to_num(miss)[:, :, None] * share[:, None, :]
-        return Linear(logs, depth, slope, self.common)
 
 
 @dataclass(frozen=True)

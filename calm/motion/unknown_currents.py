@@ -24,8 +24,8 @@ from numpy.typing import NDArray
 from calm.case import Mooring
 from calm.motion import common_unknowns
 from calm.motion.common_unknowns import Common
-from calm.motion.estimate import CurrentsState, Linear, Posterior, posterior
-from calm.motion.line_response import STEP, Forward, LineResponse, ReadCurrents
+from calm.motion.estimate import CurrentsState, Posterior, posterior
+from calm.motion.line_response import STEP, Forward, Linear, LineResponse, ReadCurrents
 from calm.motion.measurements import FREE, MooringMeasurements
 from calm.motion.whole_record import forwards_of, repeated
 from calm.physics.line import Floats, Integers
@@ -33,7 +33,7 @@ from calm.physics.line import Floats, Integers
 KNOTS, FINER = 6, 2.2
 """Depths at which the speed is unknown; the power of their share of the depth below the top of the
 line by which they are closer together above, as currents change most there."""
-SURFACE, DECAY, LEAST = 0.3, 500.0, 0.03
+SURFACE, DECAY, LEAST = 0.3, 400.0, 0.03
 """The speeds that are assumed: at the top [m/s], decaying over this depth [m], the scale of the
 thermocline, and what is added everywhere [m/s]."""
 ALL, EACH, ALIKE = 0.7, 1.4, 0.5
