@@ -66,7 +66,7 @@ from calm.report.provenance import (
     unseen,
 )
 from calm.report.result_files import members
-from calm.report.sheet import sheet
+from calm.report.sheet import quality_of, summary_of, table_of_line
 
 if TYPE_CHECKING:
     from calm.checks.comparison import Comparison
@@ -154,9 +154,9 @@ def _line(assessment: Assessment) -> Iterator[Block]:
     title = f"Schematic, environment: {stand.environment}" if stand else "Schematic"
     yield Figure(title, schematic_svg(assessment.mooring.file, result), tall=True)
     if stand is not None and result is not None:
-        said = sheet(result, places=True)
-        yield replace(said.table, title=f"Table of the line, environment: {stand.environment}")
-        yield from (*said.summary, Prose((said.accuracy, said.convergence)))
+        title = f"Table of the line, environment: {stand.environment}"
+        yield table_of_line(result, title, places=True)
+        yield from (*summary_of(result), quality_of(result))
 
 
 def _drawn(assessment: Assessment) -> Iterator[Block]:
