@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, field, fields, replace
 from functools import cached_property
+from math import nan
 from pathlib import Path
 from typing import Any
 
@@ -14,12 +15,13 @@ from calm.assemble import assemble_water
 from calm.case.measure import result_of
 from calm.case.mooring import Mooring, load
 from calm.case.parts import naming_the_piece
-from calm.case.result import Accuracy, Result
+from calm.case.result import Accuracy, AnchorLoad, Result
 from calm.case.result_tables import Clamps, Components
 from calm.case.tow import Tow, TowResult
 from calm.errors import InputError, NoEquilibrium
-from calm.files import MooringFile, read_mooring
-from calm.files.legs import NET_REFUSED, EndKeys, nodes_of
+from calm.files import MooringFile, Piece, read_mooring
+from calm.files.legs import NET_REFUSED, EndKeys, Leg, nodes_of
+from calm.files.mooring_file import STAND_IN
 from calm.physics.line import Floats, Water
 from calm.solve import Settings, Solution, Status
 from calm.solve.net import NetSolution, solve_net
@@ -203,6 +205,17 @@ class Net:
             found.append(NetLeg(line, upper, lower))
         return tuple(found)
 
+    def with_lines(self, lines: Sequence[Sequence[Piece]]) -> Net:
+        """Return the net with other pieces in its legs, stand-ins for anchors among them."""
+        legs: list[Leg] = []
+        pieces: list[Piece] = []
+        for leg, own in zip(self.file.legs, lines, strict=True):
+            first = len(pieces)
+            pieces += [piece for piece in own if piece.use != STAND_IN]
+            legs.append(replace(leg, first=first, end=len(pieces)))
+        listed = tuple(replace(piece, index=index) for index, piece in enumerate(pieces))
+        return Net(replace(self.file, pieces=listed, legs=tuple(legs)))
+
     def _end(self, end: EndKeys, nodes: Mapping[str, int], mooring: Mooring) -> LegEnd:
         if end.join is not None:
             return LegEnd(node=nodes[end.join])
@@ -255,6 +268,9 @@ def _result_of(net: Net, found: NetSolution, still: Sequence[Solution | None]) -
         upright = before or solution
         meant = Mooring(mooring.file, bool(upright.afloat), line=mooring.line, water=mooring.water)
         result = result_of(meant, solution, before)
+        if mooring.file.pieces[-1].use == STAND_IN:
+            none = {each.name: nan for each in fields(result.anchor)}
+            result = replace(result, anchor=AnchorLoad(**none))
         legs.append(result)
         ends += _end_loads(result, solution)
     places = zip(nodes_of(net.file.legs), found.nodes, found.imbalance, strict=True)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Generic, Protocol, Self, TypeVa
 import numpy as np
 
 from calm.files import Clamp, Piece, Place
+from calm.files.mooring_file import STAND_IN
 from calm.physics.line import Floats
 from calm.suggestions import unknown
 
@@ -258,9 +259,10 @@ def rows_by_place(result: WithClamps) -> dict[Place, ComponentRow | ClampRow]:
 
 
 def rows_down(result: WithClamps) -> Iterator[tuple[ComponentRow, list[ClampRow]]]:
-    """Yield the pieces of a result, each with what is clamped on it."""
+    """Yield the pieces of a result, each with what is clamped on it; no stand-in for an anchor."""
     on: dict[int, list[ClampRow]] = {}
     for clamp in result.clamps:
         on.setdefault(clamp.index, []).append(clamp)
     for component in result.components:
-        yield component, on.get(component.index, [])
+        if component.use != STAND_IN:
+            yield component, on.get(component.index, [])

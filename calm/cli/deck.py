@@ -103,7 +103,7 @@ def deck(
         for notice in dict.fromkeys(n for one in design.moorings for n in one.file.notices):
             narrate(f"{design.path}: {notice}")
         try:
-            decks.append(deck_of(design.moorings, Order(order), **ship))
+            decks.append(deck_of(design.lines, Order(order), **ship))
         except NoEquilibrium as failure:
             narrate(f"{design.path}: {failure}")
             return ExitCode.NO_EQUILIBRIUM

@@ -100,11 +100,11 @@ def draw(result: AnyResult, uncertain: Uncertain | None = None) -> Figure:
     flow.sharey(elevation)
     figure.suptitle(result.name, parse_math=False)
 
-    _draw_elevation(elevation, side)
+    draw_elevation(elevation, side)
     write_names(elevation, written, height)
     _draw_flow_of(flow, result, side, plane)
     for axes in plan:
-        _draw_plan(axes, plan_of(result))
+        draw_plan(axes, plan_of(result))
     return figure
 
 
@@ -115,7 +115,8 @@ def _leaves_plane(result: AnyResult, behind: Floats) -> bool:
     return bool(np.abs(across).max() > _PLANE_WITHIN * distance)
 
 
-def _draw_elevation(axes: Axes, side: LinePicture) -> None:
+def draw_elevation(axes: Axes, side: LinePicture) -> None:
+    """Draw the line from the side, between surface and seabed."""
     if side.surface:
         axes.axhline(0.0, color=WATER_COLOUR, linewidth=1)
     if side.seabed is not None:
@@ -144,7 +145,7 @@ def draw_lines(axes: Axes, picture: LinePicture) -> None:
             axes.plot(line.x, line.y, label=line.label, **LINE_STYLE)
 
 
-def _draw_plan(axes: Axes, above: LinePicture) -> None:
+def draw_plan(axes: Axes, above: LinePicture) -> None:
     """Draw the line from above, both axes to one scale."""
     if above.ship is not None:
         axes.plot(*above.ship, label="tow point", **_SHIP)

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
 MOST_LEGS = 40
 NET_REFUSED = (
-    "this is a net of legs; `calm run` solves it, the other commands take a single line: one free "
-    "end, one anchor"
+    "this is a net of legs; `calm run` solves it and `calm check` judges it, this takes a single "
+    "line: one free end, one anchor"
 )
 
 _Offset = Annotated[float, QuantityField("length")]
@@ -59,6 +59,11 @@ class EndKeys(Model):
     held: HeldKeys | None = Field(
         default=None, description="a fixed place", examples=[{"depth": "2 m"}]
     )
+
+    @property
+    def free(self) -> bool:
+        """Return whether nothing holds it."""
+        return self.join is None and self.anchor is None and self.held is None
 
 
 _FREE = EndKeys()

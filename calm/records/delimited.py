@@ -170,15 +170,24 @@ class CopiedTable:
     rows: tuple[tuple[str, ...], ...]
 
 
-def read_table(path: Path, example: str) -> TextTable:
-    """Return the table of a file of UTF-8 text; messages show the example of a header.
+def read_table(path: Path, example: str, lines: Iterable[NumberedLine] | None = None) -> TextTable:
+    """Return the table of a file of UTF-8 text.
 
-    InputError: it cannot be read, is empty, or has no header.
+    Parameters
+    ----------
+    path : of the file
+    example : of a header, for messages
+    lines : that another reader made of the file
+
+    Raises
+    ------
+    InputError
+        It cannot be read, is empty, or has no header.
     """
-    text = decoded(path, COMMENT.sub(rb"\1", read_content(path, largest=LARGEST_CSV)))
-    header, lines = table_lines(
-        path, enumerate(text.removeprefix("\ufeff").splitlines(), 1), example
-    )
+    if lines is None:
+        text = decoded(path, COMMENT.sub(rb"\1", read_content(path, largest=LARGEST_CSV)))
+        lines = enumerate(text.removeprefix("\ufeff").splitlines(), 1)
+    header, lines = table_lines(path, lines, example)
     return TextTable(path, header, [row_below(header, *line) for line in lines])
 
 

@@ -30,6 +30,7 @@ from calm.records.delimited import (
     table_lines,
 )
 from calm.records.headings import heading, is_time, magnetic_columns, zone_complaint
+from calm.records.instrument_text import read_instrument_text
 from calm.records.profile_tables import read_currents, turned_notices
 from calm.records.record import RULES, Levels, Period, Record, choose_profiles, part
 
@@ -67,6 +68,9 @@ class CsvRecord(Record):
     def _read(self, path: Path) -> CurrentHeader:
         """Return every profile of the file into the temporary one."""
         try:
+            if (instrument := read_instrument_text(path)) is not None:
+                lines = instrument.lines(("depth", "u", "v", "w"))
+                return self._keep(path, *table_lines(path, lines, f"time,{EXAMPLE}"))
             with path.open("rb") as file:
                 plain = (COMMENT.sub(rb"\1", line).decode("utf-8-sig") for line in file)
                 lines = ((i, line.rstrip("\r\n")) for i, line in enumerate(plain, 1))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from math import isnan
 
 from calm.case import Result
@@ -32,7 +31,7 @@ from calm.report.blocks import (
 from calm.report.check_summary import limits_table
 from calm.report.net_sheet import leg_title, net_part
 from calm.report.provenance import NOT_JUDGED, date, document_part, inputs_part
-from calm.report.sheet import sheet
+from calm.report.sheet import quality_of, summary_of, table_of_line, title_of
 
 
 def result_report(result: AnyResult, uncertain: Uncertain | None = None) -> Report:
@@ -48,11 +47,10 @@ def result_report(result: AnyResult, uncertain: Uncertain | None = None) -> Repo
             for leg in result.legs
         )
     else:
-        each = sheet(result, places=True)
-        title, said = each.title, (*each.summary, Prose((each.accuracy, each.convergence)))
+        title, said = title_of(result), (*summary_of(result), quality_of(result))
         line = (
             Figure("Schematic", schematic_svg(file, result), tall=True),
-            replace(each.table, title="Table of the line"),
+            table_of_line(result, "Table of the line", places=True),
         )
     environment = file.environment.name or "own"
     drawing = figure_svg(draw(result, uncertain))

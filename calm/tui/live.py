@@ -229,7 +229,7 @@ def _found(
     if file.tow is None:
         as_given = Situation(AS_GIVEN, result, failure)
         here = file.environment.name or OWN
-        yield from findings_of(as_given, file.name, here, anchored=view.anchored)
+        yield from findings_of(as_given, file.name, here)
 
 
 def _wrong(view: View, problems: Sequence[Problem]) -> View:

@@ -135,7 +135,7 @@ def test_in_still_water_nothing_is_knocked_down(
     assert found["nodes"][0]["depth"] == pytest.approx(500.0 - 0.7 - 200.0 - 0.83, abs=1.5)
 
 
-@pytest.mark.parametrize("command", ["check", "size", "waves", "deck", "diff", "export"])
+@pytest.mark.parametrize("command", ["size", "waves", "deck", "diff", "export"])
 def test_other_commands_say_which_one_solves_nets(
     command: str, net: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -149,8 +149,32 @@ def test_other_commands_say_which_one_solves_nets(
     assert run(command, net, *more.get(command, [])) == 2
     told = capsys.readouterr().err
     assert f"{net}:5:1" in told
-    assert "`calm run` solves it" in told
+    assert "`calm run` solves it and `calm check` judges it" in told
     assert not (tmp_path / "out.csv").exists()
+
+
+def test_check_judges_every_leg(
+    net: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run("check", net, "--report", tmp_path / "report", "--workers", 1) == 1
+    said = capsys.readouterr()
+    assert "its launch, its recovery and what waves do to it are not judged" in said.err
+    for leg in ("own: main", "own: second", "own: pennant", "own: stem"):
+        assert leg in " ".join(said.out.split())
+    report = json.loads((tmp_path / "report" / "report.json").read_text())
+    (stands,) = report["situations"].values()
+    assert {each["environment"] for each in stands if each["anchor_vertical"]} == {"own: stem"}
+    (items,) = report["inventory"].values()
+    assert [each["label"] for each in items if each["kind"] == "anchor"] == ["anchor-wheels-4"]
+    page = (tmp_path / "report" / "report.html").read_text()
+    assert "The launch and the recovery of a net of legs are not judged." in page
+
+
+def test_check_refuses_to_count_samples_of_a_net(
+    net: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run("check", net, "--uncertainty") == 2
+    assert "--uncertainty is for single lines" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("option", ["--explain", "--netcdf", "--uncertainty"])
