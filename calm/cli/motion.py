@@ -268,6 +268,7 @@ def read_measured(
     """What was measured, on common times; what is said of it, and its source."""
     import numpy as np
 
+    from calm.dataset.discovery import hashed
     from calm.motion.correction import without
     from calm.motion.line_response import Forward
     from calm.motion.matching import (
@@ -331,7 +332,7 @@ def read_measured(
     if not measured.label:
         raise UsageError("--pressures: no sensor is left: " + "; ".join(notes))
     source = {
-        "currents": ", ".join(one.source for one in read),
-        "pressures": ", ".join(dict.fromkeys(one.source for one in sensors)),
+        "currents": ", ".join(hashed(Path(str(one).rpartition("=")[2])) for one in currents),
+        "pressures": ", ".join(hashed(Path(text.rpartition("=")[2])) for text in pressures),
     }
     return measured, notes, source

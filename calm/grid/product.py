@@ -125,6 +125,9 @@ def grid_layout(
             Variable(called, ("time", "depth"), NUMBER, about),
             Variable(f"{called}_sd", ("time", "depth"), NUMBER, spread),
         ]
+        if name == "temperature":
+            about["units_metadata"] = "temperature: on_scale"
+            spread["units_metadata"] = "temperature: difference"
         flagged[called] = [f"{called}_sd"]
     whole = with_flags(variables, flagged)
     if averaged is not None:
@@ -151,6 +154,7 @@ def grid_layout(
         "OCEAN CIRCULATION, EARTH SCIENCE > OCEANS > SALINITY/DENSITY",
         "source": "subsurface mooring",
         "processing_level": "Data interpolated",
+        "comment": "Flag 8: between instruments; 3: beyond them, or little is known; 9: no value",
         "QC_indicator": "mixed",
         "instrument": ", ".join(labels),
         "calm": __version__,

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from calm.dataset.discovery import FLAGS, written
 from calm.errors import InputError, Problem, UsageError
+from calm.motion.archived import ESTIMATED, MEASURED, MISSING
 from calm.motion.line_places import LinePlaces, points_of
 from calm.motion.measurements import interpolated
 from calm.motion.study import depths_at
@@ -40,8 +41,6 @@ _OF_OLD = ("DEPTH_quality_control", "DEPTH_UNCERTAINTY")
 NOMINAL = "NOMINAL_DEPTH"
 """Where the place of the one instrument of a file goes, if that was its `DEPTH`."""
 _TIMES = ("time", "TIME", "Time")
-MEASURED, ESTIMATED, MISSING = 1, 8, 9
-"""Flags of depths, of the table of OceanSITES."""
 
 
 @dataclass(frozen=True)
