@@ -70,7 +70,7 @@ def archived(
         position = deployed.position
     place = () if position is None else (position.latitude, position.longitude)
     name = str(layout.attributes["title"]).partition(": ")[0]
-    inputs = "; ".join(source.values())
+    inputs = "; ".join(filter(None, source.values()))
     attributes: Attributes = {
         **layout.attributes,
         **coverage(measured.time, (0.0, float(mooring.water.depth)), place),
