@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from calm.grid.depths import MooringDepths
-    from calm.grid.field import Field
+    from calm.grid.field import GriddedQuantity
     from calm.records.instrument_series import InstrumentSeries
 
 GRID_EXAMPLES = """Examples:
@@ -143,7 +143,7 @@ def fields_of(
     step: np.timedelta64 | None,
     *,
     in_time: bool,
-) -> dict[str, Field]:
+) -> dict[str, GriddedQuantity]:
     """The field of each quantity; one that has too few instruments is left out, and said.
 
     Raises

@@ -26,7 +26,7 @@ from calm.dataset.netcdf import (
 )
 from calm.errors import UsageError
 from calm.grid.depths import MooringDepths
-from calm.grid.field import BLOCK, Field, estimate
+from calm.grid.field import BLOCK, GriddedQuantity, estimate
 from calm.records.measured_quantities import QUANTITIES_MEASURED
 from calm.units import QuantityError, parse_quantity
 from calm.version import __version__
@@ -78,7 +78,7 @@ def _metres(part: str, text: str, wanted: str) -> float:
 
 
 def grid_layout(
-    fields: Mapping[str, Field],
+    fields: Mapping[str, GriddedQuantity],
     levels: NDArray[np.float64],
     depths: MooringDepths,
     inputs: Sequence[str],
@@ -171,7 +171,7 @@ def grid_layout(
     return in_capitals(layout) if all(one.isupper() for one in names.values()) else layout
 
 
-def method_sentence(field: Field) -> str:
+def method_sentence(field: GriddedQuantity) -> str:
     """Return how a quantity was put onto levels, with its scales."""
     scales = field.scales
     time = "" if not field.in_time else f" and {scales.time / 3600.0:.3g} h in time"
@@ -184,7 +184,7 @@ def method_sentence(field: Field) -> str:
 
 def write_grid(
     layout: ResultLayout,
-    fields: Mapping[str, Field],
+    fields: Mapping[str, GriddedQuantity],
     levels: NDArray[np.float64],
     names: Mapping[str, str],
     output: Path,
