@@ -56,7 +56,7 @@ class Advising:
         if not found:
             text = "No finding has a remedy that can be computed here. " + text
         if isinstance(result, Result) and not view.complete:
-            text += " Launch, recovery and breaks are still being judged."
+            text += " Launch, recovery, breaks and waves are still being judged."
         self._app.push_screen(Question("Advice", text, answers), take)
 
     def _ask_for_target(self, view: View, mooring: Mooring) -> None:

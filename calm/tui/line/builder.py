@@ -66,7 +66,8 @@ class BuilderScreen(DraftScreen):
         }
         &.-narrow Pictures { width: 3fr; }
         &.-narrow VerdictPane { width: 2fr; height: 1fr; max-height: 100%; margin-top: 0; }
-        &.-narrow.-flat #study { display: none; }
+        &.-narrow.-flat #study, &.-narrow.-flat #catalogue-title { display: none; }
+        &.-narrow.-flat #catalogue { border: none; }
         &.-narrow.-flat.-zoomed #study, &.-narrow.-flat.-reading #study {
             display: block; height: 1fr; border: none;
         }
