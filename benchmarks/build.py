@@ -77,26 +77,36 @@ PRACTISED = (
 )
 """Of who knows the keys: what each part is for, and what is typed."""
 FIRST_TIME = (
-    ("the keys read, the catalogue looked at", "?<PgDn><PgDn><PgDn><Esc>a" + "<Down>" * 8 + "<Esc>"),
+    (
+        "the keys read, the catalogue looked at",
+        "?<PgDn><PgDn><PgDn><Esc>a" + "<Down>" * 8 + "<Esc>",
+    ),
     ("depth and current", _WATER),
     ("top float", "afloat<Down><Down>" + "\x7f" * 5 + "ore-41<Enter>"),
-    ("shots and glass, one after the other", "".join(
-        f"wire-jacketed-8-5<Enter>{length}<Enter><Enter>glass-cluster-4<Enter>"
-        if not number else f"d-8-5<Enter>{length}<Enter><Enter>cluster-4<Enter>"
-        for number, length in enumerate(_LENGTHS)
-    )),
+    (
+        "shots and glass, one after the other",
+        "".join(
+            f"wire-jacketed-8-5<Enter>{length}<Enter><Enter>glass-cluster-4<Enter>"
+            if not number
+            else f"d-8-5<Enter>{length}<Enter><Enter>cluster-4<Enter>"
+            for number, length in enumerate(_LENGTHS)
+        ),
+    ),
     ("release, chain, anchor", "<Esc>" + _ENDS),
-    ("the instruments, each from the catalogue", "<Home><Down>" + "<Down><Down>".join(
-        f"isbe37<Enter>{place}<Enter><Enter><Esc>" for place in _PLACES
-    )),
-    ("their serial numbers, from the palette", "<Home><Down><Down><Ctrl+P>serial<Enter>5101<Ctrl+S>"
-     + "".join(f"<Down><Down><Down>N{number}<Ctrl+S>" for number in range(5102, 5109))),
+    (
+        "the instruments, each from the catalogue",
+        "<Home><Down>"
+        + "<Down><Down>".join(f"isbe37<Enter>{place}<Enter><Enter><Esc>" for place in _PLACES),
+    ),
+    (
+        "their serial numbers, from the palette",
+        "<Home><Down><Down><Ctrl+P>serial<Enter>5101<Ctrl+S>"
+        + "".join(f"<Down><Down><Down>N{number}<Ctrl+S>" for number in range(5102, 5109)),
+    ),
     ("save", "<Ctrl+S>"),
 )
 """Of who types it for the first time: help, catalogue and palette are looked at, nothing is
 repeated or filled in one go."""
-TWENTY = "#s" + _entered(range(5101, 5121))
-"""Serial numbers of twenty instruments, the cursor being on one of them."""
 
 
 def pieces(count: int) -> str:

@@ -27,6 +27,14 @@ class Edited(Message):
 
 
 @dataclass
+class Told(Message):
+    """Something is to be said in the last line; `wrong` where something cannot be done."""
+
+    text: str
+    wrong: bool = False
+
+
+@dataclass
 class Judged(Message):
     """A worker has judged the file; `fully` with its launch, recovery and breaks."""
 
