@@ -50,8 +50,6 @@ def assemble_line(
     pieces: Sequence[Piece],
     solver: Solver | None = None,
     gravity: float = STANDARD_GRAVITY,
-    *,
-    free_end: bool = True,
 ) -> Line:
     """The line above the anchor, or the whole towed line, in the order of the pieces.
 
@@ -62,7 +60,6 @@ def assemble_line(
     pieces : top to bottom, the anchor last if there is one
     solver : the laws of drag, friction and strumming; the usual ones where not given
     gravity : under which masses weigh [m/s²]
-    free_end : whether a sphere at the end of a line without an anchor is towed
     """
     solver = solver or Solver()
     anchor = pieces[-1].component
@@ -71,7 +68,7 @@ def assemble_line(
     flexible = [isinstance(piece.component, Flexible) for piece in above]
     drags = [drag_of(piece.component, piece.length or 0.0, solver) for piece in above]
     curves = [_drag_curve(piece.component, solver) for piece in above]
-    if free_end and not moored and isinstance(anchor, Sphere) and anchor.cx is None:
+    if not moored and isinstance(anchor, Sphere) and anchor.cx is None:
         k = drag.sphere_drag(anchor.diameter, TOWED_SPHERE_CX)
         drags[-1], curves[-1] = (k, k, False), None
     clamps = [(i, clamp) for i, piece in enumerate(above) for clamp in piece.clamps]

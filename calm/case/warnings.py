@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,9 +16,7 @@ from calm.solve import Solution
 from calm.solve.audit import flow_across
 
 if TYPE_CHECKING:
-    from calm.case.net import NetResult
     from calm.case.result import Result
-    from calm.case.result_tables import Components
     from calm.case.tow import TowResult
 
 LARGEST_REYNOLDS = 2e5
@@ -50,28 +47,6 @@ def tow_warnings_of(result: TowResult, solution: Solution) -> tuple[str, ...]:
     return (*result.file.notices, *of_any, *own)
 
 
-def net_warnings_of(
-    result: NetResult, legs: Sequence[tuple[Components, Solution]]
-) -> tuple[str, ...]:
-    """Every warning of a net's result, the file's own notices first; legs without their anchors."""
-    whole: Any = result
-    found = [*result.file.notices]
-    for worry in (_overloaded, _tilted, _stiffness_unknown):
-        found += worry(whole, legs[0][1])
-    for components, solution in legs:
-        one: Any = SimpleNamespace(components=components, file=result.file)
-        for own in (_overstretched, _beyond_the_table, _fast_flow, _hull_unknown, _wind_ignored):
-            found += own(one, solution)
-    for anchor in result.anchors:
-        weight, needed = anchor.weight or 0.0, anchor.required_weight or 0.0
-        if weight < needed:
-            found.append(
-                f"The anchor of {anchor.leg} weighs {say('wet_weight', weight)} in water; "
-                f"{say('required_weight', needed)} are required to hold its leg."
-            )
-    return tuple(found)
-
-
 def _overloaded(result: Result | TowResult, _: Solution) -> Iterator[str]:
     for row in result.components:
         if row.safety_factor < 1.0:
@@ -85,8 +60,9 @@ def _overloaded(result: Result | TowResult, _: Solution) -> Iterator[str]:
 def _anchor_too_light(result: Result, _: Solution) -> Iterator[str]:
     anchor = result.anchor
     if anchor.weight < anchor.required_weight:
+        of = f" of leg {result.name}" if result.file.legs else ""
         yield (
-            f"The anchor weighs {say('wet_weight', anchor.weight)} in water; "
+            f"The anchor{of} weighs {say('wet_weight', anchor.weight)} in water; "
             f"{say('required_weight', anchor.required_weight)} are required to hold the line."
         )
 
@@ -202,6 +178,8 @@ def _power(number: float) -> str:
 
 
 def _bight(result: Result, solution: Solution) -> Iterator[str]:
+    if result.file.legs:  # which hang as their ends are held
+        return
     pieces, force = solution.element_piece, solution.force[1:, 2]
     hanging = pieces[(force < 0.0) & (solution.element_clamp < 0)]
     if len(hanging):

@@ -71,10 +71,7 @@ def diff(
 def compared(files: tuple[Path, ...], lines: list[Mooring | Tow]) -> Comparison:
     """Two designs, or one with what was deployed of it.
 
-    Raises
-    ------
-    UsageError
-        A mooring and a tow; a single tow, or a file that says nothing of a deployment.
+    UsageError: a mooring and a tow; a single tow, or a file that says nothing of a deployment.
     """
     from calm.case import Mooring
     from calm.checks.comparison import comparison_of

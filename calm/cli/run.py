@@ -6,6 +6,7 @@ import sys
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
+from itertools import zip_longest
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, TypeVar
 
@@ -104,9 +105,8 @@ def run(
     asked: dict[str, object] = {
         "--explain": explain,
         "--uncertainty": uncertainty,
-        "--schematic": schematic,
+        "--netcdf": netcdf,
     }
-    asked |= {"--plot": plot, "--html": html, "--pdf": pdf, "--netcdf": netcdf}
     _refuse_nets([option for option, is_asked in asked.items() if is_asked], files, lines)
     return solve_and_show(
         lines, outputs, explain=explain, schematic=schematic, draws=draws, verbose=verbose
@@ -116,10 +116,8 @@ def run(
 def draws_of(uncertainty: bool, samples: int, seed: int) -> tuple[int, int] | None:
     """Samples and seed by which to say how sure the figures are; None where that is not asked.
 
-    Raises
-    ------
-    UsageError
-        A number of samples that is not a power of two; a seed below zero; either without need.
+    UsageError: a number of samples that is not a power of two; a seed below zero; either without
+    need.
     """
     from calm.case.draws import SAMPLES, checked_samples
 
@@ -228,7 +226,7 @@ def _refuse_nets(
     if nets and options:
         raise UsageError(
             f"{options[0]} is for single lines; these are nets of legs: {', '.join(nets)} "
-            "(their tables, --json and --csv can be had)"
+            "(tables, pictures, reports, --json and --csv are for these too)"
         )
 
 
@@ -265,10 +263,12 @@ def _to_draw_often(samples: int, seed: int) -> Callable[[FileOutcome], FileOutco
 
 
 def _drawn(outcome: FileOutcome, line: Mooring | Tow | Net) -> FileOutcome:
-    """The outcome with its line drawn in the signs that the standard output can carry."""
-    from calm.case.net import NetResult
+    """The outcome with its line, or its legs, drawn in the signs the standard output can carry."""
+    from calm.case.net import Net, NetResult
     from calm.drawing.schematic.in_terminal import TerminalSchematic, can_carry
 
-    assert not isinstance(outcome.result, NetResult)  # refused beforehand
-    plain = not can_carry(getattr(sys.stdout, "encoding", None))
-    return replace(outcome, schematic=TerminalSchematic(line.file, outcome.result, plain))
+    plain, result = not can_carry(getattr(sys.stdout, "encoding", None)), outcome.result
+    results = result.legs if isinstance(result, NetResult) else [result]
+    lines = line.lines if isinstance(line, Net) else [line]
+    drawn = [TerminalSchematic(of.file, one, plain) for of, one in zip_longest(lines, results)]
+    return replace(outcome, schematic=tuple(drawn))

@@ -23,6 +23,7 @@ from calm.files.definition import (
     QuantityField,
     Text,
     described,
+    optional,
     quantity_of,
 )
 from calm.files.rule_texts import ACCEPTABLE
@@ -139,24 +140,22 @@ class Checks(Model):
     rating_margin: Annotated[float, LENGTH, Limit()] = described(
         "depth that must be left to a depth rating", "100 m", default=100.0
     )
-    maximum_knockdown: Annotated[float | None, POSITIVE_LENGTH, Limit(THE_DESIGN)] = described(
-        "most that the top may be pushed down", "50 m", default=None
+    maximum_knockdown: Annotated[float | None, POSITIVE_LENGTH, Limit(THE_DESIGN)] = optional(
+        "most that the top may be pushed down", "50 m"
     )
-    maximum_excursion: Annotated[float | None, POSITIVE_LENGTH, Limit(THE_DESIGN)] = described(
-        "most that the top may go to the side", "200 m", default=None
+    maximum_excursion: Annotated[float | None, POSITIVE_LENGTH, Limit(THE_DESIGN)] = optional(
+        "most that the top may go to the side", "200 m"
     )
     maximum_tilt: Annotated[
         float | None,
         QuantityField("angle", above=0, at_most=90),
         Limit(THE_DESIGN),
-    ] = described("most that a piece may lean", "30 deg", default=None)
+    ] = optional("most that a piece may lean", "30 deg")
     minimum_top_depth: Annotated[
         float | None,
         LENGTH,
         Limit(THIS_PROGRAM, default=10.0),
-    ] = described(
-        "least depth of the top of a sub-surface line, at low water too", "10 m", default=None
-    )
+    ] = optional("least depth of the top of a sub-surface line, at low water too", "10 m")
     fishbite_depth: Annotated[float, LENGTH, Limit(_BERTEAUX)] = described(
         "down to which fish bite synthetic rope; 0 m where none do", "1500 m", default=1000.0
     )
@@ -261,12 +260,12 @@ class AcceptKeys(Model):
     reason: Reason = described(
         "why the finding is accepted", "the maker gives no load; hung on chain"
     )
-    component: Text | None = described(
-        "label of the line, or a pattern of labels; all when absent", "glass *", default=None
+    component: Text | None = optional(
+        "label of the line, or a pattern of labels; all when absent", "glass *"
     )
-    by: Text | None = described("who accepts it", "A. Martin", default=None)
-    date: Day | None = described("day, e.g. 2026-11-20", "2026-11-22", default=None)
-    until: Day | None = described("last day on which it counts", "2027-12-31", default=None)
+    by: Text | None = optional("who accepts it", "A. Martin")
+    date: Day | None = optional("day, e.g. 2026-11-20", "2026-11-22")
+    until: Day | None = optional("last day on which it counts", "2027-12-31")
 
     @model_validator(mode="after")
     def _ends_after_it_begins(self) -> AcceptKeys:

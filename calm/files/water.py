@@ -16,11 +16,12 @@ from calm.errors import InputError, Problem, UsageError
 from calm.files.definition import (
     CATALOGUE_DENSITY,
     DENSITY,
-    POSITIVE_LENGTH,
     Model,
+    PositiveLength,
     QuantityField,
     Text,
     described,
+    optional,
 )
 from calm.files.yaml_document import SourceMapping
 from calm.physics import seawater
@@ -244,9 +245,7 @@ class Wind(Model):
     surface_drift: Annotated[float, QuantityField("number", at_least=0, at_most=0.1)] = described(
         "share of the wind's speed that the surface water drifts at", "2 %", default=0.0
     )
-    drift_depth: Annotated[float | None, POSITIVE_LENGTH] = described(
-        "how deep the water that the wind drives goes", "50 m", default=None
-    )
+    drift_depth: PositiveLength = optional("how deep the water that the wind drives goes", "50 m")
 
     @model_validator(mode="after")
     def _depth_of_a_drift(self) -> Wind:
@@ -258,11 +257,9 @@ class Wind(Model):
 class WaveKeys(Model):
     """The keys of `waves:`: one sea, a table of seas with their shares of the time, or both."""
 
-    significant_height: Annotated[float | None, POSITIVE_LENGTH] = described(
-        "Hs of the sea to be survived", "5 m", default=None
-    )
-    peak_period: Annotated[float | None, QuantityField("time", above=0)] = described(
-        "Tp of that sea; pierson-moskowitz and ochi-hubble have their own", "8.4 s", default=None
+    significant_height: PositiveLength = optional("Hs of the sea to be survived", "5 m")
+    peak_period: Annotated[float | None, QuantityField("time", above=0)] = optional(
+        "Tp of that sea; pierson-moskowitz and ochi-hubble have their own", "8.4 s"
     )
     spectrum: Text = described(
         f"{', '.join(SPECTRA)}, or a CSV or NetCDF file of a measured one",
@@ -275,10 +272,8 @@ class WaveKeys(Model):
     toward: Annotated[float, QuantityField(**vars(DIRECTION))] = described(
         "where they run, clockwise from north", "90 deg", default=90.0
     )
-    scatter: Text | None = described(
-        "CSV: significant_wave_height[m],peak_period[s],share; fatigue needs it",
-        "seas.csv",
-        default=None,
+    scatter: Text | None = optional(
+        "CSV: significant_wave_height[m],peak_period[s],share; fatigue needs it", "seas.csv"
     )
 
     @model_validator(mode="after")
