@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -33,18 +33,11 @@ def is_synthetic(component: Component) -> bool:
     return component.kind == "cable" and fibre_of(component.material) is not None
 
 
-def warnings_of(result: Result, solution: Solution) -> tuple[str, ...]:
-    """Every warning of a mooring's result, the file's own notices first."""
-    of_any = [warning for worry in _WORRIES for warning in worry(result, solution)]
-    own = [warning for worry in _MOORING_WORRIES for warning in worry(result, solution)]
-    return (*result.file.notices, *of_any, *own)
-
-
-def tow_warnings_of(result: TowResult, solution: Solution) -> tuple[str, ...]:
-    """Every warning of a tow's result, the file's own notices first."""
-    of_any = [warning for worry in _WORRIES for warning in worry(result, solution)]
-    own = [warning for worry in _TOW_WORRIES for warning in worry(result, solution)]
-    return (*result.file.notices, *of_any, *own)
+def warnings_of(result: Any, solution: Solution) -> tuple[str, ...]:
+    """Return every warning of a mooring's or a tow's result, the file's own notices first."""
+    doubts = (*_OF_ANY, *(_OF_A_TOW if solution.line.towed else _OF_A_MOORING))
+    found = [warning for doubt in doubts for warning in doubt(result, solution)]
+    return (*result.file.notices, *found)
 
 
 def _overloaded(result: Result | TowResult, _: Solution) -> Iterator[str]:
@@ -260,7 +253,7 @@ def _strums_along_the_flow(result: TowResult, solution: Solution) -> Iterator[st
         )
 
 
-_WORRIES: tuple[Callable[[Result | TowResult, Solution], Iterator[str]], ...] = (
+_OF_ANY: tuple[Callable[[Result | TowResult, Solution], Iterator[str]], ...] = (
     _overloaded,
     _tilted,
     _stiffness_unknown,
@@ -269,7 +262,7 @@ _WORRIES: tuple[Callable[[Result | TowResult, Solution], Iterator[str]], ...] = 
     _fast_flow,
     _other_equilibrium,
 )
-_MOORING_WORRIES: tuple[Callable[[Result, Solution], Iterator[str]], ...] = (
+_OF_A_MOORING: tuple[Callable[[Result, Solution], Iterator[str]], ...] = (
     _anchor_too_light,
     _anchor_of_unknown_material,
     _bight,
@@ -277,7 +270,7 @@ _MOORING_WORRIES: tuple[Callable[[Result, Solution], Iterator[str]], ...] = (
     _hull_unknown,
     _wind_ignored,
 )
-_TOW_WORRIES: tuple[Callable[[TowResult, Solution], Iterator[str]], ...] = (
+_OF_A_TOW: tuple[Callable[[TowResult, Solution], Iterator[str]], ...] = (
     _below_the_sea,
     _strums_along_the_flow,
 )

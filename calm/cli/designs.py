@@ -10,7 +10,7 @@ from cyclopts import Parameter
 
 from calm.cli.options import CatalogFiles, EnvironmentName, Units, show_units
 from calm.cli.outputs import OutputPath, Outputs
-from calm.cli.run import read_files
+from calm.cli.run import read_all
 from calm.cli.streams import ExitCode, narrate
 from calm.errors import NoEquilibrium, UsageError
 
@@ -57,7 +57,9 @@ def diff(
     files = (before,) if after is None else (before, after)
     outputs = Outputs(files, json)
     outputs.check()
-    lines = read_files(files, environment, catalog or [])
+    from calm.case import load
+
+    lines = read_all(load, files, environment, catalog or [])
     for file, line in zip(files, lines, strict=True):
         for notice in line.file.notices:
             narrate(f"{file}: {notice}")

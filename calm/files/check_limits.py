@@ -26,7 +26,7 @@ from calm.files.definition import (
     optional,
     quantity_of,
 )
-from calm.files.rule_texts import ACCEPTABLE
+from calm.files.rule_texts import ACCEPTABLE, RULES
 from calm.files.yaml_document import SourceMapping
 from calm.suggestions import shown, unknown
 
@@ -58,10 +58,10 @@ class Limit:
 
 _UFC = "UFC 4-159-03, table 3-7: 3 on new breaking strength of chain and wire"
 _PRACTICE = "oceanographic practice: a third to a fifth of the breaking load"
-_DEWEY = "Dewey, Mooring Design & Dynamics: weight in water ≥ 1.5 (V + H/0.6)"
+_DEWEY = RULES["anchor-weight"].source
 _NO_FIGURE = "practice of mooring groups, 50 to 100 kgf above the release; no figure is published"
 _BERTEAUX = "Berteaux, Prindle & May, OCEANS '87: fish bite from the surface to 1000 m and more"
-_2SK = "API RP 2SK: 1.67 on breaking strength, intact, tensions found dynamically"
+_2SK = RULES["wave-strength"].source
 _LIFE = "API RP 2SK: a fatigue life of three times the service life"
 _URI = "URI GSO mooring program"
 
@@ -274,28 +274,14 @@ class AcceptKeys(Model):
         return self
 
 
-@dataclass(frozen=True)
-class Accept:
-    """Hold what is accepted of a mooring.
+class Accept(AcceptKeys):
+    """Say what is accepted of a mooring.
 
-    Attributes
-    ----------
-    rule : its id
-    component : as written, a label or a pattern of labels; None for every finding of the rule
-    labels : of the pieces and clamps that it stands for; None as above
-    reason : why
-    by, date : who accepted it, and when; None where it is not said
-    until : the last day on which it counts; None where it does not end
-    line : of the mooring file
+    `labels` are those of the pieces and clamps that it stands for, None for every finding of the
+    rule; `line` is its own in the mooring file.
     """
 
-    rule: str
-    component: str | None
     labels: tuple[str, ...] | None
-    reason: str
-    by: str | None
-    date: str | None
-    until: str | None
     line: int
 
     def covers(self, rule: str, component: str | None) -> bool:
@@ -348,9 +334,7 @@ def _accept(
         if not covered:
             wrong("component", _nothing_called(keys.component, labels))
     line = top.problem(("checks", "accept", number), "").line
-    return Accept(
-        keys.rule, keys.component, covered, keys.reason, keys.by, keys.date, keys.until, line
-    )
+    return Accept.model_construct(**dict(keys), labels=covered, line=line)
 
 
 def matching(component: str, labels: Iterable[str]) -> list[str]:

@@ -24,6 +24,7 @@ from calm.files.water import (
     USUAL_DENSITY,
     Density,
     TableKeys,
+    Toward,
     WaveKeys,
     Wind,
     check_density,
@@ -36,7 +37,6 @@ from calm.files.water import (
 from calm.files.yaml_document import SourceMapping, validate
 from calm.records.current_terms import DEEPEST, Terms, TimeChoiceError, too_fast
 from calm.records.profile_tables import (
-    DIRECTION,
     CurrentTable,
     DepthTable,
     SeaWater,
@@ -129,7 +129,7 @@ class UniformCurrent(Model):
     """The same current at all depths [m/s, degrees]."""
 
     speed: Annotated[float, _SPEED] = described("of the water", "0.5 m/s")
-    toward: Annotated[float, QuantityField(**vars(DIRECTION))] = described(
+    toward: Toward = described(
         "direction it flows or goes to, clockwise from north, e.g. 90 deg", "90 deg"
     )
     w: Annotated[float, QuantityField("speed")] = described(

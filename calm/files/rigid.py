@@ -189,43 +189,6 @@ class Rigid(Definition):
         return self
 
 
-class Sphere(Rigid):
-    """A sphere; its length along the line is its diameter unless it says otherwise."""
-
-    kind: Literal["sphere"] = Field(description="which kind of component it is")
-    diameter: Diameter
-    length: Length = Field(default_factory=lambda data: data.get("diameter", 0.0))
-    cx: SphereCoefficient = None
-    surface: Surface = None
-
-
-class Cylinder(Rigid):
-    """A cylinder along the line."""
-
-    kind: Literal["cylinder"] = Field(description="which kind of component it is")
-    diameter: Diameter
-    length: Length
-    cn: NormalCoefficient = None
-    ct: TangentialCoefficient = None
-    inclination: Inclination = None
-    surface: Surface = None
-
-
-def _two_stops(value: object) -> object:
-    if value is not None and (not isinstance(value, list | tuple) or len(value) != 2):
-        raise ValueError("`between` names two stops: `between: [upper stop, lower stop]`")
-    return value
-
-
-class DragMeasurement(Model):
-    """A drag measured at a speed [m/s, N]."""
-
-    speed: Annotated[float, QuantityField("speed", above=0)] = described(
-        "of the water past it", "0.5 m/s"
-    )
-    force: Annotated[float, QuantityField("force", at_least=0)] = described("measured", "48 N")
-
-
 class SphereShape(Model):
     """A sphere as part of a body, for its drag alone."""
 
@@ -243,6 +206,34 @@ class CylinderShape(Model):
     cn: NormalCoefficient = None
     ct: TangentialCoefficient = None
     inclination: Inclination = None
+
+
+class Sphere(Rigid, SphereShape):
+    """A sphere; its length along the line is its diameter unless it says otherwise."""
+
+    length: Length = Field(default_factory=lambda data: data.get("diameter", 0.0))
+    surface: Surface = None
+
+
+class Cylinder(Rigid, CylinderShape):
+    """A cylinder along the line."""
+
+    surface: Surface = None
+
+
+def _two_stops(value: object) -> object:
+    if value is not None and (not isinstance(value, list | tuple) or len(value) != 2):
+        raise ValueError("`between` names two stops: `between: [upper stop, lower stop]`")
+    return value
+
+
+class DragMeasurement(Model):
+    """A drag measured at a speed [m/s, N]."""
+
+    speed: Annotated[float, QuantityField("speed", above=0)] = described(
+        "of the water past it", "0.5 m/s"
+    )
+    force: Annotated[float, QuantityField("force", at_least=0)] = described("measured", "48 N")
 
 
 Shape = Annotated[SphereShape | CylinderShape, Field(discriminator="kind")]

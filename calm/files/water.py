@@ -229,6 +229,7 @@ def _profile(
 
 
 _SPEED = QuantityField("speed", at_least=0)
+Toward = Annotated[float, QuantityField(**vars(DIRECTION))]
 
 
 class Wind(Model):
@@ -239,9 +240,7 @@ class Wind(Model):
     """
 
     speed: Annotated[float, _SPEED] = described("of the wind, at the height of the float", "12 m/s")
-    toward: Annotated[float, QuantityField(**vars(DIRECTION))] = described(
-        "where it blows to, clockwise from north", "90 deg"
-    )
+    toward: Toward = described("where it blows to, clockwise from north", "90 deg")
     surface_drift: Annotated[float, QuantityField("number", at_least=0, at_most=0.1)] = described(
         "share of the wind's speed that the surface water drifts at", "2 %", default=0.0
     )
@@ -269,9 +268,7 @@ class WaveKeys(Model):
     gamma: Annotated[float, QuantityField("number", at_least=1, at_most=10)] = described(
         "peakedness of jonswap", 3.3, default=3.3
     )
-    toward: Annotated[float, QuantityField(**vars(DIRECTION))] = described(
-        "where they run, clockwise from north", "90 deg", default=90.0
-    )
+    toward: Toward = described("where they run, clockwise from north", "90 deg", default=90.0)
     scatter: Text | None = optional(
         "CSV: significant_wave_height[m],peak_period[s],share; fatigue needs it", "seas.csv"
     )
