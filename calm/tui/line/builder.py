@@ -6,22 +6,19 @@ from collections.abc import Callable, Mapping
 from typing import Any, ClassVar
 
 from textual import on
-from textual.app import ComposeResult
 from textual.binding import BindingType
-from textual.containers import Horizontal, Vertical
 from textual.events import DescendantFocus, Key
 
-from calm.files import Place
 from calm.files.components import KINDS
 from calm.files.editing import Draft
 from calm.tui import key_table
-from calm.tui.catalogue.catalogue_pane import CataloguePane, Purpose
 from calm.tui.cell_editor import CellEditor
 from calm.tui.dialogs import InputSheet
 from calm.tui.key_table import bindings, hints
 from calm.tui.line.advising import Advising
 from calm.tui.line.comparing import Comparing
 from calm.tui.line.line_pane import LinePane
+from calm.tui.line.line_screen import LineScreen
 from calm.tui.line.mooring_sheet import (
     as_deployed,
     deployed_sheet,
@@ -32,223 +29,16 @@ from calm.tui.line.mooring_sheet import (
     tow_sheet,
     written,
 )
-from calm.tui.line.table import LineTable
-from calm.tui.messages import Workspace
-from calm.tui.pictures import Picture, Pictures, Tab
-from calm.tui.screen import DraftScreen, KeyBar
+from calm.tui.pictures import Picture, Tab
+from calm.tui.screen import KeyBar
 from calm.tui.session import Location
-from calm.tui.verdict_pane import VerdictPane, state_sign, state_word
+from calm.tui.verdict_pane import VerdictPane
 
 
-class BuilderScreen(DraftScreen):
+class BuilderScreen(LineScreen):
     """The line in the middle, and the ways to all other screens."""
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings("anywhere")]
-    HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (112, "-wide"), (176, "-huge")]  # noqa: RUF012
-    VERTICAL_BREAKPOINTS = [(0, "-flat"), (17, "-high")]  # noqa: RUF012
-    DEFAULT_CSS = """
-    BuilderScreen {
-        & #body { height: 1fr; }
-        & #study { width: 2fr; height: 1fr; border-left: vkey $panel; }
-        & #catalogue { width: 2fr; height: 1fr; border-left: vkey $panel; }
-        &.-searching #study { display: none; }
-        &.-searching #catalogue { display: block; }
-        &.-wide.-searching #line-pane { width: 2fr; }
-        &.-wide.-searching #catalogue { width: 3fr; }
-        &.-huge.-searching #study { display: block; }
-        &.-huge #catalogue { width: 1fr; }
-        &.-huge #line-pane { width: 2fr; }
-        &.-huge #study { width: 1fr; }
-        &.-narrow #body { layout: vertical; }
-        &.-narrow #line-pane { width: 1fr; height: 13fr; }
-        &.-narrow #study {
-            width: 1fr; height: 10fr; layout: horizontal; border-left: none;
-            border-top: hkey $panel;
-        }
-        &.-narrow #catalogue {
-            width: 1fr; height: 10fr; border-left: none; border-top: hkey $panel;
-        }
-        &.-narrow Pictures { width: 3fr; }
-        &.-narrow VerdictPane { width: 2fr; height: 1fr; max-height: 100%; margin-top: 0; }
-        &.-narrow.-flat #study, &.-narrow.-flat #catalogue-title { display: none; }
-        &.-narrow.-flat #catalogue { border: none; }
-        &.-narrow.-flat.-zoomed #study, &.-narrow.-flat.-reading #study {
-            display: block; height: 1fr; border: none;
-        }
-        &.-narrow.-flat.-reading #line-pane, &.-narrow.-flat.-reading Pictures { display: none; }
-        &.-narrow.-flat.-searching #line-pane { display: none; }
-        &.-zoomed #line-pane, &.-zoomed VerdictPane { display: none; }
-        &.-zoomed #study { display: block; border: none; }
-    }
-    """
-
-    def __init__(self, workspace: Workspace) -> None:
-        super().__init__(workspace)
-        self.line = LinePane(workspace)
-        self.catalogue = CataloguePane(id="catalogue")
-        self.pictures, self.verdict = Pictures(id="pictures"), VerdictPane(id="verdict-pane")
-
-    def parts(self) -> ComposeResult:
-        """The line; picture and verdict, in whose place the catalogue may be."""
-        with Horizontal(id="body"):
-            yield self.line
-            yield self.catalogue
-            with Vertical(id="study"):
-                yield self.pictures
-                yield self.verdict
-
-    @property
-    def is_typing(self) -> bool:
-        """Return whether a value is typed in place that is not in the draft yet."""
-        return self.line.editor.is_typing
-
-    def settle(self) -> bool:
-        """Take what is typed in a cell; a bad value stays to be corrected."""
-        return self.line.settle()
-
-    def show_draft(self) -> None:
-        """Show the draft as it is now."""
-        self.line.show_draft()
-        self._show_beside()
-        self.show_title()
-
-    def show_view(self) -> None:
-        """Show what a worker made of it; dim what is of an earlier one."""
-        if self.workspace.is_fresh or self.workspace.is_old:
-            self.line.show_rows()
-        self._show_beside()
-        self.show_title()
-
-    def show_catalogue(self) -> None:
-        """Search the catalogue that was read."""
-        self.line.show_rows()
-        self._show_beside()
-
-    def _show_beside(self) -> None:
-        index = self.workspace.index
-        if index is not None and self.catalogue.index is not index:
-            self.catalogue.take_index(index)
-        self._show_study()
-
-    def _show_study(self) -> None:
-        """The picture and the verdict of the last view, dimmed until they are of the draft."""
-        view, fresh = self.workspace.view, self.workspace.is_fresh
-        last = None if view is None or view.result is not None else self.workspace.good
-        if fresh:
-            self.pictures.show(last or view, "the last complete line" if last else "")
-            note = "The picture shows the last complete line." if last else ""
-            self.verdict.show(view, note)
-        self.pictures.set_class(self.workspace.is_old or last is not None, "-old")
-        self.verdict.set_class(self.workspace.is_old, "-old")
-
-    def titles(self) -> tuple[str, str]:
-        """Name, file, what is not saved; environment and verdict."""
-        name = " ".join(self.session.draft.text_at(("name",)).split())
-        standing, parts = self.session.standing, []
-        here = standing.environment
-        if here is not None or len(standing.environments) > 1:
-            parts.append(f"environment {here}" if here else "own environment")
-        is_narrow = self.has_class("-narrow") and not self.has_class("-flat")
-        state = state_sign if is_narrow else state_word
-        parts.append(state(self.workspace.view, old=not self.workspace.is_fresh))
-        return f"{self.workspace.called}  {name}".rstrip(), "   ".join(parts)
-
-    # from the verdict to a row, and back
-
-    @on(VerdictPane.RowWanted)
-    def _go_to_row(self, event: VerdictPane.RowWanted) -> None:
-        self.remove_class("-reading")
-        table = self.line.table
-        rows = {row.spot: number for number, row in enumerate(table.rows)}
-        numbers = sorted(rows[place] for place in event.places if place in rows)
-        if numbers:  # again and again: the next of them
-            table.cursor = next((each for each in numbers if each > table.cursor), numbers[0])
-            self.workspace.tell(event.text)
-            self.line.came_from_verdict = True
-        table.focus()
-
-    @on(LinePane.BackWanted)
-    def _back_to_verdict(self) -> None:
-        self.add_class("-reading")
-        self.verdict.focus()
-
-    # components from the catalogue
-
-    @on(LinePane.ComponentWanted)
-    def _want_component(self, event: LinePane.ComponentWanted) -> None:
-        self.search(event.purpose)
-
-    def search(self, purpose: Purpose) -> None:
-        """Search the catalogue for a component for the row under the cursor."""
-        self.remove_class("-zoomed")
-        self.add_class("-searching")
-        spot = self.line.table.spot
-        is_on_line = purpose == "clamp" or (
-            purpose == "replace" and spot is not None and spot.is_clamp
-        )
-        target, towed = self._target(purpose), self.session.draft.is_tow
-        used = self._used()
-        role = self._role(purpose)
-        self.catalogue.open(purpose, target, used, role, clampable=is_on_line, towed=towed)
-
-    def _role(self, purpose: Purpose) -> str:
-        """Return what is likely wanted there: a float on top, an anchor last, the like."""
-        spot, index, items = self.line.table.spot, self.workspace.index, self.session.draft.items
-        if spot is None or (purpose == "above" and spot == Place(0)):
-            return "" if self.session.draft.is_tow else "float"
-        if purpose == "clamp" or index is None:
-            return "instrument"
-        if purpose == "replace":
-            listed = index.get(self.session.item(spot).values.get("use", ""))
-            return listed.role if listed else ""
-        listed_all = [index.get(item.values.get("use", "")) for item in items]
-        roles = {each.role for each in listed_all if each}
-        is_last = spot.item == len(items) - 1 and purpose == "below"
-        return "anchor" if is_last and "release" in roles and "anchor" not in roles else ""
-
-    def _used(self) -> list[str]:
-        """Return what the line uses, from the bottom."""
-        items = self.session.draft.items
-        parts = [part for item in items for part in (item, *item.clamps)]
-        return [part.values.get("use", "") for part in reversed(parts)]
-
-    def _target(self, purpose: Purpose) -> str:
-        """Return what the row is called that the component is for."""
-        spot = self.line.table.spot
-        if spot is None:
-            return ""
-        values = self.session.item(spot if purpose == "replace" else Place(spot.item)).values
-        return values.get("label") or values.get("use", "")
-
-    @on(CataloguePane.Taken)
-    def _take_component(self, event: CataloguePane.Taken) -> None:
-        spot, values, purpose = self.line.table.spot, event.values, event.purpose
-        session, use = self.session, event.values["use"]
-        if purpose == "replace" and spot is not None:
-            kept: list[str] = []
-            if self.line.attempt(lambda: kept.extend(session.replace(spot, values))):
-                kept_keys = f"; kept from the one before: {', '.join(kept)}" if kept else ""
-                self.workspace.tell(f"now {use}{kept_keys}")
-            self._close_catalogue()
-            return
-        if purpose == "clamp" and spot is not None:
-            self.line.attempt(lambda: session.clamp(spot, values), f"{use} clamped on")
-        else:
-            below = purpose != "above"
-            self.line.attempt(lambda: session.insert(spot, values, below=below), f"{use} added")
-            if not below:  # the next one comes below it: a line is listed downwards
-                self.catalogue.purpose = "below"
-        self.catalogue.retitle(self._target(self.catalogue.purpose))
-
-    @on(CataloguePane.Closed)
-    def _close_catalogue(self) -> None:
-        self.remove_class("-searching")
-        self.line.table.focus()
-
-    @on(LineTable.Moved)
-    def _retarget(self) -> None:
-        if self.has_class("-searching"):
-            self.catalogue.retitle(self._target(self.catalogue.purpose))
 
     def on_resize(self) -> None:
         """The title says as much as there is room for."""

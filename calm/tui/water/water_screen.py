@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
@@ -15,11 +15,9 @@ from textual.events import DescendantFocus
 from textual.widget import Widget
 from textual.widgets import Static
 
-from calm.files.definition import POSITIVE_LENGTH, QuantityField
 from calm.files.editing import Draft, Value
-from calm.records.profile_tables import DIRECTION, SALINITY, TEMPERATURE, WATER_DENSITY
 from calm.tui.cell_editor import CellEditor
-from calm.tui.checking import needed, quantity
+from calm.tui.checking import needed
 from calm.tui.dialogs import Asked, InputSheet
 from calm.tui.field import Field
 from calm.tui.key_table import bindings, hints
@@ -30,13 +28,12 @@ from calm.tui.verdict_pane import state_word
 from calm.tui.water.currents_to_begin import Currents
 from calm.tui.water.form import (
     CURRENT_COLUMNS,
-    CURRENT_FORMS,
     DENSITY_FORMS,
-    PROFILE_FORMS,
     USUAL_DEPTH,
     FormChoice,
     Place,
     WaterForm,
+    fields_of_water,
 )
 from calm.tui.water.grid import Grid
 from calm.tui.water.grid_cells import GridCells
@@ -44,12 +41,6 @@ from calm.tui.water.grid_cells import GridCells
 if TYPE_CHECKING:
     from calm.errors import Problem
 
-_DEPTH = quantity(POSITIVE_LENGTH, optional=True)
-_DENSITY = quantity(WATER_DENSITY, optional=True)
-_SPEED = quantity(QuantityField("speed", at_least=0))
-_WIND = quantity(QuantityField("speed", at_least=0), optional=True)
-_ANGLE = quantity(DIRECTION)
-_TOWARD = quantity(DIRECTION, optional=True)
 _ELSEWHERE = (
     "The line stands in {0}: the profile and the verdict are of that. Below is the file's own "
     "environment; what {0} gives takes its place."
@@ -91,28 +82,9 @@ class WaterScreen(DraftScreen):
             with VerticalScroll(id="water-form", can_focus=False):
                 yield Static(id="environment-names", markup=False)
                 yield Static(id="water-notes")
-                yield from self._values()
+                yield from fields_of_water()
             with Vertical(id="water-profile"):
                 yield ProfilePicture()
-
-    def _values(self) -> Iterator[Widget]:
-        """The parts of the form; the id of each tells its place, as `_place` reads it."""
-        yield Field("depth", "Depth", _DEPTH, id="depth", placeholder="e.g. 1100 m")
-        yield FormChoice("Density", DENSITY_FORMS, id="density-form")
-        yield Field("density", "", _DENSITY, id="density", placeholder="else 1025 kg/m^3")
-        yield Grid(id="density-table")
-        for name, kind in (("temperature", TEMPERATURE), ("salinity", SALINITY)):
-            yield FormChoice(f"  {name}", PROFILE_FORMS, id=f"density-{name}-form")
-            yield Field(name, "", quantity(kind), id=f"density-{name}")
-            yield Grid(id=f"density-{name}-table")
-        yield FormChoice("Current", CURRENT_FORMS, id="current-form")
-        yield Field("speed", "  speed", _SPEED, id="current-speed")
-        yield Field("toward", "  towards", _ANGLE, id="current-toward")
-        yield Field("file", "  file", needed("a file"), id="current-file")
-        yield Field("time", "  time", id="current-time", placeholder="e.g. 2026-03-01T06")
-        yield Grid(id="current-table")
-        yield Field("speed", "Wind", _WIND, id="wind-speed", placeholder="none")
-        yield Field("toward", "  towards", _TOWARD, id="wind-toward", placeholder="where it blows")
 
     def on_mount(self) -> None:
         """Show what the file says."""
