@@ -459,7 +459,7 @@ def test_what_is_being_typed_is_taken_before_anything_else(drive, small):
         await driver.type("80 kg")
         assert not screen.settle() and screen.is_typing
         await driver.press("ctrl+z")
-        assert "Not taken yet" in driver.screen and screen.body.line.editor.is_open
+        assert "Not taken yet" in driver.screen and screen.line.editor.is_open
         assert driver.session.draft.items[0].values["label"] == "upper"
 
     drive(story, small)
