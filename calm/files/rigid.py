@@ -126,8 +126,8 @@ class Rigid(Definition):
         "drag coefficient of `wind_area`", 1.0, default=None
     )
 
-    heave: Literal["filtered", "follows"] | None = described(
-        "of a float at the surface in waves: by its hull, or as the water does",
+    heave: Literal["filtered", "follows", "panels"] | None = described(
+        "of a float at the surface in waves: by its hull, by panels on it, or as the water does",
         "follows",
         default=None,
     )

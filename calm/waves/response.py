@@ -16,6 +16,9 @@ SETTLED = 2e-3
 """Change of the flow past the nodes, over the greatest, below which drag is linearised well enough:
 that of the tension is a hundredth of it."""
 
+STILL = 1e-12
+"""Flow past a node that nothing moves, against division by nothing [m/s]."""
+
 MOST_ITERATIONS = 40
 
 RELAXATION = 0.8
@@ -124,7 +127,7 @@ def respond(
     weight = sea.density(omega) * 0.5 * (steps[:-1] + steps[1:])
     water = waves.velocity(line.position)
     forced = _inertia_force(line, buoy, waves, water)
-    still = np.sqrt((np.abs(water) ** 2 * weight[:, None, None]).sum(0)) + 1e-6
+    still = np.sqrt((np.abs(water) ** 2 * weight[:, None, None]).sum(0)) + STILL
     flow = still if first is None else first
     iterations = 0
     while iterations < MOST_ITERATIONS:
@@ -155,7 +158,7 @@ def _axes(line: LumpedLine) -> Floats:
 def _deviations(line: LumpedLine, relative: Complexes, weight: Floats) -> Floats:
     """Return (n, 3) standard deviations of the flow past the nodes, along their axes [m/s]."""
     own = np.einsum("nac,fnc->fna", _axes(line), relative)
-    return np.asarray(np.sqrt((np.abs(own) ** 2 * weight[:, None, None]).sum(0)) + 1e-9)
+    return np.asarray(np.sqrt((np.abs(own) ** 2 * weight[:, None, None]).sum(0)) + STILL)
 
 
 def _linearised(line: LumpedLine, buoy: Buoy | None, deviation: Floats) -> Floats:

@@ -107,14 +107,14 @@ def test_without_drag_the_response_is_linear_in_the_height():
 
 
 def test_drag_takes_energy_out_and_nothing_moves_without_waves():
-    sea, tiny = (sea_states.spectrum_of("bretschneider", h, 9.0, 3.3) for h in (5.0, 1e-6))
+    sea, tiny = (sea_states.spectrum_of("bretschneider", h, 9.0, 3.3) for h in (5.0, 1e-9))
     free, dragged = plumb(3000.0, 0.3, 9e4, 3000.0, 200), plumb(3000.0, 0.3, 9e4, 3000.0, 200, 20.0)
     found = []
     for line, state in ((free, sea), (dragged, sea), (dragged, tiny)):
         response, _ = respond(line, FOLLOWER, waves(state.frequencies(96)), state)
         found.append(response.moments(response.pull)[0][0])
     assert found[1] < found[0]
-    assert found[2] == pytest.approx(found[0] * 1e-6 / 5.0, rel=1e-3)
+    assert found[2] == pytest.approx(found[0] * 1e-9 / 5.0, rel=1e-3)
 
 
 @pytest.mark.parametrize(("mean", "deviation"), [(0.0, 1.0), (0.3, 0.2), (2.0, 0.1), (-0.5, 0.4)])
