@@ -220,12 +220,12 @@ def panel_heave(profile: Floats, density: float, gravity: float) -> Complexes:
             "`heave: panels` needs Capytaine 3: pip install capytaine; or leave `heave` out"
         ) from None
     capytaine.set_logging("ERROR")
-    keel = float(profile[0, 0])
-    flat = np.linspace(0.0, keel, max(int(keel / 0.2), 2) + 1)[:-1] if keel > 0.0 else [0.0]
-    radii, heights = profile[profile[:, 0] > 0.0].T
-    points = np.column_stack(
-        [np.r_[flat, radii], np.zeros(len(flat) + len(radii)), np.r_[[profile[0, 1]] * len(flat), heights]]
+    keel, bottom = profile[0]
+    flat = np.linspace(0.0, keel, max(int(keel / 0.2), 2) + 1)[:-1] if keel > 0.0 else np.zeros(1)
+    outline = np.vstack(
+        [np.column_stack([flat, np.full(len(flat), bottom)]), profile[profile[:, 0] > 0.0]]
     )
+    points = np.insert(outline, 1, 0.0, axis=1)
     body = capytaine.FloatingBody(mesh=from_profile(points, n=PANELS_ROUND))
     body.add_translation_dof(name="Heave")
     solver, found = capytaine.BEMSolver(), []
