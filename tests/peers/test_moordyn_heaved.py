@@ -143,8 +143,13 @@ def test_tensions_of_heaved_lines(name, tmp_path, monkeypatch):
     assert found == pytest.approx(tensions[:, below].std(0), rel=0.05)
 
 
-SEAS = {"taut nylon": False, "strong current": False, "wire over nylon": False, "cage in nylon": False,
-        "nearly slack": True}  # fmt: skip
+SEAS = {
+    "taut nylon": False,
+    "strong current": False,
+    "wire over nylon": False,
+    "cage in nylon": False,
+    "nearly slack": True,
+}
 """Whether it falls slack in a sea of Hs 5 m and Tp 10 s."""
 
 
