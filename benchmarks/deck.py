@@ -22,7 +22,7 @@ from calm.deck.cutting import cuts_of
 from calm.deck.deck_items import Order, deck_items_of
 from calm.drop import drop_plan
 from calm.report.deck_files import deck_report
-from calm.report.diagram_layout import Paper
+from calm.report.diagram import Paper
 from calm.report.folder import printed
 
 COMPONENTS = """

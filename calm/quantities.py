@@ -29,8 +29,8 @@ class Quantity:
         Digits after the point, in the unit displayed, that mean something to a reader.
     symbol : str
         The letter of formulas, where there is one.
-    display, usual_scale : str, float
-        The unit people usually read, where it is another, and how many of it make one `unit`.
+    display : str
+        The unit people usually read, where it is another: a key of `_USUAL`.
     """
 
     name: str
@@ -40,7 +40,6 @@ class Quantity:
     decimals: int = 1
     symbol: str = ""
     display: str = ""
-    usual_scale: float = 1.0
 
     @property
     def display_unit(self) -> str:
@@ -51,6 +50,11 @@ class Quantity:
     def usual_unit(self) -> str:
         """The unit people read where they choose none, and that of pictures."""
         return self.display or self.unit
+
+    @property
+    def usual_scale(self) -> float:
+        """How many of the usual unit make one `unit`."""
+        return _USUAL.get(self.display, 1.0)
 
     @property
     def scale(self) -> float:
@@ -107,188 +111,127 @@ class Quantity:
         return f"{text}{space}{self.display_unit}"
 
 
+_USUAL = {
+    **{"": 1.0, "°": 1.0, "mm": 1e3, "l": 1e3, "kN": 1e-3, "knot": 1.0 / (1852 / 3600)},
+    "years": 1.0 / (365.25 * 86_400.0),
+}
+"""How many of a unit that people usually read make one of that of results."""
+
 _TABLE = (
     Quantity("depth", "depth", "m", "Depth below the still-water surface."),
     Quantity("height", "height", "m", "Height above the seabed."),
     Quantity("offset", "offset", "m", "Horizontal distance from the anchor."),
     Quantity("layback", "layback", "m", "Horizontal distance behind the tow point."),
-    Quantity("x", "east", "m", "Distance east of the anchor or the tow point.", symbol="x"),
-    Quantity("y", "north", "m", "Distance north of the anchor or the tow point.", symbol="y"),
+    Quantity("x", "east", "m", "Distance east of the anchor or the tow point.", 1, "x"),
+    Quantity("y", "north", "m", "Distance north of the anchor or the tow point.", 1, "y"),
     Quantity(
         "length",
         "length",
         "m",
         "Length along the line; in results, as stretched by its load.",
-        decimals=2,
-        symbol="L",
+        2,
+        "L",
     ),
-    Quantity("cut_length", "cut length", "m", "Length before any load.", decimals=2),
+    Quantity("cut_length", "cut length", "m", "Length before any load.", 2),
     Quantity("depth_top", "depth, upper end", "m", "Depth of the upper end."),
     Quantity("depth_bottom", "depth, lower end", "m", "Depth of the lower end."),
     Quantity("x_top", "east, upper end", "m", "Like x, of the upper end."),
     Quantity("y_top", "north, upper end", "m", "Like y, of the upper end."),
     Quantity("x_bottom", "east, lower end", "m", "Like x, of the lower end."),
     Quantity("y_bottom", "north, lower end", "m", "Like y, of the lower end."),
-    Quantity("tension", "tension", "N", "Pull in the line.", decimals=0, symbol="T"),
-    Quantity("tension_top", "tension, upper end", "N", "Pull at the upper end.", decimals=0),
-    Quantity("tension_bottom", "tension, lower end", "N", "Pull at the lower end.", decimals=0),
-    Quantity("tilt", "tilt", "deg", "Angle of the axis from the vertical, 0 upright.", display="°"),
+    Quantity("tension", "tension", "N", "Pull in the line.", 0, "T"),
+    Quantity("tension_top", "tension, upper end", "N", "Pull at the upper end.", 0),
+    Quantity("tension_bottom", "tension, lower end", "N", "Pull at the lower end.", 0),
+    Quantity("tilt", "tilt", "deg", "Angle of the axis from the vertical, 0 upright.", 1, "", "°"),
     Quantity("knockdown", "knockdown", "m", "How much deeper than in still water."),
     Quantity("safety_factor", "safety factor", "", "Breaking load over the greatest tension."),
-    Quantity(
-        "utilisation", "utilisation", "", "Greatest tension over the working load.", decimals=2
-    ),
+    Quantity("utilisation", "utilisation", "", "Greatest tension over the working load.", 2),
     Quantity(
         "used_buoyancy",
         "used buoyancy",
         "",
         "Share of the buoyancy of a float at the surface that is in use.",
-        decimals=3,
+        3,
     ),
-    Quantity(
-        "reserve", "reserve", "N", "Buoyancy of the surface float that is not in use.", decimals=0
-    ),
-    Quantity("draft", "draft", "m", "How deep a floating hull is immersed.", decimals=2),
-    Quantity("freeboard", "freeboard", "m", "How far a floating hull stands out.", decimals=2),
+    Quantity("reserve", "reserve", "N", "Buoyancy of the surface float that is not in use.", 0),
+    Quantity("draft", "draft", "m", "How deep a floating hull is immersed.", 2),
+    Quantity("freeboard", "freeboard", "m", "How far a floating hull stands out.", 2),
     Quantity(
         "vertical",
         "vertical pull",
         "N",
         "Upward pull on the anchor, downward pull on the tow point.",
-        decimals=0,
-        symbol="V",
+        0,
+        "V",
     ),
     Quantity(
         "horizontal",
         "horizontal pull",
         "N",
         "Sideways pull on the anchor or the tow point.",
-        decimals=0,
-        symbol="H",
+        0,
+        "H",
     ),
     Quantity(
         "angle",
         "angle",
         "deg",
         "Angle of the pull: on an anchor from the vertical, in a tow from the horizontal.",
-        display="°",
+        1,
+        "",
+        "°",
     ),
-    Quantity("potential", "potential", "V", "Difference of two metals in sea water.", decimals=2),
-    Quantity(
-        "life",
-        "life in waves",
-        "s",
-        "Until fatigue in waves breaks it.",
-        display="years",
-        usual_scale=1.0 / (365.25 * 86_400.0),
-    ),
-    Quantity("body_tension", "tension at the body", "N", "Pull on the towed body.", decimals=0),
-    Quantity("frequency", "frequency", "Hz", "Frequency at which the cable vibrates.", decimals=2),
-    Quantity(
-        "required_weight", "required weight", "N", "Weight in water the anchor needs.", decimals=0
-    ),
-    Quantity("scope", "scope", "", "Cut length of the line over the water depth.", decimals=3),
+    Quantity("potential", "potential", "V", "Difference of two metals in sea water.", 2),
+    Quantity("life", "life in waves", "s", "Until fatigue in waves breaks it.", 1, "", "years"),
+    Quantity("body_tension", "tension at the body", "N", "Pull on the towed body.", 0),
+    Quantity("frequency", "frequency", "Hz", "Frequency at which the cable vibrates.", 2),
+    Quantity("required_weight", "required weight", "N", "Weight in water the anchor needs.", 0),
+    Quantity("scope", "scope", "", "Cut length of the line over the water depth.", 3),
     Quantity("grounded_length", "grounded length", "m", "Cut length that lies on the seabed."),
-    Quantity("speed", "speed", "m/s", "Speed of the water, or of the ship.", decimals=2),
+    Quantity("speed", "speed", "m/s", "Speed of the water, or of the ship.", 2),
+    Quantity("diameter", "diameter", "m", "Outside diameter; of a chain, its bar.", 1, "", "mm"),
+    Quantity("mass", "mass", "kg", "Mass in air.", 2),
+    Quantity("buoyancy", "buoyancy", "N", "Net force in sea water of 1025 kg/m³, upward.", 2, "B"),
     Quantity(
-        "diameter",
-        "diameter",
-        "m",
-        "Outside diameter; of a chain, its bar.",
-        display="mm",
-        usual_scale=1000.0,
-    ),
-    Quantity("mass", "mass", "kg", "Mass in air.", decimals=2),
-    Quantity(
-        "buoyancy",
-        "buoyancy",
-        "N",
-        "Net force in sea water of 1025 kg/m³, upward.",
-        decimals=2,
-        symbol="B",
-    ),
-    Quantity(
-        "weight",
-        "weight in water",
-        "N",
-        "Net force in sea water of 1025 kg/m³, downward.",
-        decimals=2,
+        "weight", "weight in water", "N", "Net force in sea water of 1025 kg/m³, downward.", 2
     ),
     Quantity(
         "net_buoyancy",
         "net force in water",
         "N",
         "Net force in sea water of 1025 kg/m³, upward, by weight or by mass and volume.",
-        decimals=0,
+        0,
     ),
     Quantity("dry_mass", "mass in air", "kg", "Mass of a piece as it lies on the deck."),
-    Quantity("wet_weight", "weight in water", "N", "Net force of a piece, downward.", decimals=0),
+    Quantity("wet_weight", "weight in water", "N", "Net force of a piece, downward.", 0),
     Quantity("lift_mass", "mass of the lift", "kg", "Mass of a piece with its clamps."),
-    Quantity("force", "force", "N", "Force measured.", decimals=0),
-    Quantity("at", "at", "m", "Where a clamp sits, from the top of its piece.", decimals=2),
+    Quantity("force", "force", "N", "Force measured.", 0),
+    Quantity("at", "at", "m", "Where a clamp sits, from the top of its piece.", 2),
+    Quantity("volume", "volume", "m³", "Volume of water displaced.", 1, "", "l"),
+    Quantity("density", "density", "kg/m³", "Density of the material.", 0),
+    Quantity("stiffness", "stiffness", "N", "Pull over strain, EA.", 0, "EA", "kN"),
+    Quantity("breaking_load", "breaking load", "N", "Load at which it breaks.", 1, "", "kN"),
+    Quantity("working_load", "working load", "N", "Load it is made for.", 1, "", "kN"),
+    Quantity("depth_rating", "depth rating", "m", "Greatest depth it stands.", 0),
     Quantity(
-        "volume", "volume", "m³", "Volume of water displaced.", display="l", usual_scale=1000.0
-    ),
-    Quantity("density", "density", "kg/m³", "Density of the material.", decimals=0),
-    Quantity(
-        "stiffness",
-        "stiffness",
-        "N",
-        "Pull over strain, EA.",
-        display="kN",
-        usual_scale=0.001,
-        decimals=0,
-        symbol="EA",
+        "max_tilt", "greatest tilt", "deg", "Tilt beyond which it is not to be trusted.", 0, "", "°"
     ),
     Quantity(
-        "breaking_load",
-        "breaking load",
-        "N",
-        "Load at which it breaks.",
-        display="kN",
-        usual_scale=0.001,
+        "warn_tilt", "tilt of warning", "deg", "Tilt from which its data need a look.", 0, "", "°"
     ),
-    Quantity(
-        "working_load", "working load", "N", "Load it is made for.", display="kN", usual_scale=0.001
-    ),
-    Quantity("depth_rating", "depth rating", "m", "Greatest depth it stands.", decimals=0),
-    Quantity(
-        "max_tilt",
-        "greatest tilt",
-        "deg",
-        "Tilt beyond which it is not to be trusted.",
-        display="°",
-        decimals=0,
-    ),
-    Quantity(
-        "warn_tilt",
-        "tilt of warning",
-        "deg",
-        "Tilt from which its data need a look.",
-        display="°",
-        decimals=0,
-    ),
-    Quantity(
-        "kn", "normal drag", "N/(m/s)²", "Drag across its axis at 1 m/s.", symbol="Kn", decimals=2
-    ),
-    Quantity(
-        "kt", "axial drag", "N/(m/s)²", "Drag along its axis at 1 m/s.", symbol="Kt", decimals=2
-    ),
-    Quantity("k_surface", "drag afloat", "N/(m/s)²", "Drag at 1 m/s when it floats.", decimals=2),
-    Quantity("lift", "lift", "N/(m/s)²", "Lift at 1 m/s.", decimals=2),
-    Quantity(
-        "drag_area", "drag area", "m²", "Area to which its drag coefficient belongs.", decimals=4
-    ),
-    Quantity("cd_area", "Cd × area", "m²", "Drag coefficient times area.", decimals=4),
-    Quantity("wind_area", "wind area", "m²", "Area on which the wind blows.", decimals=2),
-    Quantity("cx", "Cx", "", "Drag coefficient of a sphere.", decimals=3),
-    Quantity("cn", "Cn", "", "Drag coefficient across the axis.", decimals=3),
-    Quantity("ct", "Ct", "", "Drag coefficient along the axis.", decimals=4),
-    Quantity("cd", "Cd", "", "Drag coefficient.", decimals=3),
-    Quantity(
-        "wind_cd", "Cd in the wind", "", "Drag coefficient of the part in the air.", decimals=2
-    ),
-    Quantity("friction", "friction", "", "Coefficient of friction on the seabed.", decimals=2),
+    Quantity("kn", "normal drag", "N/(m/s)²", "Drag across its axis at 1 m/s.", 2, "Kn"),
+    Quantity("kt", "axial drag", "N/(m/s)²", "Drag along its axis at 1 m/s.", 2, "Kt"),
+    Quantity("k_surface", "drag afloat", "N/(m/s)²", "Drag at 1 m/s when it floats.", 2),
+    Quantity("lift", "lift", "N/(m/s)²", "Lift at 1 m/s.", 2),
+    Quantity("drag_area", "drag area", "m²", "Area to which its drag coefficient belongs.", 4),
+    Quantity("cd_area", "Cd × area", "m²", "Drag coefficient times area.", 4),
+    Quantity("wind_area", "wind area", "m²", "Area on which the wind blows.", 2),
+    Quantity("cx", "Cx", "", "Drag coefficient of a sphere.", 3),
+    Quantity("cn", "Cn", "", "Drag coefficient across the axis.", 3),
+    Quantity("ct", "Ct", "", "Drag coefficient along the axis.", 4),
+    Quantity("cd", "Cd", "", "Drag coefficient.", 3),
+    Quantity("wind_cd", "Cd in the wind", "", "Drag coefficient of the part in the air.", 2),
+    Quantity("friction", "friction", "", "Coefficient of friction on the seabed.", 2),
 )
 
 QUANTITIES = {quantity.name: quantity for quantity in _TABLE}

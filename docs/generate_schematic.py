@@ -58,8 +58,8 @@ assert picture.startswith("<svg")
 ```
 
 The SVG is made for A4. A long line is drawn smaller to fit, and one with more than about 60 rows
-needs a longer sheet. Texts never overlap: a text that is too long for its column is cut, and a
-viewer shows all of it when you point at it. The same input gives the same bytes.
+needs a longer sheet. Texts never overlap and none is cut: a long one wraps. A longer wire is drawn
+longer, a little for each tenfold length. The same input gives the same bytes.
 
 A float at the surface rides on it; a tow hangs from its ship, or from its helicopter:
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import difflib
+import operator
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache, cached_property
@@ -310,17 +311,10 @@ _ALSO = {
     "buoyancy": "net",
     "rating": "depth",
 }
-
-
 _ASKED = re.compile(r"([a-z]+)(<=|>=|<|>)([-+]?[\d.].*)")
 
 
-_HOLDS: dict[str, Callable[[float, float], bool]] = {
-    "<": lambda value, limit: value < limit,
-    "<=": lambda value, limit: value <= limit,
-    ">": lambda value, limit: value > limit,
-    ">=": lambda value, limit: value >= limit,
-}
+_HOLDS = {"<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge}
 
 
 Figures = dict[str, float | None]
@@ -356,7 +350,7 @@ class Wanted:
     def holds(self, figures: Figures) -> bool:
         """Return whether it is kept; not where the figure is unknown."""
         value = figures.get(self.key)
-        return value is not None and _HOLDS[self.relation](value, self.limit)
+        return value is not None and bool(_HOLDS[self.relation](value, self.limit))
 
 
 def wanted(word: str) -> Wanted | None:

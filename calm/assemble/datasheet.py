@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any
 
 from calm.assemble.line_arrays import drag_of
@@ -56,7 +56,8 @@ def datasheet(
         except QuantityError:
             return None
         sheets.append(_of_component(component, metres))
-    return _total(sheets)
+    names = [each.name for each in fields(Datasheet)]
+    return Datasheet(*(sum(getattr(sheet, name) or 0.0 for sheet in sheets) for name in names))
 
 
 def _items(parts: tuple[dict[str, Any], ...]) -> Iterator[Mapping[str, Any]]:
@@ -79,20 +80,11 @@ def _of_component(component: Component, metres: float) -> Datasheet:
     """Return the figures of some metres of a cable or chain; a rigid piece has its own length."""
     if isinstance(component, Anchor):
         return Datasheet(component.net_buoyancy, None, component.kt, None)
-    kn, kt, along = drag_of(component, getattr(component, "length", metres))
+    kn, kt, along = drag_of(component)
     times = metres if isinstance(component, Flexible) else 1.0
     return Datasheet(
         times * component.net_buoyancy,
         times * kn,
         times * (kt if along else kn),
         times * kn / (0.5 * CATALOGUE_DENSITY),
-    )
-
-
-def _total(sheets: list[Datasheet]) -> Datasheet:
-    return Datasheet(
-        sum(sheet.net_buoyancy for sheet in sheets),
-        sum(sheet.kn or 0.0 for sheet in sheets),
-        sum(sheet.kt or 0.0 for sheet in sheets),
-        sum(sheet.cd_area or 0.0 for sheet in sheets),
     )

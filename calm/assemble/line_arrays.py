@@ -50,8 +50,6 @@ def assemble_line(
     pieces: Sequence[Piece],
     solver: Solver | None = None,
     gravity: float = STANDARD_GRAVITY,
-    *,
-    free_end: bool = True,
 ) -> Line:
     """The line above the anchor, or the whole towed line, in the order of the pieces.
 
@@ -62,16 +60,15 @@ def assemble_line(
     pieces : top to bottom, the anchor last if there is one
     solver : the laws of drag, friction and strumming; the usual ones where not given
     gravity : under which masses weigh [m/s²]
-    free_end : whether a sphere at the end of a line without an anchor is towed
     """
     solver = solver or Solver()
     anchor = pieces[-1].component
     moored = isinstance(anchor, Anchor)
     above = pieces[:-1] if moored else pieces
     flexible = [isinstance(piece.component, Flexible) for piece in above]
-    drags = [drag_of(piece.component, piece.length or 0.0, solver) for piece in above]
+    drags = [drag_of(piece.component, solver) for piece in above]
     curves = [_drag_curve(piece.component, solver) for piece in above]
-    if free_end and not moored and isinstance(anchor, Sphere) and anchor.cx is None:
+    if not moored and isinstance(anchor, Sphere) and anchor.cx is None:
         k = drag.sphere_drag(anchor.diameter, TOWED_SPHERE_CX)
         drags[-1], curves[-1] = (k, k, False), None
     clamps = [(i, clamp) for i, piece in enumerate(above) for clamp in piece.clamps]
@@ -137,23 +134,16 @@ def mass_in_air(component: Component) -> float | None:
     return mass if mass >= 0.0 else None
 
 
-def drag_of(
-    component: Component, length: float, solver: Solver | None = None
-) -> tuple[float, float, bool]:
+def drag_of(component: Component, solver: Solver | None = None) -> tuple[float, float, bool]:
     """Kn, Kt [N/(m/s)², per metre of cable or chain] and whether drag depends on the axis.
 
     Parameters
     ----------
     component : of any kind; an anchor has no drag
-    length : of the piece along the line [m]
     solver : the laws of friction and strumming of cables and chains; the usual ones where not given
     """
-    if isinstance(component, Sphere):
-        k = drag.sphere_drag(component.diameter, component.cx)
-        return k, k, False
-    if isinstance(component, Cylinder):
-        kn, kt = drag.cylinder_drag(component.diameter, length, component.cn, component.ct)
-        return kn, kt, component.inclination != "insensitive"
+    if isinstance(component, SphereShape | CylinderShape):
+        return _shape_drag(component)
     if isinstance(component, Shaped):
         return _body_drag(component)
     if isinstance(component, Flexible):
@@ -224,7 +214,7 @@ def axial_drag_of(component: Component) -> float:
 
     Its tangential drag; where its drag does not depend on the axis, that of any direction.
     """
-    kn, kt, directional = drag_of(component, getattr(component, "length", 0.0))
+    kn, kt, directional = drag_of(component)
     return kt if directional else kn
 
 
@@ -236,7 +226,7 @@ def with_axial_clamps(line: Line, pieces: Sequence[Piece]) -> Line:
     line : as assembled from the pieces
     """
     clamps = [clamp.component for piece in pieces for clamp in piece.clamps]
-    axial = [drag_of(each, getattr(each, "length", 0.0))[2] for each in clamps]
+    axial = [drag_of(each)[2] for each in clamps]
     curves = tuple(
         None if along else curve for along, curve in zip(axial, line.clamp_drag_curve, strict=False)
     )
@@ -246,7 +236,7 @@ def with_axial_clamps(line: Line, pieces: Sequence[Piece]) -> Line:
 
 def _clamped_drag(component: Component) -> float:
     """K of a clamped-on instrument: its normal drag, whatever the inclination of the line."""
-    return drag_of(component, getattr(component, "length", 0.0))[0]
+    return drag_of(component)[0]
 
 
 def _lift(component: Component) -> float:
@@ -342,7 +332,7 @@ def assemble_floating(
     volume = _volume(component) or 0.0
     net = net_buoyancy(component, water.gravity)
     lift = net + (float(density) - CATALOGUE_DENSITY) * water.gravity * volume
-    below, *_ = drag_of(component, component.length)
+    below, *_ = drag_of(component)
     afloat = component.k_surface if below > 0.0 else None
     wind = environment.wind
     return Floating(

@@ -65,7 +65,7 @@ def laid_out(
     """The values of some times, by name, as the variables of a layout that go with time."""
     unit = str(layout.variables[0].attributes["units"]).partition(" ")[0]
     since = time.astype("datetime64[ns]").astype(np.int64)
-    known = {**columns, "time": since // dict(_TIME_UNITS)[unit]}
+    known = {**columns, layout.variables[0].name: since // dict(_TIME_UNITS)[unit]}
     return {
         variable.name: np.ascontiguousarray(known[variable.name], variable.dtype)
         for variable in layout.in_blocks
@@ -79,11 +79,7 @@ def layout_of(mooring: Mooring, record: Record, shape: ShapeNodes | None) -> Res
     sizes = {"time": record.count, "component": len(pieces)}
     of_station, where = _station(mooring, record)
     variables = [
-        Variable("time", ("time",), "<i8", {
-            "standard_name": "time", "long_name": "time of the profile", "axis": "T",
-            "units": f"{_time_unit(record.time)} since 1970-01-01 00:00:00", "calendar": "standard",
-            "units_metadata": "leap_seconds: none",
-        }),
+        time_axis(record.time, "time of the profile"),
         *of_station,
         labels("component_label", "component", [piece.label for piece in pieces], PIECES),
     ]  # fmt: skip
@@ -117,6 +113,15 @@ def layout_of(mooring: Mooring, record: Record, shape: ShapeNodes | None) -> Res
         attributes["featureType"] = "timeSeriesProfile"
     known = {name: value for name, value in attributes.items() if value}
     return ResultLayout(sizes, tuple(variables), known)
+
+
+def time_axis(time: NDArray[np.datetime64], meaning: str) -> Variable:
+    """Return the variable of some times, in the coarsest unit in which each is a whole number."""
+    return Variable("time", ("time",), "<i8", {
+        "standard_name": "time", "long_name": meaning, "axis": "T",
+        "units": f"{_time_unit(time)} since 1970-01-01 00:00:00", "calendar": "standard",
+        "units_metadata": "leap_seconds: none",
+    })  # fmt: skip
 
 
 def _nodes(shape: ShapeNodes) -> list[Variable]:

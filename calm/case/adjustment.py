@@ -223,10 +223,7 @@ def parse_change(text: str, file: MooringFile) -> Adjustment:
 def parse_range(texts: tuple[str, str] | None, change: Adjustment) -> tuple[float, float]:
     """The range of a change: as given, each end with its unit, or that of the adjustment.
 
-    Raises
-    ------
-    UsageError
-        An end is no such quantity, or they are in the wrong order.
+    UsageError: an end is no such quantity, or they are in the wrong order.
     """
     if texts is None:
         low, high = change.range

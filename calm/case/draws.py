@@ -192,10 +192,7 @@ class Neighbours(Forgetful):
 def drawn(mooring: Mooring, draws: Iterable[Draw]) -> Iterator[Mooring]:
     """The mooring in some draws, each solved from the equilibrium of the mooring.
 
-    Raises
-    ------
-    NoEquilibrium
-        The mooring itself has none.
+    NoEquilibrium: the mooring itself has none.
     """
     neighbours = Neighbours(mooring)
     for draw in draws:

@@ -16,7 +16,7 @@ from calm.case.result_tables import ColumnTable
 from calm.case.targets import Figures, figures_of
 from calm.errors import NoEquilibrium, UsageError
 from calm.files import Place
-from calm.physics.line import Floats, Integers, Line, Water
+from calm.physics.line import Floats, Line, Water
 from calm.solve import expect_many, solve_mooring
 
 if TYPE_CHECKING:
@@ -42,7 +42,6 @@ class Cause:
     used_buoyancy: float
 
 
-@dataclass(frozen=True)
 class Causes(ColumnTable[Cause]):
     """The p pieces and clamped instruments that have drag, in file order.
 
@@ -56,14 +55,6 @@ class Causes(ColumnTable[Cause]):
     """
 
     record = Cause
-
-    index: Integers
-    label: list[str]
-    clamped: list[bool]
-    drag: Floats
-    knockdown: Floats
-    excursion: Floats
-    used_buoyancy: Floats
 
 
 @dataclass(frozen=True)

@@ -2,34 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
 from functools import cached_property
+from math import nan
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from calm.assemble import assemble_floating, assemble_line, assemble_water
-from calm.case.measure import (
-    anchor_weight_of,
-    clamps_of,
-    components_of,
-    on_anchor,
-    shape_of,
-    with_anchor,
-)
+from calm.assemble import assemble_water
+from calm.case.measure import result_of
 from calm.case.mooring import Mooring, load
-from calm.case.parts import clamps_down, naming_the_piece
-from calm.case.result import Accuracy
-from calm.case.result_tables import Clamps, Components, Shape
-from calm.case.tow import Tow
-from calm.case.warnings import net_warnings_of
+from calm.case.parts import naming_the_piece
+from calm.case.result import Accuracy, AnchorLoad, Result
+from calm.case.result_tables import Clamps, Components
+from calm.case.tow import Tow, TowResult
 from calm.errors import InputError, NoEquilibrium
-from calm.files import Anchor, MooringFile, Piece, read_mooring
+from calm.files import MooringFile, Piece, read_mooring
 from calm.files.legs import NET_REFUSED, EndKeys, Leg, nodes_of
-from calm.physics.line import Water
-from calm.physics.seabed import required_weight
+from calm.files.mooring_file import STAND_IN
+from calm.physics.line import Floats, Water
 from calm.solve import Settings, Solution, Status
 from calm.solve.net import NetSolution, solve_net
 from calm.solve.net_leg import LegEnd, NetLeg
@@ -68,29 +61,17 @@ class NodePlace:
     imbalance: float
 
 
-@dataclass(frozen=True)
-class LegResult:
-    """A leg of a solved net; `used_buoyancy` and `reserve` [N] are of a float at the surface."""
-
-    name: str
-    first: int
-    end: int
-    shape: Shape = field(repr=False)
-    closure: float
-    afloat: bool
-    used_buoyancy: float
-    reserve: float
-
-
 @dataclass(frozen=True, kw_only=True)
 class NetResult:
     """A converged net. Lengths and depths [m], forces [N], angles [degrees].
 
     x and y are east and north of the origin of the file's places. `miss` is the worst distance of a
     leg's end from where it is held, `closure` the worst of the legs', recomputed from coordinates.
+    `legs` are lines of their own, counted from their upper ends; one without an anchor has a
+    stand-in for it, of which nothing is true.
     """
 
-    net: Net = field(repr=False)
+    mooring: Net = field(repr=False)
     name: str
     type: str = "net"
     status: str
@@ -99,9 +80,7 @@ class NetResult:
     miss: float
     closure: float
     accuracy: Accuracy
-    legs: tuple[LegResult, ...]
-    components: Components = field(repr=False)
-    clamps: Clamps = field(repr=False)
+    legs: tuple[Result, ...]
     nodes: tuple[NodePlace, ...]
     anchors: tuple[EndLoad, ...]
     held: tuple[EndLoad, ...]
@@ -110,11 +89,26 @@ class NetResult:
     @property
     def file(self) -> MooringFile:
         """The file as read."""
-        return self.net.file
+        return self.mooring.file
 
-    def leg_of(self, index: int) -> LegResult:
-        """Return the leg that a piece belongs to."""
-        return next(leg for leg in self.legs if leg.first <= index < leg.end)
+    @cached_property
+    def components(self) -> Components:
+        """The pieces of the file, leg by leg."""
+        pairs = zip(self.file.legs, self.legs, strict=True)  # a leg that is joined has a stand-in
+        whole = Components.joined(
+            [leg.components.head(keys.end - keys.first) for keys, leg in pairs]
+        )
+        pieces = self.file.pieces
+        return whole.with_columns(part=list(pieces), index=np.arange(len(pieces)))
+
+    @cached_property
+    def clamps(self) -> Clamps:
+        """What is clamped on them."""
+        tables = [
+            leg.clamps.with_columns(index=leg.clamps.index + keys.first)
+            for keys, leg in zip(self.file.legs, self.legs, strict=True)
+        ]
+        return Clamps.joined(tables)
 
     def to_dict(self) -> dict[str, Any]:
         """The JSON object of the result format; None stands where a figure is unknown."""
@@ -125,13 +119,15 @@ class NetResult:
             for name in ("kind", "role", "tension", "least_tension"):
                 del component[name]
         for row in (*components, *clamps):
-            row["leg"] = self.leg_of(row["index"]).name
+            row["leg"] = next(
+                leg.name for leg in self.file.legs if leg.first <= row["index"] < leg.end
+            )
         legs = [
             {
                 "name": leg.name,
                 "closure": leg.closure,
-                "used_buoyancy": leg.used_buoyancy,
-                "reserve": leg.reserve,
+                "used_buoyancy": leg.top.used_buoyancy,
+                "reserve": leg.top.reserve,
                 "shape": {name: column.tolist() for name, column in vars(leg.shape).items()},
             }
             for leg in self.legs
@@ -191,33 +187,45 @@ class Net:
     @property
     def settings(self) -> Settings:
         """Return how the legs are solved."""
-        solver = self.file.solver
-        return Settings(solver.angle_step, solver.tolerance, solver.seabed_friction)
+        return self.lines[0].settings
+
+    @cached_property
+    def lines(self) -> tuple[Mooring, ...]:
+        """The legs, each as a mooring of its own."""
+        return tuple(Mooring(leg.line_of(self.file)) for leg in self.file.legs)
 
     @cached_property
     def legs(self) -> tuple[NetLeg, ...]:
         """The legs as the solver takes them."""
         nodes = nodes_of(self.file.legs)
-        return tuple(self._leg(leg, nodes) for leg in self.file.legs)
+        found = []
+        for leg, mooring in zip(self.file.legs, self.lines, strict=True):
+            upper, lower = (self._end(end, nodes, mooring) for end in leg.ends)
+            line = mooring.line if upper.free else replace(mooring.line, floating=None)
+            found.append(NetLeg(line, upper, lower))
+        return tuple(found)
 
-    def _leg(self, leg: Leg, nodes: Any) -> NetLeg:
-        pieces, file = leg.of(self.file.pieces), self.file
-        line = assemble_line(pieces, file.solver, self.water.gravity, free_end=False)
-        upper = self._end(leg.top, nodes, pieces)
-        if upper.free and file.solver.buoy_drag == "immersed":
-            floating = assemble_floating(pieces, file.environment, self.water)
-            line = replace(line, floating=floating)
-        return NetLeg(line, upper, self._end(leg.bottom, nodes, pieces))
+    def with_lines(self, lines: Sequence[Sequence[Piece]]) -> Net:
+        """Return the net with other pieces in its legs, stand-ins for anchors among them."""
+        legs: list[Leg] = []
+        pieces: list[Piece] = []
+        for leg, own in zip(self.file.legs, lines, strict=True):
+            first = len(pieces)
+            pieces += [piece for piece in own if piece.use != STAND_IN]
+            legs.append(replace(leg, first=first, end=len(pieces)))
+        listed = tuple(replace(piece, index=index) for index, piece in enumerate(pieces))
+        return Net(replace(self.file, pieces=listed, legs=tuple(legs)))
 
-    def _end(self, end: EndKeys, nodes: Any, pieces: Sequence[Piece]) -> LegEnd:
+    def _end(self, end: EndKeys, nodes: Mapping[str, int], mooring: Mooring) -> LegEnd:
         if end.join is not None:
             return LegEnd(node=nodes[end.join])
         if end.held is not None:
             return LegEnd(place=(*end.held.at, -end.held.depth))
         if end.anchor is not None:
-            seabed = -(self.water.depth if end.anchor.depth is None else end.anchor.depth)
-            height = pieces[-1].length or 0.0
-            return LegEnd(place=(*end.anchor.at, seabed + height), seabed=seabed)
+            seabed = -mooring.water.depth
+            return LegEnd(
+                place=(*end.anchor.at, seabed + mooring.line.anchor_height), seabed=seabed
+            )
         return LegEnd()
 
     def equilibrium(self, water: Water) -> NetSolution:
@@ -227,8 +235,8 @@ class Net:
         ------
         NoEquilibrium
         """
-        lines = [piece for leg in self.file.legs for piece in _above(leg.of(self.file.pieces))]
-        with naming_the_piece(lines):
+        solved_for = [piece for line in self.lines for piece in line.file.pieces[:-1]]
+        with naming_the_piece(solved_for):
             return solve_net(self.legs, len(nodes_of(self.file.legs)), water, self.settings)
 
     def solve(self) -> NetResult:
@@ -240,52 +248,34 @@ class Net:
             With status, message and advice, where there is none that passes every check.
         """
         solution = self.equilibrium(self.water)
-        still = solution
-        try:
-            if self.water.moving:
-                still = self.equilibrium(self.water.still())
-        except NoEquilibrium:
-            return _result_of(self, solution, [None] * len(solution.legs))
-        return _result_of(self, solution, still.legs)
+        still: Sequence[Solution | None] = solution.legs
+        if self.water.moving:
+            try:
+                still = self.equilibrium(self.water.still()).legs
+            except NoEquilibrium:
+                still = [None] * len(solution.legs)
+        return _result_of(self, solution, still)
 
 
-def _above(pieces: Sequence[Piece]) -> Sequence[Piece]:
-    """The pieces of a leg that are solved for: all but its anchor."""
-    return pieces[:-1] if isinstance(pieces[-1].component, Anchor) else pieces
+AnyResult = Result | TowResult | NetResult
 
 
 def _result_of(net: Net, found: NetSolution, still: Sequence[Solution | None]) -> NetResult:
-    legs: list[LegResult] = []
-    anchors: list[EndLoad] = []
-    held: list[EndLoad] = []
-    solved: list[tuple[Components, Solution]] = []
-    tables: list[Components] = []
-    clamps: list[Clamps] = []
-    for leg, solution, before in zip(net.file.legs, found.legs, still, strict=True):
-        pieces = leg.of(net.file.pieces)
-        above = _above(pieces)
-        components = components_of(above, solution, before)
-        instruments = clamps_of(above, solution, before)
-        solved.append((components, solution))
-        instruments = replace(instruments, index=instruments.index + leg.first)
-        for borne in _end_loads(net, leg, solution, components):
-            (held if borne.weight is None else anchors).append(borne)
-        if len(above) < len(pieces):
-            assert leg.bottom.anchor is not None
-            depth = leg.bottom.anchor.depth or net.water.depth
-            components = with_anchor(components, pieces[-1], depth)
-            for clamp in clamps_down(pieces[-1:]):
-                instruments = instruments.with_row(on_anchor(clamp, components[-1]))
-        tables.append(components)
-        clamps.append(instruments)
-        used, reserve = solution.buoyancy_used, solution.reserve
-        legs.append(
-            LegResult(leg.name, leg.first, leg.end, shape_of(solution), solution.closure,
-                      solution.surface, used, reserve)
-        )  # fmt: skip
-    names = list(nodes_of(net.file.legs))
-    result = NetResult(
-        net=net,
+    legs: list[Result] = []
+    ends: list[EndLoad] = []
+    for mooring, solution, before in zip(net.lines, found.legs, still, strict=True):
+        _refuse_a_lifted_anchor(mooring, solution)
+        upright = before or solution
+        meant = Mooring(mooring.file, bool(upright.afloat), line=mooring.line, water=mooring.water)
+        result = result_of(meant, solution, before)
+        if mooring.file.pieces[-1].use == STAND_IN:
+            none = {each.name: nan for each in fields(result.anchor)}
+            result = replace(result, anchor=AnchorLoad(**none))
+        legs.append(result)
+        ends += _end_loads(result, solution)
+    places = zip(nodes_of(net.file.legs), found.nodes, found.imbalance, strict=True)
+    return NetResult(
+        mooring=net,
         name=net.file.name,
         status=Status.CONVERGED.label,
         iterations=found.marches,
@@ -294,78 +284,52 @@ def _result_of(net: Net, found: NetSolution, still: Sequence[Solution | None]) -
         closure=max(leg.closure for leg in legs),
         accuracy=Accuracy(found.depth_error, found.tension_error),
         legs=tuple(legs),
-        components=joined(tables),
-        clamps=joined(clamps),
         nodes=tuple(
             NodePlace(name, -float(at[2]), float(at[0]), float(at[1]), float(left))
-            for name, at, left in zip(names, found.nodes, found.imbalance, strict=True)
+            for name, at, left in places
         ),
-        anchors=tuple(anchors),
-        held=tuple(held),
+        anchors=tuple(end for end in ends if end.weight is not None),
+        held=tuple(end for end in ends if end.weight is None),
+        warnings=(*net.file.notices, *(said for leg in legs for said in leg.warnings)),
     )
-    return replace(result, warnings=net_warnings_of(result, solved))
 
 
-def joined(tables: Sequence[Any]) -> Any:
-    """Tables one after another."""
-    columns = {}
-    for each in fields(tables[0]):
-        parts = [getattr(table, each.name) for table in tables]
-        whole = [row for part in parts for row in part]
-        columns[each.name] = whole if isinstance(parts[0], list) else np.concatenate(parts)
-    return type(tables[0])(**columns)
-
-
-def _end_loads(net: Net, leg: Leg, solution: Solution, components: Components) -> list[EndLoad]:
-    """What a leg does to its anchor and to where it is held.
-
-    Raises
-    ------
-    NoEquilibrium
-        It lifts its anchor.
-    """
-    loads = []
-    turned = solution.line.towed
-    for end, which in ((leg.top, 0), (leg.bottom, -1)):
-        if end.held is None and end.anchor is None:
-            continue
-        node = -1 if turned else which
-        # a leg's first end is pulled by what hangs on it, its last by what stands above
-        force = solution.force[node] * (-1.0 if which == 0 and not turned else 1.0)
-        vertical, horizontal = float(force[2]), float(np.hypot(force[0], force[1]))
-        row = components[which if which == 0 else len(components) - 1]
-        at = (row.x_top, row.y_top, row.depth_top) if which == 0 else (
-            row.x_bottom, row.y_bottom, row.depth_bottom)  # fmt: skip
-        load = EndLoad(
-            leg=leg.name,
-            tension=float(np.linalg.norm(force)),
-            vertical=vertical,
-            horizontal=horizontal,
-            angle=float(np.degrees(np.arctan2(horizontal, vertical))),
-            x=at[0],
-            y=at[1],
-            depth=at[2],
+def _end_loads(leg: Result, solution: Solution) -> Iterator[EndLoad]:
+    """What a leg does to where it is held, and to its anchor."""
+    (keys,), rows = leg.file.legs, leg.components
+    if keys.top.held is not None:
+        # what hangs down from its upper end is marched from its lower one
+        row, force = rows[0], solution.force[-1] if solution.line.towed else -solution.force[0]
+        yield _end_load(leg.name, force, (row.x_top, row.y_top, row.depth_top))
+    if keys.bottom.held is not None:
+        row = rows[len(rows) - 2]
+        place = row.x_bottom, row.y_bottom, row.depth_bottom
+        yield _end_load(leg.name, solution.force[-1], place)
+    if keys.bottom.anchor is not None:
+        row = rows[len(rows) - 1]
+        borne = _end_load(leg.name, solution.force[-1], (row.x_top, row.y_top, row.depth_top))
+        yield replace(
+            borne,
+            required_weight=leg.anchor.required_weight,
+            weight=leg.anchor.weight,
+            grounded_length=leg.anchor.grounded_length,
         )
-        loads.append(load if end.anchor is None else _on_anchor(net, leg, load, solution))
-    return loads
 
 
-def _on_anchor(net: Net, leg: Leg, load: EndLoad, solution: Solution) -> EndLoad:
-    anchor, checks = leg.of(net.file.pieces)[-1], net.file.checks
-    weight, own = anchor_weight_of(anchor, net.water), getattr(anchor.component, "friction", None)
-    if load.vertical > weight:
+def _end_load(leg: str, force: Floats, place: tuple[float, float, float]) -> EndLoad:
+    vertical, horizontal = float(force[2]), float(np.hypot(force[0], force[1]))
+    angle = float(np.degrees(np.arctan2(horizontal, vertical)))
+    return EndLoad(leg, float(np.linalg.norm(force)), vertical, horizontal, angle, *place)
+
+
+def _refuse_a_lifted_anchor(mooring: Mooring, solution: Solution) -> None:
+    (leg,) = mooring.file.legs
+    pull = float(solution.force[-1, 2])
+    if leg.bottom.anchor is not None and pull > mooring.anchor_weight:
         raise Status.ANCHOR_LIFTS.because(
-            f"Leg {leg.name} pulls up with {load.vertical:.0f} N; its anchor weighs {weight:.0f} N "
-            "in water."
+            f"Leg {leg.name} pulls up with {pull:.0f} N; its anchor weighs "
+            f"{mooring.anchor_weight:.0f} N in water."
         )
-    friction = checks.anchor_friction if own is None else own
-    needed = required_weight(load.vertical, load.horizontal, checks.anchor_factor, friction)
-    return replace(
-        load,
-        required_weight=float(needed),
-        weight=weight,
-        grounded_length=solution.grounded_length,
-    )
 
 
 def load_any(

@@ -42,10 +42,7 @@ def clamps_down(pieces: Sequence[Piece]) -> list[Clamp]:
 def cut_like(file: MooringFile, case: Mooring | Tow) -> MooringFile:
     """Return a file with the piece that is cut to fit at the length that it has in a case.
 
-    Raises
-    ------
-    NoEquilibrium
-        No length fits there.
+    NoEquilibrium: no length fits there.
     """
     pieces = tuple(
         piece
@@ -64,10 +61,8 @@ def cut_like(file: MooringFile, case: Mooring | Tow) -> MooringFile:
 def one_part(pieces: Sequence[Piece], text: str) -> Piece | Clamp:
     """The part meant by a text.
 
-    Raises
-    ------
-    LookupError
-        No part, or more than one, is called so; the message says what the parts are called.
+    LookupError: no part, or more than one, is called so; the message says what the parts are
+    called.
     """
     found = all_parts(pieces, text)
     if len(found) > 1:
@@ -79,10 +74,7 @@ def one_part(pieces: Sequence[Piece], text: str) -> Piece | Clamp:
 def all_parts(pieces: Sequence[Piece], text: str) -> tuple[Piece | Clamp, ...]:
     """The parts meant by a text: the part of that label, or all whose label is that with a number.
 
-    Raises
-    ------
-    LookupError
-        No part is called so; the message offers the nearest label.
+    LookupError: no part is called so; the message offers the nearest label.
     """
     parts = parts_of(pieces)
     for part in parts:

@@ -52,10 +52,7 @@ class ProfilerTravel:
 def profilers_of(mooring: Mooring) -> tuple[ProfilerTravel, ...]:
     """Return every profiler of a line on its way; the others stay at their upper stops.
 
-    Raises
-    ------
-    NoEquilibrium
-        The line does not stand with a profiler at one of its `PLACES`.
+    NoEquilibrium: the line does not stand with a profiler at one of its `PLACES`.
     """
     return tuple(_travel(mooring, clamp) for clamp in profilers_in(mooring))
 
@@ -84,10 +81,7 @@ def _travel(mooring: Mooring, clamp: Clamp) -> ProfilerTravel:
 def way_of(mooring: Mooring, clamp: Clamp) -> tuple[float, float]:
     """Return the distances of a profiler's stops from the top of its wire, without load [m].
 
-    Raises
-    ------
-    NoEquilibrium
-        The wire is cut to fit, and no length fits.
+    NoEquilibrium: the wire is cut to fit, and no length fits.
     """
     assert clamp.travel is not None
     upper, lower = clamp.travel

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, fields
 from functools import cached_property
+from itertools import chain
 from math import isfinite
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, Protocol, Self, TypeVar
 
 import numpy as np
 
 from calm.files import Clamp, Piece, Place
-from calm.physics.line import Floats, Integers
+from calm.files.mooring_file import STAND_IN
+from calm.physics.line import Floats
 from calm.suggestions import unknown
 
 if TYPE_CHECKING:
@@ -24,13 +26,34 @@ _OF_THE_FILE = "part"
 
 
 class ColumnTable(Generic[Row]):
-    """A table whose dataclass fields are its columns, all of one length, as those of `record`."""
+    """A table of rows that is kept by column: `table.depth` has the `depth` of all its rows.
+
+    A column is an array of numbers, or a list. Its names are those of the fields of `record`.
+    """
 
     record: ClassVar[type[Any]]
     label: list[str]
 
-    def _names(self) -> list[str]:
-        return [each.name for each in fields(self)]  # type: ignore[arg-type]
+    def __init__(self, **columns: Any) -> None:
+        if sorted(columns) != sorted(self.names()):
+            raise TypeError(f"the columns of {type(self).__name__} are {', '.join(self.names())}")
+        vars(self).update({name: columns[name] for name in self.names()})
+
+    if TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            """Return a column."""
+
+    @classmethod
+    def names(cls) -> list[str]:
+        """Return the names of the columns, in their order."""
+        return [each.name for each in fields(cls.record)]
+
+    @classmethod
+    def joined(cls, tables: Sequence[Self]) -> Self:
+        """Return tables one after another."""
+        columns = {name: [getattr(table, name) for table in tables] for name in cls.names()}
+        return cls(**{name: _end_to_end(parts) for name, parts in columns.items()})
 
     def __repr__(self) -> str:
         """Return how many rows there are, and the labels at both ends."""
@@ -38,15 +61,12 @@ class ColumnTable(Generic[Row]):
         return f"{type(self).__name__}({len(self)} rows: {', '.join(shown)})"
 
     def __len__(self) -> int:
-        return len(getattr(self, self._names()[0]))
+        return len(self.label)
 
     def __getitem__(self, row: int | str) -> Row:
         """Return a row by its number or its label, as a record with the columns' names.
 
-        Raises
-        ------
-        KeyError
-            No row has the label; the one most like it is named.
+        KeyError: no row has the label; the one most like it is named.
         """
         if isinstance(row, int):
             return self._records[row]
@@ -58,38 +78,45 @@ class ColumnTable(Generic[Row]):
         return iter(self._records)
 
     def __getstate__(self) -> dict[str, Any]:
-        return {name: getattr(self, name) for name in self._names()}
+        return {name: getattr(self, name) for name in self.names()}
 
     @cached_property
     def _records(self) -> tuple[Row, ...]:
         """The rows, which every rule of a design check goes through again."""
-        columns = [getattr(self, name) for name in self._names()]
+        columns = [getattr(self, name) for name in self.names()]
         # whole columns become plain numbers faster than their numbers one by one
         plain = [column if isinstance(column, list) else column.tolist() for column in columns]
         return tuple(map(self.record, *plain))
 
+    def with_columns(self, **columns: Any) -> Self:
+        """Return the same table with other columns in place of some of its own."""
+        return type(self)(**{**self.__getstate__(), **columns})
+
+    def head(self, count: int) -> Self:
+        """Return the first rows."""
+        return type(self)(**{name: part[:count] for name, part in self.__getstate__().items()})
+
     def with_row(self, row: Row) -> Self:
         """Return the same table with one more row."""
-        columns = {name: getattr(self, name) for name in self._names()}
-        longer = {
-            name: [*column, getattr(row, name)]
-            if isinstance(column, list)
-            else np.append(column, getattr(row, name))
-            for name, column in columns.items()
-        }
-        return type(self)(**longer)
+        last = {name: [getattr(row, name)] for name in self.names()}
+        return self.joined([self, type(self)(**last)])
 
     def to_dicts(self) -> list[dict[str, Any]]:
         """The rows as dictionaries of plain numbers and text; None where unknown."""
-        names = [name for name in self._names() if name != _OF_THE_FILE]
+        names = [name for name in self.names() if name != _OF_THE_FILE]
         return [{name: _known(getattr(row, name)) for name in names} for row in self]
 
     def to_dataframe(self) -> pandas.DataFrame:
         """The table as a pandas data frame; needs pandas, which CALM does not."""
         import pandas
 
-        names = (name for name in self._names() if name != _OF_THE_FILE)
+        names = (name for name in self.names() if name != _OF_THE_FILE)
         return pandas.DataFrame({name: getattr(self, name) for name in names})
+
+
+def _end_to_end(parts: Sequence[Any]) -> Any:
+    """Return parts of a column as one; it is a list where the first is one."""
+    return [*chain(*parts)] if isinstance(parts[0], list) else np.concatenate(parts)
 
 
 def _known(value: Any) -> Any:
@@ -151,7 +178,6 @@ class ClampRow:
         return self.part.place
 
 
-@dataclass(frozen=True, repr=False)
 class Components(ColumnTable[ComponentRow]):
     """The n pieces of the line in file order; NaN where a figure is unknown.
 
@@ -175,32 +201,7 @@ class Components(ColumnTable[ComponentRow]):
 
     record = ComponentRow
 
-    part: list[Piece]
-    index: Integers
-    use: list[str]
-    label: list[str]
-    kind: list[str]
-    role: list[str]
-    length: Floats
-    cut_length: Floats
-    depth_top: Floats
-    depth_bottom: Floats
-    x_top: Floats
-    y_top: Floats
-    x_bottom: Floats
-    y_bottom: Floats
-    tension_top: Floats
-    tension_bottom: Floats
-    tension: Floats
-    least_tension: Floats
-    tilt: Floats
-    knockdown: Floats
-    safety_factor: Floats
-    utilisation: Floats
-    reynolds: Floats
 
-
-@dataclass(frozen=True, repr=False)
 class Clamps(ColumnTable[ClampRow]):
     """The m instruments clamped on the line, in file order.
 
@@ -216,17 +217,6 @@ class Clamps(ColumnTable[ClampRow]):
     """
 
     record = ClampRow
-
-    part: list[Clamp]
-    index: Integers
-    use: list[str]
-    label: list[str]
-    depth: Floats
-    x: Floats
-    y: Floats
-    tension: Floats
-    tilt: Floats
-    knockdown: Floats
 
 
 @dataclass(frozen=True, repr=False)
@@ -269,9 +259,10 @@ def rows_by_place(result: WithClamps) -> dict[Place, ComponentRow | ClampRow]:
 
 
 def rows_down(result: WithClamps) -> Iterator[tuple[ComponentRow, list[ClampRow]]]:
-    """Yield the pieces of a result, each with what is clamped on it."""
+    """Yield the pieces of a result, each with what is clamped on it; no stand-in for an anchor."""
     on: dict[int, list[ClampRow]] = {}
     for clamp in result.clamps:
         on.setdefault(clamp.index, []).append(clamp)
     for component in result.components:
-        yield component, on.get(component.index, [])
+        if component.use != STAND_IN:
+            yield component, on.get(component.index, [])

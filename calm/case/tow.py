@@ -14,7 +14,7 @@ from calm.case.memory import Forgetful, Memory
 from calm.case.parts import cut_like, naming_the_piece
 from calm.case.result import Accuracy, Solved, document_of
 from calm.case.strumming import StrummingBand, strumming_of, tow_band
-from calm.case.warnings import tow_warnings_of
+from calm.case.warnings import warnings_of
 from calm.errors import NoEquilibrium, UsageError
 from calm.files import MooringFile, TowKeys
 from calm.files.strumming_keys import BourgetMarichalKeys
@@ -211,7 +211,7 @@ def _result_of(tow: Tow, solution: Solution) -> TowResult:
         shape=shape_of(solution),
         other_depth=solution.other_depth,
     )
-    return replace(result, warnings=tow_warnings_of(result, solution))
+    return replace(result, warnings=warnings_of(result, solution))
 
 
 def _body(solution: Solution) -> TowedBody:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from types import SimpleNamespace
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,9 +16,7 @@ from calm.solve import Solution
 from calm.solve.audit import flow_across
 
 if TYPE_CHECKING:
-    from calm.case.net import NetResult
     from calm.case.result import Result
-    from calm.case.result_tables import Components
     from calm.case.tow import TowResult
 
 LARGEST_REYNOLDS = 2e5
@@ -36,40 +33,11 @@ def is_synthetic(component: Component) -> bool:
     return component.kind == "cable" and fibre_of(component.material) is not None
 
 
-def warnings_of(result: Result, solution: Solution) -> tuple[str, ...]:
-    """Every warning of a mooring's result, the file's own notices first."""
-    of_any = [warning for worry in _WORRIES for warning in worry(result, solution)]
-    own = [warning for worry in _MOORING_WORRIES for warning in worry(result, solution)]
-    return (*result.file.notices, *of_any, *own)
-
-
-def tow_warnings_of(result: TowResult, solution: Solution) -> tuple[str, ...]:
-    """Every warning of a tow's result, the file's own notices first."""
-    of_any = [warning for worry in _WORRIES for warning in worry(result, solution)]
-    own = [warning for worry in _TOW_WORRIES for warning in worry(result, solution)]
-    return (*result.file.notices, *of_any, *own)
-
-
-def net_warnings_of(
-    result: NetResult, legs: Sequence[tuple[Components, Solution]]
-) -> tuple[str, ...]:
-    """Every warning of a net's result, the file's own notices first; legs without their anchors."""
-    whole: Any = result
-    found = [*result.file.notices]
-    for worry in (_overloaded, _tilted, _stiffness_unknown):
-        found += worry(whole, legs[0][1])
-    for components, solution in legs:
-        one: Any = SimpleNamespace(components=components, file=result.file)
-        for own in (_overstretched, _beyond_the_table, _fast_flow, _hull_unknown, _wind_ignored):
-            found += own(one, solution)
-    for anchor in result.anchors:
-        weight, needed = anchor.weight or 0.0, anchor.required_weight or 0.0
-        if weight < needed:
-            found.append(
-                f"The anchor of {anchor.leg} weighs {say('wet_weight', weight)} in water; "
-                f"{say('required_weight', needed)} are required to hold its leg."
-            )
-    return tuple(found)
+def warnings_of(result: Any, solution: Solution) -> tuple[str, ...]:
+    """Return every warning of a mooring's or a tow's result, the file's own notices first."""
+    doubts = (*_OF_ANY, *(_OF_A_TOW if solution.line.towed else _OF_A_MOORING))
+    found = [warning for doubt in doubts for warning in doubt(result, solution)]
+    return (*result.file.notices, *found)
 
 
 def _overloaded(result: Result | TowResult, _: Solution) -> Iterator[str]:
@@ -85,8 +53,9 @@ def _overloaded(result: Result | TowResult, _: Solution) -> Iterator[str]:
 def _anchor_too_light(result: Result, _: Solution) -> Iterator[str]:
     anchor = result.anchor
     if anchor.weight < anchor.required_weight:
+        of = f" of leg {result.name}" if result.file.legs else ""
         yield (
-            f"The anchor weighs {say('wet_weight', anchor.weight)} in water; "
+            f"The anchor{of} weighs {say('wet_weight', anchor.weight)} in water; "
             f"{say('required_weight', anchor.required_weight)} are required to hold the line."
         )
 
@@ -202,6 +171,8 @@ def _power(number: float) -> str:
 
 
 def _bight(result: Result, solution: Solution) -> Iterator[str]:
+    if result.file.legs:  # which hang as their ends are held
+        return
     pieces, force = solution.element_piece, solution.force[1:, 2]
     hanging = pieces[(force < 0.0) & (solution.element_clamp < 0)]
     if len(hanging):
@@ -282,7 +253,7 @@ def _strums_along_the_flow(result: TowResult, solution: Solution) -> Iterator[st
         )
 
 
-_WORRIES: tuple[Callable[[Result | TowResult, Solution], Iterator[str]], ...] = (
+_OF_ANY: tuple[Callable[[Result | TowResult, Solution], Iterator[str]], ...] = (
     _overloaded,
     _tilted,
     _stiffness_unknown,
@@ -291,7 +262,7 @@ _WORRIES: tuple[Callable[[Result | TowResult, Solution], Iterator[str]], ...] = 
     _fast_flow,
     _other_equilibrium,
 )
-_MOORING_WORRIES: tuple[Callable[[Result, Solution], Iterator[str]], ...] = (
+_OF_A_MOORING: tuple[Callable[[Result, Solution], Iterator[str]], ...] = (
     _anchor_too_light,
     _anchor_of_unknown_material,
     _bight,
@@ -299,7 +270,7 @@ _MOORING_WORRIES: tuple[Callable[[Result, Solution], Iterator[str]], ...] = (
     _hull_unknown,
     _wind_ignored,
 )
-_TOW_WORRIES: tuple[Callable[[TowResult, Solution], Iterator[str]], ...] = (
+_OF_A_TOW: tuple[Callable[[TowResult, Solution], Iterator[str]], ...] = (
     _below_the_sea,
     _strums_along_the_flow,
 )

@@ -267,7 +267,7 @@ def clamp_grip(result: Result) -> Iterator[Verdict]:
         depth = np.array(float(result.clamps.depth[part.clamp]))
         flow, density = water.at(depth)
         flow = np.asarray(flow, float).reshape(3)
-        across = drag_of(part.component, getattr(part.component, "length", 0.0))[0]
+        across = drag_of(part.component)[0]
         drag = across * float(density) / REFERENCE_DENSITY
         force = drag * float(np.linalg.norm(flow)) * flow
         force[2] += _lift(part, result.mooring, float(density))

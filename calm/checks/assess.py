@@ -22,27 +22,50 @@ import numpy as np
 
 from calm.case import Mooring, Result
 from calm.case.draws import Draw, checked_samples, drawn, draws_of, normals_of
-from calm.case.parts import parts_of
 from calm.case.uncertain import BLOCK, Mapped
 from calm.checks import arrangement, catalogue_rules, handling, posture, situations, strength
-from calm.checks.assessment import Acceptance, Assessment, MooringInEnvironment, Situation
+from calm.checks.assessment import (
+    Acceptance,
+    Assessment,
+    MooringInEnvironment,
+    Situation,
+    estimated,
+    estimated_result,
+)
 from calm.checks.criterion import limits_used
-from calm.checks.finding import AS_GIVEN, OWN, Finding, Rule, State, Verdict, rule, verdict_on
+from calm.checks.finding import (
+    AS_GIVEN,
+    OWN,
+    Finding,
+    Rule,
+    State,
+    Verdict,
+    rule,
+    verdict_on,
+    worst_of_each_rule,
+)
 from calm.checks.handling import Handling
 from calm.checks.inventory import inventory_of
-from calm.checks.posture import reaches_the_surface
+from calm.checks.posture import left_out_of_a_leg, reaches_the_surface
 from calm.checks.recovery import breaks_of, losses_of, recovery_of
-from calm.checks.situations import LEAST_CURRENT, SOLVES, STRUMMING, currents, situations_of
+from calm.checks.situations import (
+    LEAST_CURRENT,
+    SOLVES,
+    STILL_ONLY,
+    STRUMMING,
+    currents,
+    situations_of,
+)
 from calm.checks.wave_rules import IN_WAVES, MooringInWaves
 from calm.drop.launch import launch_of
 from calm.errors import NoEquilibrium
-from calm.files import Clamp, MooringFile, Piece, Place
+from calm.files import Place
+from calm.files.mooring_file import STAND_IN
 from calm.files.rule_texts import RULES as TEXTS
 from calm.solve import expect_many
 
 P = ParamSpec("P")
 T = TypeVar("T")
-_Part = TypeVar("_Part", Piece, Clamp)
 
 
 def check(mooring: Mooring, /, *others: Mooring, day: date | None = None) -> Assessment:
@@ -70,14 +93,25 @@ def stand_of(mooring: Mooring, name: str, day: date | None = None) -> MooringInE
     fails only as the cables strum is a warning: they may not.
     """
     environment = mooring.file.environment.name or OWN
-    situations = situations_of(mooring)
+    return judged_stand(situations_of(mooring), mooring, name, environment, day)
+
+
+def judged_stand(
+    situations: tuple[Situation, ...],
+    mooring: Mooring,
+    name: str,
+    environment: str,
+    day: date | None = None,
+) -> MooringInEnvironment:
+    """Judge a mooring, or a leg of a net, in the situations that it was solved in."""
     given, *changed = ([*findings_of(each, name, environment, day=day)] for each in situations)
-    given += _findings_in_waves(situations[0], name, environment, day)
+    if not mooring.file.legs:
+        given += _findings_in_waves(situations[0], name, environment, day)
     states = {_of(finding): finding.state.severity for finding in given}
     others = [_softened(finding) for findings in changed for finding in findings]
     graver = [each for each in others if each.state.severity > states.get(_of(each), -1)]
     listed = (*given, *graver)
-    worst = _worst_of_each_rule((*listed, *others))
+    worst = worst_of_each_rule((*listed, *others))
     tighter = tuple(finding for finding in worst if finding not in listed)
     accepted = tuple(one for one in (*given, *others) if one.accept is not None)
     return MooringInEnvironment(environment, mooring, situations, listed, tighter, accepted)
@@ -102,7 +136,7 @@ def assessment_of(
     """
     first = next((stand for stand in stands if stand.result is not None), stands[0])
     handling = _handled(first)
-    acceptance = _acceptance(first.mooring.file, day)
+    acceptance = Acceptance.of_file(first.mooring.file, day)
     findings = [
         acceptance.of(rule.find(verdict, name, first.environment, rule.situation))
         for rule in ONCE
@@ -142,26 +176,27 @@ def findings_of(
     mooring: str,
     environment: str,
     *,
-    anchored: bool = True,
     day: date | None = None,
 ) -> Iterator[Finding]:
     """Return what the rules of a standing line find in one situation.
 
+    Of an anchor that is only a stand-in nothing is found, nor of the top of a leg that is held
+    there.
+
     Parameters
     ----------
     mooring, environment : their names in the findings
-    anchored : whether the last piece is an anchor; of one that only stands in for it, nothing is
-        found
     day : see `check`
     """
     if situation.failure is not None:
         for verdict in equilibrium.judge(situation.failure):
             yield equilibrium.find(verdict, mooring, environment, situation.name)
     if situation.result is not None:
-        file, result = situation.result.file, _estimated_result(situation.result)
-        end, acceptance = file.pieces[-1].place, _acceptance(file, day)
+        file, result = situation.result.file, estimated_result(situation.result)
+        end, acceptance = file.pieces[-1].place, Acceptance.of_file(file, day)
+        anchored, left_out = file.pieces[-1].use != STAND_IN, left_out_of_a_leg(file)
         for rule in (each for each in STANDING if anchored or not each.of_anchor):
-            for verdict in rule.judge(result):
+            for verdict in rule.judge(result) if rule.name not in left_out else ():
                 if anchored or verdict.place != end:
                     finding = rule.find(verdict, mooring, environment, situation.name)
                     yield acceptance.of(finding)
@@ -172,39 +207,11 @@ def _findings_in_waves(
 ) -> Iterator[Finding]:
     if given.result is None:
         return
-    acceptance = _acceptance(given.result.file, day)
-    evidence = MooringInWaves.of(_estimated_result(given.result).mooring)
+    acceptance = Acceptance.of_file(given.result.file, day)
+    evidence = MooringInWaves.of(estimated_result(given.result).mooring)
     for each in IN_WAVES:
         for verdict in each.judge(evidence):
             yield acceptance.of(each.find(verdict, mooring, environment))
-
-
-def _acceptance(file: MooringFile, day: date | None) -> Acceptance:
-    estimates = {part.label: part.component.estimates for part in parts_of(file.pieces)}
-    return Acceptance(file.accepts, day or date.today(), estimates)
-
-
-def _estimated(mooring: Mooring) -> Mooring:
-    """Return the mooring with the low bounds of estimates for figures that are not given."""
-    file = mooring.file
-    if not any(part.component.estimates for part in parts_of(file.pieces)):
-        return mooring
-    pieces = tuple(
-        replace(_filled(piece), clamps=tuple(_filled(clamp) for clamp in piece.clamps))
-        for piece in file.pieces
-    )
-    file = replace(file, pieces=pieces)
-    return Mooring(file, mooring.for_surface, mooring.memory, mooring.line, mooring.water)
-
-
-def _estimated_result(result: Result) -> Result:
-    judged = _estimated(result.mooring)
-    return result if judged is result.mooring else replace(result, mooring=judged)
-
-
-def _filled(part: _Part) -> _Part:
-    low = {name: one.low for name, one in part.component.estimates.items()}
-    return replace(part, component=part.component.model_copy(update=low)) if low else part
 
 
 def _of(finding: Finding) -> tuple[str, Place | None]:
@@ -214,15 +221,6 @@ def _of(finding: Finding) -> tuple[str, Place | None]:
 def _softened(finding: Finding) -> Finding:
     strums = finding.situation == STRUMMING
     return replace(finding, state=State.WARN) if strums and finding.state is State.FAIL else finding
-
-
-def _worst_of_each_rule(findings: Sequence[Finding]) -> list[Finding]:
-    """The first of those that are as bad as any of their rule."""
-    worst: dict[str, Finding] = {}
-    for finding in findings:
-        if finding.rule not in worst or finding.rank < worst[finding.rule].rank:
-            worst[finding.rule] = finding
-    return list(worst.values())
 
 
 def handled(mooring: Mooring, result: Result) -> Handling:
@@ -243,7 +241,7 @@ def _handled(stand: MooringInEnvironment) -> Handling:
     """Return the same of a stand; of one that has no equilibrium, why not."""
     mooring, result = stand.mooring, stand.result
     if result is not None:
-        return replace(handled(mooring, result), mooring=_estimated(mooring))
+        return replace(handled(mooring, result), mooring=estimated(mooring))
     failure = stand.situations[0].failure
     assert failure is not None
     return Handling(mooring, failure, failure, breaks_of(mooring), losses_of(mooring))
@@ -258,15 +256,6 @@ def equilibrium(failure: NoEquilibrium) -> Iterator[Verdict]:
     message = f"{failure.status}: {failure.message}"
     yield verdict_on(None, State.FAIL, message, failure.advice)
 
-
-STILL_ONLY = verdict_on(
-    None,
-    State.WARN,
-    "No environment has a current of 1 cm/s: what tilts, is knocked down and pulls in one is not "
-    "judged.",
-    "Give the current, or an environment that has one.",
-)
-"""What `equilibrium` says of a mooring without a current to speak of."""
 
 _ORDER = list(TEXTS)
 

@@ -5,20 +5,23 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from datetime import date
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
+from calm.case import Mooring, Result
+from calm.case.parts import parts_of
 from calm.checks.finding import Finding, State, worst_state
 from calm.errors import NoEquilibrium
-from calm.files import Accept
+from calm.files import Accept, Clamp, MooringFile, Piece
 from calm.files.check_limits import LimitKey
 from calm.files.definition import EstimatedFigure
 from calm.files.rule_texts import RULES
 
 if TYPE_CHECKING:
-    from calm.case import Mooring, Result
     from calm.checks.inventory import InventoryItem
     from calm.checks.recovery import Break, Loss, Recovery
     from calm.drop.launch import Launch
+
+_Part = TypeVar("_Part", Piece, Clamp)
 
 
 @dataclass(frozen=True)
@@ -133,6 +136,12 @@ class Acceptance:
     day: date
     estimates: Mapping[str, Mapping[str, EstimatedFigure]]
 
+    @classmethod
+    def of_file(cls, file: MooringFile, day: date | None) -> Acceptance:
+        """Those of a mooring file on a day, today where none is given."""
+        estimates = {part.label: part.component.estimates for part in parts_of(file.pieces)}
+        return cls(file.accepts, day or date.today(), estimates)
+
     def of(self, finding: Finding) -> Finding:
         """The finding, estimated where it rests on an estimate, accepted where the file does."""
         finding = self._estimated(finding)
@@ -170,3 +179,27 @@ class Acceptance:
                 yield f"{what} ended on {accept.until}: it no longer counts"
             elif accept not in used:
                 yield f"{what} is not needed: nothing there fails or is unknown"
+
+
+def estimated(mooring: Mooring) -> Mooring:
+    """Return the mooring with the low bounds of estimates for figures that are not given."""
+    file = mooring.file
+    if not any(part.component.estimates for part in parts_of(file.pieces)):
+        return mooring
+    pieces = tuple(
+        replace(_filled(piece), clamps=tuple(_filled(clamp) for clamp in piece.clamps))
+        for piece in file.pieces
+    )
+    file = replace(file, pieces=pieces)
+    return Mooring(file, mooring.for_surface, mooring.memory, mooring.line, mooring.water)
+
+
+def estimated_result(result: Result) -> Result:
+    """Return a result whose mooring has the low bounds of estimates, as `estimated`."""
+    judged = estimated(result.mooring)
+    return result if judged is result.mooring else replace(result, mooring=judged)
+
+
+def _filled(part: _Part) -> _Part:
+    low = {name: one.low for name, one in part.component.estimates.items()}
+    return replace(part, component=part.component.model_copy(update=low)) if low else part

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, fields
 from enum import StrEnum
 from functools import partial
@@ -216,3 +216,12 @@ class Finding(Verdict):
         del values["place"], values["probability"]
         said = {"reason": None if accept is None else accept.reason}
         return {name: values.pop(name) for name in first} | values | said
+
+
+def worst_of_each_rule(findings: Sequence[Finding]) -> list[Finding]:
+    """The first of those that are as bad as any of their rule."""
+    worst: dict[str, Finding] = {}
+    for finding in findings:
+        if finding.rule not in worst or finding.rank < worst[finding.rule].rank:
+            worst[finding.rule] = finding
+    return list(worst.values())

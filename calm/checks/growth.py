@@ -120,7 +120,7 @@ def _larger(
         ct = drag.CHAIN_CT if component.ct is None else component.ct
         volume = pi * t * (CHAIN_BREADTH * component.diameter + t)
         return {"cn": wider * cn, "ct": wider * ct}, volume
-    kn, kt, directional = drag_of(component, getattr(component, "length", 0.0))
+    kn, kt, directional = drag_of(component)
     across, along, volume = _scales(component, kn, t)
     update: dict[str, Any] = {}
     if isinstance(component, Sphere):

@@ -109,7 +109,7 @@ def launch_strength(handling: Handling) -> Iterator[Verdict]:
     pieces = handling.mooring.file.pieces
     for piece, tension in zip(pieces, greatest, strict=False):
         limit = lesser_load(piece.component, *factors)
-        if limit is None and not passes_load_on(pieces, piece.index):
+        if limit is None and not passes_load_on(handling.mooring.file, piece.index):
             continue
         bears = f"{piece.label} bears {most}{say('tension', tension)} in the fall"
         if limit is None:

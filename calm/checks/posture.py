@@ -27,6 +27,7 @@ from calm.checks.finding import (
     unknown,
     verdict_on,
 )
+from calm.files import MooringFile
 from calm.quantities import say
 from calm.solve.finish import watch_circle_radius
 
@@ -50,6 +51,15 @@ def reaches_the_surface(mooring: Mooring) -> bool:
     if mooring.at_rest is None:
         return float(mooring.line.length.sum()) >= mooring.water.depth
     return -float(mooring.at_rest.position[0, 2]) <= AT_SURFACE
+
+
+def left_out_of_a_leg(file: MooringFile) -> tuple[str, ...]:
+    """Return the rules of a whole line that say nothing of a leg with these ends."""
+    if not file.legs:
+        return ()
+    top, bottom = file.legs[0].ends
+    of_both_ends = () if top.free and bottom.anchor is not None else ("watch-circle", "scope")
+    return of_both_ends if top.free else (*of_both_ends, "top-depth", "knockdown", "excursion")
 
 
 @criteria("tilt")

@@ -230,6 +230,7 @@ class Break:
     weight_lifted : weight in water of those of them that are heavy [N]
     required : what the margin should be [N]
     judged : whether the design can change it
+    loose : net buoyancy of what comes off at once, and drifts, + up [N]
     """
 
     break_after: int
@@ -238,6 +239,7 @@ class Break:
     weight_lifted: float
     required: float
     judged: bool
+    loose: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -281,10 +283,15 @@ def losses_of(mooring: Mooring) -> tuple[Loss, ...]:
     not lost. The others lift what they do where the line stands upright.
     """
     lift = _lift_to_the_release(mooring)
+    return losses_among(mooring, mooring.file.pieces[: lift.size], lift)
+
+
+def losses_among(mooring: Mooring, pieces: Sequence[Piece], lift: Floats) -> tuple[Loss, ...]:
+    """The same of the pieces of a mooring that come up together, with their net forces [N]."""
     gravity = mooring.water.gravity
     weight = float(-lift[lift < 0.0].sum())
     losses = []
-    for piece in mooring.file.pieces[: lift.size]:
+    for piece in pieces:
         own = () if isinstance(piece.component, Flexible) else (piece,)
         for part in (*own, *piece.clamps):
             lifted = net_buoyancy(part.component, gravity)
@@ -297,7 +304,7 @@ def losses_of(mooring: Mooring) -> tuple[Loss, ...]:
                     label=part.label,
                     margin=float(lift.sum()) - lifted - sunk,
                     weight_lifted=weight + sunk,
-                    required=_required(mooring, weight + sunk),
+                    required=required_margin(mooring, weight + sunk),
                     place=part.place,
                 )
             )
@@ -313,7 +320,8 @@ def _weight_when_flooded(component: Component, gravity: float) -> float:
     return component.mass * gravity * (1.0 - CATALOGUE_DENSITY / density)
 
 
-def _required(mooring: Mooring, weight: float) -> float:
+def required_margin(mooring: Mooring, weight: float) -> float:
+    """Net buoyancy asked for after a break that leaves a weight in water to lift [N]."""
     return max(mooring.file.checks.backup_margin * weight, LEAST_MARGIN)
 
 
@@ -348,8 +356,9 @@ def breaks_of(mooring: Mooring) -> tuple[Break, ...]:
                 label=piece.label,
                 margin=float(left.sum()),
                 weight_lifted=weight,
-                required=_required(mooring, weight),
+                required=required_margin(mooring, weight),
                 judged=piece.index in judged,
+                loose=float(lift[: piece.index + 1].sum()),
             )
         )
     return tuple(breaks)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from math import hypot
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
@@ -31,9 +31,10 @@ from calm.checks.finding import (
 from calm.checks.growth import grown
 from calm.checks.posture import reaches_the_surface
 from calm.errors import NoEquilibrium, UsageError
-from calm.files import Cable, Clamp, CurrentTable, Piece, StrummingFactor
+from calm.files import Cable, Clamp, CurrentTable, MooringFile, Piece, StrummingFactor
 from calm.files.environment import Environment
 from calm.files.logbook import DeployedItem
+from calm.physics.line import Water
 from calm.quantities import say
 from calm.records.current_file import strongest_of
 from calm.records.current_terms import left_out
@@ -82,34 +83,52 @@ def solved(name: str, mooring: Mooring) -> Situation:
 
 def _changed(mooring: Mooring, given: Result) -> Iterator[tuple[str, Mooring]]:
     file, surface = held(cut_like(mooring.file, mooring)), reaches_the_surface(given.mooring)
-    environment = file.environment
 
-    def changed(depth: float | None = None, **what: Any) -> Mooring:
-        there = replace(environment, depth=depth or environment.depth)
-        return Mooring(replace(file, **({"environment": there} | what)), surface, mooring.memory)
+    def changed(other: MooringFile) -> Mooring:
+        return Mooring(other, surface, mooring.memory)
 
-    if mooring.water.moving or environment.wind is not None:
-        still = replace(environment, current=_NO_CURRENT, wind=None)
-        yield STILL, changed(environment=still)
-        if environment.depth_range is not None:
-            yield STILL_LOW, changed(environment=replace(still, depth=environment.depth_range[0]))
-    if environment.depth_range is not None:
-        low, high = environment.depth_range
-        yield HIGH, changed(high)
-        yield LOW, changed(low)
+    for name, other in in_other_waters(file, mooring.water):
+        yield name, changed(other)
     for clamp, travel in zip(profilers_in(mooring), given.profilers, strict=True):
-        lower = changed(pieces=held(file, clamp.place, travel.lower.at).pieces)
-        yield f"{clamp.label} at its lower stop", lower
+        yield f"{clamp.label} at its lower stop", changed(held(file, clamp.place, travel.lower.at))
         if travel.worst not in (travel.upper, travel.lower):
-            leaning = changed(pieces=held(file, clamp.place, travel.worst.at).pieces)
+            leaning = changed(held(file, clamp.place, travel.worst.at))
             yield f"{clamp.label} where its wire leans most", leaning
-    if environment.fouling is not None:
-        yield FOULED, changed(pieces=grown(file.pieces, given, environment.fouling))
-    if file.solver.strumming is None and any(isinstance(p.component, Cable) for p in file.pieces):
-        solver = file.solver.model_copy(update={"strumming": StrummingFactor(factor=FACTOR)})
-        yield STRUMMING, changed(solver=solver)
+    fouling = file.environment.fouling
+    if fouling is not None:
+        yield FOULED, changed(replace(file, pieces=grown(file.pieces, given, fouling)))
+    if (strummed := strumming_file(file)) is not None:
+        yield STRUMMING, changed(strummed)
     if file.deployed is not None and differs(mooring, deployed := as_deployed(mooring)):
         yield DEPLOYED, Mooring(deployed.file, surface, mooring.memory)
+
+
+def in_other_waters(file: MooringFile, water: Water) -> Iterator[tuple[str, MooringFile]]:
+    """Return a file in still water, at high and low water, and in still low water.
+
+    Parameters
+    ----------
+    water : of its own environment
+    """
+    environment, tide = file.environment, file.environment.depth_range
+    if water.moving or environment.wind is not None:
+        still = replace(environment, current=_NO_CURRENT, wind=None)
+        yield STILL, replace(file, environment=still)
+        if tide is not None:
+            yield STILL_LOW, replace(file, environment=replace(still, depth=tide[0]))
+    if tide is not None:
+        for name, depth in ((HIGH, tide[1]), (LOW, tide[0])):
+            yield name, replace(file, environment=replace(environment, depth=depth))
+
+
+def strumming_file(file: MooringFile) -> MooringFile | None:
+    """Return a file with more drag on its cables, as they strum; None where that is in it."""
+    if file.solver.strumming is not None:
+        return None
+    if not any(isinstance(piece.component, Cable) for piece in file.pieces):
+        return None
+    solver = file.solver.model_copy(update={"strumming": StrummingFactor(factor=FACTOR)})
+    return replace(file, solver=solver)
 
 
 def _shapeless(situation: Situation) -> bool:
@@ -239,6 +258,15 @@ def _numbered(part: _Part, items: dict[str, DeployedItem]) -> _Part:
 
 LEAST_CURRENT = 0.01
 """Speed below which a current counts as none [m/s]."""
+
+STILL_ONLY = verdict_on(
+    None,
+    State.WARN,
+    "No environment has a current of 1 cm/s: what tilts, is knocked down and pulls in one is not "
+    "judged.",
+    "Give the current, or an environment that has one.",
+)
+"""What `equilibrium` says of a mooring without a current to speak of."""
 
 USUAL_CURRENT = 0.2
 """What a wind of 7 m/s alone drives at the surface, 0.03 of it by DNV-RP-C205 [m/s]."""

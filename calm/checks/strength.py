@@ -13,7 +13,7 @@ from calm.checks.criterion import Citing, Criterion, JudgedPart, criteria, piece
 from calm.checks.finding import State, Verdict, at_least, rule
 from calm.checks.inventory import anchor_dry_mass
 from calm.checks.posture import reaches_the_surface
-from calm.files import Cable, Component, Piece, SafetyFactors
+from calm.files import Cable, Component, MooringFile, Piece, SafetyFactors
 from calm.quantities import say
 
 WEAK_LINK = 0.5
@@ -39,12 +39,16 @@ def lesser_load(component: Component, working_factor: float, factor: float) -> f
     return min(known, default=None)
 
 
-def passes_load_on(pieces: Sequence[object], index: int) -> bool:
+def passes_load_on(file: MooringFile, index: int) -> bool:
     """Return whether the tension of the line goes through a piece.
 
-    The top one and the anchor are pulled at one end only: the shackle there bears what they do.
+    The top one, the anchor, and what hangs at the free end of a leg are pulled at one end only: the
+    shackle there bears what they do.
     """
-    return 0 < index < len(pieces) - 1
+    first, last = 1, len(file.pieces) - 1
+    if file.legs:
+        first, last = int(file.legs[0].top.free), last - file.legs[0].bottom.free
+    return first <= index < last
 
 
 def safety_factor(component: Component, factors: SafetyFactors, surface: bool) -> float:
@@ -74,7 +78,7 @@ def strength(mooring: Mooring) -> Iterator[Criterion]:
     for part in pieces_of(mooring):
         component = part.component
         limit = allowable_load(component, factors, surface)
-        if limit is None and not passes_load_on(mooring.file.pieces, part.index):
+        if limit is None and not passes_load_on(mooring.file, part.index):
             continue
         name = safety_factor_name(component, surface)
         of_factor = limit is not None and limit != component.working_load

@@ -60,7 +60,7 @@ def wave_strength(evidence: MooringInWaves) -> Iterator[Verdict]:
         sea = f"Hs {state.sea.significant_height:.1f} m"
         bears = f"{piece.label} bears {say('tension', tension)} in waves of {sea}"
         if limit is None:
-            if passes_load_on(mooring.file.pieces, piece.index):
+            if passes_load_on(mooring.file, piece.index):
                 message = f"{bears}; neither its working nor its breaking load is known."
                 yield unknown(piece, message, "Give its `breaking_load`.", tension)
             continue

@@ -136,10 +136,7 @@ def batch(
 def _summarized(output: Path, mooring: Mooring, stop: Event) -> bool:
     """Show what the result says, and write it beside the result; whether that was possible.
 
-    Raises
-    ------
-    UsageError
-        The result cannot be read.
+    UsageError: the result cannot be read.
     """
     from calm.batch.threads import Stopped, go_on
     from calm.report.batch_page import summary_part, write_summary
@@ -207,10 +204,7 @@ def _kinds(outcome: BatchOutcome) -> Iterator[str]:
 def mooring_of(file: Path, environment: str | None, catalogs: list[Path], command: str) -> Mooring:
     """A mooring file, read for a command that is not for tows.
 
-    Raises
-    ------
-    UsageError
-        It is a tow.
+    UsageError: it is a tow.
     """
     import calm
     from calm.case import Tow
@@ -222,13 +216,7 @@ def mooring_of(file: Path, environment: str | None, catalogs: list[Path], comman
 
 
 def check_output(output: Path, *inputs: Path) -> None:
-    """Refuse a result that could not be written, or would take the place of what it is made from.
-
-    Raises
-    ------
-    UsageError
-        See above.
-    """
+    """Refuse a result that cannot be written, or would take the place of what it is made from."""
     # unlike `Path.resolve`, it takes links that lead round in a circle
     place = os.path.realpath(output)
     if output.is_symlink() and not output.exists():

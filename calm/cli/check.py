@@ -20,6 +20,7 @@ from calm.errors import InputError, Problem, UsageError, internal_failure
 
 if TYPE_CHECKING:
     from calm.case import Mooring
+    from calm.case.net import Net
     from calm.case.uncertain import Mapped
     from calm.checks.assessment import Assessment, MooringInEnvironment
     from calm.report.blocks import Section
@@ -95,6 +96,9 @@ def check(
     designs, tows, earlier = _read(files, environment, catalog or [], workers, against, ready)
     if tows:
         narrate(f"not checked, because they are tows: {', '.join(map(str, tows))}")
+    nets = [design.path for design in designs if design.moorings[0].file.legs]
+    if nets and uncertainty:
+        raise UsageError(f"--uncertainty is for single lines; {nets[0]} is a net of legs")
     show_units(units, [one.file for design in designs for one in design.moorings])
     judged = _judged(designs, workers, drawn, draws)
     assessments = [each.assessment for each in judged]
@@ -122,7 +126,9 @@ def _read(
     `ready` is called while other processes read.
     """
     if against is None:
-        return *read_designs(files, environments, catalogs, workers, meanwhile=ready), None
+        return *read_designs(
+            files, environments, catalogs, workers, meanwhile=ready, nets=True
+        ), None
     import calm
     from calm.case import Tow
 
@@ -169,7 +175,7 @@ def _beside(
     from calm.report.check_report import mooring_section
 
     names = str(path), str(design.path)
-    return _drawn(mooring_section(assessment, comparison_of(names, earlier, design.moorings[0])), 1)
+    return _drawn(mooring_section(assessment, comparison_of(names, earlier, design.lines[0])), 1)
 
 
 def _drawn(section: Section, number: int) -> DrawnSection:
@@ -215,11 +221,17 @@ def _judged(
         _ready(len(stands), drawn)
         whole = [(number, design, day, drawn, draws) for number, design in enumerate(designs, 1)]
         return mapped(_solve_and_conclude, whole, workers, "moorings judged")
-    solved = iter(mapped(_stand, stands, workers, "environments solved"))
+    solved = iter(mapped(_stands, stands, workers, "environments solved"))
     shared = partial(mapped, workers=workers, what="blocks of samples solved")
     return [
         _concluded(
-            number, design.name, [next(solved) for _ in design.moorings], day, drawn, draws, shared
+            number,
+            design.name,
+            [stand for _ in design.moorings for stand in next(solved)],
+            day,
+            drawn,
+            draws,
+            shared,
         )
         for number, design in enumerate(designs, 1)
     ]
@@ -248,7 +260,7 @@ def _solve_and_conclude(
     task: tuple[int, DesignFile, date, bool, tuple[int, int] | None],
 ) -> CheckedMooring:
     number, design, day, drawn, draws = task
-    stands = [_stand((design.name, mooring, day)) for mooring in design.moorings]
+    stands = [each for one in design.moorings for each in _stands((design.name, one, day))]
     return _concluded(number, design.name, stands, day, drawn, draws, map)
 
 
@@ -269,7 +281,12 @@ def _concluded(
     from calm.checks.assess import assessment_of
     from calm.report.check_report import mooring_section
 
-    assessment = assessment_of(name, stands, day)
+    if stands[0].mooring.file.legs:
+        from calm.checks.net_check import assessment_of_net
+
+        assessment = assessment_of_net(name, stands, day)
+    else:
+        assessment = assessment_of(name, stands, day)
     if draws is not None:
         from calm.checks.assess import with_probabilities
 
@@ -279,17 +296,24 @@ def _concluded(
     )
 
 
-def _stand(task: tuple[str, Mooring, date]) -> MooringInEnvironment:
-    """A mooring in an environment; CALM's own failure there does not stop the others."""
+def _stands(task: tuple[str, Mooring | Net, date]) -> list[MooringInEnvironment]:
+    """A mooring in an environment, or each leg of a net; CALM's own failure there does not stop
+    the others.
+    """
+    from calm.case.net import Net
     from calm.checks.assess import failed_stand, stand_of
+    from calm.checks.net_check import stands_of_net
 
     name, mooring, day = task
     try:
-        return stand_of(mooring, name, day)
+        if isinstance(mooring, Net):
+            return stands_of_net(mooring, name, day)
+        return [stand_of(mooring, name, day)]
     except Exception as error:
         if os.environ.get("CALM_DEBUG") == "1":
             raise
-        return failed_stand(mooring, name, internal_failure(error))
+        of = mooring.lines[0] if isinstance(mooring, Net) else mooring
+        return [failed_stand(of, name, internal_failure(error))]
 
 
 def _answer(

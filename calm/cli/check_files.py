@@ -13,6 +13,7 @@ from calm.errors import InputError, NoEquilibrium, Problem, UsageError
 
 if TYPE_CHECKING:
     from calm.case import Mooring, Tow
+    from calm.case.net import Net
 
 
 @dataclass(frozen=True)
@@ -21,7 +22,14 @@ class DesignFile:
 
     path: Path
     name: str
-    moorings: tuple[Mooring, ...]
+    moorings: tuple[Mooring | Net, ...]
+
+    @property
+    def lines(self) -> tuple[Mooring, ...]:
+        """The moorings that are single lines: all of them or none."""
+        from calm.case import Mooring
+
+        return tuple(each for each in self.moorings if isinstance(each, Mooring))
 
 
 def read_designs(
@@ -31,6 +39,8 @@ def read_designs(
     workers: int | None,
     command: str = "calm check",
     meanwhile: Callable[[], object] | None = None,
+    *,
+    nets: bool = False,
 ) -> tuple[list[DesignFile], list[Path]]:
     """Every mooring in every environment, and which of the files are tows, which a command leaves.
 
@@ -39,6 +49,7 @@ def read_designs(
     environments : names or files of those to take; None for a file's own and all that it names
     workers : how many processes share the work
     meanwhile : what this process does while others read
+    nets : let files have legs
 
     Raises
     ------
@@ -53,13 +64,13 @@ def read_designs(
         raise UsageError(f"given twice: {', '.join(twice)}")
     names: Sequence[str | None] = environments or [None]
     asked = [(file, name) for file in files for name in names]
-    read, tows = _loaded(asked, catalogs, workers, meanwhile)
+    read, tows = _loaded(asked, catalogs, workers, meanwhile, nets=nets)
     moored = [file for file in files if file not in tows]
     if not moored:
         raise UsageError(f"{command} is for moorings; these are tows: {', '.join(map(str, tows))}")
     if environments is None:
         others = [(file, name) for file in moored for name in read[file, None].file.variants]
-        read |= _loaded(others, catalogs, workers)[0]
+        read |= _loaded(others, catalogs, workers, nets=nets)[0]
     stands = {file: [one for (path, _), one in read.items() if path == file] for file in moored}
     for its in stands.values():
         _refuse_one_name(its)
@@ -79,7 +90,7 @@ def _told_apart(names: dict[Path, str]) -> dict[Path, str]:
         }
 
 
-def _cut_alike(moorings: Sequence[Mooring]) -> tuple[Mooring, ...]:
+def _cut_alike(moorings: Sequence[Mooring | Net]) -> tuple[Mooring | Net, ...]:
     """The same mooring in every environment: what is cut to fit, is cut once, for the first.
 
     What does not depend on the environment, such as the line in still water, is solved once.
@@ -88,6 +99,8 @@ def _cut_alike(moorings: Sequence[Mooring]) -> tuple[Mooring, ...]:
     from calm.case.memory import Memory
     from calm.case.parts import cut_like
 
+    if any(not isinstance(each, Mooring) for each in moorings):
+        return tuple(moorings)  # nothing in a net is cut to fit
     memory = Memory()
     first, *others = (Mooring(each.file, memory=memory) for each in moorings)
     try:
@@ -101,41 +114,45 @@ def _loaded(
     catalogs: Sequence[Path],
     workers: int | None,
     meanwhile: Callable[[], object] | None = None,
-) -> tuple[dict[tuple[Path, str | None], Mooring], list[Path]]:
+    *,
+    nets: bool,
+) -> tuple[dict[tuple[Path, str | None], Mooring | Net], list[Path]]:
     """The moorings, and which of the files are tows."""
-    from calm.case import Mooring
+    from calm.case import Tow
 
-    tasks = [(file, name, catalogs) for file, name in asked]
+    tasks = [(file, name, catalogs, nets) for file, name in asked]
     problems: dict[Problem, None] = {}
-    moorings: dict[tuple[Path, str | None], Mooring] = {}
+    moorings: dict[tuple[Path, str | None], Mooring | Net] = {}
     tows: dict[Path, None] = {}
     loaded = mapped(_load, tasks, workers, "files read", meanwhile)
     for (file, name), read in zip(asked, loaded, strict=True):
         if isinstance(read, tuple):
             problems |= dict.fromkeys(read)  # what files share has its mistakes told once
-        elif isinstance(read, Mooring):
-            moorings[file, name] = read
-        else:
+        elif isinstance(read, Tow):
             tows[file] = None
+        else:
+            moorings[file, name] = read
     if problems:
         raise InputError(list(problems))
     return moorings, list(tows)
 
 
 def _load(
-    task: tuple[Path, str | None, Sequence[Path]],
-) -> Mooring | Tow | tuple[Problem, ...]:
+    task: tuple[Path, str | None, Sequence[Path], bool],
+) -> Mooring | Net | Tow | tuple[Problem, ...]:
     """What was read, or what is wrong with it."""
     import calm
+    from calm.case.net import load_any
 
-    file, environment, catalogs = task
+    file, environment, catalogs, nets = task
+    load = load_any if nets else calm.load
     try:
-        return calm.load(file, environment=environment, catalogs=catalogs)
+        return load(file, environment=environment, catalogs=catalogs)
     except InputError as error:
         return error.problems
 
 
-def _refuse_one_name(moorings: Sequence[Mooring]) -> None:
+def _refuse_one_name(moorings: Sequence[Mooring | Net]) -> None:
     """Two environments of one name could not be told apart."""
     from calm.checks.finding import OWN
     from calm.report.blocks import ON_THE_WAY

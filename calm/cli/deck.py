@@ -17,7 +17,7 @@ from calm.version import __version__
 
 if TYPE_CHECKING:
     from calm.deck import Deck
-    from calm.report.diagram_layout import Paper
+    from calm.report.diagram import Paper
 
 DECK_EXAMPLES = """Examples:
 
@@ -79,7 +79,7 @@ def deck(
     """
     from calm.deck import deck_of
     from calm.deck.deck_items import Order
-    from calm.report.diagram_layout import Paper
+    from calm.report.diagram import Paper
     from calm.report.folder import check_folder
     from calm.report.provenance import moment
 
@@ -103,7 +103,7 @@ def deck(
         for notice in dict.fromkeys(n for one in design.moorings for n in one.file.notices):
             narrate(f"{design.path}: {notice}")
         try:
-            decks.append(deck_of(design.moorings, Order(order), **ship))
+            decks.append(deck_of(design.lines, Order(order), **ship))
         except NoEquilibrium as failure:
             narrate(f"{design.path}: {failure}")
             return ExitCode.NO_EQUILIBRIUM
@@ -198,10 +198,8 @@ def _texts(deck: Deck) -> Iterator[tuple[str, str]]:
 def _folders(designs: Sequence[DesignFile], output: Path) -> list[Path]:
     """Where each mooring's sheets go.
 
-    Raises
-    ------
-    UsageError
-        Two moorings would have the same folder, or a file that is read stands where one goes.
+    UsageError: two moorings would have the same folder, or a file that is read stands where one
+    goes.
     """
     if len(designs) == 1:
         return [output]

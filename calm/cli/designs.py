@@ -10,7 +10,7 @@ from cyclopts import Parameter
 
 from calm.cli.options import CatalogFiles, EnvironmentName, Units, show_units
 from calm.cli.outputs import OutputPath, Outputs
-from calm.cli.run import read_files
+from calm.cli.run import read_all
 from calm.cli.streams import ExitCode, narrate
 from calm.errors import NoEquilibrium, UsageError
 
@@ -57,7 +57,9 @@ def diff(
     files = (before,) if after is None else (before, after)
     outputs = Outputs(files, json)
     outputs.check()
-    lines = read_files(files, environment, catalog or [])
+    from calm.case import load
+
+    lines = read_all(load, files, environment, catalog or [])
     for file, line in zip(files, lines, strict=True):
         for notice in line.file.notices:
             narrate(f"{file}: {notice}")
@@ -71,10 +73,7 @@ def diff(
 def compared(files: tuple[Path, ...], lines: list[Mooring | Tow]) -> Comparison:
     """Two designs, or one with what was deployed of it.
 
-    Raises
-    ------
-    UsageError
-        A mooring and a tow; a single tow, or a file that says nothing of a deployment.
+    UsageError: a mooring and a tow; a single tow, or a file that says nothing of a deployment.
     """
     from calm.case import Mooring
     from calm.checks.comparison import comparison_of

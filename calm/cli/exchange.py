@@ -136,10 +136,7 @@ def _is_folder(files: tuple[Path, ...], output: Path) -> bool:
 def _targets(files: tuple[Path, ...], output: Path) -> list[Path]:
     """Where each mooring file will stand.
 
-    Raises
-    ------
-    UsageError
-        Two would stand in one place, or one in the place of a file that is read.
+    UsageError: two would stand in one place, or one in the place of a file that is read.
     """
     from calm.report.folder import check_destination
 

@@ -57,7 +57,8 @@ def locate(
     ----------
     file
         CSV file with the columns latitude, longitude (WGS 84, of the transducer; degrees, or
-        degrees and minutes) and range[m], or time[s], there and back.
+        degrees and minutes) and range[m], or time[s], there and back; or a survey without a
+        heading, as programs of WHOI and NOC take it.
     sound_speed
         Speed of sound for times: a speed, or a CSV file with the columns depth[m] and
         sound_speed[m/s]; 1500 m/s unless given. Ranges in metres are taken as they are.

@@ -21,6 +21,7 @@ from calm.cli.check import CHECK_EXAMPLES, check
 from calm.cli.deck import DECK_EXAMPLES, deck
 from calm.cli.designs import DIFF_EXAMPLES, SIZE_EXAMPLES, diff, size
 from calm.cli.exchange import EXPORT_EXAMPLES, IMPORT_EXAMPLES, export, import_
+from calm.cli.grid import GRID_EXAMPLES, grid
 from calm.cli.locate import LOCATE_EXAMPLES, locate
 from calm.cli.motion import MOTION_EXAMPLES, motion
 from calm.cli.run import RUN_EXAMPLES, run
@@ -66,8 +67,9 @@ _VALUES = {
     "CONDITION": "target",
     "CHANGE": "change",
     "FLAGS": "flags",
-    "WORD": "match format to",
-    "WORD,...": "fit",
+    "WORD": "match format to method",
+    "WORD,...": "fit variables",
+    "LEVELS": "levels",
     "VALUE": "between",
     "SPEED|FILE": "sound-speed",
     "COLUMNS": "columns",
@@ -75,7 +77,7 @@ _VALUES = {
     "NUMBER": "port",
     "MINUTES": "idle-timeout",
     "A/B": "time",
-    "TIME": "deck-time gap",
+    "TIME": "deck-time gap step",
     "COUNT": "samples workers",
     "N": "every seed",
     "ADDRESS": "scheduler",
@@ -186,7 +188,11 @@ _GROUPS: dict[str, tuple[tuple[Any, str, str], ...]] = {
         (deck, "[OPTIONS] FILE...", DECK_EXAMPLES),
         (locate, "[OPTIONS] FILE", LOCATE_EXAMPLES),
     ),
-    "Records": ((batch, "", BATCH_EXAMPLES), (motion, "", MOTION_EXAMPLES)),
+    "Records": (
+        (batch, "", BATCH_EXAMPLES),
+        (motion, "", MOTION_EXAMPLES),
+        (grid, "[OPTIONS] DEPTHS VALUES...", GRID_EXAMPLES),
+    ),
     "Files": (
         (import_, "[OPTIONS] FILE...", IMPORT_EXAMPLES),
         (export, "", EXPORT_EXAMPLES),

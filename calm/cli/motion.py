@@ -71,7 +71,7 @@ def motion(
         Records of the current, one or more: NetCDF, zarr or CSV.
     pressures
         Pressures of sensors on the line, one file or more: NetCDF or CSV with their
-        labels, or one sensor each as LABEL=FILE.
+        labels, or one sensor each as LABEL=FILE, in RODB or Sea-Bird's .cnv too.
     output
         The result: a .nc file or a .zarr folder.
     match
@@ -243,6 +243,7 @@ def read_measured(
         labels_of,
         matched_by_label,
         matched_by_place,
+        named_by_serial,
         plausible,
         unusable,
     )
@@ -264,6 +265,7 @@ def read_measured(
     labels, still = labels_of(mooring), Forward(mooring, {}).still
     notes: list[str] = []
     if match == "label":
+        sensors = named_by_serial(sensors, mooring)
         points, notes = matched_by_label(sensors, labels)
     else:
         points = matched_by_place(sensors, instruments_of(mooring), still, labels)
@@ -276,6 +278,7 @@ def read_measured(
         currents, seabed, place, declination, mooring.file.environment.maximum_speed
     )
     level = None if sea_level is None else read_sea_level(sea_level)
+    notes += dict.fromkeys(f"{one.source}: {one.note}" for one in sensors if one.note)
     used = []
     for i, at in points.items():
         one, said = plausible(sensors[i], float(still[at]), seabed)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
+from calm.cli.streams import narrate
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
@@ -61,16 +62,16 @@ def option(name: str) -> str:
 def show_units(given: str | None, files: Iterable[MooringFile] = ()) -> None:
     """Show quantities to people in the units given, else in those that all files ask for.
 
-    Raises
-    ------
-    UsageError
-        Of a text that names no such dimension or unit.
+    UsageError: of a text that names no such dimension or unit.
     """
     from calm.quantities import SHOWN_UNITS, show_in
 
     if given is None:
         asked = [file.units for file in files]
-        show_in(asked[0] if asked and all(one == asked[0] for one in asked) else {})
+        alike = all(one == asked[0] for one in asked)
+        if not alike:
+            narrate("the files ask for different units; SI is shown: choose with --units")
+        show_in(asked[0] if asked and alike else {})
         return
     chosen: dict[str, str] = {}
     for part in given.split(","):
@@ -114,11 +115,8 @@ def quantities(given: Mapping[str, tuple[str | None, str]]) -> dict[str, float]:
 def speed_range(text: str) -> list[float]:
     """The speeds [m/s] of ``A:B:STEP``, from A to B, both included; the last step may be shorter.
 
-    Raises
-    ------
-    UsageError
-        Not three speeds with their units; A not above 0, B below A, a step not above 0; more
-        than `MOST_SPEEDS`.
+    UsageError: not three speeds with their units; A not above 0, B below A, a step not above 0;
+    more than `MOST_SPEEDS`.
     """
     from calm.units import QuantityError, parse_quantity
 

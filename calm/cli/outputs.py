@@ -16,9 +16,8 @@ from calm.errors import NoEquilibrium, UsageError
 from calm.version import __version__
 
 if TYPE_CHECKING:
-    from calm.case import Result, TowResult
     from calm.case.explain import Explanation
-    from calm.case.net import NetResult
+    from calm.case.net import AnyResult
     from calm.case.uncertain import Uncertain
     from calm.drawing.schematic.in_terminal import TerminalSchematic
     from calm.report.blocks import ReportPart
@@ -59,10 +58,10 @@ class FileOutcome:
 
     file: Path
     name: str
-    result: Result | TowResult | NetResult | None = None
+    result: AnyResult | None = None
     failure: NoEquilibrium | None = None
     explanation: Explanation | None = None
-    schematic: TerminalSchematic | None = None
+    schematic: tuple[TerminalSchematic, ...] = ()
     uncertain: Uncertain | None = None
     verbose: bool = False
 
@@ -90,9 +89,7 @@ class FileOutcome:
 
     def parts(self) -> list[Shows]:
         """The table of the line, with its schematic and its explanation where asked for."""
-        parts: list[Shows] = []
-        if self.schematic is not None:
-            parts.append(self.schematic)
+        parts: list[Shows] = [*self.schematic]
         if self.result is not None:
             from calm.case.net import NetResult
 
@@ -119,9 +116,7 @@ class FileOutcome:
 
     def rendered(self, suffix: str) -> bytes | None:
         """The line drawn, or its report."""
-        from calm.case import Result, TowResult
-
-        if not isinstance(self.result, Result | TowResult):
+        if self.result is None:
             return None
         if suffix == ".html":
             from calm.report.html import page
@@ -134,8 +129,10 @@ class FileOutcome:
 
             return printed(result_report(self.result, self.uncertain))
         if suffix == ".nc":
+            from calm.case.net import NetResult
             from calm.report.result_files import result_netcdf
 
+            assert not isinstance(self.result, NetResult)  # refused beforehand
             return result_netcdf(self.result)
         from calm.drawing.plot import picture
 
@@ -177,11 +174,8 @@ class Outputs:
     def check(self) -> None:
         """Refuse outputs that could not be written, before anything is solved.
 
-        Raises
-        ------
-        UsageError
-            A path that cannot be written, that another output or a mooring file has already, or
-            that looks like an option; a picture of an unknown format.
+        UsageError: a path that cannot be written, that another output or a mooring file has
+        already, or that looks like an option; a picture of an unknown format.
         """
         from calm.report.folder import check_destination
         from calm.report.provenance import moment

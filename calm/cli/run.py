@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
+from itertools import zip_longest
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, TypeVar
 
@@ -17,8 +17,11 @@ from calm.cli.streams import ExitCode, gravest, narrate
 from calm.errors import InputError, NoEquilibrium, Problem, UsageError
 
 if TYPE_CHECKING:
-    from calm.case import Mooring, Tow
-    from calm.case.net import Net
+    from calm.case import Mooring, Result, Tow
+    from calm.case.explain import Explanation
+    from calm.case.net import AnyResult, Net
+    from calm.case.uncertain import Uncertain
+    from calm.drawing.schematic.in_terminal import TerminalSchematic
 
 Line = TypeVar("Line")
 
@@ -94,20 +97,15 @@ def run(
     outputs = Outputs(tuple(files), json, csv, plot, html, pdf, netcdf)
     outputs.check()
     draws = draws_of(uncertainty, samples, seed)
-    from calm.case.net import load_any
+    from calm.case import Tow
+    from calm.case.net import Net, load_any
 
-    lines = _all_of(load_any, files, environment, catalog or [])
+    lines = read_all(load_any, files, environment, catalog or [])
     show_units(units, [line.file for line in lines])
-    for option, is_asked in (("--explain", explain), ("--uncertainty", uncertainty)):
-        if is_asked:
-            _refuse_tows(option, files, lines)
-    asked: dict[str, object] = {
-        "--explain": explain,
-        "--uncertainty": uncertainty,
-        "--schematic": schematic,
-    }
-    asked |= {"--plot": plot, "--html": html, "--pdf": pdf, "--netcdf": netcdf}
-    _refuse_nets([option for option, is_asked in asked.items() if is_asked], files, lines)
+    of_moorings = {"--explain": explain, "--uncertainty": uncertainty}
+    _refuse(of_moorings, "moorings; these are tows", Tow, files, lines)
+    _refuse({**of_moorings, "--netcdf": netcdf}, "single lines; these are nets of legs", Net, files,
+            lines, " (tables, pictures, reports, --json and --csv are for these too)")  # fmt: skip
     return solve_and_show(
         lines, outputs, explain=explain, schematic=schematic, draws=draws, verbose=verbose
     )
@@ -116,10 +114,8 @@ def run(
 def draws_of(uncertainty: bool, samples: int, seed: int) -> tuple[int, int] | None:
     """Samples and seed by which to say how sure the figures are; None where that is not asked.
 
-    Raises
-    ------
-    UsageError
-        A number of samples that is not a power of two; a seed below zero; either without need.
+    UsageError: a number of samples that is not a power of two; a seed below zero; either without
+    need.
     """
     from calm.case.draws import SAMPLES, checked_samples
 
@@ -134,21 +130,13 @@ def draws_of(uncertainty: bool, samples: int, seed: int) -> tuple[int, int] | No
     return samples, seed
 
 
-def read_files(
-    files: Sequence[Path], environment: str | None, catalogs: Sequence[Path]
-) -> list[Mooring | Tow]:
-    """All moorings and tows, or an `InputError` with the mistakes of all of them."""
-    from calm.case import load
-
-    return _all_of(load, files, environment, catalogs)
-
-
-def _all_of(
+def read_all(
     load: Callable[[Path, str | None, Sequence[Path]], Line],
     files: Sequence[Path],
     environment: str | None,
     catalogs: Sequence[Path],
 ) -> list[Line]:
+    """Read all files by `calm.case.load`, or one like it; or an `InputError` with all mistakes."""
     read: list[Line] = []
     problems: dict[Problem, None] = {}
     for file in files:
@@ -182,15 +170,25 @@ def solve_and_show(
     verbose : bool
         Say how each solution was reached.
     """
+    from calm.case import Result
+
     drawn_often = None if draws is None else _to_draw_often(*draws)
-    solved = [_solve(file, line) for file, line in zip(outputs.files, lines, strict=True)]
-    outcomes = [replace(outcome, verbose=verbose) for outcome in solved]
-    if explain:
-        outcomes = [_explained(outcome) for outcome in outcomes]
-    if drawn_often is not None:
-        outcomes = [drawn_often(outcome) for outcome in outcomes]
-    if schematic:
-        outcomes = [_drawn(*pair) for pair in zip(outcomes, lines, strict=True)]
+    outcomes = []
+    for file, line in zip(outputs.files, lines, strict=True):
+        result, failure = _solved(file, line)
+        mooring = result if isinstance(result, Result) else None
+        outcomes.append(
+            FileOutcome(
+                file,
+                line.file.name,
+                result,
+                failure,
+                explanation=_explained(mooring) if mooring and explain else None,
+                schematic=_schematic(line, result) if schematic else (),
+                uncertain=drawn_often(mooring) if mooring and drawn_often else None,
+                verbose=verbose,
+            )
+        )
 
     def to_csv() -> str:
         from calm.report.result_files import to_csv
@@ -201,74 +199,61 @@ def solve_and_show(
     return gravest(outcome.code for outcome in outcomes)
 
 
-def _solve(file: Path, line: Mooring | Tow | Net) -> FileOutcome:
+def _solved(file: Path, line: Mooring | Tow | Net) -> tuple[AnyResult | None, NoEquilibrium | None]:
+    """Return the result, or why there is none."""
     try:
-        return FileOutcome(file, line.file.name, result=line.solve())
+        return line.solve(), None
     except NoEquilibrium as failure:
         for notice in line.file.notices:  # a result has them among its warnings
             narrate(f"{file}: {notice}")
         narrate(f"{file}: {failure}")
-        return FileOutcome(file, line.file.name, failure=failure)
+        return None, failure
 
 
-def _refuse_tows(option: str, files: Sequence[Path], lines: Sequence[Mooring | Tow | Net]) -> None:
-    from calm.case import Tow
-
-    tows = [str(file) for file, line in zip(files, lines, strict=True) if isinstance(line, Tow)]
-    if tows:
-        raise UsageError(f"{option} is for moorings; these are tows: {', '.join(tows)}")
-
-
-def _refuse_nets(
-    options: Sequence[str], files: Sequence[Path], lines: Sequence[Mooring | Tow | Net]
+def _refuse(
+    options: Mapping[str, object],
+    what: str,
+    kind: type,
+    files: Sequence[Path],
+    lines: Sequence[Mooring | Tow | Net],
+    more: str = "",
 ) -> None:
-    from calm.case.net import Net
-
-    nets = [str(file) for file, line in zip(files, lines, strict=True) if isinstance(line, Net)]
-    if nets and options:
-        raise UsageError(
-            f"{options[0]} is for single lines; these are nets of legs: {', '.join(nets)} "
-            "(their tables, --json and --csv can be had)"
-        )
+    """Refuse the first option that is asked for, where a file is of a kind it is not for."""
+    asked = [option for option, value in options.items() if value]
+    those = [str(file) for file, line in zip(files, lines, strict=True) if isinstance(line, kind)]
+    if asked and those:
+        raise UsageError(f"{asked[0]} is for {what}: {', '.join(those)}{more}")
 
 
-def _explained(outcome: FileOutcome) -> FileOutcome:
-    """The outcome with its explanation, where there is a mooring to explain."""
-    from calm.case import Result
+def _explained(result: Result) -> Explanation:
     from calm.case.explain import explain
 
-    if not isinstance(outcome.result, Result):
-        return outcome
-    return replace(outcome, explanation=explain(outcome.result))
+    return explain(result)
 
 
-def _to_draw_often(samples: int, seed: int) -> Callable[[FileOutcome], FileOutcome]:
-    """What adds to an outcome how sure its figures are, where there is a mooring that stands.
+def _to_draw_often(samples: int, seed: int) -> Callable[[Result], Uncertain]:
+    """Return what says how sure the figures of a mooring that stands are.
 
     The sequence is begun now: scipy takes as long to load as the compiled march.
     """
-    from calm.case import Result
     from calm.case.draws import normals_of
     from calm.case.uncertain import uncertain
     from calm.cli.workers import begun, mapped
 
     normals = begun(normals_of, samples, seed)
     solved = partial(mapped, workers=None, what="blocks of samples solved")
-
-    def drawn_often(outcome: FileOutcome) -> FileOutcome:
-        if not isinstance(outcome.result, Result):
-            return outcome
-        found = uncertain(outcome.result, samples, seed, solved, normals)
-        return replace(outcome, uncertain=found)
-
-    return drawn_often
+    return lambda result: uncertain(result, samples, seed, solved, normals)
 
 
-def _drawn(outcome: FileOutcome, line: Mooring | Tow | Net) -> FileOutcome:
-    """The outcome with its line drawn in the signs that the standard output can carry."""
-    from calm.case.net import NetResult
+def _schematic(
+    line: Mooring | Tow | Net, result: AnyResult | None
+) -> tuple[TerminalSchematic, ...]:
+    """Draw a line, or its legs, in the signs that the standard output can carry."""
+    from calm.case.net import Net, NetResult
     from calm.drawing.schematic.in_terminal import TerminalSchematic, can_carry
 
-    assert not isinstance(outcome.result, NetResult)  # refused beforehand
     plain = not can_carry(getattr(sys.stdout, "encoding", None))
-    return replace(outcome, schematic=TerminalSchematic(line.file, outcome.result, plain))
+    results = result.legs if isinstance(result, NetResult) else [result]
+    lines = line.lines if isinstance(line, Net) else [line]
+    pairs = zip_longest(lines, results)
+    return tuple(TerminalSchematic(of.file, one, plain) for of, one in pairs)

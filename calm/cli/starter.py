@@ -138,10 +138,7 @@ def _pages(folder: Path, suffix: str) -> dict[str, Path]:
 def _named(page: str, pages: dict[str, Path]) -> str:
     """The page that a person means.
 
-    Raises
-    ------
-    UsageError
-        There is none, or there are several.
+    UsageError: there is none, or there are several.
     """
     from calm.suggestions import unknown
 
@@ -161,10 +158,7 @@ def _named(page: str, pages: dict[str, Path]) -> str:
 def _open(name: str, texts: dict[str, Path], built: dict[str, Path]) -> None:
     """Show a page of the site.
 
-    Raises
-    ------
-    UsageError
-        The site is not built, or there is no browser.
+    UsageError: the site is not built, or there is no browser.
     """
     import webbrowser
 

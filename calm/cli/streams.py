@@ -50,10 +50,7 @@ def show(text: str, *, styled: bool = False) -> None:
 
     A reader that has seen enough (``calm run m.yaml | head``) is no error.
 
-    Raises
-    ------
-    UsageError
-        The output cannot be written, e.g. because the disk is full.
+    UsageError: the output cannot be written, e.g. because the disk is full.
     """
     try:
         print(text if styled or not _on_terminal() else printable(text), end="", flush=True)

@@ -20,7 +20,7 @@ from calm.cli.options import (
     speed_range,
 )
 from calm.cli.outputs import FileOutcome, OutputPath, Outputs
-from calm.cli.run import read_files, solve_and_show
+from calm.cli.run import read_all, solve_and_show
 from calm.cli.streams import ExitCode, gravest, narrate, progress
 from calm.errors import NoEquilibrium, UsageError
 
@@ -127,9 +127,9 @@ class _Tabulated:
 
 
 def _only_tows(files: list[Path], environment: str | None, catalogs: list[Path]) -> list[Tow]:
-    from calm.case import Tow
+    from calm.case import Tow, load
 
-    read = read_files(files, environment, catalogs)
+    read = read_all(load, files, environment, catalogs)
     moorings = [file for file, line in zip(files, read, strict=True) if not isinstance(line, Tow)]
     if moorings:
         raise UsageError(

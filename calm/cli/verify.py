@@ -61,10 +61,7 @@ def verify(
 def _chosen(words: Sequence[str]) -> list[Source]:
     """The sources with the cases that have every word.
 
-    Raises
-    ------
-    UsageError
-        No case has them.
+    UsageError: no case has them.
     """
     from calm.verification import SOURCES
 

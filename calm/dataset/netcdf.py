@@ -97,7 +97,7 @@ def chunk_shape(layout: ResultLayout, variable: Variable, block: int) -> tuple[i
     variable : one of its variables
     block : profiles in a chunk, at most
     """
-    length = min(block, layout.sizes["time"])
+    length = min(block, layout.sizes[variable.dimensions[0]])
     return length, *(layout.sizes[name] for name in variable.dimensions[1:])
 
 
@@ -127,8 +127,10 @@ def _define(file: h5netcdf.File, layout: ResultLayout, variable: Variable, block
         defined[...] = variable.values.astype(object) if kind.kind == "U" else variable.values
 
 
-def _text(value: str) -> str | np.bytes_:
+def _text(value: str | float) -> str | float | np.bytes_:
     """Characters where they will do, which every tool takes; else a string of any length."""
+    if isinstance(value, float):
+        return value
     return np.bytes_(value) if value.isascii() and len(value) < _LONG else value
 
 

@@ -61,6 +61,11 @@ class Cut:
     over: int
     onto: int
 
+    @property
+    def marks_text(self) -> str:
+        """The marks as ``label@metres`` from the upper end, `;` between them."""
+        return ";".join(f"{mark.label.replace(';', ',')}@{mark.at:.3f}" for mark in self.marks)
+
 
 def cuts_of(result: Result, parts: Sequence[DeckItem], order: Order) -> tuple[Cut, ...]:
     """Return all that is cut and marked, down the line.

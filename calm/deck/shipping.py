@@ -38,6 +38,16 @@ class ShippedComponent:
     missing_masses: int
     missing_volumes: int
 
+    @property
+    def known_mass(self) -> float | None:
+        """The mass, or its lower bound; None where that of none is known."""
+        return None if self.missing_masses == self.count else self.mass
+
+    @property
+    def known_volume(self) -> float | None:
+        """The volume, or its lower bound; None where that of none is known."""
+        return None if self.missing_volumes == self.count else self.volume
+
 
 def shipped_of(
     file: MooringFile, inventory: Sequence[InventoryItem]

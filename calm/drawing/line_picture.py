@@ -9,18 +9,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
+from itertools import repeat
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from calm.case import TowResult
+from calm.case import Result, TowResult
+from calm.case.net import AnyResult, NetResult
 from calm.case.result_tables import rows_down
 from calm.quantities import QUANTITIES, bearing_of, bearing_text
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from calm.case import Result
     from calm.case.result_tables import Shape
     from calm.case.uncertain import Uncertain
     from calm.physics.line import Water
@@ -105,7 +106,7 @@ class LinePicture:
 
 
 def elevation_of(
-    result: Result | TowResult, beside: Sequence[Shape] = (), uncertain: Uncertain | None = None
+    result: AnyResult, beside: Sequence[Shape] = (), uncertain: Uncertain | None = None
 ) -> LinePicture:
     """Return a line in the vertical plane of its excursion, or of its tow.
 
@@ -136,9 +137,14 @@ def elevation_of(
         )
     lines = [] if uncertain is None else [_band(uncertain)]
     lines += [from_the_side(shape, plane, LineKind.BESIDE) for shape in beside]
-    if result.still_shape is not None:
-        lines.append(from_the_side(result.still_shape, plane, LineKind.STILL, "in still water"))
-    lines.append(from_the_side(result.shape, plane, label="in the current"))
+    legs = legs_of(result)
+    still = [leg.still_shape for leg in legs if leg.still_shape is not None]
+    for kind, shapes, label in (
+        (LineKind.STILL, still, "in still water"),
+        (LineKind.LINE, [leg.shape for leg in legs], "in the current"),
+    ):
+        labels = (label, *[""] * len(shapes))  # a legend names each kind once
+        lines += [from_the_side(*one) for one in zip(shapes, repeat(plane), repeat(kind), labels)]
     return LinePicture(
         lines=tuple(lines),
         marks=marks,
@@ -146,15 +152,31 @@ def elevation_of(
         up=QUANTITIES["depth"].label,
         top=top,
         bottom=bottom,
-        height=result.mooring.water.depth,
+        height=seabed_of(result),
         surface=True,
-        seabed=result.mooring.water.depth,
+        seabed=seabed_of(result),
     )
 
 
-def plan_of(result: Result | TowResult, beside: Sequence[Shape] = ()) -> LinePicture:
+def water_of(result: AnyResult) -> Water:
+    """Return the water that a line or a net stands in, or that a tow goes through."""
+    return result.tow.water if isinstance(result, TowResult) else result.mooring.water
+
+
+def lines_of(result: AnyResult) -> Sequence[Result | TowResult]:
+    """Return the lines of a result: the legs of a net, else the result itself."""
+    return (result,) if isinstance(result, TowResult) else legs_of(result)
+
+
+def legs_of(result: Result | NetResult) -> Sequence[Result]:
+    """Return the legs of a net; a mooring is one."""
+    return result.legs if isinstance(result, NetResult) else (result,)
+
+
+def plan_of(result: AnyResult, beside: Sequence[Shape] = ()) -> LinePicture:
     """Return a line from above, its anchor, or the ship, at zero; shapes `beside` it too."""
-    shapes = [(LineKind.BESIDE, shape) for shape in beside] + [(LineKind.LINE, result.shape)]
+    shapes = [(LineKind.BESIDE, shape) for shape in beside]
+    shapes += [(LineKind.LINE, line.shape) for line in lines_of(result)]
     return LinePicture(
         lines=tuple(Polyline(kind, shape.x, shape.y) for kind, shape in shapes),
         marks=tuple(named_parts(result)),
@@ -188,11 +210,17 @@ def _band(uncertain: Uncertain) -> Polyline:
     )
 
 
-def plane_of(result: Result | TowResult) -> Floats:
+def plane_of(result: AnyResult) -> Floats:
     """Return the direction, east and north, from the anchor to the free end, or behind the ship.
 
-    It is east of a mooring that stands upright.
+    It is east of a mooring that stands upright, and of a net the one in which it is widest.
     """
+    if isinstance(result, NetResult):
+        x, y = (np.concatenate([getattr(leg.shape, name) for leg in result.legs]) for name in "xy")
+        width, ways = np.linalg.eigh(np.cov(x, y))
+        wide = ways[:, 1] if width[1] > 1e-12 * result.mooring.water.depth**2 else (1.0, 0.0)
+        way = np.array(wide)
+        return way if (way[0] + 1e-9 * way[1]) >= 0.0 else -way
     if isinstance(result, TowResult):
         heading = np.radians(result.toward)
         return -np.array([np.sin(heading), np.cos(heading)])
@@ -202,11 +230,11 @@ def plane_of(result: Result | TowResult) -> Floats:
     return excursion / distance if distance > 1e-6 * result.mooring.water.depth else east
 
 
-def levels_of(result: Result | TowResult) -> tuple[float, float]:
+def levels_of(result: AnyResult) -> tuple[float, float]:
     """Return the depths at the upper and the lower edge of a view from the side [m]."""
-    highest = float(result.shape.depth.min())
+    highest = min(float(line.shape.depth.min()) for line in lines_of(result))
     if not isinstance(result, TowResult):
-        depth = result.mooring.water.depth
+        depth = seabed_of(result)
         return min(-_MOORED_MARGIN * depth, highest), (1.0 + _MOORED_MARGIN) * depth
     top, bottom = min(highest, 0.0), max(float(result.shape.depth.max()), 0.0)
     seabed = result.file.environment.depth
@@ -214,6 +242,11 @@ def levels_of(result: Result | TowResult) -> tuple[float, float]:
         bottom = seabed
     margin = _TOWED_MARGIN * (bottom - top)
     return top - margin, bottom + margin
+
+
+def seabed_of(result: Result | NetResult) -> float:
+    """Return the depth of the water, of a net at its deepest anchor [m]."""
+    return max(float(line.mooring.water.depth) for line in (result, *legs_of(result)))
 
 
 def along(x: Floats | float, y: Floats | float, plane: Floats) -> Floats:
@@ -243,7 +276,7 @@ def along_the_line(shape: Shape) -> Floats:
     return np.concatenate([[0.0], np.cumsum(steps)])
 
 
-def named_parts(result: Result | TowResult) -> list[PictureMark]:
+def named_parts(result: AnyResult) -> list[PictureMark]:
     """Return the floats, instruments, releases and the anchor, clamped ones too, in file order."""
     parts = []
     for component, clamps in rows_down(result):

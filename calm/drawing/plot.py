@@ -17,6 +17,7 @@ from calm.drawing.line_picture import (
     along,
     current_between,
     elevation_of,
+    lines_of,
     names,
     plan_of,
     plane_of,
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
-    from calm.case import Result
+    from calm.case.net import AnyResult
     from calm.case.uncertain import Uncertain
     from calm.report.tabulation import Tabulation
 
@@ -68,18 +69,18 @@ _PLANE_WITHIN = 0.01
 _SHIP: dict[str, Any] = {"linestyle": "none", "marker": "^", "color": "black", "markersize": 8}
 
 
-def picture(result: Result | TowResult, suffix: str, uncertain: Uncertain | None = None) -> bytes:
-    """Return the drawing of a mooring or a tow as a file; `suffix` is one of `picture.FORMATS`."""
+def picture(result: AnyResult, suffix: str, uncertain: Uncertain | None = None) -> bytes:
+    """Return the drawing of a line or a net as a file; `suffix` is one of `picture.FORMATS`."""
     return image(draw(result, uncertain), suffix)
 
 
-def draw(result: Result | TowResult, uncertain: Uncertain | None = None) -> Figure:
+def draw(result: AnyResult, uncertain: Uncertain | None = None) -> Figure:
     """Draw a mooring or a tow as a figure of two or three views, which belongs to no window.
 
-    The elevation is in the vertical plane of the anchor and the free end, with the same line in
-    still water dashed, or in that of the tow, the ship at distance 0. Beside it stand the speed of
-    the water and its part in that plane, past the line in a tow; and the line from above, where it
-    leaves the plane of a tow.
+    The elevation is in the vertical plane of the anchor and the free end, of a net in the one in
+    which it is widest, with the same line in still water dashed, or in that of the tow, the ship at
+    distance 0. Beside it stand the speed of the water and its part in that plane, past the line in
+    a tow; and the line from above, where it leaves the plane of a tow.
 
     Parameters
     ----------
@@ -99,21 +100,23 @@ def draw(result: Result | TowResult, uncertain: Uncertain | None = None) -> Figu
     flow.sharey(elevation)
     figure.suptitle(result.name, parse_math=False)
 
-    _draw_elevation(elevation, side)
+    draw_elevation(elevation, side)
     write_names(elevation, written, height)
     _draw_flow_of(flow, result, side, plane)
     for axes in plan:
-        _draw_plan(axes, plan_of(result))
+        draw_plan(axes, plan_of(result))
     return figure
 
 
-def _leaves_plane(result: Result | TowResult, behind: Floats) -> bool:
-    across = along(result.shape.x, result.shape.y, np.array([behind[1], -behind[0]]))
-    distance = np.hypot(result.shape.x, result.shape.y).max()
+def _leaves_plane(result: AnyResult, behind: Floats) -> bool:
+    (shape,) = (line.shape for line in lines_of(result))
+    across = along(shape.x, shape.y, np.array([behind[1], -behind[0]]))
+    distance = np.hypot(shape.x, shape.y).max()
     return bool(np.abs(across).max() > _PLANE_WITHIN * distance)
 
 
-def _draw_elevation(axes: Axes, side: LinePicture) -> None:
+def draw_elevation(axes: Axes, side: LinePicture) -> None:
+    """Draw the line from the side, between surface and seabed."""
     if side.surface:
         axes.axhline(0.0, color=WATER_COLOUR, linewidth=1)
     if side.seabed is not None:
@@ -142,7 +145,7 @@ def draw_lines(axes: Axes, picture: LinePicture) -> None:
             axes.plot(line.x, line.y, label=line.label, **LINE_STYLE)
 
 
-def _draw_plan(axes: Axes, above: LinePicture) -> None:
+def draw_plan(axes: Axes, above: LinePicture) -> None:
     """Draw the line from above, both axes to one scale."""
     if above.ship is not None:
         axes.plot(*above.ship, label="tow point", **_SHIP)
@@ -154,7 +157,7 @@ def _draw_plan(axes: Axes, above: LinePicture) -> None:
     axes.legend(ncols=2, **LEGEND)
 
 
-def _draw_flow_of(axes: Axes, result: Result | TowResult, side: LinePicture, plane: Floats) -> None:
+def _draw_flow_of(axes: Axes, result: AnyResult, side: LinePicture, plane: Floats) -> None:
     """Draw the current, of a tow the water past the line, over the depths of the elevation."""
     speed = QUANTITIES["speed"]
     if not isinstance(result, TowResult):

@@ -379,7 +379,7 @@ def _agree(one: Component, other: Component) -> bool:
         if values[0] is not None and values[1] is not None:
             pairs.append((values[0], values[1]))
     # at 1 m/s across it [N], of a cable or chain per metre
-    drags = [drag_of(each, getattr(each, "length", 1.0))[0] for each in (one, other)]
+    drags = [drag_of(each)[0] for each in (one, other)]
     pairs.append((drags[0], drags[1]))
     return all(abs(a - b) <= _TOLERANCE * max(abs(a), abs(b)) for a, b in pairs)
 

@@ -23,9 +23,10 @@ from calm.files.definition import (
     QuantityField,
     Text,
     described,
+    optional,
     quantity_of,
 )
-from calm.files.rule_texts import ACCEPTABLE
+from calm.files.rule_texts import ACCEPTABLE, RULES
 from calm.files.yaml_document import SourceMapping
 from calm.suggestions import shown, unknown
 
@@ -57,10 +58,10 @@ class Limit:
 
 _UFC = "UFC 4-159-03, table 3-7: 3 on new breaking strength of chain and wire"
 _PRACTICE = "oceanographic practice: a third to a fifth of the breaking load"
-_DEWEY = "Dewey, Mooring Design & Dynamics: weight in water ≥ 1.5 (V + H/0.6)"
+_DEWEY = RULES["anchor-weight"].source
 _NO_FIGURE = "practice of mooring groups, 50 to 100 kgf above the release; no figure is published"
 _BERTEAUX = "Berteaux, Prindle & May, OCEANS '87: fish bite from the surface to 1000 m and more"
-_2SK = "API RP 2SK: 1.67 on breaking strength, intact, tensions found dynamically"
+_2SK = RULES["wave-strength"].source
 _LIFE = "API RP 2SK: a fatigue life of three times the service life"
 _URI = "URI GSO mooring program"
 
@@ -139,24 +140,22 @@ class Checks(Model):
     rating_margin: Annotated[float, LENGTH, Limit()] = described(
         "depth that must be left to a depth rating", "100 m", default=100.0
     )
-    maximum_knockdown: Annotated[float | None, POSITIVE_LENGTH, Limit(THE_DESIGN)] = described(
-        "most that the top may be pushed down", "50 m", default=None
+    maximum_knockdown: Annotated[float | None, POSITIVE_LENGTH, Limit(THE_DESIGN)] = optional(
+        "most that the top may be pushed down", "50 m"
     )
-    maximum_excursion: Annotated[float | None, POSITIVE_LENGTH, Limit(THE_DESIGN)] = described(
-        "most that the top may go to the side", "200 m", default=None
+    maximum_excursion: Annotated[float | None, POSITIVE_LENGTH, Limit(THE_DESIGN)] = optional(
+        "most that the top may go to the side", "200 m"
     )
     maximum_tilt: Annotated[
         float | None,
         QuantityField("angle", above=0, at_most=90),
         Limit(THE_DESIGN),
-    ] = described("most that a piece may lean", "30 deg", default=None)
+    ] = optional("most that a piece may lean", "30 deg")
     minimum_top_depth: Annotated[
         float | None,
         LENGTH,
         Limit(THIS_PROGRAM, default=10.0),
-    ] = described(
-        "least depth of the top of a sub-surface line, at low water too", "10 m", default=None
-    )
+    ] = optional("least depth of the top of a sub-surface line, at low water too", "10 m")
     fishbite_depth: Annotated[float, LENGTH, Limit(_BERTEAUX)] = described(
         "down to which fish bite synthetic rope; 0 m where none do", "1500 m", default=1000.0
     )
@@ -261,12 +260,12 @@ class AcceptKeys(Model):
     reason: Reason = described(
         "why the finding is accepted", "the maker gives no load; hung on chain"
     )
-    component: Text | None = described(
-        "label of the line, or a pattern of labels; all when absent", "glass *", default=None
+    component: Text | None = optional(
+        "label of the line, or a pattern of labels; all when absent", "glass *"
     )
-    by: Text | None = described("who accepts it", "A. Martin", default=None)
-    date: Day | None = described("day, e.g. 2026-11-20", "2026-11-22", default=None)
-    until: Day | None = described("last day on which it counts", "2027-12-31", default=None)
+    by: Text | None = optional("who accepts it", "A. Martin")
+    date: Day | None = optional("day, e.g. 2026-11-20", "2026-11-22")
+    until: Day | None = optional("last day on which it counts", "2027-12-31")
 
     @model_validator(mode="after")
     def _ends_after_it_begins(self) -> AcceptKeys:
@@ -275,28 +274,14 @@ class AcceptKeys(Model):
         return self
 
 
-@dataclass(frozen=True)
-class Accept:
-    """Hold what is accepted of a mooring.
+class Accept(AcceptKeys):
+    """Say what is accepted of a mooring.
 
-    Attributes
-    ----------
-    rule : its id
-    component : as written, a label or a pattern of labels; None for every finding of the rule
-    labels : of the pieces and clamps that it stands for; None as above
-    reason : why
-    by, date : who accepted it, and when; None where it is not said
-    until : the last day on which it counts; None where it does not end
-    line : of the mooring file
+    `labels` are those of the pieces and clamps that it stands for, None for every finding of the
+    rule; `line` is its own in the mooring file.
     """
 
-    rule: str
-    component: str | None
     labels: tuple[str, ...] | None
-    reason: str
-    by: str | None
-    date: str | None
-    until: str | None
     line: int
 
     def covers(self, rule: str, component: str | None) -> bool:
@@ -349,9 +334,7 @@ def _accept(
         if not covered:
             wrong("component", _nothing_called(keys.component, labels))
     line = top.problem(("checks", "accept", number), "").line
-    return Accept(
-        keys.rule, keys.component, covered, keys.reason, keys.by, keys.date, keys.until, line
-    )
+    return Accept.model_construct(**dict(keys), labels=covered, line=line)
 
 
 def matching(component: str, labels: Iterable[str]) -> list[str]:

@@ -15,7 +15,6 @@ from pydantic import AfterValidator, Field, ValidationInfo, model_validator
 
 from calm.files.definition import (
     CATALOGUE_DENSITY,
-    POSITIVE_FORCE,
     STANDARD_GRAVITY,
     Definition,
     Diameter,
@@ -23,12 +22,13 @@ from calm.files.definition import (
     Mass,
     MaterialDensity,
     NormalCoefficient,
+    PositiveForce,
     QuantityField,
     Role,
     TangentialCoefficient,
     TangentialDrag,
-    described,
     is_in_air,
+    optional,
     refuse_weight_above_mass,
     volume_from_weights,
 )
@@ -86,8 +86,8 @@ class Flexible(Definition):
     density: MaterialDensity = None
     cn: NormalCoefficient = None
     ct: TangentialCoefficient = None
-    stiffness: Annotated[float | None, POSITIVE_FORCE] = described(
-        "EA, the force that would double the length, e.g. 4 MN", "4 MN", default=None
+    stiffness: PositiveForce = optional(
+        "EA, the force that would double the length, e.g. 4 MN", "4 MN"
     )
 
     def strain_under(self, load: float) -> float:
@@ -99,30 +99,25 @@ class Cable(Flexible):
     """A rope, wire or electrical cable."""
 
     kind: Literal["cable"] = Field(description="which kind of component it is")
-    buoyancy: Annotated[float | None, QuantityField("force per length")] = described(
-        "net force in sea water of 1025 kg/m^3, positive up (per metre of a cable)",
-        "0.1 N/m",
-        default=None,
+    buoyancy: Annotated[float | None, QuantityField("force per length")] = optional(
+        "net force in sea water of 1025 kg/m^3, positive up (per metre of a cable)", "0.1 N/m"
     )
-    finish: Literal["smooth", "rough", "very-rough"] | None = described(
-        "of the surface of a cable", "rough", default=None
+    finish: Literal["smooth", "rough", "very-rough"] | None = optional(
+        "of the surface of a cable", "rough"
     )
-    torque_balanced: bool | None = described(
-        "of a wire rope: whether it does not turn under load", True, default=None
+    torque_balanced: bool | None = optional(
+        "of a wire rope: whether it does not turn under load", True
     )
-    elongation: Elongation | None = described(
+    elongation: Elongation | None = optional(
         "rows of load over breaking load and strain, e.g. [[0.1, 0.03], [0.3, 0.08]]",
         [[0.05, 0.05], [0.1, 0.08], [0.2, 0.12]],
-        default=None,
     )
-    dynamic_stiffness: Annotated[float | None, POSITIVE_FORCE] = described(
-        "EA under the quick loads of waves, greater than that of a slow load",
-        "600 kN",
-        default=None,
+    dynamic_stiffness: PositiveForce = optional(
+        "EA under the quick loads of waves, greater than that of a slow load", "600 kN"
     )
     permanent_elongation: Annotated[
         float | None, QuantityField("number", at_least=0, at_most=1)
-    ] = described("of a rope that has been loaded, at every tension, e.g. 4 %", "4 %", default=None)
+    ] = optional("of a rope that has been loaded, at every tension, e.g. 4 %", "4 %")
 
     @property
     def net_buoyancy(self) -> float:
@@ -212,13 +207,13 @@ class Anchor(Definition):
     role: Role = "anchor"
     kind: Literal["anchor"] = Field(description="which kind of component it is")
     mass: Mass = None
-    weight: Annotated[float | None, QuantityField("force", at_least=0)] = described(
-        "in sea water of 1025 kg/m^3 (per metre of a cable or chain)", "5000 N", default=None
+    weight: Annotated[float | None, QuantityField("force", at_least=0)] = optional(
+        "in sea water of 1025 kg/m^3 (per metre of a cable or chain)", "5000 N"
     )
     density: MaterialDensity = None
     length: Length = 0.0
-    friction: Annotated[float | None, QuantityField("number", above=0)] = described(
-        "coefficient on the seabed", 0.6, default=None
+    friction: Annotated[float | None, QuantityField("number", above=0)] = optional(
+        "coefficient on the seabed", 0.6
     )
     kt: TangentialDrag = None
 

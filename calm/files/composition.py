@@ -15,7 +15,6 @@ from yaml.error import MarkedYAMLError, YAMLError
 from yaml.events import (
     AliasEvent,
     CollectionEndEvent,
-    CollectionStartEvent,
     Event,
     MappingStartEvent,
     NodeEvent,
@@ -141,6 +140,7 @@ class _Reader:
         self._next = next_event
         self._refusals: list[Refusal] = []
         self._anchors: set[str] = set()
+        self._skipping = 0
 
     def read(self) -> Composition:
         """Return the nodes of the only document."""
@@ -165,7 +165,7 @@ class _Reader:
         place = mark.line + 1, mark.column + 1
         kind = _KINDS[type(event)]
         if event.anchor is not None or event.tag not in _PLAIN_TAGS:
-            self._refuse_node(event)
+            self._refuse_node(event, depth)
             return Node(kind, start, start, *place, "", None)
         if kind == "scalar":
             end = event.end_mark.index + self._start
@@ -201,10 +201,10 @@ class _Reader:
         values = []
         while not isinstance(event := self._next(), CollectionEndEvent):
             if event.anchor is not None:
-                self._refuse_node(event)
+                self._refuse_node(event, depth)
             elif not isinstance(event, ScalarEvent):
                 self._refuse(event, "a key must be plain text")
-                self._skip(event)
+                self._skip(event, depth)
             elif (name := _shown(event.value)) in lines:
                 self._refuse(event, f"`{name}` is given twice (first in line {lines[name]})")
             else:
@@ -221,10 +221,10 @@ class _Reader:
                 keys.append(key)
                 values.append(value)
                 continue
-            self._skip(self._next())
+            self._skip(self._next(), depth)
         return values, event
 
-    def _refuse_node(self, event: NodeEvent) -> None:
+    def _refuse_node(self, event: NodeEvent, depth: int) -> None:
         """Refuse an anchor (and, with it, what refers to it) or a tag, and what belongs to it."""
         if isinstance(event, AliasEvent):
             self._find_anchor(event)
@@ -233,27 +233,22 @@ class _Reader:
             self._refuse(event, f"tags (`{event.tag}`) are not allowed")
         else:
             self._refuse(event, "anchors (&) and aliases (*) are not allowed; write it out")
-        self._skip(event)
+        self._skip(event, depth)
 
     def _refuse(self, event: NodeEvent, message: str) -> None:
         mark = event.start_mark
-        self._refusals.append((mark.line + 1, mark.column + 1, message))
+        if not self._skipping:
+            self._refusals.append((mark.line + 1, mark.column + 1, message))
 
-    def _skip(self, event: Event) -> None:
-        """Pass over a node that an event begins."""
-        depth = 0
-        while True:
-            if isinstance(event, AliasEvent):
-                self._find_anchor(event)
-            elif isinstance(event, NodeEvent) and event.anchor is not None:
-                self._anchors.add(event.anchor)
-            depth += isinstance(event, CollectionStartEvent)
-            depth -= isinstance(event, CollectionEndEvent)
-            if depth > _DEEPEST:
-                raise _TooDeep
-            if not depth:
-                return
-            event = self._next()
+    def _skip(self, event: NodeEvent, depth: int) -> None:
+        """Pass over a node that an event begins, whatever else is wrong with it."""
+        self._skipping += 1
+        if event.anchor is not None and not isinstance(event, AliasEvent):
+            self._anchors.add(event.anchor)
+            event.anchor = None
+        event.tag = None
+        self._node(event, depth)
+        self._skipping -= 1
 
     def _find_anchor(self, event: AliasEvent) -> None:
         """Raise where an alias has no anchor; where it has, the mistake is reported there."""
@@ -297,6 +292,15 @@ class Node(NamedTuple):
     data: Any
     keys: tuple[Node, ...] = ()
     children: tuple[Node, ...] = ()
+
+    def entry(self, step: str | int) -> tuple[Node | None, Node | None]:
+        """Return the key, and the value or item, that a key or a number leads to; else None."""
+        if self.kind == "mapping":
+            named = zip(self.keys, self.children, strict=True)
+            return next(((key, child) for key, child in named if key.data == step), (None, None))
+        if self.kind == "sequence" and isinstance(step, int) and 0 <= step < len(self.children):
+            return None, self.children[step]
+        return None, None
 
 
 class Composition(NamedTuple):

@@ -73,6 +73,11 @@ def described(description: str, example: object, **default: Any) -> Any:
     return Field(description=description, examples=[example], **default)
 
 
+def optional(description: str, example: object) -> Any:
+    """Return the field of a key that may be left out: None."""
+    return described(description, example, default=None)
+
+
 def _as_text(value: object) -> object:
     return str(value) if isinstance(value, (int, float)) else value
 
@@ -87,6 +92,11 @@ POSITIVE_FORCE = QuantityField("force", usual_unit="kN", above=0)
 COEFFICIENT = QuantityField("number", at_least=0)
 DRAG = QuantityField("drag", at_least=0)
 TILT = QuantityField("angle", above=0, at_most=180)
+
+PositiveLength = Annotated[float | None, POSITIVE_LENGTH]
+PositiveForce = Annotated[float | None, POSITIVE_FORCE]
+Coefficient = Annotated[float | None, COEFFICIENT]
+Drag = Annotated[float | None, DRAG]
 
 Role = Annotated[
     Literal["float", "instrument", "release", "connector", "line", "anchor"],
@@ -223,53 +233,40 @@ class Definition(Model):
     """
 
     role: Role = "instrument"
-    name: Text | None = described("what people call it", "Shelf edge 2026", default=None)
-    manufacturer: Text | None = described("who makes it", "the maker", default=None)
-    part_number: Text | None = described("the maker's", "1250-A", default=None)
-    material: Text | None = described(
-        f"what it is made of, in words that name one of {MATERIAL_NAMES}",
-        "galvanised steel",
-        default=None,
+    name: Text | None = optional("what people call it", "Shelf edge 2026")
+    manufacturer: Text | None = optional("who makes it", "the maker")
+    part_number: Text | None = optional("the maker's", "1250-A")
+    material: Text | None = optional(
+        f"what it is made of, in words that name one of {MATERIAL_NAMES}", "galvanised steel"
     )
-    note: Text | None = described(
-        "anything worth knowing", "galvanised; look at it after each cruise", default=None
+    note: Text | None = optional(
+        "anything worth knowing", "galvanised; look at it after each cruise"
     )
-    source: Text | None = described(
-        "where the figures come from", "data sheet of the maker, 2026", default=None
-    )
-    sources: dict[str, Text] | None = described(
+    source: Text | None = optional("where the figures come from", "data sheet of the maker, 2026")
+    sources: dict[str, Text] | None = optional(
         "by field, where a figure comes from that is not of `source`",
         {"breaking_load": "test of 2025"},
-        default=None,
     )
-    searched: tuple[str, ...] | None = described(
-        "fields that no source prints, though they were looked for", ["breaking_load"], default=None
+    searched: tuple[str, ...] | None = optional(
+        "fields that no source prints, though they were looked for", ["breaking_load"]
     )
-    prefer: Text | None = described(
-        "id of the definition of the same thing to use in place of this one", "sbe37", default=None
+    prefer: Text | None = optional(
+        "id of the definition of the same thing to use in place of this one", "sbe37"
     )
-    date: Text | None = described("day, e.g. 2026-11-20", "2026-11-20", default=None)
-    depth_rating: Annotated[float | None, POSITIVE_LENGTH] = described(
-        "deepest it may be used", "2000 m", default=None
+    date: Text | None = optional("day, e.g. 2026-11-20", "2026-11-20")
+    depth_rating: PositiveLength = optional("deepest it may be used", "2000 m")
+    working_load: PositiveForce = optional("load it may carry in use, e.g. 20 kN", "20 kN")
+    breaking_load: PositiveForce = optional("load at which it breaks, e.g. 40 kN", "40 kN")
+    opening_load: PositiveForce = optional(
+        "of a release, the greatest under which it opens, e.g. 10 kN", "10 kN"
     )
-    working_load: Annotated[float | None, POSITIVE_FORCE] = described(
-        "load it may carry in use, e.g. 20 kN", "20 kN", default=None
+    grip: PositiveForce = optional(
+        "pull at which its clamp slips along the line, e.g. 1 kN", "1 kN"
     )
-    breaking_load: Annotated[float | None, POSITIVE_FORCE] = described(
-        "load at which it breaks, e.g. 40 kN", "40 kN", default=None
+    max_tilt: Annotated[float | None, TILT] = optional(
+        "tilt beyond which it is not to be trusted", "20 deg"
     )
-    opening_load: Annotated[float | None, POSITIVE_FORCE] = described(
-        "of a release, the greatest under which it opens, e.g. 10 kN", "10 kN", default=None
-    )
-    grip: Annotated[float | None, POSITIVE_FORCE] = described(
-        "pull at which its clamp slips along the line, e.g. 1 kN", "1 kN", default=None
-    )
-    max_tilt: Annotated[float | None, TILT] = described(
-        "tilt beyond which it is not to be trusted", "20 deg", default=None
-    )
-    warn_tilt: Annotated[float | None, TILT] = described(
-        "tilt to be warned of", "15 deg", default=None
-    )
+    warn_tilt: Annotated[float | None, TILT] = optional("tilt to be warned of", "15 deg")
     estimate: Annotated[tuple[EstimatedFigure, ...] | None, BeforeValidator(_listed)] = Field(
         default=None,
         description="what a figure that is not given is taken as, where a rule asks for it",
@@ -283,13 +280,12 @@ class Definition(Model):
             }
         ],
     )
-    fatigue: FatigueKeys | None = described(
+    fatigue: FatigueKeys | None = optional(
         "curve of its fatigue in waves, where it is not that of its kind",
         {"curve": "dnv-stud-chain"},
-        default=None,
     )
-    slack: Literal["allowed"] | None = described(
-        "`allowed` exempts the piece from `minimum_tension`", "allowed", default=None
+    slack: Literal["allowed"] | None = optional(
+        "`allowed` exempts the piece from `minimum_tension`", "allowed"
     )
 
     @property

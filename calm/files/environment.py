@@ -11,11 +11,20 @@ from typing import Annotated, Literal
 from pydantic import BeforeValidator, Discriminator, Tag
 
 from calm.errors import InputError, Problem
-from calm.files.definition import DENSITY, POSITIVE_LENGTH, Model, QuantityField, Text, described
+from calm.files.definition import (
+    DENSITY,
+    POSITIVE_LENGTH,
+    Model,
+    QuantityField,
+    Text,
+    described,
+    optional,
+)
 from calm.files.water import (
     USUAL_DENSITY,
     Density,
     TableKeys,
+    Toward,
     WaveKeys,
     Wind,
     check_density,
@@ -28,7 +37,6 @@ from calm.files.water import (
 from calm.files.yaml_document import SourceMapping, validate
 from calm.records.current_terms import DEEPEST, Terms, TimeChoiceError, too_fast
 from calm.records.profile_tables import (
-    DIRECTION,
     CurrentTable,
     DepthTable,
     SeaWater,
@@ -112,8 +120,8 @@ class Fouling(Model):
     thickness: Annotated[float, QuantityField("length", usual_unit="mm", above=0)] = described(
         "of the growth all around, e.g. 20 mm", "20 mm"
     )
-    density: Annotated[float | None, DENSITY] = described(
-        "of the growth; as heavy as water when absent", "1025 kg/m^3", default=None
+    density: Annotated[float | None, DENSITY] = optional(
+        "of the growth; as heavy as water when absent", "1025 kg/m^3"
     )
 
 
@@ -121,7 +129,7 @@ class UniformCurrent(Model):
     """The same current at all depths [m/s, degrees]."""
 
     speed: Annotated[float, _SPEED] = described("of the water", "0.5 m/s")
-    toward: Annotated[float, QuantityField(**vars(DIRECTION))] = described(
+    toward: Toward = described(
         "direction it flows or goes to, clockwise from north, e.g. 90 deg", "90 deg"
     )
     w: Annotated[float, QuantityField("speed")] = described(
@@ -136,14 +144,10 @@ class CurrentFile(Model):
     """
 
     file: Text = described("CSV or CF NetCDF, beside the mooring file", "adcp.nc")
-    time: Text | None = described(
-        "of the profile wanted, e.g. 2026-03-01T06:00", "2026-03-01T06:00", default=None
-    )
+    time: Text | None = optional("of the profile wanted, e.g. 2026-03-01T06:00", "2026-03-01T06:00")
     declination: Annotated[float | None, QuantityField("angle", at_least=-180, at_most=180)] = (
-        described(
-            "turns directions that a file gives from magnetic north; east positive",
-            "12.5 deg",
-            default=None,
+        optional(
+            "turns directions that a file gives from magnetic north; east positive", "12.5 deg"
         )
     )
 
@@ -177,16 +181,14 @@ class TowEnvironmentKeys(Model):
     fluid: Literal["water", "air"] = described(
         "what the line is in: a tow may be in air", "water", default="water"
     )
-    depth: Annotated[float | None, _WATER_DEPTH] = described(
-        "of the water, e.g. 1100 m", "1100 m", default=None
-    )
+    depth: Annotated[float | None, _WATER_DEPTH] = optional("of the water, e.g. 1100 m", "1100 m")
     density: Density = described(
         "of the water: one, a table, or by temperature and salinity",
         "1025 kg/m^3",
         default=USUAL_DENSITY["water"],
     )
     gravity: Annotated[float | None, QuantityField("acceleration", at_least=9.7, at_most=10)] = (
-        described("acceleration", "9.81 m/s^2", default=None)
+        optional("acceleration", "9.81 m/s^2")
     )
     current: Annotated[
         Annotated[TableKeys, Tag("table")]
@@ -198,9 +200,7 @@ class TowEnvironmentKeys(Model):
         {"speed": "0.5 m/s", "toward": "90 deg"},
         default=UniformCurrent.model_construct(speed=0.0, toward=0.0, w=0.0),
     )
-    wind: Wind | None = described(
-        "over the water", {"speed": "12 m/s", "toward": "90 deg"}, default=None
-    )
+    wind: Wind | None = optional("over the water", {"speed": "12 m/s", "toward": "90 deg"})
 
 
 class EnvironmentKeys(TowEnvironmentKeys):
@@ -213,18 +213,16 @@ class EnvironmentKeys(TowEnvironmentKeys):
     maximum_speed: Annotated[float, QuantityField("speed", above=0)] = described(
         "a faster current is an error", "3 m/s", default=_MAXIMUM_SPEED
     )
-    depth_range: Annotated[_Levels | None, BeforeValidator(_two_depths)] = described(
-        "water depth at low and at high water, e.g. [98 m, 104 m]", ["98 m", "104 m"], default=None
+    depth_range: Annotated[_Levels | None, BeforeValidator(_two_depths)] = optional(
+        "water depth at low and at high water, e.g. [98 m, 104 m]", ["98 m", "104 m"]
     )
-    fouling: Fouling | None = described(
+    fouling: Fouling | None = optional(
         "growth on everything from the surface down, for the design check",
         {"depth": "50 m", "thickness": "20 mm"},
-        default=None,
     )
-    waves: WaveKeys | None = described(
+    waves: WaveKeys | None = optional(
         "seas that the design check judges: one, or a table of them",
         {"significant_height": "5 m", "peak_period": "8.4 s"},
-        default=None,
     )
 
 

@@ -11,7 +11,7 @@ from pydantic import BeforeValidator, Field
 from calm.errors import Problem
 from calm.files.components import Anchor
 from calm.files.definition import LENGTH, Model, QuantityField, Text
-from calm.files.mooring_file import Piece, numbered
+from calm.files.mooring_file import MooringFile, Piece, numbered, stand_in_anchor
 from calm.files.rigid import Profiler
 from calm.files.yaml_document import SourceMapping, validate
 from calm.suggestions import unknown
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
 MOST_LEGS = 40
 NET_REFUSED = (
-    "this is a net of legs; `calm run` solves it, the other commands take a single line: one free "
-    "end, one anchor"
+    "this is a net of legs; `calm run` solves it and `calm check` judges it, this takes a single "
+    "line: one free end, one anchor"
 )
 
 _Offset = Annotated[float, QuantityField("length")]
@@ -59,6 +59,11 @@ class EndKeys(Model):
     held: HeldKeys | None = Field(
         default=None, description="a fixed place", examples=[{"depth": "2 m"}]
     )
+
+    @property
+    def free(self) -> bool:
+        """Return whether nothing holds it."""
+        return self.join is None and self.anchor is None and self.held is None
 
 
 _FREE = EndKeys()
@@ -108,9 +113,27 @@ class Leg:
     top: EndKeys
     bottom: EndKeys
 
-    def of(self, pieces: Sequence[Piece]) -> tuple[Piece, ...]:
-        """Return its pieces among those of the file."""
-        return tuple(pieces[self.first : self.end])
+    def line_of(self, file: MooringFile) -> MooringFile:
+        """Return the leg as the file of a single line: its pieces, counted from its upper end.
+
+        One without an anchor has a stand-in for it, of the id `STAND_IN`.
+        """
+        own = file.pieces[self.first : self.end]
+        pieces = [replace(piece, index=index) for index, piece in enumerate(own)]
+        if self.bottom.anchor is None:
+            pieces.append(stand_in_anchor(len(pieces), own[-1].place.item + 1))
+        depth = None if self.bottom.anchor is None else self.bottom.anchor.depth
+        environment = file.environment
+        if depth is not None:
+            environment = replace(environment, depth=depth)
+        return replace(
+            file,
+            name=self.name,
+            environment=environment,
+            pieces=tuple(pieces),
+            legs=(self,),
+            notices=(),
+        )
 
     @property
     def ends(self) -> tuple[EndKeys, EndKeys]:

@@ -11,22 +11,24 @@ from calm.files.catalogue import Assembly, Catalogue, CatalogueEntry, define
 from calm.files.check_limits import LimitKey
 from calm.files.components import KINDS, Anchor, Cable, Component, Flexible, contradicted
 from calm.files.definition import IN_AIR, LENGTH, POSITIVE_LENGTH, QuantityField, quantity_of
-from calm.files.logbook import EQUIPMENT_KEYS, LengthAt, check_serials, read_equipment
+from calm.files.logbook import (
+    MOST_PIECES,
+    ClampKeys,
+    ItemKeys,
+    LengthAt,
+    check_serials,
+    read_equipment,
+)
 from calm.files.mooring_file import Clamp, Piece, Place, placed
 from calm.files.rigid import Profiler, Rigid
 from calm.files.yaml_document import SourceMapping, unknown_key, validate
 from calm.suggestions import about_quantity, shown, unknown
 from calm.units import QuantityError
 
-MOST_PIECES = 10_000
-"""Pieces a line may have, after assemblies and counts are expanded."""
-
 _COUNT = QuantityField("number", at_least=1, at_most=MOST_PIECES)
-_ITEM_KEYS = EQUIPMENT_KEYS | {
-    *("use", "label", "count", "length", "length_at", "top_depth", "body_depth", "clamps")
-}
+_ITEM_KEYS = frozenset(ItemKeys.model_fields)
 _ASSEMBLY_KEYS = frozenset({"use", "label", "count"})
-_CLAMP_KEYS = EQUIPMENT_KEYS | {"use", "label", "at"}
+_CLAMP_KEYS = frozenset(ClampKeys.model_fields)
 _WORDS = {"at": "place", "top_depth": "top depth", "body_depth": "body depth"}
 _LIMITS = (
     *("breaking_load", "working_load", "opening_load", "grip"),

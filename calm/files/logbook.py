@@ -9,7 +9,18 @@ from pydantic import AfterValidator, Field, WithJsonSchema
 
 from calm.errors import Problem
 from calm.files.check_limits import Day
-from calm.files.definition import POSITIVE_LENGTH, Model, QuantityField, Role, Text, described
+from calm.files.definition import (
+    LENGTH,
+    POSITIVE_LENGTH,
+    Length,
+    Model,
+    PositiveLength,
+    QuantityField,
+    Role,
+    Text,
+    described,
+    optional,
+)
 from calm.files.environment import Position
 from calm.files.yaml_document import SourceMapping, validate
 from calm.records.current_terms import TimeChoiceError, parse_time
@@ -36,27 +47,26 @@ class Revision(Model):
     """What a revision of the document changed."""
 
     revision: Text = described("letter or number", "B")
-    date: Day | None = described("day, e.g. 2026-11-20", "2026-11-20", default=None)
-    by: Text | None = described("who made it", "A. Martin", default=None)
-    change: Text | None = described("what is new", "wire 20 m longer", default=None)
+    date: Day | None = optional("day, e.g. 2026-11-20", "2026-11-20")
+    by: Text | None = optional("who made it", "A. Martin")
+    change: Text | None = optional("what is new", "wire 20 m longer")
 
 
 class DocumentKeys(Model):
     """What the title block of a drawing says."""
 
-    id: Text | None = described("of the drawing", "M-2026-17", default=None)
-    revision: Text | None = described("letter or number", "B", default=None)
-    date: Day | None = described("day, e.g. 2026-11-20", "2026-11-20", default=None)
-    author: Text | None = described("who drew it", "A. Martin", default=None)
-    checked: Text | None = described("by whom", "B. Li", default=None)
-    approved: Text | None = described("by whom", "C. Okafor", default=None)
-    project: Text | None = described("what it belongs to", "Slope currents", default=None)
-    ship: Text | None = described("the ship that deploys the mooring", "RV Example", default=None)
-    cruise: Text | None = described("its name or number", "EX-142", default=None)
-    deck_time: dict[Role, Annotated[float, QuantityField("time", at_least=0)]] | None = described(
+    id: Text | None = optional("of the drawing", "M-2026-17")
+    revision: Text | None = optional("letter or number", "B")
+    date: Day | None = optional("day, e.g. 2026-11-20", "2026-11-20")
+    author: Text | None = optional("who drew it", "A. Martin")
+    checked: Text | None = optional("by whom", "B. Li")
+    approved: Text | None = optional("by whom", "C. Okafor")
+    project: Text | None = optional("what it belongs to", "Slope currents")
+    ship: Text | None = optional("the ship that deploys the mooring", "RV Example")
+    cruise: Text | None = optional("its name or number", "EX-142")
+    deck_time: dict[Role, Annotated[float, QuantityField("time", at_least=0)]] | None = optional(
         "time that a piece takes on deck before it goes over, by its role",
         {"float": "5 min", "instrument": "3 min", "line": "2 min"},
-        default=None,
     )
     history: tuple[Revision, ...] = described(
         "the revisions, and what each changed",
@@ -72,11 +82,10 @@ class DocumentKeys(Model):
 class ReleaseKeys(Model):
     """A release by its serial number, and its codes: one text, several, or several by name."""
 
-    serial: Text | None = described("of the release", 1729, default=None)
-    codes: Text | tuple[Text, ...] | dict[str, Text] | None = described(
+    serial: Text | None = optional("of the release", 1729)
+    codes: Text | tuple[Text, ...] | dict[str, Text] | None = optional(
         "one text, several, or several by name, e.g. {enable: 0123, release: 4567}",
         {"enable": "0A51", "release": "0A55"},
-        default=None,
     )
 
     @property
@@ -91,26 +100,20 @@ class DeployedItem(Model):
     """What went over the side for a piece or a clamp; `length` [m] is what a cable was cut to."""
 
     label: Text = described("of the piece or clamp in results", "wire-jacketed-8")
-    serial: Text | None = described(
-        "serial number; for a count, a list with one for each", 12345, default=None
-    )
-    length: Annotated[float | None, POSITIVE_LENGTH] = described(
-        "what a cable was cut to", "480 m", default=None
-    )
-    remark: Text | None = described("anything worth knowing", "one terminal remade", default=None)
+    serial: Text | None = optional("serial number; for a count, a list with one for each", 12345)
+    length: PositiveLength = optional("what a cable was cut to", "480 m")
+    remark: Text | None = optional("anything worth knowing", "one terminal remade")
 
 
 class Deployed(Model):
     """Where and when the mooring was deployed, and what of it differs from the design."""
 
-    date: Moment | None = described(
-        "day or time, e.g. 2027-03-02T10:40", "2027-03-02T10:40", default=None
+    date: Moment | None = optional("day or time, e.g. 2027-03-02T10:40", "2027-03-02T10:40")
+    position: Position | None = optional(
+        "where it stands", {"latitude": "48.3 deg", "longitude": "-5.2 deg"}
     )
-    position: Position | None = described(
-        "where it stands", {"latitude": "48.3 deg", "longitude": "-5.2 deg"}, default=None
-    )
-    depth: Annotated[float | None, QuantityField("length", above=0)] = described(
-        "of the water there", "1100 m", default=None
+    depth: Annotated[float | None, QuantityField("length", above=0)] = optional(
+        "of the water there", "1100 m"
     )
     items: tuple[DeployedItem, ...] = described(
         "what differs, piece by piece",
@@ -126,20 +129,18 @@ class Equipment(Model):
     each piece.
     """
 
-    serial: Text | Annotated[tuple[Text, ...], Field(min_length=1)] | None = described(
-        "serial number; for a count, a list with one for each", 12345, default=None
+    serial: Text | Annotated[tuple[Text, ...], Field(min_length=1)] | None = optional(
+        "serial number; for a count, a list with one for each", 12345
     )
-    calibrated: Day | None = described(
-        "day of its last calibration, e.g. 2026-03-01", "2026-03-01", default=None
+    calibrated: Day | None = optional("day of its last calibration, e.g. 2026-03-01", "2026-03-01")
+    sampling: Text | None = optional(
+        "how it samples, as people read it, e.g. every 10 min", "every 10 min"
     )
-    sampling: Text | None = described(
-        "how it samples, as people read it, e.g. every 10 min", "every 10 min", default=None
+    battery_until: Day | None = optional(
+        "day on which its battery is empty, e.g. 2027-06-30", "2028-01-31"
     )
-    battery_until: Day | None = described(
-        "day on which its battery is empty, e.g. 2027-06-30", "2028-01-31", default=None
-    )
-    termination: Text | None = described(
-        "how the ends of a cable are made, e.g. swaged sockets", "swaged sockets", default=None
+    termination: Text | None = optional(
+        "how the ends of a cable are made, e.g. swaged sockets", "swaged sockets"
     )
 
     def of(self, repeat: int) -> Equipment:
@@ -157,6 +158,49 @@ class LengthAt(Model):
 
     load: Annotated[float, LOAD] = described("that the cable was under", "2 kN")
     length: Annotated[float, POSITIVE_LENGTH] = described("as measured under `load`", "480 m")
+
+
+MOST_PIECES = 10_000
+"""Pieces a line may have, after assemblies and counts are expanded."""
+
+
+Label = Annotated[
+    Text, described("name of the piece in results; the id when there is none", "top float")
+]
+
+
+class ClampKeys(Equipment):
+    """An instrument fixed to a piece."""
+
+    use: str = described("id of a component of the catalogue or of `components`", "sbe37")
+    label: Label = ""
+    at: Annotated[float, LENGTH] = described(
+        "distance from the top of the piece, unstretched", "20 m"
+    )
+
+
+class ItemKeys(Equipment):
+    """A piece of the line; other fields override the component's."""
+
+    use: str = described("id of a component of the catalogue or of `components`", "wire-jacketed-8")
+    label: Label = ""
+    count: Annotated[int, Field(ge=1, le=MOST_PIECES)] = described(
+        "how many follow one another in the line", 6, default=1
+    )
+    length: Length = 0.0
+    length_at: LengthAt = described(
+        "a length measured under a load, e.g. {load: 2 kN, length: 480 m}",
+        {"load": "2 kN", "length": "480 m"},
+    )
+    top_depth: Annotated[float, LENGTH] = described(
+        "depth wanted in still water for the top of the line", "105 m"
+    )
+    body_depth: Annotated[float, LENGTH] = described(
+        "depth wanted in a tow for the lower end of this cable, at the tow's speed", "70 m"
+    )
+    clamps: tuple[ClampKeys, ...] = described(
+        "instruments fixed to this piece", [{"use": "sbe37", "at": "20 m"}]
+    )
 
 
 EQUIPMENT_KEYS = frozenset(Equipment.model_fields)

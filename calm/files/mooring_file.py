@@ -16,7 +16,7 @@ from pydantic import AfterValidator
 from calm.errors import Problem
 from calm.files.check_limits import Accept, Checks, LimitKey
 from calm.files.components import Anchor, Component
-from calm.files.definition import LENGTH, Model, QuantityField, described
+from calm.files.definition import LENGTH, Model, QuantityField, described, optional
 from calm.files.environment import Environment, Position
 from calm.files.logbook import NO_EQUIPMENT, Deployed, DocumentKeys, Equipment, ReleaseKeys
 from calm.files.rigid import Profiler
@@ -27,6 +27,10 @@ from calm.suggestions import unknown
 
 if TYPE_CHECKING:
     from calm.files.legs import Leg
+
+
+STAND_IN = ""
+"""Id of what holds a line whose anchor is yet to be chosen, or a leg that has none."""
 
 
 class TowKeys(Model):
@@ -46,14 +50,12 @@ class TowKeys(Model):
 class OutputUnits(Model):
     """Say in which units people read tables, papers and the builder; files for programs are SI."""
 
-    force: Literal["N", "kN", "kgf", "lbf"] | None = described(
-        "of tensions, weights and loads", "kgf", default=None
+    force: Literal["N", "kN", "kgf", "lbf"] | None = optional(
+        "of tensions, weights and loads", "kgf"
     )
-    length: Literal["m", "ft"] | None = described("of lengths and depths", "m", default=None)
-    speed: Literal["m/s", "cm/s", "kn"] | None = described(
-        "of currents and ships", "kn", default=None
-    )
-    mass: Literal["kg", "lb"] | None = described("of masses in air", "kg", default=None)
+    length: Literal["m", "ft"] | None = optional("of lengths and depths", "m")
+    speed: Literal["m/s", "cm/s", "kn"] | None = optional("of currents and ships", "kn")
+    mass: Literal["kg", "lb"] | None = optional("of masses in air", "kg")
 
     @property
     def chosen(self) -> dict[str, str]:
@@ -82,9 +84,7 @@ class Solver(Model):
     friction: Literal["berteaux", "hoerner", "constant"] = described(
         "law of friction along cables", "berteaux", default="berteaux"
     )
-    strumming: Strumming = described(
-        "how much vibration raises the Cn of cables", {"factor": 1.5}, default=None
-    )
+    strumming: Strumming = optional("how much vibration raises the Cn of cables", {"factor": 1.5})
     buoy_drag: Literal["immersed", "full"] = described(
         "of a float at the surface: at its draft, or fully immersed", "immersed", default="immersed"
     )
@@ -261,6 +261,12 @@ class MooringFile:
         anchor = self.pieces[-1].component
         assert isinstance(anchor, Anchor)
         return anchor
+
+
+def stand_in_anchor(index: int, item: int) -> Piece:
+    """Return an anchor without height that holds anything, of an id like no other."""
+    component = Anchor.model_validate({"kind": "anchor", "weight": "1e6 kN"})
+    return Piece(index, STAND_IN, "anchor", component, 0.0, None, (), 0, 0, Place(item))
 
 
 def placed(piece: Piece, place: Place) -> Piece:

@@ -15,7 +15,7 @@ from calm.errors import InputError, Problem
 from calm.files.catalogue import Catalogue
 from calm.files.check_limits import Checks, read_accepts
 from calm.files.components import Anchor, Flexible
-from calm.files.definition import Model, Text, described
+from calm.files.definition import Model, Text, described, optional
 from calm.files.environment import Position, read_environment
 from calm.files.legs import NET_REFUSED, Leg, LegKeys, check_held_depths, read_legs
 from calm.files.line_items import LineReader
@@ -24,11 +24,11 @@ from calm.files.mooring_file import (
     MooringFile,
     OutputUnits,
     Piece,
-    Place,
     Solver,
     TowKeys,
     labels_of,
     numbered,
+    stand_in_anchor,
     travelling,
     unknown_releases,
 )
@@ -36,9 +36,6 @@ from calm.files.uncertainty import Uncertainty
 from calm.files.yaml_document import SourceMapping, compose, read_document, validate
 from calm.suggestions import unknown
 from calm.units import QuantityError
-
-STAND_IN = ""
-"""Id of what holds a line whose anchor is yet to be chosen."""
 
 
 def _given(value: object) -> object:
@@ -50,21 +47,17 @@ def _given(value: object) -> object:
 class MooringKeys(Model):
     """The keys at the top level of a mooring file."""
 
-    name: Text | None = described("what people call it", "Shelf edge 2026", default=None)
-    description: Text | None = described(
-        "what it is for", "Slope currents, first year", default=None
+    name: Text | None = optional("what people call it", "Shelf edge 2026")
+    description: Text | None = optional("what it is for", "Slope currents, first year")
+    document: DocumentKeys | None = optional(
+        "what the title block of a drawing says", {"id": "M-2026-17", "revision": "B"}
     )
-    document: DocumentKeys | None = described(
-        "what the title block of a drawing says", {"id": "M-2026-17", "revision": "B"}, default=None
-    )
-    position: Position | None = described(
-        "where it stands", {"latitude": "48.3 deg", "longitude": "-5.2 deg"}, default=None
+    position: Position | None = optional(
+        "where it stands", {"latitude": "48.3 deg", "longitude": "-5.2 deg"}
     )
     tow: Annotated[TowKeys | None, BeforeValidator(_given, json_schema_input_type=TowKeys)] = (
-        described(
-            "what tows the line, in place of an anchor",
-            {"speed": "4 knot", "toward": "90 deg"},
-            default=None,
+        optional(
+            "what tows the line, in place of an anchor", {"speed": "4 knot", "toward": "90 deg"}
         )
     )
     environment: dict[str, Any] = described("the water", {"depth": "1100 m"}, default_factory=dict)
@@ -72,51 +65,39 @@ class MooringKeys(Model):
         "the pieces from the top to the anchor; in a tow, from the ship to the towed body",
         [{"use": "sphere-steel-1250"}, {"use": "anchor-wheels-4"}],
     )
-    legs: dict[str, LegKeys] | None = described(
+    legs: dict[str, LegKeys] | None = optional(
         "in place of `line`, several lines that meet at nodes, or are held elsewhere",
         {"main": {"line": [{"use": "sphere-steel-1250"}], "bottom": {"join": "A"}}},
-        default=None,
     )
-    nodes: dict[str, dict[str, Any]] | None = described(
-        "the nodes where legs meet", {"A": {}}, default=None
-    )
-    components: dict[str, Any] | None = described(
+    nodes: dict[str, dict[str, Any]] | None = optional("the nodes where legs meet", {"A": {}})
+    components: dict[str, Any] | None = optional(
         "definitions of your own, used only here",
         {"my-float": {"kind": "sphere", "diameter": "1.2 m", "buoyancy": "7000 N"}},
-        default=None,
     )
-    environments: dict[str, dict[str, Any]] | None = described(
+    environments: dict[str, dict[str, Any]] | None = optional(
         "named variants, each overriding keys of `environment`",
         {"storm": {"current": {"speed": "1.2 m/s", "toward": "90 deg"}}},
-        default=None,
     )
-    units: OutputUnits | None = described(
-        "in which people read tables, papers and the builder",
-        {"force": "kgf", "speed": "kn"},
-        default=None,
+    units: OutputUnits | None = optional(
+        "in which people read tables, papers and the builder", {"force": "kgf", "speed": "kn"}
     )
-    solver: Solver | None = described(
-        "how the line is solved", {"angle_step": "1 deg", "strumming": "vandiver"}, default=None
+    solver: Solver | None = optional(
+        "how the line is solved", {"angle_step": "1 deg", "strumming": "vandiver"}
     )
-    checks: Checks | None = described(
-        "limits of the design check",
-        {"anchor_factor": 1.5, "maximum_knockdown": "50 m"},
-        default=None,
+    checks: Checks | None = optional(
+        "limits of the design check", {"anchor_factor": 1.5, "maximum_knockdown": "50 m"}
     )
-    uncertainty: Uncertainty | None = described(
+    uncertainty: Uncertainty | None = optional(
         "how well the inputs of the design are known",
         {"current": "10 %", "cable_drag": ["-15 %", "30 %"]},
-        default=None,
     )
-    releases: tuple[ReleaseKeys, ...] | None = described(
+    releases: tuple[ReleaseKeys, ...] | None = optional(
         "the codes of each release by its serial number",
         [{"serial": 1729, "codes": {"enable": "0A51", "release": "0A55"}}],
-        default=None,
     )
-    deployed: Deployed | None = described(
+    deployed: Deployed | None = optional(
         "where and when it was deployed, and what differs from the design",
         {"date": "2027-03-02T10:40", "depth": "1103 m"},
-        default=None,
     )
 
 
@@ -173,7 +154,7 @@ def read_mooring(
     pieces = reader.read(top, "line") if isinstance(top.data.get("line"), list) else ()
     line_is_whole = bool(pieces) and len(problems) == before
     if stand_in and not towed and pieces and not _anchored(pieces):
-        pieces = (*pieces, _stand_in(len(top.data["line"])))
+        pieces = (*pieces, stand_in_anchor(0, len(top.data["line"])))
     if legged:
         legs, pieces = read_legs(top, reader, problems)
     else:
@@ -229,12 +210,6 @@ def _keys_of(
         ours = {key: value for key, value in top.data.items() if key not in ("legs", "nodes")}
         top = SourceMapping.of(top.document, top.location, {"line": ["legs"], **ours})
     return validate(MooringKeys, top, problems, context=context)
-
-
-def _stand_in(item: int) -> Piece:
-    """Return an anchor without height that holds anything, as an item below the last."""
-    component = Anchor.model_validate({"kind": "anchor", "weight": "1e6 kN"})
-    return Piece(0, STAND_IN, "anchor", component, 0.0, None, (), 0, 0, Place(item))
 
 
 def _child(section: SourceMapping, key: str) -> SourceMapping | None:

@@ -18,23 +18,26 @@ from calm.files.definition import (
     CATALOGUE_DENSITY,
     COEFFICIENT,
     DISAGREEMENT,
-    DRAG,
     LENGTH,
     POSITIVE_FORCE,
-    POSITIVE_LENGTH,
     STANDARD_GRAVITY,
+    Coefficient,
     Definition,
     Diameter,
+    Drag,
     Length,
     Mass,
     Model,
     NormalCoefficient,
+    PositiveForce,
+    PositiveLength,
     QuantityField,
     TangentialCoefficient,
     TangentialDrag,
     Text,
     described,
     is_in_air,
+    optional,
     refuse_weight_above_mass,
     volume_from_weights,
 )
@@ -105,31 +108,24 @@ class Rigid(Definition):
     """A piece of fixed length, or one clamped on a line."""
 
     mass: Mass = None
-    buoyancy: Annotated[float | None, QuantityField("force")] = described(
-        "net force in sea water of 1025 kg/m^3, positive up (per metre of a cable)",
-        "7000 N",
-        default=None,
+    buoyancy: Annotated[float | None, QuantityField("force")] = optional(
+        "net force in sea water of 1025 kg/m^3, positive up (per metre of a cable)", "7000 N"
     )
-    volume: Annotated[float | None, QuantityField("volume", at_least=0)] = described(
-        "of water displaced, e.g. 0.9 m^3", "0.9 m^3", default=None
+    volume: Annotated[float | None, QuantityField("volume", at_least=0)] = optional(
+        "of water displaced, e.g. 0.9 m^3", "0.9 m^3"
     )
-    hull: Hull | None = described(
-        "of a float at the surface: a shape, or its displacement by draft", "sphere", default=None
+    hull: Hull | None = optional(
+        "of a float at the surface: a shape, or its displacement by draft", "sphere"
     )
-    k_surface: Annotated[float | None, DRAG] = described(
-        "drag of a float at the surface at 1 m/s", "40 N/(m/s)^2", default=None
+    k_surface: Drag = optional("drag of a float at the surface at 1 m/s", "40 N/(m/s)^2")
+    wind_area: Annotated[float | None, _AREA] = optional(
+        "area in the wind, with mast and sensors", "1.4 m^2"
     )
-    wind_area: Annotated[float | None, _AREA] = described(
-        "area in the wind, with mast and sensors", "1.4 m^2", default=None
-    )
-    wind_cd: Annotated[float | None, COEFFICIENT] = described(
-        "drag coefficient of `wind_area`", 1.0, default=None
-    )
+    wind_cd: Coefficient = optional("drag coefficient of `wind_area`", 1.0)
 
-    heave: Literal["filtered", "follows", "panels"] | None = described(
+    heave: Literal["filtered", "follows", "panels"] | None = optional(
         "of a float at the surface in waves: by its hull, by panels on it, or as the water does",
         "follows",
-        default=None,
     )
     rao: Annotated[
         dict[
@@ -141,11 +137,10 @@ class Rigid(Definition):
         ]
         | None,
         AfterValidator(_frequencies_grow),
-    ] = described(
+    ] = optional(
         "heave of a float over the elevation of the sea, by angular frequency in "
         "rad/s: amplitude and phase",
         {"0.5": [1.0, "0 deg"], "2": [0.6, "20 deg"]},
-        default=None,
     )
 
     @property
@@ -195,43 +190,6 @@ class Rigid(Definition):
         return self
 
 
-class Sphere(Rigid):
-    """A sphere; its length along the line is its diameter unless it says otherwise."""
-
-    kind: Literal["sphere"] = Field(description="which kind of component it is")
-    diameter: Diameter
-    length: Length = Field(default_factory=lambda data: data.get("diameter", 0.0))
-    cx: SphereCoefficient = None
-    surface: Surface = None
-
-
-class Cylinder(Rigid):
-    """A cylinder along the line."""
-
-    kind: Literal["cylinder"] = Field(description="which kind of component it is")
-    diameter: Diameter
-    length: Length
-    cn: NormalCoefficient = None
-    ct: TangentialCoefficient = None
-    inclination: Inclination = None
-    surface: Surface = None
-
-
-def _two_stops(value: object) -> object:
-    if value is not None and (not isinstance(value, list | tuple) or len(value) != 2):
-        raise ValueError("`between` names two stops: `between: [upper stop, lower stop]`")
-    return value
-
-
-class DragMeasurement(Model):
-    """A drag measured at a speed [m/s, N]."""
-
-    speed: Annotated[float, QuantityField("speed", above=0)] = described(
-        "of the water past it", "0.5 m/s"
-    )
-    force: Annotated[float, QuantityField("force", at_least=0)] = described("measured", "48 N")
-
-
 class SphereShape(Model):
     """A sphere as part of a body, for its drag alone."""
 
@@ -251,6 +209,34 @@ class CylinderShape(Model):
     inclination: Inclination = None
 
 
+class Sphere(Rigid, SphereShape):
+    """A sphere; its length along the line is its diameter unless it says otherwise."""
+
+    length: Length = Field(default_factory=lambda data: data.get("diameter", 0.0))
+    surface: Surface = None
+
+
+class Cylinder(Rigid, CylinderShape):
+    """A cylinder along the line."""
+
+    surface: Surface = None
+
+
+def _two_stops(value: object) -> object:
+    if value is not None and (not isinstance(value, list | tuple) or len(value) != 2):
+        raise ValueError("`between` names two stops: `between: [upper stop, lower stop]`")
+    return value
+
+
+class DragMeasurement(Model):
+    """A drag measured at a speed [m/s, N]."""
+
+    speed: Annotated[float, QuantityField("speed", above=0)] = described(
+        "of the water past it", "0.5 m/s"
+    )
+    force: Annotated[float, QuantityField("force", at_least=0)] = described("measured", "48 N")
+
+
 Shape = Annotated[SphereShape | CylinderShape, Field(discriminator="kind")]
 
 DRAG_FORMS: tuple[tuple[str, ...], ...] = (
@@ -266,29 +252,23 @@ class Shaped(Rigid):
     """A piece of any shape that gives its drag in one of the `DRAG_FORMS`."""
 
     length: Length
-    kn: Annotated[float | None, DRAG] = described(
-        "drag across the axis at 1 m/s, e.g. 26 N/(m/s)^2", "26 N/(m/s)^2", default=None
-    )
+    kn: Drag = optional("drag across the axis at 1 m/s, e.g. 26 N/(m/s)^2", "26 N/(m/s)^2")
     kt: TangentialDrag = None
-    drag_area: Annotated[float | None, _AREA] = described(
-        "area seen by the current, e.g. 0.12 m^2", "0.12 m^2", default=None
+    drag_area: Annotated[float | None, _AREA] = optional(
+        "area seen by the current, e.g. 0.12 m^2", "0.12 m^2"
     )
-    cd: Annotated[float | None, COEFFICIENT] = described(
-        "drag coefficient of `drag_area`", 1.2, default=None
-    )
-    drag_measurements: tuple[DragMeasurement, ...] | None = described(
+    cd: Coefficient = optional("drag coefficient of `drag_area`", 1.2)
+    drag_measurements: tuple[DragMeasurement, ...] | None = optional(
         "forces measured at several speeds",
         [{"speed": "0.5 m/s", "force": "12 N"}, {"speed": "1 m/s", "force": "48 N"}],
-        default=None,
     )
-    made_of: tuple[Shape, ...] | None = described(
+    made_of: tuple[Shape, ...] | None = optional(
         "simple shapes whose drags add up",
         [{"kind": "cylinder", "diameter": "80 mm", "length": "1 m"}],
-        default=None,
     )
     inclination: Inclination = None
-    lift: Annotated[float | None, QuantityField("drag")] = described(
-        "of a towed body at 1 m/s, positive up", "-30 N/(m/s)^2", default=None
+    lift: Annotated[float | None, QuantityField("drag")] = optional(
+        "of a towed body at 1 m/s, positive up", "-30 N/(m/s)^2"
     )
 
     @model_validator(mode="after")
@@ -329,21 +309,16 @@ class Profiler(Shaped):
     """A profiler that travels along a wire, from one stop to another and back."""
 
     kind: Literal["profiler"] = Field(description="which kind of component it is")
-    between: Annotated[tuple[Text, ...] | None, BeforeValidator(_two_stops)] = described(
+    between: Annotated[tuple[Text, ...] | None, BeforeValidator(_two_stops)] = optional(
         "labels of its upper and its lower stop: what is clamped on its wire, or "
         "pieces at the ends of that",
         ["upper bumper", "lower bumper"],
-        default=None,
     )
     minimum_tension: Annotated[float, POSITIVE_FORCE] = described(
         "that its wire needs where it travels", "2224 N", default=LEAST_WIRE_TENSION
     )
-    drive_force: Annotated[float | None, POSITIVE_FORCE] = described(
-        "that it can climb with", "50 N", default=None
+    drive_force: PositiveForce = optional("that it can climb with", "50 N")
+    speed: Annotated[float | None, QuantityField("speed", above=0)] = optional(
+        "along its wire", "0.25 m/s"
     )
-    speed: Annotated[float | None, QuantityField("speed", above=0)] = described(
-        "along its wire", "0.25 m/s", default=None
-    )
-    endurance: Annotated[float | None, POSITIVE_LENGTH] = described(
-        "way that its batteries last for", "1000 km", default=None
-    )
+    endurance: PositiveLength = optional("way that its batteries last for", "1000 km")

@@ -16,8 +16,7 @@ from calm.files.catalogue import Assembly
 from calm.files.components import KINDS, Component
 from calm.files.definition import LENGTH, quantity_of
 from calm.files.environment import EnvironmentKeys, TowEnvironmentKeys, UniformCurrent
-from calm.files.line_items import MOST_PIECES
-from calm.files.logbook import Equipment, LengthAt
+from calm.files.logbook import ClampKeys, ItemKeys
 from calm.files.reader import MooringKeys
 
 Schema = dict[str, Any]
@@ -29,7 +28,7 @@ _NO_FORM = ("description", "examples", "default", "title")
 def mooring_schema() -> Schema:
     """Return the JSON Schema (draft 2020-12) of a mooring file."""
     models: list[type[BaseModel]] = [MooringKeys, EnvironmentKeys, TowEnvironmentKeys, Assembly]
-    models += [*KINDS.values(), Equipment, LengthAt]
+    models += [*KINDS.values(), ItemKeys, ClampKeys]
     UniformCurrent.model_rebuild()  # a default is written by its model, which pydantic builds late
     names, definitions = models_json_schema(
         [(model, "validation") for model in models], ref_template="#/$defs/{model}"
@@ -37,8 +36,15 @@ def mooring_schema() -> Schema:
     refs = {model: names[(model, "validation")] for model in models}
     schemas: dict[str, Schema] = definitions["$defs"]
     component = {"oneOf": [refs[model] for model in (*KINDS.values(), Assembly)]}
-    fields = _fields(KINDS.values(), schemas) | schemas.pop("Equipment")["properties"]
-    schemas |= {"Clamp": _clamp(fields), "Item": _item(fields, refs[LengthAt])}
+    fields = _fields(KINDS.values(), schemas)
+    schemas |= {"Clamp": schemas.pop("ClampKeys"), "Item": schemas.pop("ItemKeys")}
+    own = schemas["Item"]["properties"]
+    own["length"] = fields["length"] | {"anyOf": [{"const": "fit"}, LENGTH.json_schema()]}
+    own["clamps"]["items"] = {"$ref": "#/$defs/Clamp"}
+    for part in ("Clamp", "Item"):  # other fields override those of the component
+        schemas[part]["properties"] = fields | schemas[part]["properties"]
+        del schemas[part]["title"]
+    schemas["Item"]["required"] = ["use"]
     items = {"type": "array", "minItems": 1, "items": {"$ref": "#/$defs/Item"}}
     parts = schemas["Assembly"]["properties"]
     parts["parts"] = items | _words_of(parts["parts"])
@@ -77,63 +83,8 @@ def mooring_schema() -> Schema:
     return schema
 
 
-def _item(fields: Schema, length_at: Schema) -> Schema:
-    fit = {"anyOf": [{"const": "fit"}, LENGTH.json_schema()]}
-    count = {"type": "integer", "minimum": 1, "maximum": MOST_PIECES}
-    clamps = {"type": "array", "items": {"$ref": "#/$defs/Clamp"}}
-    own = {
-        "count": _said(count, "how many follow one another in the line", 6),
-        "length": {**fields["length"], **fit},
-        "length_at": _said(
-            length_at,
-            "a length measured under a load, e.g. {load: 2 kN, length: 480 m}",
-            {"load": "2 kN", "length": "480 m"},
-        ),
-        "top_depth": _said(
-            LENGTH.json_schema(), "depth wanted in still water for the top of the line", "105 m"
-        ),
-        "body_depth": _said(
-            LENGTH.json_schema(),
-            "depth wanted in a tow for the lower end of this cable, at the tow's speed",
-            "70 m",
-        ),
-        "clamps": _said(
-            clamps, "instruments fixed to this piece", [{"use": "sbe37", "at": "20 m"}]
-        ),
-    }
-    text = "A piece of the line; other fields override the component's."
-    return _mapping(text, "wire-jacketed-8", fields | own)
-
-
-def _clamp(fields: Schema) -> Schema:
-    at = _said(LENGTH.json_schema(), "distance from the top of the piece, unstretched", "20 m")
-    schema = _mapping("An instrument fixed to a piece.", "sbe37", fields | {"at": at})
-    schema["required"].append("at")
-    return schema
-
-
 def _words_of(form: Schema) -> Schema:
     return {key: form[key] for key in ("description", "examples") if key in form}
-
-
-def _said(form: Schema, description: str, example: object) -> Schema:
-    return {**form, "description": description, "examples": [example]}
-
-
-def _mapping(description: str, use: str, properties: Schema) -> Schema:
-    words = "id of a component of the catalogue or of `components`"
-    label = _said(
-        {"type": ["string", "number"]},
-        "name of the piece in results; the id when there is none",
-        "top float",
-    )
-    return {
-        "type": "object",
-        "description": description,
-        "properties": {"use": _said({"type": "string"}, words, use), "label": label, **properties},
-        "required": ["use"],
-        "additionalProperties": False,
-    }
 
 
 def _fields(kinds: Iterable[type[Component]], schemas: Schema) -> Schema:

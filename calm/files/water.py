@@ -16,11 +16,12 @@ from calm.errors import InputError, Problem, UsageError
 from calm.files.definition import (
     CATALOGUE_DENSITY,
     DENSITY,
-    POSITIVE_LENGTH,
     Model,
+    PositiveLength,
     QuantityField,
     Text,
     described,
+    optional,
 )
 from calm.files.yaml_document import SourceMapping
 from calm.physics import seawater
@@ -229,6 +230,7 @@ def _profile(
 
 
 _SPEED = QuantityField("speed", at_least=0)
+Toward = Annotated[float, QuantityField(**vars(DIRECTION))]
 
 
 class Wind(Model):
@@ -239,15 +241,11 @@ class Wind(Model):
     """
 
     speed: Annotated[float, _SPEED] = described("of the wind, at the height of the float", "12 m/s")
-    toward: Annotated[float, QuantityField(**vars(DIRECTION))] = described(
-        "where it blows to, clockwise from north", "90 deg"
-    )
+    toward: Toward = described("where it blows to, clockwise from north", "90 deg")
     surface_drift: Annotated[float, QuantityField("number", at_least=0, at_most=0.1)] = described(
         "share of the wind's speed that the surface water drifts at", "2 %", default=0.0
     )
-    drift_depth: Annotated[float | None, POSITIVE_LENGTH] = described(
-        "how deep the water that the wind drives goes", "50 m", default=None
-    )
+    drift_depth: PositiveLength = optional("how deep the water that the wind drives goes", "50 m")
 
     @model_validator(mode="after")
     def _depth_of_a_drift(self) -> Wind:
@@ -259,7 +257,9 @@ class Wind(Model):
 class SwellKeys(Model):
     """The keys of `swell:`: long waves from afar under the sea that the wind raises."""
 
-    significant_height: Annotated[float, POSITIVE_LENGTH] = described("Hs of the swell", "2 m")
+    significant_height: Annotated[float, QuantityField("length", above=0)] = described(
+        "Hs of the swell", "2 m"
+    )
     peak_period: Annotated[float, QuantityField("time", above=0)] = described(
         "Tp of the swell, longer than that of the sea", "14 s"
     )
@@ -268,11 +268,9 @@ class SwellKeys(Model):
 class WaveKeys(Model):
     """The keys of `waves:`: one sea, a table of seas with their shares of the time, or both."""
 
-    significant_height: Annotated[float | None, POSITIVE_LENGTH] = described(
-        "Hs of the sea to be survived", "5 m", default=None
-    )
-    peak_period: Annotated[float | None, QuantityField("time", above=0)] = described(
-        "Tp of that sea; pierson-moskowitz and ochi-hubble have their own", "8.4 s", default=None
+    significant_height: PositiveLength = optional("Hs of the sea to be survived", "5 m")
+    peak_period: Annotated[float | None, QuantityField("time", above=0)] = optional(
+        "Tp of that sea; pierson-moskowitz and ochi-hubble have their own", "8.4 s"
     )
     spectrum: Text = described(
         f"{', '.join(SPECTRA)}, or a CSV or NetCDF file of a measured one",
@@ -282,18 +280,12 @@ class WaveKeys(Model):
     gamma: Annotated[float, QuantityField("number", at_least=1, at_most=10)] = described(
         "peakedness of jonswap", 3.3, default=3.3
     )
-    toward: Annotated[float, QuantityField(**vars(DIRECTION))] = described(
-        "where they run, clockwise from north", "90 deg", default=90.0
+    toward: Toward = described("where they run, clockwise from north", "90 deg", default=90.0)
+    swell: SwellKeys | None = optional(
+        "under that sea, the same way", {"significant_height": "2 m", "peak_period": "14 s"}
     )
-    swell: SwellKeys | None = described(
-        "under that sea, the same way",
-        {"significant_height": "2 m", "peak_period": "14 s"},
-        default=None,
-    )
-    scatter: Text | None = described(
-        "CSV: significant_wave_height[m],peak_period[s],share; fatigue needs it",
-        "seas.csv",
-        default=None,
+    scatter: Text | None = optional(
+        "CSV: significant_wave_height[m],peak_period[s],share; fatigue needs it", "seas.csv"
     )
 
     @model_validator(mode="after")

@@ -22,31 +22,30 @@ from calm.suggestions import about_quantity, nearest, not_among, shown, unknown
 from calm.units import QuantityError
 from calm.whole_file import read_text
 
-LineAndColumn = tuple[int, int]
 Location = tuple[str | int, ...]
 
 
 @dataclass(frozen=True)
 class Document:
-    """Hold a YAML file as plain data, with places counted from 1.
+    """Hold a YAML file as plain data, and its nodes where it was read from a text.
 
     Attributes
     ----------
     path : as messages show it
     data : mappings, lists, text and None
-    values, keys : the place of every value and of every key, by its location: ``("line", 0,
-        "use")``
+    root : has the places
     """
 
     path: str
     data: dict[str, Any]
-    values: dict[Location, LineAndColumn] = field(default_factory=dict, repr=False)
-    keys: dict[Location, LineAndColumn] = field(default_factory=dict, repr=False)
+    root: Node | None = field(default=None, repr=False)
 
     def problem(
         self, location: Sequence[str | int], message: str, *, key: bool = False, lacks: str = ""
     ) -> Problem:
         """Put a problem at a value (or its key), or at the nearest thing around it that exists.
+
+        A value that is empty is where its key is.
 
         Parameters
         ----------
@@ -55,11 +54,13 @@ class Document:
         key : put it at the key of the value
         lacks : what is missing, where nothing is wrong
         """
-        location = tuple(location)
-        places = self.keys if key else self.values
-        while location and location not in places:
-            location = location[:-1]
-        line, column = places.get(location) or self.values.get(location, (0, 0))
+        node = place = self.root
+        for step in location:
+            name, node = node.entry(step) if node else (None, None)
+            if node is not None and (name or not key):
+                place = name if key or node.data is None else node
+                place = place or node
+        line, column = (place.line, place.column) if place else (0, 0)
         return Problem(self.path, line, column, message, lacks)
 
 
@@ -84,24 +85,7 @@ def compose(name: str, text: str) -> Document:
         raise InputError([Problem(name, *refusal) for refusal in refusals])
     if root is None:
         raise InputError([Problem(name, 0, 0, "is empty")])
-    document = Document(name, root.data)
-    _note_places(document, root, ())
-    return document
-
-
-def _note_places(document: Document, node: Node, location: Location) -> None:
-    """Note where a value is, and all below it; one that is empty is where its key is."""
-    document.values[location] = node.line, node.column
-    if node.kind == "sequence":
-        for index, child in enumerate(node.children):
-            _note_places(document, child, (*location, index))
-        return
-    for key, child in zip(node.keys, node.children, strict=True):
-        below = (*location, key.data)
-        document.keys[below] = key.line, key.column
-        _note_places(document, child, below)
-        if child.data is None:
-            document.values[below] = key.line, key.column
+    return Document(name, root.data, root)
 
 
 @dataclass(frozen=True)

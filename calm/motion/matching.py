@@ -11,6 +11,7 @@ import numpy as np
 from calm.case import Mooring
 from calm.case.parts import clamps_down
 from calm.errors import UsageError
+from calm.files import Clamp, Piece
 from calm.motion.measurements import MooringMeasurements
 from calm.motion.sensors import Sensor
 from calm.physics.line import Floats
@@ -35,6 +36,31 @@ def instruments_of(mooring: Mooring) -> list[int]:
     clamps = len(clamps_down(pieces))
     inline = [clamps + i for i, piece in enumerate(pieces) if piece.component.role == "instrument"]
     return [*range(clamps), *inline]
+
+
+def named_by_serial(sensors: Sequence[Sensor], mooring: Mooring) -> list[Sensor]:
+    """Return the sensors, each without a label called as the part that has its serial number.
+
+    One whose number is that of no part, or of several, is called by its number.
+    """
+    pieces = mooring.file.pieces
+    parts: list[Clamp | Piece] = [*clamps_down(pieces), *pieces]
+    labels: dict[str, list[str]] = {}
+    for part in parts:
+        if part.serial:
+            labels.setdefault(_plain(part.serial), []).append(part.label)
+    found = []
+    for sensor in sensors:
+        if not sensor.label and sensor.serial:
+            mine = labels.get(_plain(sensor.serial), [])
+            sensor = replace(sensor, label=mine[0] if len(mine) == 1 else sensor.serial)
+        found.append(sensor)
+    return found
+
+
+def _plain(serial: str) -> str:
+    """Return a serial number without zeros before it, in small letters."""
+    return serial.strip().lower().lstrip("0")
 
 
 def matched_by_label(

@@ -25,9 +25,11 @@ from calm.records.cf_files import (
     places_along,
     read_times,
     reading,
+    serials_along,
 )
 from calm.records.current_file import holds_arrays
 from calm.records.headings import read_time_columns
+from calm.records.instrument_text import read_instrument_text
 from calm.records.velocity import MISSING, flag_variable, flags_of, refuse_ragged
 
 if TYPE_CHECKING:
@@ -54,6 +56,8 @@ class Sensor:
     source : its file
     nominal : depth where it was meant to hang [m]; NaN where its file does not say
     dropped : readings that were left out for their flag
+    note : what a person should know before trusting it
+    serial : number of the instrument; empty where its file does not say
     """
 
     label: str
@@ -62,6 +66,8 @@ class Sensor:
     source: str
     nominal: float = float("nan")
     dropped: int = 0
+    note: str = ""
+    serial: str = ""
 
 
 def read_sensors(
@@ -150,9 +156,15 @@ def _understood(
     if along is None:  # one instrument, which still may say what or where it is
         along = next((str(dim) for dim in single if _tells(dataset, str(dim), seabed)), None)
     refuse_ragged(dataset, name)
-    words = words_of(variable, "long_name", "comment")
+    flagged = flag_variable(dataset, name)
+    words, note = words_of(variable, "long_name", "comment"), ""
     if _NOT_MEASURED.search(words):
-        raise UnreadableError(f"`{name}` is not a measurement by its attributes: {words[:120]}")
+        if along is None or flagged is None or not {time, along} <= set(flagged.dims):
+            raise UnreadableError(f"`{name}` is not a measurement by its attributes: {words[:120]}")
+        # attributes of several instruments in one variable are those of any of them
+        note = (
+            f"`{name}` says `{words[:80]}` of one instrument or more: what counts is by its flags"
+        )
     unit = "pressure" if is_pressure else "length"
     factor = factor_of(variable, unit) / (PASCALS_PER_DBAR if is_pressure else 1.0)
     squeezed = [dim for dim in single if dim != along]
@@ -162,7 +174,6 @@ def _understood(
         return flat.transpose(time, ...)
 
     values = known_values(rows(variable)) * factor
-    flagged = flag_variable(dataset, name)
     dropped = np.zeros(values.shape, bool)
     if flagged is not None:
         marks = np.broadcast_to(
@@ -179,6 +190,7 @@ def _understood(
     depth = depth_of(values, latitude) if is_pressure else values
     labels = None if along is None else labels_along(dataset, along)
     places = places_along(dataset, along, seabed)
+    serials = serials_along(dataset, along)
     return [
         Sensor(
             "" if labels is None else labels[j],
@@ -187,8 +199,11 @@ def _understood(
             path.name,
             float("nan") if places is None else float(places[j]),
             int(dropped[:, j].sum()),
+            note,
+            serials[j] if j < len(serials) else "",
         )
         for j in range(values.shape[1])
+        if not note or np.isfinite(depth[:, j]).any()
     ]
 
 
@@ -225,16 +240,23 @@ def _find(dataset: xr.Dataset) -> tuple[str, bool]:
 
 def _from_csv(path: Path, latitude: float) -> list[Sensor]:
     """Return a table ``time,LABEL[dbar],…``; a label may come with a unit of length instead."""
-    table = read_time_columns(path, ("pressure", "length"), "LABEL[dbar]")
+    instrument = read_instrument_text(path)
+    if instrument is not None:
+        lines = instrument.lines(("pressure",))
+        table = read_time_columns(path, ("pressure",), "pressure[dbar]", lines)
+    else:
+        table = read_time_columns(path, ("pressure", "length"), "LABEL[dbar]")
     time, values = table.time, table.values
     return [
         Sensor(
-            label,
+            label if instrument is None else "",
             time,
             depth_of(values[:, j] / PASCALS_PER_DBAR, latitude)
             if dimension == "pressure"
             else values[:, j],
             path.name,
+            float("nan") if instrument is None else instrument.nominal,
+            serial="" if instrument is None else instrument.serial,
         )
         for j, (label, dimension) in enumerate(zip(table.names, table.dimensions, strict=True))
     ]

@@ -1,4 +1,7 @@
-"""Ranges from a CSV file: `latitude[deg],longitude[deg]` of the ship, `range[m]` or `time[s]`."""
+"""Ranges from a CSV file: `latitude[deg],longitude[deg]` of the ship, `range[m]` or `time[s]`.
+
+Other ways to write them down are made into that table by `calm.ranging.survey_text`.
+"""
 
 from __future__ import annotations
 
@@ -12,6 +15,7 @@ import numpy as np
 from calm.errors import InputError, Problem
 from calm.physics.line import Floats
 from calm.positions import HEMISPHERES, Frame, degrees_of, plain_degrees
+from calm.ranging.survey_text import OTHER_NAMES, survey_table
 from calm.records.delimited import GAPS, abridged, no_number
 from calm.records.headings import NamedRow, read_named_columns
 from calm.suggestions import shown
@@ -66,7 +70,7 @@ def read_ranges(path: Path, transducer: float = 0.0) -> Survey:
 
     Parameters
     ----------
-    transducer : depth of the ship's transducer [m]
+    transducer : depth of the ship's transducer [m]; that of the file, or the surface, where it is 0
 
     Raises
     ------
@@ -74,7 +78,10 @@ def read_ranges(path: Path, transducer: float = 0.0) -> Survey:
         With every mistake of the file, each with its line.
     """
     problems: list[Problem] = []
-    columns = read_named_columns(path, _COLUMNS, EXAMPLE, problems)
+    table, its_transducer, said = survey_table(path, EXAMPLE)
+    columns = read_named_columns(
+        path, _COLUMNS, EXAMPLE, problems, table=table, other_names=OTHER_NAMES
+    )
     heads = columns.factors
     problems += [
         columns.lacks(path, name, "deg") for name in ("latitude", "longitude") if name not in heads
@@ -98,8 +105,9 @@ def read_ranges(path: Path, transducer: float = 0.0) -> Survey:
     problems += _misplaced(path, values)
     if problems:
         raise InputError(abridged(problems))
-    notices = [f"not read: {', '.join(f'`{shown(one)}`' for one in columns.others)}"]
-    notices = notices if columns.others else []
+    notices = said
+    if columns.others:
+        notices.append(f"not read: {', '.join(f'`{shown(one)}`' for one in columns.others)}")
     once: dict[tuple[float, float, float], int] = {}
     for line, *what in values:
         first = once.setdefault((what[0], what[1], what[2]), line)
@@ -116,7 +124,7 @@ def read_ranges(path: Path, transducer: float = 0.0) -> Survey:
         longitude=longitude,
         measured=measured,
         timed=measure == "time",
-        transducer=transducer,
+        transducer=transducer or its_transducer or 0.0,
         notices=tuple(notices),
     )
 

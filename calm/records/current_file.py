@@ -159,7 +159,7 @@ def _from_text(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable
     notices: list[str] = []
     if header.timed:
         rows, notices = _rows_of(rows, time, path)
-        known = header.without_gaps(rows)
+        known = [rows[i] for i in header.known(rows)]
         if rows and not known:
             raise InputError([Problem(str(path), rows[0].number, 1, "no level has a value")])
         if left_out := len(rows) - len(known):
@@ -169,12 +169,12 @@ def _from_text(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable
     elif time is not None:
         raise TimeChoiceError("the file has no column `time`")
     problems: list[Problem] = []
-    current = header.profile(rows, problems, terms)
-    if current is None:
+    depth, u, v, w = header.currents(rows, problems, terms).T
+    if problems:
         raise InputError(abridged(problems))
     notices += [*comment_notices(path, header), *turned_notices(header.columns, terms)]
-    arrays = np.array(current.depth), np.array([current.u]), np.array([current.v])
-    return current, [*notices, *current_notices(arrays, None, terms.water_depth)]
+    notices += current_notices((depth, u[np.newaxis], v[np.newaxis]), None, terms.water_depth)
+    return CurrentTable(*(tuple(each.tolist()) for each in (depth, u, v, w))), notices
 
 
 def _rows_of(rows: list[CellRow], time: str | None, path: Path) -> tuple[list[CellRow], list[str]]:

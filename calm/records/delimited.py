@@ -14,8 +14,12 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import chain, islice
 from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
 
 from calm.errors import InputError, Problem
+from calm.physics.line import Floats
 from calm.suggestions import shown
 from calm.whole_file import decoded, read_content
 
@@ -68,7 +72,12 @@ class Dialect:
 
     def cells(self, line: str) -> list[str]:
         """Return the cells of a line without blanks and quotation marks, decimals with a point."""
-        found = [text for _, text in self._placed(line)]
+        if '"' in line:
+            found = [text for _, text in self._placed(line)]
+        elif self.separator == " ":
+            found = line.split()
+        else:
+            found = [cell.strip() for cell in line.split(self.separator)]
         return [self.with_point(text) for text in found] if self.decimal == "," else found
 
     def column(self, line: str, cell: int) -> int:
@@ -100,8 +109,7 @@ class Dialect:
                 return found
 
 
-@dataclass(frozen=True)
-class CellRow:
+class CellRow(NamedTuple):
     """Hold a line of a table as cells.
 
     Attributes
@@ -162,15 +170,24 @@ class CopiedTable:
     rows: tuple[tuple[str, ...], ...]
 
 
-def read_table(path: Path, example: str) -> TextTable:
-    """Return the table of a file of UTF-8 text; messages show the example of a header.
+def read_table(path: Path, example: str, lines: Iterable[NumberedLine] | None = None) -> TextTable:
+    """Return the table of a file of UTF-8 text.
 
-    InputError: it cannot be read, is empty, or has no header.
+    Parameters
+    ----------
+    path : of the file
+    example : of a header, for messages
+    lines : that another reader made of the file
+
+    Raises
+    ------
+    InputError
+        It cannot be read, is empty, or has no header.
     """
-    text = decoded(path, COMMENT.sub(rb"\1", read_content(path, largest=LARGEST_CSV)))
-    header, lines = table_lines(
-        path, enumerate(text.removeprefix("\ufeff").splitlines(), 1), example
-    )
+    if lines is None:
+        text = decoded(path, COMMENT.sub(rb"\1", read_content(path, largest=LARGEST_CSV)))
+        lines = enumerate(text.removeprefix("\ufeff").splitlines(), 1)
+    header, lines = table_lines(path, lines, example)
     return TextTable(path, header, [row_below(header, *line) for line in lines])
 
 
@@ -292,6 +309,21 @@ def no_number(cell: str) -> str | None:
     if NUMBER.fullmatch(pointed):
         return f"has a decimal comma; did you mean `{pointed}`?"
     return "is no number"
+
+
+def is_gap(cell: str | None) -> bool:
+    """Return whether a cell says that nothing was measured."""
+    return cell is None or cell.lower() in GAPS
+
+
+def plain_numbers(cells: Sequence[str | None]) -> Floats | None:
+    """Return cells as numbers, NaN where they say so; None where one is anything else."""
+    try:
+        found = np.array([float(cell) for cell in cells], np.float64)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        return None
+    plain = not np.isinf(found).any() and not any("_" in cell for cell in cells if cell)
+    return found if plain else None
 
 
 def abridged(problems: list[Problem]) -> list[Problem]:

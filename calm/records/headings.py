@@ -7,9 +7,10 @@ several words needs brackets around its unit, or a unit that is known.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +19,15 @@ from calm.errors import InputError, Problem
 from calm.physics.line import Floats
 from calm.positions import HEMISPHERES
 from calm.records.current_terms import ZONES_OF_UTC, TimeChoiceError, parse_time
-from calm.records.delimited import GAPS, NUMBER, CellRow, TextTable, abridged, read_table
+from calm.records.delimited import (
+    GAPS,
+    NUMBER,
+    CellRow,
+    NumberedLine,
+    TextTable,
+    abridged,
+    read_table,
+)
 from calm.suggestions import about_quantity, shown, unknown
 from calm.units import DIMENSIONS, QuantityError, QuantityRange, unit_factor
 
@@ -196,7 +205,13 @@ class TimeColumns:
 
 
 def read_named_columns(
-    path: Path, known: Mapping[str, str], example: str, problems: list[Problem]
+    path: Path,
+    known: Mapping[str, str],
+    example: str,
+    problems: list[Problem],
+    *,
+    table: TextTable | None = None,
+    other_names: Mapping[str, str] = MappingProxyType({}),
 ) -> NamedColumns:
     """Return the cells of a table as they stand; mistakes of its form are added to `problems`.
 
@@ -206,15 +221,18 @@ def read_named_columns(
     known : dimensions of the columns by their names, blanks in which may be underscores
     example : of a header, for messages
     problems : to add to
+    table : of the file, where it is read already
+    other_names : what columns may be called too
 
     Raises
     ------
     InputError
         It cannot be read, is empty, or has no header.
     """
-    table = read_table(path, example)
+    table = table or read_table(path, example)
     header = table.header
     names = [heading(column)[0].lower().replace(" ", "_") for column in header.cells]
+    names = [name if name in known else other_names.get(name, name) for name in names]
     factors: dict[str, float] = {}
     for j, (column, name) in enumerate(zip(header.cells, names, strict=True)):
         if name not in known:
@@ -236,11 +254,20 @@ def read_named_columns(
                 {names[j]: row.column(j) for j in mine},
             )
         )
-    others = [column for column, name in zip(header.cells, names, strict=True) if name not in known]
+    others = [
+        column
+        for column, name in zip(header.cells, names, strict=True)
+        if column and name not in known
+    ]
     return NamedColumns(factors, rows, others, header.number)
 
 
-def read_time_columns(path: Path, dimensions: Sequence[str], example: str) -> TimeColumns:
+def read_time_columns(
+    path: Path,
+    dimensions: Sequence[str],
+    example: str,
+    lines: Iterable[NumberedLine] | None = None,
+) -> TimeColumns:
     """Return a table of times and quantities, each column headed by a label and its unit.
 
     Parameters
@@ -248,13 +275,14 @@ def read_time_columns(path: Path, dimensions: Sequence[str], example: str) -> Ti
     path : of the table
     dimensions : what the columns may be, of `calm.units.DIMENSIONS`
     example : of a heading, for messages
+    lines : of the table, where they are not those of the file
 
     Raises
     ------
     InputError
         With every mistake.
     """
-    table = read_table(path, f"time,{example}")
+    table = read_table(path, f"time,{example}", lines)
     header = table.header
     if not is_time(header.cells[0]):
         message = f"is not a table over time; its heading should be `time,{example}`"

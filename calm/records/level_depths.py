@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 _NAMES = (
     "depth", "DEPTH", "Depth", "depthu", "deptht", "lev", "z", "z_rho", "height", "HEIGHT",
     "bin_depths", "bindepth", "BIN_DEPTH", "HEIGHT_ABOVE_SENSOR", "DIST_SEABED",
-    "height_above_seabed", "range", "range_avg",
+    "height_above_seabed", "hab", "height_above_bottom", "range", "range_avg",
 )  # fmt: skip
 _ABOVE_SEABED = re.compile(r"above (the )?(sea ?(bed|floor)|bottom)|dist seabed")
 _HEAD = r"(adcp|adp|sensor|transducers?|instrument|head|profiler|device)"

@@ -3,27 +3,26 @@
 from __future__ import annotations
 
 import math
-import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TypeVar
 
-from calm.errors import Problem
-from calm.physics.line import Floats
-from calm.quantities import bearing_of
-from calm.records.current_terms import Terms, too_deep, too_fast
-from calm.records.headings import column_unit, heading, magnetic_columns
-from calm.suggestions import about_quantity, shown, unknown
-from calm.units import QuantityError, QuantityRange
+import numpy as np
 
-Report = Callable[[Sequence[str | int], str], Problem]
-"""Makes a problem of a message, at ``("columns", j)`` or ``("rows", i, j)``."""
+from calm.errors import Problem
+from calm.physics.line import Floats, Integers
+from calm.quantities import bearing_of
+from calm.records.columns import Report as Report
+from calm.records.columns import check_depths, read_columns
+from calm.records.current_terms import Terms, too_fast
+from calm.records.delimited import is_gap
+from calm.records.headings import heading, magnetic_columns
+from calm.suggestions import shown
+from calm.units import QuantityRange
 
 _AS_THEY_STAND = Terms()
 Speed = TypeVar("Speed", float, Floats)
-
-_BARE_NUMBER = re.compile(r"[-+.,/\deE ]*")
 
 TEMPERATURE = QuantityRange("temperature", at_least=-6, at_most=40)
 SALINITY = QuantityRange("salinity", at_least=0, at_most=42)
@@ -47,7 +46,6 @@ _CURRENT = {
     "toward": DIRECTION,
     "from": DIRECTION,
 }
-_NO_WAY = ("direction", "dir", "heading", "bearing")
 _WATER = {
     "depth": _DEPTH,
     "density": DENSITY,
@@ -103,9 +101,40 @@ def read_current(
     rows : numbers, or quantities with a unit, as text
     terms : the declination that turns what is relative to magnetic north, the greatest speed
     """
+    found = read_currents(columns, rows, report, problems, terms)
+    if found is None:
+        return None
+    depth, u, v, w = (tuple(values.tolist()) for values in found.T)
+    return CurrentTable(depth, u, v, w)
+
+
+def read_currents(
+    columns: Sequence[str],
+    rows: Sequence[Sequence[str | None]],
+    report: Report,
+    problems: list[Problem],
+    terms: Terms,
+    profile: Integers | None = None,
+) -> Floats | None:
+    """Return (n, 4) depths [m] and u, v, w [m/s] of a table as that of `read_current`.
+
+    None, with its mistakes in `problems`, if it has any.
+
+    Parameters
+    ----------
+    columns, rows, report, problems, terms : as for `read_current`
+    profile : (n,) growing number of the profile of a record that a row is of, which may have gaps,
+        NaN then; None where all are of one
+    """
     before = len(problems)
     plain, turned = _from_magnetic_north(columns, terms, report, problems)
-    values = _read_columns(plain, rows, _CURRENT, report, problems)
+    gaps = np.zeros(len(rows), bool)
+    for j, column in enumerate(plain):
+        if profile is not None and heading(column)[0].lower() != "depth":
+            cells = [row[j] if len(row) == len(plain) else "" for row in rows]
+            blank = {cell for cell in set(cells) if is_gap(cell)}
+            gaps |= [cell in blank for cell in cells] if blank else False
+    values = read_columns(plain, rows, _CURRENT, report, problems, gaps)
     given = values.keys()
     if len(given) == len(columns):
         ways = [given & {"u", "v"}, given & {"speed", "toward", "from"}]
@@ -119,31 +148,29 @@ def read_current(
         ):
             message = "a current needs `u` and `v`, or `speed` and `toward`; the columns are "
             problems.append(report(("columns",), message + ", ".join(given)))
-    for i, speed in enumerate(values.get("speed", ())):
-        if speed < 0:
-            place = ("rows", i, list(values).index("speed"))
-            problems.append(report(place, f"`speed` {speed:g} m/s is negative; turn `toward`"))
-    _check_depths(values, report, problems)
+    speeds = values.get("speed", np.zeros(0))
+    for i in np.flatnonzero(speeds < 0.0).tolist():
+        place = ("rows", i, list(values).index("speed"))
+        problems.append(report(place, f"`speed` {speeds[i]:g} m/s is negative; turn `toward`"))
+    check_depths(values, report, problems, np.flatnonzero(~gaps), profile)
     if len(problems) > before:
         return None
     if "u" in values:
-        flows = (
-            turned_by(turned, *flow) if turned else flow
-            for flow in zip(values["u"], values["v"], strict=True)
-        )
+        u, v = values["u"], values["v"]
+        if turned:
+            u, v = turned_by(turned, u, v)
     else:
         way, turn = ("from", 180.0 + turned) if "from" in values else ("toward", turned)
-        directions = [direction + turn for direction in values[way]]
-        flows = (components(*flow) for flow in zip(values["speed"], directions, strict=True))
-    u, v = map(list, zip(*flows, strict=True))
-    w = values.get("w", [0.0] * len(u))
-    for i, flow in enumerate(zip(u, v, w, strict=True)):
-        if reason := too_fast(*flow, terms.maximum_speed):
+        angle = np.radians(values[way] + turn)
+        u, v = speeds * np.sin(angle), speeds * np.cos(angle)
+    w = values.get("w", np.zeros(len(u)))
+    u = np.where(np.isnan(w), np.nan, u)
+    fastest = np.hypot(np.hypot(u, v), w)
+    for i in np.flatnonzero((fastest > 0.999 * terms.maximum_speed) | np.isinf(fastest)).tolist():
+        if reason := too_fast(u[i], v[i], w[i], terms.maximum_speed):
             place = ("rows", i, list(values).index("u" if "u" in values else "speed"))
             problems.append(report(place, reason))
-    if len(problems) > before:
-        return None
-    return CurrentTable(tuple(values["depth"]), tuple(u), tuple(v), tuple(w))
+    return None if len(problems) > before else np.column_stack([values["depth"], u, v, w])
 
 
 def turned_notices(columns: Sequence[str], terms: Terms) -> tuple[str, ...]:
@@ -240,7 +267,7 @@ def _by_depth(
 ) -> dict[str, DepthTable] | None:
     """Return what a table says of the water by its names; None, with mistakes, if it has any."""
     before = len(problems)
-    values = _read_columns(columns, rows, known, report, problems)
+    values = read_columns(columns, rows, known, report, problems)
     given = values.keys() - {"depth"}
     if len(values) == len(columns):
         alone = [name for name in known if name != "depth"]
@@ -249,10 +276,11 @@ def _by_depth(
         elif len(alone) > 1 and given not in ({"density"}, {"temperature", "salinity"}):
             message = "needs `density`, or `temperature` and `salinity`; the columns are "
             problems.append(report(("columns",), f"a density {message}{', '.join(values)}"))
-    _check_depths(values, report, problems)
+    check_depths(values, report, problems, np.arange(len(rows)))
     if len(problems) > before:
         return None
-    return {name: DepthTable(tuple(values["depth"]), tuple(values[name])) for name in given}
+    depth = tuple(values["depth"].tolist())
+    return {name: DepthTable(depth, tuple(values[name].tolist())) for name in given}
 
 
 def components(speed: float, toward: float) -> tuple[float, float]:
@@ -276,98 +304,3 @@ def turned_by(angle: float, u: Speed, v: Speed) -> tuple[Speed, Speed]:
 def speed_and_direction(u: float, v: float) -> tuple[float, float]:
     """Return the speed and direction [deg from north, 0 to 360] of a flow by its parts."""
     return math.hypot(u, v), bearing_of(u, v)
-
-
-def _read_columns(
-    columns: Sequence[str],
-    rows: Sequence[Sequence[str | None]],
-    known: Mapping[str, QuantityRange],
-    report: Report,
-    problems: list[Problem],
-) -> dict[str, list[float]]:
-    """Return the known columns by name, in SI, NaN where a value is wrong."""
-    units = _read_headings(columns, known, report, problems)
-    if len(units) == len(columns) and "depth" not in units:
-        problems.append(report(("columns",), "the table has no `depth` column"))
-    values: dict[str, list[float]] = {name: [] for name in units}
-    if not rows:
-        problems.append(report(("rows",), "the table has no rows"))
-    for i, row in enumerate(rows):
-        for name in units:
-            values[name].append(math.nan)
-        if len(row) != len(columns):
-            hint = "; a decimal comma? (write 0.8, not 0,8)" if len(row) > len(columns) else ""
-            message = f"the row has {len(row)} values, {len(columns)} are needed{hint}"
-            problems.append(report(("rows", i), message))
-        elif len(units) == len(columns):
-            for j, (name, unit) in enumerate(units.items()):
-                try:
-                    values[name][i] = _read_cell(row[j], unit, known[name])
-                except QuantityError as error:
-                    problems.append(report(("rows", i, j), about_quantity(name, row[j], error)))
-    return values
-
-
-def _read_headings(
-    columns: Sequence[str],
-    known: Mapping[str, QuantityRange],
-    report: Report,
-    problems: list[Problem],
-) -> dict[str, str]:
-    """Return the unit of each known column by its name, empty where the column gives none."""
-    units: dict[str, str] = {}
-    for j, column in enumerate(columns):
-        name, unit = heading(column)
-        name = name.lower() if name.lower() in known else name
-        if name.lower() in _NO_WAY and "toward" in known:
-            message = (
-                f"`{shown(column)}` does not say which way: call it `toward` where the current "
-                "flows to, or `from` where it comes from"
-            )
-            problems.append(report(("columns", j), message))
-        elif name not in known:
-            message = unknown(f"no column is called `{shown(name)}`", name, known)
-            problems.append(report(("columns", j), message))
-        elif name in units:
-            problems.append(report(("columns", j), f"column `{name}` is given twice"))
-        else:
-            try:
-                if unit:
-                    column_unit(column, unit, [known[name].dimension])
-            except QuantityError as error:
-                problems.append(report(("columns", j), str(error)))
-            else:
-                units[name] = unit
-    return units
-
-
-def _read_cell(text: str | None, unit: str, quantity: QuantityRange) -> float:
-    if text is not None and unit and _BARE_NUMBER.fullmatch(text):
-        text = f"{text} {unit}"
-    return quantity.read(text)
-
-
-def _check_depths(
-    values: Mapping[str, list[float]], report: Report, problems: list[Problem]
-) -> None:
-    """Depths must not be negative and must increase from row to row."""
-    if "depth" not in values:
-        return
-    column = list(values).index("depth")
-    depths = values["depth"]
-    if len(depths) > 1 and all(depth <= 0 for depth in depths) and any(depths):
-        message = "the depths count upwards; depth is positive down, so leave the sign out"
-        first = next(i for i, depth in enumerate(depths) if depth < 0)
-        problems.append(report(("rows", first, column), message))
-        return
-    previous = -math.inf
-    for i, depth in enumerate(depths):
-        if depth < 0:
-            problems.append(report(("rows", i, column), f"depth {depth:g} m is above the surface"))
-        elif reason := too_deep(depth):
-            problems.append(report(("rows", i, column), reason))
-        elif depth <= previous:
-            word = "repeats" if depth == previous else "comes after"
-            message = f"depth {depth:g} m {word} {previous:g} m; depths must increase"
-            problems.append(report(("rows", i, column), message))
-        previous = depth

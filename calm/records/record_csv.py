@@ -7,7 +7,6 @@ have no value, its cell blank, `nan` or `NA`: it is left out.
 
 from __future__ import annotations
 
-import re
 import tempfile
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -17,29 +16,23 @@ from pathlib import Path
 import numpy as np
 
 from calm.errors import InputError, Problem, UsageError
-from calm.physics.line import Floats
+from calm.physics.line import Floats, Integers
 from calm.records.attributes import refused_by_comments, remarks_in_comments
-from calm.records.current_terms import (
-    DEEPEST,
-    Terms,
-    TimeChoiceError,
-    current_notices,
-    parse_time,
-)
+from calm.records.current_terms import Terms, TimeChoiceError, current_notices, parse_time
 from calm.records.delimited import (
     COMMENT,
-    GAPS,
     MOST_PROBLEMS,
     CellRow,
     NumberedLine,
     abridged,
+    is_gap,
     row_below,
     table_lines,
 )
 from calm.records.headings import heading, is_time, magnetic_columns, zone_complaint
-from calm.records.profile_tables import CurrentTable, read_current, turned_by, turned_notices
+from calm.records.instrument_text import read_instrument_text
+from calm.records.profile_tables import read_currents, turned_notices
 from calm.records.record import RULES, Levels, Period, Record, choose_profiles, part
-from calm.units import QuantityError, unit_factor
 
 AT_ONCE = 50_000
 """Lines of a record that are read together."""
@@ -48,8 +41,6 @@ COLUMNS = 4
 """Depth [m], u, v and w [m/s]."""
 
 EXAMPLE = "depth[m],u[m/s],v[m/s]"
-_DIMENSIONS = {"depth": "length", "toward": "angle", "from": "angle"}
-_PLAIN = ({"depth", "u", "v"}, {"depth", "speed", "toward"}, {"depth", "speed", "from"})
 
 
 class CsvRecord(Record):
@@ -77,6 +68,9 @@ class CsvRecord(Record):
     def _read(self, path: Path) -> CurrentHeader:
         """Return every profile of the file into the temporary one."""
         try:
+            if (instrument := read_instrument_text(path)) is not None:
+                lines = instrument.lines(("depth", "u", "v", "w"))
+                return self._keep(path, *table_lines(path, lines, f"time,{EXAMPLE}"))
             with path.open("rb") as file:
                 plain = (COMMENT.sub(rb"\1", line).decode("utf-8-sig") for line in file)
                 lines = ((i, line.rstrip("\r\n")) for i, line in enumerate(plain, 1))
@@ -92,21 +86,24 @@ class CsvRecord(Record):
         if not header.timed:
             message = "has no column `time`: it is one profile, for `calm run`"
             raise InputError([Problem(str(path), first.number, 1, message)])
-        reader = RowReader(header, self._terms)
         problems: list[Problem] = []
         times: list[np.datetime64] = []
         counts: list[int] = []
-        for profiles in _gathered(_by_time(lines, first)):
-            for profile in profiles:
+        for rows in _whole_profiles(lines, first):
+            begins = [
+                i for i, row in enumerate(rows) if not i or row.cells[0] != rows[i - 1].cells[0]
+            ]
+            for i in begins:
                 try:
-                    moment = parse_time(profile.time)
+                    moment = parse_time(rows[i].cells[0])
                 except TimeChoiceError as error:
-                    problems.append(Problem(str(path), profile.lines[0][0], 1, str(error)))
+                    problems.append(Problem(str(path), rows[i].number, 1, str(error)))
                 else:
                     times.append(np.datetime64(moment.replace(tzinfo=None)))
-            rows, sizes = reader.read(profiles, problems)
-            self._put_by(rows)
-            counts += sizes
+            sizes = np.diff([*begins, len(rows)])
+            which = np.repeat(np.arange(len(begins)), sizes)
+            self._put_by(header.currents(rows, problems, self._terms, which))
+            counts += sizes.tolist()
             _refuse(problems, header, at_least=MOST_PROBLEMS)
         _refuse(problems, header)
         self._times = np.array(times, "datetime64[ns]")
@@ -115,7 +112,8 @@ class CsvRecord(Record):
         self._rows = np.empty((0, COLUMNS))
         if self._first[-1]:
             self._rows = np.memmap(self._kept, np.float64, "r", shape=(self._first[-1], COLUMNS))
-        self._has_w, self._turned = reader.has_w, reader.turned
+        self._has_w = any(heading(column)[0].lower() == "w" for column in header.columns)
+        self._turned = turned_notices(header.columns, self._terms)
         return header
 
     def _put_by(self, rows: Floats) -> None:
@@ -157,123 +155,18 @@ def comment_notices(path: Path, header: CurrentHeader) -> list[str]:
     return remarks_in_comments(comments)
 
 
-@dataclass(frozen=True)
-class ProfileLines:
-    """Hold the lines of one time, and what stands behind the time in each."""
+def _whole_profiles(lines: Iterable[NumberedLine], header: CellRow) -> Iterator[list[CellRow]]:
+    """Yield the rows of so many whole profiles that they are some `AT_ONCE`.
 
-    time: str
-    lines: list[NumberedLine]
-    behind: list[str]
-
-
-class RowReader:
-    """Turn the lines of whole profiles into rows of depth, u, v and w.
-
-    Where every cell is a number, and every depth and speed possible, they are read together; in
-    any other case profile by profile, as `calm run` reads one, which finds the mistakes.
+    The rows of a profile follow each other with one time.
     """
-
-    def __init__(self, header: CurrentHeader, terms: Terms) -> None:
-        self._header, self._terms = header, terms
-        plain, magnetic = magnetic_columns(header.columns)
-        agreed = bool(magnetic) == (terms.declination is not None) and magnetic not in (
-            {"u"},
-            {"v"},
-        )
-        self._factors = _factors(plain) if agreed else None  # otherwise the mistake is found
-        self._turn = terms.declination or 0.0
-        self.turned = turned_notices(header.columns, terms)
-        self.has_w = any(_name(column) == "w" for column in plain)
-        sign = _between(header.row)
-        gaps = "|".join(re.escape(gap) for gap in sorted(GAPS) if gap not in ("", "nan"))
-        self._blank = re.compile(rf"(?i){sign}[ ]*(?:{gaps})?[ ]*(?={sign}|$)", re.MULTILINE)
-
-    def read(
-        self, profiles: Sequence[ProfileLines], problems: list[Problem]
-    ) -> tuple[Floats, list[int]]:
-        """Return the rows of some profiles, one after the other, and how many each has.
-
-        Rows without a value are NaN or left out. Mistakes are added to `problems`.
-        """
-        counts = [len(profile.lines) for profile in profiles]
-        rows = self._together(profiles, counts)
-        if rows is not None:
-            return rows, counts
-        tables = [self._one(profile.lines, problems) for profile in profiles]
-        return np.concatenate(tables), [len(table) for table in tables]
-
-    def _together(self, profiles: Sequence[ProfileLines], counts: list[int]) -> Floats | None:
-        """Return all rows, None where one is not plain."""
-        if self._factors is None:
-            return None
-        sign = _between(self._header.row)
-        # the sign stays before the first cell, so that a blank one is found
-        text = "\n".join(sign + rest for profile in profiles for rest in profile.behind)
-        text = self._blank.sub(f"{sign}nan", text)
-        if self._header.row.dialect.decimal == ",":
-            if "." in text or sign == ",":
-                return None
-            text = text.replace(",", ".")
-        try:
-            cells = np.loadtxt(
-                [line[1:] for line in text.split("\n")], delimiter=sign, comments=None, ndmin=2
-            )
-        except ValueError:
-            return None
-        if cells.shape[1] != len(self._factors):
-            return None
-        values = {
-            name: cells[:, j] * factor for j, (name, factor) in enumerate(self._factors.items())
-        }
-        rows = _components(values, self._turn)
-        return rows if _possible(values, rows, counts) else None
-
-    def _one(self, lines: Iterable[NumberedLine], problems: list[Problem]) -> Floats:
-        rows = [row_below(self._header.row, *line) for line in lines]
-        known = self._header.without_gaps(rows)
-        table = self._header.profile(known, problems, self._terms) if known else None
-        if table is None:
-            return np.empty((0, COLUMNS))
-        return np.column_stack([table.depth, table.u, table.v, table.w])
-
-
-def _between(header: CellRow) -> str:
-    """Return what stands between the cells behind a time: runs of blanks have become tabs."""
-    separator = header.dialect.separator
-    return "\t" if separator == " " else separator
-
-
-def _by_time(lines: Iterable[NumberedLine], header: CellRow) -> Iterator[ProfileLines]:
-    """Yield the lines of every profile: those that follow each other with one time."""
-    sign, skipped = header.dialect.separator, header.skipped
-    profile, before = ProfileLines("", [], []), None
-    for number, line in lines:
-        if sign == " ":
-            own, *others = row_below(header, number, line).cells
-            rest = "\t".join(others)
-        else:
-            numbered = line.partition(sign)[2] if skipped else line
-            own, _, rest = numbered.partition(sign)
-        if own != before:
-            if profile.lines:
-                yield profile
-            profile, before = ProfileLines(own.strip().strip('"'), [], []), own
-        profile.lines.append((number, line))
-        profile.behind.append(rest)
-    if profile.lines:
-        yield profile
-
-
-def _gathered(profiles: Iterator[ProfileLines]) -> Iterator[list[ProfileLines]]:
-    """Yield so many profiles that they have some `AT_ONCE` lines."""
-    gathered: list[ProfileLines] = []
-    lines = 0
-    for profile in profiles:
-        gathered.append(profile)
-        lines += len(profile.lines)
-        if lines >= AT_ONCE:
+    gathered: list[CellRow] = []
+    for line in lines:
+        row = row_below(header, *line)
+        if len(gathered) >= AT_ONCE and row.cells[0] != gathered[-1].cells[0]:
             yield gathered
-            gathered, lines = [], 0
+            gathered = []
+        gathered.append(row)
     if gathered:
         yield gathered
 
@@ -285,56 +178,6 @@ def _refuse(problems: list[Problem], header: CurrentHeader, *, at_least: int = 0
         raise InputError(abridged(in_header))
     if len(set(problems)) > at_least:
         raise InputError(abridged(problems))
-
-
-def _name(column: str) -> str:
-    return heading(column)[0].lower()
-
-
-def _factors(columns: Sequence[str]) -> dict[str, float] | None:
-    """Return the factor of every column to SI (degrees), None where a column is not plain."""
-    factors: dict[str, float] = {}
-    for column in columns:
-        name = _name(column)
-        dimension = _DIMENSIONS.get(name, "speed")
-        unit = heading(column)[1]
-        try:
-            factors[name] = unit_factor(unit, dimension) if unit else np.nan
-        except QuantityError:
-            return None
-    plain = set(factors) - {"w"} in _PLAIN and len(factors) == len(columns)
-    return factors if plain and all(np.isfinite(list(factors.values()))) else None
-
-
-def _components(values: dict[str, Floats], turn: float) -> Floats:
-    """Return Depth, u, v and w, whatever way the current is given, turned clockwise [degrees]."""
-    w = values.get("w", np.zeros_like(values["depth"]))
-    if "u" in values:
-        u, v = values["u"], values["v"]
-        if turn:
-            u, v = turned_by(turn, u, v)
-        return np.column_stack([values["depth"], u, v, w])
-    direction = values["from"] + 180.0 if "from" in values else values["toward"]
-    angle = np.radians(direction + turn)
-    speed = values["speed"]
-    return np.column_stack([values["depth"], speed * np.sin(angle), speed * np.cos(angle), w])
-
-
-def _possible(values: dict[str, Floats], rows: Floats, counts: list[int]) -> bool:
-    """Return whether a reading row by row would find no mistake."""
-    known = ~np.isnan(rows).any(axis=1)
-    depth = values["depth"]
-    if not (np.isfinite(depth) & (depth >= 0) & (depth <= DEEPEST)).all() or np.isinf(rows).any():
-        return False
-    if "speed" in values and (values["speed"][known] < 0).any():
-        return False
-    if any(
-        (np.abs(values[way][known]) > 360.0).any() for way in ("toward", "from") if way in values
-    ):
-        return False
-    profile = np.repeat(np.arange(len(counts)), counts)[known]
-    same = profile[1:] == profile[:-1]
-    return bool((np.diff(depth[known])[same] > 0).all())
 
 
 @dataclass(frozen=True)
@@ -360,16 +203,22 @@ class CurrentHeader:
         """Return the names with their units, without that of the time."""
         return list(self.row.cells[int(self.timed) :])
 
-    def profile(
-        self, rows: Sequence[CellRow], problems: list[Problem], terms: Terms
-    ) -> CurrentTable | None:
-        """Return the current of the rows of one time; None, with mistakes added, if it has any.
+    def currents(
+        self,
+        rows: Sequence[CellRow],
+        problems: list[Problem],
+        terms: Terms,
+        profile: Integers | None = None,
+    ) -> Floats:
+        """Return (n, 4) depth [m], u, v and w [m/s] of rows; none, with mistakes added, of wrong
+        ones.
 
         Parameters
         ----------
-        rows : of one time, or all where there is none
+        rows : of the table
         problems : to add to
         terms : how the current is to be taken
+        profile : (n,) which profile each row is of; None where all are of one
         """
         first = int(self.timed)
 
@@ -379,18 +228,19 @@ class CurrentHeader:
             column = row.column(place[0] + first if place else 0)
             return Problem(str(self.path), row.number, column, message)
 
-        for row in rows:
+        before = len(problems)
+        for row in rows if self.row.dialect.decimal == "," else ():
             problems += row.mixed_decimals(self.path)
-        values = [[cell or None for cell in row.cells[first:]] for row in rows]
-        return read_current(self.columns, values, report, problems, terms)
+        cells = [[cell or None for cell in row.cells[first:]] for row in rows]
+        found = read_currents(self.columns, cells, report, problems, terms, profile)
+        return np.empty((0, COLUMNS)) if found is None or len(problems) > before else found
 
-    def without_gaps(self, rows: Sequence[CellRow]) -> list[CellRow]:
-        """Return the rows of a record that give a current."""
+    def known(self, rows: Sequence[CellRow]) -> list[int]:
+        """Return which rows of a record give a current."""
         names = [heading(cell)[0].lower() for cell in self.row.cells]
         current = [j for j, name in enumerate(names) if name not in ("time", "depth")]
         return [
-            row
-            for row in rows
-            if len(row.cells) != len(names)
-            or not any(row.cells[j].lower() in GAPS for j in current)
+            i
+            for i, row in enumerate(rows)
+            if len(row.cells) != len(names) or not any(map(is_gap, (row.cells[j] for j in current)))
         ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import floor, log10
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -27,18 +28,15 @@ from calm.drawing.graph import (
     seconds,
     write_legend,
 )
-from calm.drawing.line_picture import along
-from calm.drawing.plot import LINE_STYLE, WATER_COLOUR, WIDTH, set_span
+from calm.drawing.line_picture import LineKind, LinePicture, PictureMark, Polyline, along
+from calm.drawing.plot import LINE_STYLE, WIDTH, draw_elevation, draw_plan
 from calm.errors import UsageError
 from calm.quantities import QUANTITIES
 from calm.report.batch_summary import QUANTITY, TITLES, when
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-    from numpy.typing import NDArray
     from xarray import Dataset
-
-    Floats = NDArray[np.float64]
 
 
 _WIDTH = 533.0  # points: an A4 page between its margins
@@ -162,7 +160,6 @@ def _limit_of(summary: Summary, response: Response) -> float | None:
 
 
 _HEIGHT = 6.5  # inches
-_CLAMP = {"linestyle": "none", "marker": "s", "color": "#cc3311", "markersize": 4.0}
 
 
 def draw_shape(dataset: Dataset, time: str | np.datetime64) -> Figure:
@@ -175,36 +172,36 @@ def draw_shape(dataset: Dataset, time: str | np.datetime64) -> Figure:
     from matplotlib.figure import Figure
 
     row = dataset.sel(time=np.datetime64(time), method="nearest")
-    names = ("shape_depth", "shape_x", "shape_y")
-    if "shape_depth" not in row:
-        names = ("depth_top", "x_top", "y_top")
+    prefix, end = ("shape_", "") if "shape_depth" in row else ("", "_top")
+    names = (f"{prefix}{name}{end}" for name in ("depth", "x", "y"))
     depth, x, y = (np.asarray(row[name].values, np.float64) for name in names)
     moment = when(row["time"].values)
     if np.isnan(depth).any():
         raise UsageError(f"the profile of {moment} has no equilibrium to draw")
+    distance = float(np.hypot(x[0], y[0]))
+    plane = np.array([x[0], y[0]]) / distance if distance > 0.0 else np.array([1.0, 0.0])
+    height = float(np.ptp(depth))
+    marks: tuple[PictureMark, ...] = ()
+    if "clamp_depth" in row:
+        clamps = zip(*(row[f"clamp_{name}"].values for name in ("x", "y", "depth")), strict=True)
+        marks = tuple(PictureMark("", "", "instrument", *map(float, each)) for each in clamps)
+    above = LinePicture(
+        (Polyline(LineKind.LINE, x, y),), marks, QUANTITIES["x"].label, QUANTITIES["y"].label
+    )
+    margin = 0.05 * height
+    side = LinePicture(
+        (Polyline(LineKind.LINE, along(x, y, plane), depth),),
+        tuple(replace(one, x=float(along(one.x, one.y, plane)), y=one.depth) for one in marks),
+        across=QUANTITIES["offset"].label,
+        up=QUANTITIES["depth"].label,
+        top=min(0.0, float(depth.min())) - margin,
+        bottom=float(depth.max()) + margin,
+        height=height,
+        surface=True,
+    )
     figure = Figure(figsize=(WIDTH, _HEIGHT), layout="constrained")
     elevation, plan = figure.subplots(1, 2)
     figure.suptitle(f"{dataset.attrs.get('title', '')}\n{moment}".strip(), parse_math=False)
-    plane = _plane(x[0], y[0])
-    elevation.axhline(0.0, color=WATER_COLOUR, linewidth=1)
-    reached = along(x, y, plane)
-    elevation.plot(reached, depth, **LINE_STYLE)
-    plan.plot(x, y, **LINE_STYLE)
-    if "clamp_depth" in row:
-        at, east, north = (row[name].values for name in ("clamp_depth", "clamp_x", "clamp_y"))
-        elevation.plot(along(east, north, plane), at, **_CLAMP)
-        plan.plot(east, north, **_CLAMP)
-    set_span(elevation, min(0.0, reached.min()), max(0.0, reached.max()), float(np.ptp(depth)))
-    elevation.invert_yaxis()
-    elevation.set_xlabel(QUANTITIES["offset"].label)
-    elevation.set_ylabel(QUANTITIES["depth"].label)
-    plan.set_aspect("equal", adjustable="datalim")
-    plan.set_xlabel(QUANTITIES["x"].label)
-    plan.set_ylabel(QUANTITIES["y"].label)
+    draw_elevation(elevation, side)
+    draw_plan(plan, above)
     return figure
-
-
-def _plane(x: float, y: float) -> Floats:
-    """(2,) direction from the anchor to the top; east where it stands upright."""
-    distance = float(np.hypot(x, y))
-    return np.array([x, y]) / distance if distance > 0.0 else np.array([1.0, 0.0])

@@ -66,7 +66,7 @@ from calm.report.provenance import (
     unseen,
 )
 from calm.report.result_files import members
-from calm.report.sheet import sheet
+from calm.report.sheet import quality_of, summary_of, table_of_line
 
 if TYPE_CHECKING:
     from calm.checks.comparison import Comparison
@@ -154,9 +154,9 @@ def _line(assessment: Assessment) -> Iterator[Block]:
     title = f"Schematic, environment: {stand.environment}" if stand else "Schematic"
     yield Figure(title, schematic_svg(assessment.mooring.file, result), tall=True)
     if stand is not None and result is not None:
-        said = sheet(result, places=True)
-        yield replace(said.table, title=f"Table of the line, environment: {stand.environment}")
-        yield from (*said.summary, Prose((said.accuracy, said.convergence)))
+        title = f"Table of the line, environment: {stand.environment}"
+        yield table_of_line(result, title, places=True)
+        yield from (*summary_of(result), quality_of(result))
 
 
 def _drawn(assessment: Assessment) -> Iterator[Block]:
@@ -180,7 +180,10 @@ def _on_the_way(assessment: Assessment) -> Iterator[Block]:
         yield handling_summary(assessment)
         yield handling_table(assessment)
     else:
-        yield Prose(("Neither the launch nor the recovery could be solved.",), State.UNKNOWN)
+        net = bool(assessment.mooring.file.legs)
+        said = "The launch and the recovery of a net of legs are not judged."
+        said = said if net else "Neither the launch nor the recovery could be solved."
+        yield Prose((said,), State.UNKNOWN)
     if assessment.backup:
         yield breaks_table(assessment.backup)
 

@@ -132,9 +132,11 @@ def breaks_table(backup: Sequence[Break]) -> Table:
         quantity_field("wet_weight", "weight_lifted", "weight lifted"),
         quantity_field("net_buoyancy", "margin", "buoyancy left over"),
         quantity_field("net_buoyancy", "required", "required"),
+        quantity_field("net_buoyancy", "loose", "comes loose"),
         (Column("judged"), lambda one: "yes" if one.judged else "no"),
         note="Not judged: what breaks inside the lowest cluster of floats, or between it and the "
-        "release, in any design leaves the release on the seabed.",
+        "release, in any design leaves the release on the seabed. Comes loose: the net buoyancy of "
+        "what the break leaves to drift, before a release opens.",
     )
 
 

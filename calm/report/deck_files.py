@@ -6,6 +6,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from datetime import datetime
 from io import BytesIO
+from operator import attrgetter
+from typing import Any
 
 from calm.checks.finding import State
 from calm.deck import Deck
@@ -21,8 +23,7 @@ from calm.report.deck_lists import (
     shipping_part,
 )
 from calm.report.deck_logs import deployment_part, recovery_part
-from calm.report.diagram import diagram_pages
-from calm.report.diagram_layout import Paper
+from calm.report.diagram import Paper, diagram_pages
 from calm.report.drop_sheet import drop_part
 from calm.report.provenance import date, document_part, input_hash, moment, versions
 
@@ -67,131 +68,74 @@ def deck_workbook(deck: Deck) -> bytes:
 
 def deck_sheets(deck: Deck) -> dict[str, tuple[Sequence[str], Rows]]:
     """The head and the rows of each sheet by its name, in SI; None where unknown."""
-    return {
-        "parts": (_PARTS, _parts(deck)),
-        "cutting": (_CUTTING, _cutting(deck)),
-        "instruments": (_INSTRUMENTS, _instruments(deck)),
-        "hardware": (_HARDWARE, _hardware(deck)),
-        "shipping": (_SHIPPING, _shipping(deck)),
-        "lifts": (_LIFTS, _lifts(deck)),
-        "deployment": (_DEPLOYMENT, _deployment(deck)),
-        "recovery": (_RECOVERY, _recovery(deck)),
+    stages = {f"deployment, {deck.order}": deck.lifts.deployment, "recovery": deck.lifts.recovery}
+    lifts = [(stage, one) for stage, each in stages.items() for one in each]
+    rows: dict[str, Iterable[object]] = {
+        "parts": deck.assessment.inventory,
+        "cutting": deck.cuts,
+        "instruments": deck.instruments,
+        "hardware": deck.hardware,
+        "shipping": deck.shipped,
+        "lifts": lifts,
+        "deployment": enumerate(deck.deployment, 1),
+        "recovery": enumerate(deck.recovery, 1),
     }
+    return {name: _sheet(_COLUMNS[name], items) for name, items in rows.items()}
 
 
-_PARTS = (
-    "index", "label", "use", "name", "role", "clamped_on", "at[m]", "cut_length[m]", "mass[kg]",
-    "weight_in_water[N]",
-)  # fmt: skip
+_COLUMNS = {
+    "parts": """
+        index label use name role clamped_on at[m] cut_length[m] mass[kg]=dry_mass
+        weight_in_water[N]=wet_weight
+    """,
+    "cutting": """
+        label=item.label use=item.part.use cut_length[m]=length at_load[N]=load marks[m]=marks_text
+        unstretched_length[m]=unstretched tolerance[m] top_deeper_by_half_percent[m]=effect
+        termination over_the_side=over onto_the_drum=onto
+    """,
+    "instruments": """
+        label=item.label use=item.part.use name=item.name serial=item.serial clamped_on=item.on
+        depth[m]=item.depth still_depth[m]=still least_depth[m]=shallowest.depth
+        least_in=shallowest.environment greatest_depth[m]=deepest.depth
+        greatest_in=deepest.environment greatest_tilt[deg]=greatest_tilt
+        warn_tilt[deg]=item.part.component.warn_tilt max_tilt[deg]=item.part.component.max_tilt
+        sampling=item.part.equipment.sampling battery_until=item.part.equipment.battery_until
+        calibrated=item.part.equipment.calibrated
+    """,
+    "hardware": "kind use name count length[m] spares total basis",
+    "shipping": """
+        use name count length[m] mass[kg]=known_mass volume[m^3]=known_volume missing_masses
+        missing_volumes
+    """,
+    "lifts": "stage= index label lift_mass[kg]=mass lift_weight[N]=weight hanging[N]",
+    "deployment": """
+        number= index label use=part.use name serial clamped_on=on at[m] cut_length[m] depth[m]
+        height[m] time_over=- remarks=- checked=-
+    """,
+    "recovery": """
+        number= index=item.index label=item.label use=item.part.use name=item.name
+        serial=item.deployed_serial clamped_on=item.on expected[s]=time hangs_at[m] seen=- on_deck=-
+        condition=- remarks=item.remark
+    """,
+}
+"""Of each sheet its columns: a heading, `=` and the attribute it shows where that has another name.
+
+A column of which nothing is shown, `-`, is filled in by hand; one without an attribute has what
+stands before each item."""
 
 
-def _parts(deck: Deck) -> Rows:
-    for one in deck.assessment.inventory:
-        yield (
-            one.index, one.label, one.use, one.name, one.role, one.clamped_on, one.at,
-            one.cut_length, one.dry_mass, one.wet_weight,
-        )  # fmt: skip
-
-
-_DEPLOYMENT = (
-    "number", "index", "label", "use", "name", "serial", "clamped_on", "at[m]", "cut_length[m]",
-    "depth[m]", "height[m]", "time_over", "remarks", "checked",
-)  # fmt: skip
-
-
-def _deployment(deck: Deck) -> Rows:
-    for number, one in enumerate(deck.deployment, 1):
-        yield (
-            number, one.index, one.label, one.part.use, one.name, one.serial, one.on, one.at,
-            one.cut_length, one.depth, one.height, None, None, None,
-        )  # fmt: skip
-
-
-_RECOVERY = (
-    "number", "index", "label", "use", "name", "serial", "clamped_on", "expected[s]", "hangs_at[m]",
-    "seen", "on_deck", "condition", "remarks",
-)  # fmt: skip
-
-
-def _recovery(deck: Deck) -> Rows:
-    for number, one in enumerate(deck.recovery, 1):
-        item = one.item
-        yield (
-            number, item.index, item.label, item.part.use, item.name, item.deployed_serial, item.on,
-            one.time, one.hangs_at, None, None, None, item.remark,
-        )  # fmt: skip
-
-
-_CUTTING = (
-    "label", "use", "cut_length[m]", "at_load[N]", "marks[m]", "unstretched_length[m]",
-    "tolerance[m]", "top_deeper_by_half_percent[m]", "termination", "over_the_side",
-    "onto_the_drum",
-)  # fmt: skip
-
-
-def _cutting(deck: Deck) -> Rows:
-    for cut in deck.cuts:
-        marks = ";".join(f"{mark.label.replace(';', ',')}@{mark.at:.3f}" for mark in cut.marks)
-        yield (
-            cut.item.label, cut.item.part.use, cut.length, cut.load, marks, cut.unstretched,
-            cut.tolerance, cut.effect, cut.termination, cut.over, cut.onto,
-        )  # fmt: skip
-
-
-_HARDWARE = ("kind", "use", "name", "count", "length[m]", "spares", "total", "basis")
-
-
-def _hardware(deck: Deck) -> Rows:
-    for one in deck.hardware:
-        yield (
-            one.kind, one.use, one.name, one.count, one.length, one.spares, one.total, one.basis
-        )  # fmt: skip
-
-
-_SHIPPING = (
-    "use", "name", "count", "length[m]", "mass[kg]", "volume[m^3]", "missing_masses",
-    "missing_volumes",
-)  # fmt: skip
-
-
-def _shipping(deck: Deck) -> Rows:
-    for one in deck.shipped:
-        unknown = one.missing_masses == one.count, one.missing_volumes == one.count
-        yield (
-            one.use, one.name, one.count, one.length, None if unknown[0] else one.mass,
-            None if unknown[1] else one.volume, one.missing_masses, one.missing_volumes,
-        )  # fmt: skip
-
-
-_LIFTS = ("stage", "index", "label", "lift_mass[kg]", "lift_weight[N]", "hanging[N]")
-
-
-def _lifts(deck: Deck) -> Rows:
-    for stage, lifts in (
-        (f"deployment, {deck.order}", deck.lifts.deployment),
-        ("recovery", deck.lifts.recovery),
-    ):
-        for one in lifts:
-            yield stage, one.index, one.label, one.mass, one.weight, one.hanging
-
-
-_INSTRUMENTS = (
-    "label", "use", "name", "serial", "clamped_on", "depth[m]", "still_depth[m]",
-    "least_depth[m]", "least_in", "greatest_depth[m]", "greatest_in", "greatest_tilt[deg]",
-    "warn_tilt[deg]", "max_tilt[deg]", "sampling", "battery_until", "calibrated",
-)  # fmt: skip
-
-
-def _instruments(deck: Deck) -> Rows:
-    for one in deck.instruments:
-        item, component = one.item, one.item.part.component
-        equipment = item.part.equipment
-        yield (
-            item.label, item.part.use, item.name, item.serial, item.on, item.depth, one.still,
-            one.shallowest.depth, one.shallowest.environment, one.deepest.depth,
-            one.deepest.environment, one.greatest_tilt, component.warn_tilt, component.max_tilt,
-            equipment.sampling, equipment.battery_until, equipment.calibrated,
-        )  # fmt: skip
+def _sheet(columns: str, items: Iterable[Any]) -> tuple[Sequence[str], Rows]:
+    """The head of a sheet and its rows."""
+    named = [column.partition("=") for column in columns.split()]
+    heads = [head for head, _, _ in named]
+    numbered = int(named[0][1:] == ("=", ""))
+    shown = [
+        attrgetter(attribute or head.partition("[")[0]) if attribute != "-" else lambda _: None
+        for head, _, attribute in named[numbered:]
+    ]
+    if numbered:
+        return heads, ([number, *(show(one) for show in shown)] for number, one in items)
+    return heads, ([show(one) for show in shown] for one in items)
 
 
 def deck_report(deck: Deck, paper: Paper, notes: tuple[str, ...] = ()) -> Report:

@@ -2,53 +2,48 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from xml.etree import ElementTree
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from itertools import count
 
 from calm.deck import Deck
-from calm.drawing.schematic.pen import FAINT, INK, SOFT, Pen, text_width, wrapped
-from calm.drawing.schematic.shown_parts import one_line
-from calm.drawing.schematic.sign import LINES, Sign, Symbol
-from calm.drawing.schematic.symbols import (
-    draw_cable,
-    draw_clamp,
-    draw_seabed,
-    draw_surface,
-    figure_of,
-)
-from calm.quantities import QUANTITIES, say
-from calm.report.check_summary import short_verdict
-from calm.report.diagram_layout import (
-    CLAMP_SCALE,
-    CONTINUED,
-    FIGURES,
+from calm.drawing.schematic.deck_parts import parts_of
+from calm.drawing.schematic.line_column import (
     FONT,
     HEAD,
-    INDENT,
     LEADING,
-    MARGIN,
-    PICTURE,
-    SYMBOL_SCALE,
-    ColumnOf,
-    Paper,
-    PlacedEntry,
-    columns_of,
-    entries_of,
+    Heading,
+    LineColumn,
+    PlacedPart,
+    column_of,
+    draw_ground,
+    draw_headings,
+    draw_parts,
+    draw_sea,
+    measured,
+    placed,
 )
+from calm.drawing.schematic.pen import INK, SOFT, Pen, picture, svg_text, wrapped
+from calm.drawing.schematic.shown_parts import TextRow, one_line
+from calm.drawing.schematic.sign import LINES, Sign, Symbol
+from calm.drawing.schematic.symbols import SEABED_ROOM, draw_cable, figure_of
+from calm.quantities import QUANTITIES, say
+from calm.report.check_summary import short_verdict
 from calm.report.provenance import title_pairs
 
-_FONTS = "'DejaVu Sans', Helvetica, Arial, 'Liberation Sans', sans-serif"
-_TITLE = 13.0
-_LINE_AT = 26.0
-_CLAMP_AT = 16.0
 _HEADINGS = (
     (("cut,", "or place"), "length"), (("stretched",), "length"), (("depth",), "depth"),
     (("above", "seabed"), "height"), (("tension",), "tension"),
     (("net", "buoyancy"), "wet_weight"),
 )  # fmt: skip
+_MARGIN, _BETWEEN = 34.0, 20.0
+_TITLE, _TITLE_ROOM = 13.0, 12.0
+_CONTINUED = 16.0  # height of a continuation mark
+_SKY, _MAST, _SUBMERGED = 7.0, 26.0, 11.0
 _LEGEND_ROW, _LEGEND_COLUMNS = 21.0, 4
 _GROUND = 44.0
+_NEAR_THE_END = 0.3  # of a column: where a break is looked for
 _WORDS = {
     Symbol.SPHERE: "float", Symbol.BALL: "ball", Symbol.GLASS: "glass float",
     Symbol.FOAM: "foam float", Symbol.STREAMLINED: "streamlined float",
@@ -61,6 +56,34 @@ _WORDS = {
 }  # fmt: skip
 
 
+class Paper(StrEnum):
+    """What the sheets are printed on."""
+
+    A4 = "a4"
+    A3 = "a3"
+    LETTER = "letter"
+
+    @property
+    def size(self) -> tuple[float, float]:
+        """Width and height [pt]."""
+        return {"a4": (595.28, 841.89), "a3": (1190.55, 841.89), "letter": (612.0, 792.0)}[self]
+
+    @property
+    def columns(self) -> int:
+        """Return how many columns stand side by side."""
+        return 2 if self is Paper.A3 else 1
+
+    @property
+    def column_width(self) -> float:
+        """Width of one [pt]."""
+        room = self.size[0] - 2 * _MARGIN - (self.columns - 1) * _BETWEEN
+        return room / self.columns
+
+    def left(self, column: int) -> float:
+        """Left edge of a column [pt]."""
+        return _MARGIN + (column % self.columns) * (self.column_width + _BETWEEN)
+
+
 @dataclass(frozen=True)
 class TitleBlock:
     """Fields in rows of as many columns, each with its text in lines; what is not known is blank.
@@ -70,20 +93,14 @@ class TitleBlock:
     rows : of name and lines of text
     columns : how many stand side by side
     height : of all [pt]
-    sheet : such as 2 of 5
     """
 
     rows: tuple[tuple[tuple[str, tuple[str, ...]], ...], ...]
     columns: int
     height: float
-    sheet: str = ""
 
-    def of_page(self, number: int, count: int) -> TitleBlock:
-        """The block of one of several pages."""
-        return replace(self, sheet=f"{number} of {count}")
-
-    def draw(self, page: Pen, left: float, top: float, width: float) -> None:
-        """In a frame, its upper left corner at a point."""
+    def draw(self, page: Pen, left: float, top: float, width: float, sheet: str) -> None:
+        """In a frame, its upper left corner at a point; `sheet` is such as 2 of 5."""
         step = width / self.columns
         y = top
         for row in self.rows:
@@ -95,13 +112,42 @@ class TitleBlock:
                     stroke_width=0.6,
                 )  # fmt: skip
                 page.letters(x + _PAD, y + 6.0, name, size=FONT, colour=SOFT)
-                shown = (self.sheet,) if name == "sheet" else lines
+                shown = (sheet,) if name == "sheet" else lines
                 for line, text in enumerate(shown):
                     page.letters(x + _PAD, y + 6.0 + LEADING * (line + 1), text, size=FONT)
             y += height
 
 
-_Page = tuple[str, Paper, TitleBlock, list[tuple[int, ColumnOf]], tuple[Sign, ...], bool]
+@dataclass(frozen=True)
+class _PageColumn:
+    """A column of a page: its parts, and the marks at which the line goes on; "" at its ends."""
+
+    parts: tuple[PlacedPart, ...]
+    above: str
+    below: str
+    afloat: bool
+
+    @property
+    def end(self) -> float:
+        """Where the parts end."""
+        return self.parts[-1].top + self.parts[-1].height
+
+
+@dataclass(frozen=True)
+class _Pages:
+    """The pages of a diagram: their columns in reading order, and what each page has besides."""
+
+    title: str
+    paper: Paper
+    block: TitleBlock
+    column: LineColumn
+    columns: tuple[_PageColumn, ...]
+    legend: tuple[Sign, ...]
+
+    @property
+    def count(self) -> int:
+        """How many there are."""
+        return -(-len(self.columns) // self.paper.columns)
 
 
 def diagram_pages(deck: Deck, paper: Paper) -> list[str]:
@@ -111,182 +157,117 @@ def diagram_pages(deck: Deck, paper: Paper) -> list[str]:
     two clamps; where a line goes on, both ends carry the same letter. No text is cut: long ones
     wrap. The same deck gives the same text.
     """
-    written = []
-    for page in _drawn(deck, paper):
-        picture = _picture(*paper.size, one_line(deck.file.name))
-        _fill(picture, *page)
-        written.append(_written(picture))
+    pages, written = _pages(deck, paper), []
+    for number in range(pages.count):
+        page = picture(*paper.size, pages.title)
+        _fill(page, pages, number)
+        written.append(svg_text(page))
     return written
 
 
 def diagram_svg(deck: Deck, paper: Paper) -> str:
     """All pages of the diagram, one below the other, as one picture."""
-    pages = [*_drawn(deck, paper)]
-    width, height = paper.size
-    picture = _picture(width, height * len(pages), one_line(deck.file.name))
-    for number, page in enumerate(pages):
-        _fill(picture.group(0.0, number * height), *page)
-    return _written(picture)
+    pages, (width, height) = _pages(deck, paper), paper.size
+    drawn = picture(width, height * pages.count, pages.title)
+    for number in range(pages.count):
+        _fill(drawn.group(0.0, number * height), pages, number)
+    return svg_text(drawn)
 
 
-def _drawn(deck: Deck, paper: Paper) -> list[_Page]:
-    entries = entries_of(deck)
+def _pages(deck: Deck, paper: Paper) -> _Pages:
+    parts = parts_of(deck)
     block = title_block_of(deck, paper)
-    legend = tuple({entry.sign.symbol: entry.sign for entry in entries}.values())
-    rows = -(-len(legend) // _LEGEND_COLUMNS)
-    need = _GROUND + LEADING + rows * _LEGEND_ROW
-    bottom = paper.size[1] - MARGIN - block.height
+    headings = [Heading(words, QUANTITIES[name].display_unit) for words, name in _HEADINGS]
+    rows = (row for part in parts for row in part.rows)
+    column = column_of(rows, headings, paper.column_width)
+    heights = measured(parts, column)
+    afloat = deck.result.type == "surface"
+    legend = tuple({part.sign.symbol: part.sign for part in parts}.values())
+    need = _GROUND + LEADING - (-len(legend) // _LEGEND_COLUMNS) * _LEGEND_ROW
+    bottom = paper.size[1] - _MARGIN - block.height
     foot = block.height
-    while True:  # a page that had nothing but the legend takes over some entries
-        columns = columns_of(entries, paper, foot)
+    while True:  # a page that had nothing but the legend takes over some parts
+        columns = tuple(_columns(heights, paper, foot, afloat))
         if len(columns) % paper.columns or columns[-1].end + need <= bottom:
             break
         foot += 2 * LEADING
-    placed = [*enumerate(columns)]
-    pages = [
-        placed[start : start + paper.columns] for start in range(0, len(placed), paper.columns)
-    ]
-    title = one_line(deck.file.name)
-    count = len(pages)
-    return [
-        (title, paper, block.of_page(number, count), page, legend, number == count)
-        for number, page in enumerate(pages, 1)
-    ]
+    return _Pages(one_line(deck.file.name), paper, block, column, columns, legend)
 
 
-def _fill(
-    page: Pen,
-    title: str,
-    paper: Paper,
-    block: TitleBlock,
-    columns: list[tuple[int, ColumnOf]],
-    legend: tuple[Sign, ...],
-    is_last: bool,
-) -> None:
+_TOP = _MARGIN + _TITLE_ROOM + HEAD
+
+
+def _columns(
+    parts: Sequence[PlacedPart], paper: Paper, foot: float, afloat: bool
+) -> Iterator[_PageColumn]:
+    """The columns in reading order; `foot` is the height of the title block [pt]."""
+    sea = _MAST - parts[0].height / 2 if afloat else _SKY + _SUBMERGED
+    room = paper.size[1] - foot - _MARGIN - _TOP - 2 * _CONTINUED - sea - SEABED_ROOM
+    marks, above = _marks(), ""
+    for group in _broken(parts, room):
+        below = "" if group[-1] is parts[-1] else next(marks)
+        if above:
+            line = placed(group, _TOP + _CONTINUED)
+        else:
+            line = placed(group, _TOP + sea, _TOP + sea + group[0].height / 2)
+        yield _PageColumn(line, above, below, afloat and not above)
+        above = below
+
+
+def _fill(page: Pen, pages: _Pages, number: int) -> None:
     """Draw a page: its head, its columns, its title block, and the legend on the last one."""
+    paper, block = pages.paper, pages.block
     width, height = paper.size
-    page.letters(MARGIN, MARGIN + 0.4 * _TITLE, title, size=_TITLE, bold=True)
-    for number, column in columns:
-        _column(page, column, paper, paper.left(number), first=number == 0)
-    bottom = height - MARGIN - block.height
-    if is_last:
-        _legend(page, legend, columns, paper, bottom)
-    block.draw(page, MARGIN, bottom, width - 2 * MARGIN)
+    page.write(
+        _MARGIN, _MARGIN + 0.4 * _TITLE, pages.title, width - 2 * _MARGIN, size=_TITLE, bold=True
+    )
+    first = number * paper.columns
+    there = pages.columns[first : first + paper.columns]
+    for at, column in enumerate(there):
+        _draw_column(page, column, pages.column, paper.left(at))
+    bottom = height - _MARGIN - block.height
+    if number + 1 == pages.count:
+        place = len(there) - (len(there) == paper.columns)
+        _draw_legend(page, pages, paper.left(place), bottom)
+    sheet = f"{number + 1} of {pages.count}"
+    block.draw(page, _MARGIN, bottom, width - 2 * _MARGIN, sheet)
 
 
-def _column(page: Pen, column: ColumnOf, paper: Paper, left: float, *, first: bool) -> None:
-    rights = _rights(paper, left)
-    top = MARGIN + HEAD
-    for (words, name), right in zip(_HEADINGS, rights, strict=True):
-        lines = (*words, QUANTITIES[name].display_unit)
-        for number, word in enumerate(lines):
-            y = top - 8.0 - 9.0 * (len(lines) - 1 - number)
-            page.letters(right, y, word, size=FONT, colour=SOFT, anchor="end")
-    page.line(left, top - 2.0, left + paper.column_width, top - 2.0, stroke=FAINT)
-    pen = page.draw("g", stroke=INK, stroke_width=0.9, stroke_linejoin="round", fill=INK)
-    x = left + _LINE_AT
-    if column.above:
-        _continued(page, x, column.entries[0].top - CONTINUED, left, f"from {column.above}")
-    elif first:
-        water = pen.group(left, 0.0)
-        draw_surface(water, PICTURE, top + 7.0)
-        page.letters(left + PICTURE, top + 7.0, "sea surface", size=FONT, colour=SOFT)
-    for placed in column.entries:
-        _entry(page, pen, placed, x, left, rights)
-    if column.below:
-        _continued(page, x, column.end, left, f"continues at {column.below}")
-    else:
-        ground = pen.group(left, 0.0)
-        draw_seabed(ground, PICTURE, column.end)
-        page.letters(left + PICTURE, column.end + 9.0, "seabed", size=FONT, colour=SOFT)
+def _draw_column(page: Pen, one: _PageColumn, column: LineColumn, left: float) -> None:
+    draw_headings(page, column, left, _TOP - HEAD)
+    start, end = one.parts[0].top, one.end
+    surface = one.parts[0].middle if one.afloat else _TOP + _SKY
+    if not one.above:
+        row = None if one.afloat else TextRow("sea surface", "")
+        draw_sea(page, column, left, (surface, end), row)
+    if not one.below:
+        draw_ground(page, column, left, end, TextRow("seabed", ""))
+    if one.above:
+        _draw_continued(page, column, left, start - _CONTINUED, f"from {one.above}")
+    draw_parts(page, one.parts, column, left)
+    if one.below:
+        _draw_continued(page, column, left, end, f"continues at {one.below}")
 
 
-def _continued(page: Pen, x: float, top: float, left: float, words: str) -> None:
+def _draw_continued(page: Pen, column: LineColumn, left: float, top: float, words: str) -> None:
     """Where a line is parted: its two ends carry the same letter."""
-    page.line(x, top, x, top + CONTINUED, stroke=INK, stroke_width=1.2, stroke_dasharray="2 2")
+    x, text = left + column.line_at, left + column.text[0]
+    page.line(x, top, x, top + _CONTINUED, stroke=INK, stroke_width=1.2, stroke_dasharray="2 2")
     page.draw(
-        "rect", x=left + PICTURE - 4.0, y=top + 2.0, width=78.0, height=CONTINUED - 4.0,
-        fill="white", stroke=INK, stroke_width=0.8,
+        "rect", x=text - 4.0, y=top + 2.0, width=78.0, height=_CONTINUED - 4.0, fill="white",
+        stroke=INK, stroke_width=0.8,
     )  # fmt: skip
-    page.letters(left + PICTURE, top + CONTINUED / 2, words, size=FONT, bold=True)
+    page.letters(text, top + _CONTINUED / 2, words, size=FONT, bold=True)
 
 
-def _entry(
-    page: Pen,
-    pen: Pen,
-    placed: PlacedEntry,
-    x: float,
-    left: float,
-    rights: Sequence[float],
-) -> None:
-    entry, top, bottom = placed.entry, placed.top, placed.top + placed.height
-    middle = (top + bottom) / 2
-    group = pen.draw("g")
-    if entry.cable is not None:
-        draw_cable(group, entry.cable, x, top, bottom)
-    else:
-        group.line(x, top, x, bottom)
-    if entry.clamped:
-        clamp = group.group(x, middle)
-        draw_clamp(clamp, _CLAMP_AT)
-        figure_of(entry.sign).draw(clamp.group(_CLAMP_AT, 0.0, CLAMP_SCALE))
-    elif entry.floats is not None:
-        clamp = group.group(x, middle)
-        draw_clamp(clamp, _CLAMP_AT)
-        figure_of(entry.floats).draw(clamp.group(_CLAMP_AT, 0.0, CLAMP_SCALE))
-    elif entry.sign.symbol not in LINES:
-        figure_of(entry.sign).draw(group.group(x, middle, SYMBOL_SCALE))
-    start = left + PICTURE + (INDENT if entry.clamped else 0.0)
-    lines = [(text, INK, entry.strong, 0.0) for text in placed.label]
-    lines += [(text, SOFT, False, placed.abreast) for text in placed.name]
-    last = len(lines) - 1 - (placed.abreast > 0.0)
-    ends = start
-    for number, (text, colour, bold, aside) in enumerate(lines):
-        below = LEADING * (min(number, last) - last / 2)
-        place = start + aside
-        page.letters(place, middle + below, text, size=FONT, colour=colour, bold=bold)
-        if abs(below) < LEADING:
-            ends = max(ends, place + text_width(text, FONT, bold=bold))
-    _leaders(page, (x, start), (ends, rights[0] - FIGURES[0]), middle)
-    for text, right in zip(entry.cells, rights, strict=True):
-        page.letters(right, middle - LEADING * last / 2, text, size=FONT, anchor="end")
-
-
-def _leaders(
-    page: Pen, symbol: tuple[float, float], text: tuple[float, float], middle: float
-) -> None:
-    """Lead the eye from a symbol to its words, and from these to their figures."""
-    for (left, right), room in ((symbol, 18.0), (text, 3.0)):
-        if right - left > room + 5.0:
-            page.line(
-                left + room, middle, right - 3.0, middle, stroke=SOFT, stroke_width=0.6,
-                stroke_dasharray="0.6 2.4",
-            )  # fmt: skip
-
-
-def _rights(paper: Paper, left: float) -> list[float]:
-    """Right edges of the columns of figures."""
-    right = left + paper.column_width
-    return [right - sum(FIGURES[number + 1 :]) for number in range(len(FIGURES))]
-
-
-def _legend(
-    page: Pen,
-    legend: Sequence[Sign],
-    columns: Sequence[tuple[int, ColumnOf]],
-    paper: Paper,
-    bottom: float,
-) -> None:
+def _draw_legend(page: Pen, pages: _Pages, left: float, bottom: float) -> None:
     """The symbols that are drawn, each in words, at the foot of the last column."""
-    number = columns[-1][0]
-    shared = len(columns) == paper.columns
-    left = paper.left(number if shared else number + 1)
-    rows = -(-len(legend) // _LEGEND_COLUMNS)
+    rows = -(-len(pages.legend) // _LEGEND_COLUMNS)
     top = bottom - rows * _LEGEND_ROW
     page.letters(left, top - LEADING, "Symbols", size=FONT, bold=True)
-    pen = page.draw("g", stroke=INK, stroke_width=0.9, stroke_linejoin="round", fill=INK)
-    step = paper.column_width / _LEGEND_COLUMNS
-    for place, sign in enumerate(legend):
+    pen = page.draw("g", stroke=INK, stroke_width=0.9, fill=INK)
+    step = pages.paper.column_width / _LEGEND_COLUMNS
+    for place, sign in enumerate(pages.legend):
         x = left + 14.0 + step * (place % _LEGEND_COLUMNS)
         y = top + _LEGEND_ROW * (place // _LEGEND_COLUMNS) + _LEGEND_ROW / 2 - 3.0
         if sign.symbol in LINES:
@@ -297,27 +278,40 @@ def _legend(
         page.letters(x + 18.0, y, _WORDS[sign.symbol], size=FONT)
 
 
-def _picture(width: float, height: float, title: str) -> Pen:
-    element = ElementTree.Element(
-        "svg",
-        {
-            "xmlns": "http://www.w3.org/2000/svg",
-            "width": f"{width:g}pt",
-            "height": f"{height:g}pt",
-            "viewBox": f"0 0 {width:g} {height:g}",
-            "role": "img",
-            "font-family": _FONTS,
-        },
-    )
-    pen = Pen(element)
-    pen.title(title)
-    pen.draw("rect", width=width, height=height, fill="white")
-    return pen
+def _broken(parts: Sequence[PlacedPart], room: float) -> Iterator[list[PlacedPart]]:
+    """Groups that fit a column, parted at a junction near its end where there is one."""
+    rest = [*parts]
+    while rest:
+        height, fits = 0.0, 0
+        while fits < len(rest) and (fits == 0 or height + rest[fits].height <= room):
+            height += rest[fits].height
+            fits += 1
+        if fits < len(rest):
+            fits = _break(rest, fits, room)
+        yield rest[:fits]
+        rest = rest[fits:]
 
 
-def _written(picture: Pen) -> str:
-    ElementTree.indent(picture.element)
-    return ElementTree.tostring(picture.element, encoding="unicode") + "\n"
+def _break(rest: Sequence[PlacedPart], fits: int, room: float) -> int:
+    """Before which part to part: a junction, else a piece, else a clamp, as low as can be."""
+    height = sum(one.height for one in rest[:fits])
+    best = fits, 3
+    for number in range(fits, 0, -1):
+        part = rest[number].part
+        quality = 0 if part.junction else 2 if part.clamped else 1
+        if height < (1.0 - _NEAR_THE_END) * room and best[1] < 3:
+            break
+        if quality < best[1]:
+            best = number, quality
+        height -= rest[number - 1].height
+    return best[0]
+
+
+def _marks() -> Iterator[str]:
+    """A, B … Z, A1, B1 …"""
+    for turn in count():
+        for number in range(26):
+            yield chr(ord("A") + number) + (str(turn) if turn else "")
 
 
 _FIELDS = (
@@ -333,7 +327,7 @@ def title_block_of(deck: Deck, paper: Paper) -> TitleBlock:
     """The title block of a mooring, without the number of its page."""
     known = {**dict(title_pairs(deck.file)), **_known(deck), "environment": deck.environment}
     columns = _COLUMNS[paper]
-    room = (paper.size[0] - 2 * MARGIN) / columns - 2 * _PAD
+    room = (paper.size[0] - 2 * _MARGIN) / columns - 2 * _PAD
     fields = [(name, tuple(wrapped(one_line(known.get(name, "")), room, FONT))) for name in _FIELDS]
     fields += [("", ())] * (-len(fields) % columns)
     rows = tuple(tuple(fields[start : start + columns]) for start in range(0, len(fields), columns))

@@ -15,11 +15,13 @@ from calm.drawing.picture import figure_svg
 from calm.drop import DropPlan
 from calm.drop.fall_record import DepthReached
 from calm.drop.plan import DRAG_BAND
+from calm.physics.line import Floats
 from calm.quantities import QUANTITIES, bearing_text, duration, say
 from calm.report.blocks import (
     Block,
     Cell,
     Column,
+    Field,
     Figure,
     Note,
     Pairs,
@@ -134,48 +136,28 @@ def _fall_table(plan: DropPlan) -> Table:
     path = plan.path
     depths = np.linspace(path.anchor_depth[0], path.anchor_depth[-1], _ROWS)
     deepest = np.maximum.accumulate(path.anchor_depth)
-    columns = [
-        np.interp(depths, deepest, column)
-        for column in (
-            path.time,
-            path.anchor_speed,
-            path.anchor_x,
-            path.anchor_tension,
-            path.float_x,
-            path.float_depth,
-        )
-    ]
-    rows = tuple(
-        tuple(
-            Cell(text)
-            for text in (
-                f"{depth:.0f}",
-                f"{time:.0f}",
-                f"{speed:.2f}" if number else "-",
-                f"{x:.0f}",
-                f"{tension:.0f}" if number else "-",
-                f"{float_x:.0f}",
-                f"{max(float_depth, 0.0):.0f}",
-            )
-        )
-        for number, (depth, time, speed, x, tension, float_x, float_depth) in enumerate(
-            zip(depths, *columns, strict=True)
-        )
-    )
-    heads = (
-        ("anchor depth", "m"),
-        ("time", "s"),
-        ("speed", "m/s"),
-        ("towards float", "m"),
-        ("tension at anchor", "N"),
-        ("float at", "m"),
-        ("float depth", "m"),
-    )
-    return Table(
+
+    def column(
+        heading: str, unit: str, values: Floats, decimals: int = 0, least: float = -np.inf
+    ) -> Field[int]:
+        at = np.maximum(np.interp(depths, deepest, values), least)
+        return Column(heading, unit, numeric=True), lambda row: f"{at[row]:.{decimals}f}"
+
+    def moving(field: Field[int]) -> Field[int]:
+        head, show = field
+        return head, lambda row: show(row) if row else "-"
+
+    return table_of(
         "The fall",
-        tuple(Column(head, unit, numeric=True) for head, unit in heads),
-        rows,
-        "Distances are from where the anchor is let go, towards the float.",
+        range(_ROWS),
+        column("anchor depth", "m", deepest),
+        column("time", "s", path.time),
+        moving(column("speed", "m/s", path.anchor_speed, 2)),
+        column("towards float", "m", path.anchor_x),
+        moving(column("tension at anchor", "N", path.anchor_tension)),
+        column("float at", "m", path.float_x),
+        column("float depth", "m", path.float_depth, least=0.0),
+        note="Distances are from where the anchor is let go, towards the float.",
     )
 
 

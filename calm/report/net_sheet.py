@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from calm.case.net import LegResult, NetResult
+from calm.case import Result
+from calm.case.net import NetResult
 from calm.checks.finding import State
 from calm.files.legs import EndKeys
 from calm.quantities import say
@@ -17,7 +18,7 @@ def net_part(result: NetResult) -> ReportPart:
     depth = say("depth", result.file.environment.depth)
     count = len(result.legs)
     title = f"{result.name}: net of {count} leg{'s' * (count != 1)}, {depth} of water"
-    heads = {leg.first: Cell(_head(result, leg), strong=True) for leg in result.legs}
+    heads = {leg.file.legs[0].first: Cell(leg_title(leg), strong=True) for leg in result.legs}
     table = line_table(result, _COLUMNS, "", heads=heads)
     note = Note((
         "Depth, east and north: of the upper end. Tension: the greatest in the piece. "
@@ -29,10 +30,10 @@ def net_part(result: NetResult) -> ReportPart:
     return ReportPart(title, parts)
 
 
-def _head(result: NetResult, leg: LegResult) -> str:
+def leg_title(leg: Result) -> str:
     """Name of a leg and what holds its ends."""
-    keys = next(each for each in result.file.legs if each.name == leg.name)
-    top = "at the surface" if leg.afloat else _held(keys.top)
+    (keys,) = leg.file.legs
+    top = "at the surface" if leg.type == "surface" else _held(keys.top)
     return f"{leg.name}: {top} to {_held(keys.bottom)}"
 
 
@@ -60,10 +61,10 @@ def _ends(result: NetResult) -> list[Table | Prose]:
         fields = [quantity_field(name, heading=head) for name, head in heads.items()]
         blocks.append(table_of(title, loads, (Column("leg"), lambda one: one.leg), *fields))
     afloat = [
-        f"{leg.name}: float at the surface, {leg.used_buoyancy:.1%} of its buoyancy used, "
-        f"{say('reserve', leg.reserve)} in reserve"
+        f"{leg.name}: float at the surface, {leg.top.used_buoyancy:.1%} of its buoyancy used, "
+        f"{say('reserve', leg.top.reserve)} in reserve"
         for leg in result.legs
-        if leg.afloat
+        if leg.type == "surface"
     ]
     if afloat:
         blocks.append(Prose(tuple(afloat)))

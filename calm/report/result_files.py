@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.case import Result, TowResult
-from calm.case.net import NetResult
+from calm.case.net import AnyResult
 from calm.case.result_tables import ClampRow, ComponentRow, Components, rows_down
 from calm.dataset.netcdf import (
     CLAMPS,
@@ -37,14 +37,12 @@ _WORDS = ("mooring", "part", "index", "use", "label")
 _WITHIN = {"tension", "least_tension", "reynolds"}
 """What is greatest or least within a piece: a row has the figures of its ends."""
 
-_NUMBERS = tuple(
-    name for name in Components.__annotations__ if name in QUANTITIES and name not in _WITHIN
-)
+_NUMBERS = tuple(name for name in Components.names() if name in QUANTITIES and name not in _WITHIN)
 HEADER = (*_WORDS, *(QUANTITIES[name].header for name in _NUMBERS))
 """The first row: names, with the unit in brackets where there is one."""
 
 
-def to_csv(results: Sequence[Result | TowResult | NetResult]) -> str:
+def to_csv(results: Sequence[AnyResult]) -> str:
     """The components of one mooring or tow, or of several, as CSV text (UTF-8, comma, point, LF).
 
     `part` is ``component`` or ``clamp``; the rows of clamped instruments follow the piece they sit
@@ -53,7 +51,7 @@ def to_csv(results: Sequence[Result | TowResult | NetResult]) -> str:
     return table_csv(HEADER, (row for result in results for row in _rows(result)))
 
 
-def _rows(result: Result | TowResult | NetResult) -> Iterator[list[object]]:
+def _rows(result: AnyResult) -> Iterator[list[object]]:
     for component, clamps in rows_down(result):
         numbers = (getattr(component, name) for name in _NUMBERS)
         yield [*_words(result, "component", component), *numbers]
@@ -64,9 +62,7 @@ def _rows(result: Result | TowResult | NetResult) -> Iterator[list[object]]:
             yield [*_words(result, "clamp", clamp), *numbers]
 
 
-def _words(
-    result: Result | TowResult | NetResult, part: str, row: ComponentRow | ClampRow
-) -> list[object]:
+def _words(result: AnyResult, part: str, row: ComponentRow | ClampRow) -> list[object]:
     return [result.name, part, row.index, row.use, row.label]
 
 

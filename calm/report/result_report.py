@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from math import isnan
 
-from calm.case import Result, TowResult
+from calm.case import Result
+from calm.case.net import AnyResult, NetResult
 from calm.case.uncertain import Uncertain
 from calm.checks.criterion import limits_used
 from calm.checks.finding import State
 from calm.checks.posture import reaches_the_surface
+from calm.drawing.line_picture import water_of
 from calm.drawing.picture import figure_svg
 from calm.drawing.plot import draw
 from calm.files import Uncertainty
@@ -28,37 +29,49 @@ from calm.report.blocks import (
     table_of,
 )
 from calm.report.check_summary import limits_table
+from calm.report.net_sheet import leg_title, net_part
 from calm.report.provenance import NOT_JUDGED, date, document_part, inputs_part
-from calm.report.sheet import sheet
+from calm.report.sheet import quality_of, summary_of, table_of_line, title_of
 
 
-def result_report(result: Result | TowResult, uncertain: Uncertain | None = None) -> Report:
+def result_report(result: AnyResult, uncertain: Uncertain | None = None) -> Report:
     """Schematic, table, drawing and inputs of one result, and how sure its figures are."""
     from calm.drawing.schematic import schematic_svg
 
-    said, file = sheet(result, places=True), result.file
-    water = result.tow.water if isinstance(result, TowResult) else result.mooring.water
+    file, water = result.file, water_of(result)
+    if isinstance(result, NetResult):
+        net = net_part(result)
+        title, said = net.title, net.blocks
+        line: tuple[Block, ...] = tuple(
+            Figure(f"Schematic of leg {leg_title(leg)}", schematic_svg(leg.file, leg), tall=True)
+            for leg in result.legs
+        )
+    else:
+        title, said = title_of(result), (*summary_of(result), quality_of(result))
+        line = (
+            Figure("Schematic", schematic_svg(file, result), tall=True),
+            table_of_line(result, "Table of the line", places=True),
+        )
     environment = file.environment.name or "own"
     drawing = figure_svg(draw(result, uncertain))
     described = (Prose((file.description,)),) if file.description else ()
     parts = (
         *document_part(file),
-        ReportPart("Result", (*described, *said.summary, Prose((said.accuracy, said.convergence)))),
-        ReportPart("The line", (Figure("Schematic", schematic_svg(file, result), tall=True),
-                          replace(said.table, title="Table of the line"))),
+        ReportPart("Result", (*described, *said)),
+        ReportPart("The line", line),
         ReportPart("Shape", (Figure("Elevation, current and plan", drawing),)),
         *(() if uncertain is None else (uncertainty_part(uncertain),)),
         *_limits(result),
         NOT_JUDGED,
         inputs_part([file], [environment], [water]),
-    )  # fmt: skip
-    subtitle = said.title.removeprefix(f"{result.name}: ")
+    )
+    subtitle = title.removeprefix(f"{result.name}: ")
     return Report(result.name, subtitle, (), (Section(result.name, parts),), date())
 
 
-def _limits(result: Result | TowResult) -> tuple[ReportPart, ...]:
-    """The limits of the margins in a mooring's table; a tow has none."""
-    if isinstance(result, TowResult):
+def _limits(result: AnyResult) -> tuple[ReportPart, ...]:
+    """The limits of the margins in a mooring's table; a tow and a net have none."""
+    if not isinstance(result, Result):
         return ()
     keys = limits_used(result.file, reaches_the_surface(result.mooring))
     return (ReportPart("Limits", (limits_table(keys),)),)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import StrEnum
 from typing import Any
 
 from calm.case import Result, TowResult
-from calm.case.net import NetResult
+from calm.case.net import AnyResult
 from calm.case.profilers import ProfilerTravel
 from calm.case.result_tables import ClampRow, ComponentRow, rows_down
 from calm.case.strumming import StrummingBand
@@ -34,41 +34,14 @@ from calm.report.blocks import (
 )
 from calm.solve import Status
 
-AnyResult = Result | TowResult | NetResult
 NO_HEADS: Mapping[int, Cell] = {}
 
-_OF_MOORINGS = "length depth height knockdown offset tilt tension safety_factor"
-_MOORING_COLUMNS = tuple(_OF_MOORINGS.split())
+_MOORING_COLUMNS = (
+    "length", "depth", "height", "knockdown", "offset", "tilt", "tension", "safety_factor",
+)  # fmt: skip
 _TOW_COLUMNS = ("length", "depth", "layback", "tilt", "tension", "safety_factor")
 _NOTE = "of the upper end. Tension: the greatest in the piece. ~ near a limit, ! beyond it."
 _TYPES = {"subsurface": "sub-surface mooring", "surface": "surface mooring"}
-
-
-@dataclass(frozen=True)
-class Sheet:
-    """Everything a result says.
-
-    Attributes
-    ----------
-    title : name and kind
-    table : a row for each component and each clamped instrument, in file order
-    summary : the two ends of the line in words, the warnings below them
-    accuracy : how good the solution is
-    convergence : how it was reached
-    """
-
-    title: str
-    table: Table
-    summary: tuple[Prose, ...]
-    accuracy: str
-    convergence: str
-
-
-def sheet(result: Result | TowResult, *, places: bool = False) -> Sheet:
-    """Return what a mooring or a tow says; in a report clamps have their places on pieces."""
-    if isinstance(result, TowResult):
-        return _tow(result, places)
-    return _mooring(result, places)
 
 
 def result_part(
@@ -83,32 +56,49 @@ def result_part(
     facts : more about the line, after its summary
     verbose : say how the solution was reached
     """
-    said = sheet(result)
-    summary, *warned = said.summary
-    notes = (said.table.note, said.accuracy, *([said.convergence] if verbose else []))
-    blocks: tuple[Block, ...] = (
-        replace(summary, lines=(*summary.lines, *facts)),
-        *warned,
-        Note(notes),
-    )
-    return ReportPart(said.title, (replace(said.table, note=""), *blocks))
+    table, (summary, *warned) = table_of_line(result), summary_of(result)
+    quality = quality_of(result).lines if verbose else quality_of(result).lines[:1]
+    ends = replace(summary, lines=(*summary.lines, *facts))
+    blocks: tuple[Block, ...] = (ends, *warned, Note((table.note, *map(str, quality))))
+    return ReportPart(title_of(result), (replace(table, note=""), *blocks))
 
 
-def _summary(result: Result | TowResult, *lines: Line) -> tuple[Prose, ...]:
-    warned = (Prose(result.warnings, State.WARN),) if result.warnings else ()
-    return (Prose(lines), *warned)
-
-
-def _mooring(result: Result, places: bool) -> Sheet:
+def title_of(result: Result | TowResult) -> str:
+    """Name and kind of what is solved."""
+    if isinstance(result, TowResult):
+        return f"{result.name}: tow at {say('speed', result.speed)} towards {result.toward:.0f}°"
     depth = say("depth", result.file.environment.depth)
-    return Sheet(
-        title=f"{result.name}: {_TYPES[result.type]}, {depth} of water",
-        table=line_table(
-            result, _MOORING_COLUMNS, f"Depth, height and offset: {_NOTE}", places=places
-        ),
-        summary=_mooring_summary(result),
-        accuracy=_accuracy(result),
-        convergence=_convergence(result, "anchor"),
+    return f"{result.name}: {_TYPES[result.type]}, {depth} of water"
+
+
+def table_of_line(result: Result | TowResult, title: str = "", *, places: bool = False) -> Table:
+    """A row for each component and clamp, in file order; `places` as in `line_table`."""
+    names: tuple[str, ...]
+    if isinstance(result, TowResult):
+        names, note = _TOW_COLUMNS, f"Depth and layback: {_NOTE}"
+    else:
+        names, note = _MOORING_COLUMNS, f"Depth, height and offset: {_NOTE}"
+    return replace(line_table(result, names, note, places=places), title=title)
+
+
+def summary_of(result: Result | TowResult) -> tuple[Prose, ...]:
+    """The two ends of the line in words, the warnings below them."""
+    ends = _tow_summary(result) if isinstance(result, TowResult) else _mooring_summary(result)
+    warned = (Prose(result.warnings, State.WARN),) if result.warnings else ()
+    return (Prose((*ends, *_strumming(result))), *warned)
+
+
+def quality_of(result: Result | TowResult) -> Prose:
+    """How good the solution is, and how it was reached."""
+    good, end = result.accuracy, "tow point" if isinstance(result, TowResult) else "anchor"
+    pull = "" if good.anchor is None else f", at the anchor {good.anchor:.2g} N"
+    return Prose(
+        (
+            f"Good to {good.depth:.2g} m and {good.tension:.2g} N{pull}.",
+            f"{result.status.capitalize()} in {result.iterations} marches of {result.segments} "
+            f"segments; {end} missed by {abs(result.miss):.1g} m, forces closed to "
+            f"{result.closure:.1g}.",
+        )
     )
 
 
@@ -126,7 +116,7 @@ def _travel(profiler: ProfilerTravel) -> str:
     return said
 
 
-def _mooring_summary(result: Result) -> tuple[Prose, ...]:
+def _mooring_summary(result: Result) -> tuple[Line, ...]:
     """The top, and the loads on the anchor."""
     top, anchor = result.top, result.anchor
     offset = f"{say('offset', math.hypot(top.x, top.y))} off the anchor"
@@ -146,33 +136,20 @@ def _mooring_summary(result: Result) -> tuple[Prose, ...]:
     weighs = f"{say('required_weight', anchor.weight)} in water, {needed} needed"
     mark = FigureMark.BEYOND if anchor.weight < anchor.required_weight else FigureMark.NONE
     hull = f"Hull: draft {say('draft', top.draft)}, freeboard {say('freeboard', top.freeboard)}"
-    return _summary(
-        result,
+    return (
         f"Top {at}",
         *([hull] if top.draft is not None else []),
         *map(_travel, result.profilers),
         f"Anchor pulled by {pull}",
         (Span(f"Anchor weighs {weighs} {mark}".rstrip(), mark.state),),
-        *_strumming(result),
     )
 
 
-def _tow(result: TowResult, places: bool) -> Sheet:
-    return Sheet(
-        title=f"{result.name}: tow at {say('speed', result.speed)} towards {result.toward:.0f}°",
-        table=line_table(result, _TOW_COLUMNS, f"Depth and layback: {_NOTE}", places=places),
-        summary=_tow_summary(result),
-        accuracy=_accuracy(result),
-        convergence=_convergence(result, "tow point"),
-    )
-
-
-def _tow_summary(result: TowResult) -> tuple[Prose, ...]:
+def _tow_summary(result: TowResult) -> tuple[Line, ...]:
     """The loads at the ship, and where the body is."""
     point, body = result.tow_point, result.body
     way = "down" if point.vertical >= 0.0 else "up"
-    return _summary(
-        result,
+    return (
         (
             f"Tow point pulled by {_pull(point.tension, point.angle)}: "
             f"{say('vertical', abs(point.vertical))} {way}, "
@@ -182,7 +159,6 @@ def _tow_summary(result: TowResult) -> tuple[Prose, ...]:
             f"Body {_level(result, body.depth)}, layback {say('layback', body.layback)}; "
             f"pulled by {_pull(body.tension, body.angle)}"
         ),
-        *_strumming(result),
     )
 
 
@@ -224,22 +200,6 @@ def _level(result: TowResult, depth: float) -> str:
     if result.file.environment.fluid == "air":
         return f"{say('depth', depth + result.tow.keys.height)} below the tow point"
     return f"{say('depth', depth)} deep" if depth >= 0.0 else f"{say('depth', -depth)} in the air"
-
-
-def _accuracy(result: Result | TowResult) -> str:
-    """Return how good the solution is."""
-    good = result.accuracy
-    pull = "" if good.anchor is None else f", at the anchor {good.anchor:.2g} N"
-    return f"Good to {good.depth:.2g} m and {good.tension:.2g} N{pull}."
-
-
-def _convergence(result: Result | TowResult, end: str) -> str:
-    """Return how the solution was reached; `end` is where the line is held."""
-    return (
-        f"{result.status.capitalize()} in {result.iterations} marches of {result.segments} "
-        f"segments; {end} missed by {abs(result.miss):.1g} m, forces closed to "
-        f"{result.closure:.1g}."
-    )
 
 
 # Headings cut so that the whole table fits 80 columns.

@@ -14,7 +14,6 @@ from calm.physics.strumming import BourgetMarichal
 from calm.quantities import QUANTITIES, Quantity
 from calm.records.delimited import table_csv
 from calm.report.blocks import Cell, Column, Pairs, Prose, ReportPart, Span, Table
-from calm.units import KNOT
 
 if TYPE_CHECKING:
     from calm.case import Tow, TowResult
@@ -28,7 +27,7 @@ _HEADINGS = {"body_tension": "tension\nat body"}
 _NOTE = "Depth and layback: of the body. Tension and angle: at the tow point, from the horizontal."
 _DIGITS = 4
 _WARNED = "!: with warnings, which --json reports."
-_KNOTS = replace(QUANTITIES["speed"], display="knot", usual_scale=1.0 / KNOT)
+_KNOTS = replace(QUANTITIES["speed"], display="knot")
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,7 @@ from calm.checks.finding import AS_GIVEN, OWN, Finding
 from calm.errors import InputError, NoEquilibrium, Problem, internal_failure
 from calm.files import MooringFile, read_mooring
 from calm.files.editing import Draft, LineItem
-from calm.files.reader import STAND_IN
+from calm.files.mooring_file import STAND_IN
 from calm.files.yaml_document import Document, compose
 from calm.quantities import show_in
 from calm.tui.row_findings import FoundRow, rows_of
@@ -229,7 +229,7 @@ def _found(
     if file.tow is None:
         as_given = Situation(AS_GIVEN, result, failure)
         here = file.environment.name or OWN
-        yield from findings_of(as_given, file.name, here, anchored=view.anchored)
+        yield from findings_of(as_given, file.name, here)
 
 
 def _wrong(view: View, problems: Sequence[Problem]) -> View:

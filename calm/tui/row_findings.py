@@ -10,7 +10,7 @@ from calm.case.parts import parts_of
 from calm.checks.finding import Finding, State
 from calm.checks.strength import strength
 from calm.files import MooringFile, Piece, Place
-from calm.files.reader import STAND_IN
+from calm.files.mooring_file import STAND_IN
 
 _Figures = tuple[float | None, float | None, float | None, float | None]
 _Said = tuple[float | None, State | None, bool]

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import json
 import re
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from calm.case.net import load_net
 from calm.cli.main import main
+from calm.drawing.line_picture import LineKind, elevation_of, plan_of
 from calm.errors import InputError
 
 NET = """\
@@ -132,7 +135,7 @@ def test_in_still_water_nothing_is_knocked_down(
     assert found["nodes"][0]["depth"] == pytest.approx(500.0 - 0.7 - 200.0 - 0.83, abs=1.5)
 
 
-@pytest.mark.parametrize("command", ["check", "size", "waves", "deck", "diff", "export"])
+@pytest.mark.parametrize("command", ["size", "waves", "deck", "diff", "export"])
 def test_other_commands_say_which_one_solves_nets(
     command: str, net: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -146,21 +149,77 @@ def test_other_commands_say_which_one_solves_nets(
     assert run(command, net, *more.get(command, [])) == 2
     told = capsys.readouterr().err
     assert f"{net}:5:1" in told
-    assert "`calm run` solves it" in told
+    assert "`calm run` solves it and `calm check` judges it" in told
     assert not (tmp_path / "out.csv").exists()
 
 
-@pytest.mark.parametrize(
-    "option", ["--explain", "--schematic", "--plot", "--html", "--uncertainty"]
-)
+def test_check_judges_every_leg(
+    net: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run("check", net, "--report", tmp_path / "report", "--workers", 1) == 1
+    said = capsys.readouterr()
+    assert "its launch, its recovery and what waves do to it are not judged" in said.err
+    for leg in ("own: main", "own: second", "own: pennant", "own: stem"):
+        assert leg in " ".join(said.out.split())
+    report = json.loads((tmp_path / "report" / "report.json").read_text())
+    (stands,) = report["situations"].values()
+    assert {each["environment"] for each in stands if each["anchor_vertical"]} == {"own: stem"}
+    (items,) = report["inventory"].values()
+    assert [each["label"] for each in items if each["kind"] == "anchor"] == ["anchor-wheels-4"]
+    page = (tmp_path / "report" / "report.html").read_text()
+    assert "The launch and the recovery of a net of legs are not judged." in page
+
+
+def test_check_refuses_to_count_samples_of_a_net(
+    net: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run("check", net, "--uncertainty") == 2
+    assert "--uncertainty is for single lines" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("option", ["--explain", "--netcdf", "--uncertainty"])
 def test_options_for_single_lines_are_refused(
     option: str, net: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    endings = {"--plot": "a.png", "--html": "a.html"}
-    value = [tmp_path / endings[option]] if option in endings else []
+    value = [tmp_path / "a.nc"] if option == "--netcdf" else []
     assert run("run", net, option, *value) == 2
     assert f"{option} is for single lines" in capsys.readouterr().err
     assert not list(tmp_path.glob("a.*"))
+
+
+def test_a_net_is_drawn_from_the_side_and_above(net: Path) -> None:
+    result = load_net(net).solve()
+    side, above = elevation_of(result), plan_of(result)
+    kinds = Counter(line.kind for line in side.lines)
+    assert kinds == {LineKind.STILL: 4, LineKind.LINE: 4}
+    assert [line.label for line in side.lines if line.label] == [
+        "in still water", "in the current"
+    ]  # fmt: skip
+    (node,) = result.nodes
+    drawn = [line for line in side.lines if line.kind is LineKind.LINE]
+    for line in drawn:  # every leg has an end at the node
+        gaps = [np.hypot(line.x[end] - node.x, line.y[end] - node.depth) for end in (0, -1)]
+        assert min(gaps) == pytest.approx(0.0, abs=1e-6)
+    # the current goes east, and so does the plane; nothing leaves it
+    assert side.across.endswith("towards 090°")
+    assert max(np.abs(line.y).max() for line in above.lines) < 1e-9
+    roles = Counter(mark.role for mark in side.marks)
+    assert roles == {"float": 5, "instrument": 3, "release": 1, "anchor": 1}
+    assert side.seabed == 500.0
+
+
+def test_a_net_has_its_page_and_its_schematics(
+    net: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    page = tmp_path / "net.html"
+    assert run("run", net, "--schematic", "--html", page) == 0
+    said, html = capsys.readouterr().out, page.read_text()
+    assert html.count("<svg") == 5  # of four legs, and the picture of all
+    for leg in ("main: free end to node A", "stem: node A to anchor"):
+        assert f"Schematic of leg {leg}" in html
+    # only the leg that is anchored stands on the seabed
+    assert said.count("▒ seabed") == 1
+    assert said.count("~ sea surface") == 4
 
 
 def test_an_anchor_that_is_lifted_is_no_result(

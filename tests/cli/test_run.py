@@ -244,3 +244,17 @@ def test_units_of_a_file_that_are_none(calm, write_mooring, folder):
     assert done.code == 2
     assert "`force: kg` must be one of N, kN, kgf, lbf" in done.err
     assert "unknown key `weight`" in done.err
+
+
+def test_files_that_ask_for_different_units_are_shown_in_si_and_it_is_said(calm, write_mooring):
+    for name, unit in (("a.yaml", "kgf"), ("b.yaml", "lbf")):
+        path = write_mooring(name)
+        with open(path, "a") as file:
+            file.write(f"units: {{force: {unit}}}\n")
+    done = calm("run", "a.yaml", "b.yaml")
+    assert done.code == 0
+    assert "the files ask for different units; SI is shown: choose with --units" in done.err
+    assert "kgf" not in done.out
+    alone = calm("run", "a.yaml")
+    assert "kgf" in alone.out
+    assert alone.err == ""

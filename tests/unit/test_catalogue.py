@@ -89,7 +89,7 @@ def test_everything_can_be_computed(components: dict[str, Component]) -> None:
     for id, found in components.items():
         assert isfinite(found.net_buoyancy), id
         if not isinstance(found, Anchor):
-            normal, tangential, _ = drag_of(found, getattr(found, "length", 0.0))
+            normal, tangential, _ = drag_of(found)
             assert isfinite(tangential) and isfinite(normal) and normal > 0.0, id
 
 
@@ -116,7 +116,7 @@ def test_the_generic_steel_sphere(catalogue: Catalogue) -> None:
 
 @pytest.mark.parametrize("id", ["rcm4", "rcm5"])
 def test_aanderaa_drag_is_measured_in_kgf(components: dict[str, Component], id: str) -> None:
-    normal, tangential, directional = drag_of(components[id], 0.55)
+    normal, tangential, directional = drag_of(components[id])
     # The drags are printed to 0.01 kgf, some 0.01 of the 2.694 kgf (26.42 N) they come to.
     assert normal == pytest.approx(26.4, abs=0.05)
     assert tangential == normal and not directional

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from calm.drawing.graph.scale import Scale, Tick
 from calm.drawing.picture import within_xml
-from calm.drawing.schematic.pen import INK, Pen, text_width
+from calm.drawing.schematic.pen import INK, Pen, picture, text_width
 from calm.physics.line import Floats
 
 
@@ -38,7 +38,6 @@ class Stroke(NamedTuple):
         return written
 
 
-_FONTS = "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif"
 _FRAME = Stroke(INK, 0.7)
 _GRID = Stroke("#e3e6ea", 0.6)
 _TICK = 3.0  # points
@@ -49,22 +48,7 @@ class Graph:
     """An empty white graph of a width and height [pt]."""
 
     def __init__(self, width: float, height: float, title: str, size: float) -> None:
-        element = ElementTree.Element(
-            "svg",
-            {
-                "xmlns": "http://www.w3.org/2000/svg",
-                "width": f"{width:.2f}pt",
-                "height": f"{height:.2f}pt",
-                "viewBox": f"0 0 {width:.2f} {height:.2f}",
-                "role": "img",
-                "font-family": _FONTS,
-                "fill": "none",
-                "stroke-linejoin": "round",
-            },
-        )
-        self.pen, self.size = Pen(element), size
-        self.pen.title(title)
-        self.pen.draw("rect", width=width, height=height, fill="white")
+        self.pen, self.size = picture(width, height, title), size
 
     def svg(self) -> str:
         """The graph as text that can stand inside a page."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from rich.cells import cell_len, set_cell_size
@@ -154,15 +154,17 @@ def _drawn(schematic: Schematic) -> Iterator[tuple[str, TextRow | None]]:
         yield _at_sea(_SEA), schematic.sea
         yield "", None
     for number, part in enumerate(schematic.parts):
+        if part.clamped:
+            row = replace(part.rows[0], label=_INDENT + part.rows[0].label)
+            yield " " * _LINE_AT + _CLAMP + _art(part.sign).strip(), row
+            continue
         afloat = schematic.surface and number == 0
         art = (_at_sea if afloat else _on_line)(_art(part.sign))
         yield art, part.rows[0]
         for row in part.rows[1:]:
             yield "", row
-        for clamp in part.clamps:
-            row = TextRow(_INDENT + clamp.row.label, clamp.row.name, clamp.row.cells)
-            yield " " * _LINE_AT + _CLAMP + _art(clamp.sign).strip(), row
-        if part.sign.symbol in LINES and not part.clamps:
+        following = schematic.parts[number + 1 : number + 2]
+        if part.sign.symbol in LINES and not any(each.clamped for each in following):
             yield art, None
     if schematic.seabed is not None:
         if schematic.towed_by is not None:

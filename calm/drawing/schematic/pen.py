@@ -11,6 +11,10 @@ INK, SOFT, FAINT = "#1b2733", "#5a6672", "#c3ccd4"
 """Colours of what is to be read first, next, and last."""
 
 
+FONTS = "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif"
+"""Of every text: the first of them that there is."""
+
+
 class Pen:
     """Draws into an element of a picture.
 
@@ -108,6 +112,40 @@ class Pen:
 
 def _text(value: float | str) -> str:
     return value if isinstance(value, str) else f"{round(value, 2) + 0.0:g}"
+
+
+def picture(width: float, height: float, title: str, size: tuple[str, str] | None = None) -> Pen:
+    """A pen for an empty white picture, its origin the upper left corner.
+
+    Parameters
+    ----------
+    width, height : in units of the picture; points where no size is given
+    title : what it shows
+    size : width and height in print
+    """
+    printed = size or (f"{width:g}pt", f"{height:g}pt")
+    element = ElementTree.Element(
+        "svg",
+        {
+            "xmlns": "http://www.w3.org/2000/svg",
+            "width": printed[0],
+            "height": printed[1],
+            "viewBox": f"0 0 {width:g} {height:g}",
+            "role": "img",
+            "font-family": FONTS,
+            "stroke-linejoin": "round",
+        },
+    )
+    pen = Pen(element)
+    pen.title(title)
+    pen.draw("rect", width=width, height=height, fill="white")
+    return pen
+
+
+def svg_text(picture: Pen) -> str:
+    """The picture as text, an element a line."""
+    ElementTree.indent(picture.element)
+    return ElementTree.tostring(picture.element, encoding="unicode") + "\n"
 
 
 ELLIPSIS = "…"

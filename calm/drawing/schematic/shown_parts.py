@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 
 from calm.drawing.line_picture import alike, together
 from calm.drawing.picture import printable
-from calm.drawing.schematic.sign import BALLS, Sign, Symbol, sign_of
+from calm.drawing.schematic.sign import BALLS, LINES, Sign, Symbol, sign_of
 from calm.files import Place, Rigid
+from calm.files.mooring_file import STAND_IN
 from calm.quantities import QUANTITIES, say
 
 if TYPE_CHECKING:
@@ -34,41 +35,34 @@ class TextRow:
 
     label: str
     name: str
-    cells: tuple[str, ...]
+    cells: tuple[str, ...] = ()
     strong: bool = False
 
 
 @dataclass(frozen=True)
-class Clamped:
-    """An instrument clamped on a part."""
-
-    sign: Sign
-    row: TextRow
-
-
-@dataclass(frozen=True)
 class ShownPart:
-    """What is drawn as one: a piece, a run of balls or of connectors, or two releases in a row.
+    """What is drawn as one: a piece or several that are alike, a junction, a clamped instrument.
 
     Attributes
     ----------
-    sign : Sign
-        What is drawn.
-    labels : tuple of str
-        Of its pieces.
-    rows : tuple of Row
-        One; of two releases, one each.
-    clamps : tuple of Clamped
-        Down the piece.
-    length : float
-        Cut length of a piece [m], NaN where unknown.
+    sign : what is drawn
+    rows : of text beside it; two of a pair of releases, else one
+    labels : of what it stands for
+    cable : the symbol of the cable that it is, or is clamped on; None of what is rigid
+    length : of a cable [m], NaN where unknown
+    floats : the symbol of the floats that are clamped on it
+    clamped : whether it is clamped on the part above it
+    junction : whether a page may end above it without parting what belongs together
     """
 
     sign: Sign
-    labels: tuple[str, ...]
     rows: tuple[TextRow, ...]
-    clamps: tuple[Clamped, ...]
-    length: float
+    labels: tuple[str, ...] = ()
+    cable: Symbol | None = None
+    length: float = math.nan
+    floats: Sign | None = None
+    clamped: bool = False
+    junction: bool = False
 
 
 @dataclass(frozen=True)
@@ -81,14 +75,15 @@ class Schematic:
         Its name; water and place, or speed; how to read the figures.
     columns : tuple of str
         Those quantities of `HEADINGS` that are known.
-    parts : tuple of Part
+    parts : tuple of ShownPart
+        Clamped instruments after the piece they are on.
     surface : bool
         Whether the first part floats at the surface.
-    towed_by : Row or None
+    towed_by : TextRow or None
         The text at the ship or the helicopter.
-    sea : Row or None
+    sea : TextRow or None
         The text at the sea surface; None in air.
-    seabed : Row or None
+    seabed : TextRow or None
         The text at the seabed; None where its depth is unknown.
     """
 
@@ -116,19 +111,19 @@ def schematic_of(file: MooringFile, result: Result | TowResult | None = None) ->
     levels = levels_of(file, result)
     bottom = file.environment.depth
     cells = _Cells(bottom)
-    pieces = list(zip(file.pieces, levels.lengths, levels.depths, strict=True))
-    parts = [_part(cells, levels, *piece) for piece in pieces]
+    stands = file.pieces[-1].use != STAND_IN
+    pieces = file.pieces if stands else file.pieces[:-1]
     sea = TextRow("sea surface", "", cells.at(0.0))
     return Schematic(
         title=one_line(file.name),
         subtitle=_subtitle(file),
         note=levels.note,
         columns=cells.columns,
-        parts=tuple(_joined(parts, file.pieces)),
+        parts=tuple(_parts(pieces, cells, levels)),
         surface=levels.surface,
         towed_by=_towed_by(file, cells),
         sea=sea if file.environment.fluid == "water" else None,
-        seabed=None if bottom is None else TextRow("seabed", "", cells.at(bottom)),
+        seabed=None if bottom is None or not stands else TextRow("seabed", "", cells.at(bottom)),
     )
 
 
@@ -159,60 +154,64 @@ class _Cells:
         return tuple(QUANTITIES[name].format(figures[name]) for name in self.columns)
 
 
-def _part(cells: _Cells, levels: Levels, piece: Piece, length: float, depth: float) -> ShownPart:
-    sign = sign_of(piece.use, piece.label, piece.component)
-    if levels.surface and piece.index == 0 and sign.symbol is not Symbol.SPHERE:
-        sign = replace(sign, symbol=Symbol.BUOY)
-    clamps = tuple(
-        Clamped(
-            sign_of(clamp.use, clamp.label, clamp.component),
-            _row(clamp, cells.clamped(clamp.at, levels.clamps[clamp.place])),
-        )
-        for clamp in sorted(piece.clamps, key=lambda clamp: clamp.at)
-    )
-    row = _row(piece, cells.of(length, depth))
-    return ShownPart(sign, (row.label,), (row,), clamps, length)
+def _parts(pieces: Sequence[Piece], cells: _Cells, levels: Levels) -> Iterator[ShownPart]:
+    """Yield the parts from the top; pieces that are drawn as one make one."""
+    run: list[Piece] = []
+    for piece in pieces:
+        if run and not _goes_with(run, piece, levels):
+            yield from _part(run, cells, levels)
+            run = []
+        run.append(piece)
+    yield from _part(run, cells, levels)
+
+
+def _goes_with(run: list[Piece], piece: Piece, levels: Levels) -> bool:
+    above, sign = run[-1], _sign(piece, levels)
+    if piece.clamps or above.clamps or sign != _sign(above, levels):
+        return False
+    if sign.symbol is Symbol.RELEASE:
+        return len(run) == 1
+    same = above.use == piece.use and above.component == piece.component
+    return sign.symbol in _JOINED and same and alike(run[0].label, piece.label)
+
+
+def _sign(of: Piece | Clamp, levels: Levels) -> Sign:
+    sign = sign_of(of.use, of.label, of.component)
+    return afloat(sign) if levels.surface and of is levels.first else sign
+
+
+def afloat(sign: Sign) -> Sign:
+    """Return the sign of what floats at the surface."""
+    return sign if sign.symbol is Symbol.SPHERE else replace(sign, symbol=Symbol.BUOY)
+
+
+def _part(run: list[Piece], cells: _Cells, levels: Levels) -> Iterator[ShownPart]:
+    """Yield what is drawn of pieces that are alike, and what is clamped on a single one."""
+    first, sign = run[0], _sign(run[0], levels)
+    cable = sign.symbol if sign.symbol in LINES else None
+    start = first.index - levels.first.index
+    length = levels.lengths[start]
+    rows = [
+        _row(each, cells.of(levels.lengths[at], levels.depths[at]))
+        for at, each in enumerate(run, start)
+    ]
+    labels = tuple(row.label for row in rows)
+    if sign.symbol is Symbol.RELEASE and len(run) == 2:
+        sign = replace(sign, symbol=Symbol.RELEASE_PAIR)
+    elif len(run) > 1:
+        sign = replace(sign, count=len(run) * sign.count)
+        lengths, *others = rows[0].cells
+        figures = f"{len(run)} × {lengths}", *others
+        rows = [replace(rows[0], label=together([*labels]), cells=figures)]
+    yield ShownPart(sign, tuple(rows), labels, cable, length)
+    for clamp in sorted(first.clamps, key=lambda clamp: clamp.at):
+        row = _row(clamp, cells.clamped(clamp.at, levels.clamps[clamp.place]))
+        yield ShownPart(_sign(clamp, levels), (row,), (row.label,), cable, clamped=True)
 
 
 def _row(of: Piece | Clamp, cells: tuple[str, ...]) -> TextRow:
     name = one_line(of.component.name or of.use)
     return TextRow(one_line(of.label), name, cells, strong=of.component.role == "instrument")
-
-
-def _joined(parts: list[ShownPart], pieces: Sequence[Piece]) -> Iterator[ShownPart]:
-    """The parts, those that are drawn as one made one."""
-    run: list[ShownPart] = []
-    for part, piece in zip(parts, pieces, strict=True):
-        if run and not _goes_with(run, part, pieces[piece.index - 1], piece):
-            yield _as_one(run)
-            run = []
-        run.append(part)
-    yield _as_one(run)
-
-
-def _goes_with(run: list[ShownPart], part: ShownPart, above: Piece, piece: Piece) -> bool:
-    if part.clamps or run[-1].clamps or part.sign != run[-1].sign:
-        return False
-    if part.sign.symbol is Symbol.RELEASE:
-        return len(run) == 1
-    same = above.use == piece.use and above.component == piece.component
-    return part.sign.symbol in _JOINED and same and alike(run[-1].labels[0], part.labels[0])
-
-
-def _as_one(run: list[ShownPart]) -> ShownPart:
-    first = run[0]
-    if len(run) == 1:
-        return first
-    labels = tuple(label for part in run for label in part.labels)
-    if first.sign.symbol is Symbol.RELEASE:
-        pair = replace(first.sign, symbol=Symbol.RELEASE_PAIR)
-        return replace(first, sign=pair, labels=labels, rows=tuple(part.rows[0] for part in run))
-    length, *others = first.rows[0].cells
-    row = replace(
-        first.rows[0], label=together(list(labels)), cells=(f"{len(run)} × {length}", *others)
-    )
-    sign = replace(first.sign, count=len(run) * first.sign.count)
-    return replace(first, sign=sign, labels=labels, rows=(row,))
 
 
 def _subtitle(file: MooringFile) -> str:
@@ -252,8 +251,10 @@ class Levels:
         Cut length of each piece, and depth of its upper end [m].
     clamps : mapping
         Depth of each clamped instrument [m].
+    first : Piece
+        At the top of the line.
     surface : bool
-        Whether the first piece floats at the surface.
+        Whether that floats at the surface.
     note : str
         What the depths are.
     """
@@ -261,6 +262,7 @@ class Levels:
     lengths: tuple[float, ...]
     depths: tuple[float, ...]
     clamps: Mapping[Place, float]
+    first: Piece
     surface: bool
     note: str
 
@@ -275,6 +277,7 @@ def levels_of(file: MooringFile, result: Result | TowResult | None) -> Levels:
             tuple(float(length) for length in result.components.cut_length),
             tuple(float(depth) for depth in result.components.depth_top),
             {clamp.place: clamp.depth for clamp in result.clamps},
+            file.pieces[0],
             result.type == "surface",
             _SOLVED,
         )
@@ -289,7 +292,7 @@ def levels_of(file: MooringFile, result: Result | TowResult | None) -> Levels:
         for clamp in piece.clamps
     }
     note = _UNKNOWN if math.isnan(depths[0]) else _UPRIGHT
-    return Levels(lengths, depths, clamps, surface, note)
+    return Levels(lengths, depths, clamps, file.pieces[0], surface, note)
 
 
 def _cut_lengths(file: MooringFile) -> tuple[float, ...]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from calm.drawing.schematic.pen import FAINT, INK, Pen
+from calm.drawing.schematic.pen import INK, Pen
 from calm.drawing.schematic.sign import BALLS, Sign, Symbol
 
 # Fills differ in lightness too, so that they can be told apart without colour.
@@ -227,10 +227,11 @@ _FIGURES = {
 }
 
 
+SEABED_ROOM = 22.0
+"""Height of the seabed."""
 _WATER, _SURFACE, _SAND, _HULL = "#eff6fb", "#2f7fb5", "#e3d6b8", "#5b6b7a"
 _ROPE = "#f3e7c4"
 _STRAND = 4.6
-_SEABED = 22.0
 _LINK = 7.0
 _WAVE = 9.0
 
@@ -279,7 +280,7 @@ def draw_surface(pen: Pen, width: float, y: float) -> None:
 
 def draw_seabed(pen: Pen, width: float, y: float) -> None:
     """The seabed, hatched."""
-    pen.box(width / 2, y + _SEABED / 2, width, _SEABED, fill=_SAND, stroke="none")
+    pen.box(width / 2, y + SEABED_ROOM / 2, width, SEABED_ROOM, fill=_SAND, stroke="none")
     for number in range(int(width / 10)):
         x = 10.0 * number + 9.0
         pen.line(x, y, x - 7.0, y + 8.0, stroke_width=0.7)
@@ -307,12 +308,7 @@ def draw_helicopter(pen: Pen) -> None:
     pen.line(0.0, -9.0, 0.0, 0.0)
 
 
-def draw_leader(pen: Pen, start: float, end: float, y: float) -> None:
-    """A thin line from a symbol to its text."""
-    pen.line(start, y, end, y, stroke=FAINT, stroke_width=0.8)
-
-
 def draw_clamp(pen: Pen, reach: float) -> None:
-    """Do what holds an instrument beside the line, which is at the origin."""
+    """What holds an instrument beside the line, which is at the origin."""
     for y in (-3.5, 3.5):
         pen.line(0.0, y, reach, y, stroke=INK, stroke_width=1.6)

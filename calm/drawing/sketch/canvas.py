@@ -96,8 +96,10 @@ class Canvas:
         return text
 
 
-AXIS = "white"
-"""The style of scales."""
+AXIS, SEABED = "white", "yellow"
+"""The styles of scales, and of the seabed."""
+_HEADED = 9
+"""Rows from which on a picture is headed by what it says in words."""
 
 COLUMNS_PER_TICK = 8
 """Of a scale along the last row."""
@@ -240,3 +242,44 @@ def _end(labels: list[tuple[int, str]]) -> int:
 def levels(low: float, high: float, rows: int) -> list[float]:
     """Ticks for a scale of a number of rows."""
     return round_numbers(low, high, max(rows // _ROWS_PER_TICK, 1))
+
+
+def header_rows(height: int) -> int:
+    """Rows above a picture for what it says in words; none where it is low."""
+    return int(height >= _HEADED)
+
+
+def scaled_frame(
+    size: tuple[int, int],
+    caption: str,
+    across: tuple[float, float],
+    down: tuple[float, float],
+    *units: str,
+    seabed: float | None = None,
+    beside: int = 0,
+    per_tick: int = COLUMNS_PER_TICK,
+) -> PlotFrame:
+    """A frame with its scales on a canvas of its own, to draw in.
+
+    Parameters
+    ----------
+    size : columns and rows of all
+    caption : above it, where there is room
+    across, down : what is at the left and the right edge, at the upper and the lower one
+    units : of the scale across; the last one is made room for
+    seabed : depth of the seabed below the frame, where there is one [m]
+    beside : columns to the right for what else is written
+    per_tick : columns of the scale across for each number
+    """
+    canvas, head = Canvas(*size), header_rows(size[1])
+    if head:
+        canvas.text(0, 0, caption, AXIS)
+    values = levels(min(down), max(down), size[1] - head - 2)
+    foot = "m" if seabed is None else number(seabed)
+    gutter = max(map(len, [foot, *map(number, values)]))
+    frame = PlotFrame.within(canvas, head, gutter, across, down, beside)
+    sign, style, first = ("─", AXIS, -1) if seabed is None else ("▒", SEABED, 0)
+    canvas.text(frame.column + first, size[1] - 2, sign * (frame.columns - first), style)
+    frame.scale_down(values, gutter, foot)
+    frame.scale_across(round_numbers(*across, max(frame.columns // per_tick, 2)), *units)
+    return frame

@@ -12,7 +12,6 @@ from rich.cells import cell_len
 from rich.text import Text
 
 from calm.case import Result
-from calm.drawing.graph.scale import number, round_numbers
 from calm.drawing.line_picture import (
     LineKind,
     LinePicture,
@@ -23,7 +22,7 @@ from calm.drawing.line_picture import (
     spread,
 )
 from calm.drawing.schematic.pen import ELLIPSIS
-from calm.drawing.sketch.canvas import AXIS, COLUMNS_PER_TICK, Canvas, PlotFrame, levels
+from calm.drawing.sketch.canvas import AXIS, PlotFrame, header_rows, scaled_frame
 from calm.quantities import bearing_of, bearing_text, say
 
 if TYPE_CHECKING:
@@ -61,31 +60,21 @@ def elevation(
     if isinstance(result, Result):  # its seabed is the foot of the picture
         side = replace(side, top=0.0, bottom=result.mooring.water.depth)
     seabed = side.seabed if side.seabed is not None and side.seabed <= side.bottom else None
-    canvas = Canvas(width, height)
     head = header_rows(height)
-    if head:
-        canvas.text(0, 0, _caption(result), AXIS)
     rows = height - head - 2
-    values = levels(side.top, side.bottom, rows)
-    foot = "m" if seabed is None else number(seabed)
-    gutter = max(map(len, [foot, *map(number, values)]))
     named = _names(side, rows, int(_SHARE_OF_NAMES * width)) if width >= _NAMED_FROM else []
     room = max((cell_len(text) for _, text in named), default=-1) + 1
-    low, high = _span(side)
-    frame = PlotFrame.within(canvas, head, gutter, (low, high), (side.top, side.bottom), room)
-    if side.surface and side.top <= 0.0 <= side.bottom:
-        frame.line([(low, 0.0), (high, 0.0)], SURFACE)
-    _draw_foot(frame, seabed is not None)
-    frame.scale_down(values, gutter, foot)
+    across, down = _span(side), (side.top, side.bottom)
     moored = isinstance(result, Result)
     unit = f"m to {bearing_text(bearing_of(*plane_of(result)))}" if moored else "m behind"
-    frame.scale_across(
-        round_numbers(low, high, max(frame.columns // COLUMNS_PER_TICK, 2)), unit, "m"
-    )
+    caption, size = _caption(result), (width, height)
+    frame = scaled_frame(size, caption, across, down, unit, "m", seabed=seabed, beside=room)
+    if side.surface and side.top <= 0.0 <= side.bottom:
+        frame.line([(across[0], 0.0), (across[1], 0.0)], SURFACE)
     draw_picture(frame, side)
     for row, text in named:
-        canvas.text(width - room + 1, head + row, text, AXIS)
-    return canvas.rows()
+        frame.canvas.text(width - room + 1, head + row, text, AXIS)
+    return frame.canvas.rows()
 
 
 def draw_picture(frame: PlotFrame, picture: LinePicture) -> None:
@@ -124,14 +113,6 @@ def _span(side: LinePicture) -> tuple[float, float]:
     return low - margin, high + margin
 
 
-def _draw_foot(frame: PlotFrame, seabed: bool) -> None:
-    """Draw what is below the frame: the seabed, or an edge."""
-    sign, style = ("▒", SEABED) if seabed else ("─", AXIS)
-    first = frame.column - (not seabed)
-    width = frame.column + frame.columns - first
-    frame.canvas.text(first, frame.row + frame.rows, sign * width, style)
-
-
 def _names(side: LinePicture, rows: int, room: int) -> list[tuple[int, str]]:
     """Names of parts, each on a row of its own, near its part."""
     height = (side.bottom - side.top) / rows
@@ -161,7 +142,7 @@ LINE = "bold cyan"
 STILL = "white"
 OTHER = "magenta"
 """Of a line in another environment, or of another design, drawn beside."""
-SURFACE, SEABED = "blue", "yellow"
+SURFACE = "blue"
 LIMIT = "red"
 SHIP = ("▲", "bold")
 
@@ -179,10 +160,3 @@ STROKES = {
     LineKind.BESIDE: (OTHER, 3, 2),
 }
 """Style, dots drawn and dots left out of each kind of line."""
-
-_HEADED = 9
-
-
-def header_rows(height: int) -> int:
-    """Rows above a picture for what it says in words; none where it is low."""
-    return int(height >= _HEADED)

@@ -12,26 +12,17 @@ from rich.text import Text
 from calm.case import Result
 from calm.checks.posture import reaches_the_surface
 from calm.checks.strength import allowable_load
-from calm.drawing.graph.scale import number, round_numbers
+from calm.drawing.graph.scale import number
 from calm.drawing.line_picture import along_the_line, current_between, plan_of
 from calm.drawing.sketch.canvas import (
     ACROSS,
     AXIS,
-    COLUMNS_PER_TICK,
     DOWN,
-    Canvas,
-    PlotFrame,
-    levels,
-)
-from calm.drawing.sketch.elevation import (
-    LIMIT,
-    LINE,
-    SEABED,
-    STILL,
-    SURFACE,
-    draw_picture,
     header_rows,
+    levels,
+    scaled_frame,
 )
+from calm.drawing.sketch.elevation import LIMIT, LINE, STILL, SURFACE, draw_picture
 from calm.quantities import bearing_of, bearing_text, say
 
 if TYPE_CHECKING:
@@ -56,8 +47,6 @@ def tension(result: Result | TowResult, width: int, height: int) -> list[Text]:
     Dotted in red is what the weakest piece there may bear: its working load, or its breaking load
     over the safety factor that the design asks for. What bears far more than is drawn has no mark.
     """
-    canvas = Canvas(width, height)
-    head = header_rows(height)
     pulls, way = result.shape.tension, along_the_line(result.shape)
     if not isinstance(result, Result):  # listed from the ship down, its shape from the body up
         pulls, way = pulls[::-1], (way[-1] - way)[::-1]
@@ -65,26 +54,18 @@ def tension(result: Result | TowResult, width: int, height: int) -> list[Text]:
     loads = _allowable(result)
     near = [load for _, _, load in loads if load <= _FARTHEST * greatest]
     scale, unit = (1e-3, "kN") if greatest >= _KILO else (1.0, "N")
-    right = 1.08 * max([greatest, *near]) * scale
-    if head:
-        limits = "; dotted: limits" if near else ""
-        canvas.text(0, 0, f"at most {say('tension', greatest)}{limits}", AXIS)
-    rows = height - head - 2
+    across = 0.0, 1.08 * max([greatest, *near]) * scale
     length = max(float(way[-1]), 1e-9)
-    values = levels(0.0, length, rows)
-    gutter = max(map(len, map(number, values)))
-    frame = PlotFrame.within(canvas, head, gutter, (0.0, right), (0.0, length))
-    canvas.text(gutter, height - 2, "─" * (width - gutter), AXIS)
-    frame.scale_down(values, gutter)
-    frame.scale_across(round_numbers(0.0, right, max(frame.columns // COLUMNS_PER_TICK, 2)), unit)
+    caption = f"at most {say('tension', greatest)}{'; dotted: limits' if near else ''}"
+    frame = scaled_frame((width, height), caption, across, (0.0, length), unit)
     before = 0.0
-    for row, load in _weakest(loads, length, rows * DOWN):
+    for row, load in _weakest(loads, length, frame.rows * DOWN):
         if load <= _FARTHEST * greatest and (row % 2 == 0 or load != before):
             x, _ = frame.point(load * scale, 0.0)
-            canvas.dot(x, frame.row * DOWN + row, LIMIT)
+            frame.canvas.dot(x, frame.row * DOWN + row, LIMIT)
         before = load
     frame.line(zip((pulls * scale).tolist(), way.tolist(), strict=True), LINE)
-    return canvas.rows()
+    return frame.canvas.rows()
 
 
 def _allowable(result: Result | TowResult) -> list[tuple[float, float, float]]:
@@ -123,32 +104,24 @@ def current_profile(water: Water, width: int, height: int) -> list[Text]:
 
     Depths are on the rows where `elevation` of the same height has them.
     """
-    canvas = Canvas(width, height)
-    head = header_rows(height)
-    rows = height - head - 2
-    values, foot = levels(0.0, water.depth, rows), number(water.depth)
-    gutter = max(map(len, [foot, *map(number, values)]))
     beside = 6 if width >= _DEGREES_FROM else 2
     depths, u, v = current_between(water, 0.0, water.depth)
     speeds = np.hypot(u, v)
     fastest = float(speeds.max())
-    right = 1.08 * fastest if fastest > 0.0 else 1.0
-    frame = PlotFrame.within(canvas, head, gutter, (0.0, right), (0.0, water.depth), beside)
-    if head:
-        canvas.text(0, 0, "current, m/s" if fastest > 0.0 else "still water", AXIS)
-    frame.line([(0.0, 0.0), (right, 0.0)], SURFACE)
-    canvas.text(frame.column, height - 2, "▒" * frame.columns, SEABED)
-    frame.scale_down(values, gutter, foot)
-    most = max(frame.columns // _COLUMNS_PER_TICK, 2)
-    frame.scale_across(round_numbers(0.0, right, most), "" if head else "m/s")
+    across = 0.0, 1.08 * fastest if fastest > 0.0 else 1.0
+    frame = scaled_frame(
+        (width, height), "current, m/s" if fastest > 0.0 else "still water", across,
+        (0.0, water.depth), "" if header_rows(height) else "m/s", seabed=water.depth,
+        beside=beside, per_tick=_COLUMNS_PER_TICK,
+    )  # fmt: skip
+    frame.line([(0.0, 0.0), (across[1], 0.0)], SURFACE)
     frame.line(zip(speeds.tolist(), depths.tolist(), strict=True), _STYLE)
-    if beside:
-        for value in values:
-            _, row = frame.cell(0.0, value)
-            east, north = (float(np.interp(value, depths, each)) for each in (u, v))
-            if hypot(east, north) > 0.0:
-                canvas.text(width - beside + 1, row, _direction(east, north, beside), _STYLE)
-    return canvas.rows()
+    for value in levels(0.0, water.depth, frame.rows):
+        _, row = frame.cell(0.0, value)
+        east, north = (float(np.interp(value, depths, each)) for each in (u, v))
+        if hypot(east, north) > 0.0:
+            frame.canvas.text(width - beside + 1, row, _direction(east, north, beside), _STYLE)
+    return frame.canvas.rows()
 
 
 def _direction(u: float, v: float, room: int) -> str:
@@ -168,34 +141,24 @@ def plan(
 
     Shapes `beside` it, of other environments or designs, are dashed.
     """
-    canvas = Canvas(width, height)
-    head, shape = header_rows(height), result.shape
-    if head:
-        canvas.text(0, 0, _said(result), AXIS)
-    rows = height - head - 2
+    shape = result.shape
+    rows = height - header_rows(height) - 2
     west, east = _range([0.0, *_ends(each.x for each in (shape, *beside))])
     south, north = _range([0.0, *_ends(each.y for each in (shape, *beside))])
     gutter = 1
     for _ in range(2):  # the numbers beside it take room, which changes them
         columns = width - gutter - 1
         metres = max((east - west) / (columns * ACROSS), (north - south) / (rows * DOWN))
-        left, right = _centred(west, east, metres * columns * ACROSS)
         bottom, top = _centred(south, north, metres * rows * DOWN)
-        values = levels(bottom, top, rows)
-        gutter = max(map(len, map(number, values)))
-    columns = width - gutter - 1
-    left, right = _centred(west, east, metres * columns * ACROSS)
-    frame = PlotFrame.within(canvas, head, gutter, (left, right), (top, bottom))
-    canvas.text(gutter, height - 2, "─" * (width - gutter), AXIS)
-    frame.scale_down(values, gutter)
-    frame.scale_across(
-        round_numbers(left, right, max(frame.columns // COLUMNS_PER_TICK, 2)), "m east", "m E"
-    )
+        gutter = max(map(len, map(number, levels(bottom, top, rows))))
+    left, right = _centred(west, east, metres * (width - gutter - 1) * ACROSS)
+    across, down = (left, right), (top, bottom)
+    frame = scaled_frame((width, height), _said(result), across, down, "m east", "m E")
     frame.line([(left, 0.0), (right, 0.0)], STILL, dash=1, gap=3)
     frame.line([(0.0, bottom), (0.0, top)], STILL, dash=1, gap=3)
     draw_picture(frame, plan_of(result, beside))
-    canvas.text(gutter + 1, head, "N", AXIS)
-    return canvas.rows()
+    frame.canvas.text(frame.column, frame.row, "N", AXIS)
+    return frame.canvas.rows()
 
 
 def _said(result: Result | TowResult) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from difflib import SequenceMatcher
 from typing import Any, NamedTuple
@@ -9,10 +10,20 @@ from unicodedata import category
 
 from calm.errors import CalmError
 from calm.files.composition import Node
-from calm.files.editing.items import Items, items_of, new_slot, snippet_of, worded_slot
-from calm.files.editing.splicing import Patch, add_entry, remove_entry, set_scalar, set_value
-from calm.files.editing.writing import Value, Worded, WritingStyle
+from calm.files.editing.items import Items, Slot, items_of, snippet_of, worded_slot
+from calm.files.editing.splicing import Patch, set_scalar, set_value
+from calm.files.editing.writing import (
+    SECTIONS,
+    Value,
+    Worded,
+    WritingStyle,
+    inline,
+    place_of,
+    written,
+)
 from calm.files.yaml_document import Location
+
+_BLANK_LINE = re.compile(r"^[ \t]*\r?\n(?=(?:[ ]*#.*\n|[ \t]*\r?\n)*\S)", re.MULTILINE)
 
 NAMED = ("components", "environments")
 """Sections that hold definitions by name."""
@@ -34,7 +45,7 @@ class Page:
         """Return what stands at a location, None where nothing does."""
         node: Node | None = self.root
         for step in location:
-            node = _child_of(node, step) if node else None
+            node = node.entry(step)[1] if node else None
         return node
 
     def put(self, location: Location, value: Value) -> list[Patch]:
@@ -42,13 +53,13 @@ class Page:
         outer: Node | None = None
         node = self.root
         for depth, step in enumerate(location):
-            child = _child_of(node, step)
+            _, child = node.entry(step)
             if child is None:
                 new = nested(location[depth:], value)
                 if node.kind == "mapping" and (node.keys or outer is None or not depth):
                     name, new_value = next(iter(new.items()))
                     opened = _opens(location[:depth], node)
-                    return add_entry(self.text, node, name, new_value, self.style, open=opened)
+                    return [self._add_entry(node, name, new_value, open=opened)]
                 if outer is None or node.kind == "sequence":
                     raise EditError(
                         f"`{'.'.join(map(str, location))}` cannot be set: there is a list above it"
@@ -73,13 +84,31 @@ class Page:
         """Take a key out."""
         outer = self.node(location[:-1])
         assert outer is not None
-        at = [key.data for key in outer.keys].index(location[-1])
-        return remove_entry(self.text, outer, at)
+        if len(outer.keys) == 1:
+            return [Patch(outer.start, outer.end, "{}")]
+        items = self._items(outer)
+        items.remove([key.data for key in outer.keys].index(location[-1]))
+        return [items.patch()]
+
+    def _add_entry(self, mapping: Node, name: str, value: Value, *, open: bool) -> Patch:
+        """Write a key that a mapping does not have, and its value, where the format has it."""
+        inside = f"{written(name, flow=True)}: {inline(value)}"
+        if not mapping.keys:
+            return Patch(mapping.start, mapping.end, f"{{{inside}}}")
+        items, at = self._items(mapping), place_of(name, [key.data for key in mapping.keys])
+        lines = self.style.entry(name, value, items.column, open=open)
+        if at and mapping.column == 1 and name in SECTIONS and _BLANK_LINE.search(self.text):
+            lines = self.style.line_break + lines
+        items.insert(at, items.slot(lines, inside, self.style))
+        return items.patch()
 
     def items(self, location: Location) -> Items:
         """Return the items of the list at a location, which has some."""
         node = self.node(location)
         assert node is not None
+        return self._items(node)
+
+    def _items(self, node: Node) -> Items:
         items = items_of(self.text, node)
         if items is None:
             message = f"line {node.line}: this list shares its lines with other things"
@@ -123,10 +152,14 @@ class Page:
             slots = [worded_slot(one, items, self.style) for one in values.wordings]
         else:
             block = all(child.style == "block" for child in node.children)
-            slots = [new_slot(value, items, self.style, block=block) for value in values]
+            slots = [self._slot(value, items, block=block) for value in values]
         for slot in reversed(slots):
             items.insert(index, slot)
         return [items.patch()]
+
+    def _slot(self, value: Value, items: Items, *, block: bool = False) -> Slot:
+        lines = self.style.item(value, items.column, block=block)
+        return items.slot(lines, inline(value), self.style)
 
     def rows(self, location: Location, rows: Sequence[Sequence[str | None]]) -> list[Patch]:
         """Put in the rows of a table; those that are there already stay as they stand."""
@@ -141,7 +174,7 @@ class Page:
             if tag == "equal":
                 continue
             for row in reversed(rows[new_start:new_end]):
-                items.insert(end, new_slot(row, items, self.style, block=False))
+                items.insert(end, self._slot(row, items))
             for index in reversed(range(start, end)):
                 items.remove(index)
         return [items.patch()]
@@ -152,16 +185,6 @@ def _opens(location: Location, node: Node) -> bool:
     if location not in [(name,) for name in NAMED]:
         return False
     return not node.children or any(child.style == "block" for child in node.children)
-
-
-def _child_of(node: Node, step: str | int) -> Node | None:
-    """Return what stands below a node under a key or number."""
-    if node.kind == "mapping":
-        named = zip(node.keys, node.children, strict=True)
-        return next((child for key, child in named if key.data == step), None)
-    if node.kind == "sequence" and isinstance(step, int) and 0 <= step < len(node.children):
-        return node.children[step]
-    return None
 
 
 def nested(location: Location, value: Value) -> dict[str, Value]:
@@ -181,14 +204,18 @@ def data_of(value: Value) -> Any:
     return [data_of(one) for one in value]
 
 
-def with_value(data: Any, location: Location, value: Value) -> Any:
+GONE = object()
+"""In place of a value: a key is taken out."""
+
+
+def with_value(data: Any, location: Location, value: Any) -> Any:
     """Return the data with another value at a location; mappings that lead to it are made.
 
     Parameters
     ----------
     data : as `Node.data`
     location : keys and indices that lead to the value
-    value : Value
+    value : Value, or `GONE`
     """
     if not location:
         return data_of(value)
@@ -196,17 +223,9 @@ def with_value(data: Any, location: Location, value: Value) -> Any:
     if isinstance(data, list) and isinstance(step, int):
         return [with_value(one, below, value) if i == step else one for i, one in enumerate(data)]
     base = data if isinstance(data, dict) else {}
+    if value is GONE and not below:
+        return {key: one for key, one in base.items() if key != step}
     return {**base, step: with_value(base.get(step), below, value)}
-
-
-def without(data: Any, location: Location) -> Any:
-    """Return the data without a key."""
-    step, below = location[0], location[1:]
-    if isinstance(data, list):
-        return [without(one, below) if i == step else one for i, one in enumerate(data)]
-    if below:
-        return {**data, step: without(data[step], below)}
-    return {key: one for key, one in data.items() if key != step}
 
 
 def has_control(data: Any) -> bool:

@@ -13,6 +13,7 @@ from calm.errors import InputError, Problem
 from calm.files import yaml_document
 from calm.files.composition import Node, compose
 from calm.files.editing.changes import (
+    GONE,
     NAMED,
     EditError,
     Page,
@@ -20,7 +21,6 @@ from calm.files.editing.changes import (
     data_of,
     has_control,
     with_value,
-    without,
 )
 from calm.files.editing.items import LineItem, item_of, items_of, read_snippet
 from calm.files.editing.splicing import Patch, patched
@@ -147,11 +147,11 @@ class Draft:
         if not data and rows != LINE:
             return self.put_at(rows, None)
         if not data:
-            return self._changed(page.put(rows, []), with_value(self._data, rows, data))
+            return self._changed(page.put(rows, []), rows, data)
         items = page.items(rows)
         for index in reversed(known):
             items.remove(index)
-        return self._changed([items.patch()], with_value(self._data, rows, data))
+        return self._changed([items.patch()], rows, data)
 
     def move(self, index: int, to: int, rows: Location = LINE) -> Draft:
         """Take an item to another place.
@@ -169,7 +169,7 @@ class Draft:
         items.insert(to, items.remove(index))
         data = list(self.value(rows))
         data.insert(to, data.pop(index))
-        return self._changed([items.patch()], with_value(self._data, rows, data))
+        return self._changed([items.patch()], rows, data)
 
     def copy(self, indices: Iterable[int], rows: Location = LINE) -> tuple[str, ...]:
         """Return the text of items by themselves, with their comments."""
@@ -215,7 +215,7 @@ class Draft:
         page = self._page
         if value is not None:
             patches = page.put(location, value)
-            return self._changed(patches, with_value(self._data, location, value))
+            return self._changed(patches, location, value)
         if page.node(location) is None:
             return self
         while len(location) > 1 and isinstance(location[-2], str):
@@ -224,7 +224,7 @@ class Draft:
             if outer is None or len(outer.keys) > 1 or is_kept:
                 break
             location = location[:-1]
-        return self._changed(page.remove(location), without(self._data, location))
+        return self._changed(page.remove(location), location, GONE)
 
     def put_table(
         self, location: Location, columns: Sequence[str], rows: Sequence[Sequence[str | None]]
@@ -250,7 +250,7 @@ class Draft:
                 draft = draft.put_at((*place, i, j), text)
             return draft
         patches = draft._page.rows(place, rows)
-        return draft._changed(patches, with_value(draft._data, place, rows))
+        return draft._changed(patches, place, rows)
 
     def put_component(self, id: str, values: Mapping[str, Value]) -> Draft:
         """Define a component used only here, in place of one of that id."""
@@ -280,10 +280,11 @@ class Draft:
             raise EditError(f"there is no place {index} in a list of {len(data)}")
         patches = page.add(location, index, values)
         data[index:index] = data_of(values)
-        return self._changed(patches, with_value(self._data, location, data))
+        return self._changed(patches, location, data)
 
-    def _changed(self, patches: Iterable[Patch], data: Any) -> Draft:
-        """Return the draft with its text patched, which then says `data` and nothing else."""
+    def _changed(self, patches: Iterable[Patch], location: Location, value: Any) -> Draft:
+        """Return the draft with its text patched, which then differs at a location alone."""
+        data = with_value(self._data, location, value)
         text = patched(self._padded, patches)
         line_break = self._page.style.line_break
         if self._padded != self.text:

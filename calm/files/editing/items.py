@@ -1,6 +1,8 @@
-"""Lists in a text: taken apart into the texts of their items, rearranged, and put together.
+"""Lists and mappings in a text: taken apart into the texts of their items, rearranged, and put
+together.
 
-An item can be copied as a text by itself, and pasted from one.
+The items of a mapping are its entries. An item of a list can be copied as a text by itself, and
+pasted from one.
 """
 
 from __future__ import annotations
@@ -19,7 +21,7 @@ from calm.files.editing.splicing import (
     own_end,
     own_start,
 )
-from calm.files.editing.writing import Value, Wording, WritingStyle, inline
+from calm.files.editing.writing import Wording, WritingStyle, inline
 
 _COMMA = re.compile(r"(?:\s|#[^\n]*\n)*,")
 _BEHIND = re.compile(r"[ \t]*(?:#[^\n]*)?(?:\r?\n|\Z)")
@@ -71,23 +73,6 @@ def item_of(node: Node, text: str, *, lines: str = "") -> LineItem:
     )
 
 
-def new_slot(value: Value, items: Items, style: WritingStyle, *, block: bool) -> Slot:
-    """Write a new item for a list, after its form.
-
-    Parameters
-    ----------
-    value : of the item
-    items : those of the list
-    style : of the file
-    block : write a key a line where that can be
-    """
-    if items.form == "block":
-        return Slot(style.item(value, items.column, block=block))
-    if items.form == "rows":
-        return Slot(" " * (items.column - 1) + inline(value), style.line_break)
-    return Slot(inline(value))
-
-
 def worded_slot(wording: Wording, items: Items, style: WritingStyle) -> Slot:
     """Place an item as it is worded; within brackets in one line it loses its comments.
 
@@ -97,13 +82,11 @@ def worded_slot(wording: Wording, items: Items, style: WritingStyle) -> Slot:
     items : those of the list
     style : of the file
     """
-    if items.form == "block":
-        return Slot(style.moved(wording.lines, items.column))
-    if items.form == "rows":
-        above = style.moved(wording.above, items.column)
-        behind = wording.behind.replace("\n", style.line_break)
-        return Slot(above + " " * (items.column - 1) + wording.inline, behind)
-    return Slot(wording.inline)
+    above = style.moved(wording.above, items.column)
+    slot = items.slot(style.moved(wording.lines, items.column), wording.inline, style)
+    if items.form != "rows":
+        return slot
+    return Slot(above + slot.value, wording.behind.replace("\n", style.line_break))
 
 
 def snippet_of(slot: Slot, node: Node, items: Items) -> str:
@@ -159,17 +142,18 @@ class Slot(NamedTuple):
 
 @dataclass
 class Items:
-    """Hold the items of a list, of which there is at least one, in a text.
+    """Hold the items of a list, or the entries of a mapping, of which there is at least one.
 
     Attributes
     ----------
     start, end : what is rearranged of the text
-    form : a block list; one in brackets whose items have lines of their own; any other in brackets
+    form : in lines; in brackets, items on lines of their own; any other in brackets
     column : of the dashes, or of the items where there are none, counted from 1
     slots : list of Slot
     gaps : what stands before each item and is not its own (between two `inline` ones their comma)
     rest : what follows the last
     ends_in_comma : there is a comma after the last of the `rows`
+    on_a_dash : the first entry of the mapping stands on the line of a dash, or of a `?`
     """
 
     start: int
@@ -180,6 +164,15 @@ class Items:
     gaps: list[str]
     rest: str = ""
     ends_in_comma: bool = False
+    on_a_dash: bool = False
+
+    def slot(self, lines: str, inside: str, style: WritingStyle) -> Slot:
+        """Write a new item after the form of the others: by its lines, or as within brackets."""
+        if self.form == "block":
+            return Slot(lines)
+        if self.form == "rows":
+            return Slot(" " * (self.column - 1) + inside, style.line_break)
+        return Slot(inside)
 
     def remove(self, index: int) -> Slot:
         """Take an item out. What is not its own stays in its place."""
@@ -206,12 +199,19 @@ class Items:
 
     def patch(self) -> Patch:
         """Return what comes in place of the list."""
-        pieces: list[str] = []
-        last = len(self.slots) - 1
+        text, last = "", len(self.slots) - 1
         for i, (gap, slot) in enumerate(zip(self.gaps, self.slots, strict=True)):
-            comma = self.form == "rows" and (i < last or self.ends_in_comma)
-            pieces += gap, slot.value, "," if comma else "", slot.behind
-        return Patch(self.start, self.end, "".join(pieces) + self.rest)
+            text = _behind(text, gap) + slot.value
+            if self.form == "rows" and (i < last or self.ends_in_comma):
+                text = _behind(text, ",")
+            text += slot.behind
+        text = _behind(text, self.rest)
+        return Patch(self.start, self.end, text.lstrip(" ") if self.on_a_dash else text)
+
+
+def _behind(text: str, gap: str) -> str:
+    """Add what parts items; right behind a colon a comma would be part of the key."""
+    return f"{text} {gap}" if gap.startswith(",") and text.endswith(":") else text + gap
 
 
 def _comment(gap: str) -> str:
@@ -220,62 +220,73 @@ def _comment(gap: str) -> str:
 
 
 def items_of(text: str, node: Node) -> Items | None:
-    """Take apart a list in a text that ends in a line break; None where its items are entangled."""
+    """Take apart a collection in a text that ends in a line break; None where it is entangled."""
+    spans = [(child.start, child.end) for child in node.children]
+    if node.kind == "mapping":
+        pairs = zip(node.keys, node.children, strict=True)
+        spans = [(key.start, max(key.end, child.end)) for key, child in pairs]
     if node.style == "block":
-        return _block(text, node)
-    return _rows(text, node) or _inline(text, node)
+        return _block(text, node, spans)
+    return _rows(text, node, spans) or _inline(text, node, spans)
 
 
-def _block(text: str, node: Node) -> Items | None:
+def _block(text: str, node: Node, spans: list[tuple[int, int]]) -> Items | None:
     dash = re.compile(rf"^[ ]{{{node.column - 1}}}-(?=\s)", re.MULTILINE)
-    if not first_on_line(text, node.start):
+    is_list, first = node.kind == "sequence", node.start
+    on_a_dash = not first_on_line(text, first)
+    if on_a_dash and is_list:
         return None
-    starts, ends = [own_start(text, node.start, 0)], []
-    for child, following in zip(node.children, (*node.children[1:], None), strict=True):
-        ends.append(own_end(text, child.end, node.column))
+    if not on_a_dash:
+        first = own_start(text, first, 0, None if is_list else node.column)
+        if not is_list and node.column == 1 and first == line_start(text, 0):
+            first = line_start(text, node.start)  # those that a file begins with are about the file
+    starts, ends = [first], []
+    for (_, end), following in zip(spans, (*spans[1:], None), strict=True):
+        ends.append(own_end(text, end, node.column))
         if following is not None:
-            found = dash.search(text, line_end(text, child.end))
-            if found is None:
+            found = dash.search(text, line_end(text, end)) if is_list else None
+            if found is None and is_list:
                 return None
-            starts.append(own_start(text, found.start(), ends[-1], node.column))
+            head = found.start() if found else following[0]
+            starts.append(own_start(text, head, ends[-1], node.column))
     slots = [Slot(text[start:end]) for start, end in zip(starts, ends, strict=True)]
+    if on_a_dash:
+        slots[0] = Slot(" " * (node.column - 1) + slots[0].value)
     gaps = ["", *(text[end:start] for end, start in zip(ends, starts[1:], strict=False))]
-    return Items(starts[0], ends[-1], "block", node.column, slots, gaps)
+    return Items(starts[0], ends[-1], "block", node.column, slots, gaps, on_a_dash=on_a_dash)
 
 
-def _rows(text: str, node: Node) -> Items | None:
+def _rows(text: str, node: Node, spans: list[tuple[int, int]]) -> Items | None:
     """Take apart a list in brackets, items on lines of their own; None where it is no such list."""
     starts: list[int] = []
     ends: list[int] = []
     slots: list[Slot] = []
     gaps: list[str] = []
     comma = False
-    for child in node.children:
-        if not first_on_line(text, child.start):
+    for first, last in spans:
+        if not first_on_line(text, first):
             return None
         least = ends[-1] if ends else line_end(text, node.start)
-        if line_start(text, child.start) < least:
+        if line_start(text, first) < least:
             return None
-        start = own_start(text, child.start, least)
-        comma = text.startswith(",", child.end)
-        behind = _BEHIND.match(text, child.end + comma)
+        start = own_start(text, first, least)
+        comma = text.startswith(",", last)
+        behind = _BEHIND.match(text, last + comma)
         if behind is None:
             return None
         gaps.append(text[ends[-1] : start] if ends else "")
-        slots.append(Slot(text[start : child.end], behind.group()))
+        slots.append(Slot(text[start:last], behind.group()))
         starts.append(start)
         ends.append(behind.end())
-    if any(not text.startswith(",", child.end) for child in node.children[:-1]):
+    if any(not text.startswith(",", last) for _, last in spans[:-1]):
         return None
     if not first_on_line(text, node.end - 1) or (not comma and _COMMA.match(text, ends[-1])):
         return None
-    column = node.children[0].column
+    column = spans[0][0] - line_start(text, spans[0][0]) + 1
     return Items(starts[0], ends[-1], "rows", column, slots, gaps, "", comma)
 
 
-def _inline(text: str, node: Node) -> Items:
-    children = node.children
-    slots = [Slot(text[child.start : child.end]) for child in children]
-    gaps = ["", *(text[one.end : other.start] for one, other in pairwise(children))]
-    start, end = children[0].start, children[-1].end
-    return Items(start, end, "inline", children[0].column, slots, gaps)
+def _inline(text: str, node: Node, spans: list[tuple[int, int]]) -> Items:
+    slots = [Slot(text[start:end]) for start, end in spans]
+    gaps = ["", *(text[one[1] : other[0]] for one, other in pairwise(spans))]
+    return Items(spans[0][0], spans[-1][1], "inline", node.column, slots, gaps)

@@ -21,14 +21,14 @@ def piece(index, component, length=None, clamps=()):
 
 def test_sphere_and_cylinder():
     sphere = Sphere(kind="sphere", diameter="1 m", buoyancy="4000 N")
-    assert drag_of(sphere, 1.0) == pytest.approx((HALF_DENSITY * 0.5 * pi / 4,) * 2 + (False,))
+    assert drag_of(sphere) == pytest.approx((HALF_DENSITY * 0.5 * pi / 4,) * 2 + (False,))
     cylinder = Cylinder(kind="cylinder", diameter="0.2 m", length="2 m", buoyancy="-200 N")
-    kn, kt, directional = drag_of(cylinder, 2.0)
+    kn, kt, directional = drag_of(cylinder)
     assert directional
     assert kn == pytest.approx(HALF_DENSITY * 1.2 * 0.68 * 0.4)
     assert kt == pytest.approx(HALF_DENSITY * 0.82 * pi * 0.01)
     fixed = cylinder.model_copy(update={"inclination": "insensitive"})
-    assert drag_of(fixed, 2.0)[2] is False
+    assert drag_of(fixed)[2] is False
 
 
 def body(**figures):
@@ -56,7 +56,7 @@ def body(**figures):
     ],
 )
 def test_the_ways_a_body_gives_its_drag(figures, drag):
-    assert drag_of(body(**figures), 1.0) == pytest.approx(drag)
+    assert drag_of(body(**figures)) == pytest.approx(drag)
 
 
 def test_shapes_of_a_body_add_up_and_lean_with_it():
@@ -67,7 +67,7 @@ def test_shapes_of_a_body_add_up_and_lean_with_it():
         ]
     )
     sphere = HALF_DENSITY * 0.5 * pi * 0.01
-    kn, kt, directional = drag_of(made, 1.0)
+    kn, kt, directional = drag_of(made)
     assert directional
     assert kn == pytest.approx(HALF_DENSITY * 0.1 + sphere)
     assert kt == pytest.approx(HALF_DENSITY * 0.8 * pi * 0.0025 + sphere)
@@ -78,7 +78,7 @@ def test_shapes_of_a_body_add_up_and_lean_with_it():
 )
 def test_cable_by_finish(finish, ct):
     cable = Cable(kind="cable", diameter="10 mm", weight="1 N/m", finish=finish)
-    kn, kt, directional = drag_of(cable, 100.0)
+    kn, kt, directional = drag_of(cable)
     assert directional
     assert kn == pytest.approx(HALF_DENSITY * 1.3 * 0.01)
     assert kt == pytest.approx(HALF_DENSITY * ct * pi * 0.01)
@@ -86,7 +86,7 @@ def test_cable_by_finish(finish, ct):
 
 def test_chain():
     chain = Chain(kind="chain", diameter="13 mm")
-    kn, kt, _ = drag_of(chain, 10.0)
+    kn, kt, _ = drag_of(chain)
     assert kn == pytest.approx(HALF_DENSITY * 2.75 * 0.013)
     assert kt == pytest.approx(HALF_DENSITY * 0.46 * pi * 0.013)
     assert chain.net_buoyancy == pytest.approx(-19.9e3 * 0.013**2 * 9.80665 * (1 - 1025 / 7850))

@@ -6,8 +6,7 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from calm.case.explain import Causes
-from calm.case.result_tables import Clamps, Components
+from calm.case.result_tables import Clamps
 from calm.files import Clamp, Place
 
 
@@ -39,9 +38,19 @@ def test_a_table_that_was_read_by_rows_is_pickled_as_its_columns(clamps):
     assert pickle.loads(before).label == ["A", "B"]
 
 
-def test_records_have_the_columns_of_their_table():
-    for table in (Components, Clamps, Causes):
-        assert [field.name for field in fields(table.record)] == [f.name for f in fields(table)]
+def test_a_table_has_the_columns_of_its_rows_and_no_others(clamps):
+    assert Clamps.names() == [field.name for field in fields(Clamps.record)]
+    assert [*vars(clamps)] == Clamps.names()
+    with pytest.raises(TypeError, match="the columns of Clamps are part, index, use, label, depth"):
+        clamps.with_columns(drag=np.zeros(2))
+
+
+def test_tables_are_joined_and_get_rows(clamps):
+    both = Clamps.joined([clamps, clamps.with_columns(label=["C", "D"])])
+    assert both.label == ["A", "B", "C", "D"] and both.depth[2] == 1.5
+    longer = clamps.with_row(clamps[0])
+    assert longer.label == ["A", "B", "A"] and longer.depth.tolist()[2] == 1.5
+    assert longer.index.dtype == clamps.index.dtype
 
 
 def test_a_reader_gets_no_model_of_the_file(clamps):

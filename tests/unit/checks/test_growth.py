@@ -72,17 +72,16 @@ WIDE_MOUNTED = (4.0 * 100.0 / 512.5 / pi) ** 0.5  # of the area that a coefficie
     ids=["sphere", "cylinder", "body", "kn and kt", "chain", "cable"],
 )
 def test_drags_grow_as_their_areas_and_weight_as_the_volume(component, across, along, volume):
-    length = getattr(component, "length", 0.0)
-    kn, kt, directional = drag_of(component, length)
+    kn, kt, directional = drag_of(component)
     light = grown_component(component, growth(), G)
-    assert drag_of(light, length) == (
+    assert drag_of(light) == (
         pytest.approx(across * kn),
         pytest.approx(along * kt),
         directional,
     )
     assert net_buoyancy(light, G) == net_buoyancy(component, G)  # as heavy as water
     heavy = grown_component(component, growth(1325), G)
-    assert drag_of(heavy, length) == drag_of(light, length)
+    assert drag_of(heavy) == drag_of(light)
     weight = (1325.0 - 1025.0) * G * volume
     assert net_buoyancy(heavy, G) == pytest.approx(net_buoyancy(component, G) - weight)
     if component.mass is not None:
@@ -102,4 +101,4 @@ def test_a_body_without_drag_has_no_size_to_grow():
         {"kind": "body", "length": "0 m", "buoyancy": "5 N", "kn": "0 N/(m/s)^2",
          "inclination": "insensitive"}
     )  # fmt: skip
-    assert drag_of(grown_component(bare, growth(1325), G), 0.0)[0] == 0.0
+    assert drag_of(grown_component(bare, growth(1325), G))[0] == 0.0

@@ -1,5 +1,6 @@
 """Definitions as written, read when they are required."""
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -44,12 +45,21 @@ def test_what_is_shipped() -> None:
     whole, level = read_level(paths, []), UnreadLevel(paths)
     assert list(level) == list(whole)
     for id, entry in whole.items():
-        found, document = level[id], entry.section.document
+        found = level[id]
         assert (found.family, found.section.data) == (entry.family, entry.section.data)
-        for location in document.values:
-            if location[:1] == (id,):
-                expected = entry.section.problem(location[1:], "")
-                assert found.section.problem(location[1:], "") == expected
+        for location in locations(entry.section.data):
+            for key in (False, True):
+                expected = entry.section.problem(location, "", key=key)
+                assert found.section.problem(location, "", key=key) == expected
+
+
+def locations(data: object) -> Iterator[tuple[str | int, ...]]:
+    """Everything in the data of a file."""
+    yield ()
+    pairs = data.items() if isinstance(data, dict) else enumerate(data or ())
+    if not isinstance(data, str):
+        for step, one in pairs:
+            yield from ((step, *below) for below in locations(one))
 
 
 def test_an_entry_is_read_once(tmp_path: Path) -> None:

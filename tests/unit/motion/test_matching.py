@@ -1,12 +1,14 @@
 """Which part a sensor is: by its label, or by its place in the order down the line."""
 
+from dataclasses import replace
 from itertools import combinations
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from calm.errors import UsageError
-from calm.motion.matching import CERTAIN, matched_by_label, matched_by_place
+from calm.motion.matching import CERTAIN, matched_by_label, matched_by_place, named_by_serial
 from calm.motion.sensors import Sensor
 
 NONE = np.array([], "M8[ns]"), np.array([])
@@ -68,3 +70,20 @@ def test_labels_are_matched_and_others_listed_with_the_nearest():
 def test_labels_that_match_nothing_or_two_things_are_refused(label, labels, said):
     with pytest.raises(UsageError, match=said):
         matched_by_label(sensors(np.nan, label=label), labels)
+
+
+def test_a_sensor_without_a_label_is_that_of_its_serial_number():
+    def part(label, serial):
+        return SimpleNamespace(label=label, serial=serial, at=1.0)
+
+    top = SimpleNamespace(label="rope", serial=None, clamps=[part("deep", "0371"), part("a", "9")])
+    end = SimpleNamespace(label="b", serial="9", clamps=[])
+    mooring = SimpleNamespace(file=SimpleNamespace(pieces=[top, end]))
+    given = [
+        replace(one, serial=serial, label=label)
+        for one, serial, label in zip(
+            sensors(1.0, 2.0, 3.0, 4.0), ("371", "9", "", "5"), ("", "", "", "top"), strict=True
+        )
+    ]
+    # 9 is the number of two parts: the sensor is called by it, and listed as no part
+    assert [one.label for one in named_by_serial(given, mooring)] == ["deep", "9", "", "top"]

@@ -216,3 +216,17 @@ def test_labels_name_one_sensor_each(tmp_path, monkeypatch, given, said):
     # without labels several are matched by their places
     nameless = read_sensors(["one.nc", "one.nc"], frozenset({1, 2}), 48.0, 300.0)
     assert [one.label for one in nameless] == ["", ""]
+
+
+def test_a_comment_that_merging_left_condemns_no_instrument_whose_flags_are_good(tmp_path):
+    stack = two(c=("instrument", [1.0, 2.0]))
+    stack["p"].attrs["comment"] = "interpolated from neighbouring instrument(s)"
+    invented = stack.isel(instrument=[0, 1, 1]).assign_coords(instrument=["a", "b", "c"])
+    invented["p_qc"][:, 2] = 8
+    invented.to_netcdf(tmp_path / "stack.nc", engine="h5netcdf")
+    a, b = read_sensors([str(tmp_path / "stack.nc")], frozenset({1, 2}), -32.0, 300.0)
+    assert (a.label, b.label, a.dropped, b.dropped) == ("a", "b", 1, 2)
+    assert "by its flags" in a.note and a.note == b.note
+    invented.drop_vars("p_qc").to_netcdf(tmp_path / "bare.nc", engine="h5netcdf")
+    with pytest.raises(InputError, match="is not a measurement"):
+        read_sensors([str(tmp_path / "bare.nc")], frozenset({1, 2}), -32.0, 300.0)

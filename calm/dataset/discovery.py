@@ -1,0 +1,177 @@
+"""What archives want a file to say of itself: ACDD 1.3 and OceanSITES 1.4 beside CF.
+
+Names and tables are those of the OceanSITES Data Format Reference Manual 1.4 (2020) and of the
+Attribute Convention for Data Discovery 1.3.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calm.dataset.netcdf import Attributes, ResultLayout, Variable
+
+CONVENTIONS = "CF-1.11, ACDD-1.3, OceanSITES-1.4"
+FLAGS: Mapping[int, str] = {
+    0: "unknown", 1: "good_data", 2: "probably_good_data",
+    3: "potentially_correctable_bad_data", 4: "bad_data", 7: "nominal_value",
+    8: "interpolated_value", 9: "missing_value",
+}  # fmt: skip
+"""Table 2 of OceanSITES."""
+OF_FLAGS: Attributes = {
+    "flag_values": list(FLAGS),
+    "flag_meanings": " ".join(FLAGS.values()),
+    "conventions": "OceanSITES QC Flags",
+}
+
+_KEPT = ("institution", "project", "license", "acknowledgement", "references", "keywords", "title",
+         "water_depth")  # fmt: skip
+_KEPT_BEGIN = ("creator_", "platform_", "site_", "principal_investigator", "publisher_", "wmo_")
+
+
+def written() -> str:
+    """Return the time of writing, as ISO 8601: that of SOURCE_DATE_EPOCH where it is given."""
+    epoch = os.environ.get("SOURCE_DATE_EPOCH", "")
+    when = datetime.fromtimestamp(int(epoch), UTC) if epoch.isdigit() else datetime.now(UTC)
+    return f"{when:%Y-%m-%dT%H:%M:%SZ}"
+
+
+def hashed(path: Path) -> str:
+    """Return the name of a file with its SHA-256; of a folder the name."""
+    if not path.is_file():
+        return path.name
+    with path.open("rb") as file:
+        return f"{path.name} sha256:{hashlib.file_digest(file, 'sha256').hexdigest()}"
+
+
+def kept(attributes: Mapping[str, Any]) -> Attributes:
+    """Return what a file says of its platform and of people, which holds of what is made of it."""
+    return {
+        name: value
+        for name, value in attributes.items()
+        if name in _KEPT or name.startswith(_KEPT_BEGIN)
+    }
+
+
+def coverage(
+    time: NDArray[np.datetime64], depth: Sequence[float], place: Sequence[float]
+) -> Attributes:
+    """Return what a file says of when, how deep and where.
+
+    Parameters
+    ----------
+    time : of it, rising
+    depth : least and greatest [m]; empty where not known
+    place : latitude and longitude [degrees]; empty where not known
+    """
+    first, last = (np.datetime_as_string(one, "s") + "Z" for one in (time[0], time[-1]))
+    said: Attributes = {
+        "Conventions": CONVENTIONS,
+        "naming_authority": "OceanSITES",
+        "data_type": "OceanSITES time-series data",
+        "format_version": "1.4",
+        "data_mode": "D",
+        "cdm_data_type": "Station",
+        "standard_name_vocabulary": "CF Standard Name Table v92",
+        "keywords_vocabulary": "GCMD Science Keywords",
+        "time_coverage_start": first,
+        "time_coverage_end": last,
+        "time_coverage_duration": _duration(time[-1] - time[0]),
+    }
+    if len(time) > 1:
+        said["time_coverage_resolution"] = _duration(np.median(np.diff(time)))
+    if len(depth):
+        said |= {
+            "geospatial_vertical_min": float(min(depth)),
+            "geospatial_vertical_max": float(max(depth)),
+            "geospatial_vertical_positive": "down",
+            "geospatial_vertical_units": "m",
+        }
+    for axis, unit, value in zip(
+        ("lat", "lon"), ("degrees_north", "degrees_east"), place, strict=False
+    ):
+        said |= {
+            f"geospatial_{axis}_min": float(value),
+            f"geospatial_{axis}_max": float(value),
+            f"geospatial_{axis}_units": unit,
+        }
+    if len(place) == 2:
+        latitude, longitude = place
+        said |= {"geospatial_bounds": f"POINT ({latitude:.6f} {longitude:.6f})",
+                 "geospatial_bounds_crs": "EPSG:4326"}  # fmt: skip
+    return said
+
+
+def _duration(span: np.timedelta64) -> str:
+    seconds = int(span / np.timedelta64(1, "s"))
+    days, rest = divmod(seconds, 86_400)
+    hours, rest = divmod(rest, 3600)
+    minutes, seconds = divmod(rest, 60)
+    clock = "".join(f"{n}{u}" for n, u in ((hours, "H"), (minutes, "M"), (seconds, "S")) if n)
+    return f"P{f'{days}D' if days else ''}{f'T{clock}' if clock else ''}" if seconds or minutes or (
+        hours or days) else "PT0S"  # fmt: skip
+
+
+def with_flags(
+    variables: Iterable[Variable], names: Mapping[str, Sequence[str]]
+) -> tuple[Variable, ...]:
+    """Return variables that name what goes with them, each followed by its flags.
+
+    Parameters
+    ----------
+    names : of the variables that have flags, what else goes with them: deviations
+    """
+    found = []
+    for one in variables:
+        beside = names.get(one.name)
+        if beside is None:
+            found.append(one)
+            continue
+        flags = f"{one.name}_qc"
+        more = {"ancillary_variables": " ".join([*beside, flags]), "cell_methods": "time: point"}
+        standard = str(one.attributes.get("standard_name", ""))
+        about = {"long_name": f"quality flag of {one.attributes['long_name']}", **OF_FLAGS}
+        if standard:
+            about["standard_name"] = f"{standard} status_flag"
+        if "coordinates" in one.attributes:
+            about["coordinates"] = one.attributes["coordinates"]
+        found.append(replace(one, attributes={**one.attributes, **more}))
+        found.append(Variable(flags, one.dimensions, "|i1", about))
+    return tuple(found)
+
+
+def in_capitals(layout: ResultLayout) -> ResultLayout:
+    """Return a layout whose names are in capitals, as archives of OceanSITES have them."""
+    names = {one.name for one in layout.variables} | set(layout.sizes)
+
+    def raised(attributes: Attributes) -> Attributes:
+        told = dict(attributes)
+        for key in ("coordinates", "ancillary_variables", "cell_methods", "bounds"):
+            if key in told:
+                words = str(told[key]).split(" ")
+                told[key] = " ".join(
+                    w.upper() if w in names or w.removesuffix(":") in names else w for w in words
+                )
+        return told
+
+    return ResultLayout(
+        {name.upper(): size for name, size in layout.sizes.items()},
+        tuple(
+            replace(
+                one,
+                name=one.name.upper(),
+                attributes=raised(one.attributes),
+                dimensions=tuple(dim.upper() for dim in one.dimensions),
+            )
+            for one in layout.variables
+        ),
+        layout.attributes,
+    )

@@ -1,0 +1,145 @@
+"""What the mooring diagram shows of a deck from the top down."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from itertools import groupby
+from math import nan
+
+from calm.deck import Deck
+from calm.deck.deck_items import DeckItem, DeckRow, rows_on_paper
+from calm.drawing.schematic.shown_parts import (
+    ShownPart,
+    TextRow,
+    afloat,
+    one_line,
+    place_text,
+)
+from calm.drawing.schematic.sign import LINES, Sign, Symbol, sign_of
+from calm.files.file_differences import own_labels
+from calm.quantities import QUANTITIES
+
+
+def parts_of(deck: Deck) -> tuple[ShownPart, ...]:
+    """The parts down the line; connectors that follow one another make one junction.
+
+    Beside each stand cut length or place on the wire, stretched length, depth, height, tension and
+    net buoyancy.
+    """
+    own = _own_labels(deck.parts)
+    weights = {one.label: one.wet_weight for one in deck.assessment.inventory}
+    codes = {one.serial: " · ".join(one.code_lines) for one in deck.file.releases}
+    found: list[ShownPart] = []
+    joints: list[DeckItem] = []
+    cable: Symbol | None = None
+    for row in rows_on_paper(deck.parts):
+        if _is_connector(row.first):
+            joints += (*row.items, *row.joints)
+            continue
+        if joints:
+            found.append(_junction(joints, own, weights))
+        joints = [*row.joints] if len(row.items) == 1 else []
+        if row.first.on is None:
+            sign = _sign(row.first)
+            cable = sign.symbol if sign.symbol in LINES else None
+        found.append(_piece(row, cable, weights, codes))
+    if joints:
+        found.append(_junction(joints, own, weights))
+    if deck.result.type == "surface":
+        found[0] = replace(found[0], sign=afloat(found[0].sign))
+    return tuple(found)
+
+
+def _own_labels(parts: Sequence[DeckItem]) -> dict[int, str]:
+    """Of each part, by its identity: its label where a person gave it, else nothing."""
+    labels = own_labels([one.label for one in parts])
+    return {
+        id(one): "" if label == one.part.use else one.label
+        for one, label in zip(parts, labels, strict=True)
+    }
+
+
+def _is_connector(one: DeckItem) -> bool:
+    clamps = getattr(one.part, "clamps", ())
+    return one.role == "connector" and one.on is None and one.is_rigid and not clamps
+
+
+def _sign(one: DeckItem) -> Sign:
+    return sign_of(one.part.use, one.label, one.part.component)
+
+
+_Weights = Mapping[str, float | None]
+
+
+def _piece(
+    row: DeckRow, cable: Symbol | None, weights: _Weights, codes: Mapping[str | None, str]
+) -> ShownPart:
+    first, label = row.first, one_line(row.label)
+    words = [
+        "" if (name := one_line(row.name)) == label else name,
+        f"on {one_line(first.name)}" if row.floats else "",
+        f"with {one_line(row.joined)}" if row.joined and len(row.items) > 1 else "",
+        "" if first.serial is None else f"no. {one_line(first.serial)}",
+        one_line(codes.get(first.serial, "")) if first.role == "release" else "",
+    ]
+    if first.on is not None:
+        places = dict.fromkeys((row.items[0].at or 0.0, row.items[-1].at or 0.0))
+        lengths = " – ".join(place_text(at) for at in places), ""
+    elif len(row.items) > 1:
+        lengths = "", ""
+    else:
+        lengths = _said("length", first.cut_length), _said("length", first.stretched)
+    row_beside = TextRow(
+        label,
+        " · ".join(filter(None, words)),
+        (*lengths, *_figures([*row.items, *row.floats], weights)),
+        strong=first.role != "line" or bool(row.floats),
+    )
+    return ShownPart(
+        _sign(first),
+        (row_beside,),
+        cable=cable,
+        length=first.cut_length if first.cut_length is not None else nan,
+        floats=_sign(row.floats[0]) if row.floats else None,
+        clamped=first.on is not None,
+    )
+
+
+def _figures(items: Sequence[DeckItem], weights: _Weights) -> tuple[str, ...]:
+    """Depth and height of the first, the greatest tension, and the net buoyancy of all."""
+    tension = max((one.tension for one in items if one.tension is not None), default=None)
+    own = [weights.get(one.label) for one in items]
+    known = [one for one in own if one is not None]
+    buoyancy = -sum(known) if len(known) == len(own) else None
+    return (
+        _said("depth", items[0].depth),
+        _said("depth", items[0].height),
+        "" if tension is None else _said("tension", tension),
+        "?" if buoyancy is None else _said("wet_weight", buoyancy),
+    )
+
+
+def _said(name: str, value: float | None) -> str:
+    return QUANTITIES[name].format(value)
+
+
+def _junction(parts: Sequence[DeckItem], own: Mapping[int, str], weights: _Weights) -> ShownPart:
+    words = [_connector(one, own[id(one)]) for one in parts]
+    joined = " – ".join(
+        word if count == 1 else f"{count} × {word}"
+        for word, count in ((word, len([*same])) for word, same in groupby(words))
+    )
+    signs = [_sign(one) for one in parts]
+    lengths = (sum(one.cut_length or 0.0 for one in parts),
+               sum(one.stretched or 0.0 for one in parts))  # fmt: skip
+    figures = (*(_said("length", length) for length in lengths), *_figures(parts, weights))
+    sign = next((sign for sign in signs if sign.symbol is Symbol.SWIVEL), signs[0])
+    return ShownPart(sign, (TextRow(joined, "", figures),), junction=True)
+
+
+def _connector(one: DeckItem, own: str) -> str:
+    """A connector as people write it, with its own label and serial number."""
+    hardware = one_line(one.hardware)
+    text = f"{one_line(own)} ({hardware})" if own else hardware
+    return text if one.serial is None else f"{text} no. {one_line(one.serial)}"

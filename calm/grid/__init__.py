@@ -1,0 +1,1 @@
+"""What was measured at moving depths, put onto fixed levels with its uncertainty."""

@@ -1,0 +1,394 @@
+"""A quantity over depth and time as a Gaussian process, with the scales that its record has.
+
+The field is a mean profile and an anomaly, both from the record. The anomaly's standard deviation
+goes with depth; its correlation is that of Matérn of order 3/2 along depth and exponential in time
+(Rasmussen and Williams, Gaussian Processes for Machine Learning, 2006, eq. 4.17 and 4.18; mean and
+variance eq. 2.25 and 2.26). A part of the variance has no correlation: what is smaller than the
+spacing of sensors, and the sensor. Errors of depths times the local gradient are added to what is
+found: they may last for the whole record and be common to the line, so that nothing averages them
+away. Half of their variance also counts as each instrument's own, which weighs those whose depth is
+better known.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calm.errors import UsageError
+from calm.grid.samples import Floats, Samples
+
+NODES = 60
+"""Depths at which mean and standard deviation of the record are kept."""
+LOOKED_AT = 60
+"""Times from which the scales are found."""
+LEFT_OUT_AT = 240
+"""Times at which sensors are left out in turn."""
+BLOCK = 128
+"""Times that are solved together, which bounds the memory."""
+MOST_FOR_PROFILE = 30_000
+"""Samples from which the mean profile is made."""
+OWN = 0.5
+"""Part of the variance of a depth's error that is the instrument's own."""
+KNOWN = 0.5
+"""Of the variance of the record, left at a level: where it is more, the value says little."""
+GOOD_FIT = 1.96
+"""Half the width of an interval of 95 %, in standard deviations."""
+
+INTERPOLATED, DOUBTFUL, MISSING = 8, 3, 9
+"""Flags of the OceanSITES table of what is written."""
+
+
+class Scales(NamedTuple):
+    """What the correlation of the anomaly is: depth [m], time [s], share without correlation."""
+
+    depth: float
+    time: float
+    share: float
+
+
+@dataclass(frozen=True)
+class Profile:
+    """Mean and standard deviation of a record over depth, linear between nodes [m]."""
+
+    node: Floats
+    mean: Floats
+    deviation: Floats
+
+    def mean_at(self, depth: Floats) -> Floats:
+        """Return the mean at some depths; beyond the record that of its end."""
+        return np.interp(depth, self.node, self.mean)
+
+    def deviation_at(self, depth: Floats) -> Floats:
+        """Return the standard deviation at some depths."""
+        return np.interp(depth, self.node, self.deviation)
+
+
+@dataclass(frozen=True)
+class Field:
+    """A quantity of which the scales are known.
+
+    Attributes
+    ----------
+    samples, profile, scales : what it is estimated from
+    noise : standard deviation of a sensor, in the unit of the quantity
+    in_time : whether the neighbours of a time count for it
+    widened : factors on the deviations, by what sensors that are left out in turn show
+    """
+
+    samples: Samples
+    profile: Profile
+    scales: Scales
+    noise: float
+    in_time: bool = True
+    widened: Widening | None = None
+
+
+@dataclass(frozen=True)
+class Widening:
+    """Factors on deviations, 1 at least: between sensors by depth [m], and beyond them."""
+
+    depth: Floats
+    within: Floats
+    beyond: float
+
+    def at(self, level: Floats, between: NDArray[np.bool_]) -> Floats:
+        """Return the factors at levels, which lie between the sensors or beyond them."""
+        inside = np.interp(level, self.depth, self.within)
+        return np.where(between, inside, np.maximum(inside, self.beyond))
+
+
+class Posterior(NamedTuple):
+    """Mean and standard deviation at some depths, and the share of the variance that is left."""
+
+    mean: Floats
+    deviation: Floats
+    left: Floats
+
+
+class Estimate(NamedTuple):
+    """Value, standard deviation and flag of some times at each level: (n, k)."""
+
+    value: Floats
+    deviation: Floats
+    flag: NDArray[np.int8]
+
+
+def field_of(samples: Samples, noise: float, *, in_time: bool = True) -> Field:
+    """Return the field of a record, its scales as likely as can be.
+
+    Parameters
+    ----------
+    samples : from two instruments at least
+    noise : standard deviation of a sensor
+    in_time : whether the neighbours of a time count for it
+
+    Raises
+    ------
+    UsageError
+        Fewer than two instruments have a value.
+    """
+    known = np.isfinite(samples.value)
+    if int(known.any(axis=0).sum()) < 2:
+        raise UsageError("fewer than two instruments of the line have good values")
+    rough = Field(samples, profile_of(samples, noise), Scales(1.0, 1.0, 0.5), noise, in_time)
+    most = np.argsort(-known.sum(axis=1), kind="stable")[: max(len(known) // 2, LOOKED_AT)]
+    times = np.sort(most)[np.linspace(0, len(most) - 1, min(LOOKED_AT, len(most))).astype(int)]
+    found = replace(rough, scales=_likeliest(rough, np.unique(times)))
+    every = max(len(known) // LEFT_OUT_AT, 1)
+    return replace(found, widened=_widening(found, np.arange(0, len(known), every)))
+
+
+def profile_of(samples: Samples, noise: float) -> Profile:
+    """Return mean and standard deviation of a record over depth: local lines, weighted by a normal
+    curve as wide as the sensors are apart.
+    """
+    known = np.isfinite(samples.value)
+    depth, value = samples.depth[known], samples.value[known]
+    every = max(len(depth) // MOST_FOR_PROFILE, 1)
+    depth, value = depth[::every], value[::every]
+    node = np.linspace(depth.min(), depth.max() + 1e-6, NODES)
+    width = max(spacing(samples), (node[-1] - node[0]) / NODES)
+    off = depth[None, :] - node[:, None]
+    far = (off / width) ** 2
+    weight = np.exp(-0.5 * (far - far.min(axis=1, keepdims=True)))
+    mean, _ = _local_line(weight, off, value[None, :], weight > 0.0, width)
+    square = (value - np.interp(depth, node, mean)) ** 2
+    deviation = np.sqrt((weight * square).sum(axis=1) / weight.sum(axis=1))
+    return Profile(node, mean, np.maximum(deviation, noise))
+
+
+def spacing(samples: Samples) -> float:
+    """Return how far apart the instruments are along depth, the median [m]; pairs count as one."""
+    place = np.sort(np.nanmean(samples.depth[:, np.isfinite(samples.value).any(axis=0)], axis=0))
+    apart = np.diff(place)
+    wide = apart[apart > 0.2 * (place[-1] - place[0]) / max(len(apart), 1)]
+    return float(np.median(wide)) if len(wide) else 1.0
+
+
+def _local_line(
+    weight: Floats, off: Floats, value: Floats, known: NDArray[np.bool_], width: float
+) -> tuple[Floats, Floats]:
+    """Return value and slope at 0 of weighted lines over the last axis; flat where depths are too
+    close for one.
+    """
+    weight = weight * known
+    total = np.maximum(weight.sum(axis=-1), 1e-300)
+    centre = (weight * off).sum(axis=-1) / total
+    mean = (weight * value).sum(axis=-1) / total
+    spread = (weight * (off - centre[..., None]) ** 2).sum(axis=-1) / total
+    slope = (weight * (off - centre[..., None]) * value).sum(axis=-1) / total
+    slope = np.where(spread > (0.1 * width) ** 2, slope / np.maximum(spread, 1e-12), 0.0)
+    return mean - slope * centre, slope
+
+
+class _Block(NamedTuple):
+    """Observations of some times, each with those of its neighbours: (n, m)."""
+
+    depth: Floats
+    anomaly: Floats
+    known: NDArray[np.bool_]
+    lag: Floats
+    covariance: Floats
+
+
+def _block(field: Field, times: NDArray[np.int64]) -> _Block:
+    samples, profile, scales = field.samples, field.profile, field.scales
+    count, sensors = samples.value.shape
+    lags = np.array([-1, 0, 1] if field.in_time and count > 1 else [0])
+    index = times[:, None] + lags[None, :]
+    inside = (index >= 0) & (index < count)
+    index = np.clip(index, 0, count - 1)
+    shape = len(times), len(lags) * sensors
+    since = (samples.time - samples.time[0]) / np.timedelta64(1, "s")
+    lag = np.repeat(since[index] - since[times][:, None], sensors, axis=1)
+    value, depth, error = (
+        table[index].reshape(shape) for table in (samples.value, samples.depth, samples.deviation)
+    )
+    known = np.isfinite(value) & np.isfinite(depth) & np.repeat(inside, sensors, axis=1)
+    depth = np.where(known, depth, profile.node[0])
+    whole, place = np.unique(index, return_inverse=True)
+    slope, _ = _slopes(samples, whole, samples.depth[whole])
+    slope = slope[place.reshape(index.shape)].reshape(shape)
+    wrong = np.where(known, np.abs(slope * np.nan_to_num(error)), 0.0)
+    spread = profile.deviation_at(depth)
+    anomaly = np.where(known, value - profile.mean_at(depth), 0.0)
+    both = known[:, :, None] & known[:, None, :]
+    matrix = _correlation(depth, depth, lag, lag, scales) * spread[:, :, None] * spread[:, None, :]
+    matrix *= both
+    own = scales.share * spread**2 + OWN * wrong**2 + field.noise**2
+    diagonal = np.arange(shape[1])
+    matrix[:, diagonal, diagonal] += np.where(known, own, 1.0)
+    return _Block(depth, anomaly, known, lag, matrix)
+
+
+def _slopes(samples: Samples, times: NDArray[np.int64], at: Floats) -> tuple[Floats, Floats]:
+    """Return (n, k) gradients at depths, by lines through the sensors around, and how far the
+    depths of these are off [m].
+
+    Parameters
+    ----------
+    times : (n,) indices
+    at : (n, k) depths; NaN gives 0
+    """
+    depth, value, error = (
+        table[times][:, None, :] for table in (samples.depth, samples.value, samples.deviation)
+    )
+    known = np.isfinite(value) & np.isfinite(depth)
+    off = np.where(known, depth, 0.0) - np.nan_to_num(at)[:, :, None]
+    width = spacing(samples)
+    far = np.where(known, (off / width) ** 2, np.inf)
+    nearest = far.min(axis=-1, keepdims=True)
+    weight = np.exp(-0.5 * (far - np.where(np.isfinite(nearest), nearest, 0.0)))
+    _, slope = _local_line(weight, off, np.where(known, value, 0.0), weight > 0.0, width)
+    wrong = (weight * np.nan_to_num(error)).sum(axis=-1) / np.maximum(weight.sum(axis=-1), 1e-300)
+    return slope, wrong
+
+
+def _correlation(a: Floats, b: Floats, s: Floats, t: Floats, scales: Scales) -> Floats:
+    """Return (n, i, j) covariances at unit variance of depths a (n, i) at times s and b (n, j)."""
+    far = 3.0**0.5 / scales.depth * np.abs(a[:, :, None] - b[:, None, :])
+    apart = np.abs(s[:, :, None] - t[:, None, :]) / scales.time
+    whole: Floats = (1.0 - scales.share) * (1.0 + far) * np.exp(-far - apart)
+    return whole
+
+
+def posterior(field: Field, times: NDArray[np.int64], levels: Floats) -> Posterior:
+    """Return what is found at levels: (n, k) each.
+
+    Parameters
+    ----------
+    times : (n,) indices of the samples' times
+    levels : (k,), or (n, k) where they go with time [m]
+    """
+    block = _block(field, times)
+    level = np.broadcast_to(np.atleast_2d(levels), (len(times), np.atleast_2d(levels).shape[1]))
+    spread = field.profile.deviation_at(level)
+    across = _correlation(level, block.depth, np.zeros_like(level), block.lag, field.scales)
+    across *= spread[:, :, None] * field.profile.deviation_at(block.depth)[:, None, :]
+    across *= block.known[:, None, :]
+    sides = np.concatenate([block.anomaly[:, :, None], across.transpose(0, 2, 1)], axis=2)
+    found = np.asarray(np.linalg.solve(block.covariance, sides), np.float64)
+    mean = field.profile.mean_at(level) + (across @ found[:, :, :1])[..., 0]
+    told = np.einsum("nkm,nmk->nk", across, found[:, :, 1:])
+    rest = np.maximum(spread**2 - told, 0.0)
+    slope, wrong = _slopes(field.samples, times, level)
+    deviation = np.sqrt(np.maximum(rest, field.noise**2) + (slope * wrong) ** 2)
+    return Posterior(mean, deviation, rest / spread**2)
+
+
+def estimate(field: Field, levels: Floats, times: NDArray[np.int64]) -> Estimate:
+    """Return the estimate at fixed levels of some times.
+
+    A value between the sensors of its time is flagged as interpolated; one beyond them, or of which
+    the record says little, as doubtful; where it says nothing at all there is none.
+
+    Parameters
+    ----------
+    levels : (k,) [m]
+    times : (n,) indices of the samples' times
+    """
+    known = np.isfinite(field.samples.value[times])
+    depth = np.where(known, field.samples.depth[times], np.nan)
+    upper, lower = (f.reduce(depth, axis=1)[:, None] for f in (np.fmin, np.fmax))
+    mean, deviation, left = posterior(field, times, levels)
+    between = (levels >= upper) & (levels <= lower)
+    little = (left > KNOWN) & (field.profile.deviation_at(levels) > 3.0 * field.noise)
+    flag = np.where(between & ~little, INTERPOLATED, DOUBTFUL)
+    nothing = little & ~between
+    flag = np.where(nothing, MISSING, flag).astype(np.int8)
+    if field.widened is not None:
+        deviation = deviation * field.widened.at(np.broadcast_to(levels, left.shape), between)
+    value, deviation = (np.where(nothing, np.nan, one) for one in (mean, deviation))
+    return Estimate(value, deviation, flag)
+
+
+def _likeliest(field: Field, times: NDArray[np.int64]) -> Scales:
+    """Return the scales at which the samples of some times are likeliest.
+
+    A weak prior holds what a record does not tell: a quarter of the line, six steps of time, and
+    2 % without correlation, each within a factor of five or so.
+    """
+    from scipy.optimize import minimize
+
+    depth = field.samples.depth[np.isfinite(field.samples.value)]
+    step = np.median(np.diff(field.samples.time)) / np.timedelta64(1, "s")
+    first = np.log([max(np.ptp(depth) / 4.0, 1.0), 6.0 * step, 0.02])
+
+    def scales_of(at: Floats) -> Scales:
+        length, time, share = np.exp(np.clip(at, first - 6.0, first + 6.0))
+        return Scales(float(length), float(time), float(share / (1.0 + share)))
+
+    def unlikely(at: Floats) -> float:
+        block = _block(replace(field, scales=scales_of(at)), times)
+        try:
+            root = np.linalg.cholesky(block.covariance)
+        except np.linalg.LinAlgError:
+            return 1e12
+        weighted = np.linalg.solve(block.covariance, block.anomaly[:, :, None])[..., 0]
+        fit = 0.5 * (block.anomaly * weighted).sum()
+        fit += np.log(np.diagonal(root, axis1=1, axis2=2)).sum()
+        return float(fit + 0.5 * (((at - first) / 1.6) ** 2).sum())
+
+    simplex = first + np.vstack([np.zeros(3), 0.7 * np.eye(3)])
+    best = minimize(
+        unlikely, first, method="Nelder-Mead",
+        options={"maxiter": 90, "xatol": 0.03, "fatol": 0.1, "initial_simplex": simplex},
+    )  # fmt: skip
+    return scales_of(np.asarray(best.x))
+
+
+def left_out(field: Field, times: NDArray[np.int64]) -> tuple[Floats, Floats]:
+    """Return (n, s) what each sensor measured less what the others say, and its deviation.
+
+    The sensor is left out at the neighbouring times, too: the block of the inverse that is its own
+    (Rasmussen and Williams, eq. 5.12, for several at once). NaN where it measured nothing.
+    """
+    block = _block(field, times)
+    sensors = field.samples.value.shape[1]
+    count = block.depth.shape[1] // sensors
+    inverse = np.linalg.inv(block.covariance)
+    weighted = (inverse @ block.anomaly[:, :, None])[..., 0]
+    miss, spread = np.full((len(times), sensors), np.nan), np.full((len(times), sensors), np.nan)
+    here = count // 2
+    for j in range(sensors):
+        own = np.arange(count) * sensors + j
+        part = np.linalg.inv(inverse[:, own[:, None], own[None, :]])
+        known = block.known[:, own[here]] & (
+            block.known.sum(axis=1) > block.known[:, own].sum(axis=1)
+        )
+        miss[:, j] = np.where(known, np.einsum("ni,ni->n", part[:, here], weighted[:, own]), np.nan)
+        spread[:, j] = np.where(known, np.sqrt(np.maximum(part[:, here, here], 0.0)), np.nan)
+    return miss, spread
+
+
+FEWEST = 20
+"""Misses of a sensor from which a factor is made."""
+
+
+def _widening(field: Field, times: NDArray[np.int64]) -> Widening | None:
+    """Return how much wider the bands must be to cover 95 % of each sensor, left out in turn."""
+    miss, spread = left_out(field, times)
+    place = np.where(np.isfinite(miss), field.samples.depth[times], np.nan)
+    enough = np.isfinite(miss).sum(axis=0) >= FEWEST
+    if enough.sum() < 2:
+        return None
+    upper, lower = (f.reduce(place, axis=1)[:, None] for f in (np.fmin, np.fmax))
+    between = (place > upper) & (place < lower)
+    depth, within, beyond = [], [], 1.0
+    for j in np.flatnonzero(enough).tolist():
+        off = np.abs(miss[:, j] / spread[:, j]) / GOOD_FIT
+        inside = off[between[:, j]]
+        if inside.size >= FEWEST:
+            depth.append(float(np.nanmean(place[:, j])))
+            within.append(max(1.0, float(np.percentile(inside, 95.0))))
+        outside = off[np.isfinite(off) & ~between[:, j]]
+        if outside.size >= FEWEST:
+            beyond = max(beyond, float(np.percentile(outside, 95.0)))
+    if not depth:
+        depth, within = [0.0], [1.0]
+    order = np.argsort(depth)
+    return Widening(np.array(depth)[order], np.array(within)[order], beyond)

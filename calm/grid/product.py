@@ -1,0 +1,240 @@
+"""The gridded file: values, deviations and flags on levels, laid out as archives want it."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calm.batch.dataset import laid_out, time_axis
+from calm.dataset.discovery import coverage, in_capitals, kept, with_flags, written
+from calm.dataset.netcdf import (
+    LEVEL,
+    NUMBER,
+    Attributes,
+    Chunk,
+    ResultLayout,
+    Variable,
+    chunk_shape,
+    station,
+    write_netcdf,
+)
+from calm.errors import UsageError
+from calm.grid.depths import MooringDepths
+from calm.grid.field import BLOCK, Field, estimate
+from calm.records.measured_quantities import QUANTITIES_MEASURED
+from calm.units import QuantityError, parse_quantity
+from calm.version import __version__
+from calm.whole_file import beside
+
+MOST_LEVELS = 5000
+
+
+def parse_levels(text: str) -> NDArray[np.float64]:
+    """Return the levels of a text: ``first:step:last``, or several separated by commas [m].
+
+    Raises
+    ------
+    UsageError
+        It is neither, they do not go down, or are too many.
+    """
+    parts = text.split(":")
+    wanted = "write FIRST:STEP:LAST in metres, such as 0:20:1500, or 50,100,250"
+    if len(parts) == 3:
+        first, step, last = (_metres(part, text, wanted) for part in parts)
+        if step <= 0.0 or last < first:
+            raise UsageError(f"--levels: `{text}` does not go down; {wanted}")
+        if (last - first) / step >= MOST_LEVELS:
+            raise UsageError(f"--levels: `{text}` are more than {MOST_LEVELS} levels")
+        count = int((last - first) / step + 1e-9) + 1
+        levels = np.array([first + step * i for i in range(count)])
+    elif len(parts) == 1:
+        levels = np.array([_metres(part, text, wanted) for part in text.split(",")])
+    else:
+        raise UsageError(f"--levels: `{text[:40]}` is not understood; {wanted}")
+    if (np.diff(levels) <= 0.0).any():
+        raise UsageError(f"--levels: `{text[:40]}` do not go down one after the other; {wanted}")
+    if levels[0] < 0.0:
+        raise UsageError(f"--levels: `{text[:40]}`: {levels[0]:g} m is above the sea surface")
+    return levels
+
+
+def _metres(part: str, text: str, wanted: str) -> float:
+    try:
+        number = float(part)
+    except ValueError:
+        try:
+            number = parse_quantity(part, "length", usual_unit="m")
+        except QuantityError:
+            raise UsageError(f"--levels: `{text[:40]}` is not understood; {wanted}") from None
+    if not np.isfinite(number):
+        raise UsageError(f"--levels: `{text[:40]}` is not understood; {wanted}")
+    return number
+
+
+def grid_layout(
+    fields: Mapping[str, Field],
+    levels: NDArray[np.float64],
+    depths: MooringDepths,
+    inputs: Sequence[str],
+    names: Mapping[str, str],
+    averaged: str | None,
+) -> ResultLayout:
+    """Return the layout of a gridded file.
+
+    Parameters
+    ----------
+    fields : of each quantity
+    levels : [m]
+    depths : which the places of the instruments are from
+    inputs : names of the files it is made of, with their hashes
+    names : of each quantity in the file
+    averaged : the step that values are means of; None where they are those of a time
+    """
+    time = next(iter(fields.values())).samples.time
+    title = str(depths.attributes.get("title", "mooring")).partition(": ")[0]
+    of_station, where = station(title, depths.place, "the anchor")
+    variables = [
+        time_axis(time, "time"),
+        Variable("depth", ("depth",), "<f8", {
+            "standard_name": "depth", "long_name": "depth below the sea surface", "units": "m",
+            "positive": "down", "axis": "Z", "reference": "sea_level",
+        }, levels),
+        *of_station,
+    ]  # fmt: skip
+    flagged = {}
+    for name, field in fields.items():
+        quantity, called = QUANTITIES_MEASURED[name], names[name]
+        about: Attributes = {
+            "standard_name": quantity.standard_name, "long_name": quantity.long_name,
+            "units": quantity.units, "coordinates": where.strip(), "coverage_content_type":
+            "physicalMeasurement", "comment": method_sentence(field),
+        }  # fmt: skip
+        spread: Attributes = {
+            "standard_name": f"{quantity.standard_name} standard_error",
+            "long_name": f"standard deviation of the {quantity.long_name}",
+            "units": quantity.units, "coordinates": where.strip(),
+            "coverage_content_type": "qualityInformation",
+        }  # fmt: skip
+        variables += [
+            Variable(called, ("time", "depth"), NUMBER, about),
+            Variable(f"{called}_sd", ("time", "depth"), NUMBER, spread),
+        ]
+        flagged[called] = [f"{called}_sd"]
+    whole = with_flags(variables, flagged)
+    if averaged is not None:
+        means = f"time: mean (interval: {averaged})"
+        whole = tuple(
+            replace(one, attributes={**one.attributes, "cell_methods": means})
+            if one.name in flagged else one for one in whole
+        )  # fmt: skip
+    before = [str(depths.attributes[key]) for key in ("history",) if key in depths.attributes]
+    labels = list(dict.fromkeys(label for one in fields.values() for label in one.samples.label))
+    attributes: Attributes = {
+        **coverage(time, (levels[0], levels[-1]), depths.place),
+        **kept(depths.attributes),
+        "title": f"{title}: on fixed levels",
+        "id": f"OS_{''.join(c if c.isalnum() else '-' for c in title)}_"
+        f"{np.datetime_as_string(time[0], 'M').replace('-', '')}_D_GRID",
+        "summary": (
+            f"{', '.join(QUANTITIES_MEASURED[name].long_name for name in fields)} of the mooring "
+            f"{title} on {len(levels)} fixed levels: measured at the moving depths of its "
+            f"{len(labels)} instruments, put onto levels by a Gaussian process over depth and "
+            "time, each value with its standard deviation."
+        ),
+        "keywords": "EARTH SCIENCE > OCEANS > OCEAN TEMPERATURE, EARTH SCIENCE > OCEANS > "
+        "OCEAN CIRCULATION, EARTH SCIENCE > OCEANS > SALINITY/DENSITY",
+        "source": "subsurface mooring",
+        "processing_level": "Data interpolated",
+        "QC_indicator": "mixed",
+        "instrument": ", ".join(labels),
+        "calm": __version__,
+        "date_created": written(),
+        "date_modified": written(),
+        "history": "\n".join(
+            [*before, f"{written()} calm {__version__} grid: {', '.join(inputs)}"]
+        ),
+        "featureType": "timeSeriesProfile",
+    }
+    if not depths.place:
+        attributes.pop("featureType")
+    layout = ResultLayout({"time": len(time), "depth": len(levels)}, whole, attributes)
+    return in_capitals(layout) if all(one.isupper() for one in names.values()) else layout
+
+
+def method_sentence(field: Field) -> str:
+    """Return how a quantity was put onto levels, with its scales."""
+    scales = field.scales
+    time = "" if not field.in_time else f" and {scales.time / 3600.0:.3g} h in time"
+    return (
+        f"Gaussian process about the mean profile of the record, correlated over "
+        f"{scales.depth:.3g} m along depth{time}; {100.0 * scales.share:.2g} % of the variance is "
+        "not correlated"
+    )
+
+
+def write_grid(
+    layout: ResultLayout,
+    fields: Mapping[str, Field],
+    levels: NDArray[np.float64],
+    names: Mapping[str, str],
+    output: Path,
+    shown: Callable[[list[tuple[str, int]]], Iterable[tuple[str, int]]] = lambda each: each,
+) -> None:
+    """Write a gridded file, block by block; it has its name only once it is whole.
+
+    Parameters
+    ----------
+    names : of each quantity in the file
+    shown : passes the blocks on, and shows how many are done
+
+    Raises
+    ------
+    OSError
+        There is no room for it.
+    """
+    time = next(iter(fields.values())).samples.time
+    kinds = {one.name: one for one in layout.in_blocks}
+    capitals = all(one.isupper() for one in names.values())
+    lower, upper = ("_SD", "_QC") if capitals else ("_sd", "_qc")
+    with tempfile.TemporaryDirectory(dir=output.parent, prefix=f".{output.name[:40]}.") as folder:
+        chunks: list[Chunk] = []
+
+        def keep(name: str, start: int, values: NDArray[Any]) -> None:
+            variable = kinds[name]
+            shape = chunk_shape(layout, variable, BLOCK)
+            whole = np.zeros(shape, variable.dtype)
+            whole[: len(values)] = values
+            path = Path(folder, str(len(chunks)))
+            path.write_bytes(_packed(whole))
+            chunks.append((name, (start, *(0 for _ in shape[1:])), path))
+
+        clock = layout.variables[0].name
+        alone = replace(layout, variables=layout.variables[:1])
+        for start in range(0, len(time), BLOCK):
+            keep(clock, start, laid_out(alone, time[start : start + BLOCK], {})[clock])
+        blocks = [(name, start) for name in fields for start in range(0, len(time), BLOCK)]
+        for name, start in shown(blocks):
+            times = np.arange(start, min(start + BLOCK, len(time)))
+            found = estimate(fields[name], levels, times)
+            keep(names[name], start, found.value)
+            keep(names[name] + lower, start, found.deviation)
+            keep(names[name] + upper, start, found.flag)
+        with beside(output) as part:
+            write_netcdf(layout, BLOCK, chunks, part, lambda: None)
+
+
+def _packed(values: NDArray[Any]) -> bytes:
+    """Return a chunk as `calm.dataset.netcdf.netcdf_of` lays it out: shuffled, then deflated."""
+    from numcodecs import Shuffle, Zlib
+
+    size = values.dtype.itemsize
+    plain = np.ascontiguousarray(values)
+    if size > 1:
+        plain = np.asarray(Shuffle(size).encode(plain))
+    return bytes(Zlib(LEVEL).encode(plain))

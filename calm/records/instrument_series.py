@@ -1,0 +1,339 @@
+"""What instruments of a mooring measured over time: temperature, salinity, velocity, by instrument.
+
+A file holds several instruments along a dimension, as `calm motion` takes them, or one, as archives
+keep them (OceanSITES, IMOS). Who an instrument is, its file says by a label, a serial number or a
+nominal place.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calm.errors import InputError, Problem, UsageError
+from calm.records.cf_files import (
+    UnreadableError,
+    factor_of,
+    find_times,
+    first_present,
+    holdings,
+    is_netcdf,
+    known_values,
+    labels_along,
+    open_current,
+    places_along,
+    read_times,
+    reading,
+)
+from calm.records.measured_quantities import (
+    QUANTITIES_MEASURED,
+    celsius_zero,
+    practical_factor,
+)
+from calm.records.velocity import (
+    find_velocity,
+    flag_variable,
+    flags_of,
+    refuse_ragged,
+    with_components,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    Floats = NDArray[np.float64]
+
+INTERPOLATED = 8
+"""The flag of what was interpolated, which is no measurement."""
+
+_SERIALS = ("serial", "serial_number", "SERIAL", "instrument_serial", "instrument_serial_number")
+_ONE_SERIAL = (*_SERIALS, "sensor_serial_number")
+_ONE_PLACE = ("instrument_nominal_depth", "nominal_depth", "sensor_depth")
+
+
+@dataclass(frozen=True)
+class InstrumentSeries:
+    """What one instrument measured of one quantity.
+
+    Attributes
+    ----------
+    label, serial : who it is; empty where its file does not say
+    nominal : its nominal depth [m]; NaN where its file does not say
+    time : (n,) to the nanosecond, rising
+    value : (n,) in the unit of its quantity; NaN where not measured, or the flag is not wanted
+    dropped : readings that were left out for their flag
+    source : name of its file
+    """
+
+    label: str
+    serial: str
+    nominal: float
+    time: NDArray[np.datetime64]
+    value: Floats
+    dropped: int
+    source: str
+
+    @property
+    def named(self) -> str:
+        """What a person calls it."""
+        return self.label or self.serial or self.source
+
+
+def read_series(
+    given: Sequence[str], names: Sequence[str], flags: frozenset[int], seabed: float
+) -> dict[str, list[InstrumentSeries]]:
+    """Return what files hold of some quantities, by the name of these.
+
+    Parameters
+    ----------
+    given : a path each, or ``LABEL=PATH`` of a file of one instrument, or a folder of such files
+    names : of `QUANTITIES_MEASURED`
+    flags : quality flags of what counts as measured, where there are any; 8 never does
+    seabed : depth of the water, for nominal heights above it [m]; NaN where not known
+
+    Raises
+    ------
+    InputError
+        A file is none, cannot be read, or has none of the quantities, or one without its unit.
+    UsageError
+        A label is given for a file of several instruments.
+    """
+    found: dict[str, list[InstrumentSeries]] = {name: [] for name in names}
+    problems: list[Problem] = []
+    for label, path in files_given(given):
+        try:
+            mine = _of_file(path, names, flags, seabed)
+        except InputError as error:
+            problems += error.problems
+            continue
+        for name, series in mine.items():
+            if label and len(series) > 1:
+                raise UsageError(f"{path} holds {len(series)} instruments; `{label}=` names one")
+            found[name] += [replace(one, label=label or one.label) for one in series]
+    if problems:
+        raise InputError(problems)
+    return found
+
+
+def files_given(given: Sequence[str]) -> list[tuple[str, Path]]:
+    """Return the files of some arguments, each with the label that is given for it, or ``""``.
+
+    Raises
+    ------
+    InputError
+        There is no such file, or a folder has no NetCDF files.
+    """
+    found: list[tuple[str, Path]] = []
+    problems = []
+    for text in given:
+        label, equals, rest = text.partition("=")
+        named = bool(equals) and not Path(text).exists()
+        path = Path(rest) if named else Path(text)
+        inside = sorted(path.glob("*.nc")) if path.is_dir() and path.suffix != ".zarr" else [path]
+        if not path.exists():
+            problems.append(Problem(str(path), 0, 0, "no such file"))
+        elif not inside:
+            problems.append(Problem(str(path), 0, 0, "the folder has no .nc files"))
+        else:
+            found += [(label.strip() if named else "", one) for one in inside]
+    if problems:
+        raise InputError(problems)
+    return found
+
+
+def _of_file(
+    path: Path, names: Sequence[str], flags: frozenset[int], seabed: float
+) -> dict[str, list[InstrumentSeries]]:
+    if not path.is_dir() and not is_netcdf(path):
+        raise InputError([Problem(str(path), 0, 0, "is not a NetCDF file")])
+    with reading(path), open_current(path) as dataset:
+        try:
+            whole = with_components(dataset)
+            found = {}
+            for name in names:
+                variables = _find(whole, name)
+                if variables:
+                    found[name] = _instruments(whole, name, variables, path, flags, seabed)
+        except UnreadableError as error:
+            raise UnreadableError(f"{error}; it holds {holdings(dataset)}") from None
+        if not found:
+            raise UnreadableError(f"holds no {' or '.join(names)}; it holds {holdings(dataset)}")
+    return found
+
+
+def _find(dataset: xr.Dataset, name: str) -> tuple[str, ...]:
+    """Return the variable of a quantity; of velocities the two that make it; nothing without."""
+    quantity = QUANTITIES_MEASURED[name]
+    if quantity.dimension == "speed":
+        try:
+            velocity = find_velocity(dataset, regular=False)
+        except UnreadableError:
+            if first_present(dataset, quantity.sought) or _standard(dataset, quantity.sought):
+                raise
+            return ()
+        if velocity.magnetic:
+            raise UnreadableError(
+                f"`{velocity.names[-1]}` is relative to magnetic north; turn it to true north "
+                "before it is gridded"
+            )
+        return velocity.names
+    there = _standard(dataset, quantity.sought)
+    usual = [one for one in quantity.usual if one in (there or dataset.data_vars)]
+    if len(there) > 1 and not usual:
+        raise UnreadableError(f"several variables are {name}: {', '.join(there)}")
+    return tuple((usual or there)[:1])
+
+
+def _standard(dataset: xr.Dataset, sought: Sequence[str]) -> list[str]:
+    names = dataset.cf.standard_names
+    return next((list(map(str, names[one])) for one in sought if one in names), [])
+
+
+def _instruments(
+    dataset: xr.Dataset,
+    name: str,
+    variables: tuple[str, ...],
+    path: Path,
+    flags: frozenset[int],
+    seabed: float,
+) -> list[InstrumentSeries]:
+    quantity, first = QUANTITIES_MEASURED[name], variables[0]
+    clock = find_times(dataset, first)
+    if clock is None or dataset[clock].ndim != 1:
+        raise UnreadableError(f"`{first}` has no times")
+    refuse_ragged(dataset, first)
+    time, along = axes_of(dataset, first, clock)
+    parts, dropped = [], None
+    for one in variables:
+        values, left_out = _values(dataset, one, time, along, flags)
+        parts.append(values)
+        dropped = left_out if dropped is None else dropped | left_out
+    assert dropped is not None
+    if quantity.dimension == "speed":
+        value = _velocity(dataset, variables, parts, name)
+    elif quantity.dimension == "temperature":
+        value = parts[0] - celsius_zero(dataset[first])
+    elif quantity.dimension == "salinity":
+        value = parts[0] * practical_factor(dataset[first])
+    else:
+        value = parts[0] * factor_of(dataset[first], quantity.dimension)
+    value = np.where(dropped, np.nan, value)
+    times = read_times(dataset, clock)
+    order = np.argsort(times, kind="stable")
+    who = who_along(dataset, along, seabed)
+    return [
+        InstrumentSeries(
+            *who[j], times[order], value[order, j], int(dropped[:, j].sum()), path.name
+        )
+        for j in range(value.shape[1])
+    ]
+
+
+def axes_of(dataset: xr.Dataset, name: str, clock: str) -> tuple[str, str | None]:
+    """Return the dimension of the times of a variable, and that of its instruments.
+
+    Parameters
+    ----------
+    name : of the variable
+    clock : the variable of its times
+
+    Raises
+    ------
+    UnreadableError
+        It is not of times and instruments alone.
+    """
+    time = str(dataset[clock].dims[0]) if dataset[clock].dims else ""
+    others = [str(dim) for dim, size in dataset[name].sizes.items() if dim != time and size > 1]
+    if len(others) > 1 or time not in dataset[name].dims:
+        raise UnreadableError(f"`{name}` is not of times and instruments: {dataset[name].dims}")
+    return time, others[0] if others else None
+
+
+def who_along(
+    dataset: xr.Dataset, along: str | None, seabed: float
+) -> list[tuple[str, str, float]]:
+    """Return label, serial number and nominal depth [m] of the instruments along a dimension.
+
+    Parameters
+    ----------
+    along : None for the one instrument of a file
+    seabed : depth of the water, for heights above it [m]
+    """
+    if along is None:
+        single = [str(dim) for dim, size in dataset.sizes.items() if size == 1]
+        labels = next(filter(None, (labels_along(dataset, dim) for dim in single)), ("",))
+        tried = (places_along(dataset, dim, seabed) for dim in (None, *single))
+        place = next((float(one[0]) for one in tried if one is not None), _number(dataset.attrs))
+        return [(labels[0], _texts(dataset, (), dataset.attrs)[0], place)]
+    count = dataset.sizes[along]
+    places = places_along(dataset, along, seabed)
+    return list(
+        zip(
+            labels_along(dataset, along) or [""] * count,
+            _texts(dataset, (along,), {}) * (1 if _has_serials(dataset, along) else count),
+            [np.nan] * count if places is None else places.tolist(),
+            strict=True,
+        )
+    )
+
+
+def _has_serials(dataset: xr.Dataset, along: str) -> bool:
+    return any(n in dataset.variables and dataset[n].dims == (along,) for n in _SERIALS)
+
+
+def _texts(dataset: xr.Dataset, dims: tuple[str, ...], attributes: Any) -> list[str]:
+    for name in _SERIALS:
+        if name in dataset.variables and dataset[name].dims == dims:
+            values = np.atleast_1d(dataset[name].values).tolist()
+            texts = [one.decode() if isinstance(one, bytes) else str(one) for one in values]
+            return [text.strip().rstrip("*") for text in texts]
+    return [str(next((attributes[one] for one in _ONE_SERIAL if one in attributes), "")).strip()]
+
+
+def _number(attributes: Any) -> float:
+    for name in _ONE_PLACE:
+        try:
+            return float(attributes[name])
+        except (KeyError, TypeError, ValueError):
+            continue
+    return float("nan")
+
+
+def _values(
+    dataset: xr.Dataset, name: str, time: str, along: str | None, flags: frozenset[int]
+) -> tuple[Floats, NDArray[np.bool_]]:
+    """Return (n, k) values as they stand, and which are left out for their flag."""
+
+    def table(one: xr.DataArray, values: NDArray[Any]) -> NDArray[Any]:
+        axes = [str(dim) for dim in one.dims]
+        kept = [axis for axis in (time, along) if axis in axes]
+        moved = values.transpose(*(axes.index(a) for a in kept),
+                                 *(i for i, a in enumerate(axes) if a not in kept))  # fmt: skip
+        return moved.reshape(len(moved), -1)
+
+    variable = dataset[name]
+    values = table(variable, known_values(variable))
+    marks = flag_variable(dataset, name)
+    dropped = np.zeros(values.shape, bool)
+    if marks is not None:
+        given = np.broadcast_to(table(marks, flags_of(marks)), values.shape)
+        dropped = ~np.isin(given, sorted(flags - {INTERPOLATED})) & np.isfinite(values)
+    return values, dropped
+
+
+def _velocity(
+    dataset: xr.Dataset, variables: tuple[str, ...], parts: list[Floats], name: str
+) -> Floats:
+    turn = find_velocity(dataset, regular=False).turn
+    if turn is None:
+        which = 0 if name == "u" else 1
+        return parts[which] * factor_of(dataset[variables[which]], "speed")
+    speed = parts[0] * factor_of(dataset[variables[0]], "speed")
+    angle = np.radians(parts[1] * factor_of(dataset[variables[1]], "angle") + turn)
+    component: Floats = speed * (np.sin(angle) if name == "u" else np.cos(angle))
+    return component

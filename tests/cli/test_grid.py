@@ -1,0 +1,220 @@
+"""`calm grid` as a user runs it: depths and values of known instruments, onto levels."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray
+
+LABELS = ("upper", "middle", "lower", "deep")
+STILL = np.array([100.0, 150.0, 200.0, 250.0])
+HOURS = 60
+START = np.datetime64("2026-03-01", "ns")
+
+
+def profile(depth):
+    """The temperature at a depth [degree C]."""
+    return 14.0 - 0.02 * depth
+
+
+@pytest.fixture
+def depths(folder):
+    """A result as of calm motion: the whole line goes up and down."""
+    down = 20.0 * np.sin(np.arange(HOURS) / 6.0) ** 2
+    depth = STILL + down[:, None] * np.array([1.0, 0.8, 0.6, 0.4])
+    xarray.Dataset(
+        {
+            "clamp_depth": (("time", "clamp"), depth),
+            "clamp_depth_sd": (("time", "clamp"), np.full(depth.shape, 0.5)),
+            "clamp_label": ("clamp", list(LABELS)),
+            "clamp_serial": ("clamp", ["11", "12", "13", "14"]),
+            "depth_top": (("time", "component"), np.full((HOURS, 1), 300.0)),
+            "depth_sd": (("time", "component"), np.zeros((HOURS, 1))),
+            "component_label": ("component", ["anchor"]),
+            "latitude": 48.0,
+            "longitude": -5.0,
+        },
+        coords={"time": START + np.arange(HOURS) * np.timedelta64(3600, "s")},
+        attrs={"title": "M1: where its parts were", "creator_name": "A. Martin",
+               "history": "calm motion"},
+    ).to_netcdf("depths.nc", engine="h5netcdf")  # fmt: skip
+    return depth
+
+
+def write_values(
+    name, depth, labels=LABELS, *, shift=0.0, unit="degree_Celsius", flags=None, **more
+):
+    data = {"temperature": (("time", "instrument"), profile(depth[:, : len(labels)]),
+            {"units": unit, "standard_name": "sea_water_temperature"})}  # fmt: skip
+    if flags is not None:
+        data["temperature_qc"] = (("time", "instrument"), flags,
+                                  {"flag_values": np.arange(10, dtype="i1")})  # fmt: skip
+    coords = {"time": START + np.timedelta64(round(shift * 3600), "s")
+              + np.arange(HOURS) * np.timedelta64(3600, "s")}  # fmt: skip
+    if labels[0] is not None:
+        coords["instrument"] = list(labels)
+    coords |= {key: ("instrument", *value) for key, value in more.items()}
+    xarray.Dataset(data, coords=coords).to_netcdf(name, engine="h5netcdf")
+
+
+def gridded(calm, *words, levels="100:25:300"):
+    run = calm("grid", "depths.nc", *words, "-o", "out.nc", "--levels", levels)
+    assert run.code == 0, run.err
+    with xarray.open_dataset("out.nc", engine="h5netcdf", mask_and_scale=False) as result:
+        return result.load(), run
+
+
+def test_a_line_in_depth_is_found_again(calm, depths):
+    write_values("v.nc", depths)
+    result, run = gridded(calm, "v.nc", "--report", "page")
+    assert result["temperature"].dims == ("time", "depth")
+    assert result["depth"].values.tolist() == list(range(100, 301, 25))
+    sure = result["temperature_qc"].values == 8
+    off = result["temperature"].values - profile(result["depth"].values)
+    # depths are off by 0.5 m at 0.02 degrees a metre
+    assert np.abs(off[sure]).max() < 0.01 + 1e-3
+    spread = result["temperature_sd"].values[sure]
+    assert 0.005 < np.median(spread) < 0.05
+    assert np.isin(result["temperature_qc"].values[:, -1], [3, 9]).all()
+    assert result["temperature"].attrs["ancillary_variables"] == "temperature_sd temperature_qc"
+    assert "temperature" in run.out
+    assert "For the methods of a cruise report" in Path("page/grid.html").read_text()
+    assert Path("page/grid.pdf").read_bytes().startswith(b"%PDF-")
+
+
+def test_what_archives_ask_for_is_there(calm, depths, monkeypatch):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1790000000")
+    write_values("v.nc", depths)
+    said = gridded(calm, "v.nc")[0].attrs
+    assert said["Conventions"] == "CF-1.11, ACDD-1.3, OceanSITES-1.4"
+    assert said["creator_name"] == "A. Martin"
+    assert said["date_created"] == "2026-09-21T14:13:20Z"
+    assert said["time_coverage_start"] == "2026-03-01T00:00:00Z"
+    assert said["time_coverage_duration"] == "P2DT11H"
+    assert said["geospatial_vertical_max"] == 300.0
+    assert said["geospatial_lat_min"] == 48.0
+    first, last = said["history"].split("\n")
+    assert first == "calm motion"
+    assert "depths.nc sha256:" in last and "v.nc sha256:" in last
+
+
+def test_capitals_as_oceansites_has_them(calm, depths):
+    write_values("v.nc", depths)
+    result, _ = gridded(calm, "v.nc", "--variables", "TEMP")
+    assert result["TEMP"].dims == ("TIME", "DEPTH")
+    assert {"TEMP_SD", "TEMP_QC", "LATITUDE", "LONGITUDE"} <= set(result.variables)
+    assert result["TEMP"].attrs["ancillary_variables"] == "TEMP_SD TEMP_QC"
+
+
+def test_what_was_interpolated_never_counts(calm, depths):
+    flags = np.ones((HOURS, 4), "i1")
+    flags[:, 1] = 8
+    wrong = depths.copy()
+    wrong[:, 1] += 200.0
+    write_values("v.nc", wrong, flags=flags)
+    result, run = gridded(calm, "v.nc", "--flags", "1,2")
+    assert "temperature: 60 values are left out for their flag" in run.err
+    assert "temperature: middle has no good value" in run.err
+    off = result["temperature"].values - profile(result["depth"].values)
+    assert np.abs(off[result["temperature_qc"].values == 8]).max() < 0.02
+
+
+def test_steps_are_means_and_said(calm, depths):
+    write_values("v.nc", depths)
+    result, _ = gridded(calm, "v.nc", "--step", "3 h")
+    assert result["temperature"].attrs["cell_methods"] == "time: mean (interval: 3 h)"
+    assert set(np.diff(result["time"].values)) == {np.timedelta64(3, "h")}
+
+
+def test_serials_and_then_nominal_depths_say_who_is_who(calm, depths):
+    write_values("v.nc", depths, (None,) * 4, serial=[["11", "12", "13", "14"]])
+    by_serial, _ = gridded(calm, "v.nc")
+    write_values("w.nc", depths, (None,) * 4, nominal_depth=[STILL - 8.0, {"units": "m"}])
+    by_place, run = gridded(calm, "w.nc")
+    assert "by nominal depths, in their order" in run.err
+    assert np.array_equal(by_serial["temperature"], by_place["temperature"], equal_nan=True)
+
+
+def test_files_of_one_instrument_and_a_folder_of_them(calm, depths, folder):
+    (folder / "in").mkdir()
+    for j, label in enumerate(LABELS):
+        xarray.Dataset(
+            {"TEMP": (("TIME", "DEPTH"), profile(depths[:, [j]]),
+                      {"units": "degree_Celsius", "standard_name": "sea_water_temperature"})},
+            coords={"TIME": START + np.arange(HOURS) * np.timedelta64(3600, "s"),
+                    "DEPTH": ("DEPTH", [STILL[j]], {"units": "m"})},
+            attrs={"instrument_serial_number": str(11 + j)},
+        ).to_netcdf(f"in/{label}.nc", engine="h5netcdf")  # fmt: skip
+    whole, _ = gridded(calm, "in")
+    named, _ = gridded(calm, *(f"{label}=in/{label}.nc" for label in LABELS))
+    assert np.array_equal(whole["temperature"], named["temperature"], equal_nan=True)
+
+
+@pytest.mark.parametrize(
+    ("levels", "said"),
+    [
+        ("0:20", "write FIRST:STEP:LAST"),
+        ("deep", "write FIRST:STEP:LAST"),
+        ("100:-20:0", "does not go down"),
+        ("100:0:200", "does not go down"),
+        ("200,100", "do not go down"),
+        ("-50:10:50", "above the sea surface"),
+        ("0:0.001:1000", "more than 5000 levels"),
+        ("nan:1:2", "write FIRST:STEP:LAST"),
+    ],
+)
+def test_levels_typed_wrong(calm, depths, levels, said):
+    write_values("v.nc", depths)
+    run = calm("grid", "depths.nc", "v.nc", "-o", "out.nc", f"--levels={levels}")
+    assert run.code == 2
+    assert said in run.err
+
+
+def refused(calm, *words):
+    run = calm("grid", *words, "-o", "out.nc", "--levels", "100,200")
+    assert run.code == 2, run.err
+    assert "Traceback" not in run.err and "internal error" not in run.err
+    return run.err
+
+
+def test_bad_inputs_are_refused(calm, depths, folder):
+    write_values("v.nc", depths)
+    write_values("later.nc", depths, shift=9000.0)
+    assert "no time is common: depths are of 2026-03-01" in refused(calm, "depths.nc", "later.nc")
+    write_values("other.nc", depths, ("uper", "b", "c", "d"))
+    err = refused(calm, "depths.nc", "other.nc")
+    assert "no instrument is a part of the line" in err and "did you mean `upper`?" in err
+    write_values("unit.nc", depths, unit="dbar")
+    assert "its unit, `dbar`, is not degree_Celsius or K" in refused(calm, "depths.nc", "unit.nc")
+    write_values("none.nc", depths, unit="")
+    assert "is missing: degree_Celsius or K" in refused(calm, "depths.nc", "none.nc")
+    (folder / "empty.nc").write_bytes(b"")
+    assert "is not a NetCDF file" in refused(calm, "depths.nc", "empty.nc")
+    assert "no such file" in refused(calm, "depths.nc", "absent.nc")
+    assert "is not a result of calm motion" in refused(calm, "v.nc", "v.nc")
+    write_values("blank.nc", np.full_like(depths, np.nan))
+    assert "no instrument has a good value" in refused(calm, "depths.nc", "blank.nc")
+    write_values("twin.nc", depths)
+    assert "two series are of `deep`: v.nc, twin.nc" in refused(
+        calm, "depths.nc", "v.nc", "twin.nc"
+    )
+    run = calm("grid", "depths.nc", "v.nc", "-o", "depths.nc", "--levels", "100,200")
+    assert run.code == 2 and "it is kept" in run.err
+    assert "v.nc holds 4 instruments" in refused(calm, "depths.nc", "upper=v.nc")
+    assert not (folder / "out.nc").exists()
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "said"),
+    [
+        ("--step", "1 m", "--step: `1 m`"),
+        ("--step", "0 s", "is not between a second and a year"),
+        ("--variables", "temprature", "did you mean `temperature`?"),
+        ("--variables", "salinity", "holds no salinity"),
+        ("--method", "linear", "`--method: linear` must be one of depth-time, depth"),
+        ("--flags", "1,8", "8 marks what was interpolated"),
+    ],
+)
+def test_options_typed_wrong(calm, depths, option, value, said):
+    write_values("v.nc", depths)
+    assert said in refused(calm, "depths.nc", "v.nc", option, value)

@@ -1,0 +1,97 @@
+"""dune2: temperatures at 21 levels, of which one is hidden and found again from the others.
+
+Temperatures in docs/field/dune2, by way of oceanarray 0.5.1 (MIT, © 2025 Eleanor Frajka-Williams);
+`dune2_depths.npz` has the depths that `calm motion` gives of all its pressures. The front of the
+overflow moves through the levels by three degrees within hours.
+"""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from calm.grid.depths import MooringDepths, points_of
+from calm.grid.field import estimate, field_of, posterior
+from calm.grid.samples import gather
+from calm.records.instrument_series import read_series
+
+FIELD = Path(__file__).parents[2] / "docs" / "field" / "dune2"
+DEPTHS = Path(__file__).with_name("dune2_depths.npz")
+SENSOR = 0.002  # degrees
+
+
+@pytest.fixture(scope="module")
+def measured():
+    with np.load(DEPTHS) as kept:
+        time = kept["time"].astype("M8[s]").astype("M8[ns]")
+        labels = tuple(str(one) for one in kept["label"])
+        depths = MooringDepths(
+            DEPTHS, time, labels, ("",) * len(labels), len(labels),
+            kept["depth"].astype(float), kept["deviation"].astype(float), (), 792.3, {},
+        )  # fmt: skip
+    series = read_series(
+        [str(FIELD / "temperatures.nc")], ("temperature",), frozenset({1, 2}), 792.3
+    )["temperature"]
+    points, said = points_of(series, depths)
+    assert len(points) == 21 and not said
+    return gather(depths, series, points, time)
+
+
+def hidden(measured, label):
+    """What is estimated at a sensor without it and without its neighbour a metre away."""
+    column = measured.label.index(label)
+    depth = measured.depth[:, column]
+    near = [
+        one for j, one in enumerate(measured.label)
+        if abs(np.mean(measured.depth[:, j] - depth)) < 10.0
+    ]  # fmt: skip
+    field = field_of(measured.without(near), SENSOR)
+    mean, spread, _ = posterior(field, np.arange(len(depth)), depth[:, None])
+    return mean[:, 0] - measured.value[:, column], spread[:, 0], field, depth
+
+
+# the solos measure temperature alone
+LEVELS = ("solo 575", "solo 475", "solo 375", "solo 275", "solo 175", "solo 75", "Aquadopp 426",
+          "Aquadopp 226")  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "label",
+    [
+        one if one in LEVELS[2:4] else pytest.param(one, marks=pytest.mark.thorough)
+        for one in LEVELS
+    ],
+)
+def test_a_hidden_level_is_within_its_band(measured, label):
+    off, spread, field, depth = hidden(measured, label)
+    if field.widened is not None:
+        spread = spread * field.widened.at(depth, np.ones(len(depth), bool))
+    # 164 hours, their errors last some hours each: 90 % are 95 % within the chance of 40 that
+    # are independent, twice the deviation of 3.4 %
+    assert (np.abs(off) < 1.96 * spread).mean() >= 0.88
+    # and no band is as wide as the record itself
+    column = measured.label.index(label)
+    assert np.median(spread) < 0.75 * np.std(measured.value[:, column])
+
+
+@pytest.mark.thorough
+def test_over_all_hidden_levels_bands_hold_and_errors_are_less_than_of_lines(measured):
+    covered, errors, lines = [], [], []
+    for label in LEVELS:
+        off, spread, field, depth = hidden(measured, label)
+        covered.append(np.abs(off) < 1.96 * spread)
+        rest = field.samples
+        own = measured.value[:, measured.label.index(label)]
+        line = [np.interp(d, z, y) for d, z, y in zip(depth, rest.depth, rest.value, strict=True)]
+        errors.append(np.sqrt((off**2).mean()))
+        lines.append(np.sqrt(((np.array(line) - own) ** 2).mean()))
+    assert 0.93 <= np.mean(covered) <= 0.99
+    assert np.mean(errors) < 0.96 * np.mean(lines)
+
+
+def test_levels_above_the_knocked_down_line_have_flags(measured):
+    field = field_of(measured, SENSOR)
+    found = estimate(field, np.array([60.0, 500.0]), np.arange(len(measured.time)))
+    top = measured.depth.min(axis=1)
+    assert (found.flag[top > 60.0, 0] != 8).all()
+    assert (found.flag[:, 1] == 8).all()
