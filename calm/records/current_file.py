@@ -21,6 +21,7 @@ from calm.records.current_terms import (
     too_fast,
 )
 from calm.records.delimited import CellRow, abridged, read_table
+from calm.records.instrument_text import read_instrument_text
 from calm.records.profile_tables import CurrentTable, turned_notices
 from calm.records.record import Period, Record
 from calm.records.record_csv import EXAMPLE, CsvRecord, CurrentHeader, comment_notices
@@ -154,7 +155,9 @@ def _profile(arrays: CurrentArrays, terms: Terms, notices: list[str]) -> Current
 
 
 def _from_text(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable, list[str]]:
-    table = read_table(path, EXAMPLE)
+    instrument = read_instrument_text(path)
+    lines = None if instrument is None else instrument.lines(("depth", "u", "v", "w"))
+    table = read_table(path, EXAMPLE, lines)
     header, rows = CurrentHeader(path, table.header), list(table.rows)
     notices: list[str] = []
     if header.timed:

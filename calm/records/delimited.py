@@ -77,7 +77,8 @@ class Dialect:
         elif self.separator == " ":
             found = line.split()
         else:
-            found = [cell.strip() for cell in line.split(self.separator)]
+            found = line.split(self.separator)
+            found = found if line.isprintable() and " " not in line else [*map(str.strip, found)]
         return [self.with_point(text) for text in found] if self.decimal == "," else found
 
     def column(self, line: str, cell: int) -> int:

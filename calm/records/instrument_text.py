@@ -51,6 +51,7 @@ class InstrumentText:
 
     Attributes
     ----------
+    path : of the file
     time : (n,) to the microsecond
     columns : (n,) by their headings, ``pressure[dbar]``, as they stand; NaN where missing
     line : (n,) number of the line of each row
@@ -59,6 +60,7 @@ class InstrumentText:
     serial : number of the instrument; empty where the file does not say
     """
 
+    path: Path
     time: NDArray[np.datetime64]
     columns: dict[str, Floats]
     line: NDArray[np.intp]
@@ -70,12 +72,15 @@ class InstrumentText:
         """Yield the numbered lines of a table of the time and some of the columns, by their name.
 
         A depth that has no column of its own is that of the pressure, by TEOS-10, or the nominal
-        one.
+        one. InputError: the file has none of them.
         """
         known = {heading.partition("[")[0]: heading for heading in self.columns}
         chosen = {known[name]: self.columns[known[name]] for name in names if name in known}
         if "depth" in names and "depth" not in known:
             chosen = {"depth[m]": self._depths(known), **chosen}
+        if not set(names) & known.keys():
+            has = ", ".join(known) or "nothing that is known"
+            raise _refused(self.path, 0, f"holds no {' or '.join(names)}; it has {has}")
         yield 1, ",".join(["time", *chosen])
         moments = np.datetime_as_string(self.time)
         for number, moment, row in zip(
@@ -134,7 +139,7 @@ def _rodb(path: Path) -> InstrumentText:
     latitude = said.get("latitude", "nan")
     try:
         return InstrumentText(
-            time + seconds.astype("m8[s]"), columns, line,
+            path, time + seconds.astype("m8[s]"), columns, line,
             float(said.get("instrdepth", "nan")), plain_degrees(latitude, "latitude"),
             said.get("serialnumber", ""),
         )  # fmt: skip
@@ -181,7 +186,9 @@ def _cnv(path: Path) -> InstrumentText:
             epoch, seconds = epoch.astype("M8[Y]").astype("M8[us]"), seconds - 86_400.0
     time = epoch + np.rint(seconds * 1e3).astype("m8[ms]")
     serial = re.search(r"(?m)^\* (?:Temperature|Conductivity) SN = (\S+)", head)
-    return InstrumentText(time, columns, line, float("nan"), degrees, serial[1] if serial else "")
+    return InstrumentText(
+        path, time, columns, line, float("nan"), degrees, serial[1] if serial else ""
+    )
 
 
 def _numbers(

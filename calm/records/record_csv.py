@@ -72,8 +72,11 @@ class CsvRecord(Record):
                 lines = instrument.lines(("depth", "u", "v", "w"))
                 return self._keep(path, *table_lines(path, lines, f"time,{EXAMPLE}"))
             with path.open("rb") as file:
-                plain = (COMMENT.sub(rb"\1", line).decode("utf-8-sig") for line in file)
-                lines = ((i, line.rstrip("\r\n")) for i, line in enumerate(plain, 1))
+                bare = (COMMENT.sub(rb"\1", line) if b"#" in line else line for line in file)
+                lines = (
+                    (i, line.decode("utf-8-sig" if i == 1 else "utf-8").rstrip("\r\n"))
+                    for i, line in enumerate(bare, 1)
+                )
                 return self._keep(path, *table_lines(path, lines, f"time,{EXAMPLE}"))
         except UnicodeDecodeError:
             raise InputError([Problem(str(path), 0, 0, "is not UTF-8 text")]) from None

@@ -7,7 +7,8 @@ import pytest
 
 from calm.errors import InputError
 from calm.motion.sensors import depth_of, read_sensors
-from calm.records.current_file import open_record
+from calm.records.current_file import open_record, read_current_file
+from calm.records.current_terms import Terms
 from calm.records.instrument_text import read_instrument_text
 
 HEAD = """Mooring              = wb1_12_2015
@@ -70,6 +71,8 @@ def test_currents_of_rodb_are_where_their_pressure_was(tmp_path: Path) -> None:
     # at 26 deg 29.92 N, and the nominal depth where there is no pressure
     deep = depth_of(np.array([828.9, 829.0]), 26.0 + 29.92 / 60.0)
     assert depth[:, 0] == pytest.approx([*deep, 800.0], abs=1e-6)
+    table, _ = read_current_file(path, "2015-11-30T12:00", Terms(water_depth=1401.0))
+    assert (table.depth, table.u) == ((pytest.approx(deep[0]),), (0.105,))
     assert u[:, 0] == pytest.approx([0.105, np.nan, 0.12], nan_ok=True)
     assert v[:, 0] == pytest.approx([-0.2, np.nan, 0.0], nan_ok=True)
 
@@ -105,5 +108,8 @@ def test_mistakes_have_their_line(tmp_path: Path) -> None:
     path.write_text(CNV.format("depSM: Depth [salt water, m]", 1, 2, 3))
     with pytest.raises(InputError, match="has no times"):
         read_instrument_text(path)
+    path.write_text(USE.replace("T:C:P", "T:C:X"))
+    with pytest.raises(InputError, match="holds no pressure; it has temperature, conductivity"):
+        read_sensors([f"CTD={path}"], frozenset({1}), 26.5, 1401.0)
     path.write_text("time,a[dbar]\n2026-03-01,5\n")
     assert read_instrument_text(path) is None
