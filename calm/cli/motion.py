@@ -24,7 +24,8 @@ MOTION_EXAMPLES = """Examples:
 
   calm motion mooring.yaml --currents adcp.nc --pressures microcats.nc -o depths.nc
   calm motion mooring.yaml --currents meters.nc --pressures top.nc "release=p2.nc" -o depths.nc
-  calm motion mooring.yaml --currents meters.nc --pressures all.csv --cross-validate -o depths.nc"""
+  calm motion mooring.yaml --currents meters.nc --pressures all.csv --cross-validate -o depths.nc
+  calm motion mooring.yaml --pressures two.csv -o depths.nc"""
 
 Several = Annotated[list[Path], Parameter(consume_multiple=True)]
 SeveralTexts = Annotated[list[str], Parameter(consume_multiple=True)]
@@ -34,9 +35,9 @@ def motion(
     file: Path,
     /,
     *,
-    currents: Several,
     pressures: SeveralTexts,
     output: Annotated[Path, Parameter(name=["--output", "-o"])],
+    currents: SeveralTexts | None = None,
     match: str = "label",
     fit: str | None = None,
     hold_out: str | None = None,
@@ -53,12 +54,14 @@ def motion(
     environment: EnvironmentName = None,
     catalog: CatalogFiles = None,
 ) -> ExitCode:
-    """Estimate the depth of every instrument at every time from currents and pressures.
+    """Estimate the depth of every instrument at every time from pressures and currents.
 
     The currents move the line; the pressures correct the drag for the whole record,
     and the current at each time. The result has the depth of every component and
     clamped instrument with its standard deviation, and the residuals of the
     sensors. A current meter of the line, matched by its label, is placed where the line has it.
+    Without currents, what they may have been is learnt from the pressures, of two or
+    more sensors.
 
     However a run is interrupted, the same command resumes it; the exit code is 75
     until everything is solved.
@@ -67,13 +70,14 @@ def motion(
     ----------
     file
         Mooring file.
-    currents
-        Records of the current, one or more: NetCDF, zarr or CSV.
     pressures
         Pressures of sensors on the line, one file or more: NetCDF or CSV with their
         labels, or one sensor each as LABEL=FILE, in RODB or Sea-Bird's .cnv too.
     output
         The result: a .nc file or a .zarr folder.
+    currents
+        Records of the current, one or more: NetCDF, zarr or CSV; one of a single meter
+        may be LABEL=FILE.
     match
         How sensors are found on the line: by label, or by nominal height or depth.
     fit
@@ -108,6 +112,7 @@ def motion(
     from calm.motion.correction import MeasuredRecord, run_motion
     from calm.motion.instrument_file import read_instruments, write_depths
     from calm.motion.matching import labels_of
+    from calm.motion.sensors import split_label
     from calm.motion.study import cross_validated, judged, prepare, series_of, several
     from calm.report.folder import check_folder, printed, write_report
     from calm.report.html import page
@@ -115,20 +120,21 @@ def motion(
 
     if workers is not None and workers < 1:
         raise UsageError(f"--workers: {workers} is not 1 or more")
-    names = fitted(fit)
+    names = fitted(fit, bool(currents))
     outputs = Outputs(files=(file,), json=json)
     outputs.check()
     if report is not None:
         check_folder(report)
-    files = [Path(text.rpartition("=")[2]) for text in pressures]
+    currents = currents or []
+    files = [split_label(text)[1] for text in (*currents, *pressures)]
     files += [path for path in (sea_level, onto) if path is not None]
-    check_output(output, file, *currents, *files)
+    check_output(output, file, *files)
     copy = output
     if onto is not None:
         if output.suffix != ".nc":
             raise UsageError(f"cannot write {output}: the name of a copy must end in .nc")
         output = output.with_suffix(".motion.nc")
-        check_output(output, file, *currents, *files)
+        check_output(output, file, *files)
     elif replace_depth:
         raise UsageError("--replace needs --onto")
     mooring = mooring_of(file, environment, catalog or [], "motion")
@@ -150,7 +156,7 @@ def motion(
         several(measured, hidden)
     with stopped_by_a_signal() as stop:
         compile_solver(Batch(mooring), teller.note)
-        task = prepare(mooring, measured, names, hidden)
+        task = prepare(mooring, measured, names, hidden, teller.note)
         record = MeasuredRecord(measured, source, notes)
         options: dict[str, Any] = {"fit": sorted(names), "hold_out": sorted(hidden)}
         try:
@@ -166,7 +172,9 @@ def motion(
         with open_result(output) as result, readable(output):
             study = judged(task, measured, result)
             series = series_of(measured, task.measured.label, result)
-            factor = np.asarray(result["current_factor"].values, np.float64)
+            factor = None
+            if "current_factor" in result:
+                factor = np.asarray(result["current_factor"].values, np.float64)
             if instruments is not None:
                 for label in write_depths(instruments, result, labels, apart, copy):
                     narrate(f"{onto}: `{label}` is not a part of the line; its depth is NaN")
@@ -184,8 +192,11 @@ def motion(
 _MATCHES = ("label", "height", "depth")
 
 
-def fitted(text: str | None) -> tuple[str, ...]:
+def fitted(text: str | None, currents: bool = True) -> tuple[str, ...]:
     """The factors that are estimated: those of the drag, and what is asked for besides.
+
+    Without currents a factor on all drag is one on the currents: that of cables is none unless
+    asked for, and the length is one of those that are estimated.
 
     Raises
     ------
@@ -199,7 +210,8 @@ def fitted(text: str | None) -> tuple[str, ...]:
     for name in asked:
         if name not in FACTORS:
             raise UsageError(unknown(f"--fit: `{name}` cannot be estimated", name, FACTORS))
-    return tuple(name for name in FACTORS if name.endswith("_drag") or name in asked)
+    usual = ("cable_drag", "rigid_drag") if currents else ("rigid_drag", "length")
+    return tuple(name for name in FACTORS if name in asked or name in usual)
 
 
 def parse_gap(text: str) -> np.timedelta64:
@@ -225,7 +237,7 @@ def parse_gap(text: str) -> np.timedelta64:
 
 def read_measured(
     mooring: Mooring,
-    currents: list[Path],
+    currents: list[str],
     pressures: list[str],
     match: str,
     flags: str,

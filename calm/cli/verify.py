@@ -108,7 +108,7 @@ def verify_field(outputs: Outputs) -> ExitCode:
     mooring = calm.load(folder / "mooring.yaml")
     assert isinstance(mooring, Mooring)
     measured, _, _ = read_measured(
-        mooring, [folder / "currents.nc"], [str(folder / "pressures.nc")],
+        mooring, [str(folder / "currents.nc")], [str(folder / "pressures.nc")],
         "label", "1,2", parse_gap("2 h"), None, None,
     )  # fmt: skip
     task = prepare(mooring, measured, fitted(None), HIDDEN)

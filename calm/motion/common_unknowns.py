@@ -13,11 +13,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import chain, combinations
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from calm.physics.line import Floats, Integers
+
+if TYPE_CHECKING:
+    from calm.motion.unknown_currents import SpeedLaw
 
 REACH = 5.0
 """Between a sensor and the points by which the slope of the line at it is known, at least [m]."""
@@ -43,6 +47,8 @@ class Common:
     gap : (g, g) error of the logarithm of the factor on a group of levels whose currents are taken
         from the others, another group left out besides; see `calm.motion.line_response.gap_errors`
     widened : factor on the deviations of depths, where the pressures miss by more than all errors
+    worst : share of the knockdown that the line itself may be wrong by, after all else
+    law : of currents that nobody measured; None of measured ones
     """
 
     factors: Mapping[str, float]
@@ -55,6 +61,8 @@ class Common:
     scale: float
     gap: Floats
     widened: float = 1.0
+    worst: float = 0.07
+    law: SpeedLaw | None = None
 
     @property
     def value(self) -> Floats:
@@ -309,8 +317,6 @@ NOISE = 0.2
 """Of a depth by pressure at one time [m]."""
 SPIKE, SPIKES = 30.0, 1e-5
 """Of a depth that is a spike [m], and the probability that one is."""
-WORST = 0.07
-"""Share of the knockdown that the line itself may be wrong by, after all else: shape, model."""
 
 
 def by_flag(values: Mapping[int, float], flag: NDArray[np.int8]) -> Floats:

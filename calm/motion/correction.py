@@ -28,6 +28,7 @@ from calm.motion.estimate import estimated
 from calm.motion.line_response import Forward, LineResponse, points
 from calm.motion.matching import labels_of
 from calm.motion.measurements import FREE, MooringMeasurements, level_names
+from calm.motion.unknown_currents import unknown_state
 from calm.motion.whole_record import forwards_of
 from calm.physics.line import Floats
 from calm.records.record import Levels, Record
@@ -54,6 +55,8 @@ OF_MOTION: Mapping[str, tuple[tuple[str, ...], tuple[str, str, Attributes]]] = {
     ),
 }
 """Dimensions besides time, unit, meaning and attributes of what a batch does not have."""
+OF_CURRENTS = frozenset({"current_factor", "current_doubt", "plain_depth"})
+"""Those of them that need a measured current."""
 
 
 def run_motion(
@@ -121,7 +124,8 @@ def motion_layout(task: Task, record: MeasuredRecord) -> ResultLayout:
     layout = layout_of(task.mooring, record, None)
     known = dict(layout.sizes)
     known["sensor"] = len(task.measured.label)
-    names = level_names(task.measured, labels_of(task.mooring))
+    alone = task.common.law is not None
+    names = () if alone else level_names(task.measured, labels_of(task.mooring))
     known["level"] = len(names)
     variables = [*layout.variables]
     if names:
@@ -130,7 +134,7 @@ def motion_layout(task: Task, record: MeasuredRecord) -> ResultLayout:
         meaning = "sensors whose pressures are used, from the top down"
         variables.append(labels("sensor_label", "sensor", task.measured.label, meaning))
     for name, (dimensions, quantity) in OF_MOTION.items():
-        if all(known.get(dimension) for dimension in dimensions):
+        if all(known.get(each) for each in dimensions) and not (alone and name in OF_CURRENTS):
             beside = "".join(f"{dimension}_label" for dimension in dimensions)
             variables += numbers(("time", *dimensions), {name: quantity}, beside)
     sizes = {name: size for name, size in known.items() if size}
@@ -183,11 +187,13 @@ class Task:
         Returns
         -------
         The profiles with the depths that were estimated, and `clamp_depth_sd`, `depth_sd`,
-        `current_factor`, `current_doubt`, `residual`, `plain_depth`.
+        `residual`, and of measured currents `current_factor`, `current_doubt`, `plain_depth`.
         """
         one = self.measured.at(slice(start, stop))
         moments = LineResponse(one, *self._forwards)
-        found = estimated(moments, self.common)
+        law = self.common.law
+        state = () if law is None else (unknown_state(moments, self.common),)
+        found = estimated(moments, self.common, *state)
         likely = moments.forward.solve(found.likely.level, found.likely.u, found.likely.v)
         clamps = likely.clamp_depth.shape[1]
         shift = found.depth - points(likely)
@@ -207,14 +213,18 @@ class Task:
             profiles = replace(profiles, status=status.astype(np.int8))
         known = np.where(likely.status == 0, 1.0, np.nan)
         deviation = found.deviation * self.common.widened * known[:, None]
-        return profiles, {
+        columns = {
             "clamp_depth_sd": deviation[:, :clamps],
             "depth_sd": deviation[:, clamps:],
-            "current_factor": found.current * known,
-            "current_doubt": found.doubt * known[:, None],
             "residual": one.depth - self.common.offset - found.depth[:, one.point],
-            "plain_depth": plain(self._alone, one)[:, one.point],
         }
+        if law is None:
+            columns |= {
+                "current_factor": found.current * known,
+                "current_doubt": found.doubt * known[:, None],
+                "plain_depth": plain(self._alone, one)[:, one.point],
+            }
+        return profiles, columns
 
     @cached_property
     def _forwards(self) -> tuple[Forward, dict[str, Forward]]:

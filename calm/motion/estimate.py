@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from calm.motion import common_unknowns
 from calm.motion.common_unknowns import Common
-from calm.motion.line_response import LineResponse, ReadCurrents
+from calm.motion.line_response import Linear, LineResponse, ReadCurrents
 from calm.motion.measurements import MooringMeasurements
 from calm.physics.line import Floats
 
@@ -45,20 +45,30 @@ class Estimate:
     likely: ReadCurrents
 
 
-def estimated(moments: LineResponse, common: Common) -> Estimate:
-    """Return the posterior of all ways to read the currents and the sensors."""
+def estimated(
+    moments: LineResponse, common: Common, known: CurrentsState | None = None
+) -> Estimate:
+    """Return the posterior of all ways to read the currents and the sensors.
+
+    Parameters
+    ----------
+    known : the best state of all currents as they are; that of `best_state` where it is None
+    """
     one, still = moments.measured, moments.forward.still
-    known = best_state(moments, common)
+    known = best_state(moments, common) if known is None else known
+    furthest = FURTHEST if common.law is None else np.inf
     first, at = known.found, known.at
     every = np.arange(len(one.time))
     mixture = Mixture(moments, known.way, first)
     if not len(one.label):
         return mixture.estimate()
     for sensor in range(len(one.label)):
-        spike = posterior(one, at, known.way.spread, common, still, sensor)
+        spike = posterior(one, at, known.way.spread, common, still, sensor, furthest)
         mixture.add(
             every, known.way, spike, np.full(len(every), np.log(common_unknowns.SPIKES)), ()
         )
+    if common.law is not None:  # no current was measured that may be false
+        return mixture.estimate()
     odds, worse = _odds(moments), np.full(len(every), np.log(common_unknowns.ALL_WORSE))
     count = np.isfinite(one.depth).sum(axis=1)
     fair = -0.5 * (count + np.linalg.slogdet(first.expected)[1])
@@ -212,33 +222,6 @@ UNMEASURED = 1e4
 
 
 @dataclass(frozen=True)
-class Linear:
-    """The depths of the points near a state of the currents.
-
-    Attributes
-    ----------
-    logs : (n, g) the state
-    depth : (n, p) there [m]
-    slope : (n, p, g) with the state
-    common : (n, p, f) with the logarithms of the common factors
-    """
-
-    logs: Floats
-    depth: Floats
-    slope: Floats
-    common: Floats
-
-    def moved(self, logs: Floats, depth: Floats) -> Linear:
-        """Return the line at another state, with slopes that lead there from this one (Broyden)."""
-        step = logs - self.logs
-        size = (step**2).sum(axis=1)[:, None]
-        miss = depth - self.depth - np.einsum("npg,ng->np", self.slope, step)
-        share = np.divide(step, size, out=np.zeros_like(step), where=size > 1e-6)
-        slope = self.slope + np.nan_to_num(miss)[:, :, None] * share[:, None, :]
-        return Linear(logs, depth, slope, self.common)
-
-
-@dataclass(frozen=True)
 class Posterior:
     """Hold what the pressures make of the currents.
 
@@ -270,6 +253,7 @@ def posterior(
     common: Common,
     still: Floats,
     spike: int = -1,
+    furthest: float = FURTHEST,
 ) -> Posterior:
     """Return the best state by a linear law, and what is known of all depths then.
 
@@ -278,6 +262,7 @@ def posterior(
     spread : (n, g, g) prior covariance of the logarithms
     still : (p,) depths in still water [m]
     spike : a sensor whose pressures are taken for spikes
+    furthest : of a logarithm, at most
     """
     n, p, g = at.slope.shape
     s, f = len(one.point), at.common.shape[2]
@@ -308,7 +293,7 @@ def posterior(
     noise = np.where(known, common_unknowns.NOISE**2, UNMEASURED**2)
     if spike >= 0:
         noise[:, spike] = np.maximum(noise[:, spike], common_unknowns.SPIKE**2)
-    down = np.maximum(there - still, 0.0) * common_unknowns.WORST
+    down = np.maximum(there - still, 0.0) * common.worst
     length = 0.25 * np.ptp(still)
     alike = np.exp(-np.abs(still[:, None] - still[one.point]) / max(length, 1.0))
     bent = down[:, :, None] * alike * down[:, None, one.point]
@@ -320,7 +305,7 @@ def posterior(
     inverse = np.linalg.inv(expected)
     solved = (inverse @ innovation[:, :, None])[:, :, 0]
     gain = (state @ (turned @ solved[:, :, None]))[:, :, 0]
-    logs = np.clip(gain[:, :g], -FURTHEST, FURTHEST)
+    logs = np.clip(gain[:, :g], -furthest, furthest)
     # what the state cannot take up is spread along the line as its own errors are
     depth = base + (beside @ solved[:, :, None])[:, :, 0]
     whole = (spread_of * slope).sum(axis=2) + down**2

@@ -45,6 +45,33 @@ class ReadCurrents:
     spread: Floats
 
 
+@dataclass(frozen=True)
+class Linear:
+    """The depths of the points near a state of the currents.
+
+    Attributes
+    ----------
+    logs : (n, g) the state
+    depth : (n, p) there [m]
+    slope : (n, p, g) with the state
+    common : (n, p, f) with the logarithms of the common factors
+    """
+
+    logs: Floats
+    depth: Floats
+    slope: Floats
+    common: Floats
+
+    def moved(self, logs: Floats, depth: Floats) -> Linear:
+        """Return the line at another state, with slopes that lead there from this one (Broyden)."""
+        step = logs - self.logs
+        size = (step**2).sum(axis=1)[:, None]
+        miss = depth - self.depth - np.einsum("npg,ng->np", self.slope, step)
+        share = np.divide(step, size, out=np.zeros_like(step), where=size > 1e-6)
+        slope = self.slope + np.nan_to_num(miss)[:, :, None] * share[:, None, :]
+        return Linear(logs, depth, slope, self.common)
+
+
 class LineResponse:
     """The times of a block, with a mooring to ask."""
 
@@ -97,6 +124,10 @@ class LineResponse:
         common : what is common to the record
         without : groups whose currents are taken from the others
         """
+        if common.law is not None:
+            u = np.tile(np.exp(common.law.mean), (len(level), 1))
+            spread = np.tile(common.law.covariance, (len(level), 1, 1))
+            return ReadCurrents(level, u, np.zeros_like(u), spread)
         u, v, known = self.read(level, without)
         speed = np.maximum(np.hypot(u, v), 1e-3)
         own = np.hypot(

@@ -8,13 +8,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from calm.batch.statuses import implausible
 from calm.errors import UsageError
-from calm.motion.sensors import Sensor
+from calm.motion.sensors import Sensor, split_label
 from calm.physics.line import Floats, Integers
 from calm.records.current_file import open_record
 from calm.records.record import RULES
@@ -96,15 +97,15 @@ Times = NDArray[np.datetime64]
 
 
 def common_times(currents: Sequence[CurrentMeasurements], sensors: Sequence[Sensor]) -> Times:
-    """Return those of the first current; of the others, and then of the sensors, what is far from
-    these.
+    """Return those of the first current, or of the first sensor without; of the others, and then of
+    the sensors, what is far from these.
 
     Far is more than half of the median step of what is there already; of readings less than a
     quarter apart, as those of a burst, the first is taken.
     """
-    times = currents[0].time
-    others: list[CurrentMeasurements | Sensor] = [*currents[1:], *sensors]
-    for other in others:
+    everything: list[CurrentMeasurements | Sensor] = [*currents, *sensors]
+    times = everything[0].time
+    for other in everything[1:]:
         step = np.median(np.diff(times)) if len(times) > 1 else np.timedelta64(1, "h")
         after = np.clip(np.searchsorted(times, other.time), 0, len(times) - 1)
         before = np.maximum(after - 1, 0)
@@ -219,17 +220,23 @@ def joined(
         tuple(one.label or labels[where] for one, where in zip(sensors, used, strict=True)),
         point,
         depth,
-        np.stack([column[2] for column in columns], axis=1),
+        _beside([column[2] for column in columns], len(time)),
         level_point,
         np.array([used.index(at) if at in used else FREE for at in level_point.tolist()], np.int64),
-        np.stack([column[3] for column in columns], axis=1),
-        np.stack([column[4] for column in columns], axis=1),
-        np.stack([column[5] for column in columns], axis=1),
+        _beside([column[3] for column in columns], len(time)),
+        _beside([column[4] for column in columns], len(time)),
+        _beside([column[5] for column in columns], len(time)).astype(np.int8),
         tide,
         _false(currents, time),
     )
-    _refuse_apart(measured)
+    if currents:
+        _refuse_apart(measured)
     return measured
+
+
+def _beside(columns: Sequence[NDArray[Any]], times: int) -> NDArray[Any]:
+    """Return columns side by side; (n, 0) without any."""
+    return np.stack(columns, axis=1) if columns else np.zeros((times, 0))
 
 
 def _false(currents: Sequence[CurrentMeasurements], time: Times) -> NDArray[np.bool_] | None:
@@ -290,13 +297,14 @@ class CurrentMeasurements:
 
 
 def read_currents(
-    paths: Sequence[Path],
+    given: Sequence[str | Path],
     seabed: float,
     place: tuple[float, float] | None,
     declination: float | None,
     maximum_speed: float,
 ) -> list[CurrentMeasurements]:
-    """Return the currents of some files.
+    """Return the currents of some files, each given by its path, or as ``LABEL=PATH`` where it has
+    one level.
 
     Parameters
     ----------
@@ -309,9 +317,12 @@ def read_currents(
     ------
     InputError
         A file cannot be understood.
+    UsageError
+        A label is given for a file of several levels.
     """
     found = []
-    for path in paths:
+    for text in given:
+        label, path = split_label(str(text))
         with open_record(
             path, seabed=seabed, at=place, declination=declination, on_the_line=True
         ) as record:
@@ -327,6 +338,10 @@ def read_currents(
                 path.name,
                 tuple(note for note in record.notes if note not in RULES),
             )
+        if label:
+            if len(mine.label) > 1:
+                raise UsageError(f"{path} has {len(mine.label)} levels; `{label}=` names only one")
+            mine = replace(mine, label=(label,), depth=np.full_like(mine.depth, np.nan))
         found.append(_plausible(mine, maximum_speed))
     return found
 

@@ -93,7 +93,7 @@ def read_sensors(
     """
     found: list[Sensor] = []
     for text in given:
-        label, path = _split(text)
+        label, path = split_label(text)
         if not path.exists():
             raise InputError([Problem(str(path), 0, 0, "no such file")])
         mine = (
@@ -113,7 +113,8 @@ def read_sensors(
     return found
 
 
-def _split(text: str) -> tuple[str, Path]:
+def split_label(text: str) -> tuple[str, Path]:
+    """Return label and path of ``LABEL=PATH``; an empty label of a path alone."""
     label, equals, path = text.partition("=")
     if equals and not Path(text).exists():
         return label.strip(), Path(path)

@@ -31,6 +31,7 @@ from calm.motion.remarks import (
     rms,
     sensor_remarks,
 )
+from calm.motion.unknown_currents import learn_currents, with_knots
 from calm.motion.whole_record import estimate_common
 from calm.physics.line import Floats
 from calm.suggestions import unknown
@@ -84,7 +85,11 @@ class Study:
 
 
 def prepare(
-    mooring: Mooring, measured: MooringMeasurements, names: Sequence[str], hidden: Sequence[str]
+    mooring: Mooring,
+    measured: MooringMeasurements,
+    names: Sequence[str],
+    hidden: Sequence[str],
+    tell: Callable[[str], None] = lambda _: None,
 ) -> Task:
     """Estimate what is common to the record from the sensors that are not hidden.
 
@@ -94,11 +99,12 @@ def prepare(
     measured : with the sensors that are hidden
     names : of the factors that are estimated
     hidden : labels of sensors that are not used
+    tell : is told what is going on, where no current was measured
 
     Raises
     ------
     UsageError
-        A hidden sensor is none; none is left.
+        A hidden sensor is none; none is left, or one alone without a current.
     """
     for label in hidden:
         if label not in measured.label:
@@ -107,7 +113,16 @@ def prepare(
     used = without(measured, hidden)
     if not used.label:
         raise UsageError("--hold-out: no sensor is left to estimate from")
-    return Task(mooring, used, estimate_common(mooring, used, names))
+    if used.u.shape[1]:
+        return Task(mooring, used, estimate_common(mooring, used, names))
+    if len(used.label) < 2:
+        raise UsageError(
+            "without --currents at least two sensors with a pressure are needed, and one is left: "
+            "one pressure says how strong the current is, not where; give --currents, or hide "
+            "fewer"
+        )
+    used = with_knots(used, mooring)
+    return Task(mooring, used, learn_currents(mooring, used, names, tell))
 
 
 def intervals(task: Task) -> dict[str, tuple[float, float, float]]:
@@ -129,7 +144,8 @@ def judged(task: Task, measured: MooringMeasurements, result: Dataset) -> Study:
     """
     used = task.measured
     residual = np.asarray(result["residual"].values, np.float64)
-    plain = np.asarray(result["plain_depth"].values, np.float64)
+    alone = task.common.law is not None
+    plain = None if alone else np.asarray(result["plain_depth"].values, np.float64)
     down = knockdown(used)
     every = np.isfinite(down)
     fit_of, plain_of = {}, {}
@@ -137,7 +153,8 @@ def judged(task: Task, measured: MooringMeasurements, result: Dataset) -> Study:
         calm = calm_times(down, every & np.isfinite(used.depth[:, j]))
         depth = used.depth[:, j] - task.common.offset[j]
         fit_of[label] = agreement(depth - residual[:, j], used.depth[:, j], calm, every)
-        plain_of[label] = agreement(plain[:, j], used.depth[:, j], calm, every)
+        if plain is not None:
+            plain_of[label] = agreement(plain[:, j], used.depth[:, j], calm, every)
     still = Forward(task.mooring, {}).still
     hidden = [label for label in measured.label if label not in used.label]
     held = []
@@ -146,13 +163,17 @@ def judged(task: Task, measured: MooringMeasurements, result: Dataset) -> Study:
         depth, spread = depths_at(result, point)
         held.append(judge_hidden(measured, used, label, depth, spread, still))
     said = sensor_remarks(used.label, used.time, residual, down, task.common)
-    names = level_names(used, labels_of(task.mooring))
-    false = false_current_times(names, used.time, np.asarray(result["current_doubt"].values))
-    said += current_remarks(false, len(used.time))
-    calm = calm_times(down, every)
-    gain = gain_remarks(used.label, used.depth[calm], plain[calm])
+    false: Mapping[str, NDArray[np.datetime64]] = {}
+    gain: list[str] = []
+    if plain is not None:
+        names = level_names(used, labels_of(task.mooring))
+        false = false_current_times(names, used.time, np.asarray(result["current_doubt"].values))
+        said += current_remarks(false, len(used.time))
+        calm = calm_times(down, every)
+        gain = gain_remarks(used.label, used.depth[calm], plain[calm])
     said += gain or datum_remarks(task.common, float(task.mooring.water.depth))
-    said += clock_remarks(used.label, used.time, used.depth, plain)
+    if plain is not None:
+        said += clock_remarks(used.label, used.time, used.depth, plain)
     if task.common.widened > 1.0:
         said.append(
             "the pressures miss the computed depths by more than all errors that are allowed "
@@ -291,7 +312,7 @@ def series_of(
         depth, spread = depths_at(result, int(measured.point[j]))
         hidden = label not in used
         plain = None
-        if not hidden:
+        if not hidden and "plain_depth" in result:
             plain = np.asarray(result["plain_depth"][:, used.index(label)].values, np.float64)
         found.append(
             SensorSeries(label, hidden, measured.time, measured.depth[:, j], depth, spread, plain)

@@ -133,7 +133,7 @@ def estimate_common(
                 best, scale, left = gain, other, rest
         expected = expected + ((scale / common.scale) ** 2 - 1.0) * currents
         evidence = _evidence(raw, left, fixed, expected, there)
-        alike = _alike(evidence.pulls(fixed, left)[:, 0]) if names else 1.0
+        alike = repeated(evidence.pulls(fixed, left)[:, 0]) if names else 1.0
         before = common.value
         begun = replace(begun, scale=scale, widened=_widened(left, expected, there))
         common = _placed(begun, evidence, fall, time, alike)
@@ -175,7 +175,7 @@ def _unmoved(known: Common) -> tuple[Floats, Floats]:
 def _memory(evidence: Evidence, left: Floats) -> float:
     """Return over how many times in a row the errors of a sensor are the same, at most."""
     sensors = left.shape[1]
-    return max(_alike(column) for column in evidence.pulls(evidence.seen, left)[:, -sensors:].T)
+    return max(repeated(column) for column in evidence.pulls(evidence.seen, left)[:, -sensors:].T)
 
 
 def _placed(
@@ -242,7 +242,7 @@ def _scale(left: Floats, expected: Floats, currents: Floats, scale: float) -> tu
     return float(np.exp(tried[best])), likely[best]
 
 
-def _alike(pull: Floats) -> float:
+def repeated(pull: Floats) -> float:
     """Return how many times that follow each other have the same error, by its autocorrelation."""
     one = pull - pull.mean()
     whole = float(one @ one)

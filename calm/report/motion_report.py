@@ -51,7 +51,7 @@ def motion_report(
     study: Study,
     series: Sequence[SensorSeries],
     time: NDArray[datetime64],
-    factor: Floats,
+    factor: Floats | None,
     name: str,
     notes: Sequence[str],
 ) -> Report:
@@ -60,7 +60,7 @@ def motion_report(
     Parameters
     ----------
     series : of the sensors
-    time, factor : (n,) the factor on the current over time
+    time, factor : (n,) the factor on the current over time; None of currents that are not known
     notes : what was said of the input
     """
     shown = sorted(series, key=lambda one: not one.hidden)[:MOST_PANELS]
@@ -68,11 +68,16 @@ def motion_report(
     doubts = Prose(study.remarks, State.WARN) if study.remarks else Prose((_NOTHING,))
     marks = (Figure(_FALSE, false_figure(time, study.false)),) if study.false else ()
     held: tuple[Block, ...] = (held_out_table(study.held_out),) if study.held_out else ()
-    factors = factors_table(study.factors, study.task.common.datum)
+    factors: list[Block] = [factors_table(study.factors, study.task.common.datum)]
+    if factor is not None:
+        factors.append(Figure("Over time", factor_figure(time, factor)))
     parts = (
         ReportPart("Doubtful data", (doubts, *marks)),
-        ReportPart("Factors", (factors, Figure("Over time", factor_figure(time, factor)))),
-        ReportPart("Measured against computed", (sensors_table(study), *held, Note((PLAIN,)))),
+        ReportPart("Factors", tuple(factors)),
+        ReportPart(
+            "Measured against computed",
+            (sensors_table(study), *held, Note((PLAIN if study.plain else UNKNOWN,))),
+        ),
         ReportPart("Inputs", (Prose(tuple(notes) or ("Nothing was left out.",)),)),
         ReportPart("Depths", (Figure(_DEPTHS, depth_figure(shown), tall=True), Note((_LEGEND,)))),
         ReportPart("Scatter", (Figure("Computed against measured depths", scatter_figure(shown)),)),
@@ -204,13 +209,19 @@ PLAIN = (
 )
 
 
+UNKNOWN = (
+    "The currents are not known: what they may have been is learnt from these pressures. rms is "
+    "that of the difference less its mean over the calm times, the tenth with the least knockdown."
+)
+
+
 def motion_part(study: Study, name: str) -> ReportPart:
     """Factors, sensors, sensors that were hidden, and what to doubt."""
     blocks: list[Block] = [
         Heading(name),
         factors_table(study.factors, study.task.common.datum),
         sensors_table(study),
-        Prose((PLAIN,)),
+        Prose((PLAIN if study.plain else UNKNOWN,)),
     ]
     if study.held_out:
         blocks.append(held_out_table(study.held_out))
@@ -234,6 +245,14 @@ def factors_table(factors: Mapping[str, tuple[float, float, float]], datum: floa
 
 def sensors_table(study: Study) -> Table:
     """Return how sensors in use agree with the currents alone, and with what is estimated."""
+    if not study.plain:
+        return table_of(
+            "",
+            study.fit.items(),
+            (Column("sensor"), lambda one: one[0]),
+            (Column("times", numeric=True), lambda one: str(one[1].count)),
+            (Column("estimated: rms", "m", numeric=True), lambda one: metres(one[1].rms)),
+        )
     return table_of(
         "",
         study.plain.items(),
@@ -292,7 +311,7 @@ def motion_document(study: Study, name: str) -> dict[str, Any]:
                 "label": label,
                 **_agreement(fit),
                 "offset": float(offset),
-                "plain": _agreement(study.plain[label]),
+                **({"plain": _agreement(study.plain[label])} if label in study.plain else {}),
             }
             for (label, fit), offset in zip(
                 study.fit.items(), study.task.common.offset, strict=True

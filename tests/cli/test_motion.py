@@ -382,3 +382,39 @@ def test_sensors_are_found_by_nominal_depth_in_order_down_the_line(calm, given, 
     middle.assign_coords(DEPTH=("DEPTH", [105.0], place)).to_netcdf(folder / "one.nc")
     apart = calm(*COMMAND, "--pressures", "one.nc", "--match", "depth", "-o", "e.nc")
     assert apart.code == 2 and "may be `middle` or `upper`" in apart.err
+
+
+def test_two_pressures_place_the_third_without_any_current(calm, given, truth, folder):
+    done = calm("motion", "m.yaml", "--pressures", "p.csv", "-o", "d.nc", "--workers", 1,
+                "--hold-out", "middle", "--json", "-", "--report", "page")  # fmt: skip
+    assert done.code == 0, done.err
+    said = json.loads(done.out)
+    assert set(said["factors"]) == {"rigid_drag", "length"}
+    assert all("plain" not in one for one in said["sensors"])
+    (held,) = said["held_out"]
+    assert held["rms"] < held["linear_rms"] and held["coverage_95"] > 0.9
+    assert (folder / "page" / "motion.html").stat().st_size > 1000
+    with xarray.open_dataset(folder / "d.nc", engine="h5netcdf") as result:
+        assert not {"current_factor", "plain_depth", "level_label"} & set(result)
+        off = result["clamp_depth"].values - truth[1]
+        assert (np.abs(off) < 4.0 * result["clamp_depth_sd"].values).all()
+
+
+def test_one_pressure_without_a_current_is_refused(calm, given, folder):
+    done = calm("motion", "m.yaml", "--pressures", "p.csv", "-o", "d.nc",
+                "--hold-out", "middle,lower")  # fmt: skip
+    assert done.code == 2 and "at least two sensors" in done.err
+    assert not (folder / "d.nc").exists()
+
+
+def test_a_file_of_one_current_meter_is_given_with_its_label(calm, given, truth, folder):
+    rows = [f"{time},100,{u:.4f},0" for time, u in zip(stamps(), truth[0][:, 1], strict=True)]
+    (folder / "one.csv").write_text("time,depth[m],u[m/s],v[m/s]\n" + "\n".join(rows) + "\n")
+    done = calm("motion", "m.yaml", "--currents", "middle=one.csv", "--pressures", "p.csv",
+                "-o", "d.nc")  # fmt: skip
+    assert done.code == 0, done.err
+    with xarray.open_dataset(folder / "d.nc", engine="h5netcdf") as result:
+        assert result["level_label"].values.tolist() == ["middle"]
+    done = calm("motion", "m.yaml", "--currents", "middle=c.csv", "--pressures", "p.csv",
+                "-o", "e.nc")  # fmt: skip
+    assert done.code == 2 and "has 3 levels" in done.err

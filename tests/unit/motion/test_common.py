@@ -9,7 +9,7 @@ import pytest
 import calm.motion.whole_record as module
 from calm.motion import common_unknowns
 from calm.motion.measurements import MooringMeasurements
-from calm.motion.whole_record import _alike, _scale, estimate_common
+from calm.motion.whole_record import _scale, estimate_common, repeated
 
 STILL = np.array([50.0, 100.0, 180.0])  # of three points; the first and the last have sensors
 GAIN = np.array([[90.0, 60.0], [50.0, 45.0], [15.0, 20.0]])
@@ -96,7 +96,7 @@ def best(one, start=None):
         weight = (4.0 + known.sum(axis=1)) / (4.0 + misfit)
         normal = np.einsum("n,nsi,nst,ntj->ij", weight, seen, inverse, seen)
         each = np.einsum("n,nsi,nst,nt->ni", weight, seen, inverse, left)
-        memory = _alike(each[:, 0])
+        memory = repeated(each[:, 0])
         pull = each.sum(axis=0) + normal @ state
         covariance = np.linalg.inv(normal / memory + np.linalg.inv(prior_of))
         state = covariance @ pull / memory

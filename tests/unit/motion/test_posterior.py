@@ -43,7 +43,7 @@ def test_the_posterior_is_that_of_all_unknowns_written_out(tide):
     found = posterior(one, at, SPREAD[None], common, STILL)
     # unknowns: two logarithms, sea, factor, datum, two offsets, two steps, three errors of the line
     sea = common_unknowns.TIDE if tide is None else common_unknowns.RESIDUAL_TIDE
-    down = common_unknowns.WORST * (THERE - STILL)
+    down = 0.07 * (THERE - STILL)
     alike = np.exp(-np.abs(STILL[:, None] - STILL[None]) / (0.25 * np.ptp(STILL)))
     # the law is of the exponential kind only between a point and a sensor
     bent = np.outer(down, down) * alike

@@ -8,7 +8,7 @@ from scipy.stats import multivariate_t, norm
 
 from calm.motion.line_response import with_factors
 from calm.motion.measurements import MooringMeasurements
-from calm.motion.whole_record import MOST_TIMES, SCALES, _alike, _chosen, _scale
+from calm.motion.whole_record import MOST_TIMES, SCALES, _chosen, _scale, repeated
 from calm.physics.line import Line
 
 
@@ -39,16 +39,18 @@ def test_errors_that_repeat_count_as_one_plus_twice_the_sum_of_their_autocorrela
     for step, noise in enumerate(random.standard_normal(len(pull) - 1)):
         pull[step + 1] = memory * pull[step] + noise
     expected = 1.0 + 2.0 * sum(memory**lag for lag in range(1, lags + 1))
-    assert _alike(pull + 5.0) == pytest.approx(expected, rel=0.08)
+    assert repeated(pull + 5.0) == pytest.approx(expected, rel=0.08)
 
 
 def test_a_constant_pull_and_a_short_one_have_no_memory():
-    assert _alike(np.full(50, 3.0)) == 1.0
-    assert _alike(np.array([1.0, 2.0, 3.0])) == 1.0
+    assert repeated(np.full(50, 3.0)) == 1.0
+    assert repeated(np.array([1.0, 2.0, 3.0])) == 1.0
     # of four times as many as a lag it is taken, down to two over the root of their number
-    assert _alike(np.repeat([1.0, -1.0], 4)) == pytest.approx(1.0)
+    assert repeated(np.repeat([1.0, -1.0], 4)) == pytest.approx(1.0)
     slow = np.repeat([1.0, -1.0], 50)
-    assert _alike(slow) == pytest.approx(1.0 + 2.0 * sum(1.0 - 0.03 * lag for lag in range(1, 25)))
+    assert repeated(slow) == pytest.approx(
+        1.0 + 2.0 * sum(1.0 - 0.03 * lag for lag in range(1, 25))
+    )
 
 
 def test_times_with_a_current_and_a_pressure_are_taken_evenly():

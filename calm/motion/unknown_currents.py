@@ -1,0 +1,321 @@
+"""Currents that nobody measured: what the pressures of a record say of them, time by time.
+
+The speed at a few knots in depth is unknown at each time, its direction is the same at all of
+them: the depths do not change with it. The logarithms of the speeds are normal, with a mean and a
+covariance that are learnt from the record itself by expectation and maximisation (Dempster, Laird
+and Rubin 1977): each time is fitted by Gauss and Newton under the law as it stands, and the law
+becomes the mean and the covariance of what was found, with what remains open at each time. Where
+the pressures leave the law open it stays as it was assumed. Besides, the line itself is wrong by a
+smooth error along it, a share of the knockdown; of several shares the pressures choose the most
+likely.
+
+The fits of the times that were learnt from are kept: each other time begins at the one whose depths
+are nearest to its own, with the slopes there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calm.case import Mooring
+from calm.motion import common_unknowns
+from calm.motion.common_unknowns import Common
+from calm.motion.estimate import CurrentsState, Posterior, posterior
+from calm.motion.line_response import STEP, Forward, Linear, LineResponse, ReadCurrents
+from calm.motion.measurements import FREE, MooringMeasurements
+from calm.motion.whole_record import forwards_of, repeated
+from calm.physics.line import Floats, Integers
+
+KNOTS, FINER = 6, 2.2
+"""Depths at which the speed is unknown; the power of their share of the depth below the top of the
+line by which they are closer together above, as currents change most there."""
+SURFACE, DECAY, LEAST = 0.3, 400.0, 0.03
+"""The speeds that are assumed: at the top [m/s], decaying over this depth [m], the scale of the
+thermocline, and what is added everywhere [m/s]."""
+ALL, EACH, ALIKE = 0.7, 1.4, 0.5
+"""Deviations of the logarithm of the speed that is assumed: of all knots alike, of each, and the
+share of the knots over which these are alike."""
+PRIOR = 6.0
+"""So many times are what is assumed worth beside those of the record."""
+MOST_TIMES, TURNS, FIRST = 240, 12, 2
+"""Times that the law is learnt from, turns, and those before the law is first changed."""
+STRONGER = 0.5
+"""Share of these times that it is learnt from: those with more knockdown, as the others are blurred
+by the tide."""
+LONGEST = 1.0
+"""Step of a logarithm, at most."""
+SHARES = (0.01, 0.02, 0.03, 0.05, 0.07, 0.1, 0.15)
+"""Errors of the line that are tried, as shares of the knockdown."""
+USUAL, WITHIN = 0.05, 0.7
+"""The one that is assumed, and the deviation of its logarithm."""
+SEABED = 0.0005
+"""Of the depth of the water, as a share of it: where pressures alone place a line, a wrong length
+stands for what is wrong by more."""
+AGAIN = 3
+"""Steps from a fit that is kept to that of another time."""
+
+
+@dataclass(frozen=True)
+class SpeedLaw:
+    """Hold what is known of the speeds before a time is looked at, and the times it came from.
+
+    Attributes
+    ----------
+    mean, covariance : (k,), (k, k) of the logarithms of the speeds [m/s]
+    kept : fits of the times that were learnt from, the first at the mean; states are relative to it
+    """
+
+    mean: Floats
+    covariance: Floats
+    kept: Linear
+
+
+def with_knots(measured: MooringMeasurements, mooring: Mooring) -> MooringMeasurements:
+    """Return what was measured with the knots as its levels, whose currents are not known."""
+    top, seabed = float(Forward(mooring, {}).still.min()), float(mooring.water.depth)
+    knots = max(top, 0.0) + (seabed - max(top, 0.0)) * np.linspace(0.0, 1.0, KNOTS) ** FINER
+    shape = len(measured.time), KNOTS
+    return replace(
+        measured,
+        level_depth=np.broadcast_to(knots, shape).copy(),
+        level_point=np.full(KNOTS, FREE, np.int64),
+        level_sensor=np.full(KNOTS, FREE, np.int64),
+        u=np.full(shape, np.nan),
+        v=np.full(shape, np.nan),
+        flag=np.zeros(shape, np.int8),
+    )
+
+
+def assumed_law(measured: MooringMeasurements) -> tuple[Floats, Floats]:
+    """Return (k,), (k, k) mean and covariance of the logarithms of the speeds beforehand."""
+    knots = measured.level_depth[0]
+    mean = np.log(SURFACE * np.exp(-(knots - knots[0]) / DECAY) + LEAST)
+    place = np.linspace(0.0, 1.0, len(knots))
+    near = np.exp(-np.abs(place[:, None] - place) / ALIKE)
+    return mean, ALL**2 + EACH**2 * near
+
+
+def learn_currents(
+    mooring: Mooring,
+    measured: MooringMeasurements,
+    names: Sequence[str],
+    tell: Callable[[str], None] = lambda _: None,
+) -> Common:
+    """Learn the law of the speeds, and what is common to the record beside it.
+
+    Parameters
+    ----------
+    mooring : as its file says
+    measured : with the knots as levels
+    names : of the factors that are estimated
+    tell : is told what is going on
+    """
+    part = measured.at(_chosen(measured))
+    mean, covariance = assumed_law(part)
+    begun = _assumed(mooring, part, names)
+    common, logs = begun, np.zeros((len(part.time), KNOTS))
+    at = None
+    before = covariance.copy()
+    nothing = np.zeros_like(begun.covariance)
+    reach = np.ones(len(part.time))
+    used = _strong(part)
+    for turn in range(TURNS):
+        tell(f"learning the currents from the pressures: {turn + 1} of {TURNS}")
+        moments = LineResponse(part, *forwards_of(mooring, common))
+        fit = _Fit(moments, replace(common, covariance=nothing), mean, covariance)
+        at = fit.linear(logs) if at is None else fit.moved(at, logs)
+        found = fit.posterior(at)
+        tried = logs + reach[:, None] * np.clip(found.logs - logs, -LONGEST, LONGEST)
+        ahead = fit.linear(tried)
+        better = fit.misfit(ahead) <= fit.misfit(at) + 1e-6
+        logs = np.where(better[:, None], tried, logs)
+        reach = np.where(better, np.minimum(1.0, 2.0 * reach), reach / 3.0)
+        at = _either(better, ahead, at)
+        found = fit.posterior(at)
+        if turn < FIRST:
+            continue
+        common = _worst(fit, at, common, used)
+        common = _placed(begun, replace(common, covariance=nothing), fit, at, found)
+        if turn == TURNS - 1:
+            break
+        mine = logs[used]
+        seen = at.slope[used][:, part.point]
+        taken = covariance @ seen.transpose(0, 2, 1)
+        left = covariance - taken @ np.linalg.solve(found.expected[used], taken.transpose(0, 2, 1))
+        centre = mine.mean(axis=0)
+        spread = np.einsum("nk,nl->kl", mine - centre, mine - centre) + left.sum(axis=0)
+        covariance = (spread + PRIOR * before) / (len(mine) + PRIOR)
+        mean, logs = mean + centre, logs - centre
+    return replace(common, law=SpeedLaw(mean, covariance, _with_mean(fit, at)))
+
+
+@dataclass(frozen=True)
+class _Fit:
+    """The times that are learnt from, under a law."""
+
+    moments: LineResponse
+    common: Common
+    mean: Floats
+    covariance: Floats
+
+    @property
+    def way(self) -> ReadCurrents:
+        law = SpeedLaw(self.mean, self.covariance, _NOTHING)
+        return self.moments.way(self.moments.measured.level_depth, replace(self.common, law=law))
+
+    def linear(self, logs: Floats) -> Linear:
+        """Return the line in these currents with its slopes there."""
+        there = self.moments.depths(self.way, logs)
+        slope = self.moments.slopes(self.way, logs, there)
+        columns = [
+            (self.moments.depths(self.way, logs, forward) - there) / STEP
+            for forward in self.moments.shifted.values()
+        ]
+        common = np.stack(columns, -1) if columns else np.zeros((*there.shape, 0))
+        return Linear(logs, there, slope, np.nan_to_num(common))
+
+    def moved(self, at: Linear, logs: Floats) -> Linear:
+        """Return the same currents where law and line have changed little: the slopes stay."""
+        return replace(at, logs=logs, depth=self.moments.depths(self.way, logs))
+
+    def posterior(self, at: Linear, common: Common | None = None) -> Posterior:
+        """Return what the pressures make of the currents by the slopes at a state."""
+        one, still = self.moments.measured, self.moments.forward.still
+        return posterior(one, at, self.way.spread, common or self.common, still, furthest=np.inf)
+
+    def misfit(self, at: Linear) -> Floats:
+        """Return (n,) twice the negative logarithm of how likely a state is, with its pressures."""
+        one, point = self.moments.measured, self.moments.measured.point
+        found = self.posterior(at)
+        seen = at.slope[:, point]
+        rest = found.expected - seen @ self.covariance @ seen.transpose(0, 2, 1)
+        tide = 0.0 if one.tide is None else one.tide[:, None]
+        there = at.depth[:, point] + self.common.datum + self.common.offset + tide
+        left = np.where(np.isfinite(one.depth), one.depth - there, 0.0)
+        size = np.linalg.slogdet(rest)[1]
+        bent = np.einsum("ns,ns->n", left, np.linalg.solve(rest, left[:, :, None])[:, :, 0])
+        own = np.einsum("nk,kl,nl->n", at.logs, np.linalg.inv(self.covariance), at.logs)
+        sum_of_all: Floats = np.nan_to_num(bent + own + size, nan=np.inf)
+        return sum_of_all
+
+
+_NOTHING = Linear(*(np.zeros((0,) * n) for n in (2, 2, 3, 3)))
+
+
+def _either(first: NDArray[np.bool_], one: Linear, other: Linear) -> Linear:
+    chosen = [
+        np.where(first.reshape(-1, *[1] * (mine.ndim - 1)), mine, yours)
+        for mine, yours in zip(vars(one).values(), vars(other).values(), strict=True)
+    ]
+    return Linear(*chosen)
+
+
+def _with_mean(fit: _Fit, at: Linear | None) -> Linear:
+    """Return the fits of some times, and before them that of the mean."""
+    assert at is not None
+    moments, one = fit.moments, fit.moments.measured.at(slice(0, 1))
+    alone = LineResponse(one, moments.forward, moments.shifted)
+    first = replace(fit, moments=alone).linear(np.zeros((1, KNOTS)))
+    both = zip(vars(first).values(), vars(at).values(), strict=True)
+    return Linear(*(np.concatenate(pair) for pair in both))
+
+
+def _chosen(measured: MooringMeasurements) -> Integers:
+    """Return times with the most pressures, spread evenly over the depth they measure."""
+    known = np.isfinite(measured.depth)
+    count = known.sum(axis=1)
+    used = np.flatnonzero(count == count.max())
+    order = used[np.argsort(measured.depth[used].sum(axis=1, where=known[used]), kind="stable")]
+    if len(order) > MOST_TIMES:
+        order = order[np.linspace(0, len(order) - 1, MOST_TIMES).round().astype(np.int64)]
+    return np.sort(order)
+
+
+def _strong(part: MooringMeasurements) -> Integers:
+    """Return which times have more knockdown than the others."""
+    down = np.nansum(part.depth, axis=1)
+    return np.flatnonzero(down >= np.quantile(down, 1.0 - STRONGER))
+
+
+def _assumed(mooring: Mooring, part: MooringMeasurements, names: Sequence[str]) -> Common:
+    sensors = len(part.label)
+    spread = [
+        *(common_unknowns.FACTORS[name][1] for name in names),
+        SEABED * mooring.water.depth,
+        *[common_unknowns.OFFSET] * sensors,
+        *[0.0] * sensors,
+    ]
+    none, never = np.zeros(sensors), np.full(sensors, "NaT", "M8[ns]")
+    return Common(
+        dict.fromkeys(names, 1.0), 0.0, none, none, never, none, np.diag(np.square(spread)), 1.0,
+        np.zeros((KNOTS, KNOTS)), worst=USUAL,
+    )  # fmt: skip
+
+
+def _worst(fit: _Fit, at: Linear, common: Common, used: Integers) -> Common:
+    """Return the error of the line under which the pressures are most likely."""
+    log = []
+    for share in SHARES:
+        found = fit.posterior(at, replace(fit.common, worst=share))
+        beside = -0.5 * (np.log(share / USUAL) / WITHIN) ** 2
+        known = found.evidence[used]
+        log.append(float(known[np.isfinite(known)].sum()) + beside)
+    return replace(common, worst=SHARES[int(np.argmax(log))])
+
+
+def _placed(begun: Common, known: Common, fit: _Fit, at: Linear, found: Posterior) -> Common:
+    """Return factors, datum and offsets after a step of Gauss and Newton, and their covariance."""
+    point, sensors = fit.moments.measured.point, len(begun.offset)
+    names, free = list(begun.factors), len(begun.value) - sensors
+    count = len(at.depth)
+    seen = np.concatenate(
+        [
+            at.common[:, point],
+            np.ones((count, sensors, 1)),
+            np.broadcast_to(np.eye(sensors), (count, sensors, sensors)),
+        ],
+        axis=2,
+    )
+    inverse = np.linalg.inv(found.expected)
+    pulls = np.einsum("nsq,nst,nt->nq", seen, inverse, found.innovation)
+    alike = repeated(pulls[:, len(names)])
+    before = np.linalg.inv(begun.covariance[:free, :free])
+    now = known.value[:free]
+    normal = np.einsum("nsq,nst,ntr->qr", seen, inverse, seen) / alike + before
+    step = np.linalg.solve(normal, pulls.sum(axis=0) / alike - before @ (now - begun.value[:free]))
+    value = now + np.clip(step, -5.0, 5.0)
+    covariance = np.zeros_like(begun.covariance)
+    covariance[:free, :free] = np.linalg.inv(normal)
+    factors = np.exp(np.clip(value[: len(names)], -1.0, 1.0))
+    return replace(
+        known,
+        factors=dict(zip(names, factors.tolist(), strict=True)),
+        datum=float(value[len(names)]),
+        offset=value[len(names) + 1 :],
+        covariance=covariance,
+    )
+
+
+def unknown_state(moments: LineResponse, common: Common) -> CurrentsState:
+    """Return the best state of each time, from the nearest of the fits that were kept."""
+    law, one = common.law, moments.measured
+    assert law is not None
+    way = moments.way(one.level_depth, common)
+    kept, still = law.kept, moments.forward.still
+    offset = common.offset + common.datum
+    off = np.nan_to_num(one.depth[:, None, :] - offset - kept.depth[None, :, one.point])
+    near = np.square(off).sum(axis=2).argmin(axis=1) if len(one.label) else 0
+    near = np.where(np.isfinite(one.depth).any(axis=1), near, 0)
+    begin = at = Linear(*(part[near] for part in vars(kept).values()))
+    before = found = posterior(one, at, way.spread, common, still, furthest=np.inf)
+    for _ in range(AGAIN):
+        logs = at.logs + np.clip(found.logs - at.logs, -LONGEST, LONGEST)
+        there = moments.depths(way, logs)
+        lost = np.isnan(there).any(axis=1, keepdims=True)
+        at = at.moved(np.where(lost, at.logs, logs), np.where(lost, at.depth, there))
+        found = posterior(one, at, way.spread, common, still, furthest=np.inf)
+    return CurrentsState(way, begin, before, at, found)
