@@ -6,12 +6,15 @@ The deep current-meter mooring with shackles added up to 60 pieces is opened in 
 columns and 24 rows. Prints the wall time to the first picture, beside that of `calm run` and of a
 bare `python -c pass` in the same run; from a key to the first bytes of the screen that follows;
 and from a text to its verdict, of that the solving, after edits of a length, of the current and of
-a label. Then, in a terminal of 140 columns and 45 rows with 33 and with 200 rows of the line, what
-a key costs over a slow link: the bytes that are sent for it, the processor time it takes, and when
-the last byte of it has come. Needs a system with pseudo-terminals; `--smoke` takes seconds.
+a label. Then, in terminals of 80 columns and 24 rows and of 200 and 60, with 33 and with 200 rows
+of the line, what a key costs over a slow link: the bytes that are sent for it, the processor time
+it takes, and when the last byte of it has come. Last, the keys that a mooring of 4000 m takes from
+an empty file: a script of them is typed into a terminal, and what is saved is counted. Needs a
+system with pseudo-terminals; `--smoke` takes seconds.
 """
 
 import os
+import re
 import statistics
 import subprocess
 import sys
@@ -35,8 +38,75 @@ COLUMNS, ROWS = 80, 24
 PATIENCE = 60.0
 QUIET = 0.2
 """Seconds without a byte after which a screen is complete."""
+UNHURRIED = 1.0
+"""The same [s] where nothing is measured, on a machine that may be busy."""
 DOWN, UP = "\x1b[B", "\x1b[A"
+SIZES = ((80, 24), (200, 60))
 SEARCH = (*"shackle", *["\x7f"] * 7)
+NAMED = {
+    "Enter": "\r", "Esc": "\x1b", "Down": DOWN, "Up": UP, "Right": "\x1b[C", "Home": "\x1b[H",
+    "End": "\x1b[F", "Shift+Up": "\x1b[1;2A", "PgDn": "\x1b[6~", "Ctrl+P": "\x10", "Ctrl+S": "\x13",
+}  # fmt: skip
+"""What a terminal sends for the keys that the scripts name."""
+_LENGTHS = (400, 400, 350, 350, *[300] * 6, 290, 290)
+_PLACES = (10, 20, 15, 12, 30, 25, 50, 40)
+_WATER = (
+    "w4000<Down><Down><Down><Right><Right><Enter><Right>.6<Enter>70<Enter>a300<Enter>.4<Enter>70"
+    "<Enter>1000<Enter>.2<Enter>65<Enter><Esc><Down><Right>.05<Enter>60<Enter><Esc>"
+)
+_ENDS = "<End>aar861<Enter>short-g30-13<Enter>5<Enter><Enter>wheels-4<Enter><Esc>"
+
+
+def _entered(values: Iterable[int]) -> str:
+    """Values typed one below the other."""
+    return "".join(f"{value}<Enter>" for value in values)
+
+
+PRACTISED = (
+    ("depth and current", _WATER),
+    ("top float", "aore-41<Enter>"),
+    ("a shot and the glass below it", "d-8-5<Enter>320<Enter>shot<Enter>cluster-4<Enter><Esc>"),
+    ("twelve of both", "<Shift+Up>R11<Enter>"),
+    ("release, chain, anchor", _ENDS),
+    ("lengths of the shots", f"<Home><Down>#l{_entered(_LENGTHS)}"),
+    ("an instrument", "<Home><Down>isbe37<Enter>10<Enter><Enter><Esc>"),
+    ("one on each of eight shots", "c" + "<Down><Down>v" * 7),
+    ("where they are", f"#l{_entered(_PLACES)}"),
+    ("their serial numbers", f"#s{_entered(range(5101, 5109))}"),
+    ("save", "<Ctrl+S>"),
+)
+"""Of who knows the keys: what each part is for, and what is typed."""
+FIRST_TIME = (
+    (
+        "the keys read, the catalogue looked at",
+        "?<PgDn><PgDn><PgDn><Esc>a" + "<Down>" * 8 + "<Esc>",
+    ),
+    ("depth and current", _WATER),
+    ("top float", "afloat<Down><Down>" + "\x7f" * 5 + "ore-41<Enter>"),
+    (
+        "shots and glass, one after the other",
+        "".join(
+            f"wire-jacketed-8-5<Enter>{length}<Enter><Enter>glass-cluster-4<Enter>"
+            if not number
+            else f"d-8-5<Enter>{length}<Enter><Enter>cluster-4<Enter>"
+            for number, length in enumerate(_LENGTHS)
+        ),
+    ),
+    ("release, chain, anchor", "<Esc>" + _ENDS),
+    (
+        "the instruments, each from the catalogue",
+        "<Home><Down>"
+        + "<Down><Down>".join(f"isbe37<Enter>{place}<Enter><Enter><Esc>" for place in _PLACES),
+    ),
+    (
+        "their serial numbers, from the palette",
+        "<Home><Down><Down><Ctrl+P>serial<Enter>5101<Ctrl+S>"
+        + "".join(f"<Down><Down><Down>N{number}<Ctrl+S>" for number in range(5102, 5109)),
+    ),
+    ("save", "<Ctrl+S>"),
+)
+"""Of who types it for the first time: help, catalogue and palette are looked at, nothing is
+repeated or filled in one go."""
 
 
 def pieces(count: int) -> str:
@@ -54,9 +124,11 @@ def seconds(action: Callable[[], object]) -> float:
 
 
 class Terminal:
-    """`calm build` in a terminal, from its start to its first picture."""
+    """`calm build` in a terminal, from its start to its first picture, or to words that it says."""
 
-    def __init__(self, file: Path, columns: int = COLUMNS, rows: int = ROWS) -> None:
+    def __init__(
+        self, file: Path, columns: int = COLUMNS, rows: int = ROWS, said: str = "top float"
+    ) -> None:
         self.screen = pyte.Screen(columns, rows)
         self.stream = pyte.ByteStream(self.screen)
         self.child = pexpect.spawn(
@@ -66,20 +138,33 @@ class Terminal:
             timeout=PATIENCE,
         )
         self.child.delaybeforesend = 0
-        self.first = seconds(self._await_picture)
+        self.first = seconds(lambda: self.until(said))
         self.settle()
 
-    def _await_picture(self) -> None:
-        while "top float" not in "\n".join(self.screen.display):
+    def until(self, words: str) -> None:
+        """Read until the screen says some words."""
+        while words not in "\n".join(self.screen.display):
             self.stream.feed(self.child.read_nonblocking(65536, timeout=PATIENCE))
 
-    def settle(self) -> None:
-        """Read until nothing comes any more."""
+    def settle(self, quiet: float = QUIET) -> None:
+        """Read until nothing has come for a time [s]."""
         try:
             while True:
-                self.stream.feed(self.child.read_nonblocking(65536, timeout=QUIET))
+                self.stream.feed(self.child.read_nonblocking(65536, timeout=quiet))
         except pexpect.TIMEOUT:
             return
+
+    def type(self, script: str) -> int:
+        """Type a script, one key after the other; how many keys it has."""
+        keys = [found[1] or found[2] for found in re.finditer(r"<([A-Z][\w+]*)>|(.)", script)]
+        for key in keys:
+            if key == "Esc":  # a key that follows it at once is taken for one with Alt
+                self.settle(UNHURRIED)
+            self.child.send(NAMED.get(key, key))
+            if key == "Esc":
+                self.settle(UNHURRIED)
+        self.settle(UNHURRIED)
+        return len(keys)
 
     def answer(self, key: str) -> float:
         """From a key to the first bytes of what it shows [s]."""
@@ -146,13 +231,15 @@ def keys(file: Path, repetitions: int) -> dict[str, list[float]]:
     return {"cursor": cursor, "duplicate": [*duplicated], "undo": [*undone]}
 
 
-def links(file: Path, repetitions: int) -> Iterable[tuple[str, int, list[float], float]]:
+def links(
+    file: Path, repetitions: int, columns: int, rows: int
+) -> Iterable[tuple[str, int, list[float], float]]:
     """Of a cursor key, of an edit and of a key of the search in the catalogue the most bytes, the
     times to the last, the processor's time.
 
     An edit is followed for a second: launch, recovery and breaks are judged half a second after it.
     """
-    terminal = Terminal(file, 140, 45)
+    terminal = Terminal(file, columns, rows)
     terminal.cost(DOWN, 2.0)
     for name, keys, quiet in (
         ("cursor", (DOWN, UP), QUIET),
@@ -166,6 +253,34 @@ def links(file: Path, repetitions: int) -> Iterable[tuple[str, int, list[float],
         counts, times, busy = zip(*costs, strict=True)
         yield name, max(counts), [*times], sum(busy) / len(busy)
     terminal.close()
+
+
+def typed(file: Path, script: Iterable[tuple[str, str]]) -> Iterable[tuple[str, int]]:
+    """The keys of each part of a script, and of all, typed into an empty file that is saved then.
+
+    Raises
+    ------
+    AssertionError
+        What is saved is not the mooring that was meant.
+    """
+    terminal, whole = Terminal(file, 120, 40, said="The line is empty"), 0
+    for part, keys in script:
+        count = terminal.type(keys)
+        whole += count
+        yield part, count
+    terminal.until(f"{file.name} saved")
+    terminal.close()
+    made = read_mooring(file)
+    shots = [piece.length for piece in made.pieces if piece.use == "wire-jacketed-8-5"]
+    clamped = [
+        (each.at, each.equipment.serial)
+        for piece in made.pieces
+        for each in piece.clamps
+        if each.use == "sbe37"
+    ]
+    meant = [(place, str(number)) for number, place in enumerate(_PLACES, 5101)]
+    assert (shots, clamped) == ([*_LENGTHS], meant), (shots, clamped)
+    yield "in all", whole
 
 
 def edits(text: str, repetitions: int) -> Iterable[tuple[str, list[float], list[float]]]:
@@ -209,12 +324,17 @@ def main() -> None:
         for name, times in keys(file, repetitions).items():
             print(f"{name:32}{_pair(times)}")
         heads = "".join(f"{each:>11}" for each in ("most bytes", "median", "fastest", "processor"))
-        print(f"\n{'140 x 45, over a link':32}{heads}")
-        for rows in (33, 200):
-            file.write_text(pieces(rows), encoding="utf-8")
-            for name, count, times, busy in links(file, repetitions):
-                told = f"{name}, {rows} pieces"
-                print(f"{told:32}{count:11}{_pair(times)}{1e3 * busy:8.1f} ms")
+        for columns, rows in SIZES:
+            print(f"\n{f'{columns} x {rows}, over a link':32}{heads}")
+            for count in (33, 200):
+                file.write_text(pieces(count), encoding="utf-8")
+                for name, sent, times, busy in links(file, repetitions, columns, rows):
+                    told = f"{name}, {count} pieces"
+                    print(f"{told:32}{sent:11}{_pair(times)}{1e3 * busy:8.1f} ms")
+        print(f"\n{'a mooring of 4000 m, typed':52}{'keys':>7}")
+        for who, script in (("practised", PRACTISED), ("the first time", FIRST_TIME)):
+            for part, count in typed(Path(folder) / f"{who}.yaml", script):
+                print(f"{f'{who}: {part}':52}{count:7}")
     print(f"\n{'edit to verdict':32}{'median':>11}{'fastest':>11}{'to one solve':>13}")
     for kind, times, solving in edits(text, 2 * repetitions):
         print(f"{kind:32}{_pair(times)}{min(times) / min(solving):13.2f}")

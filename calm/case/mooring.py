@@ -54,11 +54,11 @@ def load(
         With every mistake of the file, each with its line and column.
     """
     origin = Origin(path, environment, tuple(Path(each) for each in catalogs), text)
-    return _read(origin)
+    return as_read(origin.read(), origin)
 
 
-def _read(origin: Origin) -> Mooring | Tow:
-    file = origin.read()
+def as_read(file: MooringFile, origin: Origin) -> Mooring | Tow:
+    """Return the mooring or the tow of a file, which knows what it was read from."""
     read = Mooring(file) if file.tow is None else Tow(file)
     vars(read)["origin"] = origin
     return read
@@ -174,7 +174,8 @@ class Mooring:
         if self.origin is None:
             raise UsageError("a mooring that was not loaded from a file has no values to change")
         origin = self.origin.with_values(self.file, label, keys)
-        changed = _read(replace(origin, environment=environment or origin.environment))
+        origin = replace(origin, environment=environment or origin.environment)
+        changed = as_read(origin.read(), origin)
         assert isinstance(changed, Mooring)
         return changed
 
@@ -298,11 +299,14 @@ class Origin:
     catalogs: tuple[Path, ...]
     text: str | None
 
-    def read(self) -> MooringFile:
+    def read(self, *, net: bool = False) -> MooringFile:
         """Return the file with all it refers to, as `read_mooring` does."""
-        nearer = list(self.catalogs)
         return read_mooring(
-            self.path, environment=self.environment, catalogs=nearer, text=self.text
+            self.path,
+            environment=self.environment,
+            catalogs=self.catalogs,
+            text=self.text,
+            net=net,
         )
 
     def with_values(self, file: MooringFile, label: str | None, keys: Mapping[str, Any]) -> Origin:

@@ -14,14 +14,14 @@ import numpy as np
 
 from calm.assemble import assemble_water
 from calm.case.measure import result_of
-from calm.case.mooring import Mooring, load, refuse_in_the_slope
+from calm.case.mooring import Mooring, Origin, as_read, refuse_in_the_slope
 from calm.case.parts import naming_the_piece
 from calm.case.result import Accuracy, AnchorLoad, Result
 from calm.case.result_tables import Clamps, Components
 from calm.case.tow import Tow, TowResult
-from calm.errors import InputError, NoEquilibrium
+from calm.errors import NoEquilibrium
 from calm.files import MooringFile, Piece, read_mooring
-from calm.files.legs import NET_REFUSED, EndKeys, Leg, nodes_of
+from calm.files.legs import EndKeys, Leg, nodes_of
 from calm.files.mooring_file import STAND_IN
 from calm.physics.line import Floats, Water
 from calm.quantities import say
@@ -376,14 +376,8 @@ def load_any(
 ) -> Mooring | Tow | Net:
     """Read the file of a mooring, a tow or a net; the parameters are those of `load`.
 
-    Raises
-    ------
-    InputError
-        With every mistake of the file, each with its line and column.
+    InputError: with every mistake of the file, each with its line and column.
     """
-    try:
-        return load(path, environment, catalogs)
-    except InputError as error:
-        if [problem.message for problem in error.problems] != [NET_REFUSED]:
-            raise
-    return load_net(path, environment, catalogs)
+    origin = Origin(path, environment, tuple(Path(each) for each in catalogs), None)
+    file = origin.read(net=True)
+    return Net(file) if file.legs else as_read(file, origin)

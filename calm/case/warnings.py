@@ -35,7 +35,8 @@ def is_synthetic(component: Component) -> bool:
 
 def warnings_of(result: Any, solution: Solution) -> tuple[str, ...]:
     """Return every warning of a mooring's or a tow's result, the file's own notices first."""
-    doubts = (*_OF_ANY, *(_OF_A_TOW if solution.line.towed else _OF_A_MOORING))
+    # a leg that is marched from its other end is no tow
+    doubts = (*_OF_ANY, *(_OF_A_TOW if result.type == "tow" else _OF_A_MOORING))
     found = [warning for doubt in doubts for warning in doubt(result, solution)]
     return (*result.file.notices, *found)
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from calm.grid.depths import MooringDepths
-    from calm.grid.field import Field
+    from calm.grid.field import GriddedQuantity
     from calm.records.instrument_series import InstrumentSeries
 
 GRID_EXAMPLES = """Examples:
@@ -143,7 +143,7 @@ def fields_of(
     step: np.timedelta64 | None,
     *,
     in_time: bool,
-) -> dict[str, Field]:
+) -> dict[str, GriddedQuantity]:
     """The field of each quantity; one that has too few instruments is left out, and said.
 
     Raises
@@ -153,12 +153,12 @@ def fields_of(
     """
     import numpy as np
 
-    from calm.grid.depths import points_of
     from calm.grid.field import field_of
     from calm.grid.samples import common_times, gather
+    from calm.motion.line_places import points_of
     from calm.records.measured_quantities import QUANTITIES_MEASURED
 
-    matched = {name: points_of(each, where) for name, each in series.items() if each}
+    matched = {name: points_of(each, where.places) for name, each in series.items() if each}
     told = [line for _, said in matched.values() for line in said]
     for line in dict.fromkeys(told):
         narrate(line)

@@ -16,8 +16,10 @@ from calm.errors import UsageError
 
 if TYPE_CHECKING:
     import numpy as np
+    from xarray import Dataset
 
     from calm.case import Mooring
+    from calm.motion.instrument_file import Instruments
     from calm.motion.measurements import MooringMeasurements
 
 MOTION_EXAMPLES = """Examples:
@@ -94,11 +96,12 @@ def motion(
     gap
         Interpolate in time between values no further apart than this.
     onto
-        A NetCDF file of instruments, found by label: OUTPUT is then a copy of it with
-        `depth` and `depth_sd` added, and the result stands beside it as
-        OUTPUT's name ending in .motion.nc.
+        A NetCDF file of instruments, or a folder of files: OUTPUT is then a copy of it
+        with depths, their deviations and flags added (`depth` of several instruments,
+        `DEPTH` of one), and the result stands beside it as OUTPUT's name ending in
+        .motion.nc. Found by label, serial number or nominal depth.
     replace_depth
-        Replace a `depth` that the file of `--onto` already has, in the copy.
+        Replace depths that files of `--onto` already have, in the copy.
     report
         Write a page and a PDF, motion.html and motion.pdf, in this folder.
     json
@@ -110,8 +113,8 @@ def motion(
     from calm.batch.profiles import Batch
     from calm.batch.work import compile_solver
     from calm.motion.correction import MeasuredRecord, run_motion
-    from calm.motion.instrument_file import read_instruments, write_depths
-    from calm.motion.matching import labels_of
+    from calm.motion.instrument_file import read_instruments
+    from calm.motion.line_places import places_of
     from calm.motion.sensors import split_label
     from calm.motion.study import cross_validated, judged, prepare, series_of, several
     from calm.report.folder import check_folder, printed, write_report
@@ -131,7 +134,11 @@ def motion(
     check_output(output, file, *files)
     copy = output
     if onto is not None:
-        if output.suffix != ".nc":
+        if onto.is_dir():
+            check_folder(output)
+            if output.resolve() == onto.resolve():
+                raise UsageError(f"{output} is an input; it is kept")
+        elif output.suffix != ".nc":
             raise UsageError(f"cannot write {output}: the name of a copy must end in .nc")
         output = output.with_suffix(".motion.nc")
         check_output(output, file, *files)
@@ -141,10 +148,12 @@ def motion(
     for notice in mooring.file.notices:
         narrate(f"{file}: {notice}")
     turned = quantities({"declination": (declination, "angle")}).get("declination")
-    labels, apart = labels_of(mooring), parse_gap(gap)
+    apart = parse_gap(gap)
     instruments = None
     if onto is not None:
-        instruments = read_instruments(onto, labels, replace=replace_depth)
+        instruments, matched = read_instruments(onto, places_of(mooring), replacing=replace_depth)
+        for line in matched:
+            narrate(line)
     measured, notes, source = read_measured(
         mooring, currents, pressures, match, flags, apart, sea_level, turned
     )
@@ -175,9 +184,8 @@ def motion(
             factor = None
             if "current_factor" in result:
                 factor = np.asarray(result["current_factor"].values, np.float64)
-            if instruments is not None:
-                for label in write_depths(instruments, result, labels, apart, copy):
-                    narrate(f"{onto}: `{label}` is not a part of the line; its depth is NaN")
+            if onto is not None and instruments is not None:
+                write_copies(instruments, result, apart, copy, [file, *files[:-1]])
         if cross_validate:
             each = cross_validated(mooring, measured, names, hidden, narrate, workers)
             study = replace(study, held_out=(*study.held_out, *each))
@@ -187,6 +195,30 @@ def motion(
         write_report(report, {"motion.html": page(said).encode(), "motion.pdf": printed(said)})
     outputs.write_answer(lambda: motion_document(study, name), motion_part(study, name))
     return code
+
+
+def write_copies(
+    instruments: list[Instruments],
+    result: Dataset,
+    gap: np.timedelta64,
+    output: Path,
+    inputs: list[Path],
+) -> None:
+    """Write the copy of each file, into a folder where they come from one."""
+    from calm.dataset.discovery import hashed
+    from calm.motion.instrument_file import write_depths
+
+    told = [hashed(path) for path in inputs]
+    folder = output.suffix != ".nc" or output.is_dir()
+    if folder:
+        output.mkdir(parents=True, exist_ok=True)
+    for one in instruments:
+        if all(point is None for point in one.point):
+            narrate(f"{one.path}: no part of the line; it is not written")
+            continue
+        target = output / one.path.name if folder else output
+        for label in write_depths(one, result, gap, target, told):
+            narrate(f"{one.path}: `{label}` is not a part of the line; its depth is NaN")
 
 
 _MATCHES = ("label", "height", "depth")
@@ -248,6 +280,7 @@ def read_measured(
     """What was measured, on common times; what is said of it, and its source."""
     import numpy as np
 
+    from calm.dataset.discovery import hashed
     from calm.motion.correction import without
     from calm.motion.line_response import Forward
     from calm.motion.matching import (
@@ -260,7 +293,7 @@ def read_measured(
         unusable,
     )
     from calm.motion.measurements import joined, read_currents
-    from calm.motion.sensors import parse_flags, read_sea_level, read_sensors
+    from calm.motion.sensors import parse_flags, read_sea_level, read_sensors, split_label
     from calm.suggestions import not_among
 
     if match not in _MATCHES:
@@ -311,7 +344,7 @@ def read_measured(
     if not measured.label:
         raise UsageError("--pressures: no sensor is left: " + "; ".join(notes))
     source = {
-        "currents": ", ".join(one.source for one in read),
-        "pressures": ", ".join(dict.fromkeys(one.source for one in sensors)),
+        "currents": ", ".join(hashed(split_label(one)[1]) for one in currents),
+        "pressures": ", ".join(hashed(split_label(one)[1]) for one in pressures),
     }
     return measured, notes, source

@@ -20,6 +20,7 @@ Signed = Annotated[str | None, Parameter(allow_leading_hyphen=True)]
 WAVES_EXAMPLES = """Examples:
 
   calm waves buoy.yaml --hs "5 m" --tp "8.4 s"
+  calm waves buoy.yaml --hs "2 m" --tp "6 s" --swell "3 m" --swell-tp "14 s"
   calm waves buoy.yaml --hs "3 m" --tp "7 s" --spectrum jonswap --toward "45 deg"
   calm waves buoy.yaml --scatter site.csv --json waves.json
   calm waves buoy.yaml --spectrum measured.csv"""
@@ -35,6 +36,8 @@ def waves(
     tp: Signed = None,
     spectrum: str = "bretschneider",
     gamma: float = 3.3,
+    swell: Signed = None,
+    swell_tp: Signed = None,
     toward: Signed = None,
     scatter: Path | None = None,
     duration: str = "3 h",
@@ -63,6 +66,9 @@ def waves(
         measured one: CSV of frequency[Hz],density[m^2/Hz], or NetCDF.
     gamma
         Peakedness of jonswap.
+    swell, swell_tp
+        A swell under the sea of --hs, running the same way: its significant height
+        and the period of its peak.
     toward
         Where the waves run, clockwise from north; 90 deg unless given.
     scatter
@@ -87,7 +93,10 @@ def waves(
 
     if report is not None:
         check_folder(report)
-    asked, way, length = _asked(hs, tp, spectrum, gamma, toward, scatter, duration)
+    asked, way, length = _asked(
+        {"hs": hs, "tp": tp, "swell": swell, "swell-tp": swell_tp},
+        spectrum, gamma, toward, scatter, duration,
+    )  # fmt: skip
     mooring = calm.load(file, environment=environment, catalogs=catalog or [])
     if isinstance(mooring, Tow):
         raise UsageError(f"{file} is a tow; calm waves judges moorings")
@@ -119,8 +128,7 @@ def waves(
 
 
 def _asked(
-    hs: str | None,
-    tp: str | None,
+    waves: dict[str, str | None],
     spectrum: str,
     gamma: float,
     toward: str | None,
@@ -139,15 +147,17 @@ def _asked(
 
     given = quantities(
         {
-            "hs": (hs, "length"),
-            "tp": (tp, "time"),
+            "hs": (waves["hs"], "length"),
+            "tp": (waves["tp"], "time"),
+            "swell": (waves["swell"], "length"),
+            "swell-tp": (waves["swell-tp"], "time"),
             "toward": (toward, "angle"),
             "duration": (duration, "time"),
         }
     )
     complaints = [
         f"--{name}: must be above 0"
-        for name in ("hs", "tp", "duration")
+        for name in (*waves, "duration")
         if name in given and not given[name] > 0.0
     ]
     if not 1.0 <= gamma <= 10.0:
@@ -159,9 +169,14 @@ def _asked(
         complaints.append(
             f"--spectrum: `{spectrum}` is neither {', '.join(sea_states.SPECTRA)} nor a file{meant}"
         )
-    chosen = [name for name, each in (("--hs", hs), ("--tp", tp)) if each is not None]
+    chosen = [f"--{name}" for name, each in waves.items() if each is not None]
+    swells = [name for name in ("--swell", "--swell-tp") if name in chosen]
+    if len(swells) == 1:
+        complaints.append("--swell, --swell-tp: a swell has both a height and a period")
     if scatter is not None and (chosen or not named):
-        complaints.append("--scatter: gives heights and periods; leave --hs, --tp and a file out")
+        complaints.append(
+            f"--scatter: gives heights and periods; leave {', '.join(chosen) or 'the file'} out"
+        )
     elif scatter is None and not named and chosen:
         complaints.append(f"{', '.join(chosen)}: a measured spectrum has its own")
     elif scatter is None and named and (chosen or spectrum != "bretschneider"):
@@ -177,4 +192,6 @@ def _asked(
         seas = [sea_states.measured_spectrum(path)]
     elif chosen:
         seas = [sea_states.spectrum_of(spectrum, given["hs"], given.get("tp"), gamma)]
+        if swells:
+            seas = [sea_states.with_swell(seas[0], given["swell"], given["swell-tp"])]
     return seas, given.get("toward"), given["duration"]

@@ -80,7 +80,7 @@ def coverage(
         "format_version": "1.4",
         "data_mode": "D",
         "cdm_data_type": "Station",
-        "standard_name_vocabulary": "CF Standard Name Table v92",
+        "standard_name_vocabulary": "CF Standard Name Table v93",
         "keywords_vocabulary": "GCMD Science Keywords",
         "time_coverage_start": first,
         "time_coverage_end": last,
@@ -106,7 +106,8 @@ def coverage(
     if len(place) == 2:
         latitude, longitude = place
         said |= {"geospatial_bounds": f"POINT ({latitude:.6f} {longitude:.6f})",
-                 "geospatial_bounds_crs": "EPSG:4326"}  # fmt: skip
+                 "geospatial_bounds_crs": "EPSG:4326",
+                 "geospatial_bounds_vertical_crs": "EPSG:5831"}  # fmt: skip
     return said
 
 
@@ -137,10 +138,11 @@ def with_flags(
             continue
         flags = f"{one.name}_qc"
         more = {"ancillary_variables": " ".join([*beside, flags]), "cell_methods": "time: point"}
-        standard = str(one.attributes.get("standard_name", ""))
-        about = {"long_name": f"quality flag of {one.attributes['long_name']}", **OF_FLAGS}
-        if standard:
-            about["standard_name"] = f"{standard} status_flag"
+        about: Attributes = {
+            "standard_name": "quality_flag",
+            "long_name": f"quality flag of {one.attributes['long_name']}",
+            **OF_FLAGS,
+        }
         if "coordinates" in one.attributes:
             about["coordinates"] = one.attributes["coordinates"]
         found.append(replace(one, attributes={**one.attributes, **more}))

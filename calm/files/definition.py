@@ -212,7 +212,16 @@ class FatigueKeys(Model):
     curve: Literal[
         "dnv-studless-chain", "dnv-stud-chain", "dnv-polyester", "api-studless-chain",
         "api-stud-chain", "api-connecting-link", "api-stranded-wire", "api-spiral-strand",
-    ] = described("of DNV-OS-E301 or API RP 2SK", "dnv-stud-chain")  # fmt: skip
+    ] | None = described(
+        "of DNV-OS-E301 or API RP 2SK, where it is not that of its kind",
+        "dnv-stud-chain",
+        default=None,
+    )  # fmt: skip
+    corrosion: Annotated[float, QuantityField("length", at_least=0)] = described(
+        "off its diameter by the end of the deployment; all of it counts from the first day",
+        "1 mm",
+        default=0.0,
+    )
 
 
 class Definition(Model):

@@ -64,6 +64,14 @@ class DocumentKeys(Model):
     project: Text | None = optional("what it belongs to", "Slope currents")
     ship: Text | None = optional("the ship that deploys the mooring", "RV Example")
     cruise: Text | None = optional("its name or number", "EX-142")
+    institution: Text | None = optional("whose mooring it is", "Institute of Examples")
+    investigator: Text | None = optional("who is responsible for the data", "D. Ruiz")
+    email: Text | None = optional("of the author", "a.martin@example.org")
+    url: Text | None = optional("of the author or the institution", "https://example.org")
+    license: Text | None = optional("of the data", "CC-BY-4.0")
+    acknowledgement: Text | None = optional("who paid", "Funded by the Examples Fund")
+    site: Text | None = optional("its code at OceanSITES", "EXAMPLE")
+    platform: Text | None = optional("code of the mooring", "EXAMPLE-1")
     deck_time: dict[Role, Annotated[float, QuantityField("time", at_least=0)]] | None = optional(
         "time that a piece takes on deck before it goes over, by its role",
         {"float": "5 min", "instrument": "3 min", "line": "2 min"},

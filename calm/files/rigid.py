@@ -123,8 +123,9 @@ class Rigid(Definition):
     )
     wind_cd: Coefficient = optional("drag coefficient of `wind_area`", 1.0)
 
-    heave: Literal["filtered", "follows"] | None = optional(
-        "of a float at the surface in waves: by its hull, or as the water does", "follows"
+    heave: Literal["filtered", "follows", "panels"] | None = optional(
+        "of a float at the surface in waves: by its hull, by panels on it, or as the water does",
+        "follows",
     )
     rao: Annotated[
         dict[

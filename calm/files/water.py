@@ -44,6 +44,7 @@ from calm.records.sea_states import (
     measured_spectrum,
     scatter_states,
     spectrum_of,
+    with_swell,
 )
 from calm.suggestions import about_quantity, nearest, shown
 from calm.units import QuantityError, QuantityRange
@@ -253,6 +254,17 @@ class Wind(Model):
         return self
 
 
+class SwellKeys(Model):
+    """The keys of `swell:`: long waves from afar under the sea that the wind raises."""
+
+    significant_height: Annotated[float, QuantityField("length", above=0)] = described(
+        "Hs of the swell", "2 m"
+    )
+    peak_period: Annotated[float, QuantityField("time", above=0)] = described(
+        "Tp of the swell, longer than that of the sea", "14 s"
+    )
+
+
 class WaveKeys(Model):
     """The keys of `waves:`: one sea, a table of seas with their shares of the time, or both."""
 
@@ -269,6 +281,9 @@ class WaveKeys(Model):
         "peakedness of jonswap", 3.3, default=3.3
     )
     toward: Toward = described("where they run, clockwise from north", "90 deg", default=90.0)
+    swell: SwellKeys | None = optional(
+        "under that sea, the same way", {"significant_height": "2 m", "peak_period": "14 s"}
+    )
     scatter: Text | None = optional(
         "CSV: significant_wave_height[m],peak_period[s],share; fatigue needs it", "seas.csv"
     )
@@ -285,6 +300,8 @@ class WaveKeys(Model):
             )
         if named and height is None and (self.scatter is None or period is not None):
             raise ValueError("`waves` needs `significant_height`, a `scatter` table, or both")
+        if self.swell is not None and height is None:
+            raise ValueError("`swell` is under a sea: give its `significant_height`, too")
         if height is not None and period is None and self.spectrum not in OF_HEIGHT:
             raise ValueError(f"`significant_height` needs a `peak_period` with {self.spectrum}")
         return self
@@ -327,6 +344,8 @@ def read_waves(
             seas += scatter_states(paths["scatter"], form, keys.gamma)
         if keys.significant_height is not None:
             sea = spectrum_of(form, keys.significant_height, keys.peak_period, keys.gamma)
+            if keys.swell is not None:
+                sea = with_swell(sea, keys.swell.significant_height, keys.swell.peak_period)
             seas.append(replace(sea, share=0.0 if seas else 1.0))
         if "spectrum" in paths:
             seas.append(replace(measured_spectrum(paths["spectrum"]), share=0.0 if seas else 1.0))

@@ -51,7 +51,7 @@ class Scales(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Profile:
+class RecordProfile:
     """Mean and standard deviation of a record over depth, linear between nodes [m]."""
 
     node: Floats
@@ -68,7 +68,7 @@ class Profile:
 
 
 @dataclass(frozen=True)
-class Field:
+class GriddedQuantity:
     """A quantity of which the scales are known.
 
     Attributes
@@ -80,7 +80,7 @@ class Field:
     """
 
     samples: Samples
-    profile: Profile
+    profile: RecordProfile
     scales: Scales
     noise: float
     in_time: bool = True
@@ -101,7 +101,7 @@ class Widening:
         return np.where(between, inside, np.maximum(inside, self.beyond))
 
 
-class Posterior(NamedTuple):
+class LevelPosterior(NamedTuple):
     """Mean and standard deviation at some depths, and the share of the variance that is left."""
 
     mean: Floats
@@ -109,7 +109,7 @@ class Posterior(NamedTuple):
     left: Floats
 
 
-class Estimate(NamedTuple):
+class LevelValues(NamedTuple):
     """Value, standard deviation and flag of some times at each level: (n, k)."""
 
     value: Floats
@@ -117,7 +117,7 @@ class Estimate(NamedTuple):
     flag: NDArray[np.int8]
 
 
-def field_of(samples: Samples, noise: float, *, in_time: bool = True) -> Field:
+def field_of(samples: Samples, noise: float, *, in_time: bool = True) -> GriddedQuantity:
     """Return the field of a record, its scales as likely as can be.
 
     Parameters
@@ -134,7 +134,9 @@ def field_of(samples: Samples, noise: float, *, in_time: bool = True) -> Field:
     known = np.isfinite(samples.value)
     if int(known.any(axis=0).sum()) < 2:
         raise UsageError("fewer than two instruments of the line have good values")
-    rough = Field(samples, profile_of(samples, noise), Scales(1.0, 1.0, 0.5), noise, in_time)
+    rough = GriddedQuantity(
+        samples, profile_of(samples, noise), Scales(1.0, 1.0, 0.5), noise, in_time
+    )
     most = np.argsort(-known.sum(axis=1), kind="stable")[: max(len(known) // 2, LOOKED_AT)]
     times = np.sort(most)[np.linspace(0, len(most) - 1, min(LOOKED_AT, len(most))).astype(int)]
     found = replace(rough, scales=_likeliest(rough, np.unique(times)))
@@ -142,7 +144,7 @@ def field_of(samples: Samples, noise: float, *, in_time: bool = True) -> Field:
     return replace(found, widened=_widening(found, np.arange(0, len(known), every)))
 
 
-def profile_of(samples: Samples, noise: float) -> Profile:
+def profile_of(samples: Samples, noise: float) -> RecordProfile:
     """Return mean and standard deviation of a record over depth: local lines, weighted by a normal
     curve as wide as the sensors are apart.
     """
@@ -158,7 +160,7 @@ def profile_of(samples: Samples, noise: float) -> Profile:
     mean, _ = _local_line(weight, off, value[None, :], weight > 0.0, width)
     square = (value - np.interp(depth, node, mean)) ** 2
     deviation = np.sqrt((weight * square).sum(axis=1) / weight.sum(axis=1))
-    return Profile(node, mean, np.maximum(deviation, noise))
+    return RecordProfile(node, mean, np.maximum(deviation, noise))
 
 
 def spacing(samples: Samples) -> float:
@@ -195,7 +197,7 @@ class _Block(NamedTuple):
     covariance: Floats
 
 
-def _block(field: Field, times: NDArray[np.int64]) -> _Block:
+def _block(field: GriddedQuantity, times: NDArray[np.int64]) -> _Block:
     samples, profile, scales = field.samples, field.profile, field.scales
     count, sensors = samples.value.shape
     lags = np.array([-1, 0, 1] if field.in_time and count > 1 else [0])
@@ -256,7 +258,7 @@ def _correlation(a: Floats, b: Floats, s: Floats, t: Floats, scales: Scales) -> 
     return whole
 
 
-def posterior(field: Field, times: NDArray[np.int64], levels: Floats) -> Posterior:
+def posterior(field: GriddedQuantity, times: NDArray[np.int64], levels: Floats) -> LevelPosterior:
     """Return what is found at levels: (n, k) each.
 
     Parameters
@@ -277,10 +279,10 @@ def posterior(field: Field, times: NDArray[np.int64], levels: Floats) -> Posteri
     rest = np.maximum(spread**2 - told, 0.0)
     slope, wrong = _slopes(field.samples, times, level)
     deviation = np.sqrt(np.maximum(rest, field.noise**2) + (slope * wrong) ** 2)
-    return Posterior(mean, deviation, rest / spread**2)
+    return LevelPosterior(mean, deviation, rest / spread**2)
 
 
-def estimate(field: Field, levels: Floats, times: NDArray[np.int64]) -> Estimate:
+def estimate(field: GriddedQuantity, levels: Floats, times: NDArray[np.int64]) -> LevelValues:
     """Return the estimate at fixed levels of some times.
 
     A value between the sensors of its time is flagged as interpolated; one beyond them, or of which
@@ -303,10 +305,10 @@ def estimate(field: Field, levels: Floats, times: NDArray[np.int64]) -> Estimate
     if field.widened is not None:
         deviation = deviation * field.widened.at(np.broadcast_to(levels, left.shape), between)
     value, deviation = (np.where(nothing, np.nan, one) for one in (mean, deviation))
-    return Estimate(value, deviation, flag)
+    return LevelValues(value, deviation, flag)
 
 
-def _likeliest(field: Field, times: NDArray[np.int64]) -> Scales:
+def _likeliest(field: GriddedQuantity, times: NDArray[np.int64]) -> Scales:
     """Return the scales at which the samples of some times are likeliest.
 
     A weak prior holds what a record does not tell: a quarter of the line, six steps of time, and
@@ -341,7 +343,7 @@ def _likeliest(field: Field, times: NDArray[np.int64]) -> Scales:
     return scales_of(np.asarray(best.x))
 
 
-def left_out(field: Field, times: NDArray[np.int64]) -> tuple[Floats, Floats]:
+def left_out(field: GriddedQuantity, times: NDArray[np.int64]) -> tuple[Floats, Floats]:
     """Return (n, s) what each sensor measured less what the others say, and its deviation.
 
     The sensor is left out at the neighbouring times, too: the block of the inverse that is its own
@@ -369,7 +371,7 @@ FEWEST = 20
 """Misses of a sensor from which a factor is made."""
 
 
-def _widening(field: Field, times: NDArray[np.int64]) -> Widening | None:
+def _widening(field: GriddedQuantity, times: NDArray[np.int64]) -> Widening | None:
     """Return how much wider the bands must be to cover 95 % of each sensor, left out in turn."""
     miss, spread = left_out(field, times)
     place = np.where(np.isfinite(miss), field.samples.depth[times], np.nan)

@@ -26,7 +26,7 @@ from calm.dataset.netcdf import (
 )
 from calm.errors import UsageError
 from calm.grid.depths import MooringDepths
-from calm.grid.field import BLOCK, Field, estimate
+from calm.grid.field import BLOCK, GriddedQuantity, estimate
 from calm.records.measured_quantities import QUANTITIES_MEASURED
 from calm.units import QuantityError, parse_quantity
 from calm.version import __version__
@@ -78,7 +78,7 @@ def _metres(part: str, text: str, wanted: str) -> float:
 
 
 def grid_layout(
-    fields: Mapping[str, Field],
+    fields: Mapping[str, GriddedQuantity],
     levels: NDArray[np.float64],
     depths: MooringDepths,
     inputs: Sequence[str],
@@ -125,6 +125,9 @@ def grid_layout(
             Variable(called, ("time", "depth"), NUMBER, about),
             Variable(f"{called}_sd", ("time", "depth"), NUMBER, spread),
         ]
+        if name == "temperature":
+            about["units_metadata"] = "temperature: on_scale"
+            spread["units_metadata"] = "temperature: difference"
         flagged[called] = [f"{called}_sd"]
     whole = with_flags(variables, flagged)
     if averaged is not None:
@@ -151,6 +154,7 @@ def grid_layout(
         "OCEAN CIRCULATION, EARTH SCIENCE > OCEANS > SALINITY/DENSITY",
         "source": "subsurface mooring",
         "processing_level": "Data interpolated",
+        "comment": "Flag 8: between instruments; 3: beyond them, or little is known; 9: no value",
         "QC_indicator": "mixed",
         "instrument": ", ".join(labels),
         "calm": __version__,
@@ -167,7 +171,7 @@ def grid_layout(
     return in_capitals(layout) if all(one.isupper() for one in names.values()) else layout
 
 
-def method_sentence(field: Field) -> str:
+def method_sentence(field: GriddedQuantity) -> str:
     """Return how a quantity was put onto levels, with its scales."""
     scales = field.scales
     time = "" if not field.in_time else f" and {scales.time / 3600.0:.3g} h in time"
@@ -180,7 +184,7 @@ def method_sentence(field: Field) -> str:
 
 def write_grid(
     layout: ResultLayout,
-    fields: Mapping[str, Field],
+    fields: Mapping[str, GriddedQuantity],
     levels: NDArray[np.float64],
     names: Mapping[str, str],
     output: Path,

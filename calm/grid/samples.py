@@ -99,7 +99,8 @@ def gather(
     points : of each series that is used, its point
     time : (n,) see `common_times`
     """
-    order = sorted(points, key=lambda i: depths.still[points[i]])
+    still = depths.places.still
+    order = sorted(points, key=lambda i: still[points[i]])
     shape = len(time), len(order)
     value, depth, deviation = (np.full(shape, np.nan) for _ in range(3))
     half = (np.median(np.diff(time)) if len(time) > 1 else np.timedelta64(1, "h")) / 2

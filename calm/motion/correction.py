@@ -23,6 +23,7 @@ from calm.batch.work import BatchWork, Progress
 from calm.batch.work_store import Store, identity_of, open_store, to_text
 from calm.case import Mooring
 from calm.dataset.netcdf import Attributes, ResultLayout, labels, numbers
+from calm.motion.archived import archived, depth_flags
 from calm.motion.common_unknowns import Common
 from calm.motion.estimate import estimated
 from calm.motion.line_response import Forward, LineResponse, points
@@ -114,7 +115,8 @@ class MotionWork(BatchWork):
         start, behind = self.store.span(number)
         profiles, more = self._task.columns(start, behind)
         time = self.record.time[start:behind]
-        arrays = laid_out(self.store.layout, time, {**vars(profiles), **more})
+        flags = depth_flags(self._task.measured.at(slice(start, behind)), profiles)
+        arrays = laid_out(self.store.layout, time, {**vars(profiles), **more, **flags})
         self.count(profiles)
         self._keep(number, [arrays])
 
@@ -141,7 +143,8 @@ def motion_layout(task: Task, record: MeasuredRecord) -> ResultLayout:
     attributes = dict(layout.attributes)
     attributes["title"] = attributes["title"].partition(": ")[0] + ": where its parts were"
     attributes["history"] = attributes["history"].replace(" batch", " motion")
-    return replace(layout, sizes=sizes, variables=tuple(variables), attributes=attributes)
+    whole = replace(layout, sizes=sizes, variables=tuple(variables), attributes=attributes)
+    return archived(whole, task.mooring, task.measured, record.source)
 
 
 def estimate_in_memory(

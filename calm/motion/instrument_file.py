@@ -1,16 +1,19 @@
-"""Depths added to a copy of a user's own file of instruments."""
+"""Depths added to copies of a user's own files, of several instruments or of one each."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from calm.dataset.discovery import FLAGS, written
 from calm.errors import InputError, Problem, UsageError
+from calm.motion.archived import ESTIMATED, MEASURED, MISSING
+from calm.motion.line_places import LinePlaces, points_of
 from calm.motion.measurements import interpolated
 from calm.motion.study import depths_at
 from calm.records.cf_files import (
@@ -24,12 +27,19 @@ from calm.records.cf_files import (
     read_times,
     reading,
 )
+from calm.records.instrument_series import Identity, files_given, who_along
+from calm.version import __version__
 from calm.whole_file import beside
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
-ADDED = ("depth", "depth_sd")
+SEVERAL = ("depth", "depth_sd", "depth_qc")
+"""What is added to a file of several instruments; in capitals to that of one."""
+ONE = tuple(name.upper() for name in SEVERAL)
+_OF_OLD = ("DEPTH_quality_control", "DEPTH_UNCERTAINTY")
+NOMINAL = "NOMINAL_DEPTH"
+"""Where the place of the one instrument of a file goes, if that was its `DEPTH`."""
 _TIMES = ("time", "TIME", "Time")
 
 
@@ -40,38 +50,61 @@ class Instruments:
     Attributes
     ----------
     path : of it
-    clock, along : its variable of times, whose dimension is `dimension`; dimension of instruments
+    clock, along : its variable of times, whose dimension is `dimension`; dimension of instruments,
+        None in the file of one
     time : (n,)
-    label : of the instruments
+    who : the instruments
+    point : of each the point of the line; None where it is none
     """
 
     path: Path
     clock: str
     dimension: str
-    along: str
+    along: str | None
     time: NDArray[np.datetime64]
-    label: tuple[str, ...]
+    who: tuple[Identity, ...]
+    point: tuple[int | None, ...]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """What is added is called."""
+        return ONE if self.along is None else SEVERAL
 
 
-def read_instruments(path: Path, labels: Sequence[str], *, replace: bool) -> Instruments:
-    """Return what a file holds, before anything is estimated for it.
+def read_instruments(
+    given: Path, line: LinePlaces, *, replacing: bool
+) -> tuple[list[Instruments], list[str]]:
+    """Return what a file or a folder of files holds, before anything is estimated, and what is said
+    of who is who.
 
     Parameters
     ----------
-    labels : of the parts of the line
-    replace : whether a `depth` that it has may be replaced
+    given : the file, or a folder of .nc files
+    line : its parts
+    replacing : whether depths that a file has may be replaced
 
     Raises
     ------
     InputError
-        It is not a NetCDF file, or has no times or no labels of instruments, or groups.
+        A file is not NetCDF, or has no times or no way to know its instruments, or groups.
     UsageError
-        It has depths already, or a dimension called so; none of its instruments is a part of the
-        line.
+        A file has depths already, or a dimension called so; none of the instruments is a part of
+        the line.
     """
-    if not path.is_file():
-        raise InputError([Problem(str(path), 0, 0, "no such file")])
-    if not is_netcdf(path):
+    seabed = float(line.still[-1])
+    found = [_read(path, seabed, replacing) for _, path in files_given([str(given)])]
+    everyone = [one for file in found for one in file.who]
+    try:
+        points, said = points_of(everyone, line)
+    except UsageError as error:
+        raise UsageError(f"--onto: no instrument of {given} is found: {error}") from None
+    each = iter(range(len(everyone)))
+    return [replace(file, point=tuple(points.get(next(each)) for _ in file.who)) for file in found
+            ], said  # fmt: skip
+
+
+def _read(path: Path, seabed: float, replacing: bool) -> Instruments:
+    if not path.is_file() or not is_netcdf(path):
         raise InputError([Problem(str(path), 0, 0, "is not a NetCDF file")])
     with reading(path), open_current(path) as dataset:
         if groups := groups_of(path):
@@ -79,52 +112,72 @@ def read_instruments(path: Path, labels: Sequence[str], *, replace: bool) -> Ins
                 f"has groups, which a copy would lack: {', '.join(groups)}; give the variables of "
                 "its instruments as a file of their own"
             )
-        counted = [name for name in ADDED if name in dataset.sizes]
-        if counted:
-            raise UsageError(
-                f"--onto: `{counted[0]}` is a dimension of {path}; rename it: a variable of two "
-                "dimensions cannot have the name of one"
-            )
-        there = [name for name in ADDED if name in dataset.variables]
-        if there and not replace:
-            raise UsageError(
-                f"--onto: {path} has `{there[0]}` already; with --replace the copy has another"
-            )
         clock = next((name for name in _TIMES if name in dataset.variables), None)
         if clock is None or dataset[clock].ndim != 1:
             raise UnreadableError(f"has no times; it holds {holdings(dataset)}")
         dimension = str(dataset[clock].dims[0])
-        for along in map(str, dataset.sizes):
-            label = None if along == dimension else labels_along(dataset, along)
-            if label is not None:
-                break
-        else:
-            raise UnreadableError(
-                f"has no labels of instruments (`instrument` or `label`); it holds "
-                f"{holdings(dataset)}"
-            )
-        time = read_times(dataset, clock)
-    if not set(label) & set(labels):
-        raise UsageError(f"--onto: no instrument of {path} is a part of the line: {label[0]}, …")
-    return Instruments(path, clock, dimension, along, time, label)
+        along, who = _who(dataset, dimension, seabed, path)
+        _refuse_depths(dataset, path, dimension, along, replacing)
+        return Instruments(path, clock, dimension, along, read_times(dataset, clock), who, ())
+
+
+def _who(
+    dataset: Dataset, time: str, seabed: float, path: Path
+) -> tuple[str | None, tuple[Identity, ...]]:
+    """Return the dimension of the instruments and who they are; None of the one of a file."""
+    others = [str(dim) for dim in dataset.sizes if dim != time]
+    for dim in sorted(others, key=lambda dim: labels_along(dataset, dim) is None):
+        if dataset.sizes[dim] > 1 or labels_along(dataset, dim) is not None:
+            who = who_along(dataset, dim, seabed, path.name)
+            if any(one.label or one.serial for one in who) or dim == "N_LEVELS":
+                return dim, tuple(who)
+    alone = who_along(dataset, None, seabed, path.name)
+    if not (alone[0].label or alone[0].serial or np.isfinite(alone[0].nominal)):
+        raise UnreadableError(
+            "has no labels of instruments (`instrument` or `label`), and no serial number or "
+            f"nominal depth of one; it holds {holdings(dataset)}"
+        )
+    return None, tuple(alone)
+
+
+def _refuse_depths(
+    dataset: Dataset, path: Path, time: str, along: str | None, replacing: bool
+) -> None:
+    names = ONE if along is None else SEVERAL
+    counted = [name for name in names if dataset.sizes.get(name, 1) > 1]
+    if along in names:
+        counted.append(str(along))
+    if counted:
+        raise UsageError(
+            f"--onto: `{counted[0]}` is a dimension of {path}; rename it: a variable of two "
+            "dimensions cannot have the name of one"
+        )
+    there = [
+        name for name in names
+        if name in dataset.variables and (along is not None or time in dataset[name].dims)
+    ]  # fmt: skip
+    if there and not replacing:
+        raise UsageError(
+            f"--onto: {path} has `{there[0]}` already; with --replace the copy has another"
+        )
 
 
 def write_depths(
     instruments: Instruments,
     result: Dataset,
-    labels: Sequence[str],
     gap: np.timedelta64,
     output: Path,
+    inputs: Sequence[str] = (),
 ) -> list[str]:
-    """Write the copy with `depth` and `depth_sd`, whole; returns the instruments without either.
+    """Write the copy with depths, deviations and flags, whole; return who is without them.
 
     Parameters
     ----------
     instruments : the file that is copied
     result : of `calm.motion.correction.run_motion`
-    labels : of the points of the result
     gap : between neighbours of a depth, at most
     output : the copy
+    inputs : names of the files that the depths are from, with their hashes
 
     Raises
     ------
@@ -133,19 +186,15 @@ def write_depths(
     """
     import xarray as xr
 
-    time = result["time"].values
-    shape = len(instruments.time), len(instruments.label)
+    shape = len(instruments.time), len(instruments.who)
     depth, spread = np.full(shape, np.nan), np.full(shape, np.nan)
+    flag = np.full(shape, MISSING, np.int8)
     lost = []
-    for j, label in enumerate(instruments.label):
-        if label not in labels:
-            lost.append(label)
+    for j, point in enumerate(instruments.point):
+        if point is None:
+            lost.append(instruments.who[j].named)
             continue
-        found = depths_at(result, list(labels).index(label))
-        for array, values in zip((depth, spread), found, strict=True):
-            array[:, j] = interpolated(time, values, instruments.time, gap)
-    dims = (instruments.dimension, instruments.along)
-    told = {"units": "m", "positive": "down", "standard_name": "depth"}
+        depth[:, j], spread[:, j], flag[:, j] = at_own_times(result, point, instruments.time, gap)
     # values as they stand, but for texts: kept as characters they would be split once more
     with xr.open_dataset(
         instruments.path,
@@ -154,12 +203,87 @@ def write_depths(
         decode_times=False,
         decode_coords=False,
     ) as own:
-        copy = own.load().drop_vars([name for name in ADDED if name in own.variables])
-    told["long_name"], told["ancillary_variables"] = "depth estimated by CALM", "depth_sd"
-    copy["depth"] = xr.Variable(dims, depth, told)
-    copy["depth_sd"] = xr.Variable(
-        dims, spread, {"units": "m", "standard_name": "depth standard_error"}
-    )
+        copy = own.load()
+    one = instruments.along is None
+    copy = _without_depths(copy, instruments)
+    name, deviation, mark = instruments.names
+    dims = (instruments.dimension,) if one else (instruments.dimension, str(instruments.along))
+    tables = [table[:, 0] if one else table for table in (depth, spread, flag)]
+    copy[name] = xr.Variable(dims, tables[0], {
+        "units": "m", "positive": "down", "standard_name": "depth",
+        "long_name": "depth estimated by CALM", "ancillary_variables": f"{deviation} {mark}",
+        **({"axis": "Z", "reference": "sea_level"} if one else {}),
+    })  # fmt: skip
+    copy[deviation] = xr.Variable(dims, tables[1], {
+        "units": "m", "standard_name": "depth standard_error",
+        "long_name": "standard deviation of the depth",
+    })  # fmt: skip
+    copy[mark] = xr.Variable(dims, tables[2], {
+        "standard_name": "quality_flag", "long_name": "quality flag of the depth",
+        "flag_values": np.array(list(FLAGS), np.int8), "flag_meanings": " ".join(FLAGS.values()),
+        "conventions": "OceanSITES QC Flags",
+    })  # fmt: skip
+    _tell(copy, instruments, depth, inputs)
     with beside(output) as part:
         copy.to_netcdf(part, engine="h5netcdf")
     return lost
+
+
+def at_own_times(
+    result: Dataset, point: int, time: NDArray[np.datetime64], gap: np.timedelta64
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int8]]:
+    """Return depth, deviation and flag of a point at other times.
+
+    The flag says measured where a pressure of its own was used, else interpolated.
+
+    Parameters
+    ----------
+    point : see `calm.motion.line_places`
+    time : (n,)
+    gap : between neighbours of a depth, at most
+    """
+    known = result["time"].values
+    depth, spread = (interpolated(known, one, time, gap) for one in depths_at(result, point))
+    clamps = result.sizes.get("clamp", 0)
+    names = ("clamp_label", point) if point < clamps else ("component_label", point - clamps)
+    label = str(result[names[0]].values[names[1]]) if names[0] in result else ""
+    sensors = (
+        [str(one) for one in result["sensor_label"].values] if "sensor_label" in result else []
+    )
+    flag = np.where(np.isfinite(depth), ESTIMATED, MISSING).astype(np.int8)
+    if label in sensors:
+        own = np.asarray(result["residual"].values[:, sensors.index(label)], np.float64)
+        here = np.isfinite(interpolated(known, own, time, gap)) & np.isfinite(depth)
+        flag[here] = MEASURED
+    return depth, spread, flag
+
+
+def _without_depths(copy: Dataset, instruments: Instruments) -> Dataset:
+    """Return a file without the depths that it had; the place of its one instrument is renamed."""
+    if instruments.along is not None:
+        return copy.drop_vars([name for name in SEVERAL if name in copy.variables])
+    nominal = None
+    if "DEPTH" in copy.variables and instruments.dimension not in copy["DEPTH"].dims:
+        nominal = copy["DEPTH"].squeeze(drop=True).variable
+    if "DEPTH" in copy.dims:
+        copy = copy.isel(DEPTH=0, drop=True)
+    copy = copy.drop_vars([name for name in (*ONE, *_OF_OLD) if name in copy.variables])
+    if nominal is not None and NOMINAL not in copy.variables:
+        told = {key: value for key, value in nominal.attrs.items() if key != "axis"}
+        copy[NOMINAL] = nominal.copy(deep=False)
+        copy[NOMINAL].attrs = {**told, "long_name": "nominal depth"}
+    return copy
+
+
+def _tell(
+    copy: Dataset, instruments: Instruments, depth: NDArray[np.float64], inputs: Sequence[str]
+) -> None:
+    """Add a line to the history of a copy, and what goes with its depths."""
+    line = f"{written()} calm {__version__} motion --onto: {instruments.names[0]} estimated"
+    line += f" from {', '.join(inputs)}" if inputs else ""
+    before = [str(copy.attrs["history"])] if "history" in copy.attrs else []
+    copy.attrs["history"] = "\n".join([*before, line])
+    copy.attrs["date_modified"] = written()
+    if "geospatial_vertical_min" in copy.attrs and np.isfinite(depth).any():
+        copy.attrs["geospatial_vertical_min"] = float(np.nanmin(depth))
+        copy.attrs["geospatial_vertical_max"] = float(np.nanmax(depth))

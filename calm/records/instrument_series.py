@@ -57,31 +57,41 @@ _ONE_PLACE = ("instrument_nominal_depth", "nominal_depth", "sensor_depth")
 
 
 @dataclass(frozen=True)
-class InstrumentSeries:
-    """What one instrument measured of one quantity.
+class Identity:
+    """Who an instrument is, as its file says.
 
     Attributes
     ----------
-    label, serial : who it is; empty where its file does not say
+    label, serial : empty where its file does not say
     nominal : its nominal depth [m]; NaN where its file does not say
-    time : (n,) to the nanosecond, rising
-    value : (n,) in the unit of its quantity; NaN where not measured, or the flag is not wanted
-    dropped : readings that were left out for their flag
     source : name of its file
     """
 
     label: str
     serial: str
     nominal: float
-    time: NDArray[np.datetime64]
-    value: Floats
-    dropped: int
     source: str
 
     @property
     def named(self) -> str:
         """What a person calls it."""
         return self.label or self.serial or self.source
+
+
+@dataclass(frozen=True)
+class InstrumentSeries(Identity):
+    """What one instrument measured of one quantity.
+
+    Attributes
+    ----------
+    time : (n,) to the nanosecond, rising
+    value : (n,) in the unit of its quantity; NaN where not measured, or the flag is not wanted
+    dropped : readings that were left out for their flag
+    """
+
+    time: NDArray[np.datetime64]
+    value: Floats
+    dropped: int
 
 
 def read_series(
@@ -225,10 +235,13 @@ def _instruments(
     value = np.where(dropped, np.nan, value)
     times = read_times(dataset, clock)
     order = np.argsort(times, kind="stable")
-    who = who_along(dataset, along, seabed)
+    who = who_along(dataset, along, seabed, path.name)
     return [
         InstrumentSeries(
-            *who[j], times[order], value[order, j], int(dropped[:, j].sum()), path.name
+            **vars(who[j]),
+            time=times[order],
+            value=value[order, j],
+            dropped=int(dropped[:, j].sum()),
         )
         for j in range(value.shape[1])
     ]
@@ -254,32 +267,27 @@ def axes_of(dataset: xr.Dataset, name: str, clock: str) -> tuple[str, str | None
     return time, others[0] if others else None
 
 
-def who_along(
-    dataset: xr.Dataset, along: str | None, seabed: float
-) -> list[tuple[str, str, float]]:
-    """Return label, serial number and nominal depth [m] of the instruments along a dimension.
+def who_along(dataset: xr.Dataset, along: str | None, seabed: float, source: str) -> list[Identity]:
+    """Return who the instruments along a dimension are.
 
     Parameters
     ----------
     along : None for the one instrument of a file
     seabed : depth of the water, for heights above it [m]
+    source : name of the file
     """
     if along is None:
         single = [str(dim) for dim, size in dataset.sizes.items() if size == 1]
         labels = next(filter(None, (labels_along(dataset, dim) for dim in single)), ("",))
         tried = (places_along(dataset, dim, seabed) for dim in (None, *single))
         place = next((float(one[0]) for one in tried if one is not None), _number(dataset.attrs))
-        return [(labels[0], _texts(dataset, (), dataset.attrs)[0], place)]
+        return [Identity(labels[0], _texts(dataset, (), dataset.attrs)[0], place, source)]
     count = dataset.sizes[along]
+    labels = labels_along(dataset, along) or ("",) * count
+    serials = _texts(dataset, (along,), {}) * (1 if _has_serials(dataset, along) else count)
     places = places_along(dataset, along, seabed)
-    return list(
-        zip(
-            labels_along(dataset, along) or [""] * count,
-            _texts(dataset, (along,), {}) * (1 if _has_serials(dataset, along) else count),
-            [np.nan] * count if places is None else places.tolist(),
-            strict=True,
-        )
-    )
+    nominal = [float("nan")] * count if places is None else places.tolist()
+    return [Identity(*one, source) for one in zip(labels, serials, nominal, strict=True)]
 
 
 def _has_serials(dataset: xr.Dataset, along: str) -> bool:

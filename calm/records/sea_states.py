@@ -57,7 +57,8 @@ class SeaState:
     peak_period : Tp [s]
     density : spectrum of the elevation by angular frequency [rad/s], one-sided [m² s/rad]
     share : of the time, where it is one of several
-    longest : period of the longest waves that count, where it is not that of the peak [s]
+    longest, shortest : periods of the peaks of a sea of several parts [s]; of a measured sea
+        `longest` is that of its longest waves that count
     """
 
     significant_height: float
@@ -65,10 +66,11 @@ class SeaState:
     density: Density
     share: float = 1.0
     longest: float | None = None
+    shortest: float | None = None
 
     def frequencies(self, count: int) -> Floats:
         """Return angular frequencies to solve for [rad/s], evenly spread in their logarithm."""
-        peak = 2.0 * pi / self.peak_period
+        peak = 2.0 * pi / (self.shortest or self.peak_period)
         low, high = BETWEEN
         first = 2.0 * pi / (self.longest or self.peak_period)
         return np.geomspace(low * first, min(high * peak, LARGEST_FREQUENCY), count)
@@ -161,8 +163,38 @@ def spectrum_of(kind: str, height: float, period: float | None, gamma: float) ->
     return SeaState(height, period, form)
 
 
+def with_swell(sea: SeaState, height: float, period: float) -> SeaState:
+    """Return a sea with a swell of Hs [m] and Tp [s], which runs the same way.
+
+    The swell has the narrow form that Ochi and Hubble give it, λ of 3; variances add up.
+
+    Raises
+    ------
+    UsageError
+        The swell is higher, longer or steeper than there are, or shorter than the sea.
+    """
+    spectrum_of("bretschneider", height, period, 1.0)
+    if period <= sea.peak_period:
+        raise UsageError(
+            f"a swell of {period:g} s beside a sea of {sea.peak_period:g} s: a swell is the longer"
+        )
+    swell = ochi_hubble(((height, period, 3.0),))
+    form = partial(_together, sea.density, swell)
+    whole = sqrt(sea.significant_height**2 + height**2)
+    at = np.geomspace(pi / period, 4.0 * pi / sea.peak_period, 400)
+    peak = 2.0 * pi / float(at[int(form(at).argmax())])
+    first = period if sea.longest is None else max(period, sea.longest)
+    return SeaState(whole, peak, form, sea.share, first, sea.shortest or sea.peak_period)
+
+
+def _together(first: Density, second: Density, omega: Floats) -> Floats:
+    return first(omega) + second(omega)
+
+
 def _most_probable(height: float) -> SeaState:
-    """Return swell and sea as they most probably go with a height; Ochi and Hubble 1976, table 2b.
+    """Return swell and sea as they most probably go with a height; Ochi and Hubble 1976.
+
+    The constants are as secondary texts print them; the paper was not read.
 
     Raises
     ------
@@ -176,7 +208,7 @@ def _most_probable(height: float) -> SeaState:
     form = ochi_hubble((swell, sea))
     at = 2.0 * pi / np.array([swell[1], sea[1]])
     peak = (swell, sea)[int(form(at).argmax())][1]
-    return SeaState(height, peak, form, longest=swell[1])
+    return SeaState(height, peak, form, longest=swell[1], shortest=sea[1])
 
 
 def measured_spectrum(path: Path) -> SeaState:

@@ -25,7 +25,7 @@ from calm.report.provenance import date
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from calm.grid.field import Field
+    from calm.grid.field import GriddedQuantity
 
 MOST_DRAWN = 600
 """Times of a section that are drawn; of more, every few."""
@@ -39,7 +39,7 @@ _READ = (
 
 def grid_report(
     output: Path,
-    fields: Mapping[str, Field],
+    fields: Mapping[str, GriddedQuantity],
     names: Mapping[str, str],
     levels: NDArray[np.float64],
 ) -> Report:
@@ -69,12 +69,12 @@ def grid_report(
     return Report(title, span, (), (Section(output.name, parts),), date())
 
 
-def grid_part(fields: Mapping[str, Field]) -> ReportPart:
+def grid_part(fields: Mapping[str, GriddedQuantity]) -> ReportPart:
     """Return what a terminal shows."""
     return ReportPart("", (scales_table(fields),))
 
 
-def scales_table(fields: Mapping[str, Field]) -> Table:
+def scales_table(fields: Mapping[str, GriddedQuantity]) -> Table:
     """Return the scales that each record has."""
     return table_of(
         "",
@@ -94,7 +94,9 @@ def scales_table(fields: Mapping[str, Field]) -> Table:
     )
 
 
-def methods_text(fields: Mapping[str, Field], levels: NDArray[np.float64]) -> tuple[str, ...]:
+def methods_text(
+    fields: Mapping[str, GriddedQuantity], levels: NDArray[np.float64]
+) -> tuple[str, ...]:
     """Return sentences to paste into the methods of a cruise report."""
     from calm.version import __version__
 
@@ -116,22 +118,27 @@ def methods_text(fields: Mapping[str, Field], levels: NDArray[np.float64]) -> tu
     return tuple(said)
 
 
-def _used(field: Field) -> int:
+def _used(field: GriddedQuantity) -> int:
     return int(np.isfinite(field.samples.value).any(axis=0).sum())
 
 
-def _hours(field: Field) -> str:
+def _hours(field: GriddedQuantity) -> str:
     return f"{field.scales.time / 3600.0:.3g}" if field.in_time else "-"
 
 
-def _widened(field: Field) -> str:
+def _widened(field: GriddedQuantity) -> str:
     if field.widened is None:
         return "-"
     return f"{field.widened.within.max():.2f}, {field.widened.beyond:.2f}"
 
 
 def _section(
-    name: str, field: Field, levels: NDArray[np.float64], value: Any, deviation: Any, flag: Any
+    name: str,
+    field: GriddedQuantity,
+    levels: NDArray[np.float64],
+    value: Any,
+    deviation: Any,
+    flag: Any,
 ) -> Figure:
     """A section over time, the deviation below it."""
     from matplotlib.figure import Figure as Drawing

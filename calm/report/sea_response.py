@@ -31,7 +31,7 @@ _NOTE = (
 )
 _LIFE = (
     "Life: years to a damage of 1 in these seas; low and high with deviations of tension 15 % "
-    "greater and less."
+    "greater and less. Curves as other texts print them: compare with the standard."
 )
 
 

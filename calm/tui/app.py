@@ -23,7 +23,7 @@ from calm.tui import saving
 from calm.tui.help_screen import Actions, Commands
 from calm.tui.judging import Judging
 from calm.tui.line.builder import BuilderScreen
-from calm.tui.messages import CatalogueRead, Edited, Judged, JudgingFailed, Workspace
+from calm.tui.messages import CatalogueRead, Edited, Judged, JudgingFailed, Told, Workspace
 from calm.tui.painted import Pace, Painted, PlainSigns, shows_all_signs
 from calm.tui.saving import Saving
 from calm.tui.screen import DraftScreen
@@ -162,13 +162,17 @@ class BuildApp(InTurn):
         screen = self.screen if isinstance(self.screen, DraftScreen) else self.builder
         screen.tell(text, wrong=wrong)
 
+    @on(Told)
+    def _say(self, event: Told) -> None:
+        self.tell(event.text, wrong=event.wrong)
+
     def draft_screens(self) -> list[DraftScreen]:
         """The open ones, the top one last."""
         return [each for each in self.screen_stack if isinstance(each, DraftScreen)]
 
     def is_settled(self) -> bool:
         """Return whether nothing is being typed any more; a bad value has been reported."""
-        return not isinstance(self.screen, DraftScreen) or self.screen.part.settle()
+        return not isinstance(self.screen, DraftScreen) or self.screen.settle()
 
     def taken_over(self, message: str) -> None:
         """Another text has taken the place of the draft: every screen reads it again."""
@@ -220,7 +224,8 @@ class BuildApp(InTurn):
     def _show_views(self) -> None:
         if self.is_running:  # else the screens are being taken apart
             for screen in self.draft_screens():
-                screen.show_view()
+                if screen.is_mounted and screen.is_attached:  # there, and not on the way out
+                    screen.show_view()
 
     def _tell_lost_environment(self) -> None:
         before, self._lost = self._lost, self.session.standing.lost_environment
@@ -279,7 +284,7 @@ class BuildApp(InTurn):
             self.tell(event.reason, wrong=True)
         else:
             self.workspace.take_catalogue(event.catalogue)
-            self.builder.body.show_catalogue()
+            self.builder.show_catalogue()
 
     # what is kept, and the way out
 
@@ -312,7 +317,7 @@ class BuildApp(InTurn):
     def take_typed(self) -> None:
         """Take a good value that is being typed, nobody being asked any more."""
         if self.is_running and self.screen_stack and isinstance(self.screen, DraftScreen):
-            self.screen.part.settle()
+            self.screen.settle()
 
     def keep_at_the_end(self) -> None:
         """Keep what is not saved, unless the person has left; `not_kept` says what prevents it."""

@@ -89,28 +89,37 @@ class Question(ModalScreen[str | None]):
 
 @dataclass(frozen=True)
 class Asked:
-    """A text that is asked for."""
+    """A text that is asked for; `takes` stands beside it, and `above` begins a group with it."""
 
     key: str
     title: str
     text: str = ""
     check: Check = anything
     placeholder: str = ""
+    takes: str = ""
+    above: str = ""
 
 
 class InputSheet(ModalScreen[dict[str, str] | None]):
-    """Some texts, entered together; Esc leaves all as it was."""
+    """Some texts, entered together; Esc leaves all as it was.
+
+    It is wider where it is said beside them what they take.
+    """
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings("sheet")]
     DEFAULT_CSS = (
         "InputSheet {" + _FRAME + " & Field > Input { width: 1fr; }"
         " & .field-note { display: none; }"
+        " & .above { text-style: bold; margin-top: 1; }"
+        " &.-wide > VerticalScroll { width: 110; }"
+        " &.-wide .field-note { display: block; } &.-wide Field > Input { width: 24; }"
+        " &.-wide .field-title { width: 20; }"
         "& #sheet-note { height: auto; min-height: 1; color: $text-muted; margin-top: 1; }"
         "& #sheet-note.-wrong { color: $text-error; } }"
     )
 
     def __init__(self, title: str, text: str, asked: Sequence[Asked]) -> None:
-        super().__init__()
+        super().__init__(classes="-wide" if any(each.takes for each in asked) else None)
         self._title, self._text, self._asked = title, text, asked
 
     def compose(self) -> ComposeResult:
@@ -120,11 +129,17 @@ class InputSheet(ModalScreen[dict[str, str] | None]):
             if self._text:
                 yield Static(self._text, classes="text", markup=False)
             for each in self._asked:
+                if each.above:
+                    yield Static(each.above, classes="above", markup=False)
                 yield Field(
-                    each.key, each.title, each.check, text=each.text, placeholder=each.placeholder
-                )
+                    each.key, each.title, each.check,
+                    text=each.text, note=each.takes, placeholder=each.placeholder,
+                )  # fmt: skip
             yield Static(id="sheet-note", markup=False)
-            yield Static("[b]Enter[/b] next, then done   [b]Esc[/b] go back", classes="keys")
+            yield Static(
+                "[b]Enter[/b] next, then done   [b]Ctrl+S[/b] done   [b]Esc[/b] go back",
+                classes="keys",
+            )
 
     def on_mount(self) -> None:
         """Type at once."""

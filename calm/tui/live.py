@@ -134,8 +134,8 @@ def _placed(path: str | Path | None) -> Path:
 
 
 def judge_fully(view: View, catalogs: Sequence[str | Path] = ()) -> View:
-    """Return the same with all that `calm check` finds: in every environment and situation, at
-    launch and at recovery, and where a part breaks.
+    """Return the same with all that `calm check` finds: in every environment and situation, in
+    waves, at launch and at recovery, and where a part breaks.
 
     A tow, and a line without an anchor of its own or without equilibrium, is returned as it is.
     """

@@ -13,6 +13,7 @@ from textual.message import Message
 from calm.assemble.catalogue_search import Index
 from calm.errors import CalmError
 from calm.files import Place
+from calm.files.editing import LineItem
 from calm.tui.session import Session
 
 if TYPE_CHECKING:
@@ -23,6 +24,14 @@ if TYPE_CHECKING:
 
 class Edited(Message):
     """The file, or the environment it is seen in, is another one."""
+
+
+@dataclass
+class Told(Message):
+    """Something is to be said in the last line; `wrong` where something cannot be done."""
+
+    text: str
+    wrong: bool = False
 
 
 @dataclass
@@ -135,6 +144,11 @@ class Workspace:
         if self._catalogue is not None and (self.index is None or defined != self._defined):
             self._defined = defined
             self.index = Index.of(self._catalogue, draft.text)
+
+    def is_assembly(self, item: LineItem) -> bool:
+        """Return whether a row is one of several parts, as far as the catalogue is read."""
+        listed = None if self.index is None else self.index.get(item.values.get("use", ""))
+        return listed is not None and listed.kind == "assembly"
 
     @property
     def is_fresh(self) -> bool:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from textwrap import wrap
 from typing import TYPE_CHECKING, Literal
 
 from rich.text import Text
@@ -117,19 +118,23 @@ class Picture(DrawnRows, can_focus=True):
         result = None if self._view is None else self._view.result
         if result is None or size.width < 20 or size.height < 6:
             return _words(self._view, size)
-        draw: Callable[[Result | TowResult, Size], list[Text]] = {
-            "elevation": self._elevation,
-            "plan": self._plan,
-            "tension": self._tension,
-            "schematic": self._schematic,
-        }[self.tab]
-        return draw(result, size)
+        from calm.drawing.schematic.in_terminal import schematic_text
+        from calm.drawing.sketch import plan, tension
+
+        if self.tab == "plan":
+            return plan(result, *size, self._beside)
+        if self.tab == "tension":
+            return tension(result, *size)
+        if self.tab == "schematic":
+            text = schematic_text(result.file, result, size.width)
+            return [Text(line) for line in text.splitlines()]
+        return self._elevation(result, size)
 
     def _elevation(self, result: Result | TowResult, size: Size) -> list[Text]:
         from calm.drawing.sketch import current_profile, elevation
 
         if size.width < _LEAST_BESIDE or result.file.environment.depth is None:
-            return elevation(result, size.width, size.height, self._beside)
+            return elevation(result, *size, self._beside)
         beside = min(size.width // _BESIDE, _MOST_BESIDE)
         line = elevation(result, size.width - beside - 1, size.height, self._beside)
         profile = current_profile(_water_of(result), beside, size.height)
@@ -138,22 +143,6 @@ class Picture(DrawnRows, can_focus=True):
             left.truncate(size.width - beside, pad=True)
             rows.append(left.append_text(right))
         return rows
-
-    def _plan(self, result: Result | TowResult, size: Size) -> list[Text]:
-        from calm.drawing.sketch import plan
-
-        return plan(result, size.width, size.height, self._beside)
-
-    def _tension(self, result: Result | TowResult, size: Size) -> list[Text]:
-        from calm.drawing.sketch import tension
-
-        return tension(result, size.width, size.height)
-
-    def _schematic(self, result: Result | TowResult, size: Size) -> list[Text]:
-        from calm.drawing.schematic.in_terminal import schematic_text
-
-        text = schematic_text(result.file, result, size.width)
-        return [Text(line) for line in text.splitlines()]
 
 
 def _water_of(result: Result | TowResult) -> Water:
@@ -167,13 +156,7 @@ def _words(view: View | None, size: Size) -> list[Text]:
     if size.width < 20 or size.height < 6:
         return [Text("(too small)", style="dim")]
     text = ELLIPSIS if view is None else "A picture appears once the line stands."
-    return [Text(""), *(Text(line, style="dim") for line in _wrapped(text, size.width))]
-
-
-def _wrapped(text: str, width: int) -> list[str]:
-    import textwrap
-
-    return textwrap.wrap(text, max(width, 10))
+    return [Text(""), *(Text(line, style="dim") for line in wrap(text, size.width))]
 
 
 class Pictures(Vertical):

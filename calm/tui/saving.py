@@ -179,7 +179,7 @@ class Saving:
                 session.lost_file()
                 self._workspace.tell(_GONE, wrong=True)
                 self._workspace.edited()  # what is here is kept like every change
-        elif not (session.changed or screen.part.is_typing):
+        elif not (session.changed or screen.is_typing):
             self._take_theirs(quietly=not is_new)
         elif is_new:
             self._workspace.tell(_CHANGED, wrong=True)

@@ -1,9 +1,8 @@
-"""A screen that shows the draft: title, the part that shows and edits it, keys."""
+"""A screen that shows and edits the draft: title, what is made of it, keys."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import Protocol
 
 from rich.cells import cell_len
 from rich.text import Text
@@ -18,81 +17,69 @@ from calm.tui.key_table import Action, shown_key
 from calm.tui.messages import Workspace
 
 
-class ScreenPart(Protocol):
-    """What shows and edits the draft of a workspace.
+class DraftScreen(Screen[None]):
+    """What shows and edits the draft of a workspace: title, its parts, keys.
 
-    The application settles the part on top before it saves or leaves, and has every one of them
+    The application settles the screen on top before it saves or leaves, and has every one of them
     read the draft again when that was replaced from outside.
     """
 
-    @property
-    def is_typing(self) -> bool:
-        """Return whether something is typed that is not in the draft yet."""
-
-    def settle(self) -> bool:
-        """Take over what is being typed: the draft holds it when this returns True.
-
-        False where the value is bad: it stays to be corrected, and the reason is shown.
-        """
-
-    def show_draft(self) -> None:
-        """Show the draft as it is now, some steps further or back."""
-
-    def replaced(self) -> None:
-        """Show the draft, another one: what is typed and marked was of the one before.
-
-        It may be one that cannot be read: the application then opens the text view.
-        """
-
-    def show_view(self) -> None:
-        """Show what a worker made of the draft."""
-
-    def title(self) -> tuple[str, str]:
-        """Return what the first line says at its left and at its right end."""
-
-
-class DraftScreen(Screen[None]):
-    """A frame for a part.
-
-    Parameters
-    ----------
-    workspace : the file that is shown
-    part, body : what shows it, as what it is asked for and as the widget that it is
-    """
-
-    def __init__(self, workspace: Workspace, part: ScreenPart, body: Widget) -> None:
+    def __init__(self, workspace: Workspace) -> None:
         super().__init__()
-        self.workspace, self.part, self._body = workspace, part, body
+        self.workspace, self.session = workspace, workspace.session
 
     def compose(self) -> ComposeResult:
         """Title, what is shown, keys."""
         yield TitleBar()
-        yield self._body
+        yield from self.parts()
         yield KeyBar()
 
     def on_mount(self) -> None:
         """Say what is shown."""
         self.show_title()
 
-    def show_view(self) -> None:
-        """Show what a worker made of the draft."""
-        if self.is_mounted and self.is_attached:  # it is there, and not on the way out
-            self.part.show_view()
-            self.show_title()
+    # what is made of it tells
+
+    def parts(self) -> ComposeResult:
+        """Return what is between title and keys."""
+        raise NotImplementedError
+
+    @property
+    def is_typing(self) -> bool:
+        """Return whether something is typed that is not in the draft yet."""
+        raise NotImplementedError
+
+    def settle(self) -> bool:
+        """Take over what is being typed: the draft holds it when this returns True.
+
+        False where the value is bad: it stays to be corrected, and the reason is shown.
+        """
+        raise NotImplementedError
 
     def show_draft(self) -> None:
-        """Show the draft as it is now."""
-        self.part.show_draft()
-        self.show_title()
+        """Show the draft as it is now, some steps further or back."""
+        raise NotImplementedError
 
     def replaced(self) -> None:
-        """Show another draft."""
-        self.part.replaced()
-        self.show_title()
+        """Show the draft, another one: what is typed and marked was of the one before.
+
+        It may be one that cannot be read: the application then opens the text view.
+        """
+        self.show_draft()
+
+    def show_view(self) -> None:
+        """Show what a worker made of the draft."""
+        raise NotImplementedError
+
+    def titles(self) -> tuple[str, str]:
+        """Return what the first line says at its left and at its right end."""
+        raise NotImplementedError
+
+    # what all have
 
     def show_title(self) -> None:
         """Say again what is shown and how it stands, dimmed where that is of an earlier draft."""
-        self.query_one(TitleBar).show(*self.part.title(), old=not self.workspace.is_fresh)
+        self.query_one(TitleBar).show(*self.titles(), old=not self.workspace.is_fresh)
 
     def tell(self, text: str, *, wrong: bool = False) -> None:
         """Say something in the last line, until the next key."""
@@ -100,14 +87,14 @@ class DraftScreen(Screen[None]):
 
     def action_undo(self) -> None:
         """Take the last change back, once what is typed is taken."""
-        self._go("undone", self.workspace.session.history.undo)
+        self._go("undone", self.session.history.undo)
 
     def action_redo(self) -> None:
         """Make it again."""
-        self._go("done again", self.workspace.session.history.redo)
+        self._go("done again", self.session.history.redo)
 
     def _go(self, what: str, step: Callable[[], str | None]) -> None:
-        if not self.part.settle():
+        if not self.settle():
             return
         label = step()
         if label is None:

@@ -23,6 +23,7 @@ from textual.strip import Strip
 
 from calm.tui.cell_editor import CellEditor
 from calm.tui.checking import Check, Reading
+from calm.tui.messages import Told
 from calm.tui.scrolled import Scrolled
 from calm.tui.theme import ELLIPSIS
 
@@ -272,7 +273,7 @@ class EditableTable(Vertical):
 
     def tell_refusal(self, reason: str) -> None:
         """Tell why something is not done."""
-        raise NotImplementedError
+        self.post_message(Told(reason, wrong=True))
 
     def go_on(self, done: CellEditor.Done) -> None:
         """Go on from a cell whose text was taken."""

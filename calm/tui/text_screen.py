@@ -9,7 +9,7 @@ from typing import ClassVar
 from textual import on
 from textual.app import ComposeResult
 from textual.binding import BindingType
-from textual.containers import Vertical, VerticalScroll
+from textual.containers import VerticalScroll
 from textual.content import Content
 from textual.widgets import Static, TextArea
 
@@ -54,11 +54,16 @@ class YamlArea(TextArea):
         self.refresh()
 
 
-class TextPart(Vertical):
-    """The text, judged at each pause; lines that are not touched keep their line breaks."""
+class TextScreen(DraftScreen):
+    """The text of the file, judged at each pause.
+
+    Lines that are not touched keep their line breaks.
+    """
+
+    BINDINGS: ClassVar[list[BindingType]] = [*bindings("text")]
 
     DEFAULT_CSS = """
-    TextPart {
+    TextScreen {
         & TextArea, & TextArea:focus { height: 1fr; border: none; padding: 0; }
         & #mistakes {
             height: auto; max-height: 40%; min-height: 2; padding: 0 1;
@@ -67,16 +72,15 @@ class TextPart(Vertical):
     }
     """
 
-    def __init__(self, workspace: Workspace, line: int) -> None:
-        super().__init__()
-        self.workspace, self.session = workspace, workspace.session
+    def __init__(self, workspace: Workspace, line: int = 1) -> None:
+        super().__init__(workspace)
         self._line, self._sought = line, ""
         self._problems: tuple[Problem, ...] = ()
         self._next = 0
         self._begun = self.session.draft.text
         self._edited = False
 
-    def compose(self) -> ComposeResult:
+    def parts(self) -> ComposeResult:
         """Text and mistakes."""
         yield YamlArea(self.session.draft.text, show_line_numbers=True, compact=True)
         with VerticalScroll(id="mistakes", can_focus=False):
@@ -84,10 +88,11 @@ class TextPart(Vertical):
 
     def on_mount(self) -> None:
         """The cursor to the first mistake, or to the piece that it was on."""
+        self.query_one(KeyBar).show_keys(hints("text"))
         self.show_view()
         self.text_area.focus()
         if self._here:
-            self.next_problem()
+            self.action_next_problem()
         else:
             row = _row(self.session.draft.text, self._line)
             self.text_area.move_cursor((row, 0), center=True)
@@ -111,8 +116,9 @@ class TextPart(Vertical):
         else:
             lines = [Content("…")]
         self.query_one("#mistakes-text", Static).update(Content("\n").join(lines))
+        self.show_title()
 
-    def title(self) -> tuple[str, str]:
+    def titles(self) -> tuple[str, str]:
         """Return what is shown, and how many mistakes it has."""
         return f"The text of {self.workspace.called}", mistakes(self._problems, self._path)
 
@@ -149,7 +155,7 @@ class TextPart(Vertical):
     def _typed(self) -> str:
         return retyped(self._begun, self.text_area.document.lines)
 
-    def replaced(self) -> None:
+    def show_draft(self) -> None:
         """Show the draft anew, the cursor on the line where it was."""
         area, text = self.text_area, self.session.draft.text
         self._begun, self._edited, self._next = text, False, 0
@@ -158,8 +164,6 @@ class TextPart(Vertical):
             area.load_text(text)
         area.move_cursor((min(row, area.document.line_count - 1), column))
         self.show_view()
-
-    show_draft = replaced
 
     def find(self, words: str = "") -> None:
         """Select where words are next, from the cursor on and then from the top; case is ignored.
@@ -181,7 +185,7 @@ class TextPart(Vertical):
                 return
         self.workspace.tell(f"{self._sought}: not in the text", wrong=True)
 
-    def next_problem(self) -> None:
+    def action_next_problem(self) -> None:
         """Put the cursor on the next mistake."""
         if self._problems and not self._here:
             self.workspace.tell(f"There are no mistakes in {self.session.name} itself")
@@ -193,30 +197,12 @@ class TextPart(Vertical):
             last = self.text_area.document.line_count - 1
             self.text_area.move_cursor((min(row, last), max(problem.column - 1, 0)))
 
-
-class TextScreen(DraftScreen):
-    """The text of the file over the whole screen."""
-
-    BINDINGS: ClassVar[list[BindingType]] = [*bindings("text")]
-
-    def __init__(self, workspace: Workspace, line: int = 1) -> None:
-        self.text = TextPart(workspace, line)
-        super().__init__(workspace, self.text, self.text)
-
-    def on_mount(self) -> None:
-        """Its keys."""
-        self.query_one(KeyBar).show_keys(hints("text"))
-
-    def action_next_problem(self) -> None:
-        """Put the cursor on the next mistake."""
-        self.text.next_problem()
-
     def action_find(self) -> None:
         """Ask for words, and go to them."""
 
         def take(texts: dict[str, str] | None) -> None:
             if texts is not None:
-                self.text.find(texts["words"])
+                self.find(texts["words"])
 
         asked = [Asked("words", "Find", placeholder="a label, a key, a number")]
         self.app.push_screen(
@@ -225,11 +211,11 @@ class TextScreen(DraftScreen):
 
     def action_find_next(self) -> None:
         """To the next place of what was sought."""
-        self.text.find()
+        self.find()
 
     def action_back(self) -> None:
         """To the line, if the text has one."""
-        if self.workspace.session.draft.problems:
+        if self.session.draft.problems:
             self.tell("The line cannot be shown before the text can be read", wrong=True)
         else:
             self.dismiss()

@@ -17,6 +17,7 @@ from typing import Any
 from textual import events
 from textual.app import App
 from textual.message_pump import MessagePump
+from textual.widgets import OptionList
 
 _MOST = 50
 """Rounds: what sends itself messages without an end is not waited for."""
@@ -57,10 +58,12 @@ class InTurn(App[int]):
     def _listeners(self) -> list[MessagePump]:
         """All that a key may set going: what has the focus and what is around it, the screen.
 
-        Not the screens below it: each message makes them have all of the screen painted anew.
+        Not the screens below it: each message makes them have all of the screen painted anew. A
+        list hands on what is chosen in it, without the focus.
         """
         around = [] if self.focused is None else list(self.focused.ancestors_with_self)
-        return list(dict.fromkeys([*around, *self.screen_stack[-1:], self]))
+        lists = [each for top in self.screen_stack[-1:] for each in top.query(OptionList)]
+        return list(dict.fromkeys([*around, *lists, *self.screen_stack[-1:], self]))
 
     def _go_round(self, listeners: list[MessagePump]) -> None:
         """Wait for one after the other; one that is gone handles nothing any more."""

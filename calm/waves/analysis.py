@@ -163,13 +163,14 @@ class _Setting:
     def respond(
         self, sea: SeaState, first: Floats | None = None, *, once: bool = False, drag: float = 1.0
     ) -> tuple[WaveResponse, Floats]:
-        """Return the response to a sea, and its damping; `first` is that of one like it."""
+        """Return the response to a sea, and the flow past its nodes; `first` of one like it."""
         waves = self.waves(sea)
         return respond(self.line, self.buoy, waves, sea, drag_factor=drag, first=first, once=once)
 
-    def deviations(self, sea: SeaState) -> Floats:
-        """Return the deviations of tension of the pieces [N]; 0 of those on the seabed."""
-        return _by_piece(self.line, self.respond(sea)[0])
+    def deviations(self, sea: SeaState, first: Floats | None) -> tuple[Floats, Floats]:
+        """Return the deviations of tension of the pieces [N], 0 on the seabed, and the flow."""
+        response, flow = self.respond(sea, first)
+        return _by_piece(self.line, response), flow
 
 
 def analyse(
@@ -207,13 +208,15 @@ def analyse(
             )
     solution = mooring.equilibrium(mooring.water)
     highest = max(seas, key=lambda sea: sea.significant_height)
-    setting, accuracy = _settled(mooring, solution, highest, toward)
-    states, damping = [], None
+    setting, flow, accuracy = _settled(mooring, solution, highest, toward)
+    states, before = [], highest
     for sea in watched(seas):
-        response, damping = setting.respond(sea, damping)
+        near = flow * (sea.significant_height / before.significant_height)
+        response, flow = setting.respond(sea, near)
+        before = sea
         states.append(
             _in_sea(
-                mooring, solution, setting, sea, response, damping, duration, beside=sea is highest
+                mooring, solution, setting, sea, response, flow, duration, beside=sea is highest
             )
         )
     warnings = [
@@ -232,33 +235,41 @@ def analyse(
 
 def _settled(
     mooring: Mooring, solution: Solution, sea: SeaState, toward: float
-) -> tuple[_Setting, WaveAccuracy]:
-    """Return elements and frequencies that are enough for a sea, and what twice as many change."""
+) -> tuple[_Setting, Floats, WaveAccuracy]:
+    """Return elements and frequencies that are enough for a sea, and what twice as many change.
+
+    Between them stands the flow past the nodes in that sea, with which each next one begins.
+    """
     _, density = mooring.water.at(np.array(0.0))
     water = Waves(np.zeros(0), toward, mooring.water.depth, float(density), mooring.water.gravity)
     longest, count = COARSEST * mooring.water.depth, FEWEST
     buoy = buoy_of(mooring, solution, follows=False)
     setting = _Setting(lumped_line(mooring, solution, longest), buoy, water, count)
-    found = setting.deviations(sea)
+    found, flow = setting.deviations(sea, None)
     mesh = frequencies = np.inf
     for _ in range(MOST_HALVINGS):
         if mesh > SETTLED:
             longest *= 0.5
             finer = replace(setting, line=lumped_line(mooring, solution, longest))
-            better = finer.deviations(sea)
+            better, passing = finer.deviations(sea, _carried(setting.line, finer.line, flow))
             mesh = _change(found, better)
             if mesh > SETTLED:
-                setting, found = finer, better
+                setting, found, flow = finer, better, passing
         if frequencies > SETTLED:
             more = replace(setting, count=2 * setting.count)
-            better = more.deviations(sea)
+            better, passing = more.deviations(sea, flow)
             frequencies = _change(found, better)
             if frequencies > SETTLED:
-                setting, found = more, better
-    response, damping = setting.respond(sea)
-    less, _ = setting.respond(sea, damping, once=True, drag=0.8)
-    linear = _change(_by_piece(setting.line, response), _by_piece(setting.line, less))
-    return setting, WaveAccuracy(mesh, frequencies, linear)
+                setting, found, flow = more, better, passing
+    less, _ = setting.respond(sea, flow, once=True, drag=0.8)
+    linear = _change(found, _by_piece(setting.line, less))
+    return setting, flow, WaveAccuracy(mesh, frequencies, linear)
+
+
+def _carried(line: LumpedLine, finer: LumpedLine, flow: Floats) -> Floats:
+    """Return the flow past the nodes of a line at those of a finer one of the same shape."""
+    along, at = (np.concatenate([[0.0], each.span.cumsum()]) for each in (line, finer))
+    return np.column_stack([np.interp(at, along, values) for values in flow.T])
 
 
 def _change(before: Floats, after: Floats) -> float:
@@ -277,7 +288,7 @@ def _in_sea(
     setting: _Setting,
     sea: SeaState,
     response: WaveResponse,
-    damping: Floats,
+    flow: Floats,
     duration: float,
     *,
     beside: bool,
@@ -329,7 +340,7 @@ def _in_sea(
     follower = None
     if setting.buoy is not None and beside:
         following = replace(setting, buoy=replace(setting.buoy, follows=True))
-        follower = float(_by_piece(line, following.respond(sea, damping)[0])[0])
+        follower = float(_by_piece(line, following.respond(sea, flow)[0])[0])
     slack = tuple(row.label for row in rows if row.least < 0.0 < row.tension_std)
     depth = -0.5 * (line.position[1:, 2] + line.position[:-1, 2])
     return MooringInSea(

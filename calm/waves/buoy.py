@@ -30,6 +30,12 @@ DISC_CD = 1.17
 SIDEWAYS_ADDED = 0.5
 """Added mass in surge over the displaced water, of a short hull."""
 
+PANELS_UP, PANELS_ROUND = 10, 28
+"""Panels of a hull: up its side and round it."""
+
+PANEL_FREQUENCIES = (0.1, *(0.5 + 0.25 * each for each in range(15)), 5.0, 7.0, 10.0)
+"""Between which what panels give is interpolated [rad/s]."""
+
 FOLLOWING = 1e10
 """Stiffness that holds a float to a given motion [N/m]."""
 
@@ -47,6 +53,8 @@ class Buoy:
     drag, heave_drag : K of its drag in the current, and as it heaves [N/(m/s)²]
     rao : heave over the elevation by angular frequency [rad/s]: amplitude [-], phase [degrees]
     follows : whether it heaves as the water does
+    panels : (4, f) of a panel method: frequency [rad/s], added mass [kg], radiation [kg/s] and what
+        lifts per metre of elevation [N/m]; None by the formulas of a disc
     """
 
     mass: float
@@ -57,6 +65,7 @@ class Buoy:
     heave_drag: float
     rao: tuple[tuple[float, float, float], ...] = ()
     follows: bool = False
+    panels: Complexes | None = None
 
     def heave(
         self, omega: Floats, number: Floats, density: float, gravity: float
@@ -84,6 +93,11 @@ class Buoy:
                 FOLLOWING * np.interp(omega, at, amplitude) * np.exp(1j * turned),
             )
         spring = density * gravity * pi * self.radius**2
+        if self.panels is not None:
+            at = self.panels[0].real
+            added, radiated, lifting = (np.interp(omega, at, one) for one in self.panels[1:])
+            inertia = self.mass + added.real
+            return spring - omega**2 * inertia + 1j * omega * radiated.real, lifting
         added = DISC_ADDED * density * self.radius**3
         across = number * self.radius
         smith = np.exp(-number * self.draft) * 2.0 * j1(across) / np.maximum(across, 1e-12)
@@ -126,6 +140,12 @@ def buoy_of(mooring: Mooring, solution: Solution, follows: bool) -> Buoy | None:
     if any(mass is None for mass in masses):
         raise UsageError(f"{piece.label} gives no `mass`, which decides how it heaves")
     _, density = mooring.water.at(np.array(0.0))
+    panels = None
+    if component.heave == "panels" and not follows:
+        profile = _profile(component, draft)
+        if profile is None:
+            raise UsageError(f"{piece.label} has no hull to panel: give its `hull`")
+        panels = panel_heave(profile, float(density), mooring.water.gravity)
     lift = float(solution.force[int(solution.piece_nodes[index, 1]), 2])
     mass = float(sum(mass or 0.0 for mass in masses))
     return Buoy(
@@ -137,6 +157,7 @@ def buoy_of(mooring: Mooring, solution: Solution, follows: bool) -> Buoy | None:
         heave_drag=0.5 * float(density) * DISC_CD * pi * (radius or 0.0) ** 2,
         rao=given,
         follows=follows,
+        panels=panels,
     )
 
 
@@ -157,3 +178,62 @@ def _waterplane_radius(component: object, draft: float) -> float | None:
     if isinstance(component, Cylinder) and diameter:
         return float(diameter) / 2.0
     return None
+
+
+def _profile(component: object, draft: float) -> Floats | None:
+    """Return (n, 2) radius and height over the surface of a round hull, its keel first [m]."""
+    hull, diameter = getattr(component, "hull", None), getattr(component, "diameter", None)
+    heights = np.linspace(-draft, 0.0, PANELS_UP)
+    if isinstance(hull, Displacement):
+        rows = np.array(hull.displacement)
+        between = 0.5 * (rows[1:, 0] + rows[:-1, 0])
+        radii = np.sqrt(np.diff(rows[:, 1]) / np.diff(rows[:, 0]) / pi)
+        return np.column_stack([np.interp(heights + draft, between, radii), heights])
+    if isinstance(component, Sphere) and diameter:
+        up = heights + draft
+        return np.column_stack([np.sqrt(np.maximum(up * (diameter - up), 0.0)), heights])
+    if isinstance(component, Cylinder) and diameter:
+        return np.column_stack([np.full(PANELS_UP, 0.5 * float(diameter)), heights])
+    return None
+
+
+def panel_heave(profile: Floats, density: float, gravity: float) -> Complexes:
+    """Return heave of a round hull in deep water by the panels of Capytaine, as `Buoy.panels`.
+
+    Parameters
+    ----------
+    profile : (n, 2) radius and height over the surface, the keel first [m]
+    density, gravity : of the water [kg/m³], [m/s²]
+
+    Raises
+    ------
+    UsageError
+        Capytaine, version 3 or newer, is not installed.
+    """
+    try:
+        import capytaine
+        from capytaine.bem.airy_waves import froude_krylov_force
+
+        from_profile = capytaine.RotationSymmetricMesh.from_profile_points
+    except (ImportError, AttributeError):
+        raise UsageError(
+            "`heave: panels` needs Capytaine 3: pip install capytaine; or leave `heave` out"
+        ) from None
+    capytaine.set_logging("ERROR")
+    keel, bottom = profile[0]
+    flat = np.linspace(0.0, keel, max(int(keel / 0.2), 2) + 1)[:-1] if keel > 0.0 else np.zeros(1)
+    outline = np.vstack(
+        [np.column_stack([flat, np.full(len(flat), bottom)]), profile[profile[:, 0] > 0.0]]
+    )
+    points = np.insert(outline, 1, 0.0, axis=1)
+    body = capytaine.FloatingBody(mesh=from_profile(points, n=PANELS_ROUND))
+    body.add_translation_dof(name="Heave")
+    solver, found = capytaine.BEMSolver(), []
+    for omega in PANEL_FREQUENCIES:
+        given = {"body": body, "omega": omega, "rho": density, "g": gravity}
+        moved = solver.solve(capytaine.RadiationProblem(radiating_dof="Heave", **given))
+        waves = capytaine.DiffractionProblem(wave_direction=0.0, **given)
+        lifts = solver.solve(waves).forces["Heave"] + froude_krylov_force(waves)["Heave"]
+        mass, radiation = moved.added_masses["Heave"], moved.radiation_dampings["Heave"]
+        found.append((omega, mass, radiation, np.conj(lifts)))
+    return np.array(found, complex).T

@@ -85,7 +85,10 @@ CURVES = {
     "api-stranded-wire": FatigueCurve(4.09, 3.20, 2.79, "share", _2SK),
     "api-spiral-strand": FatigueCurve(5.05, 3.25, 3.43, "share", _2SK),
 }
-"""Published design curves, two standard deviations below the mean of the tests, by name."""
+"""Published design curves, two standard deviations below the mean of the tests, by name.
+
+Their constants are as secondary texts print them; the standards themselves were not read.
+"""
 
 
 @dataclass(frozen=True)
@@ -159,7 +162,7 @@ def narrow_band(moments: Sequence[float], slope: float) -> float:
 
 def curve_of(component: Component) -> str | None:
     """Return the name of the curve of a component: its own, or by what it is; None unknown."""
-    if component.fatigue is not None:
+    if component.fatigue is not None and component.fatigue.curve is not None:
         return component.fatigue.curve
     if isinstance(component, Chain):
         return "dnv-studless-chain"
@@ -178,11 +181,15 @@ def fatigue_of(
 
     Parameters
     ----------
-    component, index, label : of the piece
+    component, index, label : of the piece; corrosion is off its diameter, and by its square off its
+        strength
     seas : share of the time, mean tension [N] and the moments of the tension of each
     """
     name, strength = curve_of(component), component.breaking_load
-    bar = component.diameter if isinstance(component, Chain) else None
+    size = getattr(component, "diameter", None)
+    lost = 0.0 if component.fatigue is None else component.fatigue.corrosion
+    left = 1.0 if not lost or not size else max(1.0 - lost / size, 0.0)
+    bar = size * left if size and isinstance(component, Chain) else None
     curve = None if name is None else CURVES[name]
     unknown = None
     if curve is None:
@@ -191,12 +198,18 @@ def fatigue_of(
         unknown = "its breaking load is not known"
     elif curve.range == "stress" and bar is None:
         unknown = "the stress in it is not known: it is no chain"
+    elif lost and not size:
+        unknown = "its diameter is not known, of which corrosion takes a share"
+    elif not left > 0.0:
+        unknown = "corrosion leaves nothing of its diameter"
     source = None if curve is None else curve.source
     if unknown is not None or curve is None:
         return PieceFatigue(index, label, None, None, None, None, name, source, unknown)
     # a stress is that in both bars of a link, in mm²
     by_load = curve.range == "share"
-    unit = (strength if by_load else 2.0 * pi / 4.0 * (1e3 * (bar or 0.0)) ** 2) or 1.0
+    unit = (
+        (strength or 0.0) * left**2 if by_load else 2.0 * pi / 4.0 * (1e3 * (bar or 0.0)) ** 2
+    ) or 1.0
     damage = 0.0
     for share, mean, moments in seas:
         bears = 10.0 ** (curve.logarithm - (curve.by_mean * mean / unit if by_load else 0.0))

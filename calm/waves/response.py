@@ -13,12 +13,16 @@ from calm.waves.buoy import SIDEWAYS_ADDED, Buoy, Complexes
 from calm.waves.lumped_line import LumpedLine
 
 SETTLED = 2e-3
-"""Relative change of the standard deviations below which the drag is linearised well enough."""
+"""Change of the flow past the nodes, over the greatest, below which drag is linearised well enough:
+that of the tension is a hundredth of it."""
+
+STILL = 1e-12
+"""Flow past a node that nothing moves, against division by nothing [m/s]."""
 
 MOST_ITERATIONS = 40
 
 RELAXATION = 0.8
-"""Share of the way to the new damping that an iteration goes."""
+"""Share of the way to the new flow that an iteration goes."""
 
 _POINTS, _WEIGHTS = np.polynomial.hermite_e.hermegauss(7)
 _WEIGHTS = _WEIGHTS / _WEIGHTS.sum()
@@ -105,43 +109,38 @@ def respond(
     first: Floats | None = None,
     once: bool = False,
 ) -> tuple[WaveResponse, Floats]:
-    """Return the response to a sea, and the damping (n, 3, 3) that it was found with [N/(m/s)].
+    """Return the response to a sea, and the flow (n, 3) past the nodes that it was found with.
 
     The drag of each node is replaced by the linear one that does most of what it does on the
     average over a Gaussian motion about the mean current: E[F v'] / E[v'²], found anew until the
-    motions settle.
+    motions settle. The flow is its standard deviations along the axes of each node [m/s].
 
     Parameters
     ----------
     waves, sea : the waves, and how much of them there is
     drag_factor : on the damping, to see what rests on it
-    first : the damping to begin with, such as that of a sea like it
-    once : keep that damping
+    first : the flow to begin with, such as that of a sea like it
+    once : keep that flow
     """
     omega = waves.omega
     steps = np.diff(omega, prepend=omega[0], append=omega[-1])
     weight = sea.density(omega) * 0.5 * (steps[:-1] + steps[1:])
     water = waves.velocity(line.position)
     forced = _inertia_force(line, buoy, waves, water)
-    damping = np.zeros((len(line.mass), 3, 3)) if first is None else first
-    if first is None:
-        still = np.sqrt((np.abs(water) ** 2 * weight[:, None, None]).sum(0)) + 1e-6
-        damping = _linearised(line, buoy, still)
-    deviation = np.zeros(1)
+    still = np.sqrt((np.abs(water) ** 2 * weight[:, None, None]).sum(0)) + STILL
+    flow = still if first is None else first
     iterations = 0
     while iterations < MOST_ITERATIONS:
         iterations += 1
-        motion = _solved(line, buoy, waves, water, forced, drag_factor * damping)
-        relative = water - 1j * omega[:, None, None] * motion
-        found = _deviations(line, relative, weight)
-        new = _linearised(line, buoy, found)
-        change = np.abs(found - deviation).max() / max(float(found.max()), 1e-12)
-        deviation = found
+        damping = drag_factor * _linearised(line, buoy, flow)
+        motion = _solved(line, buoy, waves, water, forced, damping)
+        found = _deviations(line, water - 1j * omega[:, None, None] * motion, weight)
+        change = np.abs(found - flow).max() / max(float(found.max()), 1e-12)
         if once or change < SETTLED:
             break
-        damping = damping + RELAXATION * (new - damping)
+        flow = flow + RELAXATION * (found - flow)
     pull = _pull(line, motion)
-    return WaveResponse(omega, weight, motion, pull, iterations), damping
+    return WaveResponse(omega, weight, motion, pull, iterations), flow
 
 
 def _axes(line: LumpedLine) -> Floats:
@@ -159,7 +158,7 @@ def _axes(line: LumpedLine) -> Floats:
 def _deviations(line: LumpedLine, relative: Complexes, weight: Floats) -> Floats:
     """Return (n, 3) standard deviations of the flow past the nodes, along their axes [m/s]."""
     own = np.einsum("nac,fnc->fna", _axes(line), relative)
-    return np.asarray(np.sqrt((np.abs(own) ** 2 * weight[:, None, None]).sum(0)) + 1e-9)
+    return np.asarray(np.sqrt((np.abs(own) ** 2 * weight[:, None, None]).sum(0)) + STILL)
 
 
 def _linearised(line: LumpedLine, buoy: Buoy | None, deviation: Floats) -> Floats:
@@ -230,6 +229,17 @@ def _ahead(line: LumpedLine, waves: Waves) -> float:
     return float(east * np.sin(radians(waves.toward)) + north * np.cos(radians(waves.toward)))
 
 
+_SYMMETRIC = np.array([[0, 3, 4], [3, 1, 5], [4, 5, 2]])
+"""Where the nine of a symmetric matrix are among its six: the diagonal, then 01, 02, 12."""
+
+_ROWS, _COLUMNS = np.array([0, 1, 2, 0, 0, 1]), np.array([0, 1, 2, 1, 2, 2])
+
+# cofactor of each of the six: the product of the first two less that of the last two
+_COFACTORS = np.array(
+    [[1, 2, 5, 5], [0, 2, 4, 4], [0, 1, 3, 3], [4, 5, 3, 2], [3, 5, 4, 1], [3, 4, 0, 5]]
+).T
+
+
 def _solved(
     line: LumpedLine,
     buoy: Buoy | None,
@@ -238,46 +248,50 @@ def _solved(
     forced: Complexes,
     damping: Floats,
 ) -> Complexes:
-    """Return the motion (f, n, 3) of the nodes: elimination node by node, the fixed end first."""
+    """Return the motion (f, n, 3) of the nodes: elimination node by node, the fixed end first.
+
+    All matrices are symmetric: six figures each, of all frequencies side by side.
+    """
     omega, n = waves.omega, len(line.mass)
-    eye, t = np.eye(3), line.tangent
+    eye, t, s = np.eye(3), line.tangent, line.spring
     outer = t[:, :, None] * t[:, None, :]
     mass = line.mass[:, None, None] * eye + line.added_across[:, None, None] * (eye - outer)
     mass = mass + line.added_along[:, None, None] * outer
-    s = line.spring
     axial = s[:, :, None] * s[:, None, :]
     sideways = line.tension / line.span
     springs = line.stiffness[:, None, None] * axial + sideways[:, None, None] * (eye - axial)
     diagonal = np.zeros((n, 3, 3))
     diagonal[:-1] += springs
     diagonal[1:] += springs
-    square, first = -(omega**2)[:, None, None], 1j * omega[:, None, None]
-    force = forced + np.einsum("ncd,fnd->fnc", damping, water)
-    motion = np.zeros((len(omega), n, 3), complex)
-    reduced: list[Complexes] = [np.zeros(0, complex)] * n
-    pushes: list[Complexes] = [np.zeros(0, complex)] * n
+    parts = np.stack([diagonal, mass, damping], -1)[:, _ROWS, _COLUMNS]
+    matrices = parts @ np.array([np.ones(len(omega)), -(omega**2), 1j * omega])
+    if buoy is not None:
+        resisting, _ = buoy.heave(omega, waves.number, waves.density, waves.gravity)
+        moved = buoy.mass + SIDEWAYS_ADDED * buoy.displaced
+        matrices[0, :2] -= omega**2 * moved
+        matrices[0, 2] += resisting
+    # what the node below does to one: its spring before and behind the inverse of that node
+    below = np.einsum("nab,ncd->nacbd", springs, springs)[:, _ROWS, _COLUMNS]
+    double = np.where(_ROWS == _COLUMNS, 0.5, 1.0)
+    below = double * (below[:, :, _ROWS, _COLUMNS] + below[:, :, _COLUMNS, _ROWS])
+    below, springs = below.astype(complex), springs.astype(complex)
+    push = np.ascontiguousarray(
+        (forced + np.einsum("ncd,fnd->fnc", damping, water)).transpose(1, 2, 0)
+    )
+    motion = np.zeros((n, 3, len(omega)), complex)
     for i in range(n - 2, -1, -1):
-        matrix = diagonal[i] + square * mass[i] + first * damping[i]
-        if i == 0 and buoy is not None:
-            resisting, _ = buoy.heave(omega, waves.number, waves.density, waves.gravity)
-            moved = buoy.mass + SIDEWAYS_ADDED * buoy.displaced
-            matrix = matrix + 0j
-            matrix[:, 0, 0] += -(omega**2) * moved
-            matrix[:, 1, 1] += -(omega**2) * moved
-            matrix[:, 2, 2] += resisting
-        push = force[:, i]
+        matrix = matrices[i]
         if i < n - 2:
-            gain = springs[i] @ reduced[i + 1]
-            matrix = matrix - gain @ springs[i]
-            push = push + np.einsum("fcd,fd->fc", gain, pushes[i + 1])
-        reduced[i] = np.linalg.inv(matrix)
-        pushes[i] = push
-    for i in range(n - 1):
-        push = pushes[i]
-        if i > 0:
-            push = push + np.einsum("cd,fd->fc", springs[i - 1], motion[:, i - 1])
-        motion[:, i] = np.einsum("fcd,fd->fc", reduced[i], push)
-    return motion
+            matrix -= below[i] @ matrices[i + 1]
+            push[i] += springs[i] @ motion[i + 1]
+        one, other, third, last = matrix[_COFACTORS]
+        cofactors = one * other - third * last
+        determinant = (matrix[[0, 3, 4]] * cofactors[[0, 3, 4]]).sum(0)
+        np.divide(cofactors, determinant, out=matrix)  # its inverse from here on
+        motion[i] = (matrix[_SYMMETRIC] * push[i]).sum(1)
+    for i in range(1, n - 1):
+        motion[i] += (matrices[i][_SYMMETRIC] * (springs[i - 1] @ motion[i - 1])).sum(1)
+    return motion.transpose(2, 0, 1)
 
 
 def _pull(line: LumpedLine, motion: Complexes) -> Complexes:

@@ -6,7 +6,7 @@ import os
 import re
 import shlex
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -26,10 +26,13 @@ HEAD = """# Gallery
 The moorings and tows of the folder `lines/`, each with its file, its shape, its schematic, what
 CALM says of it, and one thing to try. Everything on these pages is made from the files. In these
 small pictures distances are drawn larger than depths.
-
-| | |
-| --- | --- |
 """
+
+LEADING = ("tall-array-mooring", "compact-adcp", "s-tether", "profiler-mooring")
+"""The designs that most groups build today come first."""
+
+CASES = ("bourget-marichal-sphere", "braconnot-buoy", "cdms-1", "s1000")
+"""What papers and other programs have solved; no designs to copy."""
 
 
 @dataclass(frozen=True)
@@ -74,6 +77,10 @@ TRIES = {
         ("calm run {file} --explain",),
         start="What makes",
     ),
+    "compact-adcp": Try(
+        "It is lifted as one piece. What goes to sea, in which order, and how it is let go:",
+        ("calm deck {file} -o deck",),
+    ),
     "depressor-fit-depth": Try(
         "The wire was paid out for one speed. Where does the sonar run at others?",
         (f'{_SPEEDS} "3 knot:8 knot:1 knot"',),
@@ -87,10 +94,19 @@ TRIES = {
         "How fast may the helicopter fly before the bird trails too far behind?",
         (f'{_SPEEDS} "20 knot:80 knot:20 knot"',),
     ),
+    "profiler-mooring": Try(
+        "The profiler pulls at another place every hour. Where does its wire lean most?",
+        ("calm run {file}",),
+        start="profiler travels",
+    ),
     "receiver-line": Try(
         "A short line hardly moves. What moves it all the same?",
         ("calm run {file} --explain",),
         start="What makes",
+    ),
+    "s-tether": Try(
+        "The longer the tether, the farther the buoy strays. How long may it be for 65 m?",
+        ('calm size {file} --target "excursion(top) <= 65 m" --change "upper tether.length"',),
     ),
     "s1000": Try(
         "Its continuous solution is known. How far is CALM from it, by angle step?",
@@ -98,6 +114,11 @@ TRIES = {
     ),
     "sediment-trap-undercurrent": Try(
         "Traps are worth nothing beyond 10° of tilt. What causes theirs?",
+        ("calm run {file} --explain",),
+        start="What makes",
+    ),
+    "tall-array-mooring": Try(
+        "Where does its knockdown come from?",
         ("calm run {file} --explain",),
         start="What makes",
     ),
@@ -144,10 +165,9 @@ def pages() -> dict[str, str | bytes]:
     KeyError
         A file of `lines/` has nothing to try.
     """
-    files = sorted(shipped_folder("lines").glob("*.yaml"))
     made: dict[str, str | bytes] = {}
-    entries, rows = [], []
-    for file in files:
+    entries, groups = [], dict[str, list[str]]()
+    for group, file in _in_groups(shipped_folder("lines").glob("*.yaml")):
         solved = calm.load(file).solve()
         made[f"{file.stem}.md"] = _page(file, solved.name, made)
         made[f"{file.stem}.svg"] = image(draw(solved), ".svg")
@@ -155,11 +175,29 @@ def pages() -> dict[str, str | bytes]:
         made[f"{file.stem}-small.svg"] = image(pictures.thumbnail(solved), ".svg")
         link = f"{file.stem}.md"
         small = f"[![{solved.name}]({file.stem}-small.svg)]({link})"
-        rows.append(f"| {small} | **[{solved.name}]({link})**: {solved.file.description} |")
+        row = f"| {small} | **[{solved.name}]({link})**: {solved.file.description} |"
+        groups.setdefault(group, []).append(row)
         entries.append(file.stem)
-    listing, contents = "\n".join(rows), "\n".join(entries)
-    made["index.md"] = f"{HEAD}{listing}\n\n```{{toctree}}\n:hidden:\n\n{contents}\n```\n"
+    listing = "\n\n".join(
+        "\n".join((f"## {group}\n", "| | |", "| --- | --- |", *rows))
+        for group, rows in groups.items()
+    )
+    contents = "\n".join(entries)
+    made["index.md"] = f"{HEAD}\n{listing}\n\n```{{toctree}}\n:hidden:\n\n{contents}\n```\n"
     return made
+
+
+def _in_groups(files: Iterable[Path]) -> list[tuple[str, Path]]:
+    """The files with their groups: designs, those of `LEADING` first, tows, cases."""
+    groups = ("Designs", "Tows", "Cases of the literature")
+
+    def place(file: Path) -> tuple[int, int, str]:
+        towed = "\ntow:" in file.read_text(encoding="utf-8")
+        group = 2 if file.stem in CASES else 1 if towed else 0
+        lead = LEADING.index(file.stem) if file.stem in LEADING else len(LEADING)
+        return group, lead, file.stem
+
+    return [(groups[place(file)[0]], file) for file in sorted(files, key=place)]
 
 
 def _page(file: Path, name: str, made: dict[str, str | bytes]) -> str:

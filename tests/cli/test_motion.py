@@ -337,6 +337,28 @@ def test_depths_go_onto_a_copy_of_a_users_own_file(calm, given, own, truth, fold
 
 
 @pytest.mark.thorough
+def test_a_folder_in_is_a_folder_out(calm, given, truth, folder):
+    (folder / "in").mkdir()
+    time = np.array(stamps(), "M8[ns]")
+    for name, serial in (("a", "lower"), ("b", "stranger")):
+        xarray.Dataset(
+            {"TEMP": ("TIME", np.full(HOURS, 4.5), {"units": "degree_Celsius"})},
+            {"TIME": time, "label": ("INSTRUMENT", [serial])},
+        ).to_netcdf(folder / "in" / f"{name}.nc", engine="h5netcdf")
+    words = (*COMMAND, "--pressures", "p.csv", "--onto", "in")
+    done = calm(*words, "-o", "in")
+    assert done.code == 2 and "in is an input; it is kept" in done.err
+    done = calm(*words, "-o", "out")
+    assert done.code == 0, done.err
+    assert [one.name for one in (folder / "out").iterdir()] == ["a.nc"]
+    assert "b.nc: no part of the line; it is not written" in done.err
+    with xarray.open_dataset(folder / "out" / "a.nc", engine="h5netcdf") as copy:
+        assert np.abs(copy["depth"].values[:, 0] - truth[1][:, 2]).max() < 2.0
+        assert copy.attrs["history"].count("sha256:") == 3
+    assert (folder / "out.motion.nc").exists()
+
+
+@pytest.mark.thorough
 def test_currents_that_look_false_are_named(calm, given, truth, folder):
     rows = (folder / "c.csv").read_text().splitlines()
     for hour in (15, 16, 40):

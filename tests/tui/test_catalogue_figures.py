@@ -82,7 +82,7 @@ def test_the_list_shows_figures_and_is_sorted_by_key(drive, small):
         await driver.press("a")
         await driver.type("shackle")
         await driver.settle()
-        rows = driver.builder.body.catalogue.listing
+        rows = driver.builder.catalogue.listing
         assert "break kN" in driver.screen and "net N" in driver.screen
         first = [each.id for each in rows.rows]
         await driver.press("f4", "f4")

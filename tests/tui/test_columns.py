@@ -160,3 +160,30 @@ def test_the_catalogue_has_a_key_of_its_own(drive, small):
         assert driver.builder.has_class("-searching")
 
     drive(story, small)
+
+
+def test_an_assembly_is_asked_for_no_serial_number_which_the_file_could_not_have(drive, folder):
+    path = folder / "pack.yaml"
+    path.write_text(
+        MOORING.replace("{use: releaser}", "{use: pack}")
+        + "  pack: {kind: assembly, parts: [{use: releaser}, {use: releaser}]}\n",
+        encoding="utf-8",
+    )
+
+    async def story(driver):
+        await driver.press("end", "up", "N")
+        assert "pack is an assembly" in driver.screen
+        await driver.press("number_sign", "s")
+        assert "None of these rows has such a value" in driver.screen
+
+    drive(story, path)
+
+
+@pytest.mark.parametrize("size", [(80, 4), (80, 10)])
+def test_what_is_searched_in_the_catalogue_is_seen_in_a_terminal_of_few_lines(drive, small, size):
+    async def story(driver):
+        await driver.press("a")
+        await driver.type("ball")
+        assert "ball" in driver.screen.splitlines()[1]
+
+    drive(story, small, size=size)

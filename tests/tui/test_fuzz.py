@@ -154,7 +154,7 @@ def _character(key):
 
 def undone(driver):
     """The text when all is undone."""
-    driver.app.draft_screens()[-1].part.settle()
+    driver.app.draft_screens()[-1].settle()
     while driver.session.history.undo():
         pass
     return driver.text

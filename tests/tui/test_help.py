@@ -120,3 +120,11 @@ def test_the_help_has_every_key_that_is_bound(drive, small):
             assert driver.app.focused is driver.table
 
     drive(story, small, size=(100, 320))
+
+
+def test_keys_typed_ahead_of_a_command_of_the_palette_go_where_it_leads(drive, small):
+    async def story(driver):
+        await driver.press("down", "down", "ctrl+p", *"serial", "enter", *"5101", "ctrl+s")
+        assert "serial: 5101" in driver.text
+
+    drive(story, small)

@@ -28,7 +28,7 @@ def test_add_a_cable_below_with_its_length_and_label(drive, small):
     async def story(driver):
         await driver.press("a")
         await driver.type("jacketed-8")
-        assert driver.builder.body.catalogue.listing.chosen.id == WIRE
+        assert driver.builder.catalogue.listing.chosen.id == WIRE
         await driver.press("enter")
         await driver.type("25")
         await driver.press("tab")
@@ -80,7 +80,7 @@ def test_the_search_holds_every_word_wherever_it_stands(drive, small):
     async def story(driver):
         await driver.press("B")
         await driver.type("teledyne adcp")
-        found = driver.builder.body.catalogue.listing.rows
+        found = driver.builder.catalogue.listing.rows
         assert found
         assert all("Teledyne" in each.maker and "adcp" in each.searched for each in found)
         await driver.press("ctrl+u")
@@ -95,9 +95,9 @@ def test_the_search_holds_every_word_wherever_it_stands(drive, small):
 def test_the_files_own_components_come_first_with_a_card(drive, small):
     async def story(driver):
         await driver.press("B")
-        assert driver.builder.body.catalogue.listing.rows[0].own
+        assert driver.builder.catalogue.listing.rows[0].own
         await driver.type("releaser")
-        assert driver.builder.body.catalogue.listing.rows[0].id == "releaser"
+        assert driver.builder.catalogue.listing.rows[0].id == "releaser"
         await driver.settle()
         assert "-200 N" in driver.screen
 
@@ -107,7 +107,7 @@ def test_the_files_own_components_come_first_with_a_card(drive, small):
 def test_clamp_an_instrument_on_a_piece(drive, small):
     async def story(driver):
         await driver.press("down", "i")
-        assert {each.kind for each in driver.builder.body.catalogue.listing.rows} <= {
+        assert {each.kind for each in driver.builder.catalogue.listing.rows} <= {
             "sphere", "cylinder", "body",
         }  # fmt: skip
         await driver.type("sbe37")
@@ -168,7 +168,7 @@ def test_a_text_that_is_no_length_is_not_taken(drive, small):
         await driver.press("down", "l")
         await driver.type("60 kg")
         await driver.press("enter")
-        assert driver.builder.body.line.editor.is_open
+        assert driver.builder.line.editor.is_open
         assert "is a mass" in driver.screen
         await driver.press("escape")
         assert driver.text == before
@@ -181,7 +181,7 @@ def test_a_decimal_comma_is_corrected_first_and_taken_then(drive, small):
         await driver.press("down", "l")
         await driver.type("60,5 m")
         await driver.press("enter")
-        assert driver.builder.body.line.editor.value == "60.5 m"
+        assert driver.builder.line.editor.value == "60.5 m"
         await driver.press("enter")
         assert driver.session.draft.items[1].values["length"] == "60.5 m"
 
@@ -229,7 +229,7 @@ def test_move_a_clamp_along_its_piece(drive, small):
         await driver.press("enter")
         assert driver.session.draft.items[1].clamps[0].values["at"] == "12 m"
         await driver.press("equals_sign")
-        assert not driver.builder.body.line.editor.is_open
+        assert not driver.builder.line.editor.is_open
 
     drive(story, small)
 
@@ -353,7 +353,7 @@ def test_the_mouse_goes_to_a_cell_and_edits_it_at_the_second_press(drive, small)
         await driver.pilot.click("#line", offset=(start + 1, 2))
         assert (driver.table.cursor, driver.table.cell) == (1, "label")
         await driver.pilot.click("#line", offset=(start + 1, 2))
-        assert driver.builder.body.line.editor.is_open
+        assert driver.builder.line.editor.is_open
 
     drive(story, small)
 
@@ -431,13 +431,13 @@ def test_a_value_left_with_the_mouse_is_taken_if_it_is_good(drive, small):
         await driver.pilot.click("#line", offset=(6, 3))
         await driver.settle()
         assert driver.session.draft.items[0].values["label"] == "upper"
-        assert not driver.builder.body.line.editor.is_open and driver.table.cursor == 2
+        assert not driver.builder.line.editor.is_open and driver.table.cursor == 2
         await driver.press("up", "l")
         await driver.type("80 kg")
         await driver.pilot.click("#line", offset=(6, 1))
         await driver.settle()
         assert driver.session.draft.items[1].values["length"] == "60 m"
-        assert not driver.builder.body.line.editor.is_open
+        assert not driver.builder.line.editor.is_open
         assert "`80 kg` is not taken: is a mass" in driver.screen
 
     drive(story, small)
@@ -447,9 +447,9 @@ def test_what_is_being_typed_is_taken_before_anything_else(drive, small):
     async def story(driver):
         screen = driver.builder
         await driver.press("n")
-        assert not screen.part.is_typing
+        assert not screen.is_typing
         await driver.type("upper")
-        assert screen.part.is_typing and screen.part.settle() and not screen.part.is_typing
+        assert screen.is_typing and screen.settle() and not screen.is_typing
         assert driver.session.draft.items[0].values["label"] == "upper"
         await driver.press("n")
         await driver.type("lower")
@@ -457,9 +457,9 @@ def test_what_is_being_typed_is_taken_before_anything_else(drive, small):
         assert driver.session.draft.items[0].values["label"] == "upper"
         await driver.press("down", "l")
         await driver.type("80 kg")
-        assert not screen.part.settle() and screen.part.is_typing
+        assert not screen.settle() and screen.is_typing
         await driver.press("ctrl+z")
-        assert "Not taken yet" in driver.screen and screen.body.line.editor.is_open
+        assert "Not taken yet" in driver.screen and screen.line.editor.is_open
         assert driver.session.draft.items[0].values["label"] == "upper"
 
     drive(story, small)
@@ -501,7 +501,7 @@ def test_a_control_character_in_a_label_is_refused_as_such(drive, small):
     async def story(driver):
         before = driver.text
         await driver.press("n")
-        driver.builder.body.line.editor.value = "top\x1b[31m"
+        driver.builder.line.editor.value = "top\x1b[31m"
         await driver.press("enter")
         assert "a control character cannot be written into the file" in driver.screen
         assert driver.text == before

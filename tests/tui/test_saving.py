@@ -446,7 +446,7 @@ def test_a_file_that_is_read_again_closes_the_editor_of_another_text(drive, smal
         small.write_text(line)
         driver.app.saving.look_at_disk()
         await driver.settle()
-        assert driver.text == line and not driver.builder.body.line.editor.is_open
+        assert driver.text == line and not driver.builder.line.editor.is_open
         await driver.press("x", "enter")
         assert driver.text == line
 

@@ -36,7 +36,7 @@ def test_a_broken_file_opens_as_text_with_its_mistakes_and_is_mended(drive, smal
         assert "is not valid YAML" in driver.screen
         await driver.press("escape")
         assert isinstance(driver.app.screen, TextScreen)
-        area = driver.app.screen.text.text_area
+        area = driver.app.screen.text_area
         area.load_text(MOORING)
         await driver.settle()
         assert "The text can be read" in driver.screen
@@ -56,7 +56,7 @@ def test_mistakes_are_listed_with_their_lines_and_gone_to(drive, small):
         await driver.settle()
         assert "line 4:" in driver.screen
         assert "line 10:" in driver.screen
-        area = driver.app.screen.text.text_area
+        area = driver.app.screen.text_area
         await driver.press("f8")
         first = area.cursor_location[0]
         await driver.press("f8")
@@ -81,7 +81,7 @@ def test_a_mistake_in_another_file_is_told_with_its_name(drive, small, folder):
         assert "now.csv, line 3:5" in driver.screen
         assert "1 mistake in now.csv" in driver.screen.splitlines()[0]
         await driver.press("ctrl+home", "down", "f8")
-        assert screen.text.text_area.cursor_location[0] == 1
+        assert screen.text_area.cursor_location[0] == 1
         assert "no mistakes in small.yaml itself" in driver.screen.splitlines()[-1]
         await driver.press("escape")
         assert "now.csv, line 3:5" in driver.screen
@@ -101,7 +101,7 @@ def test_mistakes_of_this_file_and_of_another_are_told_apart(drive, small, folde
     async def story(driver):
         (folder / "storm.yaml").write_text("environment: {depth: 90 kg}\n")
         await driver.press("t")
-        area = driver.app.screen.text.text_area
+        area = driver.app.screen.text_area
         area.load_text(MOORING.replace("60 m", "60 kg"))
         await driver.settle()
         assert "line 10:" in driver.screen and "storm.yaml, line 1:" in driver.screen
@@ -240,7 +240,7 @@ def test_a_component_of_ones_own(drive, small):
         assert driver.session.draft.value(("components", "my-meter")) == {
             "kind": "cylinder", "diameter": "120 mm", "length": "0.5 m", "buoyancy": "-40 N",
         }  # fmt: skip
-        assert driver.builder.body.catalogue.listing.chosen.id == "my-meter"
+        assert driver.builder.catalogue.listing.chosen.id == "my-meter"
         await driver.press("enter")
         assert driver.uses[1] == "my-meter"
 
@@ -300,7 +300,7 @@ def test_the_document_and_the_equipment_of_a_row(drive, small):
         for _ in range(5):
             await driver.press("enter")
         await driver.settle()
-        spot = driver.builder.body.line.table.spot
+        spot = driver.builder.line.table.spot
         assert driver.session.draft.value(("line", spot.item, "serial")) == ["T1", "T2"]
         assert driver.session.draft.problems == ()
         await driver.press("N", "ctrl+u", *["enter"] * 5)
@@ -379,7 +379,7 @@ def test_a_tow_is_edited_the_same_way(drive, folder):
         assert driver.view.result.type == "tow"
         assert "Tow point" in driver.screen
         await driver.press("l")
-        assert driver.builder.body.line.editor.value == "fit 70 m"
+        assert driver.builder.line.editor.value == "fit 70 m"
         await driver.press("ctrl+u")
         await driver.type("fit 60 m")
         await driver.press("enter")

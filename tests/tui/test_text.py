@@ -38,7 +38,7 @@ def test_lines_are_added_and_taken_out_between_others(drive, ugly):
         assert driver.text == UGLY[: first - 1] + "\n#\n" + UGLY[first - 1 :]
         await driver.press("ctrl+shift+k", "up", "ctrl+shift+k")
         assert driver.text == UGLY
-        area = driver.app.screen.text.text_area
+        area = driver.app.screen.text_area
         area.move_cursor(area.document.end)
         await driver.press("enter", "number_sign")
         assert driver.text == UGLY + "\n#"
@@ -51,7 +51,7 @@ def test_the_next_mistake_is_found_where_the_editor_has_more_lines(drive, ugly):
 
     async def story(driver):
         assert isinstance(driver.app.screen, TextScreen)
-        area = driver.app.screen.text.text_area
+        area = driver.app.screen.text_area
         await driver.press("f8")
         row, _ = area.cursor_location
         assert "60 kg" in area.document.lines[row]
@@ -79,7 +79,7 @@ def test_a_draft_that_is_replaced_is_shown(drive, small):
         screen.replaced()
         await driver.settle()
         assert driver.text == theirs
-        assert not screen.part.is_typing
+        assert not screen.is_typing
         await driver.press("home", "number_sign")
         assert driver.text == theirs.replace("name:", "#name:")
         await driver.press("ctrl+z")
@@ -92,9 +92,9 @@ def test_text_that_was_just_typed_is_taken(drive, small):
     async def story(driver):
         await driver.press("t", "ctrl+home")
         screen = driver.app.screen
-        screen.text.text_area.insert("# mine\n", (0, 0))
-        assert screen.part.is_typing
-        assert screen.part.settle() and not screen.part.is_typing
+        screen.text_area.insert("# mine\n", (0, 0))
+        assert screen.is_typing
+        assert screen.settle() and not screen.is_typing
         assert driver.text == "# mine\n" + MOORING
 
     drive(story, small)
@@ -103,7 +103,7 @@ def test_text_that_was_just_typed_is_taken(drive, small):
 def test_a_line_that_was_typed_is_taken_back(drive, small):
     async def story(driver):
         await driver.press("t", "ctrl+home")
-        area = driver.app.screen.text.text_area
+        area = driver.app.screen.text_area
         await driver.press("end", "enter", "x", "ctrl+z", "y", "ctrl+z")
         await driver.settle()
         assert driver.text == MOORING
@@ -118,7 +118,7 @@ def test_a_line_that_was_typed_is_taken_back(drive, small):
 def test_the_text_goes_to_its_ends(drive, small):
     async def story(driver):
         await driver.press("t", "ctrl+home")
-        area = driver.app.screen.text.text_area
+        area = driver.app.screen.text_area
         await driver.press("ctrl+end")
         assert area.cursor_location == area.document.end
         await driver.press("ctrl+home")

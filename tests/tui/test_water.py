@@ -454,14 +454,14 @@ def test_what_is_being_typed_is_taken_before_anything_else(drive, small):
         await driver.press("w", "ctrl+u")
         await driver.type("130")
         screen = driver.app.screen
-        assert screen.part.is_typing
-        assert screen.part.settle() and not screen.part.is_typing
+        assert screen.is_typing
+        assert screen.settle() and not screen.is_typing
         assert value(driver, "depth") == "130 m"
         await driver.press("ctrl+u")
         await driver.type("140 kg")
         await driver.press("f6")
         assert driver.app.screen is screen and "Not taken yet, depth: is" in driver.screen
-        assert not screen.part.settle() and screen.part.is_typing
+        assert not screen.settle() and screen.is_typing
         await driver.press("ctrl+u")
         await driver.type("140")
         await driver.press("f6")
@@ -478,9 +478,9 @@ def test_what_is_typed_in_a_table_is_taken_before_anything_else(drive, small):
         cells(driver).focus()
         await driver.press("right", "1", "x")
         screen = driver.app.screen
-        assert not screen.part.settle() and screen.part.is_typing
+        assert not screen.settle() and screen.is_typing
         await driver.press("backspace", "full_stop", "5")
-        assert screen.part.settle() and not screen.part.is_typing
+        assert screen.settle() and not screen.is_typing
         assert value(driver, "current", "rows")[0] == ["0", "1.5", "90"]
         await driver.pilot.pause()
         assert cells(driver).has_focus
@@ -489,7 +489,7 @@ def test_what_is_typed_in_a_table_is_taken_before_anything_else(drive, small):
         await driver.press("1")
         driver.session.write(driver.text.replace("1.5", "1.7"))
         screen.replaced()
-        assert not screen.part.is_typing and cells(driver).rows[0] == ("0", "1.7", "90")
+        assert not screen.is_typing and cells(driver).rows[0] == ("0", "1.7", "90")
 
     drive(story, small)
 
@@ -532,7 +532,7 @@ def test_a_draft_that_cannot_be_read_is_shown_as_one_that_says_nothing(drive, sm
         screen = driver.app.screen
         screen.replaced()
         assert field(driver, "depth").input.value == ""
-        assert not screen.pane.change(lambda water: water.put(("depth",), "9 m"), "the depth")
+        assert not screen.change(lambda water: water.put(("depth",), "9 m"), "the depth")
         assert driver.text == "line: ["
 
     drive(story, small)

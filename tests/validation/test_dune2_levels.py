@@ -10,9 +10,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from calm.grid.depths import MooringDepths, points_of
+from calm.grid.depths import MooringDepths
 from calm.grid.field import estimate, field_of, posterior
 from calm.grid.samples import gather
+from calm.motion.line_places import points_of
 from calm.records.instrument_series import read_series
 
 FIELD = Path(__file__).parents[2] / "docs" / "field" / "dune2"
@@ -32,7 +33,7 @@ def measured():
     series = read_series(
         [str(FIELD / "temperatures.nc")], ("temperature",), frozenset({1, 2}), 792.3
     )["temperature"]
-    points, said = points_of(series, depths)
+    points, said = points_of(series, depths.places)
     assert len(points) == 21 and not said
     return gather(depths, series, points, time)
 

@@ -20,6 +20,7 @@ from calm.tui.catalogue.component_list import ComponentList, Remembered
 from calm.tui.checking import anything, distance, length
 from calm.tui.field import Field
 from calm.tui.key_table import bindings
+from calm.tui.messages import Told
 from calm.tui.scrolled import ScrolledEntry, ScrolledText
 
 Purpose = Literal["below", "above", "clamp", "replace"]
@@ -60,13 +61,6 @@ class CataloguePane(Vertical):
 
         purpose: Purpose
         values: dict[str, str]
-
-    @dataclass
-    class Told(Message):
-        """A message for the last line."""
-
-        text: str
-        wrong: bool = False
 
     class Closed(Message):
         """Back to the line."""
@@ -201,10 +195,10 @@ class CataloguePane(Vertical):
             try:
                 is_one = self.remembered.mark(chosen.id)
             except OSError as error:
-                self.post_message(self.Told(f"It could not be kept: {error}", wrong=True))
+                self.post_message(Told(f"It could not be kept: {error}", wrong=True))
             else:
                 became = "is a favourite now" if is_one else "is no longer a favourite"
-                self.post_message(self.Told(f"{chosen.id} {became}"))
+                self.post_message(Told(f"{chosen.id} {became}"))
             self._search_again()
 
     def action_choose(self, by: int) -> None:

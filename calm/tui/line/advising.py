@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
-
-from textual.app import App
+from typing import TYPE_CHECKING
 
 from calm.errors import CalmError
 from calm.tui.checking import needed
@@ -23,8 +21,8 @@ _OTHER = "another"
 class Advising:
     """Asks which change is wanted, and puts it into the line once its effect was seen."""
 
-    def __init__(self, app: App[Any], line: LinePane) -> None:
-        self._app, self._line, self._workspace = app, line, line.workspace
+    def __init__(self, line: LinePane) -> None:
+        self._line, self._workspace = line, line.workspace
 
     def offer(self) -> None:
         """Ask which of the changes that would help is wanted."""
@@ -56,8 +54,8 @@ class Advising:
         if not found:
             text = "No finding has a remedy that can be computed here. " + text
         if isinstance(result, Result) and not view.complete:
-            text += " Launch, recovery and breaks are still being judged."
-        self._app.push_screen(Question("Advice", text, answers), take)
+            text += " Launch, recovery, breaks and waves are still being judged."
+        self._line.app.push_screen(Question("Advice", text, answers), take)
 
     def _ask_for_target(self, view: View, mooring: Mooring) -> None:
         from calm.tui.advice import sized
@@ -79,7 +77,7 @@ class Advising:
             Asked("change", "Change", f"{label.strip('├ ')}.buoyancy", needed("a change")),
         ]
         text = "LABEL.buoyancy, LABEL.length or LABEL.count; depth(LABEL) = 100 m, tilt(LABEL) …"
-        self._app.push_screen(InputSheet("A target to meet", text, asked), take)
+        self._line.app.push_screen(InputSheet("A target to meet", text, asked), take)
 
     def _try(self, offer: Offer, before: View) -> None:
         """Work the change out in a thread, and what it would do."""
@@ -116,4 +114,4 @@ class Advising:
 
         self._workspace.tell("")
         answers = [Answer("y", "take it", "take")]
-        self._app.push_screen(Question(offer.title, "\n".join(lines), answers), take)
+        self._line.app.push_screen(Question(offer.title, "\n".join(lines), answers), take)

@@ -11,14 +11,14 @@ from textual.events import DescendantFocus, Key
 
 from calm.files.components import KINDS
 from calm.files.editing import Draft
-from calm.tui.catalogue.catalogue_pane import CataloguePane
+from calm.tui import key_table
 from calm.tui.cell_editor import CellEditor
 from calm.tui.dialogs import InputSheet
-from calm.tui.key_table import Place, bindings, hints
+from calm.tui.key_table import bindings, hints
 from calm.tui.line.advising import Advising
-from calm.tui.line.body import LineBody
 from calm.tui.line.comparing import Comparing
 from calm.tui.line.line_pane import LinePane
+from calm.tui.line.line_screen import LineScreen
 from calm.tui.line.mooring_sheet import (
     as_deployed,
     deployed_sheet,
@@ -29,57 +29,16 @@ from calm.tui.line.mooring_sheet import (
     tow_sheet,
     written,
 )
-from calm.tui.messages import Workspace
 from calm.tui.pictures import Picture, Tab
-from calm.tui.screen import DraftScreen, KeyBar
+from calm.tui.screen import KeyBar
 from calm.tui.session import Location
 from calm.tui.verdict_pane import VerdictPane
 
 
-class BuilderScreen(DraftScreen):
+class BuilderScreen(LineScreen):
     """The line in the middle, and the ways to all other screens."""
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings("anywhere")]
-    HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (112, "-wide"), (176, "-huge")]  # noqa: RUF012
-    VERTICAL_BREAKPOINTS = [(0, "-flat"), (17, "-high")]  # noqa: RUF012
-    DEFAULT_CSS = """
-    BuilderScreen {
-        & #body { height: 1fr; }
-        & #study { width: 2fr; height: 1fr; border-left: vkey $panel; }
-        & #catalogue { width: 2fr; height: 1fr; border-left: vkey $panel; }
-        &.-searching #study { display: none; }
-        &.-searching #catalogue { display: block; }
-        &.-wide.-searching #line-pane { width: 2fr; }
-        &.-wide.-searching #catalogue { width: 3fr; }
-        &.-huge.-searching #study { display: block; }
-        &.-huge #catalogue { width: 1fr; }
-        &.-huge #line-pane { width: 2fr; }
-        &.-huge #study { width: 1fr; }
-        &.-narrow #body { layout: vertical; }
-        &.-narrow #line-pane { width: 1fr; height: 13fr; }
-        &.-narrow #study {
-            width: 1fr; height: 10fr; layout: horizontal; border-left: none;
-            border-top: hkey $panel;
-        }
-        &.-narrow #catalogue {
-            width: 1fr; height: 10fr; border-left: none; border-top: hkey $panel;
-        }
-        &.-narrow Pictures { width: 3fr; }
-        &.-narrow VerdictPane { width: 2fr; height: 1fr; max-height: 100%; margin-top: 0; }
-        &.-narrow.-flat #study { display: none; }
-        &.-narrow.-flat.-zoomed #study, &.-narrow.-flat.-reading #study {
-            display: block; height: 1fr; border: none;
-        }
-        &.-narrow.-flat.-reading #line-pane, &.-narrow.-flat.-reading Pictures { display: none; }
-        &.-narrow.-flat.-searching #line-pane { display: none; }
-        &.-zoomed #line-pane, &.-zoomed VerdictPane { display: none; }
-        &.-zoomed #study { display: block; border: none; }
-    }
-    """
-
-    def __init__(self, workspace: Workspace) -> None:
-        self.body = LineBody(workspace)
-        super().__init__(workspace, self.body, self.body)
 
     def on_resize(self) -> None:
         """The title says as much as there is room for."""
@@ -87,50 +46,50 @@ class BuilderScreen(DraftScreen):
 
     def on_mount(self) -> None:
         """The keys go to the line."""
-        self.body.line.show_rows()
-        self.body.line.table.focus()
+        self.line.show_rows()
+        self.line.table.focus()
 
     def on_key(self, event: Key) -> None:
         """A key removes the message that is shown."""
-        if not self.body.line.editor.is_open:
+        if not self.line.editor.is_open:
             self.tell("")
 
     @on(DescendantFocus)
     def show_keys(self) -> None:
         """The keys of what has the focus."""
         focused = self.focused
-        place: Place = "line"
+        place: key_table.Place = "line"
         if isinstance(focused, CellEditor):
             place = "cell"
         elif isinstance(focused, VerdictPane):
             place = "verdict"
         elif isinstance(focused, Picture):
             place = "anywhere"
-        elif focused is not None and self.query_one(CataloguePane) in focused.ancestors_with_self:
+        elif focused is not None and self.catalogue in focused.ancestors_with_self:
             place = "catalogue"
         self.query_one(KeyBar).show_keys(hints(place))
 
     def action_suspend(self) -> None:
         """Back to the shell; undo where there is none, or a value is typed."""
-        if self.part.is_typing or self.app.is_web or self.app.is_headless:
+        if self.is_typing or self.app.is_web or self.app.is_headless:
             self.action_undo()
         else:
             self.app.action_suspend_process()
 
     def action_picture(self, tab: Tab) -> None:
         """Show another picture."""
-        self.body.pictures.tab = tab
+        self.pictures.tab = tab
 
     def action_zoom(self) -> None:
         """Give the picture the screen, or take it back."""
         self.remove_class("-searching")
         self.toggle_class("-zoomed")
         is_zoomed = self.has_class("-zoomed")
-        (self.query_one(Picture) if is_zoomed else self.body.line.table).focus()
+        (self.query_one(Picture) if is_zoomed else self.line.table).focus()
 
     def action_next_environment(self) -> None:
         """Stand the line in the next of its environments."""
-        standing = self.workspace.session.standing
+        standing = self.session.standing
         if len(standing.environments) == 1:
             self.tell("The file has one environment; add others on the screen of the water (w)")
             return
@@ -142,45 +101,45 @@ class BuilderScreen(DraftScreen):
 
     def action_advise(self) -> None:
         """Offer changes that mend what was found."""
-        Advising(self.app, self.body.line).offer()
+        Advising(self.line).offer()
 
     def action_compare(self) -> None:
         """Show what has changed since the file was saved."""
-        Comparing(self.app, self.body).with_saved()
+        Comparing(self.line, self.pictures).with_saved()
 
     def action_compare_file(self) -> None:
         """Show what is different in another file."""
-        Comparing(self.app, self.body).with_file()
+        Comparing(self.line, self.pictures).with_file()
 
     def action_overlay(self) -> None:
         """Draw the line in all its environments, or in its own alone."""
-        shown = self.body.pictures.overlay()
+        shown = self.pictures.overlay()
         self.tell("All environments that are judged are drawn" if shown else "One is drawn alone")
 
     def action_verdict(self) -> None:
         """The verdict line by line."""
         self.remove_class("-zoomed", "-searching")
         self.add_class("-reading")
-        self.body.verdict.focus()
+        self.verdict.focus()
 
     def action_figures(self) -> None:
         """Fill in what is not known of the components."""
-        from calm.tui.line.missing_screen import Filling
+        from calm.tui.line.missing_figures import Filling
 
-        Filling(self.app, self.body.line).ask()
+        Filling(self.line).ask()
 
     def action_papers(self) -> None:
         """Show the bill, or have report and sheets written."""
         from calm.tui.line.comparing import Papers
 
-        Papers(self.app, self.body.line).offer()
+        Papers(self.line).offer()
 
     def action_begin(self) -> None:
         """Begin an empty line with a mooring."""
         from calm.templates import TEMPLATES, template
         from calm.tui.line.mooring_sheet import beginning
 
-        session = self.workspace.session
+        session = self.session
         if session.draft.items:
             self.tell("There is a line already; a new file can begin with a mooring")
             return
@@ -188,7 +147,7 @@ class BuilderScreen(DraftScreen):
         def take(answer: str | None) -> None:
             if answer is not None:
                 kind = list(TEMPLATES)[int(answer) - 1]
-                self.body.line.attempt(lambda: session.write(template(kind), f"begin with {kind}"))
+                self.line.attempt(lambda: session.write(template(kind), f"begin with {kind}"))
 
         self.app.push_screen(beginning(), take)
 
@@ -196,8 +155,8 @@ class BuilderScreen(DraftScreen):
         """Show what was done, and go back to before any of it."""
         from calm.tui.line.mooring_sheet import history
 
-        steps = self.workspace.session.history
-        if not self.part.settle():
+        steps = self.session.history
+        if not self.settle():
             return
         if not steps.steps:
             self.tell("There is nothing to undo yet")
@@ -207,11 +166,11 @@ class BuilderScreen(DraftScreen):
             if answer is not None:
                 self._go("undone", lambda: [steps.undo() for _ in range(int(answer))][-1])
 
-        self.app.push_screen(history(self.workspace.session), take)
+        self.app.push_screen(history(self.session), take)
 
     def action_search(self) -> None:
         """Search the catalogue for a piece below."""
-        self.body.search("below")
+        self.search("below")
 
     def action_define(self) -> None:
         """Define a component of one's own, and put it into the line."""
@@ -219,7 +178,7 @@ class BuilderScreen(DraftScreen):
 
         def take(defined: tuple[str, dict[str, str]] | None) -> None:
             if defined is not None:
-                self.body.put_component(*defined)
+                self._put_component(*defined)
 
         index = self.workspace.index
         listed = () if index is None else tuple(index.catalogue.ids())
@@ -230,7 +189,7 @@ class BuilderScreen(DraftScreen):
         """Change a component of the file in its form; figures that it does not show stay."""
         from calm.tui.catalogue.component_screen import ComponentScreen
 
-        id, session = event.id, self.workspace.session
+        id, session = event.id, self.session
         values = self._own.get(id)
         if not isinstance(values, dict) or values.get("kind") not in KINDS:
             what = "is an assembly: change it in the text (t)" if id in self._own else (
@@ -247,14 +206,14 @@ class BuilderScreen(DraftScreen):
                     for key, text in defined[1].items()
                     if text != values.get(key, "")
                 }
-                self.body.line.attempt(lambda: session.put_all(changed, f"change {id}"))
+                self.line.attempt(lambda: session.put_all(changed, f"change {id}"))
 
         self.app.push_screen(ComponentScreen(begun=(id, values)), take)
 
     @property
     def _own(self) -> dict[str, Any]:
         """The components that the file defines, as written."""
-        defined = self.workspace.session.draft.value(("components",))
+        defined = self.session.draft.value(("components",))
         return defined if isinstance(defined, dict) else {}
 
     def action_water(self) -> None:
@@ -267,7 +226,7 @@ class BuilderScreen(DraftScreen):
         """The file as text."""
         from calm.tui.text_screen import TextScreen
 
-        spot, session = self.body.line.table.spot, self.workspace.session
+        spot, session = self.line.table.spot, self.session
         line = 1
         if spot is not None and spot in session.spots():  # a broken text has no rows
             line = session.item(spot).line
@@ -290,7 +249,7 @@ class BuilderScreen(DraftScreen):
     def action_deployed(self) -> None:
         """Ask when and where the mooring was deployed, and what of it hangs at the row."""
         view = self.workspace.view if self.workspace.is_fresh else None
-        hung = hung_at(None if view is None else view.file, self.body.line.table.spot)
+        hung = hung_at(None if view is None else view.file, self.line.table.spot)
 
         def deployed(draft: Draft, texts: Mapping[str, str]) -> Draft:
             return as_deployed(draft, hung, texts)
@@ -303,16 +262,26 @@ class BuilderScreen(DraftScreen):
 
     @property
     def _draft(self) -> Draft:
-        return self.workspace.session.draft
+        return self.session.draft
 
     def _ask(
         self, sheet: InputSheet, label: str, changed: Callable[[Draft, Mapping[str, str]], Draft]
     ) -> None:
         """Show a sheet, and write what is entered."""
-        session = self.workspace.session
+        session = self.session
 
         def take(texts: dict[str, str] | None) -> None:
             if texts is not None:
-                self.body.line.attempt(lambda: session.do(changed(session.draft, texts), label))
+                self.line.attempt(lambda: session.do(changed(session.draft, texts), label))
 
         self.app.push_screen(sheet, take)
+
+    def _put_component(self, id: str, values: dict[str, str]) -> None:
+        """Define a component in the file, and show it in the catalogue."""
+        session = self.session
+        if self.line.attempt(
+            lambda: session.do(session.draft.put_component(id, values), f"define {id}"),
+            f"{id} is defined in the file; the catalogue has it",
+        ):
+            self.search("below")
+            self.catalogue.search.value = id

@@ -94,6 +94,9 @@ def ask_equipment(pane: LinePane, spot: Place) -> None:
     """Ask for the equipment of a row: serial number, calibration and more."""
     values = pane.session.draft.value(location(spot))
     label = str(values.get("label") or values.get("use") or "")
+    if pane.workspace.is_assembly(pane.session.item(spot)):
+        pane.workspace.tell(f"{label} is an assembly, whose parts have serial numbers; it has none")
+        return
 
     def take(texts: dict[str, str] | None) -> None:
         changed = equipment_changes(values, texts or {})
@@ -142,6 +145,8 @@ class ColumnFilling:
         item = self._session.item(self._spots[key])
         title = item.values.get("label") or item.values.get("use", "")
         if self.column == "serial":
+            if self._workspace.is_assembly(item):
+                return None
             text = texts_of_equipment(self._written(key), "serial")
             return Asked(key, title, text, serial_of_equipment)
         if self.column == "codes":

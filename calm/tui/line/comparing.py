@@ -6,16 +6,14 @@ import subprocess
 import sys
 from difflib import unified_diff
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
-
-from textual.app import App
+from typing import TYPE_CHECKING
 
 from calm.errors import CalmError
 from calm.files.editing import WorkingFile
 from calm.tui.checking import needed
 from calm.tui.dialogs import Answer, Asked, InputSheet, LongText, Question
-from calm.tui.line.body import LineBody
 from calm.tui.line.line_pane import LinePane
+from calm.tui.pictures import Pictures
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -29,9 +27,8 @@ _MOST_LINES = 24
 class Comparing:
     """Shows what has changed since the file was saved, or what is different in another one."""
 
-    def __init__(self, app: App[Any], body: LineBody) -> None:
-        self._app, self._line, self._pictures = app, body.line, body.pictures
-        self._workspace = body.workspace
+    def __init__(self, line: LinePane, pictures: Pictures) -> None:
+        self._line, self._pictures, self._workspace = line, pictures, line.workspace
 
     def with_saved(self) -> None:
         """Judge what was saved in a thread, and show the differences."""
@@ -64,7 +61,7 @@ class Comparing:
 
         asked = [Asked("file", "File", placeholder="e.g. other.yaml")]
         text = "Its line is drawn dashed beside this one; no name takes it away again."
-        self._app.push_screen(InputSheet("Compare with another file", text, asked), take)
+        self._line.app.push_screen(InputSheet("Compare with another file", text, asked), take)
 
     def _judge(self, text: str, file: Path | None) -> None:
         """Judge a text beside the line's: of another file, or of its own as it was saved."""
@@ -96,7 +93,7 @@ class Comparing:
         if before.result is not None and view and type(before.result) is type(view.result):
             self._pictures.put_beside((name, before.result.shape))
         answers = [Answer("b", "back to the line", "back")]
-        self._app.push_screen(Question(f"Beside {name}", "\n".join(lines), answers))
+        self._line.app.push_screen(Question(f"Beside {name}", "\n".join(lines), answers))
 
 
 def changed_lines(before: str, after: str) -> list[str]:
@@ -114,8 +111,8 @@ _COMMANDS = {"report": ("check", "--report"), "deck": ("deck", "--output")}
 class Papers:
     """Shows the bill, and has report and sheets written of the file as it is saved."""
 
-    def __init__(self, app: App[Any], line: LinePane) -> None:
-        self._app, self._line, self._workspace = app, line, line.workspace
+    def __init__(self, line: LinePane) -> None:
+        self._line, self._workspace = line, line.workspace
 
     def offer(self) -> None:
         """Ask what is wanted."""
@@ -131,7 +128,7 @@ class Papers:
 
         def take(answer: str | None) -> None:
             if answer == "bill":
-                self._app.push_screen(LongText(_bill(result), wide=True))
+                self._line.app.push_screen(LongText(_bill(result), wide=True))
             elif answer is not None:
                 self._ask_where(answer)
 
@@ -140,7 +137,7 @@ class Papers:
             Answer("r", "report of the design check: page, PDF, tables", "report"),
             Answer("d", "sheets for the deck: diagram, logs, cutting list, anchor drop", "deck"),
         ]
-        self._app.push_screen(Question("On paper", "", answers), take)
+        self._line.app.push_screen(Question("On paper", "", answers), take)
 
     def _ask_where(self, what: str) -> None:
         session, path = self._workspace.session, self._workspace.session.file.path
@@ -154,7 +151,7 @@ class Papers:
 
         folder = path.with_name(f"{path.stem}-{what}")
         asked = [Asked("folder", "Folder", str(folder), needed("a folder"))]
-        self._app.push_screen(InputSheet("Where to write it", "", asked), take)
+        self._line.app.push_screen(InputSheet("Where to write it", "", asked), take)
 
     def _write(self, what: str, path: Path, folder: Path) -> None:
         """Have the command write it; what it says last is reported."""

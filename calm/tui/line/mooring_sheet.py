@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -16,45 +16,33 @@ from calm.tui.checking import Reading, anything, day, moment, quantity
 from calm.tui.dialogs import Answer, Asked, InputSheet, Question
 from calm.tui.session import Session
 
-_PLACES: Mapping[str, Location] = {
-    "name": ("name",),
-    "description": ("description",),
-    "latitude": ("position", "latitude"),
-    "longitude": ("position", "longitude"),
-    "speed": ("tow", "speed"),
-    "toward": ("tow", "toward"),
-    "height": ("tow", "height"),
-} | {
-    each: ("document", each)
-    for each in "id revision date author checked approved project ship cruise".split()  # noqa: SIM905
-}
-
 _HISTORY: Location = ("document", "history")
 
 LATITUDE = quantity(QuantityField("latitude", at_least=-90, at_most=90), optional=True)
 LONGITUDE = quantity(QuantityField("longitude", at_least=-360, at_most=360), optional=True)
 _NAME_AND_PLACE = (
-    Asked("name", "Name", check=anything),
-    Asked("description", "Description", check=anything),
-    Asked("latitude", "Latitude", check=LATITUDE, placeholder="e.g. 48.3 deg, + north"),
-    Asked("longitude", "Longitude", check=LONGITUDE, placeholder="e.g. -5.2 deg, + east"),
+    Asked("name", "Name"),
+    Asked("description", "Description"),
+    Asked("position.latitude", "Latitude", "", LATITUDE, "e.g. 48.3 deg, + north"),
+    Asked("position.longitude", "Longitude", "", LONGITUDE, "e.g. -5.2 deg, + east"),
 )
+"""The key of what is asked for is its place in the file."""
 _SPEED, _COURSE = QuantityField("speed", above=0), QuantityField("angle")
 _TOW = (
-    Asked("speed", "Tow speed", check=quantity(_SPEED), placeholder="e.g. 4 knot"),
-    Asked("toward", "Towards", check=quantity(_COURSE), placeholder="e.g. 90 deg for east"),
-    Asked("height", "Sheave height", check=quantity(LENGTH, optional=True), placeholder="e.g. 3 m"),
+    Asked("tow.speed", "Tow speed", "", quantity(_SPEED), "e.g. 4 knot"),
+    Asked("tow.toward", "Towards", "", quantity(_COURSE), "e.g. 90 deg for east"),
+    Asked("tow.height", "Sheave height", "", quantity(LENGTH, optional=True), "e.g. 3 m"),
 )
 _DOCUMENT = (
-    Asked("id", "Document", placeholder="M-2027-03"),
-    Asked("revision", "Revision", placeholder="B"),
-    Asked("date", "Date", check=day, placeholder="2027-06-30"),
-    Asked("author", "Author"),
-    Asked("checked", "Checked by"),
-    Asked("approved", "Approved by"),
-    Asked("project", "Project"),
-    Asked("ship", "Ship"),
-    Asked("cruise", "Cruise"),
+    Asked("document.id", "Document", placeholder="M-2027-03"),
+    Asked("document.revision", "Revision", placeholder="B"),
+    Asked("document.date", "Date", "", day, "2027-06-30"),
+    Asked("document.author", "Author"),
+    Asked("document.checked", "Checked by"),
+    Asked("document.approved", "Approved by"),
+    Asked("document.project", "Project"),
+    Asked("document.ship", "Ship"),
+    Asked("document.cruise", "Cruise"),
 )
 _BEGIN_A_TOW = (
     "The line becomes a tow: it hangs from a ship, its pieces from the ship down, and has no "
@@ -69,7 +57,7 @@ def mooring_sheet(draft: Draft) -> InputSheet:
 
 def document_sheet(draft: Draft) -> InputSheet:
     """Return what the title block of the drawings says, as the file has it."""
-    revision = draft.text_at(_PLACES["revision"])
+    revision = draft.text_at(("document", "revision"))
     change = said(draft, _HISTORY, ("revision", revision), "change")
     asked = [*filled(draft, _DOCUMENT), Asked("change", "What it changed", change)]
     return InputSheet("The document", "For the title block of drawings, and its history.", asked)
@@ -80,47 +68,39 @@ def tow_sheet(draft: Draft) -> InputSheet:
     return InputSheet("The tow", "" if draft.is_tow else _BEGIN_A_TOW, filled(draft, _TOW))
 
 
-def filled(
-    draft: Draft, asked: tuple[Asked, ...], places: Mapping[str, Location] = _PLACES
-) -> list[Asked]:
-    """Return what is asked, with the texts that the file has in the places of its keys."""
-    return [replace(each, text=draft.text_at(places[each.key])) for each in asked]
+def filled(draft: Draft, asked: Iterable[Asked]) -> list[Asked]:
+    """Return what is asked, with the texts that the file has in its places."""
+    return [replace(each, text=draft.text_at(tuple(each.key.split(".")))) for each in asked]
 
 
-def written(
-    draft: Draft, texts: Mapping[str, str], places: Mapping[str, Location] = _PLACES
-) -> Draft:
+def written(draft: Draft, texts: Mapping[str, str]) -> Draft:
     """The file with the texts of a sheet in their places; a blank one takes its key away."""
     for key, new in texts.items():
-        if new != draft.text_at(places[key]):
-            draft = draft.put_at(places[key], new or None)
+        place = tuple(key.split("."))
+        if new != draft.text_at(place):
+            draft = draft.put_at(place, new or None)
     return draft
 
 
 def documented(draft: Draft, texts: Mapping[str, str]) -> Draft:
     """The file with the texts of the document, and in its history what the revision changed."""
-    revision, change = texts["revision"], texts["change"]
+    revision, change = texts["document.revision"], texts["change"]
     if change and not revision:
         raise EditError("a change is that of a revision; say which")
     known = said(draft, _HISTORY, ("revision", revision), "change")
     draft = written(draft, {key: text for key, text in texts.items() if key != "change"})
     if change == known:
         return draft
-    by = {"date": texts["date"], "by": texts["author"]} if change else {"date": "", "by": ""}
-    return entered(draft, _HISTORY, ("revision", revision), by | {"change": change})
+    date, author = (texts[f"document.{key}"] if change else "" for key in ("date", "author"))
+    by = {"date": date, "by": author, "change": change}
+    return entered(draft, _HISTORY, ("revision", revision), by)
 
 
-_DEPLOYED_PLACES: dict[str, Location] = {
-    "date": ("deployed", "date"),
-    "latitude": ("deployed", "position", "latitude"),
-    "longitude": ("deployed", "position", "longitude"),
-    "depth": ("deployed", "depth"),
-}
 _DEPTH = quantity(QuantityField("length", above=0), optional=True)
 _WHOLE = (
-    Asked("date", "Date", check=moment, placeholder="e.g. 2027-06-30 14:05"),
-    *_NAME_AND_PLACE[2:],
-    Asked("depth", "Depth there", check=_DEPTH, placeholder="e.g. 1187 m"),
+    Asked("deployed.date", "Date", "", moment, "e.g. 2027-06-30 14:05"),
+    *(replace(each, key=f"deployed.{each.key}") for each in _NAME_AND_PLACE[2:]),
+    Asked("deployed.depth", "Depth there", "", _DEPTH, "e.g. 1187 m"),
 )
 _OF_A_ROW = (
     ("serial", "Serial number", anything),
@@ -168,7 +148,7 @@ def deployed_sheet(draft: Draft, hung: DeployedRow | None) -> InputSheet:
     """Return when and where the mooring was deployed, and what hangs at a row, as the file has
     them.
     """
-    asked = filled(draft, _WHOLE, _DEPLOYED_PLACES)
+    asked = filled(draft, _WHOLE)
     if hung is None:
         return InputSheet("As deployed", _COMPARED, asked)
     for key, title, check in _OF_A_ROW:
@@ -183,7 +163,7 @@ def deployed_sheet(draft: Draft, hung: DeployedRow | None) -> InputSheet:
 
 def as_deployed(draft: Draft, hung: DeployedRow | None, texts: Mapping[str, str]) -> Draft:
     """The file with what was entered."""
-    draft = written(draft, {key: texts[key] for key in _DEPLOYED_PLACES}, _DEPLOYED_PLACES)
+    draft = written(draft, {each.key: texts[each.key] for each in _WHOLE})
     if hung is None:
         return draft
     given = {key: texts[f"item {key}"] for key, _, _ in _OF_A_ROW if f"item {key}" in texts}
@@ -213,30 +193,10 @@ def equipment_sheet(label: str, values: Mapping[str, Any], *, is_clamp: bool) ->
     values : what the file says of it
     """
     asked = [
-        Asked(
-            "serial",
-            "Serial number",
-            texts_of_equipment(values, "serial"),
-            serial_of_equipment,
-            "4711",
-        ),
-        Asked(
-            "calibrated", "Calibrated", texts_of_equipment(values, "calibrated"), day, "2027-06-30"
-        ),
-        Asked(
-            "sampling", "Sampling", texts_of_equipment(values, "sampling"), anything, "every 10 min"
-        ),
-        Asked(
-            "battery_until",
-            "Battery until",
-            texts_of_equipment(values, "battery_until"),
-            day,
-            "2028-06-30",
-        ),
+        replace(each, text=texts_of_equipment(values, each.key))
+        for each in _EQUIPMENT
+        if not (is_clamp and each.key == "termination")
     ]
-    if not is_clamp:
-        made = texts_of_equipment(values, "termination")
-        asked.append(Asked("termination", "Termination", made, anything, "swaged, thimbles"))
     return InputSheet(label, _SEVERAL, asked)
 
 
@@ -264,6 +224,15 @@ def serial_of_equipment(text: str) -> Reading:
     if len(numbers) > 1 and not all(numbers):
         return Reading("", "a number is blank")
     return Reading(", ".join(numbers))
+
+
+_EQUIPMENT = (
+    Asked("serial", "Serial number", "", serial_of_equipment, "4711"),
+    Asked("calibrated", "Calibrated", "", day, "2027-06-30"),
+    Asked("sampling", "Sampling", placeholder="every 10 min"),
+    Asked("battery_until", "Battery until", "", day, "2028-06-30"),
+    Asked("termination", "Termination", placeholder="swaged, thimbles"),
+)
 
 
 def said(draft: Draft, rows: Location, called: tuple[str, str], key: str) -> str:

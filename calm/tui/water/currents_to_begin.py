@@ -2,58 +2,38 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import exp, isclose
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 from numpy import float32
-from textual.app import App
 
 from calm.errors import CalmError, UsageError
 from calm.records.profile_tables import speed_and_direction
 from calm.tui.checking import Check, Reading, anything
 from calm.tui.dialogs import Answer, Asked, InputSheet, Question
 from calm.tui.water.form import CURRENT_COLUMNS, USUAL_DEPTH
-from calm.tui.water.water_pane import WaterPane
+
+if TYPE_CHECKING:
+    from calm.tui.water.water_screen import WaterScreen
 
 _SHARES = (0.0, 0.1, 0.25, 0.5, 0.75, 0.9, 1.0)
 _POWER = 1 / 7
 
 
-@dataclass(frozen=True)
-class _Preset:
-    """A profile to begin with.
-
-    Attributes
-    ----------
-    key : the key that chooses it
-    name : what it is, for people
-    speed : the speed [m/s] at a share of the depth: 0 at the surface to 1 at the bed
-    """
-
-    key: str
-    name: str
-    speed: Callable[[float], float]
-
-    def rows(self, depth: float) -> tuple[tuple[str, str, str], ...]:
-        """Depth [m], speed [m/s] and direction [degrees], east, in water of a depth [m]."""
-        return tuple(
-            (f"{share * depth:.4g}", f"{self.speed(share):.2g}", "90") for share in _SHARES
-        )
-
-
-_PRESETS = (
-    _Preset("1", "uniform, 0.5 m/s", lambda share: 0.5),
-    _Preset("2", "tidal stream, 1 m/s, falling by the 1/7 power of the height above the bed",
-           lambda share: (1.0 - share) ** _POWER),
-    _Preset("3", "linear shear, 0.8 m/s at the surface to nothing at the bed",
-           lambda share: 0.8 * (1.0 - share)),
-    _Preset("4", "boundary current, 1.2 m/s at the surface, decaying by e in a fifth of the depth",
-           lambda share: 0.05 + 1.15 * exp(-share / 0.2)),
-)  # fmt: skip
-"""In the order in which they are offered."""
+_PRESETS: Mapping[str, Callable[[float], float]] = {
+    "uniform, 0.5 m/s": lambda share: 0.5,
+    "tidal stream, 1 m/s, falling by the 1/7 power of the height above the bed":
+        lambda share: (1.0 - share) ** _POWER,
+    "linear shear, 0.8 m/s at the surface to nothing at the bed":
+        lambda share: 0.8 * (1.0 - share),
+    "boundary current, 1.2 m/s at the surface, decaying by e in a fifth of the depth":
+        lambda share: 0.05 + 1.15 * exp(-share / 0.2),
+}  # fmt: skip
+"""Profiles to begin with: the speed [m/s] at a share of the depth, 0 at the surface, 1 at the bed.
+"""
 
 
 @dataclass(frozen=True)
@@ -67,50 +47,50 @@ class _File:
 
 
 class Currents:
-    """What puts a whole current into the environment that a form of the water shows."""
+    """What puts a whole current into the environment that the screen of the water shows."""
 
-    def __init__(self, app: App[Any], pane: WaterPane) -> None:
-        self._app, self._pane, self._workspace = app, pane, pane.workspace
+    def __init__(self, screen: WaterScreen) -> None:
+        self._screen, self._workspace = screen, screen.workspace
 
     def offer_presets(self) -> None:
         """A profile to begin with."""
 
-        def take(key: str | None) -> None:
-            chosen = next((preset for preset in _PRESETS if preset.key == key), None)
-            if chosen is not None:
-                rows = chosen.rows(self._pane.water.depth or USUAL_DEPTH)
-                self._pane.put_table(CURRENT_COLUMNS, rows, "a preset current")
+        def take(name: str | None) -> None:
+            if name is not None:
+                deep, speed = self._screen.water.depth or USUAL_DEPTH, _PRESETS[name]
+                rows = [(f"{part * deep:.4g}", f"{speed(part):.2g}", "90") for part in _SHARES]
+                self._screen.put_table(CURRENT_COLUMNS, rows, "a preset current")
 
-        if self._pane.settle():
-            depth = self._pane.water.depth
+        if self._screen.settle():
+            depth = self._screen.water.depth
             down = f"{USUAL_DEPTH:g} m, as no depth is given" if depth is None else f"{depth:g} m"
-            answers = [Answer(preset.key, preset.name, preset.key) for preset in _PRESETS]
+            answers = [Answer(str(key), name, name) for key, name in enumerate(_PRESETS, 1)]
             text = f"A table down to {down}, towards the east, for you to change."
-            self._app.push_screen(Question("A current to start from", text, answers), take)
+            self._screen.app.push_screen(Question("A current to start from", text, answers), take)
 
     def ask_for_file(self) -> None:
         """A current from CSV or NetCDF: referred to, or its profile copied."""
 
         def take(texts: dict[str, str] | None) -> None:
             if texts is None:
-                self._pane.show_draft()
+                self._screen.show_draft()
                 return
-            path, time, water = texts["file"], texts["time"], self._pane.water
+            path, time, water = texts["file"], texts["time"], self._screen.water
             if texts["how"] == "refer":
                 given = {"file": path} | ({"time": time} if time else {})
                 message = f"current of {path}"
-                self._pane.change(lambda water: water.put_form(("current",), given), message)
+                self._screen.change(lambda water: water.put_form(("current",), given), message)
                 return
             self._workspace.tell(f"Reading {path} …")
             file = _File(water.variant, path, time, water.depth or USUAL_DEPTH)
-            self._pane.run_worker(lambda: self._read(file), thread=True, exit_on_error=False)
+            self._screen.run_worker(lambda: self._read(file), thread=True, exit_on_error=False)
 
-        if self._pane.settle():
-            self._app.push_screen(ImportSheet(self._folder), take)
+        if self._screen.settle():
+            self._screen.app.push_screen(ImportSheet(self._folder), take)
 
     def _read(self, file: _File) -> None:
         """Read a file in a thread; what comes of it is taken by the form."""
-        tell, later = self._workspace.tell, self._pane.call_later
+        tell, later = self._workspace.tell, self._screen.call_later
         try:
             columns, rows = imported(self._folder / file.path, file.time, file.depth)
         except CalmError as error:
@@ -122,16 +102,16 @@ class Currents:
             later(self._take, file, columns, rows)
 
     def _take(self, file: _File, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
-        if file.variant != self._pane.water.variant:
+        if file.variant != self._screen.water.variant:
             message = f"{file.path} was read for another environment; read it again"
             self._workspace.tell(message, wrong=True)
         else:
-            self._pane.put_table(columns, rows, f"current of {file.path}")
+            self._screen.put_table(columns, rows, f"current of {file.path}")
             self._workspace.tell(f"The current of {file.path} is in the table")
 
     @property
     def _folder(self) -> Path:
-        path = self._pane.session.file.path
+        path = self._screen.session.file.path
         return Path.cwd() if path is None else path.absolute().parent
 
 

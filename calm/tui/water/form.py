@@ -2,22 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from textual import events, on
 from textual.binding import BindingType
 from textual.message import Message
+from textual.widget import Widget
 
 from calm.files.definition import DENSITY, POSITIVE_LENGTH, QuantityField
 from calm.files.editing import Draft, Value
 from calm.files.water import USUAL_DENSITY
 from calm.files.yaml_document import Location
 from calm.records.headings import heading
-from calm.records.profile_tables import SALINITY, TEMPERATURE, speed_and_direction
-from calm.tui.field import Cycle
+from calm.records.profile_tables import (
+    DIRECTION,
+    SALINITY,
+    TEMPERATURE,
+    WATER_DENSITY,
+    speed_and_direction,
+)
+from calm.tui.checking import needed, quantity
+from calm.tui.field import Cycle, Field
 from calm.tui.key_table import bindings
+from calm.tui.water.grid import Grid
 from calm.units import QuantityError, QuantityRange
 
 CURRENT_FORMS = ("still", "uniform", "table", "file")
@@ -37,6 +46,13 @@ _CONSTANTS = {
     ("density", "salinity"): (SALINITY, "", "35"),
 }
 """What can be a constant or a table: kind, unit, and the figure to begin with."""
+
+_DEPTH = quantity(POSITIVE_LENGTH, optional=True)
+_DENSITY = quantity(WATER_DENSITY, optional=True)
+_SPEED = quantity(QuantityField("speed", at_least=0))
+_WIND = quantity(QuantityField("speed", at_least=0), optional=True)
+_ANGLE = quantity(DIRECTION)
+_TOWARD = quantity(DIRECTION, optional=True)
 
 Place = tuple[str, ...]
 """Keys that lead to something within an environment: ``("density", "salinity")``."""
@@ -280,3 +296,23 @@ class FormChoice(Cycle):
     def hint(self) -> str:
         """Return how the form that is shown is taken, where it is another one."""
         return _TAKE_IT if self.word != self._given else super().hint
+
+
+def fields_of_water() -> Iterator[Widget]:
+    """The parts of the form; the id of each tells its place in an environment."""
+    yield Field("depth", "Depth", _DEPTH, id="depth", placeholder="e.g. 1100 m")
+    yield FormChoice("Density", DENSITY_FORMS, id="density-form")
+    yield Field("density", "", _DENSITY, id="density", placeholder="else 1025 kg/m^3")
+    yield Grid(id="density-table")
+    for name, kind in (("temperature", TEMPERATURE), ("salinity", SALINITY)):
+        yield FormChoice(f"  {name}", PROFILE_FORMS, id=f"density-{name}-form")
+        yield Field(name, "", quantity(kind), id=f"density-{name}")
+        yield Grid(id=f"density-{name}-table")
+    yield FormChoice("Current", CURRENT_FORMS, id="current-form")
+    yield Field("speed", "  speed", _SPEED, id="current-speed")
+    yield Field("toward", "  towards", _ANGLE, id="current-toward")
+    yield Field("file", "  file", needed("a file"), id="current-file")
+    yield Field("time", "  time", id="current-time", placeholder="e.g. 2026-03-01T06")
+    yield Grid(id="current-table")
+    yield Field("speed", "Wind", _WIND, id="wind-speed", placeholder="none")
+    yield Field("toward", "  towards", _TOWARD, id="wind-toward", placeholder="where it blows")

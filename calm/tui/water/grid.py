@@ -45,12 +45,6 @@ class Grid(EditableTable):
         rows: Rows
         label: str
 
-    @dataclass
-    class Refused(Message):
-        """Why something cannot be done."""
-
-        reason: str
-
     def __init__(self, *, id: str | None = None) -> None:
         self.cells = GridCells()
         super().__init__(self.cells, id=id)
@@ -144,10 +138,6 @@ class Grid(EditableTable):
         if not reading.is_good:
             self.tell_refusal(reading.note)
 
-    def tell_refusal(self, reason: str) -> None:
-        """Tell why something is not done."""
-        self.post_message(self.Refused(reason))
-
     def go_on(self, done: CellEditor.Done) -> None:
         """Go up or down, or to the next value; add a row below one that was added and is filled."""
         cells = self.cells
@@ -173,10 +163,6 @@ class Grid(EditableTable):
             self.cells.change(self._before, "a row less")
             self.cells.cursor -= 1
         self._new, self._before = -1, None
-
-    @on(GridCells.AtTheEnd)
-    def _tell_the_end(self) -> None:
-        self.tell_refusal("The table ends here: a adds a row, ↓ leaves it")
 
     @on(GridCells.Changed)
     def _changed(self, event: GridCells.Changed) -> None:

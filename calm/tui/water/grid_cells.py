@@ -13,6 +13,7 @@ from textual.binding import BindingType
 from textual.message import Message
 
 from calm.tui.key_table import bindings
+from calm.tui.messages import Told
 from calm.tui.table import TableCells, TableColumn
 from calm.tui.theme import CURSOR
 from calm.tui.water.pasted import Rows, half_way
@@ -44,9 +45,6 @@ class GridCells(TableCells, can_focus=True):
 
         rows: Rows
         label: str
-
-    class AtTheEnd(Message):
-        """There is no value after the last."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -125,7 +123,7 @@ class GridCells(TableCells, can_focus=True):
         if by < 0:
             self.screen.focus_previous()
         elif self.headings:
-            self.post_message(self.AtTheEnd())
+            self.post_message(Told("The table ends here: a adds a row, ↓ leaves it", wrong=True))
         else:
             self.screen.focus_next()
 

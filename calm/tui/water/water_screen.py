@@ -1,38 +1,299 @@
-"""The screen of the water: its form, and what is done with environments and currents."""
+"""The water of an environment as a form, the profile of its current beside; environments."""
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, ClassVar
 
-from textual import on
-from textual.app import App
+from textual import events, on
+from textual.app import ComposeResult
 from textual.binding import BindingType
+from textual.containers import Horizontal, Vertical, VerticalScroll
+from textual.content import Content
 from textual.events import DescendantFocus
+from textual.widget import Widget
+from textual.widgets import Static
 
+from calm.files.editing import Draft, Value
 from calm.tui.cell_editor import CellEditor
 from calm.tui.checking import needed
 from calm.tui.dialogs import Asked, InputSheet
+from calm.tui.field import Field
 from calm.tui.key_table import bindings, hints
-from calm.tui.messages import Workspace
+from calm.tui.messages import Workspace, said
+from calm.tui.pictures import ProfilePicture
 from calm.tui.screen import DraftScreen, KeyBar
+from calm.tui.verdict_pane import state_word
 from calm.tui.water.currents_to_begin import Currents
-from calm.tui.water.form import Place
+from calm.tui.water.form import (
+    CURRENT_COLUMNS,
+    DENSITY_FORMS,
+    USUAL_DEPTH,
+    FormChoice,
+    Place,
+    WaterForm,
+    fields_of_water,
+)
+from calm.tui.water.grid import Grid
 from calm.tui.water.grid_cells import GridCells
-from calm.tui.water.water_pane import WaterPane
+
+if TYPE_CHECKING:
+    from calm.errors import Problem
+
+_ELSEWHERE = (
+    "The line stands in {0}: the profile and the verdict are of that. Below is the file's own "
+    "environment; what {0} gives takes its place."
+)
+_INHERITED = "as in the file's own environment"
+
+
+_CURRENT: Place = ("current",)
 
 
 class WaterScreen(DraftScreen):
-    """Depth, density, current and wind of each environment."""
+    """Depth, density, current and wind of each environment; the line stands in the one shown."""
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings("water")]
     HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (112, "-wide")]  # noqa: RUF012
-    DEFAULT_CSS = "WaterScreen.-narrow Grid { margin-left: 0; }"
+    DEFAULT_CSS = """
+    WaterScreen {
+        & #water-form { width: 3fr; padding: 1 1 0 1; scrollbar-size-vertical: 1; }
+        & #water-profile { width: 2fr; border-left: vkey $panel; padding: 0 1; }
+        & .gone { display: none; }
+        & Grid { margin-left: 16; }
+        & Field > Input { width: 20; }
+        &.-narrow Grid { margin-left: 0; }
+    }
+    """
 
     def __init__(self, workspace: Workspace) -> None:
-        self.pane = WaterPane(workspace)
-        super().__init__(workspace, self.pane, self.pane)
-        self._environments = Environments(self.app, self.pane)
-        self._currents = Currents(self.app, self.pane)
+        super().__init__(workspace)
+        self._currents = Currents(self)
+        # what was written in forms that others took the place of, to be had back
+        self._left: dict[tuple[str | None, Place, str], Value | None] = {}
+        self._goes_on = (
+            False  # to the first value of a form, which leaves the message that is shown
+        )
+
+    def parts(self) -> ComposeResult:
+        """Return the form at the left, the profile of the current at the right."""
+        with Horizontal():
+            with VerticalScroll(id="water-form", can_focus=False):
+                yield Static(id="environment-names", markup=False)
+                yield Static(id="water-notes")
+                yield from fields_of_water()
+            with Vertical(id="water-profile"):
+                yield ProfilePicture()
+
+    def on_mount(self) -> None:
+        """Show what the file says."""
+        self.show_draft()
+        self.query_one("#depth", Field).focus_input()
+
+    @property
+    def water(self) -> WaterForm:
+        """The environment that is shown, as the file has it now."""
+        standing = self.session.standing
+        here = standing.environment
+        return WaterForm(self.session.draft, here if here in standing.environments else None)
+
+    @property
+    def environment_file(self) -> str | None:
+        """The environment file that the line stands in, given with the command; None where not."""
+        standing, draft = self.session.standing, self.session.draft
+        here = standing.environment
+        return None if here in standing.environments or draft.problems else here
+
+    def titles(self) -> tuple[str, str]:
+        """Return what is shown, and the verdict."""
+        state = state_word(self.workspace.view, old=not self.workspace.is_fresh)
+        return f"The water of {self.workspace.called}", state
+
+    def show_view(self) -> None:
+        """The profile of a line as judged, dimmed where it is of what is edited no more."""
+        view, fresh = self.workspace.view, self.workspace.is_fresh
+        self._show_notes(view.problems if view is not None and fresh else ())
+        self.query_one(ProfilePicture).show(view, old=self.workspace.is_old)
+        self.show_title()
+
+    def _show_notes(self, problems: Sequence[Problem]) -> None:
+        """Do what keeps the line from standing in the water that the form shows."""
+        file, path = self.environment_file, Path()
+        if self.workspace.view is not None:
+            path = self.workspace.view.path
+        notes = [Content.styled(_ELSEWHERE.format(file), "$text-warning")] if file else []
+        notes += [said(each, path) for each in problems]
+        shown = self.query_one("#water-notes", Static)
+        shown.set_class(not notes, "gone")
+        shown.update(Content("\n").join(notes))
+
+    def show_draft(self) -> None:
+        """Show what the file says now, but where something is being typed."""
+        self.show_view()
+        water = self.water
+        file = self.environment_file
+        names = ["own" if name is None else name for name in self.session.standing.environments]
+        names += [file] if file else []
+        here = file or water.variant or "own"
+        listing = "   ".join(f"[{name}]" if name == here else name for name in names)
+        self.query_one("#environment-names", Static).update(
+            f"Environment     {listing}", layout=False
+        )
+        for choice in self.query(FormChoice):
+            place = _place(choice)
+            choice.set_class(not self._is_shown(place), "gone")
+            choice.show(water.form(*place))
+        for field in self.query(Field):
+            place = _place(field)
+            field.set_class(not self._is_shown(place, "constant"), "gone")
+            if not field.is_typing:
+                field.reset(water.text(*place))
+            is_lacking = place == ("wind", "toward") and water.lacks_direction
+            note = "is needed: where the wind blows" if is_lacking else ""
+            field.tell(note if water.is_own(place[0]) else _INHERITED)
+        for grid in self.query(Grid):
+            place = _place(grid)
+            grid.set_class(not self._is_shown(place, "table"), "gone")
+            grid.show(*water.table(*place), seabed=water.depth)
+
+    def _is_shown(self, place: Place, form: str = "") -> bool:
+        """Return whether a part of the form is of use as the water is given, in this form of its
+        own.
+        """
+        match place:
+            case ("density", _) if self.water.form("density") != DENSITY_FORMS[2]:
+                return False
+            case ("current", "speed" | "toward"):
+                return self.water.form("current") == "uniform"
+            case ("current", "file" | "time"):
+                return self.water.form("current") == "file"
+            case ("density",) | ("density", _) | ("current",):
+                return not form or self.water.form(*place) == form
+        return True
+
+    def replaced(self) -> None:
+        """Show another draft; what is typed, and what other forms held, was of the one before."""
+        self._left.clear()
+        self.drop_typing()
+        self.show_draft()
+
+    # changes
+
+    def change(self, make: Callable[[WaterForm], Draft], label: str, message: str = "") -> bool:
+        """Change the file; a refusal is reported. Whether it was changed."""
+        is_made, _ = self.workspace.attempt(lambda: self.session.do(make(self.water), label))
+        self.show_draft()
+        if is_made:
+            self.workspace.tell(message)
+            self.workspace.edited()
+        return is_made
+
+    def put_table(self, columns: Sequence[str], rows: Sequence[Sequence[str]], label: str) -> None:
+        """Make the current a table of these rows."""
+        self.change(lambda water: water.put_rows(("current",), columns, rows), label)
+
+    def give_in_form(self, place: Place, form: str) -> None:
+        """Give the current or the density in another form: as it was in it, or begun anew."""
+        if not self.settle():
+            return
+        water = self.water
+        self._left[water.variant, place, water.form(*place)] = water.own(*place)
+        key = (water.variant, place, form)
+        is_new = key not in self._left
+        value = water.begun(place, form) if is_new else self._left[key]
+        message = ""
+        if is_new and value is not None:
+            message = "Filled with typical figures, to be replaced"
+            if water.depth is None:
+                message += f"; no depth is given, so tables go down to {USUAL_DEPTH:g} m"
+        self.change(lambda water: water.put_form(place, value), f"{place[-1]}: {form}", message)
+
+    # what is typed
+
+    @property
+    def is_typing(self) -> bool:
+        """Return whether something is typed that is not in the draft yet."""
+        return any(part.is_typing for part in (*self.query(Field), *self.query(Grid)))
+
+    def settle(self) -> bool:
+        """Take what is typed; the first bad value stays to be corrected, and is reported."""
+        for grid in self.query(Grid):
+            typed = grid.is_typing
+            reading = grid.settle()
+            if not reading.is_good:
+                self.workspace.tell(f"Not taken yet: {reading.note}", wrong=True)
+                return False
+            if typed:
+                self._take_rows(grid, "a value")
+        for field in self.query(Field):
+            if not field.is_typing:
+                continue
+            reading = field.reading
+            with field.prevent(Field.Committed):
+                if not field.settle():
+                    field.focus_input()
+                    self.workspace.tell(f"Not taken yet, {field.key}: {reading.note}", wrong=True)
+                    return False
+            self._take(field, reading.text)
+        return True
+
+    def drop_typing(self) -> None:
+        """Take away what is typed and not in the draft."""
+        for field in self.query(Field):
+            field.reset(field.begun)
+        for grid in self.query(Grid):
+            grid.leave_cell()
+
+    @on(Field.Committed)
+    def _commit(self, event: Field.Committed) -> None:
+        self._take(event.field, event.text)
+
+    def _take(self, field: Field, text: str) -> None:
+        place = _place(field)
+        self.change(lambda water: water.put(place, text), f"the {place[0]}")
+
+    @on(Field.Entered)
+    def _onward(self) -> None:
+        self.focus_next()
+
+    @on(Grid.Changed)
+    def _commit_table(self, event: Grid.Changed) -> None:
+        self._take_rows(event.grid, event.label)
+
+    def _take_rows(self, grid: Grid, label: str) -> None:
+        place, cells = _place(grid), grid.cells
+        self.change(lambda water: water.put_rows(place, cells.headings, cells.rows), label)
+
+    def on_paste(self, event: events.Paste) -> None:
+        """A table that is pasted into no table of the form is the current, however it was given."""
+        if len(event.text.splitlines()) > 1 and self.settle():
+            grid = self.query_one("#current-table", Grid)
+            if self.water.form("current") != "table":
+                grid.show(CURRENT_COLUMNS, ())
+            grid.take_text(event.text)
+
+    @on(FormChoice.Taken)
+    def _take_form(self, event: FormChoice.Taken) -> None:
+        place = _place(event.choice)
+        if event.form == "file":
+            self._currents.ask_for_file()
+        else:
+            self.give_in_form(place, event.form)
+            self._goes_on = True
+            self.call_after_refresh(self._first_of(place, event.form).focus)
+
+    def _first_of(self, place: Place, form: str) -> Widget:
+        """Return where the value of a form begins; below it, where it has none."""
+        key = "-".join(place)
+        if form == "table":
+            return self.query_one(f"#{key}-table GridCells")
+        if form == DENSITY_FORMS[2]:
+            return self.query_one("#density-temperature-form")
+        where = {"uniform": "current-speed", "still": "wind-speed"}.get(form, key)
+        return self.query_one(f"#{where}", Field).input
+
+    # environments, currents, and the way back
 
     @on(DescendantFocus)
     def _show_keys(self) -> None:
@@ -44,99 +305,78 @@ class WaterScreen(DraftScreen):
             bar.show_keys([*hints("grid"), *hints("water")])
         else:
             bar.show_keys(hints("water"))
-        if not self.pane.goes_on:
+        if not self._goes_on:
             bar.tell("")
-        self.pane.goes_on = False
+        self._goes_on = False
 
     def action_next_environment(self) -> None:
         """Show the next environment, and stand the line in it."""
-        self._environments.show_next()
+        if self.settle():
+            self._stand_in(self.session.standing.next_environment)
 
     def action_new_environment(self) -> None:
         """A named environment with the current of the one that is shown."""
-        self._environments.begin()
+
+        def take(texts: dict[str, str] | None) -> None:
+            if texts is None:
+                return
+            name, water = texts["name"], self.water
+            if name in self.session.standing.environments:
+                self.workspace.tell(f"There is an environment {name} already", wrong=True)
+                return
+            known = water.value("current")
+            current = known or water.begun(_CURRENT, "uniform")
+            place = ("environments", name, "current")
+            if self.change(lambda _: water.draft.put_at(place, current), f"environment {name}"):
+                self._stand_in(name)
+                self.workspace.tell(
+                    "" if known else "Filled with a typical current, to be replaced"
+                )
+
+        if self.settle():
+            asked = [Asked("name", "Name", check=needed("a name"), placeholder="e.g. storm")]
+            text = "It says only what differs from the file's own environment."
+            self.app.push_screen(InputSheet("Another environment", text, asked), take)
 
     def action_drop_environment(self) -> None:
         """Take the named environment out of the file."""
-        self._environments.drop()
+        name = self.water.variant
+        if name is None:
+            self.workspace.tell("The file's own environment stays; F5 goes to a named one")
+            return
+        self.drop_typing()
+        if self.change(lambda water: water.draft.put_at(water.place, None), f"drop {name}"):
+            self._stand_in(None)
+
+    def _stand_in(self, name: str | None) -> None:
+        before, self.session.standing.environment = self.environment_file, name
+        self.drop_typing()
+        self.show_draft()
+        self.workspace.tell(f"The line no longer stands in {before}" if before else "")
+        self.workspace.edited()
 
     def action_preset(self) -> None:
         """A profile to begin with."""
         self._currents.offer_presets()
 
-    @on(WaterPane.FileWanted)
     def action_load_current(self) -> None:
         """A current from CSV or NetCDF: referred to, or its profile copied."""
         self._currents.ask_for_file()
 
     def action_undo(self) -> None:
         """Take the last change back, or what is typed where that is bad."""
-        if self.pane.settle():
+        if self.settle():
             super().action_undo()
         else:
-            self.pane.drop_typing()
+            self.drop_typing()
             self.show_draft()
 
     def action_back(self) -> None:
         """Back to the line; what is typed is taken where it is good, and dropped elsewhere."""
-        self.pane.settle()
+        self.settle()
         self.dismiss()  # not waited for: it ends the very loop that would wait
 
 
-_CURRENT: Place = ("current",)
-
-
-class Environments:
-    """Those of the file that a form of the water shows; the line stands in the one shown."""
-
-    def __init__(self, app: App[Any], pane: WaterPane) -> None:
-        self._app, self._pane, self._workspace = app, pane, pane.workspace
-        self._standing = pane.session.standing
-
-    def show_next(self) -> None:
-        """Show the next environment, and stand the line in it."""
-        if self._pane.settle():
-            self._stand_in(self._standing.next_environment)
-
-    def _stand_in(self, name: str | None) -> None:
-        before, self._standing.environment = self._pane.environment_file, name
-        self._pane.drop_typing()
-        self._pane.show_draft()
-        self._workspace.tell(f"The line no longer stands in {before}" if before else "")
-        self._workspace.edited()
-
-    def begin(self) -> None:
-        """A named environment with the current of the one that is shown."""
-
-        def take(texts: dict[str, str] | None) -> None:
-            if texts is None:
-                return
-            name, water = texts["name"], self._pane.water
-            if name in self._standing.environments:
-                self._workspace.tell(f"There is an environment {name} already", wrong=True)
-                return
-            known = water.value("current")
-            current = known or water.begun(_CURRENT, "uniform")
-            place = ("environments", name, "current")
-            if self._pane.change(
-                lambda _: water.draft.put_at(place, current), f"environment {name}"
-            ):
-                self._stand_in(name)
-                self._workspace.tell(
-                    "" if known else "Filled with a typical current, to be replaced"
-                )
-
-        if self._pane.settle():
-            asked = [Asked("name", "Name", check=needed("a name"), placeholder="e.g. storm")]
-            text = "It says only what differs from the file's own environment."
-            self._app.push_screen(InputSheet("Another environment", text, asked), take)
-
-    def drop(self) -> None:
-        """Take the named environment out of the file."""
-        name = self._pane.water.variant
-        if name is None:
-            self._workspace.tell("The file's own environment stays; F5 goes to a named one")
-            return
-        self._pane.drop_typing()
-        if self._pane.change(lambda water: water.draft.put_at(water.place, None), f"drop {name}"):
-            self._stand_in(None)
+def _place(part: Widget) -> Place:
+    """Return where in an environment the value of a part of the form is written."""
+    return tuple((part.id or "").removesuffix("-form").removesuffix("-table").split("-"))

@@ -61,13 +61,14 @@ IN_WAVES = (
     ("depth: 60 m", "depth: 60 m\n  waves: {significant_height: 3 m, peak_period: 7 s}"),
     ("label: marker buoy}", "label: marker buoy, heave: follows, mass: 200 kg}"),
 )
+NOT_ACCEPTED = ("    - rule: wave-strength\n", "    - rule: knockdown\n")
 STRETCHING = ("label: floating rope}", "label: floating rope, stiffness: 60 kN}")
 
 FLAWS = (
     Flaw(
         "a buoy that nobody looked at in waves",
         GUARD,
-        (),
+        (NOT_ACCEPTED,),
         "wave-strength",
         None,
         "unknown",
@@ -77,6 +78,7 @@ FLAWS = (
         "a link too weak for a sea",
         GUARD,
         (
+            NOT_ACCEPTED,
             *IN_WAVES,
             ("{use: polypropylene-22", "{use: polypropylene-22, working_load: 4 kN"),
             STRETCHING,
@@ -89,7 +91,7 @@ FLAWS = (
     Flaw(
         "a rope whose stretch in waves is not known",
         GUARD,
-        IN_WAVES,
+        (NOT_ACCEPTED, *IN_WAVES),
         "wave-strength",
         "floating rope",
         "unknown",

@@ -8,8 +8,8 @@ from calm.grid.field import (
     DOUBTFUL,
     INTERPOLATED,
     MISSING,
-    Field,
-    Profile,
+    GriddedQuantity,
+    RecordProfile,
     Scales,
     estimate,
     field_of,
@@ -31,7 +31,7 @@ def samples(depth, value, deviation=0.0):
     return Samples(times(len(depth)), labels, depth, np.full(depth.shape, deviation), value)
 
 
-FLAT = Profile(np.array([0.0, 1000.0]), np.array([5.0, 5.0]), np.array([2.0, 2.0]))
+FLAT = RecordProfile(np.array([0.0, 1000.0]), np.array([5.0, 5.0]), np.array([2.0, 2.0]))
 
 
 def matern(distance, length):
@@ -42,7 +42,9 @@ def matern(distance, length):
 def test_two_points_are_as_in_closed_form():
     # prior variance 4, correlation a between the two and b, c with the level, noise n: by hand
     length, share, noise = 80.0, 0.1, 0.05
-    field = Field(samples([100.0, 180.0], [6.0, 3.0]), FLAT, Scales(length, 3600.0, share), noise)
+    field = GriddedQuantity(
+        samples([100.0, 180.0], [6.0, 3.0]), FLAT, Scales(length, 3600.0, share), noise
+    )
     mean, spread, left = posterior(field, np.array([0]), np.array([130.0]))
     own = 4.0 + noise**2
     a, b, c = (4.0 * 0.9 * matern(d, length) for d in (80.0, 30.0, 50.0))
@@ -54,26 +56,30 @@ def test_two_points_are_as_in_closed_form():
 
 
 def test_a_depth_that_is_not_sure_counts_with_the_gradient():
-    # at a sensor of a steep and well sampled profile the band is the depth's times the gradient,
-    # and a little more: what of it is each sensor's own is averaged with that of its neighbours
+    # at a sensor of a steep and well sampled profile the band is the depth's times the gradient;
+    # at most the half that is each sensor's own is added once more, less what neighbours take off
     depth = np.arange(0.0, 1001.0, 20.0)
     gradient, unsure = 0.01, 8.0
-    profile = Profile(np.array([0.0, 1000.0]), np.array([5.0, 5.0]), np.array([3.0, 3.0]))
+    profile = RecordProfile(np.array([0.0, 1000.0]), np.array([5.0, 5.0]), np.array([3.0, 3.0]))
     values = 5.0 + gradient * (depth - 500.0)
     sure, not_sure = (
         posterior(
-            Field(samples(depth, values, deviation), profile, Scales(400.0, 3600.0, 1e-6), 1e-4),
+            GriddedQuantity(
+                samples(depth, values, deviation), profile, Scales(400.0, 3600.0, 1e-6), 1e-4
+            ),
             np.array([0]),
             np.array([500.0]),
         )[1][0, 0]
         for deviation in (0.0, unsure)
     )
     assert sure < 0.1 * gradient * unsure
-    assert not_sure == pytest.approx(gradient * unsure, rel=0.1)
+    assert gradient * unsure <= not_sure <= np.sqrt(1.5) * gradient * unsure
 
 
 def test_far_from_all_sensors_the_band_is_that_of_the_record():
-    field = Field(samples([100.0, 180.0], [6.0, 3.0]), FLAT, Scales(20.0, 3600.0, 0.1), 0.01)
+    field = GriddedQuantity(
+        samples([100.0, 180.0], [6.0, 3.0]), FLAT, Scales(20.0, 3600.0, 0.1), 0.01
+    )
     mean, spread, _ = posterior(field, np.array([0]), np.array([900.0]))
     assert mean[0, 0] == pytest.approx(5.0, abs=1e-6)
     assert spread[0, 0] == pytest.approx(2.0, abs=1e-6)
@@ -82,11 +88,11 @@ def test_far_from_all_sensors_the_band_is_that_of_the_record():
 def test_a_sensor_left_out_is_as_if_it_had_not_been_there():
     random = np.random.default_rng(5)
     depth = np.array([100.0, 160.0, 240.0, 300.0]) + random.normal(0.0, 5.0, (5, 4))
-    whole = Field(samples(depth, random.normal(5.0, 1.0, (5, 4))), FLAT,
+    whole = GriddedQuantity(samples(depth, random.normal(5.0, 1.0, (5, 4))), FLAT,
                   Scales(90.0, 7200.0, 0.05), 0.1)  # fmt: skip
     miss, spread = left_out(whole, np.arange(5))
     for j in range(4):
-        rest = Field(whole.samples.without([f"s{j}"]), FLAT, whole.scales, 0.1)
+        rest = GriddedQuantity(whole.samples.without([f"s{j}"]), FLAT, whole.scales, 0.1)
         mean, deviation, _ = posterior(rest, np.arange(5), depth[:, [j]])
         assert whole.samples.value[:, j] - mean[:, 0] == pytest.approx(miss[:, j], abs=1e-9)
         assert np.sqrt(deviation[:, 0] ** 2 + 0.1**2) == pytest.approx(spread[:, j], abs=1e-9)

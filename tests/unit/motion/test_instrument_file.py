@@ -7,11 +7,13 @@ import xarray
 
 from calm.errors import InputError, UsageError
 from calm.motion.instrument_file import read_instruments, write_depths
+from calm.motion.line_places import LinePlaces
 
 LABELS = ("upper", "middle", "float")  # two clamps, then a component
 HOUR = np.timedelta64(1, "h")
 START = np.datetime64("2026-03-01", "ns")
 GAP = 2 * HOUR
+LINE = LinePlaces("line", LABELS, ("21", "22", ""), 2, np.array([60.0, 150.0, 50.0]))
 
 
 def own(path, labels=("float", "elsewhere", "middle"), engine="h5netcdf", **more):
@@ -50,9 +52,9 @@ def result():
 @pytest.mark.parametrize("there", [(), ("depth", "depth_sd")])
 def test_the_copy_has_all_that_was_there_and_the_depths_at_its_own_times(tmp_path, engine, there):
     path = own(tmp_path / "own.nc", engine=engine, there=there)
-    read = read_instruments(path, LABELS, replace=bool(there))
+    (read,), _ = read_instruments(path, LINE, replacing=bool(there))
     assert (read.clock, read.dimension, read.along) == ("TIME", "TIME", "INSTRUMENT")
-    lost = write_depths(read, result(), LABELS, GAP, tmp_path / "copy.nc")
+    lost = write_depths(read, result(), GAP, tmp_path / "copy.nc")
     assert lost == ["elsewhere"]
     with xarray.open_dataset(tmp_path / "copy.nc", engine="h5netcdf") as copy:
         nan = [np.nan] * 4
@@ -61,13 +63,13 @@ def test_the_copy_has_all_that_was_there_and_the_depths_at_its_own_times(tmp_pat
         for name, expected in (("depth", depth), ("depth_sd", spread)):
             assert copy[name].dims == ("TIME", "INSTRUMENT")
             assert copy[name].values == pytest.approx(np.array(expected).T, nan_ok=True)
-        assert copy["depth"].attrs["ancillary_variables"] == "depth_sd"
+        assert copy["depth"].attrs["ancillary_variables"] == "depth_sd depth_qc"
         assert copy["label"].values.tolist() == ["float", "elsewhere", "middle"]
         assert (copy["TEMP"].values == 4.5).all() and np.isnan(copy["raw"].values).all()
         assert copy["TEMP"].encoding["dtype"] == np.int16
         assert copy["TIME"].values.tolist() == read.time.tolist()
         assert copy.attrs["title"] == "mine"
-    wide = write_depths(read, result(), LABELS, 3 * HOUR, tmp_path / "wide.nc")
+    wide = write_depths(read, result(), 3 * HOUR, tmp_path / "wide.nc")
     assert wide == lost
     with xarray.open_dataset(tmp_path / "wide.nc", engine="h5netcdf") as copy:
         assert copy["depth"].values[:, 0] == pytest.approx([51.5, 50.0, 53.0 + 2.0 / 3.0, np.nan],
@@ -116,5 +118,67 @@ def text(path):
 )
 def test_what_no_depths_can_be_added_to_is_refused(tmp_path, file, replace, said):
     with pytest.raises((InputError, UsageError)) as refused:
-        read_instruments(file(tmp_path / "own.nc"), LABELS, replace=replace)
+        read_instruments(file(tmp_path / "own.nc"), LINE, replacing=replace)
     assert said in str(refused.value)
+
+
+def single(path, *, dims=("TIME",), attrs=None, **more):
+    """A file of one instrument, as archives keep them."""
+    time = START + np.array([0, 60, 120]) * np.timedelta64(1, "m")
+    values = np.full((3,) + (1,) * (len(dims) - 1), 4.5)
+    coords = {"TIME": time, **more}
+    data = {"TEMP": (dims, values, {"units": "degree_Celsius"})}
+    xarray.Dataset(data, coords, {"title": "mine", "history": "made", **(attrs or {})}).to_netcdf(
+        path, engine="h5netcdf"
+    )
+    return path
+
+
+NOMINAL = {"DEPTH": ("DEPTH", [152.0], {"units": "m", "axis": "Z"})}
+
+
+def test_a_file_of_oceansites_has_its_depth_in_place_of_the_nominal_one(tmp_path, monkeypatch):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1790000000")
+    attrs = {"instrument_serial_number": "22", "geospatial_vertical_min": 152.0}
+    path = single(tmp_path / "OS.nc", dims=("TIME", "DEPTH"), **NOMINAL, attrs=attrs)
+    (read,), _ = read_instruments(path, LINE, replacing=False)
+    assert read.point == (1,)
+    columns = result().assign(
+        clamp_label=("clamp", ["upper", "middle"]), sensor_label=("sensor", ["middle"]),
+        residual=(("time", "sensor"), np.array([[0.1], [np.nan], [0.0], [0.0], [0.0]])),
+    )  # fmt: skip
+    assert write_depths(read, columns, GAP, tmp_path / "copy.nc", ["a.nc sha256:12"]) == []
+    with xarray.open_dataset(tmp_path / "copy.nc", engine="h5netcdf") as copy:
+        assert copy["DEPTH"].dims == copy["TEMP"].dims == ("TIME",)
+        assert copy["DEPTH"].values.tolist() == [150.0, 151.0, 152.0]
+        assert copy["DEPTH"].attrs["ancillary_variables"] == "DEPTH_SD DEPTH_QC"
+        assert copy["DEPTH_SD"].values.tolist() == [0.2, 1.2, 2.2]
+        # its own pressure was used at the first and third hour; between them within the gap
+        assert copy["DEPTH_QC"].values.tolist() == [1, 1, 1]
+        assert copy["NOMINAL_DEPTH"].item() == 152.0
+        assert copy.attrs["history"].startswith("made\n2026-09-21T14:13:20Z calm ")
+        assert copy.attrs["history"].endswith("DEPTH estimated from a.nc sha256:12")
+        assert copy.attrs["geospatial_vertical_min"] == 150.0
+
+
+def test_a_file_of_imos_says_who_it_is_and_keeps_its_own_depth_unless_asked(tmp_path):
+    own_depth = {"DEPTH": ("TIME", [1.0, 2.0, 3.0]), "NOMINAL_DEPTH": ((), 61.0, {"units": "m"}),
+                 "DEPTH_quality_control": ("TIME", np.array([1, 1, 1], "i1"))}  # fmt: skip
+    path = single(tmp_path / "IMOS.nc", attrs={"instrument_serial_number": "21"}, **own_depth)
+    with pytest.raises(UsageError, match="has `DEPTH` already"):
+        read_instruments(path, LINE, replacing=False)
+    (read,), _ = read_instruments(path, LINE, replacing=True)
+    write_depths(read, result(), GAP, tmp_path / "copy.nc")
+    with xarray.open_dataset(tmp_path / "copy.nc", engine="h5netcdf") as copy:
+        assert copy["DEPTH"].values.tolist() == [60.0, 61.0, 62.0]
+        assert copy["DEPTH_QC"].values.tolist() == [8, 8, 8]
+        assert copy["NOMINAL_DEPTH"].item() == 61.0
+        assert "DEPTH_quality_control" not in copy
+
+
+def test_a_folder_is_matched_as_a_whole(tmp_path):
+    for name, place in (("a", 70.0), ("b", 163.0)):
+        single(tmp_path / f"{name}.nc", NOMINAL_DEPTH=((), place, {"units": "m"}))
+    read, said = read_instruments(tmp_path, LINE, replacing=False)
+    assert [one.point for one in read] == [(0,), (1,)]
+    assert said == ["by nominal depths, in their order: a.nc is `upper`; b.nc is `middle`"]

@@ -6,11 +6,14 @@ from math import cos, pi, sin, sqrt
 import numpy as np
 import pytest
 
+from calm.case import load
 from calm.errors import InputError, UsageError
 from calm.records import sea_states
+from calm.shipped import shipped_folder
+from calm.waves.analysis import analyse
 from calm.waves.buoy import Buoy
 from calm.waves.fatigue import greatest_of, passing_probability
-from calm.waves.lumped_line import LumpedLine
+from calm.waves.lumped_line import LumpedLine, lumped_line
 from calm.waves.response import Waves, _slope, _solved, respond, wave_numbers
 
 DENSITY, GRAVITY = 1027.0, 9.81
@@ -96,6 +99,45 @@ def test_an_undamped_string_swings_at_its_natural_frequencies():
         assert found == pytest.approx(natural, rel=4e-4)
 
 
+def test_the_swing_of_a_shipped_mooring_by_hand():
+    """A rigid pendulum upside down, 2π √(Σ(m + a)h² / Σ B h): ADCP, release and chain on a weight.
+
+    The float, a sphere of 1.42 m and 4511 N, moves half of the water that it displaces; without a
+    mass in its figures it has that water's less its lift. Within 2 %: half of it is lumped at
+    either end, and the chain is not quite straight.
+    """
+    mooring = load(f"{shipped_folder('lines')}/tidal-adcp.yaml")
+    line = lumped_line(mooring, mooring.equilibrium(mooring.water), 1.0)
+    water = 1025.0 * pi * 1.42**3 / 6.0
+    foot, inertia, righting = 0.0, 0.0, 0.0
+    for piece in reversed(mooring.file.pieces[:-1]):
+        component, length = piece.component, piece.length
+        metres = length if component.kind == "chain" else 1.0
+        mass = 1.5 * water - 4511.0 / 9.80665 if piece.index == 0 else component.mass * metres
+        inertia += mass * (foot + length / 2.0) ** 2
+        righting += component.net_buoyancy * metres * (foot + length / 2.0)
+        foot += length
+    expected = sqrt(righting / inertia)
+    omega, n = np.linspace(0.8, 1.2, 401) * expected, len(line.mass)
+    nothing = np.zeros((len(omega), n, 3), complex)
+    push = nothing.copy()
+    push[:, 0, 0] = 1.0
+    motion = _solved(line, None, waves(omega), nothing, push, np.zeros((n, 3, 3)))
+    assert omega[np.abs(motion[:, 0, 0]).argmax()] == pytest.approx(expected, rel=0.02)
+
+
+def test_a_sea_that_is_all_but_flat_leaves_the_static_line():
+    mooring = load(f"{shipped_folder('lines')}/tidal-adcp.yaml")
+    flat = sea_states.spectrum_of("bretschneider", 1e-6, 8.0, 3.3)
+    (state,) = analyse(mooring, [flat], 90.0).states
+    result = mooring.solve()
+    for piece, row in zip(result.components, state.components, strict=False):
+        assert row.tension_std < 1e-3
+        if row.index:
+            assert row.tension_mean == pytest.approx(piece.tension_top, rel=1e-9)
+            assert row.tension_max == pytest.approx(row.tension_mean, rel=1e-5)
+
+
 def test_without_drag_the_response_is_linear_in_the_height():
     line = plumb(1000.0, 0.4, 4e6, 5000.0, 100)
     found = []
@@ -107,14 +149,14 @@ def test_without_drag_the_response_is_linear_in_the_height():
 
 
 def test_drag_takes_energy_out_and_nothing_moves_without_waves():
-    sea, tiny = (sea_states.spectrum_of("bretschneider", h, 9.0, 3.3) for h in (5.0, 1e-6))
+    sea, tiny = (sea_states.spectrum_of("bretschneider", h, 9.0, 3.3) for h in (5.0, 1e-9))
     free, dragged = plumb(3000.0, 0.3, 9e4, 3000.0, 200), plumb(3000.0, 0.3, 9e4, 3000.0, 200, 20.0)
     found = []
     for line, state in ((free, sea), (dragged, sea), (dragged, tiny)):
         response, _ = respond(line, FOLLOWER, waves(state.frequencies(96)), state)
         found.append(response.moments(response.pull)[0][0])
     assert found[1] < found[0]
-    assert found[2] == pytest.approx(found[0] * 1e-6 / 5.0, rel=1e-3)
+    assert found[2] == pytest.approx(found[0] * 1e-9 / 5.0, rel=1e-3)
 
 
 @pytest.mark.parametrize(("mean", "deviation"), [(0.0, 1.0), (0.3, 0.2), (2.0, 0.1), (-0.5, 0.4)])
@@ -191,6 +233,25 @@ def test_swell_and_sea_of_ochi_and_hubble():
         sea_states.spectrum_of("ochi-hubble", 4.0, 9.0, 3.3)
     with pytest.raises(UsageError, match="higher than"):
         sea_states.spectrum_of("ochi-hubble", 40.0, None, 3.3)
+
+
+def test_a_swell_under_a_sea():
+    """Variances add up; each part keeps its own peak, and the frequencies reach past both."""
+    sea = sea_states.spectrum_of("jonswap", 3.0, 7.0, 3.3)
+    both = sea_states.with_swell(sea, 4.0, 15.0)
+    omega = np.geomspace(0.05, 60.0, 40_000)
+    density = both.density(omega)
+    assert both.significant_height == 5.0
+    assert 4.0 * sqrt(np.trapezoid(density, omega)) == pytest.approx(5.0, rel=1e-3)
+    assert both.peak_period == pytest.approx(15.0, rel=0.01)
+    later = omega > 0.65
+    assert omega[later][density[later].argmax()] == pytest.approx(2.0 * pi / 7.0, rel=0.01)
+    solved = both.frequencies(64)
+    assert solved[0] == pytest.approx(pi / 15.0)
+    assert solved[-1] == pytest.approx(min(12.0 * 2.0 * pi / 7.0, 10.0))
+    for height, period, message in ((2.0, 6.0, "the longer"), (40.0, 14.0, "no sea is higher")):
+        with pytest.raises(UsageError, match=message):
+            sea_states.with_swell(sea, height, period)
 
 
 def test_peakedness_of_one_is_a_full_sea():

@@ -1,18 +1,9 @@
-"""A form of all figures that the design check does not know: asked for, and written in the file."""
+"""All figures that the design check does not know: asked for, and written in the file."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, ClassVar
-
-from textual import on
-from textual.app import App, ComposeResult
-from textual.binding import BindingType
-from textual.containers import VerticalScroll
-from textual.screen import Screen
-from textual.widget import Widget
-from textual.widgets import Static
 
 from calm.case.parts import parts_of
 from calm.checks.finding import State
@@ -21,96 +12,20 @@ from calm.files.editing import Draft, clamps_of
 from calm.files.rule_texts import RULES
 from calm.files.yaml_document import Location
 from calm.tui.catalogue.component_screen import FormField, form_fields
-from calm.tui.field import Field, all_settled
-from calm.tui.key_table import bindings, hints
+from calm.tui.dialogs import Asked, InputSheet
 from calm.tui.line.line_pane import LinePane
 from calm.tui.live import View
-from calm.tui.screen import KeyBar, TitleBar
-
-Filled = tuple[dict[tuple[str, str], str], str]
-"""What was typed by component and key, and the source of it."""
 
 _MOST_LABELS = 4
 _ELSEWHERE = "part of an assembly of the catalogue: use its parts, or define it in the file (o)"
-
-
-class MissingScreen(Screen[Filled | None]):
-    """Gives what was filled in; None where it is left."""
-
-    BINDINGS: ClassVar[list[BindingType]] = [*bindings("form")]
-    HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (112, "-wide")]  # noqa: RUF012
-    DEFAULT_CSS = """
-    MissingScreen {
-        & VerticalScroll { padding: 1 1 0 1; scrollbar-size-vertical: 1; }
-        & .component { margin-top: 1; text-style: bold; }
-        & .elsewhere { color: $text-muted; }
-        & Field > .field-title { width: 20; }
-        & #source { margin-top: 1; }
-    }
-    """
-
-    def __init__(self, missing: Sequence[Missing]) -> None:
-        super().__init__()
-        self._missing = tuple(missing)
-        self._asked: dict[Field, tuple[str, str]] = {}
-
-    def compose(self) -> ComposeResult:
-        """Title; each component with what is not known of it; keys."""
-        yield TitleBar()
-        with VerticalScroll(can_focus=False):
-            for each in self._missing:
-                yield from self._component(each)
-            note = "source of the figures: data sheet, test certificate …"
-            yield Field("source", "source", id="source", note=note)
-        yield KeyBar()
-
-    def _component(self, missing: Missing) -> Iterator[Widget]:
-        labels = ", ".join(list(missing.labels)[:_MOST_LABELS])
-        more = len(missing.labels) - _MOST_LABELS
-        labels += f" and {more} more" if more > 0 else ""
-        called = missing.use if labels == missing.use else f"{missing.use}: {labels}"
-        yield Static(called, classes="component", markup=False)
-        if not missing.fields:
-            yield Static(_ELSEWHERE, classes="elsewhere", markup=False)
-            return
-        for figure in missing.fields:
-            title = figure.key.replace("_", " ")
-            asked = Field(figure.key, title, figure.check, note=figure.takes)
-            self._asked[asked] = (missing.use, figure.key)
-            yield asked
-
-    def on_mount(self) -> None:
-        """Type at once."""
-        count = len(self._missing)
-        what = f"Figures missing of {count} component{'s' * (count != 1)}; any may stay empty"
-        self.query_one(TitleBar).show(what, "")
-        self.query_one(KeyBar).show_keys(hints("form"))
-        self.query(Field).first().focus_input()
-
-    @on(Field.Entered)
-    def _onward(self, event: Field.Entered) -> None:
-        if event.field.id == "source":
-            self.action_accept()
-        else:
-            self.focus_next()
-
-    def action_accept(self) -> None:
-        """Give what was filled in, if all of it is good."""
-        if not all_settled(self.query(Field)):
-            return
-        texts = {asked: field.text for field, asked in self._asked.items() if field.text}
-        self.dismiss((texts, self.query_one("#source", Field).text))
-
-    def action_cancel(self) -> None:
-        """Give nothing."""
-        self.dismiss(None)
+_SOURCE = "data sheet, test certificate …"
 
 
 class Filling:
     """Asks for all that is missing, and writes what was given."""
 
-    def __init__(self, app: App[Any], line: LinePane) -> None:
-        self._app, self._line, self._workspace = app, line, line.workspace
+    def __init__(self, line: LinePane) -> None:
+        self._line, self._workspace = line, line.workspace
 
     def ask(self) -> None:
         """Show the form, once the line is judged."""
@@ -125,15 +40,41 @@ class Filling:
             workspace.tell("No figure of a component is missing")
             return
 
-        def take(given: Filled | None) -> None:
-            if given is not None and given[0]:
-                count = len(given[0])
+        def take(texts: dict[str, str] | None) -> None:
+            given = texts or {}
+            source = given.pop("source", "")
+            figures = {_keys(asked): text for asked, text in given.items() if text}
+            if figures:
+                count = len(figures)
                 self._line.attempt(
-                    lambda: session.do(filled(session.draft, missing, *given), "fill in figures"),
+                    lambda: session.do(
+                        filled(session.draft, missing, figures, source), "fill in figures"
+                    ),
                     f"{count} figure{'s' * (count != 1)} filled in",
                 )
 
-        self._app.push_screen(MissingScreen(missing), take)
+        self._line.app.push_screen(figures_sheet(missing), take)
+
+
+def figures_sheet(missing: Sequence[Missing]) -> InputSheet:
+    """Ask for all figures of each component, and for their source; any may stay empty."""
+    asked: list[Asked] = []
+    elsewhere = [f"{each.called}: {_ELSEWHERE}" for each in missing if not each.fields]
+    for each in missing:
+        for number, figure in enumerate(each.fields):
+            above = "" if number else each.called
+            key, title = f"{each.use}.{figure.key}", figure.key.replace("_", " ")
+            asked.append(Asked(key, title, "", figure.check, takes=figure.takes, above=above))
+    asked.append(Asked("source", "source", takes=_SOURCE, above="Of the figures"))
+    count = len(missing)
+    title = f"Figures missing of {count} component{'s' * (count != 1)}; any may stay empty"
+    return InputSheet(title, "\n".join(elsewhere), asked)
+
+
+def _keys(asked: str) -> tuple[str, str]:
+    """Component and key of what is asked for."""
+    use, _, key = asked.rpartition(".")
+    return use, key
 
 
 @dataclass
@@ -152,6 +93,14 @@ class Missing:
     kind: str
     labels: dict[str, None] = field(default_factory=dict)
     targets: dict[str, dict[Location, None]] = field(default_factory=dict)
+
+    @property
+    def called(self) -> str:
+        """Return the component, with the labels of the first rows that lack a figure."""
+        labels = ", ".join(list(self.labels)[:_MOST_LABELS])
+        more = len(self.labels) - _MOST_LABELS
+        labels += f" and {more} more" if more > 0 else ""
+        return self.use if labels == self.use else f"{self.use}: {labels}"
 
     @property
     def fields(self) -> list[FormField]:

@@ -12,26 +12,65 @@ from calm.tui.line.line_pane import LinePane
 from calm.tui.line.table import LineTable
 from calm.tui.messages import Workspace
 from calm.tui.pictures import Pictures
+from calm.tui.screen import DraftScreen
 from calm.tui.verdict_pane import VerdictPane, state_sign, state_word
 
 
-class LineBody(Horizontal):
-    """What the first screen shows of the line of a workspace."""
+class LineScreen(DraftScreen):
+    """What the first screen shows of the line, and how its parts lead to each other."""
+
+    HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (112, "-wide"), (176, "-huge")]  # noqa: RUF012
+    VERTICAL_BREAKPOINTS = [(0, "-flat"), (17, "-high")]  # noqa: RUF012
+    DEFAULT_CSS = """
+    LineScreen {
+        & #body { height: 1fr; }
+        & #study { width: 2fr; height: 1fr; border-left: vkey $panel; }
+        & #catalogue { width: 2fr; height: 1fr; border-left: vkey $panel; }
+        &.-searching #study { display: none; }
+        &.-searching #catalogue { display: block; }
+        &.-wide.-searching #line-pane { width: 2fr; }
+        &.-wide.-searching #catalogue { width: 3fr; }
+        &.-huge.-searching #study { display: block; }
+        &.-huge #catalogue { width: 1fr; }
+        &.-huge #line-pane { width: 2fr; }
+        &.-huge #study { width: 1fr; }
+        &.-narrow #body { layout: vertical; }
+        &.-narrow #line-pane { width: 1fr; height: 13fr; }
+        &.-narrow #study {
+            width: 1fr; height: 10fr; layout: horizontal; border-left: none;
+            border-top: hkey $panel;
+        }
+        &.-narrow #catalogue {
+            width: 1fr; height: 10fr; border-left: none; border-top: hkey $panel;
+        }
+        &.-narrow Pictures { width: 3fr; }
+        &.-narrow VerdictPane { width: 2fr; height: 1fr; max-height: 100%; margin-top: 0; }
+        &.-narrow.-flat #study, &.-narrow.-flat #catalogue-title { display: none; }
+        &.-narrow.-flat #catalogue { border: none; }
+        &.-narrow.-flat.-zoomed #study, &.-narrow.-flat.-reading #study {
+            display: block; height: 1fr; border: none;
+        }
+        &.-narrow.-flat.-reading #line-pane, &.-narrow.-flat.-reading Pictures { display: none; }
+        &.-narrow.-flat.-searching #line-pane { display: none; }
+        &.-zoomed #line-pane, &.-zoomed VerdictPane { display: none; }
+        &.-zoomed #study { display: block; border: none; }
+    }
+    """
 
     def __init__(self, workspace: Workspace) -> None:
-        super().__init__(id="body")
-        self.workspace, self.session = workspace, workspace.session
+        super().__init__(workspace)
         self.line = LinePane(workspace)
         self.catalogue = CataloguePane(id="catalogue")
         self.pictures, self.verdict = Pictures(id="pictures"), VerdictPane(id="verdict-pane")
 
-    def compose(self) -> ComposeResult:
+    def parts(self) -> ComposeResult:
         """The line; picture and verdict, in whose place the catalogue may be."""
-        yield self.line
-        yield self.catalogue
-        with Vertical(id="study"):
-            yield self.pictures
-            yield self.verdict
+        with Horizontal(id="body"):
+            yield self.line
+            yield self.catalogue
+            with Vertical(id="study"):
+                yield self.pictures
+                yield self.verdict
 
     @property
     def is_typing(self) -> bool:
@@ -46,14 +85,14 @@ class LineBody(Horizontal):
         """Show the draft as it is now."""
         self.line.show_draft()
         self._show_beside()
-
-    replaced = show_draft
+        self.show_title()
 
     def show_view(self) -> None:
         """Show what a worker made of it; dim what is of an earlier one."""
         if self.workspace.is_fresh or self.workspace.is_old:
             self.line.show_rows()
         self._show_beside()
+        self.show_title()
 
     def show_catalogue(self) -> None:
         """Search the catalogue that was read."""
@@ -77,14 +116,14 @@ class LineBody(Horizontal):
         self.pictures.set_class(self.workspace.is_old or last is not None, "-old")
         self.verdict.set_class(self.workspace.is_old, "-old")
 
-    def title(self) -> tuple[str, str]:
+    def titles(self) -> tuple[str, str]:
         """Name, file, what is not saved; environment and verdict."""
         name = " ".join(self.session.draft.text_at(("name",)).split())
         standing, parts = self.session.standing, []
         here = standing.environment
         if here is not None or len(standing.environments) > 1:
             parts.append(f"environment {here}" if here else "own environment")
-        is_narrow = self.screen.has_class("-narrow") and not self.screen.has_class("-flat")
+        is_narrow = self.has_class("-narrow") and not self.has_class("-flat")
         state = state_sign if is_narrow else state_word
         parts.append(state(self.workspace.view, old=not self.workspace.is_fresh))
         return f"{self.workspace.called}  {name}".rstrip(), "   ".join(parts)
@@ -93,7 +132,7 @@ class LineBody(Horizontal):
 
     @on(VerdictPane.RowWanted)
     def _go_to_row(self, event: VerdictPane.RowWanted) -> None:
-        self.screen.remove_class("-reading")
+        self.remove_class("-reading")
         table = self.line.table
         rows = {row.spot: number for number, row in enumerate(table.rows)}
         numbers = sorted(rows[place] for place in event.places if place in rows)
@@ -105,7 +144,7 @@ class LineBody(Horizontal):
 
     @on(LinePane.BackWanted)
     def _back_to_verdict(self) -> None:
-        self.screen.add_class("-reading")
+        self.add_class("-reading")
         self.verdict.focus()
 
     # components from the catalogue
@@ -116,8 +155,8 @@ class LineBody(Horizontal):
 
     def search(self, purpose: Purpose) -> None:
         """Search the catalogue for a component for the row under the cursor."""
-        self.screen.remove_class("-zoomed")
-        self.screen.add_class("-searching")
+        self.remove_class("-zoomed")
+        self.add_class("-searching")
         spot = self.line.table.spot
         is_on_line = purpose == "clamp" or (
             purpose == "replace" and spot is not None and spot.is_clamp
@@ -176,26 +215,12 @@ class LineBody(Horizontal):
                 self.catalogue.purpose = "below"
         self.catalogue.retitle(self._target(self.catalogue.purpose))
 
-    @on(CataloguePane.Told)
-    def _tell(self, event: CataloguePane.Told) -> None:
-        self.workspace.tell(event.text, wrong=event.wrong)
-
     @on(CataloguePane.Closed)
     def _close_catalogue(self) -> None:
-        self.screen.remove_class("-searching")
+        self.remove_class("-searching")
         self.line.table.focus()
 
     @on(LineTable.Moved)
     def _retarget(self) -> None:
-        if self.screen.has_class("-searching"):
+        if self.has_class("-searching"):
             self.catalogue.retitle(self._target(self.catalogue.purpose))
-
-    def put_component(self, id: str, values: dict[str, str]) -> None:
-        """Define a component in the file, and show it in the catalogue."""
-        session = self.session
-        if self.line.attempt(
-            lambda: session.do(session.draft.put_component(id, values), f"define {id}"),
-            f"{id} is defined in the file; the catalogue has it",
-        ):
-            self.search("below")
-            self.catalogue.search.value = id
