@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import partial
 from math import exp, pi, sqrt
 from math import gamma as gamma_function
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -48,6 +48,17 @@ LARGEST_FREQUENCY = 10.0
 
 
 @dataclass(frozen=True)
+class SpectralForm:
+    """Represent a spectrum by its law and figures, so that equal seas are equal."""
+
+    law: Callable[..., Floats]
+    figures: tuple[Any, ...]
+
+    def __call__(self, omega: Floats) -> Floats:
+        return self.law(*self.figures, omega)
+
+
+@dataclass(frozen=True)
 class SeaState:
     """Represent a sea by its spectrum.
 
@@ -81,7 +92,7 @@ def bretschneider(height: float, period: float) -> Density:
 
     S = 5/16 Hs² ωp⁴ ω⁻⁵ exp(-5/4 (ωp/ω)⁴): Bretschneider 1959, the ITTC spectrum of two parameters.
     """
-    return partial(_gamma_form, ((height, 2.0 * pi / period, 1.0),))
+    return SpectralForm(_gamma_form, (((height, 2.0 * pi / period, 1.0),),))
 
 
 def ochi_hubble(parts: Sequence[tuple[float, float, float]]) -> Density:
@@ -93,9 +104,8 @@ def ochi_hubble(parts: Sequence[tuple[float, float, float]]) -> Density:
     ----------
     parts : Hs [m], Tp [s] and λ of each; λ of 1 is Bretschneider's form, more is narrower
     """
-    return partial(
-        _gamma_form, tuple((h, 2.0 * pi / period, narrow) for h, period, narrow in parts)
-    )
+    terms = tuple((height, 2.0 * pi / period, narrow) for height, period, narrow in parts)
+    return SpectralForm(_gamma_form, (terms,))
 
 
 def _gamma_form(parts: tuple[tuple[float, float, float], ...], omega: Floats) -> Floats:
@@ -115,7 +125,7 @@ def jonswap(height: float, period: float, gamma: float = 3.3) -> Density:
     peak = 2.0 * pi / period
     fine = np.geomspace(0.3 * peak, 30.0 * peak, 4000)
     whole = float(np.trapezoid(_peaked(height, peak, gamma, fine), fine))
-    return partial(_peaked, height**2 / 4.0 / sqrt(whole), peak, gamma)
+    return SpectralForm(_peaked, (height**2 / 4.0 / sqrt(whole), peak, gamma))
 
 
 def _peaked(height: float, peak: float, gamma: float, omega: Floats) -> Floats:
@@ -179,7 +189,7 @@ def with_swell(sea: SeaState, height: float, period: float) -> SeaState:
             f"a swell of {period:g} s beside a sea of {sea.peak_period:g} s: a swell is the longer"
         )
     swell = ochi_hubble(((height, period, 3.0),))
-    form = partial(_together, sea.density, swell)
+    form = SpectralForm(_together, (sea.density, swell))
     whole = sqrt(sea.significant_height**2 + height**2)
     at = np.geomspace(pi / period, 4.0 * pi / sea.peak_period, 400)
     peak = 2.0 * pi / float(at[int(form(at).argmax())])
@@ -242,11 +252,11 @@ def _sea_of(path: Path, frequency: Floats, density: Floats) -> SeaState:
     lowest = omega[int(np.searchsorted(parts.cumsum(), UNSEEN * parts.sum()))]
     peak = float(omega[int(density.argmax())])
     first = max(float(lowest), 0.02 * peak)
-    form = partial(_between, omega, spectral)
+    form = SpectralForm(_between, (tuple(omega.tolist()), tuple(spectral.tolist())))
     return SeaState(height, 2.0 * pi / peak, form, longest=2.0 * pi * BETWEEN[0] / first)
 
 
-def _between(omega: Floats, spectral: Floats, at: Floats) -> Floats:
+def _between(omega: Sequence[float], spectral: Sequence[float], at: Floats) -> Floats:
     return np.interp(at, omega, spectral, left=0.0, right=0.0)
 
 

@@ -13,7 +13,7 @@ from calm.drawing.schematic.line_column import (
     FONT,
     HEAD,
     LEADING,
-    Heading,
+    ColumnHead,
     LineColumn,
     PlacedPart,
     column_of,
@@ -177,7 +177,7 @@ def diagram_svg(deck: Deck, paper: Paper) -> str:
 def _pages(deck: Deck, paper: Paper) -> _Pages:
     parts = parts_of(deck)
     block = title_block_of(deck, paper)
-    headings = [Heading(words, QUANTITIES[name].display_unit) for words, name in _HEADINGS]
+    headings = [ColumnHead(words, QUANTITIES[name].display_unit) for words, name in _HEADINGS]
     rows = (row for part in parts for row in part.rows)
     column = column_of(rows, headings, paper.column_width)
     heights = measured(parts, column)

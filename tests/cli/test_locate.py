@@ -245,7 +245,10 @@ def test_every_mistake_at_once_with_its_line(calm, ranges):
         ("", "is empty"),
         ("48.3,-5.2,2000\n", "there is no header"),
         ("latitude[deg],longitude[deg]\n48.3,-5.2\n", "there is no column `range[m]` or `time[s]`"),
-        ("lat[deg],longitude[deg],range[m]\n48.3,-5.2,1\n", "there is no column `latitude[deg]`"),
+        (
+            "alt[deg],longitude[deg],range[m]\n48.3,-5.2,1\n",
+            "there is no column `latitude[deg]`",
+        ),
         ("latitude[deg],longitude[deg],time[s]\n48.3,-5.2,2750\n", "did you mean `time[ms]`?"),
         (
             "latitude[deg],longitude[deg],range[ell]\n48.3,-5.2,1\n",

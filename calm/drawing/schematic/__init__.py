@@ -10,7 +10,7 @@ from calm.drawing.schematic.line_column import (
     HEAD,
     LEADING,
     SYMBOL_SCALE,
-    Heading,
+    ColumnHead,
     LineColumn,
     PlacedPart,
     column_of,
@@ -87,7 +87,7 @@ def schematic_svg(file: MooringFile, result: Result | TowResult | None = None) -
 def _column(shown: Schematic) -> LineColumn:
     rows = [row for part in shown.parts for row in part.rows]
     rows += [row for row in (shown.towed_by, shown.sea, shown.seabed) if row is not None]
-    headings = [Heading(HEADINGS[name], QUANTITIES[name].display_unit) for name in shown.columns]
+    headings = [ColumnHead(HEADINGS[name], QUANTITIES[name].display_unit) for name in shown.columns]
     return column_of(rows, headings, _WIDTH, _TOWED_AT if shown.towed_by else _MOORED_AT)
 
 

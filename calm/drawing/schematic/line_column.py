@@ -37,7 +37,7 @@ _CLAMP_AT = 16.0
 _SHORTEST, _PER_DECADE = 18.0, 9.0
 
 
-class Heading(NamedTuple):
+class ColumnHead(NamedTuple):
     """The words over a column of figures, line by line, and the unit below them."""
 
     words: tuple[str, ...]
@@ -58,14 +58,14 @@ class LineColumn:
     """
 
     width: float
-    headings: tuple[Heading, ...]
+    headings: tuple[ColumnHead, ...]
     rights: tuple[float, ...]
     text: tuple[float, float]
     line_at: float
 
 
 def column_of(
-    parts: Iterable[TextRow], headings: Sequence[Heading], width: float, line_at: float = 26.0
+    parts: Iterable[TextRow], headings: Sequence[ColumnHead], width: float, line_at: float = 26.0
 ) -> LineColumn:
     """A column of a width with room for its figures, as wide as the widest of them.
 

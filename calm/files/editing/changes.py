@@ -265,19 +265,19 @@ def _shape(rows: Any) -> list[int]:
 _ENDINGS = ("\r\n", "\n", "\r")
 
 
-class TextLine(NamedTuple):
+class EndedLine(NamedTuple):
     """Hold what a line says, and the line break after it: none after the last."""
 
     text: str
     line_break: str
 
 
-def lines_of(text: str) -> list[TextLine]:
+def lines_of(text: str) -> list[EndedLine]:
     """Split a text as `str.splitlines` does; an empty line follows the last line break."""
-    lines = [TextLine(one.splitlines()[0], one) for one in text.splitlines(keepends=True)]
-    found = [TextLine(text, whole[len(text) :]) for text, whole in lines]
+    lines = [EndedLine(one.splitlines()[0], one) for one in text.splitlines(keepends=True)]
+    found = [EndedLine(text, whole[len(text) :]) for text, whole in lines]
     if not text or text.endswith(_ENDINGS):
-        found.append(TextLine("", ""))
+        found.append(EndedLine("", ""))
     return found
 
 

@@ -22,7 +22,7 @@ line:
   - {use: sphere-steel-1250, label: Auftriebskörper ganz oben über der Übertiefe}
   - {use: wire-jacketed-8, length: 100 m, label: Draht}
   - {use: glass-17in, count: 4, label: glass}
-  - {use: release-ar861, label: Auslöser}
+  - {use: release-rt161, label: Auslöser}
   - {use: polyester-14, length: 100 m, label: rope}
   - {use: anchor-wheels-4, label: Räder}
 """

@@ -145,8 +145,8 @@ def test_the_same_line_gives_the_same_bytes():
     assert first == second
 
 
-TALL = {"deep-current-meters": 390.0}
-"""Lines of so many pieces that their drawing needs the height of an A3 page [mm]."""
+TALL = {"deep-current-meters": 390.0, "profiler-mooring": 310.0, "tall-array-mooring": 480.0}
+"""Lines of so many pieces that their drawing is higher than an A4 page [mm]."""
 
 
 @pytest.mark.parametrize("path", LINES, ids=lambda path: path.stem)
