@@ -34,6 +34,7 @@ _SECTIONS = {
     "Fouling": "`fouling:`",
     "SeabedKeys": "`seabed:`",
     "WaveKeys": "`waves:`",
+    "SwellKeys": "`waves: swell:`",
     "Item": "`line:`, an item",
     "LengthAt": "`length_at:`",
     "LegKeys": "`legs:`, a leg",
