@@ -3,7 +3,7 @@
 for (const table of document.querySelectorAll("table.sortable")) {
   const body = table.tBodies[0];
   const heads = [...table.tHead.rows[0].cells];
-  const gravity = ["pass", "accepted", "warn", "unknown", "fail"];
+  const gravity = ["pass", "accepted", "estimated", "warn", "unknown", "fail"];
   const text = (row, column) => row.cells[column].firstChild?.textContent.trim() ?? "";
 
   const compare = (column) => (one, other) => {
@@ -37,7 +37,7 @@ for (const table of document.querySelectorAll("table.sortable")) {
   controls.className = "controls";
   const states = document.createElement("select");
   states.setAttribute("aria-label", "states shown");
-  for (const name of ["all states", "fail", "unknown", "warn", "accepted", "pass"]) states.add(new Option(name));
+  for (const name of ["all states", ...gravity.toReversed()]) states.add(new Option(name));
   const words = document.createElement("input");
   words.type = "search";
   words.placeholder = "words";
