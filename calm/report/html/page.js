@@ -37,7 +37,7 @@ for (const table of document.querySelectorAll("table.sortable")) {
   controls.className = "controls";
   const states = document.createElement("select");
   states.setAttribute("aria-label", "states shown");
-  for (const name of ["all states", ...gravity.toReversed()]) states.add(new Option(name));
+  for (const name of ["all states", ...[...gravity].reverse()]) states.add(new Option(name));
   const words = document.createElement("input");
   words.type = "search";
   words.placeholder = "words";
