@@ -73,6 +73,7 @@ def grid(
     """
     from calm.cli.streams import progress
     from calm.dataset.discovery import hashed
+    from calm.errors import not_among
     from calm.grid.depths import read_depths
     from calm.grid.product import grid_layout, parse_levels, write_grid
     from calm.motion.sensors import parse_flags
@@ -81,7 +82,6 @@ def grid(
     from calm.report.folder import check_folder, printed, write_report
     from calm.report.grid_report import grid_part, grid_report
     from calm.report.html import page
-    from calm.suggestions import not_among
 
     if method not in METHODS:
         raise UsageError(not_among("--method", method, METHODS))

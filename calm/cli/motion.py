@@ -235,8 +235,8 @@ def fitted(text: str | None, currents: bool = True) -> tuple[str, ...]:
     UsageError
         What is asked for cannot be estimated.
     """
+    from calm.errors import unknown
     from calm.motion.line_response import FACTORS
-    from calm.suggestions import unknown
 
     asked = [] if text is None else [name.strip() for name in text.split(",")]
     for name in asked:
@@ -281,6 +281,7 @@ def read_measured(
     import numpy as np
 
     from calm.dataset.discovery import hashed
+    from calm.errors import not_among
     from calm.motion.correction import without
     from calm.motion.line_response import Forward
     from calm.motion.matching import (
@@ -294,7 +295,6 @@ def read_measured(
     )
     from calm.motion.measurements import joined, read_currents
     from calm.motion.sensors import parse_flags, read_sea_level, read_sensors, split_label
-    from calm.suggestions import not_among
 
     if match not in _MATCHES:
         raise UsageError(not_among("--match", match, _MATCHES))

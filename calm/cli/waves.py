@@ -142,8 +142,8 @@ def _asked(
     UsageError
         With all that is wrong with the options.
     """
+    from calm.errors import nearest
     from calm.records import sea_states
-    from calm.suggestions import nearest
 
     given = quantities(
         {
