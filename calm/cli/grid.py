@@ -14,8 +14,8 @@ from calm.errors import UsageError
 if TYPE_CHECKING:
     import numpy as np
 
-    from calm.grid.depths import MooringDepths
     from calm.grid.field import GriddedQuantity
+    from calm.grid.samples import MooringDepths
     from calm.records.instrument_series import InstrumentSeries
 
 GRID_EXAMPLES = """Examples:
@@ -74,8 +74,8 @@ def grid(
     from calm.cli.streams import progress
     from calm.dataset.discovery import hashed
     from calm.errors import not_among
-    from calm.grid.depths import read_depths
     from calm.grid.product import grid_layout, parse_levels, write_grid
+    from calm.grid.samples import read_depths
     from calm.motion.sensors import parse_flags
     from calm.records.instrument_series import files_given, read_series
     from calm.records.measured_quantities import QUANTITIES_MEASURED, chosen_quantities
