@@ -8,9 +8,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from calm.cli.batch import ProgressTeller, check_output, ended, mooring_of, stopped_by_a_signal
-from calm.cli.options import CatalogFiles, Declination, EnvironmentName, Threads, quantities
+from calm.cli.batch import check_output, ended, mooring_of, stopped_by_a_signal
+from calm.cli.options import (
+    CatalogFiles,
+    Declination,
+    EnvironmentName,
+    Threads,
+    quantities,
+    span_of,
+)
 from calm.cli.outputs import OutputPath, Outputs
+from calm.cli.progress import ProgressTeller
 from calm.cli.streams import ExitCode, narrate
 from calm.errors import UsageError
 
@@ -246,25 +254,12 @@ def fitted(text: str | None, currents: bool = True) -> tuple[str, ...]:
     return tuple(name for name in FACTORS if name in asked or name in usual)
 
 
+_LONGEST_GAP = 1e8  # s
+
+
 def parse_gap(text: str) -> np.timedelta64:
-    """A time such as ``2 h``.
-
-    Raises
-    ------
-    UsageError
-        It is none, or is not between 0 and three years.
-    """
-    import numpy as np
-
-    from calm.units import QuantityError, parse_quantity
-
-    try:
-        seconds = parse_quantity(text, "time", usual_unit="h")
-    except QuantityError as error:
-        raise UsageError(f"--gap: `{text}` {error}") from None
-    if not 0.0 <= seconds < 1e8:
-        raise UsageError(f"--gap: `{text}` is not between 0 and three years")
-    return np.timedelta64(round(seconds * 1e9), "ns")
+    """A time such as ``2 h``; UsageError where it is none, or not between 0 and three years."""
+    return span_of("--gap", text, (0.0, _LONGEST_GAP), "0 and three years")
 
 
 def read_measured(
