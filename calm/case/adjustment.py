@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import ClassVar
 
@@ -42,8 +42,8 @@ class Adjustment(ABC):
     """
 
     text: str
-    file: MooringFile
-    parts: tuple[Piece | Clamp, ...]
+    file: MooringFile = field(repr=False)
+    parts: tuple[Piece | Clamp, ...] = field(repr=False)
 
     whole: ClassVar[bool] = False
     note: ClassVar[str] = ""
