@@ -22,12 +22,14 @@ if TYPE_CHECKING:
     from calm.checks.assess import check
     from calm.drop.plan import drop_plan
     from calm.errors import CalmError, InputError, NoEquilibrium, UsageError
+    from calm.motion.motion_estimate import MotionEstimate, estimate_motion
     from calm.ranging import locate
 
 __all__ = [
     "CalmError",
     "InputError",
     "Mooring",
+    "MotionEstimate",
     "NoEquilibrium",
     "Profiles",
     "Result",
@@ -37,6 +39,7 @@ __all__ = [
     "__version__",
     "check",
     "drop_plan",
+    "estimate_motion",
     "explain",
     "load",
     "locate",
@@ -48,12 +51,14 @@ _HOMES = {
     "load": "calm.case",
     "check": "calm.checks.assess",
     "drop_plan": "calm.drop.plan",
+    "estimate_motion": "calm.motion.motion_estimate",
     "explain": "calm.case.explain",
     "locate": "calm.ranging",
     "size": "calm.case.size",
     "Profiles": "calm.batch.profiles",
     "solve_profiles": "calm.batch.profiles",
     "Mooring": "calm.case",
+    "MotionEstimate": "calm.motion.motion_estimate",
     "Result": "calm.case",
     "Tow": "calm.case",
     "TowResult": "calm.case",

@@ -57,7 +57,7 @@ _ANCHOR_LIFTS = STATUSES.index(Status.ANCHOR_LIFTS.label)
 _STILL = CurrentTable((0.0,), (0.0,), (0.0,), (0.0,))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Profiles:
     """A mooring in n profiles: NaN where `status` is not 0.
 
@@ -95,6 +95,12 @@ class Profiles:
     anchor_horizontal: Floats
     used_buoyancy: Floats
     status: NDArray[np.int8]
+
+    def __repr__(self) -> str:
+        """Return how many profiles, components and clamps there are."""
+        parts = f"{len(self.component_label)} components, {len(self.clamp_label)} clamps"
+        failed = np.count_nonzero(self.status)
+        return f"Profiles({self.status.size} profiles, {failed} not solved; {parts})"
 
     def to_xarray(self) -> Dataset:
         """Return a dataset with labels and units, its dimensions `profile` (or `profile_0`, …),

@@ -8,17 +8,16 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import ClassVar
 
 from calm.case.parts import all_parts
 from calm.case.targets import pointed
-from calm.errors import UsageError
+from calm.errors import UsageError, unknown
 from calm.files import Anchor, Cable, Chain, Clamp, Component, Flexible, MooringFile, Piece, Place
 from calm.files.definition import STANDARD_GRAVITY
 from calm.files.mooring_file import numbered, placed
-from calm.suggestions import unknown
 from calm.units import DIMENSIONS, QuantityError, parse_quantity, with_unit
 
 MOST_BUOYANCY = 100.0
@@ -43,8 +42,8 @@ class Adjustment(ABC):
     """
 
     text: str
-    file: MooringFile
-    parts: tuple[Piece | Clamp, ...]
+    file: MooringFile = field(repr=False)
+    parts: tuple[Piece | Clamp, ...] = field(repr=False)
 
     whole: ClassVar[bool] = False
     note: ClassVar[str] = ""

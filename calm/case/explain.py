@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -86,10 +86,10 @@ class Explanation:
     label: str
     quantities: tuple[str, ...]
     figures: Figures
-    without_drag: dict[str, float]
+    without_drag: dict[str, float] = field(repr=False)
     causes: Causes | None
     miss: float
-    changes: tuple[WhatIf, ...]
+    changes: tuple[WhatIf, ...] = field(repr=False)
     notes: tuple[str, ...]
 
     def to_dict(self) -> dict[str, Any]:

@@ -6,7 +6,7 @@ Its ends, its anchor, its pieces, its knockdown, and its JSON object.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -110,7 +110,7 @@ class AnchorLoad:
     grounded_length: float
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class Solved:
     """Hold what every result has, whatever was solved. Depths [m], forces [N].
 
@@ -130,17 +130,28 @@ class Solved:
     closure: float
     accuracy: Accuracy
     strumming: Strumming | None
-    components: Components = field(repr=False)
-    clamps: Clamps = field(repr=False)
-    shape: Shape = field(repr=False)
+    components: Components
+    clamps: Clamps
+    shape: Shape
     other_depth: float | None = None
     warnings: tuple[str, ...] = ()
     notebook_form: ClassVar[Callable[[Any], str] | None] = None
     netcdf_form: ClassVar[Callable[[Any], bytes] | None] = None
 
-    def to_dataframe(self) -> Any:
-        """The components as a pandas data frame (pandas is not installed with CALM)."""
-        return self.components.to_dataframe()
+    def __repr__(self) -> str:
+        """Return the figures of both ends, in SI units and degrees."""
+        lines = [f"{self.name}: {self.type}, {self.status}"]
+        for end in ("top", "anchor", "tow_point", "body"):
+            if end in vars(self):
+                figures = asdict(vars(self)[end]).items()
+                known = [f"{name} {value:.6g}" for name, value in figures if value is not None]
+                lines.append(f"{end}: {', '.join(known)}")
+        tables = f"{len(self.components)} components, {len(self.clamps)} clamps"
+        return "\n".join([*lines, f"{tables}, {len(self.warnings)} warnings"])
+
+    def to_pandas(self) -> Any:
+        """Return the components as a pandas data frame."""
+        return self.components.to_pandas()
 
     def to_xarray(self) -> Any:
         """The dataset that `calm run --netcdf` writes: components, clamps and shape, with units."""
@@ -158,7 +169,7 @@ class Solved:
         return None if form is None else form(self)
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class Result(Solved):
     """A converged mooring. Lengths and depths [m], forces [N], angles [degrees].
 
@@ -167,10 +178,10 @@ class Result(Solved):
     way; the rest of the result is of all of them at their upper stops.
     """
 
-    mooring: Mooring = field(repr=False)
+    mooring: Mooring
     top: Top
     anchor: AnchorLoad
-    still_shape: Shape | None = field(repr=False)
+    still_shape: Shape | None
     other_grounded_length: float = 0.0
     profilers: tuple[ProfilerTravel, ...] = ()
 

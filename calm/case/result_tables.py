@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any, ClassVar, Generic, Protocol, Self, TypeVa
 
 import numpy as np
 
+from calm.errors import unknown
 from calm.files import Clamp, Piece, Place
 from calm.files.mooring_file import STAND_IN
 from calm.physics.line import Floats
-from calm.suggestions import unknown
 
 if TYPE_CHECKING:
     import pandas
@@ -106,8 +106,8 @@ class ColumnTable(Generic[Row]):
         names = [name for name in self.names() if name != _OF_THE_FILE]
         return [{name: _known(getattr(row, name)) for name in names} for row in self]
 
-    def to_dataframe(self) -> pandas.DataFrame:
-        """The table as a pandas data frame; needs pandas, which CALM does not."""
+    def to_pandas(self) -> pandas.DataFrame:
+        """Return a pandas data frame; pandas is not installed with CALM."""
         import pandas
 
         names = (name for name in self.names() if name != _OF_THE_FILE)
@@ -239,6 +239,12 @@ class Shape:
     def __repr__(self) -> str:
         """Return how many nodes there are."""
         return f"Shape({len(self.depth)} nodes)"
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """Return a pandas data frame with a row a node."""
+        import pandas
+
+        return pandas.DataFrame(vars(self))
 
 
 class WithClamps(Protocol):

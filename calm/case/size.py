@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from calm.case.adjustment import Adjustment, parse_change, parse_range
@@ -41,7 +41,7 @@ class Trial:
 
     value: float
     measured: float | None = None
-    result: Result | None = None
+    result: Result | None = field(default=None, repr=False)
     failure: NoEquilibrium | None = None
 
     @property

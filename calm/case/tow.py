@@ -50,7 +50,7 @@ class TowedBody:
     angle: float
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class TowResult(Solved):
     """A converged tow. Lengths and depths [m], forces [N], angles [degrees], speed [m/s].
 
@@ -59,7 +59,7 @@ class TowResult(Solved):
     `Result`, the ship in place of the anchor.
     """
 
-    tow: Tow = field(repr=False)
+    tow: Tow
     speed: float
     toward: float
     tow_point: TowPoint

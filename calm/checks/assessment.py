@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from datetime import date
@@ -63,7 +64,7 @@ class MooringInEnvironment:
         return self.situations[0].result
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Assessment:
     """All that the design check says of one mooring.
 
@@ -92,6 +93,12 @@ class Assessment:
     limits: tuple[LimitKey, ...] = ()
     notices: tuple[str, ...] = ()
     draws: tuple[int, int] | None = None
+
+    def __repr__(self) -> str:
+        """Return how many findings there are of each state."""
+        counts = Counter(finding.state for finding in self.all_findings())
+        told = ", ".join(f"{count} {state}" for state, count in counts.items())
+        return f"{self.name}: {self.state} ({told})"
 
     @property
     def mooring(self) -> Mooring:

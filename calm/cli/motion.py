@@ -8,9 +8,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from calm.cli.batch import ProgressTeller, check_output, ended, stopped_by_a_signal
-from calm.cli.options import CatalogFiles, Declination, EnvironmentName, Threads, quantities
+from calm.cli.batch import check_output, ended, stopped_by_a_signal
+from calm.cli.options import (
+    CatalogFiles,
+    Declination,
+    EnvironmentName,
+    Threads,
+    quantities,
+    span_of,
+)
 from calm.cli.outputs import OutputPath, Outputs
+from calm.cli.progress import ProgressTeller
 from calm.cli.streams import ExitCode, narrate
 from calm.errors import UsageError
 
@@ -18,9 +26,7 @@ if TYPE_CHECKING:
     import numpy as np
     from xarray import Dataset
 
-    from calm.case import Mooring
     from calm.motion.instrument_file import Instruments
-    from calm.motion.measurements import MooringMeasurements
 
 MOTION_EXAMPLES = """Examples:
 
@@ -29,6 +35,7 @@ MOTION_EXAMPLES = """Examples:
   calm motion mooring.yaml --currents meters.nc --pressures all.csv --cross-validate -o depths.nc
   calm motion mooring.yaml --pressures two.csv -o depths.nc"""
 
+_LONGEST_GAP = 1e8  # s
 Several = Annotated[list[Path], Parameter(consume_multiple=True)]
 SeveralTexts = Annotated[list[str], Parameter(consume_multiple=True)]
 
@@ -116,6 +123,7 @@ def motion(
     from calm.motion.correction import MeasuredRecord, run_motion
     from calm.motion.instrument_file import read_instruments
     from calm.motion.line_places import places_of
+    from calm.motion.motion_estimate import fitted, read_measured
     from calm.motion.sensors import split_label
     from calm.motion.study import cross_validated, judged, prepare, series_of, several
     from calm.report.folder import check_folder, printed, write_report
@@ -124,7 +132,7 @@ def motion(
 
     if workers is not None and workers < 1:
         raise UsageError(f"--workers: {workers} is not 1 or more")
-    names = fitted(fit, bool(currents))
+    names = fitted(_separated(fit), bool(currents))
     outputs = Outputs(files=(file,), json=json)
     outputs.check()
     if report is not None:
@@ -151,19 +159,19 @@ def motion(
     for notice in mooring.file.notices:
         narrate(f"{file}: {notice}")
     turned = quantities({"declination": (declination, "angle")}).get("declination")
-    apart = parse_gap(gap)
+    apart = span_of("--gap", gap, (0.0, _LONGEST_GAP), "0 and three years")
     instruments = None
     if onto is not None:
         instruments, matched = read_instruments(onto, places_of(mooring), replacing=replace_depth)
         for line in matched:
             narrate(line)
     measured, notes, source = read_measured(
-        mooring, currents, pressures, match, flags, apart, sea_level, turned
+        mooring, pressures, currents, match, flags, apart, sea_level, turned
     )
     for note in notes:
         narrate(note)
     teller = ProgressTeller()
-    hidden = [] if hold_out is None else [label.strip() for label in hold_out.split(",")]
+    hidden = _separated(hold_out)
     if cross_validate:
         several(measured, hidden)
     with stopped_by_a_signal() as stop:
@@ -224,130 +232,5 @@ def write_copies(
             narrate(f"{one.path}: `{label}` is not a part of the line; its depth is NaN")
 
 
-_MATCHES = ("label", "height", "depth")
-
-
-def fitted(text: str | None, currents: bool = True) -> tuple[str, ...]:
-    """The factors that are estimated: those of the drag, and what is asked for besides.
-
-    Without currents a factor on all drag is one on the currents: that of cables is none unless
-    asked for, and the length is one of those that are estimated.
-
-    Raises
-    ------
-    UsageError
-        What is asked for cannot be estimated.
-    """
-    from calm.motion.line_response import FACTORS
-    from calm.suggestions import unknown
-
-    asked = [] if text is None else [name.strip() for name in text.split(",")]
-    for name in asked:
-        if name not in FACTORS:
-            raise UsageError(unknown(f"--fit: `{name}` cannot be estimated", name, FACTORS))
-    usual = ("cable_drag", "rigid_drag") if currents else ("rigid_drag", "length")
-    return tuple(name for name in FACTORS if name in asked or name in usual)
-
-
-def parse_gap(text: str) -> np.timedelta64:
-    """A time such as ``2 h``.
-
-    Raises
-    ------
-    UsageError
-        It is none, or is not between 0 and three years.
-    """
-    import numpy as np
-
-    from calm.units import QuantityError, parse_quantity
-
-    try:
-        seconds = parse_quantity(text, "time", usual_unit="h")
-    except QuantityError as error:
-        raise UsageError(f"--gap: `{text}` {error}") from None
-    if not 0.0 <= seconds < 1e8:
-        raise UsageError(f"--gap: `{text}` is not between 0 and three years")
-    return np.timedelta64(round(seconds * 1e9), "ns")
-
-
-def read_measured(
-    mooring: Mooring,
-    currents: list[str],
-    pressures: list[str],
-    match: str,
-    flags: str,
-    gap: np.timedelta64,
-    sea_level: Path | None,
-    declination: float | None,
-) -> tuple[MooringMeasurements, list[str], dict[str, str]]:
-    """What was measured, on common times; what is said of it, and its source."""
-    import numpy as np
-
-    from calm.dataset.discovery import hashed
-    from calm.motion.correction import without
-    from calm.motion.line_response import Forward
-    from calm.motion.matching import (
-        instruments_of,
-        labels_of,
-        matched_by_label,
-        matched_by_place,
-        named_by_serial,
-        plausible,
-        unusable,
-    )
-    from calm.motion.measurements import joined, read_currents
-    from calm.motion.sensors import parse_flags, read_sea_level, read_sensors, split_label
-    from calm.suggestions import not_among
-
-    if match not in _MATCHES:
-        raise UsageError(not_among("--match", match, _MATCHES))
-    position = mooring.file.position
-    if position is None:
-        raise UsageError(
-            f"{mooring.file.path} has no `position`, whose latitude turns pressures into depths"
-        )
-    place = position.latitude, position.longitude
-    seabed = float(mooring.water.depth)
-    wanted = parse_flags(flags)
-    sensors = read_sensors(pressures, wanted, position.latitude, seabed)
-    labels, still = labels_of(mooring), Forward(mooring, {}).still
-    notes: list[str] = []
-    if match == "label":
-        sensors = named_by_serial(sensors, mooring)
-        points, notes = matched_by_label(sensors, labels)
-    else:
-        points = matched_by_place(sensors, instruments_of(mooring), still, labels)
-        notes = [
-            f"the sensor at {sensors[i].nominal:.1f} m of {sensors[i].source} is `{labels[at]}`"
-            for i, at in points.items()
-        ]
-        sensors = [replace(one, label=labels[points[i]]) for i, one in enumerate(sensors)]
-    read = read_currents(
-        currents, seabed, place, declination, mooring.file.environment.maximum_speed
-    )
-    level = None if sea_level is None else read_sea_level(sea_level)
-    notes += dict.fromkeys(f"{one.source}: {one.note}" for one in sensors if one.note)
-    used = []
-    for i, at in points.items():
-        one, said = plausible(sensors[i], float(still[at]), seabed)
-        used.append(one)
-        notes += said
-    notes += [
-        f"{one.label}: {one.dropped} pressures left out for their flag"
-        for one in used
-        if one.dropped
-    ]
-    if not any(np.isfinite(one.depth).any() for one in used):
-        raise UsageError("--pressures: no sensor has a good pressure: " + "; ".join(notes))
-    measured = joined(read, used, list(points.values()), labels, still, gap, level)
-    notes += [f"{one.source}: {note}" for one in read for note in one.notes]
-    lost = unusable(measured, still)
-    notes += [f"{label} {reason}" for label, reason in lost.items()]
-    measured = without(measured, list(lost))
-    if not measured.label:
-        raise UsageError("--pressures: no sensor is left: " + "; ".join(notes))
-    source = {
-        "currents": ", ".join(hashed(split_label(one)[1]) for one in currents),
-        "pressures": ", ".join(hashed(split_label(one)[1]) for one in pressures),
-    }
-    return measured, notes, source
+def _separated(text: str | None) -> list[str]:
+    return [] if text is None else [name.strip() for name in text.split(",")]

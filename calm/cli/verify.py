@@ -7,7 +7,8 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from calm.cli.outputs import OutputPath, Outputs
-from calm.cli.streams import ExitCode, progress
+from calm.cli.progress import progress
+from calm.cli.streams import ExitCode
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
@@ -91,9 +92,9 @@ def verify_field(outputs: Outputs) -> ExitCode:
     import calm
     from calm.case import Mooring
     from calm.checks.finding import State
-    from calm.cli.motion import fitted, parse_gap, read_measured
     from calm.motion.correction import estimate_in_memory
     from calm.motion.line_response import Forward
+    from calm.motion.motion_estimate import fitted, read_measured
     from calm.motion.study import intervals, judge_hidden, prepare
     from calm.report.blocks import Heading, Prose, ReportPart
     from calm.report.motion_report import (
@@ -107,11 +108,9 @@ def verify_field(outputs: Outputs) -> ExitCode:
     folder = shipped_folder("docs") / "field" / "dune2"
     mooring = calm.load(folder / "mooring.yaml")
     assert isinstance(mooring, Mooring)
-    measured, _, _ = read_measured(
-        mooring, [str(folder / "currents.nc")], [str(folder / "pressures.nc")],
-        "label", "1,2", parse_gap("2 h"), None, None,
-    )  # fmt: skip
-    task = prepare(mooring, measured, fitted(None), HIDDEN)
+    files = [str(folder / f"{name}.nc") for name in ("pressures", "currents")]
+    measured, _, _ = read_measured(mooring, files[:1], files[1:])
+    task = prepare(mooring, measured, fitted(), HIDDEN)
     points = [int(measured.point[measured.label.index(label)]) for label in HIDDEN]
     depth, spread = estimate_in_memory(task, points)
     still = Forward(mooring, {}).still

@@ -7,7 +7,7 @@ gravity.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
@@ -34,6 +34,10 @@ class Model(BaseModel):
     """Base of everything read from a file: frozen, and no key but the known ones."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
+
+    def __repr_args__(self) -> Iterator[tuple[str | None, Any]]:
+        """Return the fields that are known."""
+        return (each for each in super().__repr_args__() if each[1] is not None)
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,7 @@ _SECTIONS = {
         "calm.case.strumming.Strumming", "calm.case.strumming.StrummingBand",
     ],
     "Many profiles": ["calm.solve_profiles", "calm.Profiles"],
+    "Motion": ["calm.estimate_motion", "calm.MotionEstimate"],
     "Errors": [
         "calm.CalmError", "calm.InputError", "calm.UsageError", "calm.NoEquilibrium",
         "calm.errors.Problem",

@@ -126,7 +126,8 @@ def test_a_page_shows_what_the_command_prints(page: Path) -> None:
 def test_python_examples_run(page: Path, tmp_path: Path) -> None:
     examples = blocks(page, "python")
     assert examples
-    (tmp_path / "lines").symlink_to(ROOT / "lines")
+    for folder in ("lines", "docs"):
+        (tmp_path / folder).symlink_to(ROOT / folder)
     finished = subprocess.run(
         [sys.executable, "-W", "error", "-c", "\n".join(examples)],
         cwd=tmp_path,

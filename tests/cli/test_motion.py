@@ -109,6 +109,22 @@ def test_depths_sensors_and_a_hidden_one(calm, given, truth, folder):
 
 
 @pytest.mark.thorough
+def test_python_finds_what_the_command_writes(calm, given, folder):
+    done = calm(*COMMAND, "--pressures", "p.csv", "-o", "d.nc", "--hold-out", "middle",
+                "--json", "-")  # fmt: skip
+    said = json.loads(done.out)
+    mooring = package.load("m.yaml")
+    found = package.estimate_motion(mooring, ["p.csv"], ["c.csv"], hold_out=["middle"], workers=1)
+    with xarray.open_dataset(folder / "d.nc", engine="h5netcdf") as result:
+        xarray.testing.assert_equal(found.to_xarray(), result.load())
+    assert found.held_out["middle"].rms == said["held_out"][0]["rms"]
+    assert found.factors["cable_drag"][0] == said["factors"]["cable_drag"]["value"]
+    assert list(found.sensors) == ["upper", "lower"]
+    assert repr(found).startswith(f"Twin: {HOURS} times, 2026-03-01T00:00 to 2026-03-02T23:00\n")
+    assert len(repr(found).splitlines()) <= 10
+
+
+@pytest.mark.thorough
 def test_the_same_again_is_found_and_another_is_refused(calm, given, folder):
     words = (*COMMAND, "--pressures", "p.csv", "-o", "d.nc")
     first = calm(*words)

@@ -15,9 +15,9 @@ import pytest
 from scipy.interpolate import PchipInterpolator
 
 import calm
-from calm.cli.motion import fitted, parse_gap, read_measured
 from calm.motion.correction import estimate_in_memory
 from calm.motion.line_response import Forward
+from calm.motion.motion_estimate import fitted, read_measured
 from calm.motion.remarks import calm_times, coverage, difference, rms
 from calm.motion.study import prepare
 
@@ -28,9 +28,7 @@ SEABED = 3880.0
 @cache
 def measured():
     mooring = calm.load(FOLDER / "mooring.yaml")
-    files = [str(FOLDER / "pressures.csv")]
-    gap = parse_gap("2 h")
-    one, _, _ = read_measured(mooring, [], files, "label", "1,2", gap, None, None)
+    one, _, _ = read_measured(mooring, [str(FOLDER / "pressures.csv")])
     return mooring, one
 
 
@@ -39,7 +37,7 @@ def both(given):
     all times, and of the tenth with the most knockdown."""
     mooring, one = measured()
     hidden = [label for label in one.label if label not in given]
-    task = prepare(mooring, one, fitted(None, currents=False), hidden)
+    task = prepare(mooring, one, fitted(currents=False), hidden)
     depth, spread = estimate_in_memory(task, one.point.tolist())
     still = Forward(mooring, {}).still[one.point]
     used = [one.label.index(label) for label in given]

@@ -56,4 +56,4 @@ def test_tables_are_joined_and_get_rows(clamps):
 def test_a_reader_gets_no_model_of_the_file(clamps):
     assert all("part" not in row for row in clamps.to_dicts())
     assert clamps.to_dicts()[1]["depth"] is None
-    assert "part" not in clamps.to_dataframe()
+    assert "part" not in clamps.to_pandas()

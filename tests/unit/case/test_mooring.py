@@ -109,11 +109,21 @@ def test_the_result_is_plain_json(solve):
 def test_tables_as_records_and_data_frame(solve):
     result = solve()
     assert [row.label for row in result.components][:2] == ["top", "thin 1"]
-    frame = result.to_dataframe()
+    frame = result.to_pandas()
     assert list(frame.label) == result.components.label
     assert frame.depth_top.to_numpy() == pytest.approx(result.components.depth_top)
-    assert len(result.clamps.to_dataframe()) == 1
+    assert len(result.clamps.to_pandas()) == 1
+    assert list(result.shape.to_pandas().depth) == list(result.shape.depth)
     assert "<table" in result._repr_html_()
+
+
+def test_what_python_shows_of_a_result_is_short(solve):
+    result = solve()
+    shown = repr(result).splitlines()
+    assert len(shown) == 4 and shown[1].startswith(f"top: depth {result.top.depth:.6g}, x ")
+    assessment = calm.check(result.mooring)
+    assert repr(assessment).startswith(f"{assessment.name}: {assessment.state} (")
+    assert max(len(repr(row.part)) for row in result.components) < 800
 
 
 def test_warnings_tell_what_to_look_at(solve):
