@@ -112,7 +112,7 @@ class LineScreen(DraftScreen):
         if fresh:
             self.pictures.show(last or view, "the last complete line" if last else "")
             note = "The picture shows the last complete line." if last else ""
-            self.verdict.show(view, note)
+            self.verdict.say(view, note)
         self.pictures.set_class(self.workspace.is_old or last is not None, "-old")
         self.verdict.set_class(self.workspace.is_old, "-old")
 
