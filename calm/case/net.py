@@ -20,7 +20,7 @@ from calm.case.result import Accuracy, AnchorLoad, Result
 from calm.case.result_tables import Clamps, Components
 from calm.case.tow import Tow, TowResult
 from calm.errors import NoEquilibrium
-from calm.files import MooringFile, Piece, read_mooring
+from calm.files import MooringFile, Piece
 from calm.files.legs import EndKeys, Leg, nodes_of
 from calm.files.mooring_file import STAND_IN
 from calm.physics.line import Floats, Water
@@ -155,24 +155,6 @@ class NetResult:
 
 
 _OF_ANCHORS = ("required_weight", "weight", "grounded_length")
-
-
-def load_net(
-    path: str | Path,
-    environment: str | Path | None = None,
-    catalogs: Sequence[str | Path] = (),
-    text: str | None = None,
-) -> Net:
-    """Read the file of a net of legs; the parameters are those of `load`.
-
-    Raises
-    ------
-    InputError
-        With every mistake of the file, each with its line and column.
-    """
-    return Net(
-        read_mooring(path, environment=environment, catalogs=list(catalogs), text=text, net=True)
-    )
 
 
 Way = tuple[float, tuple[str, ...]]
@@ -372,12 +354,15 @@ def _refuse_a_lifted_anchor(mooring: Mooring, solution: Solution) -> None:
 
 
 def load_any(
-    path: str | Path, environment: str | Path | None = None, catalogs: Sequence[str | Path] = ()
+    path: str | Path,
+    environment: str | Path | None = None,
+    catalogs: Sequence[str | Path] = (),
+    text: str | None = None,
 ) -> Mooring | Tow | Net:
     """Read the file of a mooring, a tow or a net; the parameters are those of `load`.
 
     InputError: with every mistake of the file, each with its line and column.
     """
-    origin = Origin(path, environment, tuple(Path(each) for each in catalogs), None)
+    origin = Origin(path, environment, tuple(Path(each) for each in catalogs), text)
     file = origin.read(net=True)
     return Net(file) if file.legs else as_read(file, origin)

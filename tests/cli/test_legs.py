@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from calm.case.net import load_net
+from calm.case.net import load_any
 from calm.cli.main import main
 from calm.drawing.line_picture import LineKind, elevation_of, plan_of
 from calm.errors import InputError, NoEquilibrium
@@ -104,7 +104,7 @@ def test_the_anchor_bears_all_that_floats_and_hangs(
     """Vertically the net is a sum of net forces, wherever it stands: currents are level here."""
     found = document(net, capsys)
     total = 0.0
-    case = load_net(net)
+    case = load_any(net)
     for leg in case.legs:
         total += float(leg.line.total_buoyancy.sum())
     # what drag lifts and presses is some newtons of the seven thousand
@@ -188,7 +188,7 @@ def test_options_for_single_lines_are_refused(
 
 
 def test_a_net_is_drawn_from_the_side_and_above(net: Path) -> None:
-    result = load_net(net).solve()
+    result = load_any(net).solve()
     side, above = elevation_of(result), plan_of(result)
     kinds = Counter(line.kind for line in side.lines)
     assert kinds == {LineKind.STILL: 4, LineKind.LINE: 4}
@@ -254,7 +254,7 @@ def test_mistakes_have_their_place(place: str, tmp_path: Path) -> None:
     right, expected = MISTAKES[place]
     assert place in NET
     with pytest.raises(InputError) as refused:
-        load_net(tmp_path / "bad.yaml", text=NET.replace(place, right, 1))
+        load_any(tmp_path / "bad.yaml", text=NET.replace(place, right, 1))
     told = [str(problem) for problem in refused.value.problems]
     hits = [each for each in told if expected in each]
     assert len(hits) == 1, told
@@ -265,14 +265,14 @@ def test_all_mistakes_come_at_once(tmp_path: Path) -> None:
     text = NET.replace("glass-17in", "glas-17in").replace("length: 10 m", "length: 10")
     text = text.replace("bottom: {join: A}\n  second", "bottom: {join: B}\n  second")
     with pytest.raises(InputError) as refused:
-        load_net(tmp_path / "bad.yaml", text=text)
+        load_any(tmp_path / "bad.yaml", text=text)
     assert len(refused.value.problems) == 3
 
 
 def test_what_nothing_holds_is_refused(tmp_path: Path) -> None:
     loose = NET[: NET.index("  stem:")]
     with pytest.raises(InputError, match="nothing holds leg `main`"):
-        load_net(tmp_path / "loose.yaml", text=loose)
+        load_any(tmp_path / "loose.yaml", text=loose)
 
 
 def test_ends_that_are_held_bear_what_pulls_them(
@@ -294,7 +294,7 @@ legs:
 """)
     found = document(file, capsys)
     hang, span = found["held"]
-    case = load_net(file)
+    case = load_any(file)
     weight = -float(case.legs[0].line.total_buoyancy.sum())
     assert hang["vertical"] == pytest.approx(-weight, rel=1e-9)
     assert hang["horizontal"] == pytest.approx(0.0, abs=1e-6)
@@ -355,7 +355,7 @@ legs:
 
 def test_anchors_stand_on_a_seabed_that_slopes_and_hold_less(tmp_path: Path) -> None:
     """Depths by the plane; the weight against that of which H pulls straight down the slope."""
-    result = load_net(tmp_path / "slope.yaml", text=SLOPE).solve()
+    result = load_any(tmp_path / "slope.yaml", text=SLOPE).solve()
     rise = 30.0 * np.tan(np.radians(10.0))
     west, east = (anchor.depth for anchor in result.anchors)
     assert (west, east) == pytest.approx((100.0 - rise - 0.7, 100.0 + rise - 0.7), abs=1e-6)
@@ -372,7 +372,7 @@ def test_an_anchor_that_slides_by_itself_is_a_mistake(tmp_path: Path) -> None:
     """The angle of friction of 0.6 is 31 degrees."""
     text = SLOPE.replace("slope: 10 deg", "slope: 32 deg")
     with pytest.raises(InputError, match=r"slides by itself .* it holds on less than 31°"):
-        load_net(tmp_path / "slope.yaml", text=text)
+        load_any(tmp_path / "slope.yaml", text=text)
 
 
 def test_a_line_that_hangs_into_the_slope_is_refused(tmp_path: Path) -> None:
@@ -388,9 +388,9 @@ legs:
 """
     )
     with pytest.raises(NoEquilibrium, match=r"wire-jacketed-8 comes .* below the seabed"):
-        load_net(tmp_path / "slope.yaml", text=text).solve()
+        load_any(tmp_path / "slope.yaml", text=text).solve()
     level = text.replace("slope: 25 deg", "slope: 0 deg")
-    assert load_net(tmp_path / "level.yaml", text=level).solve().status == "converged"
+    assert load_any(tmp_path / "level.yaml", text=level).solve().status == "converged"
 
 
 def test_the_anchor_of_a_line_is_judged_on_the_slope(
