@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 MOST_LEGS = 40
 NET_REFUSED = (
-    "this is a net of legs; `calm run` solves it and `calm check` judges it, this takes a single "
+    "this is a net of legs, for `calm run`, `calm check` and `calm batch`; this takes a single "
     "line: one free end, one anchor"
 )
 
@@ -317,6 +317,11 @@ def _check_held(legs: Sequence[Leg], section: SourceMapping, problems: list[Prob
         if leg.name not in held:
             message = f"nothing holds leg `{leg.name}`: no anchor, no held end"
             problems.append(section.problem((leg.name,), message, key=True))
+
+
+def leg_numbers(legs: Sequence[Leg]) -> list[int]:
+    """Return the number of the leg that each piece of the file is in."""
+    return [number for number, leg in enumerate(legs) for _ in range(leg.first, leg.end)]
 
 
 def nodes_of(legs: Sequence[Leg]) -> Mapping[str, int]:
