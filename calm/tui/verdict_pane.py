@@ -164,11 +164,7 @@ def _text(saying: Saying) -> Text:
     return text.append(saying.text, style="dim" if saying.faint else "")
 
 
-def state_sign(view: View | None, *, old: bool = False) -> str:
-    """The sign of the headline; dots where it is `old`, of what is not edited any more."""
-    return ELLIPSIS if old else headline(view).sign.strip()
-
-
 def state_word(view: View | None, *, old: bool = False) -> str:
-    """The headline in one line with its sign."""
-    return f"{state_sign(view, old=old)} {headline(view).text}".strip()
+    """The headline in one line with its sign; dots for that where it is of an `old` draft."""
+    sign = ELLIPSIS if old else headline(view).sign.strip()
+    return f"{sign} {headline(view).text}".strip()

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray
+from scipy.optimize import fsolve
 
 from calm.case.net import load_any
 from calm.checks.criterion import READINGS, pieces_of
@@ -378,6 +379,49 @@ legs:
     assert span["vertical"] + anchor["vertical"] == pytest.approx(lying - weight, rel=1e-6)
     assert span["horizontal"] == pytest.approx(anchor["horizontal"], rel=1e-6)
     assert "anchor" in found
+
+
+def test_what_hangs_in_the_air_weighs_more(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Two catenaries that meet at the surface, of one pull H and of the weights in air and water.
+
+    Down to its length s the line bears V - w s: with asinh of the slopes each part gives its
+    distance and its height. The reference does not stretch, nor does the line.
+    """
+    file = tmp_path / "air.yaml"
+    file.write_text("""\
+environment: {depth: 100 m, density: 1025 kg/m^3, gravity: 9.81 m/s^2}
+legs:
+  span:
+    line: [{use: wire, length: 140 m}, {use: block}]
+    top: {held: {depth: -20 m}}
+    bottom: {anchor: {at: [60 m, 0 m]}}
+components:
+  wire: {kind: cable, diameter: 20 mm, weight: 16 N/m, mass: 2 kg/m, cn: 0, ct: 0}
+  block: {kind: anchor, weight: 1e6 N}
+""")
+    found = document(file, capsys)
+    volume = (2.0 - 16.0 / 9.80665) / 1025.0  # of a metre, by its mass and weight
+    heavy = 16.0 + (1025.0 - 1.225) * 9.81 * volume
+
+    def part(pull: float, up: float, weight: float, length: float) -> tuple[float, float, float]:
+        low = up - weight * length
+        across = pull / weight * (np.arcsinh(up / pull) - np.arcsinh(low / pull))
+        down = (np.hypot(pull, up) - np.hypot(pull, low)) / weight
+        return across, down, low
+
+    def miss(x: tuple[float, float, float]) -> list[float]:
+        pull, up, dry = 1e3 * x[0], 1e3 * x[1], 10.0 * x[2]
+        east, down, left = part(pull, up, heavy, dry)
+        more, deeper, _ = part(pull, left, 16.0, 140.0 - dry)
+        return [down - 20.0, deeper - 100.0, east + more - 60.0]
+
+    pull, up, _ = fsolve(miss, (0.5, 2.4, 2.1), xtol=1e-12)
+    (held,) = found["held"]
+    # the water turns into air within a millimetre; 5e-5 is what the net is solved to
+    assert held["horizontal"] == pytest.approx(1e3 * pull, rel=1e-4)
+    assert held["vertical"] == pytest.approx(-1e3 * up, rel=1e-4)
 
 
 def test_legs_that_are_too_short_are_named(
