@@ -108,7 +108,7 @@ def run_batch(
         Where a piece is to be cut to fit, and no length does.
     """
     if record.count == 0:
-        raise UsageError("the record has no profile in the time that was asked for")
+        raise UsageError("the record has no profile in the period asked for")
     say, stop = tell or (lambda _: None), stop or Event()
     nodes = nodes_of(mooring) if shape else None
     batch = Batch(nodes.mooring if nodes else mooring)
@@ -202,7 +202,7 @@ def _complete(
             return
         work.forget(damaged)
         tell(f"{len(damaged)} blocks were damaged on the disk; they are solved again")
-    raise OSError(f"{work.store.folder} loses what is written to it")
+    raise OSError(f"{work.store.folder} does not keep what is written to it")
 
 
 def _found(output: Path) -> BatchOutcome:

@@ -162,8 +162,8 @@ def _implausible(outcome: BatchOutcome, mooring: Mooring, record: Record) -> str
     greatest = mooring.file.environment.maximum_speed
     count = grouped(outcome.counts["implausible-current"])
     return (
-        f"{count} profiles without result, as their current is implausible "
-        f"(above `maximum_speed`, {greatest:g} m/s): {first_implausible(record, greatest)}"
+        f"{count} profiles have no result because their current is implausible (above "
+        f"`maximum_speed`, {greatest:g} m/s): {first_implausible(record, greatest)}"
     )
 
 

@@ -68,7 +68,7 @@ def build(
     """
     if serve:
         if not 0.0 <= idle_timeout < inf:
-            raise UsageError(f"--idle-timeout: {idle_timeout} minutes cannot be waited")
+            raise UsageError(f"--idle-timeout: {idle_timeout} is not a number of minutes from 0")
         return _serve(file, environment, catalog or [], port, allow_host or [], 60.0 * idle_timeout)
     if not _has_terminal():
         raise UsageError(_NO_TERMINAL)

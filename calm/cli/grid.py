@@ -169,7 +169,7 @@ def fields_of(
         samples = gather(where, series[name], points, time)
         dropped = sum(series[name][i].dropped for i in points)
         if dropped:
-            narrate(f"{name}: {dropped} values are left out for their flag")
+            narrate(f"{name}: {dropped} values are left out because of their flag")
         for i, at in points.items():
             one, column = series[name][i], samples.label.index(where.label[at])
             had = one.dropped or np.isfinite(one.value).any()

@@ -117,7 +117,7 @@ def locate(
     for notice in survey.notices:
         narrate(f"{file}: {notice}")
     if output is not None:
-        narrate("-o is spelt --update from now on: the file is edited in place")
+        narrate("-o is now --update: the file is edited in place")
         update = update or output
     mooring = None if update is None else located_mooring(update)
     about = None if near is None else parse_place(near)
@@ -139,11 +139,11 @@ def locate(
     if edited is None:
         return ExitCode.DONE
     if doubts and not accept:
-        narrate(f"{update} is not written: {'; '.join(doubts)}. --accept writes it all the same")
+        narrate(f"{update} is not written: {'; '.join(doubts)}. --accept writes it anyway")
         return ExitCode.FINDING
     working, text = edited
     lost = working.save(text)
-    narrate(f"{update}: `deployed:` has position and depth" + (f"; {lost}" if lost else ""))
+    narrate(f"{update}: `deployed:` now has position and depth" + (f"; {lost}" if lost else ""))
     return ExitCode.DONE
 
 

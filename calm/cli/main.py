@@ -233,7 +233,9 @@ app["--help"].group = app["--version"].group = Group("Options", sort_key=len(_GR
 @app.command(name="strumming", show=False)
 def _strumming(*words: Annotated[str, Parameter(allow_leading_hyphen=True)]) -> Any:
     """Run `calm tow strumming`, which was `calm strumming` before."""
-    narrate("calm strumming is now calm tow strumming; the old name goes with the next version")
+    narrate(
+        "calm strumming is now calm tow strumming; the old name will be removed in the next version"
+    )
     return app(["tow", "strumming", *words], exit_on_error=False, print_error=False)
 
 

@@ -122,9 +122,9 @@ def verify_field(outputs: Outputs) -> ExitCode:
     inside = float(np.mean([one.coverage for one in held]))
     good = ratio <= MEAN and worst <= EACH and BANDS[0] <= inside <= BANDS[1]
     verdict = (
-        f"rms over that of interpolation: {ratio:.2f} in the mean (at most {MEAN}), {worst:.2f} at "
-        f"worst (at most {EACH}); within the bands of 95 %: {100.0 * inside:.0f} % "
-        f"({100.0 * BANDS[0]:.0f} to {100.0 * BANDS[1]:.0f} %)"
+        f"rms relative to interpolation: {ratio:.2f} on average (at most {MEAN}), "
+        f"{worst:.2f} at worst (at most {EACH}); within the 95 % bands: "
+        f"{100.0 * inside:.0f} % ({100.0 * BANDS[0]:.0f} to {100.0 * BANDS[1]:.0f} %)"
     )
     factors = intervals(task)
     document: dict[str, Any] = {

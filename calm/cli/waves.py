@@ -121,8 +121,9 @@ def waves(
     if analysis.status != SLACK:
         return ExitCode.DONE
     narrate(
-        f"{file}: {SLACK}: the least tension falls below 0, where linear tensions do not hold. "
-        "Give it more weight or more stretch; or `calm export --to moordyn`, to solve it in time."
+        f"{file}: {SLACK}: the least tension falls below 0, where linear tensions do not "
+        "hold. Give the line more weight or more stretch, or solve it in the time "
+        "domain: `calm export --to moordyn`."
     )
     return ExitCode.NO_EQUILIBRIUM
 
@@ -161,7 +162,7 @@ def _asked(
         if name in given and not given[name] > 0.0
     ]
     if not 1.0 <= gamma <= 10.0:
-        complaints.append("--gamma: from 1, of a full sea, to 10")
+        complaints.append("--gamma must be from 1, a fully developed sea, to 10")
     named, path = spectrum in sea_states.SPECTRA, Path(spectrum)
     if not named and not path.is_file():
         near = nearest(spectrum, sea_states.SPECTRA)

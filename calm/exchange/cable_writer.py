@@ -102,7 +102,7 @@ def cbl_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
             "pull found here"
         )
     if buoy.flexible:
-        lost.append("the free end of the line: a small sphere without weight stands there")
+        lost.append("the free end of the line: a small sphere without weight is put there")
     elif not floating and design.tow is None and buoy.length > 0.0:
         problem.segment(_link(problem), buoy.length)
     if problem.load is not None:
@@ -130,7 +130,7 @@ def _along_the_heading(design: ExportedLine, lost: list[str]) -> ExportedLine:
     heading = degrees(atan2(design.tow.east, design.tow.north)) % 360.0
     lost.append(f"the heading, {heading:.4g} deg true: there x points ahead of the ship")
     if any(level[2] for level in levels):
-        lost.append("currents across the heading: the statics there know x and z alone")
+        lost.append("currents across the heading: its statics know only x and z")
     tow = replace(design.tow, east=speed, north=0.0)
     return replace(design, tow=tow, levels=tuple(levels))
 

@@ -89,7 +89,7 @@ def read_moordyn(path: Path) -> Design:
         items.append(ImportedPiece(_cable(kind, gravity), length))
     design.items = [_upper_end(_last(points, legs), design), *items[::-1]]
     design.items.append(ImportedPiece(_anchor(anchor, design.water)))
-    what = "damping, stiffness in bending, added mass"
+    what = "damping, bending stiffness, added mass"
     design.dropped.append(Remark("line types", what))
     return design
 

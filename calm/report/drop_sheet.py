@@ -68,8 +68,8 @@ def _instructions(plan: DropPlan) -> Prose:
     ]
     if plan.start is None:
         said.append(
-            "How long that takes, and so where the run begins, follows from the time that a piece "
-            "takes on deck: give it (--deck-time)."
+            "The start of the run follows from the time that a piece takes on deck: give "
+            "--deck-time."
         )
     else:
         behind = "before" if plan.start.distance >= 0.0 else "beyond"
@@ -171,7 +171,7 @@ def _depth_blocks(plan: DropPlan) -> list[Block]:
         return []
     depth = QUANTITIES["depth"]
     table = table_of(
-        "Depths in the drop",
+        "Depths during the drop",
         [[*run] for _, run in groupby(listed, key=_shared)],
         (Column("piece or clamp"), label_of_run),
         (
@@ -199,10 +199,10 @@ def _deepest(run: Sequence[DepthReached]) -> DepthReached:
 
 def _notes(plan: DropPlan) -> tuple[str, ...]:
     notes = [
-        "The line is a chain without inertia: what it does in the first 20 s, and the jerk at the "
-        "touchdown, are not in these figures; nor is what waves do.",
-        "± is twice the change that segments and time steps of double length make together; the "
-        "current and the drag of the anchor are known less well.",
+        "The line is modelled as a chain without inertia: the first 20 s, the jerk at "
+        "touchdown and waves are not in these figures.",
+        "± is twice the change when segments and time steps are doubled; the current and "
+        "the drag of the anchor are less certain.",
     ]
     if plan.rest_difference is not None:
         notes.append(

@@ -41,10 +41,10 @@ if TYPE_CHECKING:
 _DEPTHS = "Depths over time"
 _FALSE = "Times at which a current is more likely false than not"
 _LEGEND = (
-    "Black: measured. Blue: estimated, with its band of 95 %. Orange: by the currents alone. A "
-    "hidden sensor was not used."
+    "Black: measured. Blue: estimated, with its 95 % band. Orange: from the currents "
+    "alone. Hidden sensors were not used."
 )
-_NOTHING = "Nothing in the residuals is clearly a drift, a slipped clamp or a wrong length."
+_NOTHING = "The residuals show no clear drift, slipped clamp or wrong length."
 
 
 def motion_report(
@@ -203,15 +203,16 @@ TITLES = {
 }
 
 PLAIN = (
-    "Alone: by the currents with nothing fitted. Estimated: with the pressures of all sensors that "
-    "are used. rms is that of the difference less its mean over the calm times, the tenth with the "
-    "least knockdown."
+    "Alone: from the currents with nothing fitted. Estimated: with the pressures of "
+    "all sensors in use. rms: of the difference less its mean over the calm times, "
+    "the tenth with the least knockdown."
 )
 
 
 UNKNOWN = (
-    "The currents are not known: what they may have been is learnt from these pressures. rms is "
-    "that of the difference less its mean over the calm times, the tenth with the least knockdown."
+    "The currents are not known: they are inferred from these pressures. rms: of the "
+    "difference less its mean over the calm times, the tenth with the least "
+    "knockdown."
 )
 
 
@@ -238,8 +239,7 @@ def factors_table(factors: Mapping[str, tuple[float, float, float]], datum: floa
         (Column("factor for the whole record"), lambda one: TITLES[one[0]]),
         (Column("value", numeric=True), lambda one: f"{one[1][0]:.3f}"),
         (Column("95 % interval", numeric=True), lambda one: f"{one[1][1]:.3f}–{one[1][2]:.3f}"),
-        note=f"All depths are shifted by {datum:+.1f} m, the datum that the pressures have in "
-        "common.",
+        note=f"All depths are shifted by {datum:+.1f} m, the datum common to all pressures.",
     )
 
 

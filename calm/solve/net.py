@@ -254,10 +254,10 @@ def solve_net(
             break
         closer = net.closed(x, 4.0 * settings.angle_step, NEAR)
         if closer is None:
-            raise _unsettled("a leg comes to lie on the seabed and not")
+            raise _unsettled("a leg alternately lies on the seabed and lifts off")
         x = closer
     else:
-        raise _unsettled("a leg comes to lie on the seabed and not")
+        raise _unsettled("a leg alternately lies on the seabed and lifts off")
     coarse = net.ends(x)
     for _ in range(MOST_HALVINGS):
         for each in net.courses:

@@ -165,7 +165,7 @@ def test_arrays_of_any_layout_are_taken(subsurface: Mooring) -> None:
     ("shapes", "message"),
     [
         (((3, 5), (3, 4), (5,)), "of one shape: they are of .3, 5., .3, 4."),
-        (((), (), (5,)), "must be profiles by levels"),
+        (((), (), (5,)), "must have one shape, profiles by levels"),
         (((3, 5), (3, 5), (4,)), "depth must be"),
         (((3, 5), (3, 5), (2, 5)), "depth must be"),
     ],

@@ -130,7 +130,7 @@ def test_warnings_tell_what_to_look_at(solve):
     told = " ".join(solve(speed="1.2 m/s").warnings)
     assert "meter leans" in told
     assert "Reynolds number above 2e5" in told
-    assert "are required to hold the line" in told
+    assert "is required to hold the line" in told
 
 
 def test_an_anchor_that_is_too_light_is_lifted(solve):
