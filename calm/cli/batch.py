@@ -61,10 +61,10 @@ def batch(
 ) -> ExitCode:
     """Solve a mooring in every profile of a record or a hindcast.
 
-    Each profile takes the place of the file's current. The result has every
+    Each profile replaces the current of the file. The result has every
     component and every clamped instrument at every time; a profile without
-    equilibrium is NaN with its status, and does not stop the others. Its statistics
-    are printed, and written as RESULT.summary.json and .html.
+    equilibrium is NaN, with its status. Statistics are printed, and written as
+    RESULT.summary.json and .html.
 
     The work is kept in RESULT.part. However a run is interrupted, the same command
     resumes it; the exit code is 75 until everything is solved.
@@ -82,14 +82,14 @@ def batch(
     every
         Only every Nth profile.
     at
-        Latitude and longitude [degrees] of the column to take from a grid, as LAT,LON;
-        the `position` of the mooring file unless given.
+        Latitude and longitude [degrees] of the column to take from a grid, as
+        LAT,LON; by default the `position` of the mooring file.
     scheduler
         Address of a dask scheduler whose workers solve the profiles.
     shape
         Store the shape of the line too.
     no_statistics
-        Leave the statistics out, for a part of a longer record.
+        Write no statistics, for a part of a longer record.
     """
     if every < 1:
         raise UsageError(f"--every: {every} is not 1 or more")

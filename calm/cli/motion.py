@@ -56,12 +56,12 @@ def motion(
 ) -> ExitCode:
     """Estimate the depth of every instrument at every time from pressures and currents.
 
-    The currents move the line; the pressures correct the drag for the whole record,
-    and the current at each time. The result has the depth of every component and
-    clamped instrument with its standard deviation, and the residuals of the
-    sensors. A current meter of the line, matched by its label, is placed where the line has it.
-    Without currents, what they may have been is learnt from the pressures, of two or
-    more sensors.
+    The currents move the line; the pressures correct the drag for the whole
+    record, and the current at each time. The result has the depth of every
+    component and clamped instrument with its standard deviation, and the
+    residuals of the sensors. A current meter on the line is matched by its
+    label and placed where the line has it. Without currents, they are inferred
+    from the pressures of two or more sensors.
 
     However a run is interrupted, the same command resumes it; the exit code is 75
     until everything is solved.
@@ -83,10 +83,10 @@ def motion(
     fit
         What to estimate for the whole record besides the drag: buoyancy, length.
     hold_out
-        Labels of sensors, separated by commas, that are hidden everywhere; the result
-        is judged at them against interpolation between the others.
+        Labels of sensors, separated by commas, to hide everywhere; the result
+        at these is compared with interpolation between the others.
     cross_validate
-        Hide each sensor in turn, and judge.
+        Hide each sensor in turn, and compare.
     sea_level
         Height of the sea surface over time: NetCDF, or CSV with time,level[m].
     flags
@@ -94,10 +94,11 @@ def motion(
     gap
         Interpolate in time between values no further apart than this.
     onto
-        A NetCDF file of instruments, or a folder of files: OUTPUT is then a copy of it
-        with depths, their deviations and flags added (`depth` of several instruments,
-        `DEPTH` of one), and the result stands beside it as OUTPUT's name ending in
-        .motion.nc. Found by label, serial number or nominal depth.
+        A NetCDF file of instruments, or a folder of files: OUTPUT is then a
+        copy of it with depths, their deviations and flags added (`depth` of
+        several instruments, `DEPTH` of one), and the result itself is written
+        beside it, with a name ending in .motion.nc. Found by label, serial
+        number or nominal depth.
     replace_depth
         Replace depths that files of `--onto` already have, in the copy.
     report

@@ -27,9 +27,9 @@ def verify(
     """Compute figures that are known without CALM, and compare them.
 
     Each figure is published, or comes from a closed form or an independent
-    integration, or is a property that any line must have. Those that CALM meets
-    by construction are checked and not counted. The exit code is 1 when a figure
-    is out of its tolerance.
+    integration, or is a property that any line must have. Figures met by
+    construction are checked but not counted. The exit code is 1 if a figure is
+    out of tolerance.
 
     Parameters
     ----------
