@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import os
 import signal
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from threading import Event, current_thread, main_thread
-from time import monotonic
 from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
@@ -23,13 +21,12 @@ from calm.cli.options import (
     quantities,
     show_units,
 )
+from calm.cli.progress import ProgressTeller, grouped
 from calm.cli.streams import ExitCode, narrate, show_parts
 from calm.errors import UsageError
-from calm.quantities import duration
 
 if TYPE_CHECKING:
     from calm.batch.run import BatchOutcome
-    from calm.batch.work import Progress
     from calm.case import Mooring
     from calm.records.record import Record
 
@@ -243,74 +240,3 @@ def stopped_by_a_signal() -> Iterator[Event]:
         yield stop
     finally:
         signal.signal(signal.SIGTERM, before)
-
-
-BAR = 24
-"""Signs from nothing to all."""
-
-_REDRAWN = 0.2  # seconds between two states of the bar
-_FIRST_LINE, _NEXT_LINES = 10.0, 60.0  # seconds without a terminal
-
-
-class ProgressTeller:
-    """Tells how far a batch is; to be called with its `Progress`."""
-
-    def __init__(self) -> None:
-        self._terminal = sys.stderr is not None and sys.stderr.isatty()
-        self._drawn = False
-        self._started: float | None = None
-        self._due = 0.0
-
-    def note(self, text: str) -> None:
-        """Write a line of its own."""
-        self.clear()
-        narrate(text)
-
-    def __call__(self, progress: Progress) -> None:
-        """Report it, unless something was reported a moment ago."""
-        now = monotonic()
-        if self._started is None:
-            self._started = now
-            self._due = now + (0.0 if self._terminal else _FIRST_LINE)
-        if now < self._due:
-            return
-        text = state(progress, now - self._started)
-        if self._terminal:
-            print(f"\r\x1b[K{bar(progress)} {text}", end="", file=sys.stderr, flush=True)
-            self._drawn, self._due = True, now + _REDRAWN
-        else:
-            print(text, file=sys.stderr, flush=True)
-            self._due = now + _NEXT_LINES
-
-    def clear(self) -> None:
-        """Take the bar away."""
-        if self._drawn:
-            print("\r\x1b[K", end="", file=sys.stderr, flush=True)
-            self._drawn = False
-
-
-def bar(progress: Progress) -> str:
-    """As much of a bar as is done."""
-    filled = BAR * progress.done // progress.total
-    return f"[{'#' * filled}{'.' * (BAR - filled)}]"
-
-
-def state(progress: Progress, seconds: float) -> str:
-    """How many are done, the rate, the time that the rest takes at it, and the failures so far."""
-    from calm.batch.statuses import Ending
-
-    text = f"{grouped(progress.done)} of {grouped(progress.total)} profiles"
-    solved = progress.done - progress.found
-    if solved and seconds > 0.0:
-        rate = solved / seconds
-        left = (progress.total - progress.done) / rate
-        text += f", {grouped(round(rate))} a second, {duration(left)} left"
-    for ending, count in progress.endings.items():
-        if count and ending is not Ending.SOLVED:
-            text += f", {grouped(count)} {ending.value}"
-    return text
-
-
-def grouped(number: int) -> str:
-    """A count with its thousands apart."""
-    return f"{number:,}".replace(",", " ")

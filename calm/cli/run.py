@@ -239,7 +239,7 @@ def _to_draw_often(samples: int, seed: int) -> Callable[[Result], Uncertain]:
     """
     from calm.case.draws import normals_of
     from calm.case.uncertain import uncertain
-    from calm.cli.workers import begun, mapped
+    from calm.cli.progress import begun, mapped
 
     normals = begun(normals_of, samples, seed)
     solved = partial(mapped, workers=None, what="blocks of samples solved")

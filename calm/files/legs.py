@@ -8,13 +8,12 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field
 
-from calm.errors import Problem
+from calm.errors import Problem, unknown
 from calm.files.components import Anchor
 from calm.files.definition import LENGTH, Model, QuantityField, Text
 from calm.files.mooring_file import STAND_IN, MooringFile, Piece, Place, numbered
 from calm.files.rigid import Profiler
 from calm.files.yaml_document import SourceMapping, validate
-from calm.suggestions import unknown
 from calm.units import QuantityError
 
 if TYPE_CHECKING:

@@ -278,6 +278,8 @@ def _from_there_on(values: Floats) -> Floats:
     return sums
 
 
+NORMAL = 1.4826
+"""Standard deviation of a normal law over the median of its size."""
 CURRENT = 0.05
 """Of the factor on the whole current at one time."""
 SHEAR = 0.05

@@ -28,7 +28,7 @@ from calm.motion.common_unknowns import Common
 from calm.motion.estimate import estimated
 from calm.motion.line_response import Forward, LineResponse, points
 from calm.motion.matching import labels_of
-from calm.motion.measurements import FREE, MooringMeasurements, level_names
+from calm.motion.measurements import FREE, MooringMeasurements, by_neighbours, level_names
 from calm.motion.unknown_currents import unknown_state
 from calm.motion.whole_record import forwards_of
 from calm.physics.line import Floats
@@ -195,8 +195,9 @@ class Task:
         one = self.measured.at(slice(start, stop))
         moments = LineResponse(one, *self._forwards)
         law = self.common.law
-        state = () if law is None else (unknown_state(moments, self.common),)
-        found = estimated(moments, self.common, *state)
+        state = None if law is None else unknown_state(moments, self.common)
+        beside = self._neighbours[0][start:stop], self._neighbours[1][start:stop]
+        found = estimated(moments, self.common, state, beside)
         likely = moments.forward.solve(found.likely.level, found.likely.u, found.likely.v)
         clamps = likely.clamp_depth.shape[1]
         shift = found.depth - points(likely)
@@ -232,6 +233,10 @@ class Task:
     @cached_property
     def _forwards(self) -> tuple[Forward, dict[str, Forward]]:
         return forwards_of(self.mooring, self.common)
+
+    @cached_property
+    def _neighbours(self) -> tuple[Floats, Floats]:
+        return by_neighbours(self.measured.time, self.measured.depth)
 
     @cached_property
     def _alone(self) -> Forward:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from calm.motion import common_unknowns
 from calm.motion.common_unknowns import Common
-from calm.motion.line_response import Linear, LineResponse, ReadCurrents
+from calm.motion.line_response import Linear, LineResponse, ReadCurrents, between
 from calm.motion.measurements import MooringMeasurements
 from calm.physics.line import Floats
 
@@ -46,13 +46,17 @@ class Estimate:
 
 
 def estimated(
-    moments: LineResponse, common: Common, known: CurrentsState | None = None
+    moments: LineResponse,
+    common: Common,
+    known: CurrentsState | None = None,
+    neighbours: tuple[Floats, Floats] | None = None,
 ) -> Estimate:
     """Return the posterior of all ways to read the currents and the sensors.
 
     Parameters
     ----------
     known : the best state of all currents as they are; that of `best_state` where it is None
+    neighbours : see `calm.motion.measurements.by_neighbours`; None of times that stand alone
     """
     one, still = moments.measured, moments.forward.still
     known = best_state(moments, common) if known is None else known
@@ -64,9 +68,11 @@ def estimated(
         return mixture.estimate()
     for sensor in range(len(one.label)):
         spike = posterior(one, at, known.way.spread, common, still, sensor, furthest)
-        mixture.add(
-            every, known.way, spike, np.full(len(every), np.log(common_unknowns.SPIKES)), ()
-        )
+        chance = np.full(len(every), np.log(common_unknowns.SPIKES))
+        if neighbours is not None:
+            beside = (part[:, sensor] for part in neighbours)
+            chance += _excuse(moments, common, at, spike, sensor, *beside)
+        mixture.add(every, known.way, spike, chance, ())
     if common.law is not None:  # no current was measured that may be false
         return mixture.estimate()
     odds, worse = _odds(moments), np.full(len(every), np.log(common_unknowns.ALL_WORSE))
@@ -87,6 +93,30 @@ def estimated(
                 found = _tried(part, other, at, common, tried)
                 mixture.add(tried, other, found, chance[tried], without)
     return mixture.estimate()
+
+
+def _excuse(
+    moments: LineResponse, common: Common, at: Linear, spike: Posterior, sensor: int,
+    expected: Floats, deviation: Floats,
+) -> Floats:  # fmt: skip
+    """Return (n,) logarithms by which a reading is less likely a spike than by its own time alone.
+
+    The readings before and after it expect the one as measured, or the one that the line has
+    without it: weather moves the neighbours as well.
+
+    Parameters
+    ----------
+    spike : what is known without the sensor
+    expected, deviation : (n,) of the sensor by its neighbours [m]
+    """
+    one, point = moments.measured, moments.measured.point[sensor]
+    fall = common.fall(one.time, at.depth, moments.forward.still, one.point) * common.moved
+    there = spike.depth[:, point] + (common.offset + fall)[:, sensor]
+    wide = deviation**2 + spike.variance[:, point]
+    with np.errstate(invalid="ignore"):
+        as_line = (there - expected) ** 2 / wide + np.log(wide)
+        as_read = ((one.depth[:, sensor] - expected) / deviation) ** 2 + 2.0 * np.log(deviation)
+    return np.nan_to_num(np.minimum(0.5 * (as_read - as_line), 0.0))
 
 
 def _odds(moments: LineResponse) -> Floats:
@@ -359,22 +389,3 @@ def best_state(moments: LineResponse, common: Common) -> CurrentsState:
         at = at.moved(found.logs, moments.depths(way, found.logs))
         found = posterior(one, at, way.spread, common, still)
     return CurrentsState(way, begin, before, at, found)
-
-
-def between(one: MooringMeasurements, depth: Floats, still: Floats) -> Floats:
-    """Return (n, p) depths with what the sensors measure beside them, linear by the height in still
-    water.
-
-    Parameters
-    ----------
-    depth : (n, p) of the points as far as they are known [m]
-    still : (p,) in still water
-    """
-    order = np.argsort(still[one.point], kind="stable")
-    result = depth.copy()
-    for i, row in enumerate(one.depth):
-        known = order[np.isfinite(row[order])]
-        if len(known):
-            points = one.point[known]
-            result[i] += np.interp(still, still[points], row[known] - depth[i, points])
-    return result

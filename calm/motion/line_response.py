@@ -252,8 +252,6 @@ def points(profiles: Profiles) -> Floats:
 
 FEWEST = 20
 """Times from which the errors of what is taken from neighbours are known."""
-NORMAL = 1.4826
-"""Standard deviation of a normal law over the median of its size."""
 
 
 def filled(depth: Floats, value: Floats, known: NDArray[np.bool_]) -> Floats:
@@ -307,6 +305,25 @@ def gap_errors(level: Floats, u: Floats, v: Floats, group: Integers) -> Floats:
                 for east, north in ((u[times][:, mine], v[times][:, mine]), taken)
             )
             off = np.abs(np.log(there / here))[here + there >= np.median(here + there)]
-            errors[one, other] = NORMAL * np.median(off)
+            errors[one, other] = common_unknowns.NORMAL * np.median(off)
     least: Floats = np.maximum(errors, common_unknowns.LEVEL[1])
     return least
+
+
+def between(one: MooringMeasurements, depth: Floats, still: Floats) -> Floats:
+    """Return (n, p) depths with what the sensors measure beside them, linear by the height in still
+    water.
+
+    Parameters
+    ----------
+    depth : (n, p) of the points as far as they are known [m]
+    still : (p,) in still water
+    """
+    order = np.argsort(still[one.point], kind="stable")
+    result = depth.copy()
+    for i, row in enumerate(one.depth):
+        known = order[np.isfinite(row[order])]
+        if len(known):
+            points = one.point[known]
+            result[i] += np.interp(still, still[points], row[known] - depth[i, points])
+    return result

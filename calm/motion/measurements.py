@@ -14,13 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.batch.statuses import implausible
-from calm.errors import UsageError
+from calm.errors import UsageError, unknown
+from calm.motion.common_unknowns import NOISE, NORMAL
 from calm.motion.sensors import Sensor, split_label
 from calm.physics.line import Floats, Integers
 from calm.records.current_file import open_record
 from calm.records.record import RULES
 from calm.records.velocity import MISSING
-from calm.suggestions import unknown
 
 MOST_GROUPS = 8
 """So many levels have errors of their own; of more, neighbours share theirs."""
@@ -163,6 +163,39 @@ def measured_at(one: Sensor, wanted: Times, gap: np.timedelta64) -> Floats:
     at = np.minimum(np.searchsorted(one.time, wanted), len(one.time) - 1)
     own: Floats = np.where(one.time[at] == wanted, one.depth[at], result)
     return own
+
+
+def by_neighbours(time: Times, depth: Floats) -> tuple[Floats, Floats]:
+    """Return (n, s) depths as the readings before and after a time have them, and their deviation.
+
+    Linear in time between these. The deviation is that of the whole record, by its median, and a
+    quarter of what changes between the two; infinite where either is missing or far [m].
+
+    Parameters
+    ----------
+    time : (n,) rising
+    depth : (n, s) as measured; NaN where not [m]
+    """
+    expected, deviation = np.full_like(depth, np.nan), np.full_like(depth, np.inf)
+    hours = (time - time[:1]) / np.timedelta64(1, "h")
+    step = float(np.median(np.diff(hours))) if len(hours) > 1 else 0.0
+    for j in range(depth.shape[1]):
+        known = np.flatnonzero(np.isfinite(depth[:, j]))
+        if len(known) < 3:
+            continue
+        at, before, after = known[1:-1], known[:-2], known[2:]
+        apart, y = hours[after] - hours[before], depth[:, j]
+        change = y[after] - y[before]
+        between = y[before] + change * (hours[at] - hours[before]) / apart
+        usual = NORMAL * float(np.median(np.abs(y[at] - between)))
+        near = apart <= FAR_NEIGHBOURS * step
+        expected[at[near], j] = between[near]
+        deviation[at, j] = np.where(near, np.hypot(max(usual, NOISE), 0.25 * change), np.inf)
+    return expected, deviation
+
+
+FAR_NEIGHBOURS = 4.0
+"""Steps of the record between the readings before and after a time that say something of it."""
 
 
 def joined(

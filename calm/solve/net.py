@@ -15,8 +15,7 @@ from math import inf, isfinite
 import numpy as np
 
 from calm.errors import NoEquilibrium
-from calm.physics.line import Floats, Water
-from calm.physics.state import MarchError, Trace
+from calm.physics.line import Floats, MarchError, Trace, Water
 from calm.solve.finish import refuse_unbalanced, risen, touching
 from calm.solve.net_leg import HANGING_DOWN, PULLED, STANDING, LegCourse, LegEnd, NetLeg, Passed
 from calm.solve.net_start import NetStart, start_of

@@ -152,3 +152,22 @@ def test_the_state_of_another_reading_is_that_of_gauss_and_newton(weaker):
     assert found.logs == pytest.approx(exactly.logs, abs=3e-3)
     assert found.variance == pytest.approx(exactly.variance, rel=0.05)
     assert found.evidence == pytest.approx(exactly.evidence, abs=0.02)
+
+
+def test_a_reading_that_its_neighbours_share_is_no_spike():
+    """40 m off at one time is a spike by itself; the readings before and after tell."""
+    known = common()
+    base = linear(None, U, 0.0 * U)[SENSORS] + known.datum + known.offset
+    off = np.array([0.0, 40.0])
+    moments = LineResponse(
+        at_times(base[None] + off), SimpleNamespace(depths=linear, still=STILL), {}
+    )
+    alone = estimated(moments, known).depth[0, 2]
+    deviation = np.array([[0.5, 0.5]])
+    steady = estimated(moments, known, None, (base[None] + off, deviation)).depth[0, 2]
+    thrown = estimated(moments, known, None, (base[None], deviation)).depth[0, 2]
+    silent = estimated(moments, known, None, (base[None] * np.nan, deviation * np.inf)).depth[0, 2]
+    without_it = linear(None, U, 0.0 * U)[2] + known.datum
+    assert abs(alone - without_it) < 2.0
+    assert thrown == pytest.approx(alone) and silent == pytest.approx(alone)
+    assert steady - without_it > 30.0

@@ -6,7 +6,13 @@ import numpy as np
 import pytest
 
 from calm.errors import UsageError
-from calm.motion.measurements import CurrentMeasurements, common_times, interpolated, joined
+from calm.motion.measurements import (
+    CurrentMeasurements,
+    by_neighbours,
+    common_times,
+    interpolated,
+    joined,
+)
 from calm.motion.sensors import Sensor
 
 START = np.datetime64("2026-03-01", "ns")
@@ -93,3 +99,17 @@ def test_half_a_current_is_none(lost):
             [here], [sensor("a", hours(0, 1), [20, 21])], [0], ("a",), np.array([20.0]),
             np.timedelta64(2, "h"),
         )  # fmt: skip
+
+
+def test_neighbours_say_what_is_linear_between_them_and_nothing_across_a_gap():
+    time = hours(*range(12), 20, 21, 22)
+    depth = np.array([100.0, 101.0] * 6 + [140.0, 180.0, 220.0])[:, None]
+    depth[5] = np.nan
+    expected, deviation = by_neighbours(time, depth)
+    # ends have one neighbour; around the gap of nine hours they are too far
+    known = np.isfinite(deviation[:, 0])
+    assert np.flatnonzero(known).tolist() == [1, 2, 3, 4, 6, 7, 8, 9, 10, 13]
+    assert expected[[1, 2, 4, 13], 0] == pytest.approx([100.0, 101.0, 101.0 - 1.0 / 3.0, 180.0])
+    # median of what is left: 1 m, as a normal law; and a quarter of 80 m
+    assert deviation[1, 0] == pytest.approx(1.4826)
+    assert deviation[13, 0] == pytest.approx(np.hypot(1.4826, 20.0))
