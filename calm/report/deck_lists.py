@@ -89,7 +89,7 @@ def hardware_part(deck: Deck) -> ReportPart:
         length = "" if stock.length is None else f"{stock.length:.2f}"
         rows.append(
             (
-                Cell(stock.name, stock.basis, goes_on=True),
+                Cell(stock.name, stock.basis and f"({stock.basis})", goes_on=True),
                 Cell(stock.use),
                 Cell(str(stock.count)),
                 Cell(length),

@@ -14,7 +14,6 @@ from calm.deck.deck_items import label_of_run
 from calm.drawing.picture import figure_svg
 from calm.drop import DropPlan
 from calm.drop.fall_record import DepthReached
-from calm.drop.plan import DRAG_BAND
 from calm.physics.line import Floats
 from calm.quantities import QUANTITIES, bearing_text, duration, say
 from calm.report.blocks import (
@@ -38,7 +37,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-_DRAG_BAND = f"{DRAG_BAND:g} times smaller or larger"
 _ROWS = 6
 """Of the table of the fall."""
 _DEEPER = 0.5
@@ -101,15 +99,15 @@ def _figures(plan: DropPlan) -> tuple[tuple[str, str], ...]:
         (
             "Fall time",
             f"{plan.fall_time:.0f} s ± {_error(plan.time_error)} s; {early:.0f} to {late:.0f} s "
-            f"if the anchor's drag is {_DRAG_BAND}",
+            f"with the anchor's drag halved or doubled",
         ),
         (
             "Fall-back, towards the float",
             f"{plan.fall_back:.0f} m ± {_error(plan.distance_error)} m; {near:.0f} to {far:.0f} m "
-            f"if the anchor's drag is {_DRAG_BAND}",
+            f"with the anchor's drag halved or doubled",
         ),
         (
-            "Off that direction",
+            "Lateral offset",
             f"{abs(plan.aside):.0f} m to the {side}, seen from where it is let go",
         ),
         (

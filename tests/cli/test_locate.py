@@ -232,7 +232,7 @@ def test_every_mistake_at_once_with_its_line(calm, ranges):
             "is no number",
             "must be above 0",
             "km from the others",
-            "farther than is answered",
+            "farther than a transponder replies",
         ],
         strict=True,
     ):

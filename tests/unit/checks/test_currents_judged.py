@@ -83,7 +83,9 @@ def test_a_profile_that_does_not_cover_the_line_is_told(current, tmp_path):
     found = [message for state, message in said(of(tmp_path, current)) if state == "warn"]
     assert len(found) == bool(GAPS[current])
     if found:
-        assert found[0].startswith(f"The current is not given {GAPS[current]}: that of the nearest")
+        assert found[0].startswith(
+            f"The current is not given {GAPS[current]}: the value of the nearest"
+        )
 
 
 def test_a_mooring_deployed_elsewhere_is_unknown(tmp_path):

@@ -113,7 +113,7 @@ FLAWS = (
         "fatigue",
         None,
         "unknown",
-        "one sea is no climate",
+        "one sea is not a wave climate",
     ),
     Flaw(
         "a wire too weak",
@@ -281,7 +281,7 @@ FLAWS = (
         "knockdown",
         "ADCP float",
         "fail",
-        "2.0 m are allowed",
+        "2.0 m is allowed",
     ),
     Flaw(
         "an excursion that the design forbids",
@@ -290,7 +290,7 @@ FLAWS = (
         "excursion",
         "ADCP float",
         "fail",
-        "20.0 m are allowed",
+        "20.0 m is allowed",
     ),
     Flaw(
         "a buoy with little in reserve",
@@ -439,7 +439,7 @@ FLAWS = (
         "knockdown",
         "ADCP float",
         "fail",
-        "13.0 m are allowed",
+        "13.0 m is allowed",
         "fouling",
     ),
     Flaw(
@@ -449,7 +449,7 @@ FLAWS = (
         "knockdown",
         "ADCP float",
         "warn",
-        "13.0 m are allowed",
+        "13.0 m is allowed",
         "strumming",
     ),
     Flaw(
@@ -463,7 +463,7 @@ FLAWS = (
         "top-depth",
         None,
         "warn",
-        "10.0 m keep it clear",
+        "10.0 m would keep it clear",
     ),
     Flaw(
         "a top less deep than the design says",
@@ -472,7 +472,7 @@ FLAWS = (
         "top-depth",
         "ADCP float",
         "fail",
-        "400.0 m keep it clear",
+        "400.0 m would keep it clear",
     ),
     Flaw(
         "a release that the line overloads",
@@ -569,7 +569,7 @@ FLAWS = (
         "fish-bite",
         "polyester",
         "warn",
-        "down to 1000.0 m fish bite through rope",
+        "fish bite through rope down to 1000.0 m",
     ),
     Flaw(
         "a release above every float, beside a good one",
