@@ -183,7 +183,7 @@ def recovery(handling: Handling) -> Iterator[Verdict]:
         )
     else:
         message = f"Released below {lowest.label}, the line does not rise"
-    message += f"; {say('speed', limit)} are required."
+    message += f"; {say('speed', limit)} is required."
     if rise.in_still_water:
         message += " That is in still water: in the current no steady rise was found."
     remedy = "Add buoyancy above the release, or remove weight."

@@ -226,7 +226,7 @@ def anchor_weight(mooring: Mooring) -> Iterator[Criterion]:
     weight = _weight(mooring)
 
     def words(required: float, result: Result) -> tuple[str, str]:
-        needs = f"{say('tension', required)} are required, {_in_air(mooring, required)}."
+        needs = f"{say('tension', required)} is required, {_in_air(mooring, required)}."
         if weight is None:
             return f"The anchor's weight in water is not known; {needs}", _WHAT_IS_IT
         weighs = f"The anchor weighs {say('tension', weight)} in water; {needs}"

@@ -186,7 +186,7 @@ FLAWS = (
         "anchor-weight",
         "deadweight",
         "fail",
-        "are required",
+        "is required",
     ),
     Flaw(
         "an anchor that the line almost lifts",
@@ -409,7 +409,7 @@ FLAWS = (
         "recovery",
         "release",
         "fail",
-        "0.30 m/s are required",
+        "0.30 m/s is required",
     ),
     Flaw(
         "back-up glass that overtakes the line",
