@@ -93,8 +93,7 @@ def release_present(handling: Handling) -> Iterator[Verdict]:
     if length < LEAST_BELOW_RELEASE and all(one.fit_top_depth is None for one in below):
         message = (
             f"{piece.label} stands {say('depth', length)} above the anchor; "
-            f"{LEAST_BELOW_RELEASE:g} m would keep it out of the mud and clear of falling "
-            "gear."
+            f"{LEAST_BELOW_RELEASE:g} m would keep it out of the mud and clear of falling gear."
         )
         doubts.append((piece, message, "Hang it higher, on a rope or chain."))
     said = _words(piece.use, piece.component.name, piece.label)

@@ -147,9 +147,8 @@ def launch_speed(handling: Handling) -> Iterator[Verdict]:
     anchor, speed = handling.mooring.file.pieces[-1], launch.fall_speed
     slow, fast = (QUANTITIES["speed"].format(one) for one in launch.fall_speed_band)
     message = (
-        f"The anchor lands at {say('speed', speed)} ({slow} to {fast} with the drag of "
-        f"line and anchor doubled and halved); {GREATEST_TOUCHDOWN_SPEED:g} m/s should "
-        "not be exceeded"
+        f"The anchor lands at {say('speed', speed)} ({slow} to {fast} with the drag of line and "
+        f"anchor doubled and halved); {GREATEST_TOUCHDOWN_SPEED:g} m/s should not be exceeded"
     )
     remedy = "Lower it, or add drag: a parachute, a wider anchor."
     if launch.anchor_drag_known:

@@ -174,10 +174,9 @@ def _material(problem: _Problem, part: ExportedPart) -> str:
     normal = part.area(problem.density) / per / across if across else 0.0
     along = part.area(problem.density, along=True) / per / (pi * across) if across else 0.0
     figures = (
-        f"d = {across:.9g}  m = {max(part.likely_mass / per, _LEAST_MASS):.9g}"
-        f"  wet = {wet if abs(wet) > _LEAST_WEIGHT else _LEAST_WEIGHT:.9g}"
-        f"  Cdn = {normal:.9g}  Cdt = {along:.9g}  EA = {part.stiffness or _RIGID:.9g}"
-        "  EI = 1e-4  GJ = 1e-4"
+        f"d = {across:.9g}  m = {max(part.likely_mass / per, _LEAST_MASS):.9g}  wet = "
+        f"{wet if abs(wet) > _LEAST_WEIGHT else _LEAST_WEIGHT:.9g}  Cdn = {normal:.9g}  Cdt = "
+        f"{along:.9g}  EA = {part.stiffness or _RIGID:.9g}  EI = 1e-4  GJ = 1e-4"
     )
     name = _word(part.use)
     if isinstance(part.component, Chain) and not is_chain(name):

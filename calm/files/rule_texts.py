@@ -179,9 +179,8 @@ RULES = {
         "tension",
         "H",
         "friction × (weight in water / 1.5 − V)",
-        "The horizontal part of that rule: H ≤ friction (weight in water / 1.5 - V), friction "
-        "0.6 of a "
-        "deadweight",
+        "The horizontal part of that rule: H ≤ friction (weight in water / 1.5 - V), friction 0.6 "
+        "of a deadweight",
         figures=("weight", "density"),
     ),
     "slack": RuleText(

@@ -199,11 +199,10 @@ QUANTITY = {name: name for name in TITLES} | {"anchor_tension": "tension"}
 METHODS_IN_SHORT = {"gev": "GEV", "pot": "POT"}
 
 DEFINITIONS = (
-    "Every profile has the same weight, so a share of the profiles is a share of the "
-    "time if the record is evenly spaced. Means, percentiles, maxima and exceedance "
-    "curves are of the profiles solved. The share in which a rule fails is of the "
-    "profiles in which it is judged; the share *at most* also counts every profile "
-    "with a current that was not solved.",
+    "Every profile has the same weight, so a share of the profiles is a share of the time if the "
+    "record is evenly spaced. Means, percentiles, maxima and exceedance curves are of the "
+    "profiles solved. The share in which a rule fails is of the profiles in which it is judged; "
+    "the share *at most* also counts every profile with a current that was not solved.",
     "Percentiles: linear between the order statistics; the value of rank 1 + (n - 1) "
     "p of n is the p quantile. Tension of a component: the greater of its two ends. "
     "Knockdown and depth of a component: of its upper end.",

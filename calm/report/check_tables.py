@@ -261,9 +261,8 @@ def _sum(name: str, items: Sequence[InventoryItem]) -> Cell:
 
 
 _NOTE = (
-    "Each rule is shown for the component that breaks its limit most often; launch, "
-    "recovery and breaks are counted in the first 64 samples. A sample without "
-    "equilibrium breaks every limit."
+    "Each rule is shown for the component that breaks its limit most often; launch, recovery and "
+    "breaks are counted in the first 64 samples. A sample without equilibrium breaks every limit."
 )
 
 
@@ -382,7 +381,7 @@ def _sentence(found: Sequence[Finding]) -> Line:
     """What is found alike of some components, told of the worst of them."""
     worst = found[0]
     sign, quiet = Span(f"{_SIGNS[worst.state]} ", worst.state), worst.state is not State.FAIL
-    if worst.state is State.UNKNOWN and worst.component is not None:
+    if worst.state is State.UNKNOWN and worst.component is not None and worst.limit is None:
         names = named((one.component or "" for one in found), _LACKING)
         return sign, Span(f"{worst.rule} of {names} is unknown. {worst.remedy}", quiet=True)
     others = "" if len(found) == 1 else f" The same holds for {named_components(found[1:])}."

@@ -19,11 +19,10 @@ _SPARES = (
     "default of this program."
 )
 _IMPLIED = (
-    "A shackle is taken to have a bolt, nut and cotter pin unless its name or note "
-    "says screw pin; a termination with a thimble to have one at each end. Where "
-    "metals touch that corrode each other (those of which calm check warns), there "
-    "is an isolator at each contact and an anode on each piece of the baser metal. "
-    "Nothing else is counted unless the line lists it."
+    "A shackle is taken to have a bolt, nut and cotter pin unless its name or note says screw "
+    "pin; a termination with a thimble to have one at each end. Where metals touch that corrode "
+    "each other (those of which calm check warns), there is an isolator at each contact and an "
+    "anode on each piece of the baser metal. Nothing else is counted unless the line lists it."
 )
 
 
@@ -68,11 +67,10 @@ def cutting_part(deck: Deck) -> ReportPart:
         Column("done", share=0.0),
     )
     note = (
-        "Lengths are without load unless one is given; marks are measured from the upper "
-        f"end, under the same load. Tolerance: {_SHARE} of the length. Top deeper: by how "
-        f"much if this piece alone is {_SHARE} longer, in the environment "
-        f"{deck.environment}. Over side, onto drum: the order; the piece that goes over "
-        "last is spooled first."
+        "Lengths are without load unless one is given; marks are measured from the upper end, "
+        f"under the same load. Tolerance: {_SHARE} of the length. Top deeper: by how much if this "
+        f"piece alone is {_SHARE} longer, in the environment {deck.environment}. Over side, onto "
+        "drum: the order; the piece that goes over last is spooled first."
     )
     table = Table("Wires and ropes", columns, tuple(rows), note, by_hand=True)
     return ReportPart("Cutting and marking list", (table,))
@@ -174,11 +172,10 @@ def lifts_part(deck: Deck) -> ReportPart:
             f"with {greatest.label} over the side."
         )
     note = (
-        "In air: mass of the piece with its clamps, as the crane lifts it; cables are "
-        "paid out. Hanging: weight in water of everything over the side, hanging "
-        "straight down from the ship; below 0 it floats. Drag and swell are not "
-        "included. Shackles, links and swivels are lifted with the pieces next to them; "
-        "in the files each has its own row."
+        "In air: mass of the piece with its clamps, as the crane lifts it; cables are paid out. "
+        "Hanging: weight in water of everything over the side, hanging straight down from the "
+        "ship; below 0 it floats. Drag and swell are not included. Shackles, links and swivels "
+        "are lifted with the pieces next to them; in the files each has its own row."
     )
     return ReportPart("Lifts", (Prose(tuple(said)), _stages(deck), Note((note,))))
 

@@ -33,9 +33,8 @@ SMALLEST_SHARE = 0.005
 """Of every whole; drags that cause less of all of them are summed up in one row."""
 
 _SHARES = (
-    "Shares: all drags grow together from zero to their full value, and each is "
-    "charged with the change that its own growth causes. Drag: the horizontal force "
-    "of the water."
+    "Shares: all drags grow together from zero to their full value, and each is charged with the "
+    "change that its own growth causes. Drag: the horizontal force of the water."
 )
 _CHANGES = "Buoyancy is changed for everything buoyant, drag for everything; lengths are not."
 

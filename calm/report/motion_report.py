@@ -210,9 +210,8 @@ PLAIN = (
 
 
 UNKNOWN = (
-    "The currents are not known: they are inferred from these pressures. rms: of the "
-    "difference less its mean over the calm times, the tenth with the least "
-    "knockdown."
+    "The currents are not known: they are inferred from these pressures. rms: of the difference "
+    "less its mean over the calm times, the tenth with the least knockdown."
 )
 
 

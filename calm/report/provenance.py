@@ -96,13 +96,11 @@ _BESIDE = (
 )  # fmt: skip
 
 UNSEEN = (
-    "A static calculation does not cover waves and the tensions they cause; snap "
-    "loads on a line that falls slack; fatigue, by waves and by vortices; creep, "
-    "corrosion and wear; the jerk at the end of the launch and the swing of the line "
-    "before it; hauling and lifts on recovery.",
-    "No margin in this report includes them. They decide the life of surface "
-    "moorings in harsh weather, and no factor on a static tension is a substitute "
-    "for analysing them.",
+    "A static calculation does not cover waves and the tensions they cause; snap loads on a line "
+    "that falls slack; fatigue, by waves and by vortices; creep, corrosion and wear; the jerk at "
+    "the end of the launch and the swing of the line before it; hauling and lifts on recovery.",
+    "No margin in this report includes them. They decide the life of surface moorings in harsh "
+    "weather, and no factor on a static tension is a substitute for analysing them.",
     f"Nor does it judge {'; '.join(_BESIDE)}.",
 )
 """What is printed in every report."""

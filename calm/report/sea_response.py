@@ -30,9 +30,8 @@ _NOTE = (
     "! the piece falls slack."
 )
 _LIFE = (
-    "Life: years to a damage of 1 in these seas; low and high with deviations of "
-    "tension 15 % greater and less. Curves are quoted from other texts: compare them "
-    "with the standard."
+    "Life: years to a damage of 1 in these seas; low and high with deviations of tension 15 % "
+    "greater and less. Curves are quoted from other texts: compare them with the standard."
 )
 
 
@@ -130,9 +129,8 @@ def _told(analysis: WaveAnalysis, state: MooringInSea) -> list[str | tuple[Span,
         )
     one = analysis.accuracy
     good = (
-        f"Doubling the elements changes deviations by {one.mesh:.1%}, doubling the "
-        f"frequencies by {one.frequencies:.1%}; a fifth less drag by "
-        f"{one.linearisation:.0%}."
+        f"Doubling the elements changes deviations by {one.mesh:.1%}, doubling the frequencies by "
+        f"{one.frequencies:.1%}; a fifth less drag by {one.linearisation:.0%}."
     ).replace("%", " %")
     return [*said, (Span(good, quiet=True),)]
 
