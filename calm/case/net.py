@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field, fields, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from itertools import combinations, permutations, product
 from math import dist, inf, nan
@@ -15,165 +15,23 @@ import numpy as np
 from calm.assemble import assemble_water
 from calm.case.measure import result_of
 from calm.case.mooring import Mooring, Origin, as_read, refuse_in_the_slope
+from calm.case.net_result import EndLoad, NetResult, NodePlace
 from calm.case.parts import naming_the_piece
 from calm.case.result import Accuracy, AnchorLoad, Result
-from calm.case.result_tables import Clamps, Components
-from calm.case.tow import Tow, TowResult
+from calm.case.tow import Tow
 from calm.errors import NoEquilibrium
-from calm.files import MooringFile, Piece, read_mooring
+from calm.files import MooringFile, Piece
+from calm.files.environment import Environment
 from calm.files.legs import EndKeys, Leg, nodes_of
 from calm.files.mooring_file import STAND_IN
+from calm.physics.hull import AIR_DENSITY
 from calm.physics.line import Floats, Water
 from calm.quantities import say
 from calm.solve import Settings, Solution, Status
 from calm.solve.net import NetSolution, solve_net
 from calm.solve.net_leg import LegEnd, NetLeg
 
-
-@dataclass(frozen=True)
-class EndLoad:
-    """What a leg does to an end that is held, or to its anchor.
-
-    The pull of the line and its parts up and sideways [N], its angle from the vertical [degrees];
-    where the end is [m]. Of an anchor the weight in water that it needs, and has [N], and the
-    unstretched length of line on the seabed [m].
-    """
-
-    leg: str
-    tension: float
-    vertical: float
-    horizontal: float
-    angle: float
-    x: float
-    y: float
-    depth: float
-    required_weight: float | None = None
-    weight: float | None = None
-    grounded_length: float = 0.0
-
-
-@dataclass(frozen=True)
-class NodePlace:
-    """Where the legs of a node meet [m]; `imbalance` is what is left of their pulls there [N]."""
-
-    name: str
-    depth: float
-    x: float
-    y: float
-    imbalance: float
-
-
-@dataclass(frozen=True, kw_only=True)
-class NetResult:
-    """A converged net. Lengths and depths [m], forces [N], angles [degrees].
-
-    x and y are east and north of the origin of the file's places. `miss` is the worst distance of a
-    leg's end from where it is held, `closure` the worst of the legs', recomputed from coordinates.
-    `legs` are lines of their own, counted from their upper ends; one without an anchor has a
-    stand-in for it, of which nothing is true.
-    """
-
-    mooring: Net = field(repr=False)
-    name: str
-    type: str = "net"
-    status: str
-    iterations: int
-    segments: int
-    miss: float
-    closure: float
-    accuracy: Accuracy
-    legs: tuple[Result, ...]
-    nodes: tuple[NodePlace, ...]
-    anchors: tuple[EndLoad, ...]
-    held: tuple[EndLoad, ...]
-    warnings: tuple[str, ...] = ()
-
-    @property
-    def file(self) -> MooringFile:
-        """The file as read."""
-        return self.mooring.file
-
-    @cached_property
-    def components(self) -> Components:
-        """The pieces of the file, leg by leg."""
-        pairs = zip(self.file.legs, self.legs, strict=True)  # a leg that is joined has a stand-in
-        whole = Components.joined(
-            [leg.components.head(keys.end - keys.first) for keys, leg in pairs]
-        )
-        pieces = self.file.pieces
-        return whole.with_columns(part=list(pieces), index=np.arange(len(pieces)))
-
-    @cached_property
-    def clamps(self) -> Clamps:
-        """What is clamped on them."""
-        tables = [
-            leg.clamps.with_columns(index=leg.clamps.index + keys.first)
-            for keys, leg in zip(self.file.legs, self.legs, strict=True)
-        ]
-        return Clamps.joined(tables)
-
-    def to_dict(self) -> dict[str, Any]:
-        """The JSON object of the result format; None stands where a figure is unknown."""
-        from calm.version import __version__
-
-        components, clamps = self.components.to_dicts(), self.clamps.to_dicts()
-        for component in components:
-            for name in ("kind", "role", "tension", "least_tension"):
-                del component[name]
-        for row in (*components, *clamps):
-            row["leg"] = next(
-                leg.name for leg in self.file.legs if leg.first <= row["index"] < leg.end
-            )
-        legs = [
-            {
-                "name": leg.name,
-                "closure": leg.closure,
-                "used_buoyancy": leg.top.used_buoyancy,
-                "reserve": leg.top.reserve,
-                "shape": {name: column.tolist() for name, column in vars(leg.shape).items()},
-            }
-            for leg in self.legs
-        ]
-        anchors = [asdict(each) for each in self.anchors]
-        told = ("name", "type", "status", "iterations", "segments", "miss", "closure")
-        return {
-            "calm": __version__,
-            **{name: getattr(self, name) for name in told},
-            "accuracy": {k: v for k, v in asdict(self.accuracy).items() if v is not None},
-            **({"anchor": anchors[0]} if len(anchors) == 1 else {}),
-            "anchors": anchors,
-            "held": [
-                {k: v for k, v in asdict(each).items() if k not in _OF_ANCHORS}
-                for each in self.held
-            ],
-            "nodes": [asdict(each) for each in self.nodes],
-            "legs": legs,
-            "components": components,
-            "clamps": clamps,
-            "warnings": list(self.warnings),
-        }
-
-
-_OF_ANCHORS = ("required_weight", "weight", "grounded_length")
-
-
-def load_net(
-    path: str | Path,
-    environment: str | Path | None = None,
-    catalogs: Sequence[str | Path] = (),
-    text: str | None = None,
-) -> Net:
-    """Read the file of a net of legs; the parameters are those of `load`.
-
-    Raises
-    ------
-    InputError
-        With every mistake of the file, each with its line and column.
-    """
-    return Net(
-        read_mooring(path, environment=environment, catalogs=list(catalogs), text=text, net=True)
-    )
-
+_SKIN = 1e-3  # m above the surface, in which water turns into air
 
 Way = tuple[float, tuple[str, ...]]
 """Along legs: how long they are in all [m], and their names."""
@@ -188,7 +46,21 @@ class Net:
     @cached_property
     def water(self) -> Water:
         """Depth, current and density by level."""
-        return assemble_water(self.file.environment)
+        return self.water_of(self.file.environment)
+
+    def water_of(self, environment: Environment) -> Water:
+        """The water of an environment, with still air above it where an end is held there."""
+        water, ends = assemble_water(environment), [e for leg in self.file.legs for e in leg.ends]
+        if all(end.held is None or end.held.depth >= 0.0 for end in ends):
+            return water
+        below, (current, density) = water.level > 0.0, water.at(np.zeros(()))
+        level = np.array([-_SKIN, 0.0, *water.level[below]])
+        u, v, w = (
+            np.array([0.0, speed, *column[below]])
+            for speed, column in zip(current, (water.u, water.v, water.w), strict=True)
+        )
+        density = np.array([AIR_DENSITY, density, *water.density[below]])
+        return replace(water, level=level, u=u, v=v, w=w, density=density)
 
     @property
     def settings(self) -> Settings:
@@ -210,6 +82,17 @@ class Net:
             line = mooring.line if upper.free else replace(mooring.line, floating=None)
             found.append(NetLeg(line, upper, lower))
         return tuple(found)
+
+    @cached_property
+    def meant(self) -> tuple[Mooring, ...]:
+        """The legs, each known to be meant for the surface where still water has it there."""
+        try:
+            afloat = [bool(leg.afloat) for leg in self.equilibrium(self.water.still()).legs]
+        except NoEquilibrium:
+            afloat = [False] * len(self.lines)
+        return tuple(
+            Mooring(line.file, surface) for line, surface in zip(self.lines, afloat, strict=True)
+        )
 
     def with_lines(self, lines: Sequence[Sequence[Piece]]) -> Net:
         """Return the net with other pieces in its legs, stand-ins for anchors among them."""
@@ -234,8 +117,8 @@ class Net:
             )
         return LegEnd()
 
-    def equilibrium(self, water: Water) -> NetSolution:
-        """The net solved in some water.
+    def equilibrium(self, water: Water, near: NetSolution | None = None) -> NetSolution:
+        """The net solved in some water, sought first near another solution of it.
 
         Raises
         ------
@@ -244,7 +127,8 @@ class Net:
         solved_for = [piece for line in self.lines for piece in line.file.pieces[:-1]]
         try:
             with naming_the_piece(solved_for):
-                return solve_net(self.legs, len(nodes_of(self.file.legs)), water, self.settings)
+                nodes = len(nodes_of(self.file.legs))
+                return solve_net(self.legs, nodes, water, self.settings, near)
         except NoEquilibrium as failure:
             raise self._too_short() or failure from None
 
@@ -292,13 +176,14 @@ class Net:
                 still = self.equilibrium(self.water.still()).legs
             except NoEquilibrium:
                 still = [None] * len(solution.legs)
-        return _result_of(self, solution, still)
+        return net_result(self, solution, still)
 
 
-AnyResult = Result | TowResult | NetResult
+def net_result(net: Net, found: NetSolution, still: Sequence[Solution | None]) -> NetResult:
+    """The result of a solution; `still` are its legs in still water, None where that is unknown.
 
-
-def _result_of(net: Net, found: NetSolution, still: Sequence[Solution | None]) -> NetResult:
+    NoEquilibrium: an anchor is lifted, or a leg hangs into the slope.
+    """
     legs: list[Result] = []
     ends: list[EndLoad] = []
     for mooring, solution, before in zip(net.lines, found.legs, still, strict=True):
@@ -372,12 +257,15 @@ def _refuse_a_lifted_anchor(mooring: Mooring, solution: Solution) -> None:
 
 
 def load_any(
-    path: str | Path, environment: str | Path | None = None, catalogs: Sequence[str | Path] = ()
+    path: str | Path,
+    environment: str | Path | None = None,
+    catalogs: Sequence[str | Path] = (),
+    text: str | None = None,
 ) -> Mooring | Tow | Net:
     """Read the file of a mooring, a tow or a net; the parameters are those of `load`.
 
     InputError: with every mistake of the file, each with its line and column.
     """
-    origin = Origin(path, environment, tuple(Path(each) for each in catalogs), None)
+    origin = Origin(path, environment, tuple(Path(each) for each in catalogs), text)
     file = origin.read(net=True)
     return Net(file) if file.legs else as_read(file, origin)

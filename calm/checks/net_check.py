@@ -13,7 +13,8 @@ from itertools import pairwise, takewhile
 import numpy as np
 
 from calm.case import Mooring, Result
-from calm.case.net import Net, NetResult
+from calm.case.net import Net
+from calm.case.net_result import NetResult
 from calm.checks.arrangement import (
     clamp_place,
     hardware,

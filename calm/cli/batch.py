@@ -28,6 +28,7 @@ from calm.errors import UsageError
 if TYPE_CHECKING:
     from calm.batch.run import BatchOutcome
     from calm.case import Mooring
+    from calm.case.net import Net
     from calm.records.record import Record
 
 BATCH_EXAMPLES = """Examples:
@@ -56,7 +57,7 @@ def batch(
     catalog: CatalogFiles = None,
     units: Units = None,
 ) -> ExitCode:
-    """Solve a mooring in every profile of a record or a hindcast.
+    """Solve a mooring, or a net of legs, in every profile of a record or a hindcast.
 
     Each profile replaces the current of the file. The result has every
     component and every clamped instrument at every time; a profile without
@@ -93,12 +94,16 @@ def batch(
     if workers is not None and workers < 1:
         raise UsageError(f"--workers: {workers} is not 1 or more")
     from calm.batch.run import run_batch
+    from calm.case import Tow
+    from calm.case.net import load_any
     from calm.records.current_file import open_record
     from calm.records.record import RULES, parse_period, parse_place
 
     period = None if time is None else parse_period(time)
     check_output(output, file, currents)
-    mooring = mooring_of(file, environment, catalog or [], "batch")
+    mooring = load_any(file, environment, catalog or [])
+    if isinstance(mooring, Tow):
+        raise UsageError(f"{file} is a tow; calm batch is for moorings")
     show_units(units, [mooring.file])
     position = mooring.file.position
     own = None if position is None else (position.latitude, position.longitude)
@@ -130,7 +135,7 @@ def batch(
     return code
 
 
-def _summarized(output: Path, mooring: Mooring, stop: Event) -> bool:
+def _summarized(output: Path, mooring: Mooring | Net, stop: Event) -> bool:
     """Show what the result says, and write it beside the result; whether that was possible.
 
     UsageError: the result cannot be read.
@@ -152,7 +157,7 @@ def _summarized(output: Path, mooring: Mooring, stop: Event) -> bool:
     return False
 
 
-def _implausible(outcome: BatchOutcome, mooring: Mooring, record: Record) -> str:
+def _implausible(outcome: BatchOutcome, mooring: Mooring | Net, record: Record) -> str:
     """How many profiles have a current that cannot be true, and the first of them."""
     from calm.batch.statuses import first_implausible
 
@@ -196,20 +201,6 @@ def _kinds(outcome: BatchOutcome) -> Iterator[str]:
                 if ending_of(status) is ending
             )
             yield f"{grouped(count)} {ending.value} ({statuses})"
-
-
-def mooring_of(file: Path, environment: str | None, catalogs: list[Path], command: str) -> Mooring:
-    """A mooring file, read for a command that is not for tows.
-
-    UsageError: it is a tow.
-    """
-    import calm
-    from calm.case import Tow
-
-    read = calm.load(file, environment=environment, catalogs=catalogs)
-    if isinstance(read, Tow):
-        raise UsageError(f"{file} is a tow; calm {command} is for moorings")
-    return read
 
 
 def check_output(output: Path, *inputs: Path) -> None:

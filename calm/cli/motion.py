@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from calm.cli.batch import check_output, ended, mooring_of, stopped_by_a_signal
+from calm.cli.batch import check_output, ended, stopped_by_a_signal
 from calm.cli.options import (
     CatalogFiles,
     Declination,
@@ -120,6 +120,7 @@ def motion(
     from calm.batch.finished import open_result, readable
     from calm.batch.profiles import Batch
     from calm.batch.work import compile_solver
+    from calm.case import Tow, load
     from calm.motion.correction import MeasuredRecord, run_motion
     from calm.motion.instrument_file import read_instruments
     from calm.motion.line_places import places_of
@@ -153,7 +154,9 @@ def motion(
         check_output(output, file, *files)
     elif replace_depth:
         raise UsageError("--replace needs --onto")
-    mooring = mooring_of(file, environment, catalog or [], "motion")
+    mooring = load(file, environment, catalog or [])
+    if isinstance(mooring, Tow):
+        raise UsageError(f"{file} is a tow; calm motion is for moorings")
     for notice in mooring.file.notices:
         narrate(f"{file}: {notice}")
     turned = quantities({"declination": (declination, "angle")}).get("declination")

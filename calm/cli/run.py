@@ -19,7 +19,8 @@ from calm.errors import InputError, NoEquilibrium, Problem, UsageError
 if TYPE_CHECKING:
     from calm.case import Mooring, Result, Tow
     from calm.case.explain import Explanation
-    from calm.case.net import AnyResult, Net
+    from calm.case.net import Net
+    from calm.case.net_result import AnyResult
     from calm.case.uncertain import Uncertain
     from calm.drawing.schematic.in_terminal import TerminalSchematic
 
@@ -105,8 +106,7 @@ def run(
     show_units(units, [line.file for line in lines])
     of_moorings = {"--explain": explain, "--uncertainty": uncertainty}
     _refuse(of_moorings, "moorings; these are tows", Tow, files, lines)
-    _refuse({**of_moorings, "--netcdf": netcdf}, "single lines; these are nets of legs", Net, files,
-            lines, " (tables, pictures, reports, --json and --csv are for these too)")  # fmt: skip
+    _refuse(of_moorings, "single lines; these are nets of legs", Net, files, lines)
     return solve_and_show(
         lines, outputs, explain=explain, schematic=schematic, draws=draws, verbose=verbose
     )
@@ -217,13 +217,12 @@ def _refuse(
     kind: type,
     files: Sequence[Path],
     lines: Sequence[Mooring | Tow | Net],
-    more: str = "",
 ) -> None:
     """Refuse the first option that is asked for, where a file is of a kind it is not for."""
     asked = [option for option, value in options.items() if value]
     those = [str(file) for file, line in zip(files, lines, strict=True) if isinstance(line, kind)]
     if asked and those:
-        raise UsageError(f"{asked[0]} is for {what}: {', '.join(those)}{more}")
+        raise UsageError(f"{asked[0]} is for {what}: {', '.join(those)}")
 
 
 def _explained(result: Result) -> Explanation:
@@ -250,7 +249,8 @@ def _schematic(
     line: Mooring | Tow | Net, result: AnyResult | None
 ) -> tuple[TerminalSchematic, ...]:
     """Draw a line, or its legs, in the signs that the standard output can carry."""
-    from calm.case.net import Net, NetResult
+    from calm.case.net import Net
+    from calm.case.net_result import NetResult
     from calm.drawing.schematic.in_terminal import TerminalSchematic, can_carry
 
     plain = not can_carry(getattr(sys.stdout, "encoding", None))

@@ -10,7 +10,7 @@ from pydantic import BeforeValidator, Field
 
 from calm.errors import Problem, unknown
 from calm.files.components import Anchor
-from calm.files.definition import LENGTH, Model, QuantityField, Text
+from calm.files.definition import Model, QuantityField, Text
 from calm.files.mooring_file import STAND_IN, MooringFile, Piece, Place, numbered
 from calm.files.rigid import Profiler
 from calm.files.yaml_document import SourceMapping, validate
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 MOST_LEGS = 40
 NET_REFUSED = (
-    "this is a net of legs; `calm run` solves it and `calm check` judges it, this takes a single "
+    "this is a net of legs, for `calm run`, `calm check` and `calm batch`; this takes a single "
     "line: one free end, one anchor"
 )
 
@@ -35,7 +35,9 @@ _At = Annotated[
 class HeldKeys(Model):
     """Say where an end is held: by a ship, a pier, a platform."""
 
-    depth: Annotated[float, LENGTH] = Field(description="below the surface", examples=["2 m"])
+    depth: _Offset = Field(
+        description="below the surface; negative: above it, in air", examples=["2 m", "-10 m"]
+    )
     at: _At = (0.0, 0.0)
 
 
@@ -317,6 +319,11 @@ def _check_held(legs: Sequence[Leg], section: SourceMapping, problems: list[Prob
         if leg.name not in held:
             message = f"nothing holds leg `{leg.name}`: no anchor, no held end"
             problems.append(section.problem((leg.name,), message, key=True))
+
+
+def leg_numbers(legs: Sequence[Leg]) -> list[int]:
+    """Return the number of the leg that each piece of the file is in."""
+    return [number for number, leg in enumerate(legs) for _ in range(leg.first, leg.end)]
 
 
 def nodes_of(legs: Sequence[Leg]) -> Mapping[str, int]:
