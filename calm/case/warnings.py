@@ -200,10 +200,7 @@ def _on_the_seabed(result: Result, solution: Solution) -> Iterator[str]:
             f"{say('depth', float(rise))}."
         )
     if solution.landed and result.still_shape is result.shape:
-        yield (
-            "In still water the line on the seabed may lie in any direction: the offset is "
-            "the greatest possible."
-        )
+        yield "In still water the line on the seabed may lie any way: the offset is the greatest."
 
 
 def _other_equilibrium(_: Result | TowResult, solution: Solution) -> Iterator[str]:
@@ -236,7 +233,7 @@ def _wind_ignored(result: Result, solution: Solution) -> Iterator[str]:
     floating = solution.line.floating
     felt = floating is not None and (floating.hull is not None or floating.wind_area is not None)
     if wind is not None and solution.surface and not (solution.riding is not None and felt):
-        yield ("Wind on the float is neglected: its area above the water is not known.")
+        yield "Wind on the float is neglected: its area above the water is not known."
 
 
 def _below_the_sea(result: TowResult, _: Solution) -> Iterator[str]:
@@ -244,8 +241,7 @@ def _below_the_sea(result: TowResult, _: Solution) -> Iterator[str]:
     tow = result.tow
     if tow.towing.in_air and tow.towing.height > 0.0 and lowest > 0.0:
         yield (
-            f"The line reaches {lowest:.1f} m below the sea surface, but all of it is treated "
-            "as in air."
+            f"The line reaches {lowest:.1f} m below the surface, but all of it is taken as in air."
         )
 
 

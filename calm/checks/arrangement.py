@@ -76,10 +76,7 @@ def release_present(handling: Handling) -> Iterator[Verdict]:
         return
     piece = pieces[release]
     if _NO_RELEASE.search(_words(piece.use, piece.component.name)):
-        message = (
-            f"{piece.label} has the role of a release, but its name is that of something that "
-            "does not open."
-        )
+        message = f"{piece.label} has the role of a release, but its name is not a release's."
         yield unknown(piece, message, "Give `role: release` to the release alone.")
         return
     above = [part.component for part in every_part(pieces[: release + 1])]
@@ -102,10 +99,7 @@ def release_present(handling: Handling) -> Iterator[Verdict]:
         doubts.append((piece, message, "Use two in parallel, and call them a `pair`."))
     for index, one in enumerate(pieces[:release]):
         if one.component.role == "release" and not _floats(pieces[: index + 1]):
-            message = (
-                f"Nothing above {one.label}, a release, floats: once released there, nothing "
-                "comes up."
-            )
+            message = f"Nothing above release {one.label} floats: once released, nothing comes up."
             doubts.append((one, message, "Put it below what floats, or give it another role."))
     for one in below:
         if net_buoyancy(one.component, mooring.water.gravity) > 0.0:
@@ -127,10 +121,7 @@ def hardware(handling: Handling) -> Iterator[Verdict]:
     """Return whether the line has any shackle, link or swivel at all, with weight and strength."""
     pieces = handling.mooring.file.pieces
     if not any(piece.component.role == "connector" for piece in pieces):
-        message = (
-            "The line lists no shackle, link or swivel: the joints between its pieces are "
-            "not judged."
-        )
+        message = "The line lists no shackle, link or swivel: its joints are not judged."
         yield verdict_on(None, State.WARN, message, "Add the connecting hardware to the line.")
 
 
@@ -333,9 +324,7 @@ def _of_profiler(result: Result, row: ClampRow) -> Iterator[Verdict]:
     yield at_least(part, row.tension, least, message, "Add buoyancy above it.")
     yield from _way_of(part, wire)
     if component.drive_force is None:
-        told = (
-            f"The drive force of {part.label} is not known, nor whether it can climb in a current."
-        )
+        told = f"The drive force of {part.label} is not known, nor whether it can climb."
         yield unknown(part, told, "Give its `drive_force` and `speed`.")
         return
     flow, density = water.at(np.array(row.depth))
@@ -360,9 +349,7 @@ def _lasting(travels: Sequence[ProfilerTravel], part: Clamp) -> Iterator[Verdict
         if travel.label == part.label and (travel.time or 0.0) > LONGEST_PROFILE:
             took, most = duration(travel.time or 0.0), duration(LONGEST_PROFILE)
             message = f"A profile of {part.label} takes {took}; its time limit allows {most}."
-            yield verdict_on(
-                part, State.WARN, message, "Shorten the profile, or let it travel faster."
-            )
+            yield verdict_on(part, State.WARN, message, "Shorten the profile, or travel faster.")
 
 
 def _way_of(part: Clamp, wire: Piece) -> Iterator[Verdict]:

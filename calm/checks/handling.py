@@ -84,8 +84,7 @@ def backup(handling: Handling) -> Iterator[Verdict]:
         worst.margin,
         worst.required,
         f"{after} the part that holds the release has a buoyancy of "
-        f"{say('tension', worst.margin)}; {say('tension', worst.required)} is needed to "
-        "bring it up.",
+        f"{say('tension', worst.margin)}; {say('tension', worst.required)} would raise it.",
         f"Add {say('tension', worst.required - worst.margin)} of buoyancy above the release.",
         State.WARN if alone else State.FAIL,
         source=cite("backup_margin"),
@@ -177,11 +176,9 @@ def recovery(handling: Handling) -> Iterator[Verdict]:
         yield _hauled_in(lowest, float(rise.arrival[rise.released]), rise)
         return
     if rise.rise_speed > 0.0:
-        message = (
-            f"Released below {lowest.label}, the line rises at {say('speed', rise.rise_speed)}"
-        )
+        message = f"Released below {lowest.label}, it rises at {say('speed', rise.rise_speed)}"
     else:
-        message = f"Released below {lowest.label}, the line does not rise"
+        message = f"Released below {lowest.label}, it does not rise"
     message += f"; {say('speed', limit)} is required."
     if rise.in_still_water:
         message += " That is in still water: in the current no steady rise was found."
@@ -191,10 +188,7 @@ def recovery(handling: Handling) -> Iterator[Verdict]:
     if verdict.state is State.PASS and rise.rise_speed < USUAL_RISE_SPEED:
         verdict = replace(verdict, state=State.WARN, remedy=remedy)
     elif rise.rise_speed > FAST_RISE_SPEED:
-        message += (
-            f" Beyond {FAST_RISE_SPEED:g} m/s floats leap out of the water and the line below "
-            "them loops."
-        )
+        message += f" Beyond {FAST_RISE_SPEED:g} m/s floats leap and the line below them loops."
         remedy = "Remove buoyancy, or keep the ship clear."
         verdict = replace(verdict, state=State.WARN, message=message, remedy=remedy)
     yield verdict
@@ -218,8 +212,7 @@ def _hauled_in(lowest: LinePart, arrival: float, rise: Recovery) -> Verdict:
     if isnan(arrival):
         depth = say("depth", float(rise.hangs_at[rise.released]))
         message = (
-            f"Once released, {lowest.label} does not come up: it hangs from the float, down "
-            f"to {depth}."
+            f"Released, {lowest.label} does not come up: it hangs from the float, down to {depth}."
         )
         remedy = "Haul it in; mind its weight."
         return verdict_on(lowest, State.WARN, message, remedy)
@@ -227,7 +220,7 @@ def _hauled_in(lowest: LinePart, arrival: float, rise: Recovery) -> Verdict:
     return reported(
         lowest,
         rise.rise_speed,
-        f"Once released, {lowest.label} comes up after {minutes:.0f} minutes.",
+        f"Released, {lowest.label} comes up after {minutes:.0f} minutes.",
     )
 
 

@@ -83,10 +83,7 @@ def wave_slack(evidence: MooringInWaves) -> Iterator[Verdict]:
                 f"The least tension of {piece.label} is {say('tension', row.least)} in waves of "
                 f"Hs {state.sea.significant_height:.1f} m; below 0 it falls slack and snatches."
             )
-            remedy = (
-                "Give the line more weight or more stretch, or solve it in the time domain: "
-                "`calm export`"
-            )
+            remedy = "Add weight or stretch, or solve it in the time domain: `calm export`"
             yield _sure(waves, at_least(piece, row.least, 0.0, message, f"{remedy}."))
 
 
@@ -102,7 +99,7 @@ def fatigue(evidence: MooringInWaves) -> Iterator[Verdict]:
         yield unknown(
             None,
             message,
-            "Give `waves: {scatter: FILE}`, a table of seas with their shares of the time.",
+            "Give `waves: {scatter: FILE}`, seas with their shares of the time.",
         )
         return
     limit = checks.fatigue_factor * checks.service_time

@@ -28,7 +28,7 @@ from calm.motion.matching import (
 from calm.motion.measurements import MooringMeasurements, joined, read_currents
 from calm.motion.remarks import Agreement
 from calm.motion.sensors import parse_flags, read_sea_level, read_sensors, split_label
-from calm.motion.study import HeldOut, Study, cross_validated, judged, prepare, several
+from calm.motion.study import HeldOut, cross_validated, judged, prepare, several
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -143,33 +143,19 @@ class MotionEstimate:
 
     Attributes
     ----------
-    study : what was estimated for the whole record, and its agreement
-    notes : what was said of the input, in sentences
+    name : of the mooring
+    factors : of the whole record, each with the ends of its interval of 95 %
+    sensors, held_out : agreement of the sensors in use and of those hidden, by label
+    remarks, notes : doubts about the data; what was said of the input, in sentences
     """
 
-    study: Study
+    name: str
+    factors: Mapping[str, tuple[float, float, float]]
+    sensors: Mapping[str, Agreement]
+    held_out: Mapping[str, HeldOut]
+    remarks: tuple[str, ...]
     notes: tuple[str, ...]
     _dataset: Dataset
-
-    @property
-    def factors(self) -> Mapping[str, tuple[float, float, float]]:
-        """Return each factor of the whole record with the ends of its interval of 95 %."""
-        return self.study.factors
-
-    @property
-    def sensors(self) -> Mapping[str, Agreement]:
-        """Return how the estimate agrees with each used sensor, by label."""
-        return self.study.fit
-
-    @property
-    def held_out(self) -> Mapping[str, HeldOut]:
-        """Return how well the depths of each hidden sensor were found, by label."""
-        return {one.label: one for one in self.study.held_out}
-
-    @property
-    def remarks(self) -> tuple[str, ...]:
-        """Return doubts about the data, in sentences."""
-        return self.study.remarks
 
     def to_xarray(self) -> Dataset:
         """Return the dataset that ``calm motion`` writes, with labels and units."""
@@ -178,9 +164,8 @@ class MotionEstimate:
     def __repr__(self) -> str:
         """Return the times, the factors and the agreement, in ten lines at most."""
         time = self._dataset["time"].values
-        name = self.study.task.mooring.file.name or "mooring"
         span = f"{str(time[0])[:16]} to {str(time[-1])[:16]}"
-        lines = [f"{name}: {len(time)} times, {span}"]
+        lines = [f"{self.name}: {len(time)} times, {span}"]
         lines += [
             f"{factor}: {value:.3f} ({low:.3f} to {high:.3f})"
             for factor, (value, low, high) in self.factors.items()
@@ -258,7 +243,11 @@ def estimate_motion(
         with open_result(output) as kept:
             dataset = kept.load()
     study = judged(task, measured, dataset)
+    held = list(study.held_out)
     if cross_validate:
-        each = cross_validated(mooring, measured, names, hold_out, lambda _: None, workers)
-        study = replace(study, held_out=(*study.held_out, *each))
-    return MotionEstimate(study, tuple(notes), dataset)
+        held += cross_validated(mooring, measured, names, hold_out, lambda _: None, workers)
+    by_label = {one.label: one for one in held}
+    said = study.remarks, tuple(notes)
+    return MotionEstimate(
+        mooring.file.name or "mooring", study.factors, study.fit, by_label, *said, dataset
+    )

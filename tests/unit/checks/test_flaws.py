@@ -341,7 +341,7 @@ FLAWS = (
         "recovery",
         None,
         "warn",
-        "the line rises at",
+        "it rises at",
     ),
     Flaw(
         "a parafil that breaks in the launch",
@@ -560,7 +560,7 @@ FLAWS = (
         "hardware",
         None,
         "warn",
-        "the joints between its pieces are not judged",
+        "its joints are not judged",
     ),
     Flaw(
         "a rope where fish bite",
@@ -583,7 +583,7 @@ FLAWS = (
         "release-present",
         "upper",
         "warn",
-        "Nothing above upper, a release, floats",
+        "Nothing above release upper floats",
     ),
     Flaw(
         "a nylon rope without stiffness",
@@ -618,7 +618,7 @@ FLAWS = (
         "recovery",
         None,
         "warn",
-        "Beyond 3 m/s floats leap out of the water and the line below them loops.",
+        "Beyond 3 m/s floats leap and the line below them loops.",
     ),
     Flaw(
         "a clamp that slips",
@@ -672,7 +672,7 @@ FLAWS = (
         "release-present",
         None,
         "unknown",
-        "has the role of a release, but its name is that of something that does not open.",
+        "has the role of a release, but its name is not a release's.",
     ),
     Flaw(
         "two clamps in one place",
