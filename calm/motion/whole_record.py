@@ -10,7 +10,15 @@ from numpy.typing import NDArray
 
 from calm.case import Mooring
 from calm.motion import common_unknowns
-from calm.motion.common_unknowns import Common, Evidence, first_time, fits, hanging_sensors
+from calm.motion.common_unknowns import (
+    RAMPS,
+    Common,
+    Evidence,
+    first_time,
+    fits,
+    hanging_sensors,
+    moves,
+)
 from calm.motion.estimate import best_state
 from calm.motion.line_response import STEP, Forward, LineResponse, gap_errors
 from calm.motion.measurements import MooringMeasurements
@@ -114,15 +122,17 @@ def estimate_common(
         )
         time = part.time[good]
         depth, still = here.begin.depth[good], moments.forward.still
-        moves = common.fall(time, depth, still, part.point)
-        whole = fixed @ common.value[:-sensors] + moves * common.moved
+        gone = common.fall(time, depth, still, part.point)
+        whole = fixed @ common.value[:-sensors] + gone * common.moved
         raw: Floats = np.where(there, left + whole, 0.0)
         begun = replace(known, since=np.full(sensors, measured.time[0]))
+        span = measured.time[-1] - measured.time[0]
+        share = (time - measured.time[0]) / max(span, np.timedelta64(1, "ns"))
         fall = begun.fall(time, depth, still, part.point)
         evidence = _evidence(raw, left, fixed, expected, there)
         scale, likely = _scale(left, expected, currents, common.scale)
         beside, best = 0.0, 0.0
-        for moved, rest, odds in fits(evidence, fall, *_unmoved(begun)):
+        for moved, rest, odds in fits(evidence, fall, share, *_unmoved(begun)):
             other, gained = _scale(rest, expected, currents, common.scale)
             if not moved:
                 if gained + odds > likely:
@@ -136,7 +146,7 @@ def estimate_common(
         alike = repeated(evidence.pulls(fixed, left)[:, 0]) if names else 1.0
         before = common.value
         begun = replace(begun, scale=scale, widened=_widened(left, expected, there))
-        common = _placed(begun, evidence, fall, time, alike)
+        common = _placed(begun, evidence, fall, time, share, alike)
         deviation = np.sqrt(np.diag(common.covariance))
         if (np.abs(common.value - before) <= ENOUGH * deviation).all():
             break
@@ -179,21 +189,22 @@ def _memory(evidence: Evidence, left: Floats) -> float:
 
 
 def _placed(
-    known: Common, evidence: Evidence, fall: Floats, time: NDArray[np.datetime64], alike: float
-) -> Common:
+    known: Common, evidence: Evidence, fall: Floats, time: NDArray[np.datetime64], share: Floats,
+    alike: float,
+) -> Common:  # fmt: skip
     """Return what is common by the linear law of all times, over all ways the sensors may hang.
 
     Parameters
     ----------
     known : beforehand
     fall : (n, s) change of the depth of each sensor with how far down the line it has moved
-    time : (n,) of the evidence
+    time, share : (n,) of the evidence, and of the record, 0 to 1
     alike : so many times that follow each other have the same error, as far as factors go
     """
     sensors = fall.shape[1]
-    first = first_time(evidence, fall, *_unmoved(known))
-    fall = np.where(np.arange(len(time))[:, None] >= first, fall, 0.0)
-    seen = np.concatenate([evidence.seen, fall[:, :, None] * np.eye(sensors)], axis=2)
+    first = first_time(evidence, fall, share, *_unmoved(known))
+    gone = moves(first, fall, share)
+    seen = np.concatenate([evidence.seen, gone[:, :, None] * np.eye(sensors)], axis=2)
     normal, pull = evidence.normal(seen), evidence.pulls(seen, evidence.left).sum(axis=0)
     free = np.linalg.solve(normal + np.eye(len(normal)) / common_unknowns.ELSEWHERE**2, pull)
     longest = _memory(evidence, evidence.left - seen @ free)
@@ -211,9 +222,22 @@ def _placed(
         offset=offset,
         moved=moved,
         since=np.where(first > 0, time[first], known.since),
+        until=_until(first, known.since, time, share),
         elsewhere=found.elsewhere,
         covariance=found.covariance,
     )
+
+
+def _until(
+    first: Integers, since: NDArray[np.datetime64], time: NDArray[np.datetime64], share: Floats
+) -> NDArray[np.datetime64]:
+    """Return (s,) the times up to which sensors drift; NaT of those that do not."""
+    until = np.full(len(first), "NaT", "M8[ns]")
+    if share[-1] > 0.0:
+        whole = (time[-1] - since) / share[-1]
+        for code, part in RAMPS.items():
+            until = np.where(first == code, since + part * whole, until)
+    return until
 
 
 def _chosen(measured: MooringMeasurements) -> Integers:
