@@ -18,8 +18,8 @@ from machine import describe
 import calm
 from calm.checks.comparison import comparison_of
 from calm.deck import deck_of
-from calm.deck.cutting import cuts_of
 from calm.deck.deck_items import Order, deck_items_of
+from calm.deck.hardware import cuts_of
 from calm.drop import drop_plan
 from calm.report.deck_files import deck_report
 from calm.report.diagram import Paper

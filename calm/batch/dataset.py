@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from calm.batch.profiles import Profiles
 from calm.batch.statuses import STATUSES
 from calm.case import Mooring
+from calm.case.net import Net
 from calm.case.parts import clamps_down
 from calm.dataset.netcdf import (
     CLAMPS,
@@ -27,10 +28,12 @@ from calm.dataset.netcdf import (
     Variable,
     labels,
     numbers,
+    of_net,
     origin,
     station,
 )
 from calm.files import Clamp
+from calm.files.legs import leg_numbers
 from calm.files.rigid import Body
 from calm.physics.line import Floats
 
@@ -72,7 +75,7 @@ def laid_out(
     }
 
 
-def layout_of(mooring: Mooring, record: Record, shape: ShapeNodes | None) -> ResultLayout:
+def layout_of(mooring: Mooring | Net, record: Record, shape: ShapeNodes | None) -> ResultLayout:
     """Lay out the result of a mooring in the profiles of a record."""
     pieces = mooring.file.pieces
     clamps = [clamp.label for clamp in clamps_down(pieces)]
@@ -93,7 +96,13 @@ def layout_of(mooring: Mooring, record: Record, shape: ShapeNodes | None) -> Res
         if dimension in sizes:
             beside = f"{_LABELLED[dimension]} {next(iter(quantities))}{where}"
             variables += numbers(("time", dimension), quantities, beside)
-    variables += numbers(("time",), OF_ENDS, where.strip())
+    legs = mooring.file.legs
+    along = ("time", "leg") if legs else ("time",)
+    variables += numbers(along, OF_ENDS, where.strip())
+    if legs:
+        sizes["leg"], own = len(legs), leg_numbers(legs)
+        of_clamps = [own[piece.index] for piece in pieces for _ in piece.clamps]
+        variables = of_net(variables, [leg.name for leg in legs], own, of_clamps)
     variables.append(
         Variable("status", ("time",), "|i1", {
             "standard_name": "status_flag", "long_name": "whether there is an equilibrium",
@@ -133,7 +142,7 @@ def _nodes(shape: ShapeNodes) -> list[Variable]:
     ]
 
 
-def _station(mooring: Mooring, record: Record) -> tuple[list[Variable], str]:
+def _station(mooring: Mooring | Net, record: Record) -> tuple[list[Variable], str]:
     """The mooring as a station: at the place of the currents where its file has no position."""
     name, position = mooring.file.name or "mooring", mooring.file.position
     if position is not None:

@@ -16,8 +16,7 @@ from numpy.typing import NDArray
 
 from calm.batch.work_store import IDENTITY, WORK, Store, refuse_another
 from calm.dataset.netcdf import write_netcdf
-from calm.errors import UsageError
-from calm.suggestions import unknown
+from calm.errors import UsageError, unknown
 from calm.whole_file import flush_to_disk
 
 if TYPE_CHECKING:

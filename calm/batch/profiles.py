@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from calm.assemble import assemble_water
+from calm.batch.net_profiles import NetProfiles
 from calm.batch.solving import (
     HEAPED,
     LACKS_ROOM,
@@ -28,6 +29,7 @@ from calm.batch.statuses import STATUSES, implausible
 from calm.batch.threads import processors
 from calm.case import Mooring
 from calm.case.measure import clamps_of, components_of
+from calm.case.net import Net
 from calm.case.parts import clamps_down
 from calm.dataset import netcdf
 from calm.files import CurrentTable
@@ -68,7 +70,8 @@ class Profiles:
     component_label, clamp_label : (p,), (m,)
     depth_top, x_top, y_top, tension_top, tension_bottom, tilt, knockdown : (n, p)
     clamp_depth, clamp_x, clamp_y, clamp_tension, clamp_tilt, clamp_knockdown : (n, m)
-    top_depth, anchor_vertical, anchor_horizontal, used_buoyancy : (n,)
+    top_depth, anchor_vertical, anchor_horizontal, used_buoyancy : (n,), or (n, l) of the legs of a
+        net: NaN where one has no free upper end or no anchor
     status : (n,) index in `STATUSES`
     """
 
@@ -101,7 +104,7 @@ class Profiles:
 
     def to_xarray(self) -> Dataset:
         """Return a dataset with labels and units, its dimensions `profile` (or `profile_0`, …),
-        `component` and `clamp`.
+        `component`, `clamp` and, of a net, `leg`.
         """
         from xarray import Dataset
 
@@ -110,7 +113,7 @@ class Profiles:
         kinds = (
             (netcdf.OF_COMPONENT, ("component",)),
             (netcdf.OF_CLAMP, ("clamp",)),
-            (netcdf.OF_ENDS, ()),
+            (netcdf.OF_ENDS, ("leg",) * (self.top_depth.ndim - self.status.ndim)),
         )
         variables: dict[str, Any] = {
             name: (
@@ -126,7 +129,7 @@ class Profiles:
 
 
 def solve_profiles(
-    mooring: Mooring,
+    mooring: Mooring | Net,
     u: ArrayLike,
     v: ArrayLike,
     depth: ArrayLike,
@@ -162,10 +165,11 @@ def solve_profiles(
 
 @dataclass(frozen=True)
 class Batch:
-    """A mooring made ready for many profiles, which may come in several goes."""
+    """A mooring or a net made ready for many profiles, which may come in several goes."""
 
-    mooring: Mooring
+    mooring: Mooring | Net
     _starts: Floats | None = field(default=None, init=False, repr=False, compare=False)
+    _net: NetProfiles | None = field(default=None, init=False, repr=False, compare=False)
 
     @cached_property
     def water(self) -> Water:
@@ -182,13 +186,33 @@ class Batch:
         workers: int | None = None,
     ) -> Profiles:
         """As `solve_profiles`."""
-        if not isinstance(self.mooring, Mooring):
+        if not isinstance(self.mooring, Mooring | Net):
             kind = type(self.mooring).__name__
             raise TypeError(f"a Mooring is needed, as calm.load gives it, not a {kind}")
         if workers is not None and workers < 1:
             raise ValueError(f"{workers} workers: at least one is needed")
         shape, current = _checked(u, v, depth, w)
-        line, count = self.mooring.line, len(current[1])
+        if isinstance(self.mooring, Net):
+            measured = self._solve_net(self.mooring, current)
+        else:
+            measured = self._solve_lines(self.mooring, current, workers)
+        return measured if shape == measured.status.shape else _shaped(measured, shape)
+
+    def _solve_net(self, net: Net, current: tuple[Floats, ...]) -> Profiles:
+        if self._net is None:
+            vars(self).update(_net=NetProfiles(net))
+        assert self._net is not None
+        status = np.zeros(len(current[1]), np.int8)
+        status[self._implausible(current)] = _IMPLAUSIBLE
+        columns: dict[str, Any] = self._net.solve(current, status)
+        pieces, clamps = net.file.pieces, clamps_down(net.file.pieces)
+        labels = tuple(piece.label for piece in pieces), tuple(clamp.label for clamp in clamps)
+        return Profiles(labels[0], labels[1], status=status, **columns)
+
+    def _solve_lines(
+        self, mooring: Mooring, current: tuple[Floats, ...], workers: int | None
+    ) -> Profiles:
+        line, count = mooring.line, len(current[1])
         rows = Results(
             np.full((count, len(OF_PIECE), len(line.length)), np.nan),
             np.full((count, len(OF_CLAMP), len(line.clamp_piece)), np.nan),
@@ -201,45 +225,48 @@ class Batch:
             levels = depth if len(depth) == 1 else depth[block]
             mine = levels, *(array[block] for array in others)
             columns = Results(*(array[block] for array in rows))
-            self._solve_block(mine, columns, status[block])
+            self._solve_block(mooring, mine, columns, status[block])
 
         solve(slice(0, 0))  # compiles where need be
         with ThreadPoolExecutor(workers or processors()) as pool:
             for _ in pool.map(solve, [slice(at, at + BLOCK) for at in range(0, count, BLOCK)]):
                 pass
-        measured = _measured(self.mooring, rows, status)
-        return measured if shape == (count,) else _shaped(measured, shape)
+        return _measured(mooring, rows, status)
+
+    def _implausible(self, current: tuple[Floats, ...]) -> NDArray[np.bool_]:
+        """(n,) profiles with a level that is faster than any current, or deeper than any sea."""
+        greatest = self.mooring.file.environment.maximum_speed
+        depth, u, v, w = current
+        return np.asarray(implausible(depth, u, v, w, greatest).any(axis=1))
 
     def _solve_block(
-        self, current: tuple[Floats, ...], rows: Results, status: NDArray[np.int8]
+        self, mooring: Mooring, current: tuple[Floats, ...], rows: Results, status: NDArray[np.int8]
     ) -> None:
         # always copies: what is read-only is of another type
         depth, u, v, w = (np.array(array, np.float64, order="C") for array in current)
-        false = implausible(depth, u, v, w, self.mooring.file.environment.maximum_speed).any(axis=1)
+        false = self._implausible((depth, u, v, w))
         if false.any():
             u[false] = np.nan
         endings = np.zeros(len(status), np.int64)
-        self._solve_rows((depth, u, v, w), rows, endings, MANY_ROOM)
+        self._solve_rows(mooring, (depth, u, v, w), rows, endings, MANY_ROOM)
         for ending in np.unique(endings).tolist():
-            status[endings == ending] = self._status_of(ending)
-        lifts = (endings == FOUND) & (rows.ends[:, 1] > self.mooring.anchor_weight)
+            status[endings == ending] = _status_of(mooring, ending)
+        lifts = (endings == FOUND) & (rows.ends[:, 1] > mooring.anchor_weight)
         status[lifts] = _ANCHOR_LIFTS
         status[false] = _IMPLAUSIBLE
         for array in rows:
             array[status != 0] = np.nan
 
-    def _status_of(self, ending: int) -> int:
-        """The index in `STATUSES` of how a profile ends."""
-        own = {NO_CURRENT: _NO_CURRENT, LEVELS_COINCIDE: _LEVELS_COINCIDE}
-        if ending == HEAPED:
-            return STATUSES.index(self.mooring.heaped("a piece").status)
-        return own[ending] if ending in own else STATUSES.index(STATUS_OF[ending].label)
-
     def _solve_rows(
-        self, current: tuple[Floats, ...], rows: Results, endings: Integers, room: int
+        self,
+        mooring: Mooring,
+        current: tuple[Floats, ...],
+        rows: Results,
+        endings: Integers,
+        room: int,
     ) -> None:
         """Solve profiles, with room for so many segments; with more where that is too little."""
-        mooring, line, water = self.mooring, self.mooring.line, self.water
+        line, water = mooring.line, self.water
         depth, *parts = current
         levels = depth.shape[1] + len(water.level)
         problem = problem_of(
@@ -275,10 +302,18 @@ class Batch:
             mine = depth if len(depth) == 1 else depth[again]
             found, ends = Results(*(array[again] for array in rows)), endings[again]
             few = (mine, *(np.ascontiguousarray(part[again]) for part in parts))
-            self._solve_rows(few, found, ends, MORE_ROOM * room)
+            self._solve_rows(mooring, few, found, ends, MORE_ROOM * room)
             endings[again] = ends
             for array, solved in zip(rows, found, strict=True):
                 array[again] = solved
+
+
+def _status_of(mooring: Mooring, ending: int) -> int:
+    """The index in `STATUSES` of how a profile ends."""
+    own = {NO_CURRENT: _NO_CURRENT, LEVELS_COINCIDE: _LEVELS_COINCIDE}
+    if ending == HEAPED:
+        return STATUSES.index(mooring.heaped("a piece").status)
+    return own[ending] if ending in own else STATUSES.index(STATUS_OF[ending].label)
 
 
 def _checked(

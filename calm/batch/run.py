@@ -29,6 +29,7 @@ from calm.batch.threads import Stopped, go_on, processors
 from calm.batch.work import BatchWork, Progress, compile_solver
 from calm.batch.work_store import identity_of, open_store, to_text
 from calm.case import Mooring
+from calm.case.net import Net
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
@@ -70,7 +71,7 @@ class BatchOutcome:
 
 
 def run_batch(
-    mooring: Mooring,
+    mooring: Mooring | Net,
     record: Record,
     output: Path,
     *,
@@ -110,7 +111,9 @@ def run_batch(
     if record.count == 0:
         raise UsageError("the record has no profile in the time that was asked for")
     say, stop = tell or (lambda _: None), stop or Event()
-    nodes = nodes_of(mooring) if shape else None
+    if shape and isinstance(mooring, Net):
+        raise UsageError("--shape is for single lines; of a net the ends of all pieces are stored")
+    nodes = nodes_of(mooring) if shape and isinstance(mooring, Mooring) else None
     batch = Batch(nodes.mooring if nodes else mooring)
     if block is None:
         block = _block_for(record.count)

@@ -11,11 +11,10 @@ from math import atan2, inf, isfinite, pi, sqrt
 from typing import Any, NamedTuple
 
 from calm.physics.compiled import set_row
-from calm.physics.line import Floats, Integers
+from calm.physics.line import NO_ROOM, Floats, Integers
 from calm.physics.passing import FAILURE
 from calm.physics.profile import Interval, Sea
 from calm.physics.referee import RefereeShape, find_ends
-from calm.physics.state import NO_ROOM
 from calm.solve.mooring import HANGING, LANDED, NODES, SOUGHT, UNKNOWN_VALUE, AskedSearch
 from calm.solve.problem import BELOW, COARSE, FINE, Limits, LineProblem, Search
 from calm.solve.refine import is_segment

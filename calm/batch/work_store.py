@@ -28,6 +28,7 @@ from pydantic import BaseModel
 
 from calm.batch.threads import go_on
 from calm.case import Mooring
+from calm.case.net import Net
 from calm.dataset.netcdf import LEVEL, Chunk, ResultLayout, chunk_shape
 from calm.errors import UsageError
 from calm.version import __version__
@@ -257,7 +258,7 @@ _NO_MATTER = frozenset(
 
 
 def identity_of(
-    mooring: Mooring, record: Record, options: Mapping[str, Any], stop: Event
+    mooring: Mooring | Net, record: Record, options: Mapping[str, Any], stop: Event
 ) -> dict[str, Any]:
     """All that the figures of a result follow from, as JSON has it.
 

@@ -14,11 +14,10 @@ from typing import ClassVar
 
 from calm.case.parts import all_parts
 from calm.case.targets import pointed
-from calm.errors import UsageError
+from calm.errors import UsageError, unknown
 from calm.files import Anchor, Cable, Chain, Clamp, Component, Flexible, MooringFile, Piece, Place
 from calm.files.definition import STANDARD_GRAVITY
 from calm.files.mooring_file import numbered, placed
-from calm.suggestions import unknown
 from calm.units import DIMENSIONS, QuantityError, parse_quantity, with_unit
 
 MOST_BUOYANCY = 100.0

@@ -24,7 +24,7 @@ import numpy as np
 
 from calm.physics.line import Floats, Integers, Line, Water
 from calm.solve import Settings, Solution, solve_mooring
-from calm.solve.nearby import Nearby
+from calm.solve.mooring import Nearby
 
 STAGES = (4, 8)
 """Gauss points in t: the second number where the first misses the whole by `FAIR`."""

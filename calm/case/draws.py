@@ -21,7 +21,7 @@ from calm.physics.line import Floats, Line, Water
 from calm.physics.stretch import ElongationCurve
 from calm.physics.track import Track
 from calm.solve import Settings, Solution, solve_mooring
-from calm.solve.nearby import Nearby
+from calm.solve.mooring import Nearby
 
 P = ParamSpec("P")
 T = TypeVar("T")

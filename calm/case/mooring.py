@@ -17,7 +17,7 @@ from calm.case.parts import naming_the_piece, parts_of
 from calm.case.profilers import profilers_of
 from calm.case.result import Result
 from calm.case.tow import Tow
-from calm.errors import NoEquilibrium, UsageError
+from calm.errors import NoEquilibrium, UsageError, unknown
 from calm.files import MooringFile, read_mooring
 from calm.files.editing import Draft
 from calm.files.editing.draft import LINE, clamps_of
@@ -29,7 +29,6 @@ from calm.physics.seawater import REFERENCE_DENSITY
 from calm.solve import Settings, Solution, Status, fit_length, solve_mooring
 from calm.solve.problem import COARSE_STEP
 from calm.solve.solution import standing_lift, too_heavy
-from calm.suggestions import unknown
 from calm.whole_file import read_text
 
 

@@ -20,8 +20,8 @@ from calm.case.result import Accuracy, AnchorLoad, Result
 from calm.case.result_tables import Clamps, Components
 from calm.case.tow import Tow, TowResult
 from calm.errors import NoEquilibrium
-from calm.files import MooringFile, Piece, read_mooring
-from calm.files.legs import EndKeys, Leg, nodes_of
+from calm.files import MooringFile, Piece
+from calm.files.legs import EndKeys, Leg, leg_numbers, nodes_of
 from calm.files.mooring_file import STAND_IN
 from calm.physics.line import Floats, Water
 from calm.quantities import say
@@ -112,6 +112,19 @@ class NetResult:
         ]
         return Clamps.joined(tables)
 
+    @property
+    def ends(self) -> dict[str, Floats]:
+        """Of each leg the depth of its free upper end [m], the share in use of the buoyancy there,
+        and the pull on its anchor up and sideways [N]; NaN where there is none.
+        """
+        free = np.array([1.0 if keys.top.free else nan for keys in self.file.legs])
+        return {
+            "top_depth": free * [leg.top.depth for leg in self.legs],
+            "anchor_vertical": np.array([leg.anchor.vertical for leg in self.legs]),
+            "anchor_horizontal": np.array([leg.anchor.horizontal for leg in self.legs]),
+            "used_buoyancy": free * [leg.top.used_buoyancy for leg in self.legs],
+        }
+
     def to_dict(self) -> dict[str, Any]:
         """The JSON object of the result format; None stands where a figure is unknown."""
         from calm.version import __version__
@@ -120,10 +133,9 @@ class NetResult:
         for component in components:
             for name in ("kind", "role", "tension", "least_tension"):
                 del component[name]
+        numbers = leg_numbers(self.file.legs)
         for row in (*components, *clamps):
-            row["leg"] = next(
-                leg.name for leg in self.file.legs if leg.first <= row["index"] < leg.end
-            )
+            row["leg"] = self.legs[numbers[row["index"]]].name
         legs = [
             {
                 "name": leg.name,
@@ -155,24 +167,6 @@ class NetResult:
 
 
 _OF_ANCHORS = ("required_weight", "weight", "grounded_length")
-
-
-def load_net(
-    path: str | Path,
-    environment: str | Path | None = None,
-    catalogs: Sequence[str | Path] = (),
-    text: str | None = None,
-) -> Net:
-    """Read the file of a net of legs; the parameters are those of `load`.
-
-    Raises
-    ------
-    InputError
-        With every mistake of the file, each with its line and column.
-    """
-    return Net(
-        read_mooring(path, environment=environment, catalogs=list(catalogs), text=text, net=True)
-    )
 
 
 Way = tuple[float, tuple[str, ...]]
@@ -211,6 +205,17 @@ class Net:
             found.append(NetLeg(line, upper, lower))
         return tuple(found)
 
+    @cached_property
+    def meant(self) -> tuple[Mooring, ...]:
+        """The legs, each known to be meant for the surface where still water has it there."""
+        try:
+            afloat = [bool(leg.afloat) for leg in self.equilibrium(self.water.still()).legs]
+        except NoEquilibrium:
+            afloat = [False] * len(self.lines)
+        return tuple(
+            Mooring(line.file, surface) for line, surface in zip(self.lines, afloat, strict=True)
+        )
+
     def with_lines(self, lines: Sequence[Sequence[Piece]]) -> Net:
         """Return the net with other pieces in its legs, stand-ins for anchors among them."""
         legs: list[Leg] = []
@@ -234,8 +239,8 @@ class Net:
             )
         return LegEnd()
 
-    def equilibrium(self, water: Water) -> NetSolution:
-        """The net solved in some water.
+    def equilibrium(self, water: Water, near: NetSolution | None = None) -> NetSolution:
+        """The net solved in some water, sought first near another solution of it.
 
         Raises
         ------
@@ -244,7 +249,8 @@ class Net:
         solved_for = [piece for line in self.lines for piece in line.file.pieces[:-1]]
         try:
             with naming_the_piece(solved_for):
-                return solve_net(self.legs, len(nodes_of(self.file.legs)), water, self.settings)
+                nodes = len(nodes_of(self.file.legs))
+                return solve_net(self.legs, nodes, water, self.settings, near)
         except NoEquilibrium as failure:
             raise self._too_short() or failure from None
 
@@ -292,13 +298,17 @@ class Net:
                 still = self.equilibrium(self.water.still()).legs
             except NoEquilibrium:
                 still = [None] * len(solution.legs)
-        return _result_of(self, solution, still)
+        return net_result(self, solution, still)
 
 
 AnyResult = Result | TowResult | NetResult
 
 
-def _result_of(net: Net, found: NetSolution, still: Sequence[Solution | None]) -> NetResult:
+def net_result(net: Net, found: NetSolution, still: Sequence[Solution | None]) -> NetResult:
+    """The result of a solution; `still` are its legs in still water, None where that is unknown.
+
+    NoEquilibrium: an anchor is lifted, or a leg hangs into the slope.
+    """
     legs: list[Result] = []
     ends: list[EndLoad] = []
     for mooring, solution, before in zip(net.lines, found.legs, still, strict=True):
@@ -372,12 +382,15 @@ def _refuse_a_lifted_anchor(mooring: Mooring, solution: Solution) -> None:
 
 
 def load_any(
-    path: str | Path, environment: str | Path | None = None, catalogs: Sequence[str | Path] = ()
+    path: str | Path,
+    environment: str | Path | None = None,
+    catalogs: Sequence[str | Path] = (),
+    text: str | None = None,
 ) -> Mooring | Tow | Net:
     """Read the file of a mooring, a tow or a net; the parameters are those of `load`.
 
     InputError: with every mistake of the file, each with its line and column.
     """
-    origin = Origin(path, environment, tuple(Path(each) for each in catalogs), None)
+    origin = Origin(path, environment, tuple(Path(each) for each in catalogs), text)
     file = origin.read(net=True)
     return Net(file) if file.legs else as_read(file, origin)

@@ -8,9 +8,8 @@ from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from calm.errors import NoEquilibrium
+from calm.errors import NoEquilibrium, unknown
 from calm.files import Clamp, Piece
-from calm.suggestions import unknown
 
 if TYPE_CHECKING:
     from calm.case.mooring import Mooring

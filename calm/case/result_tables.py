@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any, ClassVar, Generic, Protocol, Self, TypeVa
 
 import numpy as np
 
+from calm.errors import unknown
 from calm.files import Clamp, Piece, Place
 from calm.files.mooring_file import STAND_IN
 from calm.physics.line import Floats
-from calm.suggestions import unknown
 
 if TYPE_CHECKING:
     import pandas

@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 from calm.case.parts import TOP, one_part, parts_of
 from calm.case.result_tables import ClampRow, ComponentRow, rows_by_place
-from calm.errors import UsageError
+from calm.errors import UsageError, unknown
 from calm.files import Piece, Place
-from calm.suggestions import unknown
 from calm.units import DIMENSIONS, QuantityError, parse_quantity
 
 if TYPE_CHECKING:

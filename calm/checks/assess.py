@@ -59,7 +59,7 @@ from calm.checks.situations import (
 from calm.checks.wave_rules import IN_WAVES, MooringInWaves
 from calm.drop.launch import launch_of
 from calm.errors import NoEquilibrium
-from calm.files import Place
+from calm.files import MooringFile, Place
 from calm.files.mooring_file import STAND_IN
 from calm.files.rule_texts import RULES as TEXTS
 from calm.solve import expect_many
@@ -194,12 +194,18 @@ def findings_of(
     if situation.result is not None:
         file, result = situation.result.file, estimated_result(situation.result)
         end, acceptance = file.pieces[-1].place, Acceptance.of_file(file, day)
-        anchored, left_out = file.pieces[-1].use != STAND_IN, left_out_of_a_leg(file)
-        for rule in (each for each in STANDING if anchored or not each.of_anchor):
-            for verdict in rule.judge(result) if rule.name not in left_out else ():
-                if anchored or verdict.place != end:
+        for rule in STANDING:
+            for verdict in rule.judge(result) if is_judged(file, rule) else ():
+                if verdict.place != end or file.pieces[-1].use != STAND_IN:
                     finding = rule.find(verdict, mooring, environment, situation.name)
                     yield acceptance.of(finding)
+
+
+def is_judged(file: MooringFile, rule: Rule, piece: int = 0) -> bool:
+    """Return whether a rule judges a piece of a line, which may be a leg of a net."""
+    anchored = file.pieces[-1].use != STAND_IN
+    asked = anchored or not (rule.of_anchor or piece == len(file.pieces) - 1)
+    return asked and rule.name not in left_out_of_a_leg(file)
 
 
 def _findings_in_waves(

@@ -16,6 +16,7 @@ from calm.case.parts import parts_of
 from calm.checks.criterion import said
 from calm.checks.finding import State, Verdict, rule, unknown, verdict_on
 from calm.checks.posture import JUDGED_ROLES
+from calm.errors import nearest
 from calm.files import Anchor, Cable, Chain, Component, Cylinder, Flexible, Profiler, Sphere
 from calm.files.catalogue import Assembly
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
@@ -27,7 +28,6 @@ from calm.physics.materials import (
     density_of,
     materials_in,
 )
-from calm.suggestions import nearest
 
 if TYPE_CHECKING:
     from calm.checks.handling import Handling

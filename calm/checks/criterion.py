@@ -140,6 +140,12 @@ def _depth(result: Result, part: JudgedPart) -> float:
     return nan if result.type == "surface" and top <= AT_SURFACE else max(top, bottom)
 
 
+def _offset(result: Result) -> float:
+    """Of the top from the anchor, which in a net need not be at the origin."""
+    anchor = result.components[-1]
+    return hypot(result.top.x - anchor.x_top, result.top.y - anchor.y_top)
+
+
 READINGS: dict[str, Callable[[Result, JudgedPart], float]] = {
     "tension": lambda result, part: float(result.components.tension[part.index]),
     "tension_bottom": lambda result, part: float(result.components.tension_bottom[part.index]),
@@ -148,7 +154,7 @@ READINGS: dict[str, Callable[[Result, JudgedPart], float]] = {
     "depth": _depth,
     "top_depth": lambda result, _: result.top.depth,
     "knockdown": lambda result, _: nan if result.top.knockdown is None else result.top.knockdown,
-    "offset": lambda result, _: hypot(result.top.x, result.top.y),
+    "offset": lambda result, _: _offset(result),
     "required_weight": lambda result, _: result.anchor.required_weight,
     "vertical": lambda result, _: result.anchor.vertical,
     "slide": lambda result, _: (

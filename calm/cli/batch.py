@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import os
 import signal
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from threading import Event, current_thread, main_thread
-from time import monotonic
 from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
@@ -23,14 +21,14 @@ from calm.cli.options import (
     quantities,
     show_units,
 )
+from calm.cli.progress import ProgressTeller, grouped
 from calm.cli.streams import ExitCode, narrate, show_parts
 from calm.errors import UsageError
-from calm.quantities import duration
 
 if TYPE_CHECKING:
     from calm.batch.run import BatchOutcome
-    from calm.batch.work import Progress
     from calm.case import Mooring
+    from calm.case.net import Net
     from calm.records.record import Record
 
 BATCH_EXAMPLES = """Examples:
@@ -59,7 +57,7 @@ def batch(
     catalog: CatalogFiles = None,
     units: Units = None,
 ) -> ExitCode:
-    """Solve a mooring in every profile of a record or a hindcast.
+    """Solve a mooring, or a net of legs, in every profile of a record or a hindcast.
 
     Each profile takes the place of the file's current. The result has every
     component and every clamped instrument at every time; a profile without
@@ -96,12 +94,16 @@ def batch(
     if workers is not None and workers < 1:
         raise UsageError(f"--workers: {workers} is not 1 or more")
     from calm.batch.run import run_batch
+    from calm.case import Tow
+    from calm.case.net import load_any
     from calm.records.current_file import open_record
     from calm.records.record import RULES, parse_period, parse_place
 
     period = None if time is None else parse_period(time)
     check_output(output, file, currents)
-    mooring = mooring_of(file, environment, catalog or [], "batch")
+    mooring = load_any(file, environment, catalog or [])
+    if isinstance(mooring, Tow):
+        raise UsageError(f"{file} is a tow; calm batch is for moorings")
     show_units(units, [mooring.file])
     position = mooring.file.position
     own = None if position is None else (position.latitude, position.longitude)
@@ -133,7 +135,7 @@ def batch(
     return code
 
 
-def _summarized(output: Path, mooring: Mooring, stop: Event) -> bool:
+def _summarized(output: Path, mooring: Mooring | Net, stop: Event) -> bool:
     """Show what the result says, and write it beside the result; whether that was possible.
 
     UsageError: the result cannot be read.
@@ -155,7 +157,7 @@ def _summarized(output: Path, mooring: Mooring, stop: Event) -> bool:
     return False
 
 
-def _implausible(outcome: BatchOutcome, mooring: Mooring, record: Record) -> str:
+def _implausible(outcome: BatchOutcome, mooring: Mooring | Net, record: Record) -> str:
     """How many profiles have a current that cannot be true, and the first of them."""
     from calm.batch.statuses import first_implausible
 
@@ -201,20 +203,6 @@ def _kinds(outcome: BatchOutcome) -> Iterator[str]:
             yield f"{grouped(count)} {ending.value} ({statuses})"
 
 
-def mooring_of(file: Path, environment: str | None, catalogs: list[Path], command: str) -> Mooring:
-    """A mooring file, read for a command that is not for tows.
-
-    UsageError: it is a tow.
-    """
-    import calm
-    from calm.case import Tow
-
-    read = calm.load(file, environment=environment, catalogs=catalogs)
-    if isinstance(read, Tow):
-        raise UsageError(f"{file} is a tow; calm {command} is for moorings")
-    return read
-
-
 def check_output(output: Path, *inputs: Path) -> None:
     """Refuse a result that cannot be written, or would take the place of what it is made from."""
     # unlike `Path.resolve`, it takes links that lead round in a circle
@@ -243,74 +231,3 @@ def stopped_by_a_signal() -> Iterator[Event]:
         yield stop
     finally:
         signal.signal(signal.SIGTERM, before)
-
-
-BAR = 24
-"""Signs from nothing to all."""
-
-_REDRAWN = 0.2  # seconds between two states of the bar
-_FIRST_LINE, _NEXT_LINES = 10.0, 60.0  # seconds without a terminal
-
-
-class ProgressTeller:
-    """Tells how far a batch is; to be called with its `Progress`."""
-
-    def __init__(self) -> None:
-        self._terminal = sys.stderr is not None and sys.stderr.isatty()
-        self._drawn = False
-        self._started: float | None = None
-        self._due = 0.0
-
-    def note(self, text: str) -> None:
-        """Write a line of its own."""
-        self.clear()
-        narrate(text)
-
-    def __call__(self, progress: Progress) -> None:
-        """Report it, unless something was reported a moment ago."""
-        now = monotonic()
-        if self._started is None:
-            self._started = now
-            self._due = now + (0.0 if self._terminal else _FIRST_LINE)
-        if now < self._due:
-            return
-        text = state(progress, now - self._started)
-        if self._terminal:
-            print(f"\r\x1b[K{bar(progress)} {text}", end="", file=sys.stderr, flush=True)
-            self._drawn, self._due = True, now + _REDRAWN
-        else:
-            print(text, file=sys.stderr, flush=True)
-            self._due = now + _NEXT_LINES
-
-    def clear(self) -> None:
-        """Take the bar away."""
-        if self._drawn:
-            print("\r\x1b[K", end="", file=sys.stderr, flush=True)
-            self._drawn = False
-
-
-def bar(progress: Progress) -> str:
-    """As much of a bar as is done."""
-    filled = BAR * progress.done // progress.total
-    return f"[{'#' * filled}{'.' * (BAR - filled)}]"
-
-
-def state(progress: Progress, seconds: float) -> str:
-    """How many are done, the rate, the time that the rest takes at it, and the failures so far."""
-    from calm.batch.statuses import Ending
-
-    text = f"{grouped(progress.done)} of {grouped(progress.total)} profiles"
-    solved = progress.done - progress.found
-    if solved and seconds > 0.0:
-        rate = solved / seconds
-        left = (progress.total - progress.done) / rate
-        text += f", {grouped(round(rate))} a second, {duration(left)} left"
-    for ending, count in progress.endings.items():
-        if count and ending is not Ending.SOLVED:
-            text += f", {grouped(count)} {ending.value}"
-    return text
-
-
-def grouped(number: int) -> str:
-    """A count with its thousands apart."""
-    return f"{number:,}".replace(",", " ")

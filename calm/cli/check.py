@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, NamedTuple
 from calm.cli.check_files import DesignFile, read_designs
 from calm.cli.options import CatalogFiles, Samples, Seed, Units, show_units
 from calm.cli.outputs import OutputPath, Outputs
+from calm.cli.progress import FEW, mapped
 from calm.cli.run import draws_of
 from calm.cli.streams import ExitCode, gravest, narrate
-from calm.cli.workers import FEW, mapped
 from calm.errors import InputError, Problem, UsageError, internal_failure
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from calm.cli.workers import mapped
+from calm.cli.progress import mapped
 from calm.errors import InputError, NoEquilibrium, Problem, UsageError
 
 if TYPE_CHECKING:

@@ -72,6 +72,7 @@ def import_(
     """
     from calm.exchange.importing import ImportOptions, import_file, record_file
     from calm.report.folder import check_destination, write_file
+    from calm.report.result_files import to_json
 
     if not files:
         raise UsageError("calm import needs a file")
@@ -108,9 +109,9 @@ def import_(
             write_file(record, record_file(imported.record, imported.file.name))
         write_file(target, imported.text.encode("utf-8", "replace"))
         _tell(imported, target, record)
-    documents = [_document(imported, target) for imported, target in done]
     if json is not None:
-        _write_json(documents[0] if len(documents) == 1 else documents, json)
+        text = to_json([_document(imported, target) for imported, target in done])
+        show(text) if json == STDOUT else write_file(json, text.encode())
     return ExitCode.DONE
 
 
@@ -181,18 +182,6 @@ def _document(imported: Imported, target: Path) -> dict[str, Any]:
         "dropped": [vars(each) for each in imported.dropped],
         "matched": [vars(each) for each in imported.matched],
     }
-
-
-def _write_json(document: object, target: Path) -> None:
-    from json import dumps
-
-    from calm.report.folder import write_file
-
-    text = dumps(document, indent=2, ensure_ascii=False) + "\n"
-    if target == STDOUT:
-        show(text)
-    else:
-        write_file(target, text.encode())
 
 
 EXPORT_EXAMPLES = """Examples:

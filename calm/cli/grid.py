@@ -8,14 +8,15 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import Parameter
 
 from calm.cli.batch import check_output
+from calm.cli.options import span_of
 from calm.cli.streams import ExitCode, narrate, show_parts
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
     import numpy as np
 
-    from calm.grid.depths import MooringDepths
     from calm.grid.field import GriddedQuantity
+    from calm.grid.samples import MooringDepths
     from calm.records.instrument_series import InstrumentSeries
 
 GRID_EXAMPLES = """Examples:
@@ -71,22 +72,27 @@ def grid(
     report
         Write a page and a PDF, grid.html and grid.pdf, in this folder.
     """
-    from calm.cli.streams import progress
+    from calm.cli.progress import progress
     from calm.dataset.discovery import hashed
-    from calm.grid.depths import read_depths
+    from calm.errors import not_among
     from calm.grid.product import grid_layout, parse_levels, write_grid
+    from calm.grid.samples import read_depths
     from calm.motion.sensors import parse_flags
     from calm.records.instrument_series import files_given, read_series
     from calm.records.measured_quantities import QUANTITIES_MEASURED, chosen_quantities
     from calm.report.folder import check_folder, printed, write_report
     from calm.report.grid_report import grid_part, grid_report
     from calm.report.html import page
-    from calm.suggestions import not_among
 
     if method not in METHODS:
         raise UsageError(not_among("--method", method, METHODS))
     wanted, names = parse_levels(levels), chosen_quantities(variables)
-    good, width = parse_flags(flags), parse_step(step)
+    good = parse_flags(flags)
+    width = (
+        None
+        if step is None
+        else span_of("--step", step, (1.0, 366 * 86_400.0), "a second and a year")
+    )
     if output.suffix != ".nc":
         raise UsageError(f"cannot write {output}: its name must end in .nc")
     files = files_given(values)
@@ -112,29 +118,6 @@ def grid(
         said = grid_report(output, fields, called, wanted)
         write_report(report, {"grid.html": page(said).encode(), "grid.pdf": printed(said)})
     return ExitCode.DONE
-
-
-def parse_step(text: str | None) -> np.timedelta64 | None:
-    """A step of time such as ``1 h``; None where there is none.
-
-    Raises
-    ------
-    UsageError
-        It is no time, or not between a second and a year.
-    """
-    import numpy as np
-
-    from calm.units import QuantityError, parse_quantity
-
-    if text is None:
-        return None
-    try:
-        seconds = parse_quantity(text, "time", usual_unit="h")
-    except QuantityError as error:
-        raise UsageError(f"--step: `{text}` {error}") from None
-    if not 1.0 <= seconds <= 366 * 86_400.0:
-        raise UsageError(f"--step: `{text}` is not between a second and a year")
-    return np.timedelta64(round(seconds * 1e9), "ns")
 
 
 def fields_of(

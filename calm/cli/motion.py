@@ -8,9 +8,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from calm.cli.batch import ProgressTeller, check_output, ended, mooring_of, stopped_by_a_signal
-from calm.cli.options import CatalogFiles, Declination, EnvironmentName, Threads, quantities
+from calm.cli.batch import check_output, ended, stopped_by_a_signal
+from calm.cli.options import (
+    CatalogFiles,
+    Declination,
+    EnvironmentName,
+    Threads,
+    quantities,
+    span_of,
+)
 from calm.cli.outputs import OutputPath, Outputs
+from calm.cli.progress import ProgressTeller
 from calm.cli.streams import ExitCode, narrate
 from calm.errors import UsageError
 
@@ -27,6 +35,7 @@ MOTION_EXAMPLES = """Examples:
   calm motion mooring.yaml --currents meters.nc --pressures all.csv --cross-validate -o depths.nc
   calm motion mooring.yaml --pressures two.csv -o depths.nc"""
 
+_LONGEST_GAP = 1e8  # s
 Several = Annotated[list[Path], Parameter(consume_multiple=True)]
 SeveralTexts = Annotated[list[str], Parameter(consume_multiple=True)]
 
@@ -110,6 +119,7 @@ def motion(
     from calm.batch.finished import open_result, readable
     from calm.batch.profiles import Batch
     from calm.batch.work import compile_solver
+    from calm.case import Tow, load
     from calm.motion.correction import MeasuredRecord, run_motion
     from calm.motion.instrument_file import read_instruments
     from calm.motion.line_places import places_of
@@ -143,11 +153,13 @@ def motion(
         check_output(output, file, *files)
     elif replace_depth:
         raise UsageError("--replace needs --onto")
-    mooring = mooring_of(file, environment, catalog or [], "motion")
+    mooring = load(file, environment, catalog or [])
+    if isinstance(mooring, Tow):
+        raise UsageError(f"{file} is a tow; calm motion is for moorings")
     for notice in mooring.file.notices:
         narrate(f"{file}: {notice}")
     turned = quantities({"declination": (declination, "angle")}).get("declination")
-    apart = parse_gap(gap)
+    apart = span_of("--gap", gap, (0.0, _LONGEST_GAP), "0 and three years")
     instruments = None
     if onto is not None:
         instruments, matched = read_instruments(onto, places_of(mooring), replacing=replace_depth)
@@ -222,24 +234,3 @@ def write_copies(
 
 def _separated(text: str | None) -> list[str]:
     return [] if text is None else [name.strip() for name in text.split(",")]
-
-
-def parse_gap(text: str) -> np.timedelta64:
-    """A time such as ``2 h``.
-
-    Raises
-    ------
-    UsageError
-        It is none, or is not between 0 and three years.
-    """
-    import numpy as np
-
-    from calm.units import QuantityError, parse_quantity
-
-    try:
-        seconds = parse_quantity(text, "time", usual_unit="h")
-    except QuantityError as error:
-        raise UsageError(f"--gap: `{text}` {error}") from None
-    if not 0.0 <= seconds < 1e8:
-        raise UsageError(f"--gap: `{text}` is not between 0 and three years")
-    return np.timedelta64(round(seconds * 1e9), "ns")

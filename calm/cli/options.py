@@ -13,6 +13,8 @@ from calm.cli.streams import narrate
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
+    import numpy as np
+
     from calm.files import MooringFile
 
 CatalogFiles = Annotated[
@@ -110,6 +112,31 @@ def quantities(given: Mapping[str, tuple[str | None, str]]) -> dict[str, float]:
     if complaints:
         raise UsageError("; ".join(complaints))
     return values
+
+
+def span_of(option: str, text: str, between: tuple[float, float], in_words: str) -> np.timedelta64:
+    """A span of time such as ``2 h``, as an option gives it.
+
+    Parameters
+    ----------
+    between, in_words : the least and the greatest [s], and what people call them
+
+    Raises
+    ------
+    UsageError
+        It is none, or not between them.
+    """
+    import numpy as np
+
+    from calm.units import QuantityError, parse_quantity
+
+    try:
+        seconds = parse_quantity(text, "time", usual_unit="h")
+    except QuantityError as error:
+        raise UsageError(f"{option}: `{text}` {error}") from None
+    if not between[0] <= seconds <= between[1]:
+        raise UsageError(f"{option}: `{text}` is not between {in_words}")
+    return np.timedelta64(round(seconds * 1e9), "ns")
 
 
 def speed_range(text: str) -> list[float]:

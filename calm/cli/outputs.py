@@ -129,10 +129,8 @@ class FileOutcome:
 
             return printed(result_report(self.result, self.uncertain))
         if suffix == ".nc":
-            from calm.case.net import NetResult
             from calm.report.result_files import result_netcdf
 
-            assert not isinstance(self.result, NetResult)  # refused beforehand
             return result_netcdf(self.result)
         from calm.drawing.plot import picture
 

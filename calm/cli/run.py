@@ -104,8 +104,7 @@ def run(
     show_units(units, [line.file for line in lines])
     of_moorings = {"--explain": explain, "--uncertainty": uncertainty}
     _refuse(of_moorings, "moorings; these are tows", Tow, files, lines)
-    _refuse({**of_moorings, "--netcdf": netcdf}, "single lines; these are nets of legs", Net, files,
-            lines, " (tables, pictures, reports, --json and --csv are for these too)")  # fmt: skip
+    _refuse(of_moorings, "single lines; these are nets of legs", Net, files, lines)
     return solve_and_show(
         lines, outputs, explain=explain, schematic=schematic, draws=draws, verbose=verbose
     )
@@ -216,13 +215,12 @@ def _refuse(
     kind: type,
     files: Sequence[Path],
     lines: Sequence[Mooring | Tow | Net],
-    more: str = "",
 ) -> None:
     """Refuse the first option that is asked for, where a file is of a kind it is not for."""
     asked = [option for option, value in options.items() if value]
     those = [str(file) for file, line in zip(files, lines, strict=True) if isinstance(line, kind)]
     if asked and those:
-        raise UsageError(f"{asked[0]} is for {what}: {', '.join(those)}{more}")
+        raise UsageError(f"{asked[0]} is for {what}: {', '.join(those)}")
 
 
 def _explained(result: Result) -> Explanation:
@@ -238,7 +236,7 @@ def _to_draw_often(samples: int, seed: int) -> Callable[[Result], Uncertain]:
     """
     from calm.case.draws import normals_of
     from calm.case.uncertain import uncertain
-    from calm.cli.workers import begun, mapped
+    from calm.cli.progress import begun, mapped
 
     normals = begun(normals_of, samples, seed)
     solved = partial(mapped, workers=None, what="blocks of samples solved")

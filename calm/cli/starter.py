@@ -140,7 +140,7 @@ def _named(page: str, pages: dict[str, Path]) -> str:
 
     UsageError: there is none, or there are several.
     """
-    from calm.suggestions import unknown
+    from calm.errors import unknown
 
     wanted = page.strip("/").removesuffix(".md").removesuffix(".html")
     for exact in (wanted, f"{wanted}/index"):

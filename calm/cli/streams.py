@@ -7,10 +7,9 @@ import io
 import os
 import re
 import sys
-from collections.abc import Iterable, Iterator, Sized
+from collections.abc import Iterable
 from enum import IntEnum
-from time import monotonic
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
 from calm.drawing.picture import encodable, printable
 from calm.errors import UsageError
@@ -18,10 +17,7 @@ from calm.errors import UsageError
 if TYPE_CHECKING:
     from calm.cli.outputs import Shows
 
-_Item = TypeVar("_Item")
 _NARROWEST = 40  # columns: figures are no longer cut, but wrapped by the terminal
-_PATIENCE = 1.0  # seconds before progress is reported
-_PACE = 0.1  # seconds between two tellings
 _WRITTEN_OUT = "calm-written-out"  # the handler of signs that a stream cannot carry
 _SIGNS = "°×–−→≤≥²³"  # those of the tables
 
@@ -87,29 +83,6 @@ def _on_terminal() -> bool:
 def narrate(text: str) -> None:
     """Write a line to the standard error, and nothing in it that steers a terminal."""
     print(printable(text), file=sys.stderr, flush=True)
-
-
-def progress(items: Iterable[_Item], what: str, total: int | None = None) -> Iterator[_Item]:
-    """The items one by one; when they take long, a terminal shows how many are done.
-
-    Parameters
-    ----------
-    what : the items, in the plural
-    total : how many there are, where `items` cannot tell
-    """
-    if total is None:
-        total = len(items) if isinstance(items, Sized) else 0
-    if sys.stderr is None or not sys.stderr.isatty():
-        yield from items
-        return
-    drawn, due = False, monotonic() + _PATIENCE
-    for done, item in enumerate(items):
-        if monotonic() >= due:
-            print(f"\r{done} of {total} {what}", end="", file=sys.stderr, flush=True)
-            drawn, due = True, monotonic() + _PACE
-        yield item
-    if drawn:
-        print("\r\x1b[K", end="", file=sys.stderr, flush=True)
 
 
 def _abandon_output() -> None:

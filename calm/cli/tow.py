@@ -20,8 +20,9 @@ from calm.cli.options import (
     speed_range,
 )
 from calm.cli.outputs import FileOutcome, OutputPath, Outputs
+from calm.cli.progress import progress
 from calm.cli.run import read_all, solve_and_show
-from calm.cli.streams import ExitCode, gravest, narrate, progress
+from calm.cli.streams import ExitCode, gravest, narrate
 from calm.errors import NoEquilibrium, UsageError
 
 if TYPE_CHECKING:

@@ -7,7 +7,8 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from calm.cli.outputs import OutputPath, Outputs
-from calm.cli.streams import ExitCode, progress
+from calm.cli.progress import progress
+from calm.cli.streams import ExitCode
 from calm.errors import UsageError
 
 if TYPE_CHECKING:

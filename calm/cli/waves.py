@@ -84,7 +84,7 @@ def waves(
     outputs.check()
     import calm
     from calm.case import Tow
-    from calm.cli.streams import progress
+    from calm.cli.progress import progress
     from calm.records.sea_states import OF_HEIGHT
     from calm.report.folder import check_folder, printed, write_report
     from calm.report.html import page
@@ -142,8 +142,8 @@ def _asked(
     UsageError
         With all that is wrong with the options.
     """
+    from calm.errors import nearest
     from calm.records import sea_states
-    from calm.suggestions import nearest
 
     given = quantities(
         {

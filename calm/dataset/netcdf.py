@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from io import BytesIO
 from pathlib import Path
@@ -182,6 +182,35 @@ OF_NODE: Mapping[str, tuple[str, str, Attributes]] = {
     "shape_tension": ("N", "tension of the line", {}),
 }
 """The same of a node of the line."""
+
+
+def of_net(
+    variables: Iterable[Variable],
+    names: Iterable[str],
+    components: Iterable[int],
+    clamps: Iterable[int],
+    nodes: Iterable[int] = (),
+) -> list[Variable]:
+    """Return the variables of a net, offset from its origin, with the leg of each part.
+
+    Parameters
+    ----------
+    variables : as of a single line
+    names : of the legs
+    components, clamps, nodes : the number of the leg of each
+    """
+    found = []
+    for one in variables:
+        text = str(one.attributes.get("long_name", "")).replace("of the anchor,", "of the origin,")
+        found.append(replace(one, attributes={**one.attributes, "long_name": text}))
+    meaning = "name of the leg, a line from its upper to its lower end"
+    found.append(labels("leg_label", "leg", names, meaning))
+    for part, legs in (("component", components), ("clamp", clamps), ("node", nodes)):
+        said = {"units": "1", "long_name": f"index of the leg that the {part} is in, from 0"}
+        values = np.array([*legs], np.int32)
+        if len(values):
+            found.append(Variable(f"{part}_leg", (part,), "<i4", said, values))
+    return found
 
 
 @dataclass(frozen=True)

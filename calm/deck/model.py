@@ -10,7 +10,6 @@ from calm.case import Mooring
 from calm.checks.assess import check
 from calm.checks.finding import OWN
 from calm.checks.recovery import recovery_of
-from calm.deck.cutting import Cut, cuts_of
 from calm.deck.deck_items import (
     DeckInstrument,
     DeckItem,
@@ -21,7 +20,7 @@ from calm.deck.deck_items import (
     over_the_side,
     surfacing,
 )
-from calm.deck.hardware import Stock, hardware_of
+from calm.deck.hardware import Cut, Stock, cuts_of, hardware_of
 from calm.deck.shipping import Lifts, ShippedComponent, lifts_of, shipped_of
 from calm.drop import DropPlan, drop_plan
 from calm.drop.launch import SHIP_SPEED

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from calm.case import Mooring, Tow, load
-from calm.errors import NoEquilibrium, UsageError
+from calm.errors import NoEquilibrium, UsageError, unknown
 from calm.exchange.cable_writer import cbl_file
 from calm.exchange.exported_parts import ExportedLine, ExportedPart, ExportedTow, Levels
 from calm.exchange.mdd_writer import mdd_file
@@ -18,7 +18,6 @@ from calm.exchange.moordyn_writer import CURRENTS, current_profile, moordyn_file
 from calm.physics.line import Line, Water
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.records.delimited import table_csv
-from calm.suggestions import unknown
 
 _HEADER = (
     "name", "label", "kind", "role", "clamped at[m]", "length[m]", "diameter[m]", "whole mass[kg]",

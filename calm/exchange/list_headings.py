@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from calm.errors import unknown
 from calm.exchange.design import refused
 from calm.exchange.list_cells import (
     SheetRows,
@@ -16,7 +17,6 @@ from calm.exchange.list_cells import (
     unit_called,
     unit_of_heading,
 )
-from calm.suggestions import unknown
 from calm.units import KILOGRAM_FORCE
 
 COLUMNS = (

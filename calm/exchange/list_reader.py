@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
+from calm.errors import nearest
 from calm.exchange.design import (
     MOST_PIECES,
     Design,
@@ -36,7 +37,6 @@ from calm.exchange.list_rows import (
 from calm.exchange.mat_file import MatValue, is_mat, names, numbers, read_variables
 from calm.exchange.mdd_reader import GROUPS, read_water
 from calm.files.components import FLEXIBLE_KINDS
-from calm.suggestions import nearest
 from calm.units import KILOGRAM_FORCE
 from calm.whole_file import read_content
 

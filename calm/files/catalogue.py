@@ -16,12 +16,11 @@ from typing import Any, Literal, NamedTuple
 
 from pydantic import Field
 
-from calm.errors import InputError, Problem, UsageError
+from calm.errors import InputError, Problem, UsageError, nearest, shown, unknown
 from calm.files.components import KINDS, Component
 from calm.files.definition import Definition, described
 from calm.files.yaml_document import Document, SourceMapping, compose, read_document, validate
 from calm.shipped import shipped_folder
-from calm.suggestions import nearest, shown, unknown
 from calm.whole_file import FileCache, read_text
 
 FAMILY_ROLES = {

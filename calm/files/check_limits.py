@@ -15,7 +15,7 @@ from typing import Annotated
 from pydantic import AfterValidator, WithJsonSchema, model_validator
 from pydantic.fields import FieldInfo
 
-from calm.errors import Problem
+from calm.errors import Problem, shown, unknown
 from calm.files.definition import (
     LENGTH,
     POSITIVE_LENGTH,
@@ -28,7 +28,6 @@ from calm.files.definition import (
 )
 from calm.files.rule_texts import ACCEPTABLE, RULES
 from calm.files.yaml_document import SourceMapping
-from calm.suggestions import shown, unknown
 
 _FACTOR = QuantityField("number", above=0)
 _SAFETY = QuantityField("number", at_least=1)

@@ -10,7 +10,7 @@ from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Discriminator, Tag
 
-from calm.errors import InputError, Problem
+from calm.errors import InputError, Problem, shown
 from calm.files.definition import (
     DENSITY,
     POSITIVE_LENGTH,
@@ -44,7 +44,6 @@ from calm.records.profile_tables import (
     read_current,
 )
 from calm.records.sea_states import SeaState
-from calm.suggestions import shown
 from calm.units import QuantityError
 
 _SPEED = QuantityField("speed", at_least=0)

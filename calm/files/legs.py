@@ -8,13 +8,12 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field
 
-from calm.errors import Problem
+from calm.errors import Problem, unknown
 from calm.files.components import Anchor
 from calm.files.definition import LENGTH, Model, QuantityField, Text
 from calm.files.mooring_file import STAND_IN, MooringFile, Piece, Place, numbered
 from calm.files.rigid import Profiler
 from calm.files.yaml_document import SourceMapping, validate
-from calm.suggestions import unknown
 from calm.units import QuantityError
 
 if TYPE_CHECKING:
@@ -22,7 +21,7 @@ if TYPE_CHECKING:
 
 MOST_LEGS = 40
 NET_REFUSED = (
-    "this is a net of legs; `calm run` solves it and `calm check` judges it, this takes a single "
+    "this is a net of legs, for `calm run`, `calm check` and `calm batch`; this takes a single "
     "line: one free end, one anchor"
 )
 
@@ -318,6 +317,11 @@ def _check_held(legs: Sequence[Leg], section: SourceMapping, problems: list[Prob
         if leg.name not in held:
             message = f"nothing holds leg `{leg.name}`: no anchor, no held end"
             problems.append(section.problem((leg.name,), message, key=True))
+
+
+def leg_numbers(legs: Sequence[Leg]) -> list[int]:
+    """Return the number of the leg that each piece of the file is in."""
+    return [number for number, leg in enumerate(legs) for _ in range(leg.first, leg.end)]
 
 
 def nodes_of(legs: Sequence[Leg]) -> Mapping[str, int]:

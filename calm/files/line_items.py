@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import replace
 
-from calm.errors import Problem
+from calm.errors import Problem, about_quantity, shown, unknown
 from calm.files.catalogue import Assembly, Catalogue, CatalogueEntry, define
 from calm.files.check_limits import LimitKey
 from calm.files.components import KINDS, Anchor, Cable, Component, Flexible, contradicted
@@ -22,7 +22,6 @@ from calm.files.logbook import (
 from calm.files.mooring_file import Clamp, Piece, Place, placed
 from calm.files.rigid import Profiler, Rigid
 from calm.files.yaml_document import SourceMapping, unknown_key, validate
-from calm.suggestions import about_quantity, shown, unknown
 from calm.units import QuantityError
 
 _COUNT = QuantityField("number", at_least=1, at_most=MOST_PIECES)

@@ -7,7 +7,7 @@ from typing import Annotated, Any, TypeGuard
 
 from pydantic import AfterValidator, Field, WithJsonSchema
 
-from calm.errors import Problem
+from calm.errors import Problem, shown, unknown
 from calm.files.check_limits import Day
 from calm.files.definition import (
     LENGTH,
@@ -24,7 +24,6 @@ from calm.files.definition import (
 from calm.files.environment import Position
 from calm.files.yaml_document import SourceMapping, validate
 from calm.records.current_terms import TimeChoiceError, parse_time
-from calm.suggestions import shown, unknown
 
 
 def _moment(text: str) -> str:

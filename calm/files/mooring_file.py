@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Protocol
 
 from pydantic import AfterValidator
 
-from calm.errors import Problem
+from calm.errors import Problem, unknown
 from calm.files.check_limits import Accept, Checks, LimitKey
 from calm.files.components import Anchor, Component
 from calm.files.definition import LENGTH, Model, QuantityField, described, optional
@@ -23,7 +23,6 @@ from calm.files.rigid import Profiler
 from calm.files.strumming_keys import Strumming
 from calm.files.uncertainty import Uncertainty
 from calm.files.yaml_document import SourceMapping
-from calm.suggestions import unknown
 
 if TYPE_CHECKING:
     from calm.files.legs import Leg

@@ -12,7 +12,7 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field
 
-from calm.errors import InputError, Problem
+from calm.errors import InputError, Problem, unknown
 from calm.files.catalogue import Catalogue
 from calm.files.check_limits import Checks, read_accepts
 from calm.files.components import Anchor, Flexible
@@ -41,7 +41,6 @@ from calm.files.mooring_file import (
 )
 from calm.files.uncertainty import Uncertainty
 from calm.files.yaml_document import SourceMapping, compose, read_document, validate
-from calm.suggestions import unknown
 from calm.units import QuantityError
 
 

@@ -20,9 +20,9 @@ from typing import Annotated, Literal, cast, get_args
 
 from pydantic import BeforeValidator, ConfigDict, Discriminator, Tag, ValidationInfo
 
+from calm.errors import nearest, not_among, shown
 from calm.files.definition import COEFFICIENT, Model, QuantityField, described
 from calm.physics.strumming import BourgetMarichal
-from calm.suggestions import nearest, not_among, shown
 from calm.units import QuantityError
 
 _NUMBER = QuantityField("number")
@@ -119,7 +119,7 @@ def _written_out(value: object, info: ValidationInfo) -> object:
     if value == "bourget-marichal":
         return BourgetMarichalKeys()
     if value in get_args(AmplitudeName):
-        return AmplitudeModel(cast(AmplitudeName, value))
+        return AmplitudeModel(cast("AmplitudeName", value))
     text = shown(value)
     try:
         offer = f"{{factor: {_FACTOR.read(text):g}}}"

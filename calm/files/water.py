@@ -12,7 +12,7 @@ from typing import Annotated, Self
 import numpy as np
 from pydantic import Discriminator, Tag, ValidationError, model_validator
 
-from calm.errors import InputError, Problem, UsageError
+from calm.errors import InputError, Problem, UsageError, about_quantity, nearest, shown
 from calm.files.definition import (
     CATALOGUE_DENSITY,
     DENSITY,
@@ -46,7 +46,6 @@ from calm.records.sea_states import (
     spectrum_of,
     with_swell,
 )
-from calm.suggestions import about_quantity, nearest, shown
 from calm.units import QuantityError, QuantityRange
 
 USUAL_DENSITY = {"water": CATALOGUE_DENSITY, "air": 1.225}

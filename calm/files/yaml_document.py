@@ -15,10 +15,9 @@ from typing import Any, Literal, TypeVar, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
-from calm.errors import InputError, Problem
+from calm.errors import InputError, Problem, about_quantity, nearest, not_among, shown, unknown
 from calm.files import composition
 from calm.files.composition import Node
-from calm.suggestions import about_quantity, nearest, not_among, shown, unknown
 from calm.units import QuantityError
 from calm.whole_file import read_text
 

@@ -25,8 +25,8 @@ from calm.dataset.netcdf import (
     write_netcdf,
 )
 from calm.errors import UsageError
-from calm.grid.depths import MooringDepths
 from calm.grid.field import BLOCK, GriddedQuantity, estimate
+from calm.grid.samples import MooringDepths
 from calm.records.measured_quantities import QUANTITIES_MEASURED
 from calm.units import QuantityError, parse_quantity
 from calm.version import __version__

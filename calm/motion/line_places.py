@@ -10,12 +10,11 @@ import numpy as np
 
 from calm.case import Mooring
 from calm.case.parts import clamps_down
-from calm.errors import UsageError
+from calm.errors import UsageError, nearest
 from calm.motion.line_response import Forward
 from calm.motion.matching import labels_of
 from calm.physics.line import Floats
 from calm.records.instrument_series import Identity
-from calm.suggestions import nearest
 
 CLEAR = 10.0
 """An order of instruments is the only one where any other is off by so much more [m]."""

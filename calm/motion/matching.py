@@ -10,12 +10,11 @@ import numpy as np
 
 from calm.case import Mooring
 from calm.case.parts import clamps_down
-from calm.errors import UsageError
+from calm.errors import UsageError, nearest
 from calm.files import Clamp, Piece
 from calm.motion.measurements import MooringMeasurements
 from calm.motion.sensors import Sensor
 from calm.physics.line import Floats
-from calm.suggestions import nearest
 
 CERTAIN = 2.0
 """An order of sensors counts as the only one where any other is off by so much more [m]."""

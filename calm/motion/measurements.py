@@ -14,14 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.batch.statuses import implausible
-from calm.errors import UsageError
+from calm.errors import UsageError, unknown
 from calm.motion.common_unknowns import NOISE, NORMAL
 from calm.motion.sensors import Sensor, split_label
 from calm.physics.line import Floats, Integers
 from calm.records.current_file import open_record
 from calm.records.record import RULES
 from calm.records.velocity import MISSING
-from calm.suggestions import unknown
 
 MOST_GROUPS = 8
 """So many levels have errors of their own; of more, neighbours share theirs."""

@@ -13,7 +13,7 @@ import numpy as np
 from calm.batch.finished import open_result
 from calm.case import Mooring
 from calm.dataset.discovery import hashed
-from calm.errors import UsageError
+from calm.errors import UsageError, not_among, unknown
 from calm.motion.correction import MeasuredRecord, run_motion, without
 from calm.motion.line_response import FACTORS, Forward
 from calm.motion.matching import (
@@ -29,7 +29,6 @@ from calm.motion.measurements import MooringMeasurements, joined, read_currents
 from calm.motion.remarks import Agreement
 from calm.motion.sensors import parse_flags, read_sea_level, read_sensors, split_label
 from calm.motion.study import HeldOut, Study, cross_validated, judged, prepare, several
-from calm.suggestions import not_among, unknown
 
 if TYPE_CHECKING:
     from xarray import Dataset

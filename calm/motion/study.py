@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.case import Mooring
-from calm.errors import UsageError
+from calm.errors import UsageError, unknown
 from calm.motion.correction import Task, estimate_in_memory, without
 from calm.motion.line_response import Forward
 from calm.motion.matching import labels_of
@@ -34,7 +34,6 @@ from calm.motion.remarks import (
 from calm.motion.unknown_currents import learn_currents, with_knots
 from calm.motion.whole_record import estimate_common
 from calm.physics.line import Floats
-from calm.suggestions import unknown
 
 if TYPE_CHECKING:
     from xarray import Dataset

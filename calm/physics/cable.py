@@ -17,9 +17,9 @@ from calm.physics.drag import (
     friction_force,
     turning_friction,
 )
+from calm.physics.line import NO_BALANCE, State
 from calm.physics.profile import Sea, distance_to_level, water_at
 from calm.physics.seawater import REFERENCE_DENSITY
-from calm.physics.state import NO_BALANCE, State
 from calm.physics.stretch import Knot, curve_strain, mean_curve_strain
 from calm.physics.strumming import Vibration, amplified_share, strummed
 from calm.physics.track import CableStretch

@@ -10,7 +10,17 @@ import numpy as np
 
 from calm.physics.compiled import entry
 from calm.physics.drag import Vector
-from calm.physics.line import Floats, Integers
+from calm.physics.line import (
+    COLUMNS,
+    FAILURES,
+    GOES_ON,
+    NO_ROOM,
+    Floats,
+    Integers,
+    MarchError,
+    Record,
+    Trace,
+)
 from calm.physics.passing import (
     FAILURE,
     FX,
@@ -24,7 +34,6 @@ from calm.physics.passing import (
     pass_line,
 )
 from calm.physics.profile import Profile
-from calm.physics.state import COLUMNS, FAILURES, GOES_ON, NO_ROOM, MarchError, Record, Trace
 from calm.physics.track import Track
 
 ROOM = 1024

@@ -18,9 +18,7 @@ from typing import NamedTuple
 
 from calm.physics.cable import pass_segment, segment_length, touchdown, until_turn
 from calm.physics.drag import CONSTANT
-from calm.physics.profile import Sea, interval_at
-from calm.physics.rod import floating_depth, pass_clamp, pass_rod
-from calm.physics.state import (
+from calm.physics.line import (
     ENDLESS,
     GOES_ON,
     NO_BALANCE,
@@ -33,6 +31,8 @@ from calm.physics.state import (
     write_element,
     write_node,
 )
+from calm.physics.profile import Sea, interval_at
+from calm.physics.rod import floating_depth, pass_clamp, pass_rod
 from calm.physics.track import CABLE, ROD, Course
 
 MOST_SEGMENTS = 50_000
@@ -41,7 +41,7 @@ Z, FX, FY, FZ, USED, NODES, LANDED, HANGING, FAILURE = range(9)
 """Where it stands in what a march leaves: height [m] and force above [N] of the end; how many
 segments were used, and nodes passed; the stage where the line came down on the seabed, -1 where it
 did not, and the unstretched length of that stage above the seabed [m]: of a rod or clamp inf, it
-stands there, or 0, it lies there; why the march stopped, see `calm.physics.state`."""
+stands there, or 0, it lies there; why the march stopped, see `calm.physics.line`."""
 LEFT = 9
 
 SHORT = 1e-6

@@ -12,9 +12,9 @@ from sys import float_info
 from typing import NamedTuple
 
 from calm.physics.drag import BERTEAUX, CONSTANT, Vector, interpolated
+from calm.physics.line import Record
 from calm.physics.reynolds import Smooth, drag_variation
 from calm.physics.seawater import REFERENCE_DENSITY
-from calm.physics.state import Record
 from calm.physics.stretch import Knot, mean_curve_strain
 from calm.physics.strumming import Vibration, strummed
 
@@ -80,7 +80,7 @@ class RefereeShape(NamedTuple):
 
     Attributes
     ----------
-    record : its nodes, and at each the element that ends there: see `calm.physics.state`
+    record : its nodes, and at each the element that ends there: see `calm.physics.line`
     nodes, hanging : how many nodes there are, and elements above the touchdown
     first, last : node of every piece
     """

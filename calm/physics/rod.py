@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import inf
 
+from calm.physics.line import NO_BALANCE, Record, State, write_element, write_node
 from calm.physics.profile import Sea, interval_at
 from calm.physics.rod_axis import force_at, rod_axis
-from calm.physics.state import NO_BALANCE, Record, State, write_element, write_node
 from calm.physics.track import Load, Stage
 
 _LEANINGS = 50

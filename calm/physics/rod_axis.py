@@ -9,10 +9,10 @@ from math import inf, sqrt
 
 from calm.physics.compiled import within
 from calm.physics.drag import Vector, axis_along, drag_force, drag_share
+from calm.physics.line import NO_BALANCE, State
 from calm.physics.profile import Sea, viscosity_at, water_at
 from calm.physics.reynolds import Smooth, drag_variation, varying_share
 from calm.physics.seawater import REFERENCE_DENSITY
-from calm.physics.state import NO_BALANCE, State
 from calm.physics.track import Load, Stage
 
 _PASSES, _FEW = 200, 6

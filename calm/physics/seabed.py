@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.physics.cable import strain_at
+from calm.physics.line import Record, write_element, write_node
 from calm.physics.referee import Moored, RefereeShape
-from calm.physics.state import Record, write_element, write_node
 from calm.physics.stretch import Knot, mean_curve_strain
 from calm.physics.track import CABLE, CableStretch, Course
 

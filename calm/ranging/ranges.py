@@ -12,13 +12,12 @@ from pathlib import Path
 
 import numpy as np
 
-from calm.errors import InputError, Problem
+from calm.errors import InputError, Problem, shown
 from calm.physics.line import Floats
 from calm.positions import HEMISPHERES, Frame, degrees_of, plain_degrees
 from calm.ranging.survey_text import OTHER_NAMES, survey_table
 from calm.records.delimited import GAPS, abridged, no_number
 from calm.records.headings import NamedRow, read_named_columns
-from calm.suggestions import shown
 from calm.units import DIMENSIONS
 
 EXAMPLE = "latitude[deg],longitude[deg],range[m]"

@@ -9,12 +9,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from calm.errors import Problem
+from calm.errors import Problem, about_quantity, shown, unknown
 from calm.physics.line import Booleans, Floats, Integers
 from calm.records.current_terms import DEEPEST, too_deep
 from calm.records.delimited import is_gap, plain_numbers
 from calm.records.headings import column_unit, heading
-from calm.suggestions import about_quantity, shown, unknown
 from calm.units import QuantityError, QuantityRange, unit_factor
 
 Report = Callable[[Sequence[str | int], str], Problem]

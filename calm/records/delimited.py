@@ -18,9 +18,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from calm.errors import InputError, Problem
+from calm.errors import InputError, Problem, shown
 from calm.physics.line import Floats
-from calm.suggestions import shown
 from calm.whole_file import decoded, read_content
 
 LARGEST_CSV = 50_000_000

@@ -15,7 +15,7 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.errors import InputError, Problem
+from calm.errors import InputError, Problem, about_quantity, shown, unknown
 from calm.physics.line import Floats
 from calm.positions import HEMISPHERES
 from calm.records.current_terms import ZONES_OF_UTC, TimeChoiceError, parse_time
@@ -28,7 +28,6 @@ from calm.records.delimited import (
     abridged,
     read_table,
 )
-from calm.suggestions import about_quantity, shown, unknown
 from calm.units import DIMENSIONS, QuantityError, QuantityRange, unit_factor
 
 _BRACKETED = re.compile(r"(.*?)\s*[\[(]((?:[^\[\]()]|\([^()]*\))*)[\])]")

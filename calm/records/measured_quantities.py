@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from calm.errors import UsageError
+from calm.errors import UsageError, unknown
 from calm.records.cf_files import UnreadableError
-from calm.suggestions import unknown
 
 if TYPE_CHECKING:
     import xarray as xr

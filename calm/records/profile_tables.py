@@ -10,7 +10,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from calm.errors import Problem
+from calm.errors import Problem, shown
 from calm.physics.line import Floats, Integers
 from calm.quantities import bearing_of
 from calm.records.columns import Report as Report
@@ -18,7 +18,6 @@ from calm.records.columns import check_depths, read_columns
 from calm.records.current_terms import Terms, too_fast
 from calm.records.delimited import is_gap
 from calm.records.headings import heading, magnetic_columns
-from calm.suggestions import shown
 from calm.units import QuantityRange
 
 _AS_THEY_STAND = Terms()

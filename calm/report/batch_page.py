@@ -11,6 +11,7 @@ from calm.batch.statistics.extremes import EXTRAPOLATION, METHODS, Fit, Level
 from calm.batch.statistics.limits import Exceedance
 from calm.batch.statistics.summary import PERCENTILES, WORST, Distribution, Summary, summarize
 from calm.case import Mooring
+from calm.case.net import Net
 from calm.checks.finding import State
 from calm.quantities import QUANTITIES
 from calm.report.batch_figures import exceedance_figure, parts_figure, series_figure
@@ -225,7 +226,7 @@ def _rules(fit: Fit) -> str:
 
 
 def write_summary(
-    result: Path, mooring: Mooring, check: Callable[[], None] = lambda: None
+    result: Path, mooring: Mooring | Net, check: Callable[[], None] = lambda: None
 ) -> Summary:
     """Gather what a finished result says, and write it beside it, as JSON and as a page.
 

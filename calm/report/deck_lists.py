@@ -6,8 +6,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import groupby
 
 from calm.deck import Deck
-from calm.deck.cutting import LENGTH_ERROR, Mark
 from calm.deck.deck_items import DeckInstrument, DeckItem, Extreme, label_of_run
+from calm.deck.hardware import LENGTH_ERROR, Mark
 from calm.deck.shipping import total_of
 from calm.quantities import QUANTITIES, say
 from calm.report.blocks import Block, Cell, Column, Note, Prose, ReportPart, Table, table_of

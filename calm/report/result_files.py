@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.case import Result, TowResult
-from calm.case.net import AnyResult
+from calm.case.net import AnyResult, NetResult
 from calm.case.result_tables import ClampRow, ComponentRow, Components, rows_down
 from calm.dataset.netcdf import (
     CLAMPS,
@@ -27,9 +27,11 @@ from calm.dataset.netcdf import (
     labels,
     netcdf_of,
     numbers,
+    of_net,
     origin,
     station,
 )
+from calm.files.legs import leg_numbers
 from calm.quantities import QUANTITIES
 from calm.records.delimited import table_csv
 
@@ -46,20 +48,26 @@ def to_csv(results: Sequence[AnyResult]) -> str:
     """The components of one mooring or tow, or of several, as CSV text (UTF-8, comma, point, LF).
 
     `part` is ``component`` or ``clamp``; the rows of clamped instruments follow the piece they sit
-    on, with equal figures for both ends and no length. A number that is unknown is left empty.
+    on, with equal figures for both ends and no length. A number that is unknown is left empty. With
+    a net among them the last column is the leg.
     """
-    return table_csv(HEADER, (row for result in results for row in _rows(result)))
+    rows = [row for result in results for row in _rows(result)]
+    wide = max(map(len, rows), default=0)
+    header = (*HEADER, "leg")[: max(wide, len(HEADER))]
+    return table_csv(header, ([*row, *[""] * (wide - len(row))] for row in rows))
 
 
 def _rows(result: AnyResult) -> Iterator[list[object]]:
+    own = leg_numbers(result.file.legs)
     for component, clamps in rows_down(result):
+        leg = [result.file.legs[own[component.index]].name] if own else []
         numbers = (getattr(component, name) for name in _NUMBERS)
-        yield [*_words(result, "component", component), *numbers]
+        yield [*_words(result, "component", component), *numbers, *leg]
         for clamp in clamps:
             # a clamp has one figure where a component has one for each end
             names = (name.removesuffix("_top").removesuffix("_bottom") for name in _NUMBERS)
             numbers = (getattr(clamp, name, None) for name in names)
-            yield [*_words(result, "clamp", clamp), *numbers]
+            yield [*_words(result, "clamp", clamp), *numbers, *leg]
 
 
 def _words(result: AnyResult, part: str, row: ComponentRow | ClampRow) -> list[object]:
@@ -90,17 +98,24 @@ _OF_TOW: dict[str, tuple[str, str, Attributes]] = {
 }
 
 
-def result_netcdf(result: Result | TowResult) -> bytes:
-    """The file of one mooring or tow, figures of 64 bits; what is unknown is NaN."""
+def result_netcdf(result: AnyResult) -> bytes:
+    """The file of one mooring, tow or net, figures of 64 bits; what is unknown is NaN.
+
+    A net has its ends leg by leg, and the nodes of its shape one leg after the other.
+    """
     file, pieces, clamps = result.file, result.components, result.clamps
     ends = _ends(result)
     place = () if file.position is None else (file.position.latitude, file.position.longitude)
     of_station, where = station(result.name or "mooring", place, "the anchor")
-    sizes = {"component": len(pieces), "node": len(result.shape.depth)}
+    lines = result.legs if isinstance(result, NetResult) else (result,)
+    of_node = {
+        f"shape_{name}": np.concatenate([getattr(line.shape, name) for line in lines])
+        for name in vars(lines[0].shape)
+    }
+    sizes = {"component": len(pieces), "node": len(of_node["shape_depth"])}
     variables = [*of_station, labels("component_label", "component", pieces.label, PIECES)]
     of_component = {name: getattr(pieces, name) for name in (*OF_COMPONENT, *_MORE)}
     of_clamp = {name: getattr(clamps, name.removeprefix("clamp_")) for name in OF_CLAMP}
-    of_node = {f"shape_{name}": column for name, column in vars(result.shape).items()}
     beside = f"component_label depth_top{where}"
     variables += numbers(("component",), {**OF_COMPONENT, **_MORE}, beside, _floats(of_component))
     if len(clamps):
@@ -110,10 +125,17 @@ def result_netcdf(result: Result | TowResult) -> bytes:
         variables += numbers(("clamp",), OF_CLAMP, beside, _floats(of_clamp))
     variables += numbers(("node",), {**OF_NODE, **_TILT}, f"shape_depth{where}", _floats(of_node))
     accuracy = {f"accuracy_{name}": getattr(result.accuracy, name) for name in ("depth", "tension")}
-    variables += numbers(
-        (), {**(OF_ENDS if isinstance(result, Result) else _OF_TOW), **_ACCURACY},
-        where.strip(), _floats({**ends, **accuracy}),
-    )  # fmt: skip
+    of_ends = _OF_TOW if isinstance(result, TowResult) else OF_ENDS
+    along: tuple[str, ...] = ()
+    if isinstance(result, NetResult):
+        sizes["leg"], along = len(lines), ("leg",)
+        own = leg_numbers(file.legs)
+        variables = of_net(
+            variables, [line.name for line in lines], own, [own[row.index] for row in clamps],
+            [n for n, line in enumerate(lines) for _ in line.shape.depth],
+        )  # fmt: skip
+    variables += numbers(along, of_ends, where.strip(), _floats(ends))
+    variables += numbers((), _ACCURACY, where.strip(), _floats(accuracy))
     attributes = {
         **origin(file.path, result.name, file.description, "run"),
         "title": f"{result.name or Path(file.path).stem}: its equilibrium",
@@ -124,8 +146,10 @@ def result_netcdf(result: Result | TowResult) -> bytes:
     return netcdf_of(ResultLayout(sizes, tuple(variables), known))
 
 
-def _ends(result: Result | TowResult) -> dict[str, float]:
-    """Return what is known of the line as a whole."""
+def _ends(result: AnyResult) -> Mapping[str, object]:
+    """Return what is known of the line as a whole, or of each leg."""
+    if isinstance(result, NetResult):
+        return result.ends
     if isinstance(result, Result):
         return {
             "top_depth": result.top.depth,

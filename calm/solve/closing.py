@@ -12,10 +12,10 @@ from typing import NamedTuple
 
 from calm.physics.compiled import set_row
 from calm.physics.hull import Riding, riding_of
+from calm.physics.line import GOES_ON
 from calm.physics.passing import FAILURE, FX, FY, HANGING, LANDED, NODES, How, Z, pass_line
 from calm.physics.seabed import lay_line
 from calm.physics.seawater import REFERENCE_DENSITY
-from calm.physics.state import GOES_ON
 from calm.physics.track import Load
 from calm.solve.least_change import bracketed_root, root_near
 from calm.solve.problem import (

@@ -7,8 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from calm.errors import NoEquilibrium
-from calm.physics.line import Line, Water
-from calm.physics.state import FAILURES, Trace
+from calm.physics.line import FAILURES, Line, Trace, Water
 from calm.physics.track import Load
 from calm.solve.closing import Closed
 from calm.solve.problem import BELOW, CHANGED, FINE, MARCHES, MOST_AFLOAT, LineProblem

@@ -6,10 +6,9 @@ from dataclasses import replace
 from math import inf
 
 from calm.errors import NoEquilibrium
-from calm.physics.line import Line, Water
+from calm.physics.line import Line, MarchError, Water
 from calm.physics.march import march
 from calm.physics.profile import Profile
-from calm.physics.state import MarchError
 from calm.physics.track import Track
 from calm.solve.least_change import root_near
 from calm.solve.mooring import solve_mooring

@@ -22,9 +22,8 @@ from typing import Any
 
 import numpy as np
 
-from calm.physics.line import Floats, Line, Water
+from calm.physics.line import Floats, Line, MarchError, Water
 from calm.physics.march import Cuts
-from calm.physics.state import MarchError
 from calm.physics.track import head_count
 from calm.solve.audit import loads_of
 from calm.solve.free_march import Falling, FallingAnchor, Moving, Rising

@@ -14,11 +14,10 @@ from math import degrees
 
 import numpy as np
 
-from calm.physics.line import Floats, Line, Water
+from calm.physics.line import Floats, Line, Trace, Water
 from calm.physics.march import Cuts, End, march
 from calm.physics.profile import Profile
 from calm.physics.seawater import REFERENCE_DENSITY
-from calm.physics.state import Trace
 from calm.physics.track import CableStretch, Rod, Track, head_count
 from calm.solve.problem import REACH
 

@@ -8,9 +8,8 @@ from math import copysign, sqrt
 
 import numpy as np
 
-from calm.physics.line import Floats
+from calm.physics.line import Floats, MarchError
 from calm.physics.march import NO_CUTS, Cuts
-from calm.physics.state import MarchError
 from calm.solve.free_march import Moving
 from calm.solve.least_change import root_near
 from calm.solve.solution import Status

@@ -15,8 +15,7 @@ from math import inf, isfinite
 import numpy as np
 
 from calm.errors import NoEquilibrium
-from calm.physics.line import Floats, Water
-from calm.physics.state import MarchError, Trace
+from calm.physics.line import Floats, MarchError, Trace, Water
 from calm.solve.finish import refuse_unbalanced, risen, touching
 from calm.solve.net_leg import HANGING_DOWN, PULLED, STANDING, LegCourse, LegEnd, NetLeg, Passed
 from calm.solve.net_start import NetStart, start_of
@@ -45,6 +44,7 @@ class NetSolution:
     miss : the worst distance of a leg's end from where it is held [m]
     depth_error, tension_error : own estimate of the worst errors [m], [N]
     marches : done for it
+    unknowns, lands : what it was found by, for nets that stand about alike
     """
 
     legs: tuple[Solution, ...]
@@ -54,6 +54,8 @@ class NetSolution:
     depth_error: float
     tension_error: float
     marches: int
+    unknowns: Floats
+    lands: tuple[bool, ...]
 
 
 class _Net:
@@ -65,14 +67,11 @@ class _Net:
         compiled = runs_compiled(settings)
         self.courses = [LegCourse(leg, water, settings, compiled) for leg in legs]
         self.nodes, self.water, self.settings = nodes, water, settings
-        self.at: list[int] = list(
-            np.concatenate([[0], np.cumsum([each.unknowns for each in self.courses])])
-        )
+        self.at = [0, *np.cumsum([each.unknowns for each in self.courses]).tolist()]
         self.size = self.at[-1] + 3 * nodes
         self.length = max(float(leg.line.length.sum()) for leg in legs)
-        lifts = [float(np.abs(leg.line.net_force(np.zeros(len(leg.line.length)))).sum())
-                 for leg in legs]  # fmt: skip
-        self.force = max(*lifts, 1.0)
+        lifts = [np.abs(leg.line.net_force(np.zeros(len(leg.line.length)))).sum() for leg in legs]
+        self.force = float(max(*lifts, 1.0))
         self.scale = np.full(self.size, self.length)
         self.rows = np.full(self.size, self.length)
         self.rows[self.at[-1] :] = self.force
@@ -85,11 +84,9 @@ class _Net:
         x = np.zeros(self.size)
         x[self.at[-1] :] = start.nodes.ravel()
         for i, each in enumerate(self.courses):
-            if each.kind == PULLED:
-                x[self.at[i] : self.at[i + 1]] = start.pull[i]
-            else:
-                free = start.first[i] if each.kind == STANDING else start.lower[i]
-                x[self.at[i]] = -free[2]
+            free = start.first[i] if each.kind == STANDING else start.lower[i]
+            own = start.pull[i] if each.kind == PULLED else -free[2]
+            x[self.at[i] : self.at[i + 1]] = own
             anchored = isfinite(each.leg.lower.seabed) and each.kind != HANGING_DOWN
             each.lands = anchored and start.lies[i]
         return x
@@ -109,29 +106,27 @@ class _Net:
         MarchError
         """
         found, jacobian = np.zeros(self.size), np.zeros((self.size, self.size))
-        first = self.at[-1]
-        jump = 1e-6
+        first, jump = self.at[-1], 1e-6
         for i, each in enumerate(self.courses):
             mine = slice(self.at[i], self.at[i + 1])
-            kept, cuts = each.cuts, None
+            kept = each.cuts
             base = self._leg(each, x[mine], x, step)
-            cuts = each.last
             self._put(found, i, base, x, whole=True)
             if not slopes:
                 continue
-            each.cuts = cuts
+            each.cuts = each.last
             variables = list(range(self.at[i], self.at[i + 1]))
             if each.kind == PULLED and each.start.node >= 0:
                 variables.append(first + 3 * each.start.node + 2)
             reference = base if kept is not None else self._leg(each, x[mine], x, step)
+            before = np.zeros(self.size)
+            self._put(before, i, reference, x, whole=False)
             for variable in variables:
                 moved = x.copy()
                 moved[variable] += jump * self.scale[variable]
                 other = self._leg(each, moved[mine], moved, step)
                 change = np.zeros(self.size)
                 self._put(change, i, other, moved, whole=False)
-                before = np.zeros(self.size)
-                self._put(before, i, reference, x, whole=False)
                 jacobian[:, variable] += (change - before) / jump
             each.cuts = kept
             self._direct(jacobian, i)
@@ -208,11 +203,15 @@ class _Net:
         for each in self.courses:
             each.cuts = each.last
 
+    def lie_as(self, lands: Sequence[bool]) -> None:
+        """Take legs to lie on the seabed or not."""
+        for each, lies in zip(self.courses, lands, strict=True):
+            each.lands = lies
+
     def in_water(self, water: Water) -> _Net:
         """The same net in other water."""
         other = _Net(tuple(each.leg for each in self.courses), self.nodes, water, self.settings)
-        for mine, its in zip(self.courses, other.courses, strict=True):
-            its.lands = mine.lands
+        other.lie_as([each.lands for each in self.courses])
         return other
 
     def ends(self, x: Floats) -> list[tuple[Floats, Floats]]:
@@ -229,7 +228,11 @@ class _Net:
 
 
 def solve_net(
-    legs: Sequence[NetLeg], nodes: int, water: Water, settings: Settings | None = None
+    legs: Sequence[NetLeg],
+    nodes: int,
+    water: Water,
+    settings: Settings | None = None,
+    near: NetSolution | None = None,
 ) -> NetSolution:
     """Solve for the equilibrium of a net of legs.
 
@@ -238,6 +241,7 @@ def solve_net(
     legs : their ends at nodes, held, or free
     nodes : how many nodes there are
     water, settings : as for `solve_mooring`
+    near : the same net in other water, from which it is sought first
 
     Raises
     ------
@@ -246,18 +250,17 @@ def solve_net(
     """
     legs, settings = tuple(legs), settings or Settings()
     expect_many(4.0 * len(legs))
-    net, x = _roughly(legs, nodes, water, settings)
+    net, x = _roughly(legs, nodes, water, settings, near)
     marches = sum(each.marches for each in net.courses)
-    for _ in range(len(legs) + 1):
-        x = _finely(net, x, 2.0 * settings.angle_step)
+    for left in range(len(legs), -1, -1):
+        net.keep_cuts(x, 2.0 * settings.angle_step)
+        x = _closed_or_refused(net, x, 2.0 * settings.angle_step)
         if not _lands_elsewhere(net, x):
             break
-        closer = net.closed(x, 4.0 * settings.angle_step, NEAR)
+        closer = net.closed(x, 4.0 * settings.angle_step, NEAR) if left else None
         if closer is None:
             raise _unsettled("a leg comes to lie on the seabed and not")
         x = closer
-    else:
-        raise _unsettled("a leg comes to lie on the seabed and not")
     coarse = net.ends(x)
     for _ in range(MOST_HALVINGS):
         for each in net.courses:
@@ -265,9 +268,10 @@ def solve_net(
             each.cuts = each.cuts.halved()
         x = _closed_or_refused(net, x, settings.angle_step)
         fine = net.ends(x)
-        pairs = list(zip(coarse, fine, strict=True))
-        depth = max(float(np.abs(a[0] - b[0]).max()) for a, b in pairs)
-        tension = max(float(np.abs(a[1] - b[1]).max()) for a, b in pairs)
+        depth, tension = (
+            max(float(np.abs(a[k] - b[k]).max()) for a, b in zip(coarse, fine, strict=True))
+            for k in (0, 1)
+        )
         coarse = fine
         if 0.5 * depth <= WORTH * water.depth:
             break
@@ -298,20 +302,26 @@ def _told(net: _Net, x: Floats, depth: float, tension: float, marches: int) -> N
         _refuse_misplaced(each, leg, errors[0], before)
         before += len(each.leg.line.length)
     return NetSolution(
-        tuple(legs), x[first:].reshape(-1, 3).copy(), imbalance, miss, *errors, marches
-    )
+        tuple(legs), x[first:].reshape(-1, 3).copy(), imbalance, miss, *errors, marches, x,
+        tuple(each.lands for each in net.courses),
+    )  # fmt: skip
 
 
 def _roughly(
-    legs: tuple[NetLeg, ...], nodes: int, water: Water, settings: Settings
-) -> tuple[_Net, Floats]:
-    """A net about closed, sought where it about is, and from still water on.
+    legs: tuple[NetLeg, ...], nodes: int, water: Water, settings: Settings,
+    near: NetSolution | None,
+) -> tuple[_Net, Floats]:  # fmt: skip
+    """A net about closed, sought near another, where it about is, and from still water on.
 
     Raises
     ------
     NoEquilibrium
     """
     net, step = _Net(legs, nodes, water, settings), 4.0 * settings.angle_step
+    if near is not None:
+        net.lie_as(near.lands)
+        if (x := net.closed(near.unknowns, step, NEAR)) is not None:
+            return net, x
     x = net.closed(net.begin(start_of(legs, nodes, water)), step, NEAR)
     if x is not None:
         return net, x
@@ -334,11 +344,6 @@ def _roughly(
     return net, x
 
 
-def _finely(net: _Net, x: Floats, step: float) -> Floats:
-    net.keep_cuts(x, step)
-    return _closed_or_refused(net, x, step)
-
-
 def _closed_or_refused(net: _Net, x: Floats, step: float) -> Floats:
     closer = net.closed(x, step, CLOSED)
     if closer is None:
@@ -354,11 +359,8 @@ def _lands_elsewhere(net: _Net, x: Floats) -> bool:
         if not isfinite(each.leg.lower.seabed) or each.kind == HANGING_DOWN:
             continue
         lowest = min(each.record[2][: each.hung])
-        lies = (
-            each.stage >= 0
-            if each.lands
-            else bool(lowest < each.leg.lower.seabed - 1e-6 * net.water.depth)
-        )
+        deeper = bool(lowest < each.leg.lower.seabed - 1e-6 * net.water.depth)
+        lies = each.stage >= 0 if each.lands else deeper
         if lies != each.lands:
             each.lands, changed = lies, True
     return changed
@@ -368,14 +370,12 @@ def _refuse_misplaced(each: LegCourse, leg: Solution, near: float, before: int) 
     """Refuse a leg that is out of the water, or in the seabed where it cannot lie."""
     near += 1e-6 * each.water.depth
     height, hung = leg.position[:, 2], leg.position[: leg.hanging + 1, 2]
-    turned = each.kind == HANGING_DOWN
     bed = each.leg.lower.seabed if isfinite(each.leg.lower.seabed) else -each.water.depth
-    worst = int(np.argmin(hung))
-    pieces = len(each.leg.line.length)
+    worst, pieces = int(np.argmin(hung)), len(each.leg.line.length)
 
     def piece(node: int) -> int:
         own = leg.piece_at(node)
-        return before + (pieces - 1 - own if turned else own)
+        return before + (pieces - 1 - own if each.kind == HANGING_DOWN else own)
 
     if hung[worst] < bed - near:
         raise touching(piece(worst), float(bed - hung[worst]))

@@ -9,7 +9,17 @@ from typing import Any
 import numpy as np
 
 from calm.physics.compiled import entry
-from calm.physics.line import Floats, Line, Water
+from calm.physics.line import (
+    COLUMNS,
+    FAILURES,
+    GOES_ON,
+    NO_ROOM,
+    Floats,
+    Line,
+    MarchError,
+    Trace,
+    Water,
+)
 from calm.physics.march import NO_CUTS, Cuts
 from calm.physics.passing import (
     FAILURE,
@@ -27,7 +37,6 @@ from calm.physics.passing import (
 )
 from calm.physics.referee import RefereeShape, element_loads, find_ends, worst_moment
 from calm.physics.seabed import closure, lay_line
-from calm.physics.state import COLUMNS, FAILURES, GOES_ON, NO_ROOM, MarchError, Trace
 from calm.physics.track import Load
 from calm.solve.audit import referee_of
 from calm.solve.closing import place

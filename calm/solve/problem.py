@@ -10,10 +10,9 @@ import numpy as np
 
 from calm.physics.compiled import record_type
 from calm.physics.hull import NEVER_AFLOAT, HullRow, SurfaceFloat
-from calm.physics.line import Floats, Line, Water
+from calm.physics.line import COLUMNS, Floats, Line, Water
 from calm.physics.passing import LEFT
 from calm.physics.profile import Interval, Profile, Sea
-from calm.physics.state import COLUMNS
 from calm.physics.track import Course, Load, Rod, Track
 from calm.solve.solution import SUPPORTED, Settings, standing_length, standing_lift, support_of
 

@@ -15,9 +15,9 @@ from math import degrees, isnan, sqrt
 from typing import Any, NamedTuple
 
 from calm.physics.drag import Vector
+from calm.physics.line import Record
 from calm.physics.passing import FAILURE, NODES
 from calm.physics.profile import interval_at
-from calm.physics.state import Record
 from calm.solve.closing import Closed, Root, halve, not_closed, planned, polish
 from calm.solve.problem import (
     BELOW,

@@ -19,9 +19,8 @@ import numpy as np
 from calm.errors import NoEquilibrium
 from calm.physics.compiled import is_kept
 from calm.physics.hull import Riding
-from calm.physics.line import Floats, Integers, Line, Water
+from calm.physics.line import Floats, Integers, Line, Trace, Water
 from calm.physics.seawater import REFERENCE_DENSITY
-from calm.physics.state import Trace
 
 LOOSEST_TOLERANCE = 2e-4
 """The worst miss, as a share of the water depth, that CALM ever called an answer."""
@@ -210,7 +209,7 @@ class Status(Enum):
 
 (
     FOUND,
-    # a march stopped: its value is why, see `calm.physics.state`
+    # a march stopped: its value is why, see `calm.physics.line`
     MARCH_STOPPED,
     # no closed shape near a coarser one; one that misses its end, by its value [m]; one that hangs
     # on the last digits of the buoyancy in use

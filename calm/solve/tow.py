@@ -9,8 +9,7 @@ import numpy as np
 from calm.errors import NoEquilibrium
 from calm.physics.compiled import compiled
 from calm.physics.hull import AIR_DENSITY
-from calm.physics.line import Floats, Line, Water
-from calm.physics.state import MarchError
+from calm.physics.line import Floats, Line, MarchError, Water
 from calm.solve.finish import refuse_unbalanced, solution_of
 from calm.solve.least_change import bracketed_root
 from calm.solve.search import audit_shape, stated_errors

@@ -12,9 +12,8 @@ from numpy.typing import NDArray
 from calm.errors import NoEquilibrium
 from calm.physics.compiled import entry
 from calm.physics.drag import Vector
-from calm.physics.line import Line, Water
+from calm.physics.line import FAILURES, NO_ROOM, Line, MarchError, Trace, Water
 from calm.physics.passing import FAILURE, FX, FY, FZ, NODES
-from calm.physics.state import FAILURES, NO_ROOM, MarchError, Trace
 from calm.physics.track import Track
 from calm.solve.audit import referee_of
 from calm.solve.closing import (

@@ -225,7 +225,7 @@ def _read(table: str) -> Iterator[Action]:
             continue
         name, keys, title, rank, meaning = row.split(" | ")
         hint = int(rank) if rank.isdecimal() else None
-        yield Action(cast(Place, place), name, keys, title, meaning, hint, rank != "-")
+        yield Action(cast("Place", place), name, keys, title, meaning, hint, rank != "-")
 
 
 ACTIONS: tuple[Action, ...] = (*_read(_TABLE),)

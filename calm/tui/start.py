@@ -11,10 +11,9 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from calm.errors import InputError, UsageError
+from calm.errors import InputError, UsageError, unknown
 from calm.files import Catalogue, read_mooring
 from calm.files.editing import Draft, KeptWork, NotWritten, WorkingFile
-from calm.suggestions import unknown
 from calm.tui.session import Session
 
 if TYPE_CHECKING:

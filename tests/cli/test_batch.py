@@ -20,7 +20,7 @@ from calm.batch import work as batch_work
 from calm.batch.statuses import Ending
 from calm.batch.work import Progress
 from calm.cli import main
-from calm.cli.batch import ProgressTeller, bar, state
+from calm.cli.progress import ProgressTeller, bar, state
 from calm.quantities import duration
 
 ROOT = Path(__file__).parents[2]
@@ -410,7 +410,7 @@ def test_progress_has_rate_remaining_time_and_failures():
 
 def test_a_terminal_has_a_bar_and_others_a_line_now_and_then(monkeypatch, capsys):
     clock = [0.0]
-    monkeypatch.setattr("calm.cli.batch.monotonic", lambda: clock[0])
+    monkeypatch.setattr("calm.cli.progress.monotonic", lambda: clock[0])
     for terminal in (True, False):
         monkeypatch.setattr(sys.stderr, "isatty", lambda terminal=terminal: terminal)
         teller = ProgressTeller()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import re
 from collections import Counter
@@ -10,8 +11,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+import xarray
 
-from calm.case.net import load_net
+from calm.case.net import load_any
+from calm.checks.criterion import READINGS, pieces_of
 from calm.cli.main import main
 from calm.drawing.line_picture import LineKind, elevation_of, plan_of
 from calm.errors import InputError, NoEquilibrium
@@ -104,7 +107,7 @@ def test_the_anchor_bears_all_that_floats_and_hangs(
     """Vertically the net is a sum of net forces, wherever it stands: currents are level here."""
     found = document(net, capsys)
     total = 0.0
-    case = load_net(net)
+    case = load_any(net)
     for leg in case.legs:
         total += float(leg.line.total_buoyancy.sum())
     # what drag lifts and presses is some newtons of the seven thousand
@@ -149,7 +152,7 @@ def test_other_commands_say_which_one_solves_nets(
     assert run(command, net, *more.get(command, [])) == 2
     told = capsys.readouterr().err
     assert f"{net}:5:1" in told
-    assert "`calm run` solves it and `calm check` judges it" in told
+    assert "for `calm run`, `calm check` and `calm batch`" in told
     assert not (tmp_path / "out.csv").exists()
 
 
@@ -177,18 +180,87 @@ def test_check_refuses_to_count_samples_of_a_net(
     assert "--uncertainty is for single lines" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("option", ["--explain", "--netcdf", "--uncertainty"])
+@pytest.mark.parametrize("option", ["--explain", "--uncertainty"])
 def test_options_for_single_lines_are_refused(
-    option: str, net: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    option: str, net: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    value = [tmp_path / "a.nc"] if option == "--netcdf" else []
-    assert run("run", net, option, *value) == 2
+    assert run("run", net, option) == 2
     assert f"{option} is for single lines" in capsys.readouterr().err
-    assert not list(tmp_path.glob("a.*"))
+
+
+def test_files_of_a_net_have_the_leg_of_each_part(
+    net: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run("run", net, "--csv", "-", "--netcdf", tmp_path / "net.nc") == 0
+    rows = list(csv.DictReader(capsys.readouterr().out.splitlines()))
+    assert [row["leg"] for row in rows if row["part"] == "clamp"] == ["main", "pennant"]
+    with xarray.open_dataset(tmp_path / "net.nc", engine="h5netcdf") as found:
+        names = found["leg_label"].values
+        legs = [row["leg"] for row in rows if row["part"] == "component"]
+        assert names[found["component_leg"].values].tolist() == legs
+        assert names[found["clamp_leg"].values].tolist() == ["main", "pennant"]
+        assert np.isfinite(found["anchor_vertical"].values).tolist() == [False] * 3 + [True]
+        assert np.isfinite(found["top_depth"].values).tolist() == [True, True, False, False]
+        main = found["shape_depth"].values[found["node_leg"].values == 0]
+        assert (main[0], main[-1]) == (found["depth_top"].values[0], main.max())
+        assert "of the origin" in found["x_top"].attrs["long_name"]
+
+
+def test_a_batch_gives_what_run_gives_in_every_profile(
+    net: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The same march from another start: to what a net is closed by, 1e-10 of its lengths."""
+    record, result = tmp_path / "record.csv", tmp_path / "r.nc"
+    record.write_text(
+        "time,depth[m],u[m/s],v[m/s]\n"
+        "2024-01-01T00:00,0,0.4,0\n2024-01-01T00:00,500,0.4,0\n"
+        "2024-01-01T01:00,0,,\n2024-01-01T01:00,500,,\n"
+    )
+    assert run("batch", net, "--currents", record, "-o", result) == 0
+    said = capsys.readouterr()
+    assert "1 of 2 profiles are NaN: 1 without data (1 no-current)" in said.err
+    given = document(net, capsys)
+    with xarray.open_dataset(result, engine="h5netcdf") as found:
+        assert found["component_label"].values.tolist() == [
+            row["label"] for row in given["components"]
+        ]
+        for name in ("depth_top", "x_top", "tension_bottom", "tilt", "knockdown"):
+            expected = np.array([row[name] for row in given["components"]])
+            # the result has 32 bits
+            assert found[name].values[0] == pytest.approx(expected, rel=1e-6, abs=1e-5)
+        clamps = [row["depth"] for row in given["clamps"]]
+        assert found["clamp_depth"].values[0] == pytest.approx(clamps, rel=1e-6)
+        pull = given["anchors"][0]
+        assert found["anchor_vertical"].values[0, 3] == pytest.approx(pull["vertical"], rel=1e-6)
+        assert np.isnan(found["depth_top"].values[1]).all()
+    summary = json.loads((tmp_path / "r.summary.json").read_text())
+    assert summary["responses"]["anchor_tension"]["distribution"]["maximum"] == pytest.approx(
+        pull["tension"], rel=1e-6
+    )
+    limits = [(one["rule"], one["component"]) for one in summary["limits"]]
+    assert ("anchor-weight", "anchor-wheels-4") in limits
+    assert sum(rule == "top-depth" for rule, _ in limits) == 2
+
+
+def test_an_offset_is_that_from_the_own_anchor(tmp_path: Path) -> None:
+    """Two equal moorings 200 m apart in one file stand alike."""
+    leg = """
+    line: [{use: sphere-steel-1250}, {use: wire-jacketed-8, length: 60 m}, {use: anchor-wheels-4}]
+"""
+    text = f"""
+environment: {{depth: 100 m, current: {{speed: 0.3 m/s, toward: 90 deg}}}}
+legs:
+  one:{leg}  two:{leg}    bottom: {{anchor: {{at: [200 m, 0 m]}}}}
+"""
+    one, two = load_any(tmp_path / "two.yaml", text=text).solve().legs
+    part = pieces_of(one.mooring)[0]
+    offset = READINGS["offset"](one, part)
+    assert offset == pytest.approx(one.top.x, rel=1e-12)
+    assert READINGS["offset"](two, part) == pytest.approx(offset, rel=1e-9)
 
 
 def test_a_net_is_drawn_from_the_side_and_above(net: Path) -> None:
-    result = load_net(net).solve()
+    result = load_any(net).solve()
     side, above = elevation_of(result), plan_of(result)
     kinds = Counter(line.kind for line in side.lines)
     assert kinds == {LineKind.STILL: 4, LineKind.LINE: 4}
@@ -254,7 +326,7 @@ def test_mistakes_have_their_place(place: str, tmp_path: Path) -> None:
     right, expected = MISTAKES[place]
     assert place in NET
     with pytest.raises(InputError) as refused:
-        load_net(tmp_path / "bad.yaml", text=NET.replace(place, right, 1))
+        load_any(tmp_path / "bad.yaml", text=NET.replace(place, right, 1))
     told = [str(problem) for problem in refused.value.problems]
     hits = [each for each in told if expected in each]
     assert len(hits) == 1, told
@@ -265,14 +337,14 @@ def test_all_mistakes_come_at_once(tmp_path: Path) -> None:
     text = NET.replace("glass-17in", "glas-17in").replace("length: 10 m", "length: 10")
     text = text.replace("bottom: {join: A}\n  second", "bottom: {join: B}\n  second")
     with pytest.raises(InputError) as refused:
-        load_net(tmp_path / "bad.yaml", text=text)
+        load_any(tmp_path / "bad.yaml", text=text)
     assert len(refused.value.problems) == 3
 
 
 def test_what_nothing_holds_is_refused(tmp_path: Path) -> None:
     loose = NET[: NET.index("  stem:")]
     with pytest.raises(InputError, match="nothing holds leg `main`"):
-        load_net(tmp_path / "loose.yaml", text=loose)
+        load_any(tmp_path / "loose.yaml", text=loose)
 
 
 def test_ends_that_are_held_bear_what_pulls_them(
@@ -294,7 +366,7 @@ legs:
 """)
     found = document(file, capsys)
     hang, span = found["held"]
-    case = load_net(file)
+    case = load_any(file)
     weight = -float(case.legs[0].line.total_buoyancy.sum())
     assert hang["vertical"] == pytest.approx(-weight, rel=1e-9)
     assert hang["horizontal"] == pytest.approx(0.0, abs=1e-6)
@@ -355,7 +427,7 @@ legs:
 
 def test_anchors_stand_on_a_seabed_that_slopes_and_hold_less(tmp_path: Path) -> None:
     """Depths by the plane; the weight against that of which H pulls straight down the slope."""
-    result = load_net(tmp_path / "slope.yaml", text=SLOPE).solve()
+    result = load_any(tmp_path / "slope.yaml", text=SLOPE).solve()
     rise = 30.0 * np.tan(np.radians(10.0))
     west, east = (anchor.depth for anchor in result.anchors)
     assert (west, east) == pytest.approx((100.0 - rise - 0.7, 100.0 + rise - 0.7), abs=1e-6)
@@ -372,7 +444,7 @@ def test_an_anchor_that_slides_by_itself_is_a_mistake(tmp_path: Path) -> None:
     """The angle of friction of 0.6 is 31 degrees."""
     text = SLOPE.replace("slope: 10 deg", "slope: 32 deg")
     with pytest.raises(InputError, match=r"slides by itself .* it holds on less than 31°"):
-        load_net(tmp_path / "slope.yaml", text=text)
+        load_any(tmp_path / "slope.yaml", text=text)
 
 
 def test_a_line_that_hangs_into_the_slope_is_refused(tmp_path: Path) -> None:
@@ -388,9 +460,9 @@ legs:
 """
     )
     with pytest.raises(NoEquilibrium, match=r"wire-jacketed-8 comes .* below the seabed"):
-        load_net(tmp_path / "slope.yaml", text=text).solve()
+        load_any(tmp_path / "slope.yaml", text=text).solve()
     level = text.replace("slope: 25 deg", "slope: 0 deg")
-    assert load_net(tmp_path / "level.yaml", text=level).solve().status == "converged"
+    assert load_any(tmp_path / "level.yaml", text=level).solve().status == "converged"
 
 
 def test_the_anchor_of_a_line_is_judged_on_the_slope(

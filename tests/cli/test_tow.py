@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from calm.cli.streams import progress
+from calm.cli.progress import progress
 
 TOW = """\
 name: Test tow
@@ -219,7 +219,7 @@ def test_progress_is_told_to_a_terminal_only_when_it_takes_long(capsys, monkeypa
     assert list(progress([1, 2, 3], "speeds")) == [1, 2, 3]
     assert capsys.readouterr().err == ""
     times = iter([0.0, 0.5, 1.5, 1.5, 1.55])
-    monkeypatch.setattr("calm.cli.streams.monotonic", lambda: next(times, math.inf))
+    monkeypatch.setattr("calm.cli.progress.monotonic", lambda: next(times, math.inf))
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
     assert list(progress([1, 2, 3], "speeds")) == [1, 2, 3]
-    assert capsys.readouterr().err == "\r1 of 3 speeds\r\x1b[K"
+    assert capsys.readouterr().err == "\r\x1b[K1 of 3 speeds\r\x1b[K"

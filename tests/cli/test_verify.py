@@ -85,7 +85,7 @@ def test_progress_is_told_to_a_terminal_and_wiped(cases, monkeypatch):
     cases(GOOD)
     terminal, seconds = Terminal(), count()
     monkeypatch.setattr("sys.stderr", terminal)
-    monkeypatch.setattr("calm.cli.streams.monotonic", lambda: next(seconds))
+    monkeypatch.setattr("calm.cli.progress.monotonic", lambda: next(seconds))
     verify()
     assert terminal.getvalue() == "\r0 of 2 figures\r1 of 2 figures\r\x1b[K"
 

@@ -4,7 +4,7 @@ import os
 
 import pytest
 
-from calm.cli.workers import begun, mapped
+from calm.cli.progress import begun, mapped
 
 
 @pytest.mark.parametrize("cores", [1, 2])

@@ -10,9 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from calm.grid.depths import MooringDepths
 from calm.grid.field import estimate, field_of, posterior
-from calm.grid.samples import gather
+from calm.grid.samples import MooringDepths, gather
 from calm.motion.line_places import points_of
 from calm.records.instrument_series import read_series
 

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import groupby
 
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.batch.statistics.series import Column, ResultColumns, Seat
+from calm.batch.statistics.series import Column, LegSeats, ResultColumns, Seat
 from calm.batch.statuses import Ending
 from calm.case import Mooring
-from calm.checks.assess import RULES, equilibrium
+from calm.case.net import Net
+from calm.checks.assess import RULES, equilibrium, is_judged
 from calm.checks.criterion import AT_SURFACE, Criterion, JudgedPart
 from calm.checks.finding import Rule, State
 from calm.checks.posture import reaches_the_surface
+from calm.files.mooring_file import STAND_IN
 from calm.files.rule_texts import RULES as TEXTS
 from calm.physics.seabed import required_weight
 
@@ -35,12 +37,14 @@ class CountedLimit:
     ----------
     rule : of the design check
     criterion : what it asks
-    mooring : of what
+    mooring : of what, a leg of a net among them
+    leg : where that has its columns
     """
 
     rule: Rule
     criterion: Criterion
     mooring: Mooring
+    leg: LegSeats | None = None
 
     @property
     def component(self) -> str:
@@ -69,7 +73,8 @@ class CountedLimit:
 
     def values(self, series: ResultColumns) -> Column:
         """The (n,) values of a batch; NaN where there is nothing to judge."""
-        return _VALUES[self.criterion.quantity](series, self.criterion.part, self.mooring)
+        own = series if self.leg is None else series.of_leg(self.leg)
+        return _VALUES[self.criterion.quantity](own, self.criterion.part, self.mooring)
 
     def broken(self, values: Column) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
         """(n,) where values are beyond the limit; never where they are NaN."""
@@ -78,13 +83,22 @@ class CountedLimit:
         return np.asarray(beyond, np.bool_)
 
 
-def limits_of(mooring: Mooring) -> tuple[CountedLimit, ...]:
+def limits_of(mooring: Mooring | Net) -> tuple[CountedLimit, ...]:
     """Every limit of a mooring that can be counted in a batch, rule by rule and down the line.
 
     The tension of a piece is the greatest, or the least, of those at its ends and at the clamps on
     it, which is what a result holds. A line meant for the surface is judged as such wherever the
-    current takes its float.
+    current takes its float. Of a net each leg is judged as the design check judges it.
     """
+    if isinstance(mooring, Net):
+        found = [
+            replace(limit, leg=leg)
+            for line, leg in zip(mooring.meant, LegSeats.of_file(mooring.file), strict=True)
+            for limit in limits_of(line)
+            if is_judged(line.file, limit.rule, limit.criterion.part.index)
+        ]
+        order = list(RULES)
+        return tuple(sorted(found, key=lambda limit: order.index(limit.rule.name)))
     return tuple(
         CountedLimit(rule, criterion, mooring)
         for rule in RULES.values()
@@ -95,8 +109,8 @@ def limits_of(mooring: Mooring) -> tuple[CountedLimit, ...]:
 
 def top_offset(series: ResultColumns) -> Column:
     """(n,) horizontal distance of the top of the line from the anchor [m]."""
-    offset = series.column("x_top", 0)
-    np.hypot(offset, series.column("y_top", 0), out=offset)
+    offset = series.column("x_top", 0) - series.column("x_top", -1)
+    np.hypot(offset, series.column("y_top", 0) - series.column("y_top", -1), out=offset)
     return offset
 
 
@@ -128,7 +142,10 @@ def _greatest_depth(series: ResultColumns, part: JudgedPart, mooring: Mooring) -
     """Return the depth of the deeper end of a piece, whose lower end is the top of the next one."""
     depth = series.depth(_seat(part))
     floats = depth <= (AT_SURFACE if reaches_the_surface(mooring) else -np.inf)
-    if part.clamp is None:
+    pieces = mooring.file.pieces
+    if part.clamp is None and pieces[part.index + 1].use == STAND_IN:
+        depth += pieces[part.index].length or 0.0  # it cannot be deeper, but for its stretch
+    elif part.clamp is None:
         np.maximum(depth, series.depth(Seat(part.index + 1)), out=depth)
     depth[floats] = np.nan
     return depth

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from copy import copy
 from pathlib import Path
 from tempfile import TemporaryFile
 from typing import Any, NamedTuple, Self
@@ -11,6 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.batch.finished import Stored, labels_of, readable, statuses_of, times_of
+from calm.dataset.netcdf import OF_ENDS
+from calm.files import MooringFile
 
 Column = NDArray[np.floating[Any]]
 Times = NDArray[np.datetime64]
@@ -35,6 +38,24 @@ class Seat(NamedTuple):
 
     number: int
     clamped: bool = False
+
+
+class LegSeats(NamedTuple):
+    """Describe where a leg of a net has its columns: its components, its clamps, its number."""
+
+    components: slice
+    clamps: slice
+    number: int
+
+    @classmethod
+    def of_file(cls, file: MooringFile) -> list[LegSeats]:
+        """Return those of each leg of a file."""
+        found, clamped = [], 0
+        for number, leg in enumerate(file.legs):
+            own = sum(len(piece.clamps) for piece in file.pieces[leg.first : leg.end])
+            found.append(cls(slice(leg.first, leg.end), slice(clamped, clamped + own), number))
+            clamped += own
+        return found
 
 
 class ResultColumns:
@@ -95,6 +116,18 @@ class ResultColumns:
 
     def __len__(self) -> int:
         return len(self.time)
+
+    def of_leg(self, leg: LegSeats) -> ResultColumns:
+        """Return the columns of a leg of a net alone, which read from the same temporary file."""
+        view, ends = copy(self), slice(leg.number, leg.number + 1)
+        view._columns = {
+            name: columns[
+                leg.clamps if name.startswith("clamp_") else ends if name in OF_ENDS
+                else leg.components
+            ]
+            for name, columns in self._columns.items()
+        }  # fmt: skip
+        return view
 
     @property
     def seats(self) -> tuple[Seat, ...]:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from math import hypot
+from math import hypot, nan
 from pathlib import Path
 
 import numpy as np
@@ -21,9 +21,10 @@ from calm.batch.statistics.limits import (
     top_knockdown,
     top_offset,
 )
-from calm.batch.statistics.series import Column, ResultColumns, Seat, Times
+from calm.batch.statistics.series import Column, LegSeats, ResultColumns, Seat, Times
 from calm.batch.statuses import Ending, endings
 from calm.case import Mooring
+from calm.case.net import Net
 from calm.case.profilers import profilers_in
 from calm.checks.criterion import limits_used
 from calm.checks.posture import reaches_the_surface
@@ -147,7 +148,7 @@ class Summary:
 
 def summarize(
     dataset: Stored,
-    mooring: Mooring,
+    mooring: Mooring | Net,
     folder: Path | None = None,
     check: Callable[[], None] = lambda: None,
     source: Path = Path("the result"),
@@ -179,7 +180,7 @@ def summarize(
         equilibrium = equilibrium_share(ended)
         unsolved = ended[Ending.NO_EQUILIBRIUM] + ended[Ending.NOT_CONVERGED]
         step = median_step(series.time)
-        responses, worst = _responses(series, step)
+        responses, worst = _responses(series, _columns_of(series, mooring), step)
         return Summary(
             name=mooring.file.name,
             count=len(series),
@@ -194,8 +195,14 @@ def summarize(
             rules=(equilibrium, *shares_of(series, limits_of(mooring), unsolved)),
             not_judged=NOT_JUDGED,
             source={name: str(dataset.attrs[name]) for name in SOURCE if name in dataset.attrs},
-            limits_used=limits_used(mooring.file, reaches_the_surface(mooring)),
-            stops=tuple(_stops(series, mooring)),
+            limits_used=tuple(
+                dict.fromkeys(
+                    key
+                    for line in (mooring.meant if isinstance(mooring, Net) else (mooring,))
+                    for key in limits_used(line.file, reaches_the_surface(line))
+                )
+            ),
+            stops=tuple(_stops(series, mooring)) if isinstance(mooring, Mooring) else (),
         )
 
 
@@ -249,13 +256,31 @@ RANKED = ("knockdown", "anchor_tension", "tilt")
 """The responses by which the worst profiles are reported."""
 
 
+_LegColumns = Mapping[str, Sequence[ResultColumns]]
+"""The columns that each response is the greatest of: of a line, or of the legs of a net."""
+
+
+def _columns_of(series: ResultColumns, mooring: Mooring | Net) -> _LegColumns:
+    """Of a net the free ends count, and the anchors; an offset is that from the leg's own."""
+    if isinstance(mooring, Mooring):
+        return dict.fromkeys(RESPONSES, (series,))
+    keys, seats = mooring.file.legs, LegSeats.of_file(mooring.file)
+    legs = [series.of_leg(each) for each in seats]
+    free = [leg for one, leg in zip(keys, legs, strict=True) if one.top.free]
+    anchored = [leg for one, leg in zip(keys, legs, strict=True) if one.bottom.anchor is not None]
+    both = [leg for leg in free if leg in anchored]
+    return {"knockdown": free, "anchor_tension": anchored, "tilt": [series], "offset": both}
+
+
 def _responses(
-    series: ResultColumns, step: np.timedelta64
+    series: ResultColumns, legs: _LegColumns, step: np.timedelta64
 ) -> tuple[tuple[Response, ...], Mapping[str, tuple[WorstProfile, ...]]]:
     """One response in memory at a time."""
     responses, worst = [], {}
     for name, of in RESPONSES.items():
-        values = of(series)
+        values = np.full(len(series), np.nan, np.float32)
+        for leg in legs[name]:
+            np.fmax(values, of(leg), out=values)
         responses.append(
             Response(
                 name,
@@ -265,7 +290,7 @@ def _responses(
             )
         )
         if name in RANKED:
-            worst[name] = tuple(_profile(series, one) for one in _greatest(values))
+            worst[name] = tuple(_profile(series, legs, one) for one in _greatest(values))
     return tuple(responses), worst
 
 
@@ -284,15 +309,22 @@ def _greatest(values: Column) -> list[int]:
     return [int(index) for index in (*above, *alike)]
 
 
-def _profile(series: ResultColumns, index: int) -> WorstProfile:
+def _profile(series: ResultColumns, legs: _LegColumns, index: int) -> WorstProfile:
+    def greatest(name: str, of: Callable[[ResultColumns], float]) -> float:
+        return float(max((of(leg) for leg in legs[name]), default=nan))
+
+    def across(leg: ResultColumns, name: str) -> float:
+        ends = leg.at(name, index)
+        return float(ends[0] - ends[-1])
+
     tilts = np.concatenate([series.at("tilt", index), series.at("clamp_tilt", index)])
     most = int(np.nanargmax(tilts))
     return WorstProfile(
         time=series.time[index],
-        knockdown=float(series.at("knockdown", index)[0]),
-        anchor_tension=float(series.at("tension_top", index)[-1]),
+        knockdown=greatest("knockdown", lambda leg: leg.at("knockdown", index)[0]),
+        anchor_tension=greatest("anchor_tension", lambda leg: leg.at("tension_top", index)[-1]),
         tilt=float(tilts[most]),
-        offset=hypot(series.at("x_top", index)[0], series.at("y_top", index)[0]),
+        offset=greatest("offset", lambda leg: hypot(across(leg, "x_top"), across(leg, "y_top"))),
         leaning=series.label(series.seats[most]),
     )
 

@@ -11,14 +11,16 @@ from unicodedata import category
 from calm.errors import CalmError
 from calm.files.composition import Node
 from calm.files.editing.items import Items, Slot, items_of, snippet_of, worded_slot
-from calm.files.editing.splicing import Patch, set_scalar, set_value
 from calm.files.editing.writing import (
     SECTIONS,
+    Patch,
     Value,
     Worded,
     WritingStyle,
     inline,
     place_of,
+    set_scalar,
+    set_value,
     written,
 )
 from calm.files.yaml_document import Location

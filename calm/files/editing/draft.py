@@ -23,8 +23,7 @@ from calm.files.editing.changes import (
     with_value,
 )
 from calm.files.editing.items import LineItem, item_of, items_of, read_snippet
-from calm.files.editing.splicing import Patch, patched
-from calm.files.editing.writing import Value, Worded, WritingStyle
+from calm.files.editing.writing import Patch, Value, Worded, WritingStyle, patched
 from calm.files.yaml_document import Location
 
 LINE: Location = ("line",)

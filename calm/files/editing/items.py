@@ -13,15 +13,17 @@ from itertools import pairwise
 from typing import Literal, NamedTuple
 
 from calm.files.composition import Node, compose
-from calm.files.editing.splicing import (
+from calm.files.editing.writing import (
     Patch,
+    Wording,
+    WritingStyle,
     first_on_line,
+    inline,
     line_end,
     line_start,
     own_end,
     own_start,
 )
-from calm.files.editing.writing import Wording, WritingStyle, inline
 
 _COMMA = re.compile(r"(?:\s|#[^\n]*\n)*,")
 _BEHIND = re.compile(r"[ \t]*(?:#[^\n]*)?(?:\r?\n|\Z)")

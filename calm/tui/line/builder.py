@@ -15,8 +15,7 @@ from calm.tui import key_table
 from calm.tui.cell_editor import CellEditor
 from calm.tui.dialogs import InputSheet
 from calm.tui.key_table import bindings, hints
-from calm.tui.line.advising import Advising
-from calm.tui.line.comparing import Comparing
+from calm.tui.line.comparing import Advising, Comparing
 from calm.tui.line.line_pane import LinePane
 from calm.tui.line.line_screen import LineScreen
 from calm.tui.line.mooring_sheet import (

@@ -12,7 +12,6 @@ from calm.files.editing import Value
 from calm.tui.checking import anything, count
 from calm.tui.dialogs import Answer, Asked, InputSheet, Question
 from calm.tui.field import Field
-from calm.tui.line.going import location
 from calm.tui.line.line_cell import LineCell
 from calm.tui.line.mooring_sheet import (
     RELEASES,
@@ -23,7 +22,7 @@ from calm.tui.line.mooring_sheet import (
     serial_of_equipment,
     texts_of_equipment,
 )
-from calm.tui.line.table import Column, LineTable
+from calm.tui.line.table import Column, LineTable, location
 from calm.tui.messages import Workspace
 
 if TYPE_CHECKING:

@@ -16,8 +16,7 @@ from calm.tui.line.table import TableRow
 from calm.tui.theme import CLAMP, ROLES, UNKNOWN_MARGIN, UNKNOWN_ROLE, worst
 
 if TYPE_CHECKING:
-    from calm.tui.live import View
-    from calm.tui.row_findings import FoundRow
+    from calm.tui.live import FoundRow, View
 
 _MOST_MARGIN = 9.99
 

@@ -47,7 +47,7 @@ def make_result(
     count=100, begin="2001-01-01T00:00", step="1h", status=None, labels=COMPONENTS, clamps=CLAMPS,
     **columns,
 ):  # fmt: skip
-    """A result in which all that is not given is 1; what has another status than 0 is NaN.
+    """A result in which all that is not given is 1, the anchor at 0; NaN where the status is not 0.
 
     Columns are (time), for the first component or clamp, or (time, component).
     """
@@ -62,6 +62,8 @@ def make_result(
         for name in names:
             shape = (count,) if width is None else (count, width)
             values = np.ones(shape, np.float32)
+            if name in ("x_top", "y_top"):
+                values[:, -1] = 0.0  # the anchor is where offsets are counted from
             if name in columns:
                 given = np.asarray(columns[name])
                 if given.ndim < values.ndim:

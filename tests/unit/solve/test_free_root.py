@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from calm.physics.state import MarchError
+from calm.physics.line import MarchError
 from calm.solve.free_search import system_root
 
 

@@ -6,7 +6,7 @@ import pytest
 
 from calm.physics.line import Line, Water
 from calm.solve import Settings, solve_mooring
-from calm.solve.nearby import Nearby
+from calm.solve.mooring import Nearby
 
 SETTINGS = Settings(radians(2.0), 1e-10)
 

@@ -1,0 +1,187 @@
+"""Work that takes long: shared out over the cores of the machine, and how far it is."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Sized
+from functools import partial
+from time import monotonic
+from typing import TYPE_CHECKING, ParamSpec, TypeVar
+
+from calm.cli.streams import narrate
+from calm.quantities import duration, show_in, shown_units
+
+if TYPE_CHECKING:
+    from calm.batch.work import Progress
+
+_Task = TypeVar("_Task")
+_Done = TypeVar("_Done")
+_Given = ParamSpec("_Given")
+
+BAR = 24
+"""Signs from nothing to all."""
+
+FEW = 4
+"""So many tasks are done before another process has started."""
+
+_PATIENCE = 1.0  # seconds before the progress of a loop is reported
+_REDRAWN = 0.2  # seconds between two states of what is drawn
+_FIRST_LINE, _NEXT_LINES = 10.0, 60.0  # seconds without a terminal
+
+
+class ProgressTeller:
+    """Tells how far work is, in a line of the terminal; to be called with a batch's `Progress`.
+
+    With a `patience` [s] a terminal is told nothing before; time counts from the first call else.
+    """
+
+    def __init__(self, patience: float | None = None) -> None:
+        self._terminal = sys.stderr is not None and sys.stderr.isatty()
+        self._drawn = False
+        self._started = None if patience is None else monotonic()
+        self._due = (self._started or 0.0) + (patience or 0.0)
+
+    def note(self, text: str) -> None:
+        """Write a line of its own."""
+        self.clear()
+        narrate(text)
+
+    def __call__(self, progress: Progress) -> None:
+        """Report a batch, with a bar on a terminal, and line by line elsewhere."""
+        head = f"{bar(progress)} " if self._terminal else ""
+        self.tell(lambda seconds: head + state(progress, seconds))
+
+    def tell(self, text: Callable[[float], str]) -> None:
+        """Write what a text is after so many seconds, unless something was a moment ago."""
+        now = monotonic()
+        if self._started is None:
+            self._started = now
+            self._due = now + (0.0 if self._terminal else _FIRST_LINE)
+        if now < self._due:
+            return
+        self._due = now + (_REDRAWN if self._terminal else _NEXT_LINES)
+        start, end = ("\r\x1b[K", "") if self._terminal else ("", "\n")
+        print(start + text(now - self._started), end=end, file=sys.stderr, flush=True)
+        self._drawn = self._terminal
+
+    def clear(self) -> None:
+        """Take away what is drawn."""
+        if self._drawn:
+            print("\r\x1b[K", end="", file=sys.stderr, flush=True)
+            self._drawn = False
+
+
+def bar(progress: Progress) -> str:
+    """As much of a bar as is done."""
+    filled = BAR * progress.done // progress.total
+    return f"[{'#' * filled}{'.' * (BAR - filled)}]"
+
+
+def state(progress: Progress, seconds: float) -> str:
+    """How many are done, the rate, the time that the rest takes at it, and the failures so far."""
+    from calm.batch.statuses import Ending
+
+    text = f"{grouped(progress.done)} of {grouped(progress.total)} profiles"
+    solved = progress.done - progress.found
+    if solved and seconds > 0.0:
+        rate = solved / seconds
+        left = (progress.total - progress.done) / rate
+        text += f", {grouped(round(rate))} a second, {duration(left)} left"
+    for ending, count in progress.endings.items():
+        if count and ending is not Ending.SOLVED:
+            text += f", {grouped(count)} {ending.value}"
+    return text
+
+
+def grouped(number: int) -> str:
+    """A count with its thousands apart."""
+    return f"{number:,}".replace(",", " ")
+
+
+def progress(items: Iterable[_Task], what: str, total: int | None = None) -> Iterator[_Task]:
+    """The items one by one; when they take long, a terminal shows how many are done.
+
+    Parameters
+    ----------
+    what : the items, in the plural
+    total : how many there are, where `items` cannot tell
+    """
+    total = total or (len(items) if isinstance(items, Sized) else 0)
+    if sys.stderr is None or not sys.stderr.isatty():
+        yield from items
+        return
+    teller = ProgressTeller(_PATIENCE)
+    for done, item in enumerate(items):
+        teller.tell(lambda _, done=done: f"{done} of {total} {what}")  # type: ignore[misc]
+        yield item
+    teller.clear()
+
+
+def mapped(
+    function: Callable[[_Task], _Done],
+    tasks: Sequence[_Task],
+    workers: int | None,
+    what: str,
+    meanwhile: Callable[[], object] | None = None,
+) -> list[_Done]:
+    """What a function makes of every task, in their order; how far it is is shown.
+
+    Parameters
+    ----------
+    function : of a module, so that another process finds it
+    workers : how many processes; None for one on each core
+    what : the tasks, in the plural
+    meanwhile : what this process does while others work; nothing where it works itself
+    """
+    workers = min(workers or os.cpu_count() or 1, len(tasks))
+    if workers < 2 or len(tasks) <= FEW:
+        return [function(task) for task in progress(tasks, what)]
+    from concurrent.futures import ProcessPoolExecutor
+    from multiprocessing import active_children
+
+    pool = ProcessPoolExecutor(workers, initializer=_as_parent, initargs=(shown_units(),))
+    try:
+        doing = pool.map(function, tasks)
+        if meanwhile is not None:
+            meanwhile()
+        done = list(progress(doing, what, len(tasks)))
+    except BaseException:
+        pool.shutdown(wait=False, cancel_futures=True)
+        for child in active_children():
+            child.kill()
+        raise
+    pool.shutdown()
+    return done
+
+
+def begun(
+    function: Callable[_Given, _Done], *given: _Given.args, **named: _Given.kwargs
+) -> Callable[[], _Done]:
+    """Let another process make something while this one goes on; what is returned hands it over.
+
+    On a machine of one core it is made here when it is called for.
+
+    Parameters
+    ----------
+    function : of a module, so that another process finds it
+    """
+    if (os.cpu_count() or 1) < 2:
+        return partial(function, *given, **named)
+    from concurrent.futures import ProcessPoolExecutor
+
+    pool = ProcessPoolExecutor(1, initializer=_as_parent, initargs=(shown_units(),))
+    made = pool.submit(function, *given, **named)
+
+    def done() -> _Done:
+        with pool:
+            return made.result()
+
+    return done
+
+
+def _as_parent(shown: Mapping[str, str]) -> None:
+    """Show the units of the parent, and leave interrupts to it."""
+    show_in(shown)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
