@@ -36,8 +36,10 @@ GAIN, GAINS = 0.02, 0.01
 """Of a gain less 1, and the probability that it is wrong."""
 EXCHANGED = 0.01
 """Probability that two labels are exchanged."""
-LEAST = {"clock": 0.05, "gain": 0.003, "offset": 2.5, "drift": 1.0, "slip": 1.5, "exchanged": 0.0}
-"""What is named, at least: h, 1, m, m, m."""
+LEAST = {"clock": 0.08, "gain": 0.003, "offset": 2.5, "drift": 1.0, "slip": 1.5, "exchanged": 0.0}
+"""What is named, at least: h (and as many steps of the record), 1, m, m, m."""
+FINEST = 0.02
+"""Of a clock, as a share of the step of the record: how well times are known between readings."""
 FEWEST = 20
 """Times from which anything is said."""
 
@@ -54,8 +56,11 @@ class Fault:
         its depths; how much too deep it reads, what that grows to, or how far down the line it has
         moved [m]; 0 of what is exchanged
     odds : of this against all else that it may be, and against nothing
-    since : from when on its clamp has slipped; up to when it drifts; NaT of others
+    since : from when on its clamp has slipped, or it drifts; NaT of others
+    until : up to when it drifts; NaT of others
     other : label of the sensor that it is exchanged with; empty otherwise
+    rival : what it may be as well, where that is not much less likely; empty otherwise
+    corrected : whether it has been taken off
     """
 
     label: str
@@ -65,7 +70,39 @@ class Fault:
     high: float
     odds: float
     since: np.datetime64
+    until: np.datetime64
     other: str = ""
+    rival: str = ""
+    corrected: bool = False
+
+    def same(self, other: Fault) -> bool:
+        """Whether it is the same of the same sensor, by whatever size."""
+        return (self.label, self.kind, self.other) == (other.label, other.kind, other.other)
+
+    @property
+    def certain(self) -> bool:
+        """Whether it can be nothing else."""
+        return self.odds >= LIKELY
+
+    def sentence(self, rival: bool = True) -> str:
+        """Return what is said of it; without the other things that it may be unless asked for."""
+        band = f"({self.low:+.2f} to {self.high:+.2f})"
+        way = "late" if self.value > 0.0 else "early"
+        when, until = (np.datetime_as_string(one, "m") for one in (self.since, self.until))
+        below = "below" if self.value > 0.0 else "above"
+        text = {
+            "clock": f"its clock is {abs(self.value):.2f} h {way} {band}",
+            "gain": f"reads {self.value:.3f} times the depth ({self.low:.3f} to {self.high:.3f}): "
+            "the gain of the pressures, or their unit, is wrong",
+            "offset": f"{self.value:+.1f} m off throughout: its zero, or a length or a place on "
+            "the line that is wrong",
+            "drift": f"drifts by {self.value:+.1f} m {band} until {until}",
+            "slip": f"hangs {abs(self.value):.1f} m {below} its place from {when} on: a clamp that "
+            "slipped",
+            "exchanged": f"its label and that of {self.other} are exchanged",
+        }[self.kind]
+        also = f", or {self.rival}: they cannot tell" if rival and self.rival else ""
+        return f"{self.label}: {text}{also}"
 
 
 @dataclass(frozen=True)
@@ -140,7 +177,17 @@ class _Diagnosis:
         self.mean = np.zeros(len(self.spread))
         self.white = np.linalg.inv(np.linalg.cholesky(law.expected))
         self.step = float(np.median(np.diff(self.measured.time)) / np.timedelta64(1, "h"))
-        self.depth = self._at(0.0)
+        self._kept: dict[int, Floats] = {}
+        self.depth = self._after(0)
+
+    def _after(self, steps: int) -> Floats:
+        if steps not in self._kept:
+            lag = np.timedelta64(round(steps * self.step * 3.6e12), "ns")
+            gap = np.timedelta64(round(2.0 * self.step * 3.6e12), "ns")
+            one, wanted = self.measured, self.law.time + lag
+            columns = [interpolated(one.time, column, wanted, gap) for column in one.depth.T]
+            self._kept[steps] = np.stack(columns, axis=1)
+        return self._kept[steps]
 
     def _at(self, late: float) -> Floats:
         """Return (n, s) what the sensors read so many hours later [m].
@@ -148,15 +195,9 @@ class _Diagnosis:
         Between the times of the record by the slope there and a quarter of the curvature: noise
         neither grows nor is smoothed so, which alone would speak for a clock that is wrong.
         """
-        one, whole = self.measured, round(late / self.step) if self.step > 0.0 else 0
+        whole = round(late / self.step) if self.step > 0.0 else 0
         part = late / self.step - whole if self.step > 0.0 else 0.0
-        gap = np.timedelta64(round(2.0 * self.step * 3.6e12), "ns")
-        before, there, after = (
-            np.stack([interpolated(one.time, column, self.law.time + lag, gap)
-                      for column in one.depth.T], axis=1)
-            for lag in (np.timedelta64(round(k * self.step * 3.6e12), "ns")
-                        for k in (whole - 1, whole, whole + 1))
-        )  # fmt: skip
+        before, there, after = (self._after(steps) for steps in (whole - 1, whole, whole + 1))
         bent = 0.5 * part * (after - before) + 0.125 * part**2 * (after - 2.0 * there + before)
         return there + np.nan_to_num(bent)
 
@@ -169,21 +210,24 @@ class _Diagnosis:
             if best is None or best[1] < np.log(LIKELY):
                 break
             taken.append(best[0])
+            if best[0].fault.kind == "exchanged":  # nothing else holds until they are put right
+                break
         found = []
         for i, one in enumerate(taken):
             rest = [*taken[:i], *taken[i + 1 :]]
-            weighed = self._weighed(rest)
-            same = (one.fault.label, one.fault.kind, one.fault.other)
-            mine = [
-                (suspect, log)
-                for suspect, log in weighed
-                if (suspect.fault.label, suspect.fault.kind, suspect.fault.other) == same
-            ]
-            if mine:
-                suspect, log = max(mine, key=lambda each: each[1])
-                logs = [0.0, *(other for each, other in weighed if each is not suspect)]
-                odds = float(np.exp(min(log - np.logaddexp.reduce(logs), 50.0)))
-                found.append(replace(suspect.fault, odds=odds))
+            weighed = sorted(self._weighed(rest), key=lambda each: -each[1])
+            mine = [each for each in weighed if each[0].fault.same(one.fault)]
+            others = [each for each in weighed if not each[0].fault.same(one.fault)]
+            if not mine:
+                continue
+            (suspect, log), *_ = mine
+            odds = np.exp(
+                min(log - np.logaddexp.reduce([0.0, *(each[1] for each in others)]), 50.0)
+            )
+            rival = ""
+            if odds < LIKELY and others:
+                rival = others[0][0].fault.sentence(rival=False)
+            found.append(replace(suspect.fault, odds=float(odds), rival=rival))
         return tuple(found)
 
     def _weighed(self, taken: list[_Suspect]) -> list[tuple[_Suspect, float]]:
@@ -203,7 +247,11 @@ class _Diagnosis:
             if fault.kind == "clock":  # a lag anywhere within reach
                 log += float(np.log(np.sqrt(2.0 * np.pi) * deviation / (2.0 * FURTHEST)))
             size = abs(value - (fault.kind == "gain"))
-            if size < LEAST[fault.kind]:
+            least = LEAST[fault.kind]
+            if fault.kind == "clock":
+                least *= max(self.step, 1.0)
+                deviation = float(np.hypot(deviation, FINEST * self.step))
+            if size < least:
                 continue
             fault = replace(
                 fault, value=value, low=value - 1.96 * deviation, high=value + 1.96 * deviation
@@ -277,15 +325,16 @@ class _Diagnosis:
                 if kind == "offset":
                     column = np.broadcast_to(mine * 1.0, none.shape)
                 chance, wide = chance_of(code, len(law.time))
-                when = law.time[code] if kind == "slip" else never
+                since, until = law.time[code] if kind == "slip" else never, never
                 if kind == "drift":
-                    span = self.measured.time[-1] - self.measured.time[0]
-                    when = self.measured.time[0] + common_unknowns.RAMPS[code] * span
-                fault = Fault(label, kind, 0.0, 0.0, 0.0, 0.0, when)
+                    since = self.measured.time[0]
+                    span = self.measured.time[-1] - since
+                    until = since + common_unknowns.RAMPS[code] * span
+                fault = Fault(label, kind, 0.0, 0.0, 0.0, 0.0, since, until)
                 yield _Suspect(fault, column, wide, chance, none)
         for label, mine in self._whose():
             if (label, "gain") not in had:
-                fault = Fault(label, "gain", 0.0, 0.0, 0.0, 0.0, never)
+                fault = Fault(label, "gain", 0.0, 0.0, 0.0, 0.0, never, never)
                 yield _Suspect(fault, depth * mine, GAIN, float(np.log(GAINS)), none)
             if (label, "clock") not in had:
                 late = self._late(begun, mine)
@@ -293,7 +342,7 @@ class _Diagnosis:
                     shift = self._shift(late, mine)
                     rate = self._shift(late + 0.5 * self.step, mine) - shift
                     rate -= self._shift(late - 0.5 * self.step, mine) - shift
-                    fault = Fault(label, "clock", late, late, late, 0.0, never)
+                    fault = Fault(label, "clock", late, late, late, 0.0, never, never)
                     yield _Suspect(fault, rate / self.step, 0.0, float(np.log(CLOCKS)), shift)
         missed = self._missed(raw)
         for i, j in combinations(range(len(self.label)), 2):
@@ -305,7 +354,7 @@ class _Diagnosis:
                 continue
             if {(names[0], "exchanged"), (names[1], "exchanged")} & had:
                 continue
-            fault = Fault(names[0], "exchanged", 0.0, 0.0, 0.0, 0.0, never, names[1])
+            fault = Fault(names[0], "exchanged", 0.0, 0.0, 0.0, 0.0, never, never, names[1])
             pairs = len(self.label) * (len(self.label) - 1) / 2
             yield _Suspect(fault, shift, 0.0, float(np.log(EXCHANGED / pairs)), shift)
 
@@ -335,7 +384,7 @@ class _Diagnosis:
 
         step = self.step
         best = min((step * lag for lag in range(-reach, reach + 1)), key=miss)
-        for _ in range(4):
+        for _ in range(6):
             step *= 0.5
             best = min((best - step, best, best + step), key=miss)
         return best
