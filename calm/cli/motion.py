@@ -29,10 +29,10 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
     from calm.motion.correction import Task
-    from calm.motion.diagnosis import Fault
     from calm.motion.instrument_file import Instruments
     from calm.motion.measurements import MooringMeasurements
     from calm.motion.motion_estimate import Read
+    from calm.motion.remarks import Fault
 
 MOTION_EXAMPLES = """Examples:
 
@@ -131,6 +131,7 @@ def motion(
     from calm.batch.work import compile_solver
     from calm.case import Tow, load
     from calm.motion.correction import MeasuredRecord, run_motion
+    from calm.motion.diagnosis import diagnosed
     from calm.motion.instrument_file import read_instruments
     from calm.motion.line_places import places_of
     from calm.motion.motion_estimate import fitted, put_right, read_measured
@@ -209,7 +210,7 @@ def motion(
         if not outcome.done:
             return code
         with open_result(output) as result, readable(output):
-            study = judged(task, measured, result, faults)
+            study = judged(task, measured, result, (*faults, *diagnosed(task)))
             series = series_of(mooring, measured, task.measured.label, result)
             factor = None
             if "current_factor" in result:

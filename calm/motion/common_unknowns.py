@@ -179,7 +179,7 @@ def first_time(
     """Return (s,) the time from which on each sensor most likely hangs elsewhere, if it does.
 
     0 is throughout; `NEVER` where it has too few readings; one of `RAMPS` where it is likelier to
-    drift. Each is weighed beside all that is known beforehand.
+    drift than to have slipped at any time. Each is weighed beside all that is known beforehand.
 
     Parameters
     ----------
@@ -212,7 +212,7 @@ def first_time(
     can[0] = after[0] >= FEWEST
     gain = np.where(can, gain, -np.inf)
     first: Integers = np.where(can.any(axis=0), gain.argmax(axis=0), NEVER)
-    best = gain.max(axis=0)
+    best = gain.max(axis=0) + np.where(first > 0, np.log(count), 0.0)  # of a slip at any time
     for code, part in RAMPS.items():
         ramp = np.minimum(share / part, 1.0)[:, None]
         own, cross = (ramp * pulls).sum(axis=0), (crossed * ramp[:, :, None]).sum(axis=0)

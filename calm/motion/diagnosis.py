@@ -21,13 +21,11 @@ from calm.motion.correction import Task
 from calm.motion.estimate import best_state
 from calm.motion.line_response import LineResponse
 from calm.motion.measurements import interpolated
+from calm.motion.remarks import ALL, LIKELY, Fault
 from calm.motion.unknown_currents import SEABED, unknown_state
 from calm.motion.whole_record import ROBUST, LinearLaw, chosen_times, linear_law, repeated
 from calm.physics.line import Floats
 
-ALL = "all sensors"
-LIKELY = 20.0
-"""Odds from which something is said to be wrong."""
 MOST = 8
 """Things that are wrong, at most."""
 CLOCKS, FURTHEST = 0.01, 13.0
@@ -42,67 +40,6 @@ FINEST = 0.02
 """Of a clock, as a share of the step of the record: how well times are known between readings."""
 FEWEST = 20
 """Times from which anything is said."""
-
-
-@dataclass(frozen=True)
-class Fault:
-    """Hold one thing that is wrong.
-
-    Attributes
-    ----------
-    label : of the sensor; `ALL` where it is all of them alike
-    kind : `clock`, `gain`, `offset`, `drift`, `slip` or `exchanged`
-    value, low, high : with the ends of its interval of 95 %: how late its times are [h]; factor on
-        its depths; how much too deep it reads, what that grows to, or how far down the line it has
-        moved [m]; 0 of what is exchanged
-    odds : of this against all else that it may be, and against nothing
-    since : from when on its clamp has slipped, or it drifts; NaT of others
-    until : up to when it drifts; NaT of others
-    other : label of the sensor that it is exchanged with; empty otherwise
-    rival : what it may be as well, where that is not much less likely; empty otherwise
-    corrected : whether it has been taken off
-    """
-
-    label: str
-    kind: str
-    value: float
-    low: float
-    high: float
-    odds: float
-    since: np.datetime64
-    until: np.datetime64
-    other: str = ""
-    rival: str = ""
-    corrected: bool = False
-
-    def same(self, other: Fault) -> bool:
-        """Whether it is the same of the same sensor, by whatever size."""
-        return (self.label, self.kind, self.other) == (other.label, other.kind, other.other)
-
-    @property
-    def certain(self) -> bool:
-        """Whether it can be nothing else."""
-        return self.odds >= LIKELY
-
-    def sentence(self, rival: bool = True) -> str:
-        """Return what is said of it; without the other things that it may be unless asked for."""
-        band = f"({self.low:+.2f} to {self.high:+.2f})"
-        way = "late" if self.value > 0.0 else "early"
-        when, until = (np.datetime_as_string(one, "m") for one in (self.since, self.until))
-        below = "below" if self.value > 0.0 else "above"
-        text = {
-            "clock": f"its clock is {abs(self.value):.2f} h {way} {band}",
-            "gain": f"reads {self.value:.3f} times the depth ({self.low:.3f} to {self.high:.3f}): "
-            "the gain of the pressures, or their unit, is wrong",
-            "offset": f"{self.value:+.1f} m off throughout: its zero, or a length or a place on "
-            "the line that is wrong",
-            "drift": f"drifts by {self.value:+.1f} m {band} until {until}",
-            "slip": f"hangs {abs(self.value):.1f} m {below} its place from {when} on: a clamp that "
-            "slipped",
-            "exchanged": f"its label and that of {self.other} are exchanged",
-        }[self.kind]
-        also = f", or {self.rival}: they cannot tell" if rival and self.rival else ""
-        return f"{self.label}: {text}{also}"
 
 
 @dataclass(frozen=True)
@@ -305,7 +242,8 @@ class _Diagnosis:
         law, none = self.law, np.zeros_like(self.law.raw)
         never = np.datetime64("NaT", "ns")
         had = {(one.fault.label, one.fault.kind) for one in taken}
-        depth = np.nan_to_num(self.depth)
+        # not as measured: a gain less than 1 would shrink the errors as well
+        depth = np.nan_to_num(self.depth - begun.left)
         fixed, raw = law.fixed, self._raw(taken)
         for one in taken:
             if one.wide:
@@ -337,13 +275,9 @@ class _Diagnosis:
                 fault = Fault(label, "gain", 0.0, 0.0, 0.0, 0.0, never, never)
                 yield _Suspect(fault, depth * mine, GAIN, float(np.log(GAINS)), none)
             if (label, "clock") not in had:
-                late = self._late(begun, mine)
-                if late:
-                    shift = self._shift(late, mine)
-                    rate = self._shift(late + 0.5 * self.step, mine) - shift
-                    rate -= self._shift(late - 0.5 * self.step, mine) - shift
-                    fault = Fault(label, "clock", late, late, late, 0.0, never, never)
-                    yield _Suspect(fault, rate / self.step, 0.0, float(np.log(CLOCKS)), shift)
+                late = self._late(taken, begun.left, mine)
+                if late.fault.value:
+                    yield late
         missed = self._missed(raw)
         for i, j in combinations(range(len(self.label)), 2):
             away = np.nan_to_num(self.depth[:, j] - self.depth[:, i])
@@ -375,19 +309,33 @@ class _Diagnosis:
         count = self.law.known.sum(axis=1)
         return float(((ROBUST + count) * np.log1p(misfit / ROBUST)).sum())
 
-    def _late(self, begun: _Found, mine: NDArray[np.bool_]) -> float:
-        """Return by how many hours the times of some sensors are most likely late."""
-        reach = int(FURTHEST / self.step) if self.step > 0.0 else 0
+    def _late(self, taken: list[_Suspect], left: Floats, mine: NDArray[np.bool_]) -> _Suspect:
+        """Return the clock of some sensors, late by as many hours as is most likely.
+
+        Parameters
+        ----------
+        left : (n, s) what is not explained where their clocks are right [m]
+        """
+        reach, step = int(FURTHEST / self.step) if self.step > 0.0 else 0, self.step
 
         def miss(late: float) -> float:
-            return self._missed(begun.left + self._shift(late, mine))
+            return self._missed(left + self._shift(late, mine))
 
-        step = self.step
-        best = min((step * lag for lag in range(-reach, reach + 1)), key=miss)
+        late = min((step * lag for lag in range(-reach, reach + 1)), key=miss)
         for _ in range(6):
+            suspect = self._clock(late, mine)
+            left = self._fitted([*taken, suspect], None, 1.0).left - suspect.shift
             step *= 0.5
-            best = min((best - step, best, best + step), key=miss)
-        return best
+            late = min((late - step, late, late + step), key=miss)
+        return self._clock(late, mine)
+
+    def _clock(self, late: float, mine: NDArray[np.bool_]) -> _Suspect:
+        label = ALL if mine.all() and len(mine) > 1 else self.label[int(mine.argmax())]
+        shift, half = self._shift(late, mine), 0.5 * self.step
+        rate = (self._shift(late + half, mine) - self._shift(late - half, mine)) / self.step
+        never = np.datetime64("NaT", "ns")
+        fault = Fault(label, "clock", late, late, late, 0.0, never, never)
+        return _Suspect(fault, rate, 0.0, float(np.log(CLOCKS)), shift)
 
 
 def _beforehand(task: Task) -> Floats:

@@ -15,7 +15,7 @@ from calm.case import Mooring
 from calm.dataset.discovery import hashed
 from calm.errors import UsageError, not_among, unknown
 from calm.motion.correction import MeasuredRecord, Task, run_motion, without
-from calm.motion.diagnosis import ALL, Fault, diagnosed
+from calm.motion.diagnosis import diagnosed
 from calm.motion.line_response import FACTORS, Forward
 from calm.motion.matching import (
     instruments_of,
@@ -27,7 +27,7 @@ from calm.motion.matching import (
     unusable,
 )
 from calm.motion.measurements import MooringMeasurements, joined, read_currents
-from calm.motion.remarks import Agreement
+from calm.motion.remarks import ALL, Agreement, Fault
 from calm.motion.sensors import Sensor, parse_flags, read_sea_level, read_sensors, split_label
 from calm.motion.study import HeldOut, Study, cross_validated, judged, prepare, several
 
@@ -138,7 +138,7 @@ def read_measured(
         "pressures": ", ".join(hashed(split_label(one)[1]) for one in pressures),
     }
     if faults:
-        source["corrected"] = "; ".join(one.sentence() for one in faults)
+        source["corrected"] = "taken off: " + "; ".join(one.sentence() for one in faults)
     return measured, notes, source
 
 
@@ -229,6 +229,11 @@ class MotionEstimate:
     def held_out(self) -> Mapping[str, HeldOut]:
         """Return how well the depths of each hidden sensor were found, by label."""
         return {one.label: one for one in self.study.held_out}
+
+    @property
+    def diagnosis(self) -> tuple[Fault, ...]:
+        """Return what is wrong with the sensors, with sizes and odds."""
+        return self.study.diagnosis
 
     @property
     def remarks(self) -> tuple[str, ...]:
@@ -332,7 +337,7 @@ def estimate_motion(
         run_motion(task, record, output, options, workers=workers)
         with open_result(output) as kept:
             dataset = kept.load()
-    study = judged(task, measured, dataset, faults)
+    study = judged(task, measured, dataset, (*faults, *diagnosed(task)))
     if cross_validate:
         each = cross_validated(mooring, measured, names, hold_out, lambda _: None, workers)
         study = replace(study, held_out=(*study.held_out, *each))

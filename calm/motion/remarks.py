@@ -1,4 +1,4 @@
-"""How well depths are computed, and remarks on currents and a datum that are doubtful by that."""
+"""How well depths are computed, and what is said of sensors and currents that are wrong."""
 
 from __future__ import annotations
 
@@ -16,10 +16,75 @@ Times = NDArray[np.datetime64]
 
 FALSE = 0.5
 """Probability from which the current of a level is named as false."""
+ALL = "all sensors"
+LIKELY = 20.0
+"""Odds from which something is said to be wrong."""
 FAR_OFFSET = 2.5
 """Offset of all sensors that is named, in deviations of what is expected."""
 AIR = 10.1
 """What the weight of the air adds to depths by pressure [m]: 1013 hPa."""
+
+
+@dataclass(frozen=True)
+class Fault:
+    """Hold one thing that is wrong.
+
+    Attributes
+    ----------
+    label : of the sensor; `ALL` where it is all of them alike
+    kind : `clock`, `gain`, `offset`, `drift`, `slip` or `exchanged`
+    value, low, high : with the ends of its interval of 95 %: how late its times are [h]; factor on
+        its depths; how much too deep it reads, what that grows to, or how far down the line it has
+        moved [m]; 0 of what is exchanged
+    odds : of this against all else that it may be, and against nothing
+    since : from when on its clamp has slipped, or it drifts; NaT of others
+    until : up to when it drifts; NaT of others
+    other : label of the sensor that it is exchanged with; empty otherwise
+    rival : what it may be as well, where that is not much less likely; empty otherwise
+    corrected : whether it has been taken off
+    """
+
+    label: str
+    kind: str
+    value: float
+    low: float
+    high: float
+    odds: float
+    since: np.datetime64
+    until: np.datetime64
+    other: str = ""
+    rival: str = ""
+    corrected: bool = False
+
+    def same(self, other: Fault) -> bool:
+        """Whether it is the same of the same sensor, by whatever size."""
+        return (self.label, self.kind, self.other) == (other.label, other.kind, other.other)
+
+    @property
+    def certain(self) -> bool:
+        """Whether it can be nothing else."""
+        return self.odds >= LIKELY
+
+    def sentence(self, rival: bool = True) -> str:
+        """Return what is said of it; without the other things that it may be unless asked for."""
+        band = f"({self.low:+.2f} to {self.high:+.2f})"
+        clock = "their clocks are" if self.label == ALL else "its clock is"
+        way = "late" if self.value > 0.0 else "early"
+        when, until = (np.datetime_as_string(one, "m") for one in (self.since, self.until))
+        below = "below" if self.value > 0.0 else "above"
+        text = {
+            "clock": f"{clock} {abs(self.value):.2f} h {way} {band}",
+            "gain": f"reads {self.value:.3f} times the depth ({self.low:.3f} to {self.high:.3f}): "
+            "the gain of the pressures, or their unit, is wrong",
+            "offset": f"{self.value:+.1f} m off throughout: its zero, or a length or a place on "
+            "the line that is wrong",
+            "drift": f"drifts by {self.value:+.1f} m {band} until {until}",
+            "slip": f"hangs {abs(self.value):.1f} m {below} its place from {when} on: a clamp that "
+            "slipped",
+            "exchanged": f"its label and that of {self.other} are exchanged",
+        }[self.kind]
+        also = f", or {self.rival}: they cannot tell" if rival and self.rival else ""
+        return f"{self.label}: {text}{also}"
 
 
 def false_current_times(names: Sequence[str], time: Times, doubt: Floats) -> dict[str, Times]:

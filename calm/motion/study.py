@@ -12,13 +12,14 @@ from numpy.typing import NDArray
 from calm.case import Mooring
 from calm.errors import UsageError, unknown
 from calm.motion.correction import Task, estimate_in_memory, without
-from calm.motion.diagnosis import ALL, Fault, diagnosed
 from calm.motion.line_response import Forward
 from calm.motion.matching import instruments_of, labels_of
 from calm.motion.measurements import MooringMeasurements, level_names
 from calm.motion.remarks import (
+    ALL,
     BAND,
     Agreement,
+    Fault,
     agreement,
     calm_times,
     coverage,
@@ -134,7 +135,7 @@ def intervals(task: Task) -> dict[str, tuple[float, float, float]]:
 
 
 def judged(
-    task: Task, measured: MooringMeasurements, result: Dataset, corrected: Sequence[Fault] = ()
+    task: Task, measured: MooringMeasurements, result: Dataset, diagnosis: Sequence[Fault] = ()
 ) -> Study:
     """Return how a finished result agrees with all that was measured.
 
@@ -142,7 +143,7 @@ def judged(
     ----------
     measured : with the sensors that were hidden
     result : of `calm.motion.correction.run_motion`
-    corrected : what has been taken off
+    diagnosis : what is wrong with sensors
     """
     used = task.measured
     residual = np.asarray(result["residual"].values, np.float64)
@@ -164,7 +165,6 @@ def judged(
         point = int(measured.point[measured.label.index(label)])
         depth, spread = depths_at(result, point)
         held.append(judge_hidden(measured, used, label, depth, spread, still))
-    diagnosis = (*corrected, *diagnosed(task))
     said = [f"{one.sentence()}{'; it is taken off' if one.corrected else ''}" for one in diagnosis]
     false: Mapping[str, NDArray[np.datetime64]] = {}
     if plain is not None:
@@ -179,7 +179,7 @@ def judged(
             f"for: the bands are widened {task.common.widened:.2g} times"
         )
     return Study(
-        task, intervals(task), fit_of, plain_of, tuple(held), diagnosis, tuple(said), false
+        task, intervals(task), fit_of, plain_of, tuple(held), tuple(diagnosis), tuple(said), false
     )
 
 

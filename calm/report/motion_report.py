@@ -35,8 +35,7 @@ if TYPE_CHECKING:
     from numpy import datetime64
     from numpy.typing import NDArray
 
-    from calm.motion.diagnosis import Fault
-    from calm.motion.remarks import Agreement
+    from calm.motion.remarks import Agreement, Fault
     from calm.motion.study import HeldOut, SensorSeries, Study
 
 _BARE, _DEPTHS = "Instruments without a pressure", "Depths over time"

@@ -8,7 +8,7 @@ from scipy.stats import multivariate_t, norm
 
 from calm.motion.line_response import with_factors
 from calm.motion.measurements import MooringMeasurements
-from calm.motion.whole_record import MOST_TIMES, SCALES, chosen_times, _scale, repeated
+from calm.motion.whole_record import MOST_TIMES, SCALES, _scale, chosen_times, repeated
 from calm.physics.line import Line
 
 
