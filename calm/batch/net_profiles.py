@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.assemble import assemble_water
 from calm.batch.solving import read_profile
 from calm.batch.statuses import STATUSES
-from calm.case.net import Net, NetResult, net_result
+from calm.case.net import Net, net_result
+from calm.case.net_result import NetResult
 from calm.dataset.netcdf import OF_CLAMP, OF_COMPONENT
 from calm.errors import NoEquilibrium
 from calm.files import CurrentTable
@@ -59,7 +59,7 @@ class NetProfiles:
                 status[case] = STATUSES.index("no-current" if count == 0 else "levels-coincide")
                 continue
             table = CurrentTable(*(tuple(column) for column in read[:count].T.tolist()))
-            water = assemble_water(replace(net.file.environment, current=table))
+            water = net.water_of(replace(net.file.environment, current=table))
             try:
                 solution = net.equilibrium(water, still)
                 before: Any = [None] * legs if still is None else still.legs

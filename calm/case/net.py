@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field, fields, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from itertools import combinations, permutations, product
 from math import dist, inf, nan
@@ -15,159 +15,23 @@ import numpy as np
 from calm.assemble import assemble_water
 from calm.case.measure import result_of
 from calm.case.mooring import Mooring, Origin, as_read, refuse_in_the_slope
+from calm.case.net_result import EndLoad, NetResult, NodePlace
 from calm.case.parts import naming_the_piece
 from calm.case.result import Accuracy, AnchorLoad, Result
-from calm.case.result_tables import Clamps, Components
-from calm.case.tow import Tow, TowResult
+from calm.case.tow import Tow
 from calm.errors import NoEquilibrium
 from calm.files import MooringFile, Piece
-from calm.files.legs import EndKeys, Leg, leg_numbers, nodes_of
+from calm.files.environment import Environment
+from calm.files.legs import EndKeys, Leg, nodes_of
 from calm.files.mooring_file import STAND_IN
+from calm.physics.hull import AIR_DENSITY
 from calm.physics.line import Floats, Water
 from calm.quantities import say
 from calm.solve import Settings, Solution, Status
 from calm.solve.net import NetSolution, solve_net
 from calm.solve.net_leg import LegEnd, NetLeg
 
-
-@dataclass(frozen=True)
-class EndLoad:
-    """What a leg does to an end that is held, or to its anchor.
-
-    The pull of the line and its parts up and sideways [N], its angle from the vertical [degrees];
-    where the end is [m]. Of an anchor the weight in water that it needs, and has [N], and the
-    unstretched length of line on the seabed [m].
-    """
-
-    leg: str
-    tension: float
-    vertical: float
-    horizontal: float
-    angle: float
-    x: float
-    y: float
-    depth: float
-    required_weight: float | None = None
-    weight: float | None = None
-    grounded_length: float = 0.0
-
-
-@dataclass(frozen=True)
-class NodePlace:
-    """Where the legs of a node meet [m]; `imbalance` is what is left of their pulls there [N]."""
-
-    name: str
-    depth: float
-    x: float
-    y: float
-    imbalance: float
-
-
-@dataclass(frozen=True, kw_only=True)
-class NetResult:
-    """A converged net. Lengths and depths [m], forces [N], angles [degrees].
-
-    x and y are east and north of the origin of the file's places. `miss` is the worst distance of a
-    leg's end from where it is held, `closure` the worst of the legs', recomputed from coordinates.
-    `legs` are lines of their own, counted from their upper ends; one without an anchor has a
-    stand-in for it, of which nothing is true.
-    """
-
-    mooring: Net = field(repr=False)
-    name: str
-    type: str = "net"
-    status: str
-    iterations: int
-    segments: int
-    miss: float
-    closure: float
-    accuracy: Accuracy
-    legs: tuple[Result, ...]
-    nodes: tuple[NodePlace, ...]
-    anchors: tuple[EndLoad, ...]
-    held: tuple[EndLoad, ...]
-    warnings: tuple[str, ...] = ()
-
-    @property
-    def file(self) -> MooringFile:
-        """The file as read."""
-        return self.mooring.file
-
-    @cached_property
-    def components(self) -> Components:
-        """The pieces of the file, leg by leg."""
-        pairs = zip(self.file.legs, self.legs, strict=True)  # a leg that is joined has a stand-in
-        whole = Components.joined(
-            [leg.components.head(keys.end - keys.first) for keys, leg in pairs]
-        )
-        pieces = self.file.pieces
-        return whole.with_columns(part=list(pieces), index=np.arange(len(pieces)))
-
-    @cached_property
-    def clamps(self) -> Clamps:
-        """What is clamped on them."""
-        tables = [
-            leg.clamps.with_columns(index=leg.clamps.index + keys.first)
-            for keys, leg in zip(self.file.legs, self.legs, strict=True)
-        ]
-        return Clamps.joined(tables)
-
-    @property
-    def ends(self) -> dict[str, Floats]:
-        """Of each leg the depth of its free upper end [m], the share in use of the buoyancy there,
-        and the pull on its anchor up and sideways [N]; NaN where there is none.
-        """
-        free = np.array([1.0 if keys.top.free else nan for keys in self.file.legs])
-        return {
-            "top_depth": free * [leg.top.depth for leg in self.legs],
-            "anchor_vertical": np.array([leg.anchor.vertical for leg in self.legs]),
-            "anchor_horizontal": np.array([leg.anchor.horizontal for leg in self.legs]),
-            "used_buoyancy": free * [leg.top.used_buoyancy for leg in self.legs],
-        }
-
-    def to_dict(self) -> dict[str, Any]:
-        """The JSON object of the result format; None stands where a figure is unknown."""
-        from calm.version import __version__
-
-        components, clamps = self.components.to_dicts(), self.clamps.to_dicts()
-        for component in components:
-            for name in ("kind", "role", "tension", "least_tension"):
-                del component[name]
-        numbers = leg_numbers(self.file.legs)
-        for row in (*components, *clamps):
-            row["leg"] = self.legs[numbers[row["index"]]].name
-        legs = [
-            {
-                "name": leg.name,
-                "closure": leg.closure,
-                "used_buoyancy": leg.top.used_buoyancy,
-                "reserve": leg.top.reserve,
-                "shape": {name: column.tolist() for name, column in vars(leg.shape).items()},
-            }
-            for leg in self.legs
-        ]
-        anchors = [asdict(each) for each in self.anchors]
-        told = ("name", "type", "status", "iterations", "segments", "miss", "closure")
-        return {
-            "calm": __version__,
-            **{name: getattr(self, name) for name in told},
-            "accuracy": {k: v for k, v in asdict(self.accuracy).items() if v is not None},
-            **({"anchor": anchors[0]} if len(anchors) == 1 else {}),
-            "anchors": anchors,
-            "held": [
-                {k: v for k, v in asdict(each).items() if k not in _OF_ANCHORS}
-                for each in self.held
-            ],
-            "nodes": [asdict(each) for each in self.nodes],
-            "legs": legs,
-            "components": components,
-            "clamps": clamps,
-            "warnings": list(self.warnings),
-        }
-
-
-_OF_ANCHORS = ("required_weight", "weight", "grounded_length")
-
+_SKIN = 1e-3  # m above the surface, in which water turns into air
 
 Way = tuple[float, tuple[str, ...]]
 """Along legs: how long they are in all [m], and their names."""
@@ -182,7 +46,21 @@ class Net:
     @cached_property
     def water(self) -> Water:
         """Depth, current and density by level."""
-        return assemble_water(self.file.environment)
+        return self.water_of(self.file.environment)
+
+    def water_of(self, environment: Environment) -> Water:
+        """The water of an environment, with still air above it where an end is held there."""
+        water, ends = assemble_water(environment), [e for leg in self.file.legs for e in leg.ends]
+        if all(end.held is None or end.held.depth >= 0.0 for end in ends):
+            return water
+        below, (current, density) = water.level > 0.0, water.at(np.zeros(()))
+        level = np.array([-_SKIN, 0.0, *water.level[below]])
+        u, v, w = (
+            np.array([0.0, speed, *column[below]])
+            for speed, column in zip(current, (water.u, water.v, water.w), strict=True)
+        )
+        density = np.array([AIR_DENSITY, density, *water.density[below]])
+        return replace(water, level=level, u=u, v=v, w=w, density=density)
 
     @property
     def settings(self) -> Settings:
@@ -299,9 +177,6 @@ class Net:
             except NoEquilibrium:
                 still = [None] * len(solution.legs)
         return net_result(self, solution, still)
-
-
-AnyResult = Result | TowResult | NetResult
 
 
 def net_result(net: Net, found: NetSolution, still: Sequence[Solution | None]) -> NetResult:

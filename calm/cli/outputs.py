@@ -17,7 +17,7 @@ from calm.version import __version__
 
 if TYPE_CHECKING:
     from calm.case.explain import Explanation
-    from calm.case.net import AnyResult
+    from calm.case.net_result import AnyResult
     from calm.case.uncertain import Uncertain
     from calm.drawing.schematic.in_terminal import TerminalSchematic
     from calm.report.blocks import ReportPart
@@ -91,7 +91,7 @@ class FileOutcome:
         """The table of the line, with its schematic and its explanation where asked for."""
         parts: list[Shows] = [*self.schematic]
         if self.result is not None:
-            from calm.case.net import NetResult
+            from calm.case.net_result import NetResult
 
             if isinstance(self.result, NetResult):
                 from calm.report.net_sheet import net_part

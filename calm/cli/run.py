@@ -19,7 +19,8 @@ from calm.errors import InputError, NoEquilibrium, Problem, UsageError
 if TYPE_CHECKING:
     from calm.case import Mooring, Result, Tow
     from calm.case.explain import Explanation
-    from calm.case.net import AnyResult, Net
+    from calm.case.net import Net
+    from calm.case.net_result import AnyResult
     from calm.case.uncertain import Uncertain
     from calm.drawing.schematic.in_terminal import TerminalSchematic
 
@@ -247,7 +248,8 @@ def _schematic(
     line: Mooring | Tow | Net, result: AnyResult | None
 ) -> tuple[TerminalSchematic, ...]:
     """Draw a line, or its legs, in the signs that the standard output can carry."""
-    from calm.case.net import Net, NetResult
+    from calm.case.net import Net
+    from calm.case.net_result import NetResult
     from calm.drawing.schematic.in_terminal import TerminalSchematic, can_carry
 
     plain = not can_carry(getattr(sys.stdout, "encoding", None))

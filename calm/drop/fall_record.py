@@ -203,7 +203,7 @@ def _depths(chain: BarChain, state: ChainState) -> Floats:
 
 def pulls_of(pieces: Sequence[Piece], drop: Motion) -> tuple[Pull, ...]:
     """Return the greatest tension in every piece from letting go to the touchdown."""
-    tension = greatest_tensions(drop)
+    _, tension = piece_tensions(drop)
     latest = tension.argmax(axis=0).tolist()
     return tuple(
         Pull(piece, float(tension[when, number]), drop.states[1 + when].time)
@@ -211,27 +211,19 @@ def pulls_of(pieces: Sequence[Piece], drop: Motion) -> tuple[Pull, ...]:
     )
 
 
-def piece_tensions(drop: Motion) -> Floats:
-    """Return the tensions of every piece at its upper and its lower end, (t-1, p, 2) [N].
+def piece_tensions(drop: Motion) -> tuple[Floats, Floats]:
+    """Return the tensions of every piece at its ends, (t-1, p, 2), and the greatest, (t-1, p) [N].
 
     The first state is left out: the ship still tows, and the water flows past it otherwise.
     Pieces that are rigid with the free end are one bar, and have the tensions of its ends.
     """
-    return _ends_of_pieces(drop, _over_time(drop))
-
-
-def greatest_tensions(drop: Motion) -> Floats:
-    """Return the greatest tension in every piece at each time but the first, (t-1, p) [N]."""
-    tension = _over_time(drop)
-    found: Floats = _ends_of_pieces(drop, tension).max(axis=2)
+    tension = np.array([end_tensions(drop.mover, one, within=True) for one in drop.states[1:]])
+    ends = _ends_of_pieces(drop, tension)
+    greatest: Floats = ends.max(axis=2)
     for piece, (first, end) in enumerate(drop.mover.chain.bars.tolist()):
         if end - first > 1:
-            found[:, piece] = tension[:, first:end].max(axis=(1, 2))
-    return found
-
-
-def _over_time(drop: Motion) -> Floats:
-    return np.array([end_tensions(drop.mover, state, within=True) for state in drop.states[1:]])
+            greatest[:, piece] = tension[:, first:end].max(axis=(1, 2))
+    return ends, greatest
 
 
 def _ends_of_pieces(drop: Motion, tension: Floats) -> Floats:

@@ -16,7 +16,7 @@ from calm.assemble import with_axial_clamps
 from calm.case import Mooring
 from calm.drop.chain import chain_of
 from calm.drop.fall import Fineness, Motion, Ship, fall, nothing_limits, towed
-from calm.drop.fall_record import greatest_tensions, piece_tensions
+from calm.drop.fall_record import piece_tensions
 from calm.drop.motion import Mover, NoStep
 from calm.errors import UsageError
 from calm.physics.line import Floats, Line, Water
@@ -84,10 +84,8 @@ def launch_of(mooring: Mooring, fineness: Fineness = IN_SHORT) -> Launch:
     ship = ship_of(mooring, SHIP_SPEED, course_into_current(water))
     drop = mooring.memory.of(_let_go, line, water, anchor, ship, fineness)
     landed, known = drop.states[-1], mooring.file.anchor.kt is not None
-    (top, bottom), greatest = (
-        piece_tensions(drop).max(axis=0).T,
-        greatest_tensions(drop).max(axis=0),
-    )
+    ends, greatest = (tension.max(axis=0) for tension in piece_tensions(drop))
+    top, bottom = ends.T
     fastest = -float(landed.velocity[-1, 2])
     if not known:
         try:
@@ -95,7 +93,7 @@ def launch_of(mooring: Mooring, fineness: Fineness = IN_SHORT) -> Launch:
         except NoStep as failure:
             raise nothing_limits() from failure
         fastest = max(fastest, -float(bare.states[-1].velocity[-1, 2]))
-        greatest = np.maximum(greatest, greatest_tensions(bare)[-1])
+        greatest = np.maximum(greatest, piece_tensions(bare)[1][-1])
 
     def speed(drag: float) -> float:
         changed = replace(line, tangential_drag=drag * line.tangential_drag)

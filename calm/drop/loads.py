@@ -16,8 +16,6 @@ SLOWEST = 1e-3
 """Speed below which drag goes with the speed and not with its square [m/s]; else a line at rest
 would have nothing to keep it where it is."""
 
-_UNIT = np.eye(3)
-
 
 @dataclass(frozen=True)
 class WaterColumn:
@@ -98,71 +96,60 @@ def loads_on(
     grown = dense * (1.0 + 2.0 * on.thinning * (np.sqrt(1.0 + np.maximum(strain, 0.0)) - 1.0))
     lift, stiffness, wet, wetting, push = _afloat(chain, sea, height, density)
     speed = np.sqrt(np.einsum("ij,ij->i", flow, flow) + slowest**2)
-    along = np.einsum("ij,ij->i", flow, axis)
-    across = flow - np.where(on.directional, along, 0.0)[:, np.newaxis] * axis
+    along = on.directional * np.einsum("ij,ij->i", flow, axis)
+    across = flow - along[:, np.newaxis] * axis
     size = np.sqrt(np.einsum("ij,ij->i", across, across) + slowest**2)
-    kn, kt = grown * variation * on.normal_drag, grown * on.tangential_drag
-    kt = np.where(on.directional, kt, 0.0)
-    outer = across[:, :, np.newaxis] * across[:, np.newaxis, :]
-    # d(s n)/dn of the normal drag, and n = V - (V.t) t
-    turn = size[:, np.newaxis, np.newaxis] * _UNIT + outer / size[:, np.newaxis, np.newaxis]
-    project = _UNIT - np.where(on.directional, 1.0, 0.0)[:, np.newaxis, np.newaxis] * (
-        axis[:, :, np.newaxis] * axis[:, np.newaxis, :]
-    )
-    lean = -along[:, np.newaxis, np.newaxis] * _UNIT - axis[:, :, np.newaxis] * flow[:, np.newaxis]
-    lean *= on.directional[:, np.newaxis, np.newaxis]
-    drag = (kn * size)[:, np.newaxis] * across
-    by_flow = kn[:, np.newaxis, np.newaxis] * (turn @ project)
-    by_axis = kn[:, np.newaxis, np.newaxis] * (turn @ lean)
-    pull, pull_by_flow, pull_by_axis = _friction(chain, kt, flow, axis, along, speed, slowest)
-    drag += pull
-    by_flow += pull_by_flow
-    by_axis += pull_by_axis
+    kn, kt = grown * variation * on.normal_drag, on.directional * grown * on.tangential_drag
+    square, slope, aside, oblique = _friction(chain, kt, along, speed, slowest)
+    drag = (kn * size)[:, np.newaxis] * across + square[:, np.newaxis] * axis
+    drag += oblique[:, np.newaxis] * flow
+    # d(s n)/dn of the normal drag is s + n n/s; n = V - (V.t) t is at right angles to t
+    held, skewed = wet * kn * size, wet * (slope - on.directional * kn * size)
+    normal = (wet * kn / size)[:, np.newaxis, np.newaxis] * _outer(across, across)
+    by_flow = normal + skewed[:, np.newaxis, np.newaxis] * _outer(axis, axis)
+    by_axis = skewed[:, np.newaxis, np.newaxis] * _outer(axis, flow)
+    by_axis -= along[:, np.newaxis, np.newaxis] * normal
+    by_flow += _outer((wet * aside)[:, np.newaxis] * axis, flow)
+    by_flow += _outer((wet * oblique / speed**2)[:, np.newaxis] * flow, flow)
+    for i in range(3):
+        by_flow[:, i, i] += held + wet * oblique
+        by_axis[:, i, i] += wet * square - along * held
     raised = dense * on.lift * wet
     force = wet[:, np.newaxis] * drag + push
     force[:, 2] += lift + raised * speed**2
-    by_flow *= wet[:, np.newaxis, np.newaxis]
-    by_axis *= wet[:, np.newaxis, np.newaxis]
     by_flow[:, 2] += 2.0 * raised[:, np.newaxis] * flow
     by_height = -np.einsum("ijk,ik->ij", by_flow, shear) + wetting[:, np.newaxis] * drag
     by_height[:, 2] += stiffness
     return Loads(force, by_flow, by_axis, by_height)
 
 
+def _outer(a: Floats, b: Floats) -> Floats:
+    """(k, 3, 3) of the products of two vectors, (k, 3) each."""
+    product: Floats = a[:, :, np.newaxis] * b[:, np.newaxis]
+    return product
+
+
 def _friction(
-    chain: BarChain,
-    kt: Floats,
-    flow: Floats,
-    axis: Floats,
-    along: Floats,
-    speed: Floats,
-    slowest: float,
-) -> tuple[Floats, Floats, Floats]:
-    """Drag along the axis, (k, 3), and its changes with the flow and with the axis."""
+    chain: BarChain, kt: Floats, along: Floats, speed: Floats, slowest: float
+) -> tuple[Floats, Floats, Floats, Floats]:
+    """Drag along the axis, its growth with the flow along it and, times the flow, with all of it.
+
+    The last is of Hoerner's law: the drag that goes with the flow, over that flow.
+    """
     law = chain.line.friction
     straight = kt * np.sqrt(along**2 + slowest**2)
-    square, slope, side = straight * along, 2.0 * straight, np.zeros_like(flow)
+    square, slope, none = straight * along, 2.0 * straight, np.zeros_like(along)
+    cable = chain.elements.flexible
     if law is Friction.CONSTANT:
         # the whole of V², towards where the flow goes along the cable
-        cable = chain.elements.flexible
         sign = along / np.sqrt(along**2 + slowest**2)
         square = np.where(cable, kt * speed**2 * sign, square)
         slope = np.where(cable, kt * speed**2 * (1.0 - sign**2) / np.hypot(along, slowest), slope)
-        side = (np.where(cable, 2.0 * kt * sign, 0.0))[:, np.newaxis] * flow
-    pull = square[:, np.newaxis] * axis
-    by_along = slope[:, np.newaxis, np.newaxis] * axis[:, :, np.newaxis]
-    by_flow = by_along * axis[:, np.newaxis] + axis[:, :, np.newaxis] * side[:, np.newaxis]
-    by_axis = by_along * flow[:, np.newaxis] + square[:, np.newaxis, np.newaxis] * _UNIT
+        return square, slope, np.where(cable, 2.0 * kt * sign, 0.0), none
     if law is Friction.HOERNER:
-        cable = chain.elements.flexible[:, np.newaxis]
-        wide = cable[:, :, np.newaxis]
-        pull = np.where(cable, (kt * speed)[:, np.newaxis] * flow, pull)
-        turning = (kt * speed)[:, np.newaxis, np.newaxis] * _UNIT
-        turning = turning + (kt / speed)[:, np.newaxis, np.newaxis] * (
-            flow[:, :, np.newaxis] * flow[:, np.newaxis]
-        )
-        by_flow, by_axis = np.where(wide, turning, by_flow), np.where(wide, 0.0, by_axis)
-    return pull, by_flow, by_axis
+        square, slope = (np.where(cable, 0.0, each) for each in (square, slope))
+        return square, slope, none, np.where(cable, kt * speed, 0.0)
+    return square, slope, none, none
 
 
 def _afloat(

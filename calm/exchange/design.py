@@ -127,6 +127,18 @@ class ImportedPiece:
 
 
 @dataclass(eq=False)
+class ImportedLeg:
+    """Represent a leg of a net: its pieces from its upper end, and its ends as the file has them,
+    such as ``{join: A}``; empty where the key is not needed.
+    """
+
+    name: str
+    items: list[ImportedPiece]
+    top: str = ""
+    bottom: str = ""
+
+
+@dataclass(eq=False)
 class CurrentRecord:
     """Hold currents at several times: `u`, `v`, `w` [m/s] by time and level, `depth` [m].
 
@@ -179,7 +191,8 @@ class Design:
     Attributes
     ----------
     program : that wrote the file
-    items : from the top down; of a tow, from the ship
+    items : from the top down; of a tow, from the ship; of a net, one leg after the other
+    legs : of a net
     water : None where the file gives no environment
     solver : keys of `solver`, each with a comment
     guessed : guesses that belong to no figure; figures carry their own
@@ -200,6 +213,7 @@ class Design:
     dropped: list[Remark] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     in_kilograms: bool = False
+    legs: list[ImportedLeg] = field(default_factory=list)
 
     def components(self) -> Iterator[ImportedComponent]:
         """Every definition in use, those of clamps after that of their piece; repeats included."""

@@ -87,15 +87,26 @@ def mooring_text(
     elif design.water is not None:
         _write_water(page, design.water)
     ids = ids_of(design.components(), Catalogue.load().ids())
-    page.add("line:" + (" # from the ship down" if design.tow else " # top to bottom"))
-    for item in _counted(design.items):
-        _write_item(page, item, ids)
+    if design.legs:
+        page.add("legs:  # each from its upper to its lower end")
+    else:
+        page.add("line:" + (" # from the ship down" if design.tow else " # top to bottom"))
+        for item in _counted(design.items):
+            _write_item(page, item, ids)
+    for leg in design.legs:
+        page.lines += [f"  {leg.name}:", "    line:"]
+        own = _Page(guessed=page.guessed)
+        for item in _counted(leg.items):
+            _write_item(own, item, ids)
+        page.lines += [f"    {line}" for line in own.lines]
+        ends = (("top", leg.top), ("bottom", leg.bottom))
+        page.lines += [f"    {name}: {end}" for name, end in ends if end]
     page.add()
     _write_solver(page, design)
-    own = {ids[id(each)]: each for each in design.components() if not each.entry}
-    if own:
+    defined = {ids[id(each)]: each for each in design.components() if not each.entry}
+    if defined:
         page.add("components:")
-    for id_, component in own.items():
+    for id_, component in defined.items():
         _write_component(page, component, id_, design.in_kilograms)
     return "\n".join(page.lines) + "\n", page.guessed
 

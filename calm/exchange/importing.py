@@ -15,7 +15,8 @@ import numpy as np
 from pydantic import ValidationError
 
 from calm.assemble.line_arrays import drag_of
-from calm.case import Mooring, load
+from calm.case import Tow
+from calm.case.net import Net, load_any
 from calm.errors import CalmError, InputError, Problem, UsageError
 from calm.exchange.cable_reader import is_cbl, read_cbl
 from calm.exchange.design import (
@@ -197,7 +198,7 @@ def _format_of(path: Path, name: str | None, *, listed: bool = False) -> ImportF
 def _check(path: Path, output: Path, text: str) -> None:
     """Read the mooring file as `calm run` will; a mistake in it is one of its source."""
     try:
-        read_mooring(output, text=text)
+        read_mooring(output, text=text, net=True)
     except InputError as error:
         raise InputError(
             [Problem(str(path), 0, 0, _blamed(each, text)) for each in error.problems]
@@ -257,23 +258,27 @@ _LEAST = 100.0  # N of a guessed weight
 
 
 def secure_anchor(design: Design, environment: list[str] | None, output: Path) -> None:
-    """Give the anchor a weight where the file gives none, or one that the line would lift.
+    """Give each anchor a weight where the file gives none, or one that the line would lift.
 
     The shape of the line does not depend on it. The weight is what `calm check` asks for in this
     current. A line without an equilibrium is left to `calm run`, which says so.
 
     Parameters
     ----------
-    design : whose anchor is changed
+    design : whose anchors are changed
     environment : lines in place of the water of the design
     output : path of the mooring file to come
     """
-    anchor = design.items[-1].component if design.items and design.tow is None else None
-    if anchor is None or anchor.kind != "anchor":
-        return
+    found = [item.component for item in design.items if item.component.kind == "anchor"]
+    anchors = [] if design.tow else list({id(each): each for each in found}.values())
+    pulls = _pulls(design, anchors, environment, output) if anchors else []
+    for anchor, (pull, required) in zip(anchors, pulls, strict=True):
+        _secure(anchor, pull, required)
+
+
+def _secure(anchor: ImportedComponent, pull: float | None, required: float) -> None:
     mass, weight = anchor.figures.get("mass"), anchor.figures.get("weight")
     given = weight if weight is not None or mass is None else _IN_WATER * float(mass)
-    pull, required = _pull(design, anchor, environment, output)
     if isinstance(given, float) and (pull is None or pull <= given):
         return
     anchor.figures.pop("mass", None)
@@ -290,22 +295,27 @@ def secure_anchor(design: Design, environment: list[str] | None, output: Path) -
     anchor.guesses["weight"] = reason
 
 
-def _pull(
-    design: Design, anchor: ImportedComponent, environment: list[str] | None, output: Path
-) -> tuple[float | None, float]:
-    """Return the upward pull of the line, and the weight that holds it [N]."""
-    figures = dict(anchor.figures)
-    anchor.figures.pop("mass", None)
-    anchor.figures["weight"] = _HOLDS
+def _pulls(
+    design: Design,
+    anchors: list[ImportedComponent],
+    environment: list[str] | None,
+    output: Path,
+) -> list[tuple[float | None, float]]:
+    """Return the upward pull of the line on each anchor, and the weight that holds it [N]."""
+    figures = [dict(anchor.figures) for anchor in anchors]
+    for anchor in anchors:
+        anchor.figures.pop("mass", None)
+        anchor.figures["weight"] = _HOLDS
     try:
-        mooring = load(output, text=mooring_text(design, "", environment)[0])
-        assert isinstance(mooring, Mooring)
-        anchored = mooring.solve().anchor
+        read = load_any(output, text=mooring_text(design, "", environment)[0])
+        assert not isinstance(read, Tow)
+        loads = read.solve().anchors if isinstance(read, Net) else (read.solve().anchor,)
     except CalmError:
-        return None, 0.0
+        return [(None, 0.0)] * len(anchors)
     finally:
-        anchor.figures = figures
-    return anchored.vertical, anchored.required_weight
+        for anchor, before in zip(anchors, figures, strict=True):
+            anchor.figures = before
+    return [(each.vertical, each.required_weight or 0.0) for each in loads]
 
 
 @dataclass(frozen=True)

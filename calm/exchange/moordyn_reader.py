@@ -1,4 +1,4 @@
-"""Read a single line of a MoorDyn or MoorPy file as a design."""
+"""Read a MoorDyn or MoorPy file as a design: a single line, or a net of legs."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from calm.exchange.design import (
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
 from calm.whole_file import read_text
 
-_FIXED, _FREE = ("fix", "anchor"), ("free", "connect", "point")
+_FREE = ("free", "connect", "point")
 _CURRENTS = "current_profile.txt"
 _NEAR, _NEAR_AT_LEAST = 0.05, 2.0
 """Share of the depth, and metres: an upper end so near the surface hangs under a float."""
@@ -53,93 +53,134 @@ _COLUMNS = {
 }  # fmt: skip
 
 
-def read_moordyn(path: Path) -> Design:
-    """Read a file with one line, of one or several lengths, from an anchor up.
+@dataclass(frozen=True)
+class MoorDynFile:
+    """Hold the tables of a file: points and line types by name, lines, and the design begun.
 
-    InputError: it cannot be read, or holds a platform, a body, a rod or several lines.
+    Attributes
+    ----------
+    points, types, lines : rows
+    at : the lines that meet in each point
+    design : its water, and what is left out
+    """
+
+    points: dict[str, SectionRow]
+    types: dict[str, SectionRow]
+    lines: list[SectionRow]
+    at: dict[str, list[SectionRow]]
+    design: Design
+
+    @property
+    def water(self) -> ImportedWater:
+        """The water, whose depth and gravity are known."""
+        assert self.design.water is not None
+        return self.design.water
+
+    def piece(self, line: SectionRow) -> ImportedPiece:
+        """Return a line as a piece (InputError: it has no type, or no length)."""
+        kind = self.types.get(line.words.get("type", ""))
+        if kind is None:
+            raise line.refuse(f"line type `{line.words.get('type')}` is defined nowhere")
+        length = line.number("length")
+        if length <= 0.0:
+            raise line.refuse("a line has no length")
+        assert self.water.gravity is not None
+        return ImportedPiece(_cable(kind, self.water.gravity), length)
+
+
+def read_moordyn(path: Path) -> Design:
+    """Read a file: a single line from an anchor up to a float, or a net of legs.
+
+    InputError: it cannot be read, or holds a body or a rod.
     """
     tables, options = _read_sections(path)
     for name in ("bodies", "rods"):
         for row in tables[name]:
-            raise row.refuse(
-                f"{name}: CALM has single moorings, without bodies and rods of MoorDyn"
-            )
+            raise row.refuse(f"{name}: CALM has moorings without bodies and rods of MoorDyn")
     points = {row.words.get("id", ""): row for row in tables["points"]}
     lines = tables["lines"]
     if not points or not lines:
         raise refused(path, f"has {len(points)} points and {len(lines)} lines")
     if len(lines) > MOST_PIECES:
         raise refused(path, f"has {len(lines)} lines; more than {MOST_PIECES} are not read")
-    legs = _from_the_anchor(points, lines, path)
-    design = Design("MoorDyn", path.stem, [], _water(options, points, path), notes=[_NOTE])
-    assert design.water is not None
-    gravity = design.water.gravity
-    assert gravity is not None
-    types = {row.words.get("name", ""): row for row in tables["types"]}
-    anchor, items = legs[0][0], []
-    for point, line in legs:
-        if point is not anchor and (at_point := _point(point, design)) is not None:
-            items.append(at_point)
-        kind = types.get(line.words.get("type", ""))
-        if kind is None:
-            raise line.refuse(f"line type `{line.words.get('type')}` is defined nowhere")
-        length = line.number("length")
-        if length <= 0.0:
-            raise line.refuse("a line has no length")
-        items.append(ImportedPiece(_cable(kind, gravity), length))
-    design.items = [_upper_end(_last(points, legs), design), *items[::-1]]
-    design.items.append(ImportedPiece(_anchor(anchor, design.water)))
-    what = "damping, stiffness in bending, added mass"
-    design.dropped.append(Remark("line types", what))
-    return design
-
-
-def _from_the_anchor(
-    points: dict[str, SectionRow], lines: list[SectionRow], path: Path
-) -> list[tuple[SectionRow, SectionRow]]:
-    """Return the lines in order from the anchor up, each with the point at its lower end."""
     at: dict[str, list[SectionRow]] = {}
     for line in lines:
-        for end in ("a", "b"):
-            name = line.words.get(end, "")
+        for name in ends_of(line):
             if name not in points:
                 raise line.refuse(f"its end `{name}` is not a point of the file")
             at.setdefault(name, []).append(line)
-    if any(len(each) > 2 for each in at.values()):
-        raise refused(path, "more than two lines meet in a point: CALM has single lines")
-    ends = [name for name, each in at.items() if len(each) == 1]
-    if len(ends) != 2:
-        raise refused(
-            path, f"holds {max(len(ends) // 2, 1)} lines or a ring; CALM has single lines"
-        )
+    design = Design("MoorDyn", path.stem, [], _water(options, points, path), notes=[_NOTE])
+    types = {row.words.get("name", ""): row for row in tables["types"]}
+    file = MoorDynFile(points, types, lines, at, design)
+    design.dropped.append(Remark("line types", "damping, stiffness in bending, added mass"))
+    chain = _from_the_anchor(file)
+    if chain is None:
+        from calm.exchange.moordyn_net import lay_net
+
+        lay_net(file, path)
+        return design
+    items = []
+    for name, line in chain:
+        if name != chain[0][0] and (there := point_of(points[name])) is not None:
+            items.append(there)
+        items.append(file.piece(line))
+    anchor = ImportedPiece(anchor_of(points[chain[0][0]], file.water))
+    top = points[other_end(chain[-1][1], chain[-1][0])]
+    design.items = [_upper_end(top), *items[::-1], anchor]
+    return design
+
+
+def _from_the_anchor(file: MoorDynFile) -> list[tuple[str, SectionRow]] | None:
+    """Return the lines of a single line from its anchor up, each with the point at its lower end;
+    None where it is a net.
+    """
+    points = file.points
+    ends = [name for name, met in file.at.items() if len(met) == 1]
+    if len(ends) != 2 or any(len(met) > 2 for met in file.at.values()):
+        return None
     ends.sort(key=lambda name: points[name].number("z"))
-    lower = points[ends[0]]
-    if not _is(lower, _FIXED):
-        raise lower.refuse("the lower end is not fixed: it is not an anchor")
-    legs: list[tuple[SectionRow, SectionRow]] = []
-    here, left = ends[0], list(lines)
-    while met := [each for each in left if here in _ends(each)]:
-        legs.append((points[here], met[0]))
+    lower, upper = (points[name] for name in ends)
+    joints = [points[name] for name in file.at if name not in ends]
+    if not is_held(lower) or any(is_held(joint) for joint in joints) or not _floats(upper, file):
+        return None
+    chain: list[tuple[str, SectionRow]] = []
+    here, left = ends[0], list(file.lines)
+    while met := [each for each in left if here in ends_of(each)]:
+        chain.append((here, met[0]))
         left.remove(met[0])
-        a, b = _ends(met[0])
-        here = b if here == a else a
-    if left:
-        raise left[0].refuse("lines that do not hang together; CALM has single lines")
-    return legs
+        here = other_end(met[0], here)
+    return None if left else chain
 
 
-def _ends(line: SectionRow) -> tuple[str, str]:
-    return line.words["a"], line.words["b"]
+def _floats(top: SectionRow, file: MoorDynFile) -> bool:
+    """Return whether an upper end is free, or a float that is held where it would float."""
+    if not is_held(top):
+        return True
+    assert file.water.depth is not None
+    depth, figures = 0.0 - top.number("z"), _figures(top)
+    near = -_ABOVE <= depth <= max(_NEAR * file.water.depth, _NEAR_AT_LEAST)
+    return near and _lift(figures) > 0.0
 
 
-def _last(points: dict[str, SectionRow], legs: list[tuple[SectionRow, SectionRow]]) -> SectionRow:
-    point, line = legs[-1]
-    a, b = _ends(line)
-    return points[b] if points[a] is point else points[a]
+def _lift(figures: dict[str, FigureOrWord]) -> float:
+    """What a point lifts, as a mass [kg]."""
+    return CATALOGUE_DENSITY * float(figures["volume"]) - float(figures["mass"])
 
 
-def _is(point: SectionRow, words: tuple[str, ...]) -> bool:
-    return point.words.get("attachment", "").lower().startswith(words)
+def ends_of(line: SectionRow) -> tuple[str, str]:
+    """Return the names of the points at the ends of a line."""
+    return line.words.get("a", ""), line.words.get("b", "")
+
+
+def other_end(line: SectionRow, name: str) -> str:
+    """Return the name of the point at the other end of a line."""
+    a, b = ends_of(line)
+    return b if a == name else a
+
+
+def is_held(point: SectionRow) -> bool:
+    """Return whether a point is fixed, or moves with a vessel."""
+    return not point.words.get("attachment", "").lower().startswith(_FREE)
 
 
 def _water(options: dict[str, str], points: dict[str, SectionRow], path: Path) -> ImportedWater:
@@ -197,15 +238,12 @@ def _cable(kind: SectionRow, gravity: float) -> ImportedComponent:
     return component
 
 
-def _point(point: SectionRow, design: Design) -> ImportedPiece | None:
-    """Return what is at the joint of two lengths; None where it has neither weight nor drag."""
-    if not _is(point, _FREE):
-        raise point.refuse("a joint between two lengths is held: CALM has lines that hang free")
+def point_of(point: SectionRow) -> ImportedPiece | None:
+    """Return what is at a free point; None where it has neither weight nor drag."""
     figures = _figures(point)
     if not any(figures[key] for key in ("mass", "volume", "drag_area")):
         return None
-    lifts = CATALOGUE_DENSITY * float(figures["volume"]) > float(figures["mass"])
-    figures["role"] = "float" if lifts else "instrument"
+    figures["role"] = "float" if _lift(figures) > 0.0 else "instrument"
     return ImportedPiece(ImportedComponent(f"point {point.words['id']}", "body", figures))
 
 
@@ -219,38 +257,19 @@ def _figures(point: SectionRow) -> dict[str, FigureOrWord]:
     }  # fmt: skip
 
 
-def _upper_end(top: SectionRow, design: Design) -> ImportedPiece:
+def _upper_end(top: SectionRow) -> ImportedPiece:
     """Return the float: a free point, or one that is held at the surface and would float there."""
-    assert design.water is not None and design.water.depth is not None
-    if _is(top, _FREE):
-        figures = _figures(top)
-        if CATALOGUE_DENSITY * float(figures["volume"]) <= float(figures["mass"]):
-            raise top.refuse("the upper end is free, and does not float")
-        return ImportedPiece(
-            ImportedComponent(f"point {top.words['id']}", "body", {**figures, "role": "float"})
-        )
-    depth = 0.0 - top.number("z")
-    if depth < -_ABOVE:
-        raise top.refuse(
-            f"the upper end is held {-depth:g} m above the water: a ship's or a quay's; CALM has "
-            "lines under a float"
-        )
-    if depth > max(_NEAR * design.water.depth, _NEAR_AT_LEAST):
-        raise top.refuse(
-            f"the upper end is held {depth:g} m deep: a platform's; CALM has lines under a float"
-        )
-    figures = _figures(top)
-    if CATALOGUE_DENSITY * float(figures["volume"]) <= float(figures["mass"]):
-        raise top.refuse(
-            "the upper end is held, and its point has no volume that floats its mass: CALM has "
-            "lines under a float (make it Free, with Mass, Volume and CdA)"
-        )
-    guess = {"volume": "the file holds the upper end; here a float of its point, free to move"}
-    figures["role"] = "float"
-    return ImportedPiece(ImportedComponent(f"point {top.words['id']}", "body", figures, guess))
+    figures, guess = _figures(top), {}
+    if _lift(figures) <= 0.0:
+        raise top.refuse("the upper end is free, and does not float")
+    if is_held(top):
+        guess["volume"] = "the file holds the upper end; here a float of its point, free to move"
+    name = f"point {top.words['id']}"
+    return ImportedPiece(ImportedComponent(name, "body", {**figures, "role": "float"}, guess))
 
 
-def _anchor(point: SectionRow, water: ImportedWater) -> ImportedComponent:
+def anchor_of(point: SectionRow, water: ImportedWater) -> ImportedComponent:
+    """Return an anchor as high as its point stands above the seabed."""
     assert water.depth is not None
     height = water.depth + point.number("z")
     return ImportedComponent("anchor", "anchor", {"length": height} if height > 1e-6 else {})

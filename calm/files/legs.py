@@ -10,7 +10,7 @@ from pydantic import BeforeValidator, Field
 
 from calm.errors import Problem, unknown
 from calm.files.components import Anchor
-from calm.files.definition import LENGTH, Model, QuantityField, Text
+from calm.files.definition import Model, QuantityField, Text
 from calm.files.mooring_file import STAND_IN, MooringFile, Piece, Place, numbered
 from calm.files.rigid import Profiler
 from calm.files.yaml_document import SourceMapping, validate
@@ -35,7 +35,9 @@ _At = Annotated[
 class HeldKeys(Model):
     """Say where an end is held: by a ship, a pier, a platform."""
 
-    depth: Annotated[float, LENGTH] = Field(description="below the surface", examples=["2 m"])
+    depth: _Offset = Field(
+        description="below the surface; negative: above it, in air", examples=["2 m", "-10 m"]
+    )
     at: _At = (0.0, 0.0)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from calm.case import Result
-from calm.case.net import NetResult
+from calm.case.net_result import NetResult
 from calm.checks.finding import State
 from calm.files.legs import EndKeys
 from calm.quantities import say

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import isnan
 
 from calm.case import Result
-from calm.case.net import AnyResult, NetResult
+from calm.case.net_result import AnyResult, NetResult
 from calm.case.uncertain import Uncertain
 from calm.checks.criterion import limits_used
 from calm.checks.finding import State

@@ -9,7 +9,7 @@ from enum import StrEnum
 from typing import Any
 
 from calm.case import Result, TowResult
-from calm.case.net import AnyResult
+from calm.case.net_result import AnyResult
 from calm.case.profilers import ProfilerTravel
 from calm.case.result_tables import ClampRow, ComponentRow, rows_down
 from calm.case.strumming import StrummingBand

@@ -27,7 +27,8 @@ NEAR, CLOSED = 1e-4, 1e-10
 """What is left of lengths and forces, as shares of the longest leg and of a typical force: before
 segments are kept, and in a shape."""
 WORTH = 5e-5
-"""Errors, as shares of the water depth, above which segments are halved once more."""
+"""Errors, as shares of the water depth and of the greatest tension, above which segments are
+halved once more, `MOST_HALVINGS` times."""
 MOST_HALVINGS = 3
 
 
@@ -251,7 +252,6 @@ def solve_net(
     legs, settings = tuple(legs), settings or Settings()
     expect_many(4.0 * len(legs))
     net, x = _roughly(legs, nodes, water, settings, near)
-    marches = sum(each.marches for each in net.courses)
     for left in range(len(legs), -1, -1):
         net.keep_cuts(x, 2.0 * settings.angle_step)
         x = _closed_or_refused(net, x, 2.0 * settings.angle_step)
@@ -273,9 +273,10 @@ def solve_net(
             for k in (0, 1)
         )
         coarse = fine
-        if 0.5 * depth <= WORTH * water.depth:
+        greatest = max(float(each[1].max()) for each in fine)
+        if 0.5 * depth <= WORTH * water.depth and 0.5 * tension <= WORTH * greatest:
             break
-    marches += sum(each.marches for each in net.courses)
+    marches = sum(each.marches for each in net.courses)
     return _told(net, x, 0.5 * depth, 0.5 * tension, marches)
 
 
@@ -387,7 +388,7 @@ def _refuse_misplaced(each: LegCourse, leg: Solution, near: float, before: int) 
                 piece(0),
             )
     highest = int(np.argmax(height))
-    if height[highest] > near:
+    if height[highest] > near + each.highest:
         raise risen(piece(highest), float(height[highest]))
 
 

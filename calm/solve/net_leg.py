@@ -116,6 +116,8 @@ class LegCourse:
             laid = problem_of(line, self.water, self.settings, compiled=True, room=1)
             self.course, self.sea = laid.course, laid.sea
         self.room, self.share, self.nodes = 512, 1.0, 0
+        ends = (end.place[2] for end in (leg.upper, leg.lower) if end.place is not None)
+        self.highest = max(0.0, *ends, 0.0)
         self.stands = max(self.line.length[0], 0.5) if len(self.line.length) else 0.5
         self.hanging, self.stage, self.grounded, self.hung = -1.0, -1, 0.0, 0
         self.record: Any = ()

@@ -40,6 +40,7 @@ def test_all_commands_are_shown():
     assert [command.split()[0] for command, _ in SHOWN] == ["run", "run", "size"]
 
 
+@pytest.mark.thorough
 def test_the_examples_in_python_run():
     examples = re.findall(
         r"^```python\n(.*?)^```$", PAGE.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL

@@ -19,6 +19,7 @@ def chain(count):
     return begin + "    clamps:\n" + clamps + rest[rest.index("  # the release") :]
 
 
+@pytest.mark.thorough
 def test_twenty_serial_numbers_of_four_digits_take_130_keys(drive, folder):
     path = folder / "chain.yaml"
     path.write_text(chain(20), encoding="utf-8")

@@ -83,7 +83,14 @@ def doubtful(folder):
     return path
 
 
-@pytest.mark.parametrize("theme", [each.name for each in themes()] + ["dracula", "solarized-light"])
+DARK, LIGHT = (each.name for each in themes())
+OTHERS = (DARK, "dracula", "solarized-light")
+
+
+@pytest.mark.parametrize(
+    "theme",
+    [LIGHT, *(pytest.param(name, marks=pytest.mark.thorough) for name in OTHERS)],
+)
 @pytest.mark.usefixtures("painted")
 def test_every_word_is_legible_in_every_theme(drive, folder, theme):
     async def story(driver):
@@ -96,7 +103,9 @@ def test_every_word_is_legible_in_every_theme(drive, folder, theme):
     drive(story, doubtful(folder))
 
 
-@pytest.mark.parametrize("ground, dark", [("15;0", True), ("0;15", False)])
+@pytest.mark.parametrize(
+    "ground, dark", [pytest.param("15;0", True, marks=pytest.mark.thorough), ("0;15", False)]
+)
 @pytest.mark.usefixtures("painted")
 def test_every_word_is_legible_in_eight_and_sixteen_colours(drive, folder, ground, dark):
     async def story(driver):

@@ -60,6 +60,7 @@ def dropped(mooring, ship=(0.0, 1.0), fineness=COARSE):
     return start, drop, settle(mooring.line, water, anchor, drop.states[-1], fineness)
 
 
+@pytest.mark.thorough
 def test_the_dynamic_program(loaded):
     plan = drop_plan(loaded(DYNAMIC), ship_speed=1.028)
     assert plan.streamed == pytest.approx(894.8, rel=1e-3)  # of the program's own static tow
@@ -113,6 +114,7 @@ line: [{use: sphere}, {use: rope, length: 4200 m}, {use: clump}]
     ],
     ids=["published", "deep in a current"],
 )
+@pytest.mark.thorough
 def test_masses_and_springs_fall_as_far_and_as_long(loaded, text, way, wire, top, anchor, current):
     mooring = loaded(text)
     plan = drop_plan(mooring, ship_speed=abs(way), fineness=COARSE)
@@ -188,7 +190,9 @@ components:
 """
 
 
-@pytest.mark.parametrize("name", ["s1000", "chain-and-rope-surface"])
+@pytest.mark.parametrize(
+    "name", ["s1000", pytest.param("chain-and-rope-surface", marks=pytest.mark.thorough)]
+)
 def test_the_design_check_and_the_plan_tell_of_one_fall(name):
     """A line that lands before it is plumb, and one whose float is at the surface."""
     mooring = calm.load(shipped_folder("lines") / f"{name}.yaml")
@@ -286,6 +290,7 @@ def test_what_floats_cannot_be_streamed_less_far(loaded):
         drop_plan(mooring, ship_speed=2.0, streamed=30.0, fineness=FEW)
 
 
+@pytest.mark.thorough
 def test_a_line_that_rests_astray_is_cut_finer(loaded, monkeypatch):
     # one shape at rest that misses the equilibrium, and then all of them
     mooring = loaded(SHORT)

@@ -162,11 +162,11 @@ def curved(line: Line, random: Random) -> Line:
     )
 
 
-STANDING = 10
+STANDING = 5
 BLOCKS = [
     0,
     pytest.param(1, marks=pytest.mark.thorough),
-    *(pytest.param(block, marks=pytest.mark.slow) for block in range(2, 4)),
+    *(pytest.param(block, marks=pytest.mark.slow) for block in range(2, 8)),
 ]
 
 

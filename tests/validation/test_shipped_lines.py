@@ -22,6 +22,13 @@ from tests.validation.towed import Passing, Towed, solve_continuous_tow
 LINES = sorted((Path(__file__).parents[2] / "lines").glob("*.yaml"))
 TOWS = [path for path in LINES if "\ntow:" in path.read_text(encoding="utf-8")]
 MOORINGS = [path for path in LINES if path not in TOWS]
+LONG_TO_REFEREE = ("tall-array-mooring", "profiler-mooring", "fit-top-depth", "deep-current-meters")
+EVERY_MOORING = [
+    pytest.param(
+        path, id=path.stem, marks=pytest.mark.thorough if path.stem in LONG_TO_REFEREE else ()
+    )
+    for path in MOORINGS
+]
 
 
 @cache
@@ -52,7 +59,7 @@ def test_calm_agrees_with_the_referee_on_tows(path) -> None:
         assert closure(solution, Passing(tow.water, tow.towing)) <= 1e-6
 
 
-@pytest.mark.parametrize("path", MOORINGS, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", EVERY_MOORING)
 def test_calm_agrees_with_the_referee(path) -> None:
     mooring = calm.load(path)
     referee = referee_of(path)
@@ -66,7 +73,7 @@ def test_calm_agrees_with_the_referee(path) -> None:
         assert solution.surface == referee.surface
 
 
-@pytest.mark.parametrize("path", MOORINGS, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", EVERY_MOORING)
 def test_the_accuracy_it_states_holds(path) -> None:
     """What the result says of its own error, against its error; half of it is the allowance."""
     mooring = calm.load(path)

@@ -77,7 +77,7 @@ def calm_at(angle_step: float):
 solvers = pytest.mark.parametrize(
     ("solve", "near", "close"),
     [
-        pytest.param(referee, 1e-7, 1e-7, id="referee"),
+        pytest.param(referee, 1e-7, 1e-7, id="referee", marks=pytest.mark.thorough),
         pytest.param(calm_at(0.1), 1e-6, 1e-6, id="calm, fine"),
         pytest.param(calm_at(1.0), 5e-5, 2e-4, id="calm, default"),
     ],

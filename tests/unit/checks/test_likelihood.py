@@ -75,6 +75,7 @@ def test_the_top_is_too_shallow_where_the_water_is():
     )
 
 
+@pytest.mark.thorough
 def test_a_sample_without_equilibrium_breaks_every_limit():
     # the anchor is lifted at 4000 b - 400 > 4000, b > 1.1
     found = judged(weight="4 kN", buoyancy="10 %")

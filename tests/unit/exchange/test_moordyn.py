@@ -1,10 +1,11 @@
-"""Single lines of MoorDyn and MoorPy, in the dialects of versions 1 and 2."""
+"""Lines of MoorDyn and MoorPy, in the dialects of versions 1 and 2, single and as nets."""
 
 from math import pi
 
 import pytest
 
 from calm.case import load
+from calm.case.net import load_any
 from calm.errors import InputError
 from calm.exchange.importing import import_file
 
@@ -117,24 +118,15 @@ def test_a_held_upper_end_at_the_surface_is_the_float_of_its_point(read, tmp_pat
     top = mooring.file.pieces[0].component
     assert (top.kind, top.mass, top.volume) == ("body", 100.0, 0.6)  # those of its point
     assert mooring.solve().to_dict()["type"] == "surface"
-    with pytest.raises(InputError, match="no volume that floats its mass"):
-        read(text.replace("100    0.6", "0      0.0"))
-    with pytest.raises(InputError, match=r"is held 3 m above the water"):
-        read(text.replace("     -1  ", "     3   "))
+    assert "held: {depth: 1 m" in read(text.replace("100    0.6", "0      0.0")).text
+    assert "held: {depth: -3 m" in read(text.replace("     -1  ", "     3   ")).text
 
 
 REFUSED = {
-    "a platform": (
-        "3     Free        0     0     -100", "3     Coupled     0     0     -30", "a platform's"
-    ),
     "a sinking end": ("100    0.6", "1000   0.6", "does not float"),
-    "a loose lower end": ("1     Fixed ", "1     Free  ", "not fixed"),
-    "a held joint": ("2     Free ", "2     Fixed", "a joint between two lengths is held"),
-    "a bridle": (
-        "2    rope       2        3        40        10       p\n",
-        "2    rope       2        3        40        10       p\n"
-        "3    rope       2        1        40        10       p\n",
-        "more than two lines|its lines have",
+    "a loose lower end": ("1     Fixed ", "1     Free  ", "both ends are free"),
+    "a ring": (
+        "1    rope       1        2 ", "1    rope       3        2 ", "a ring that nothing holds"
     ),
     "an unknown type": ("2    rope", "2    hemp", "`hemp` is defined nowhere"),
     "an unknown point": ("2        3        40", "2        7        40", "`7` is not a point"),
@@ -149,10 +141,31 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("case", REFUSED)
-def test_what_is_no_single_line_is_refused(case, read):
+def test_what_cannot_be_read_is_refused(case, read):
     old, new, message = REFUSED[case]
     with pytest.raises(InputError, match=message):
         read(V2.replace(old, new, 1))
+
+
+NETS = {
+    "a platform": ("3     Free        0     0     -100", "3     Coupled     0     0     -30", 1),
+    "a held joint": ("2     Free ", "2     Fixed", 2),
+    "a bridle": (
+        "2    rope       2        3        40        10       p\n",
+        "2    rope       2        3        40        10       p\n"
+        "3    rope       2        1        40        10       p\n",
+        3,
+    ),
+}
+
+
+@pytest.mark.parametrize("case", NETS)
+def test_other_lines_are_nets(case, read, tmp_path):
+    old, new, legs = NETS[case]
+    net = load_any(tmp_path / "m.yaml", text=read(V2.replace(old, new, 1)).text)
+    assert len(net.file.legs) == legs
+    # the weight at the joint is on one leg alone
+    assert [piece.use for piece in net.file.pieces].count("point-2") == (case != "a held joint")
 
 
 def test_steady_forces_are_refused(read):

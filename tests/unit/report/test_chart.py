@@ -63,6 +63,7 @@ def test_every_text_is_on_the_page(plate: Figure) -> None:
         assert page.y0 <= box.y0 and box.y1 <= page.y1, text
 
 
+@pytest.mark.thorough
 def test_the_page_is_a4(plate: Figure) -> None:
     assert plate.get_size_inches() == pytest.approx((8.27, 11.69))
 

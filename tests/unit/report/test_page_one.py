@@ -129,7 +129,7 @@ def test_the_title_block_is_that_of_the_document(tmp_path):
     assert "not given" not in first
 
 
-@pytest.mark.parametrize("count", [1, 150])
+@pytest.mark.parametrize("count", [1, pytest.param(150, marks=pytest.mark.thorough)])
 def test_page_one_is_one_page(path, tmp_path, count):
     long = tmp_path / "long.yaml"
     text = path.read_text(encoding="utf-8").replace(

@@ -90,6 +90,7 @@ def test_every_piece_and_clamp_of_a_shipped_line_is_named(path, solved):
     assert_none_overlap(svg)
 
 
+@pytest.mark.thorough
 def test_none_of_eighty_long_names_overlap(load):
     items = [item("sphere-ore-61in", f"{LONG} 0")]
     for number in range(1, 16):
