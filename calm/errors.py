@@ -11,12 +11,15 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ParamSpec, TypeVar
 
 if TYPE_CHECKING:
     from calm.units import QuantityError
+
+P = ParamSpec("P")
+T = TypeVar("T")
 
 
 class CalmError(Exception):
@@ -82,6 +85,14 @@ class NoEquilibrium(CalmError):
     def to_dict(self) -> dict[str, str]:
         """Return `status`, `message` and `advice`, as they stand in JSON in place of a result."""
         return {"status": self.status, "message": self.message, "advice": self.advice}
+
+
+def or_why_not(solve: Callable[P, T], *given: P.args, **named: P.kwargs) -> T | NoEquilibrium:
+    """Return what is solved, or why there is no equilibrium."""
+    try:
+        return solve(*given, **named)
+    except NoEquilibrium as failure:
+        return failure
 
 
 def internal_failure(error: Exception) -> NoEquilibrium:

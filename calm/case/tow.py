@@ -15,7 +15,7 @@ from calm.case.parts import cut_like, naming_the_piece
 from calm.case.result import Accuracy, Solved, document_of
 from calm.case.strumming import StrummingBand, strumming_of, tow_band
 from calm.case.warnings import warnings_of
-from calm.errors import NoEquilibrium, UsageError
+from calm.errors import NoEquilibrium, UsageError, or_why_not
 from calm.files import MooringFile, TowKeys
 from calm.files.strumming_keys import BourgetMarichalKeys
 from calm.physics.line import Line, Water
@@ -273,7 +273,7 @@ def sweep(tow: Tow, speeds: Iterable[float]) -> list[TowResult | NoEquilibrium]:
     NoEquilibrium
         Where no length of a cable to be fitted reaches its depth at the tow's own speed.
     """
-    return [_attempt(tow.at_speed(speed)) for speed in speeds]
+    return [or_why_not(tow.at_speed(speed).solve) for speed in speeds]
 
 
 def sensitivity(tow: Tow) -> list[Variation]:
@@ -298,19 +298,14 @@ def sensitivity(tow: Tow) -> list[Variation]:
             f"{tow.file.name} has no coefficients to change; they belong to "
             "`solver: {strumming: bourget-marichal}`"
         )
-    variations = [Variation("", 0.0, _attempt(tow))]
+    variations = [Variation("", 0.0, or_why_not(tow.solve))]
     for name in _COEFFICIENTS:
         for change in (-CHANGE, CHANGE):
             changed = keys.model_copy(update={name: getattr(keys, name) * (1.0 + change)})
-            variations.append(Variation(name, change, _attempt(_with_strumming(tow, changed))))
+            variations.append(
+                Variation(name, change, or_why_not(_with_strumming(tow, changed).solve))
+            )
     return variations
-
-
-def _attempt(tow: Tow) -> TowResult | NoEquilibrium:
-    try:
-        return tow.solve()
-    except NoEquilibrium as failure:
-        return failure
 
 
 def _with_strumming(tow: Tow, keys: BourgetMarichalKeys) -> Tow:

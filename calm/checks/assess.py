@@ -11,12 +11,11 @@ the first `HANDLED` samples. A sample without equilibrium breaks every limit.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from datetime import date
 from functools import partial
 from itertools import chain
-from typing import ParamSpec, TypeVar
 
 import numpy as np
 
@@ -58,14 +57,11 @@ from calm.checks.situations import (
 )
 from calm.checks.wave_rules import IN_WAVES, MooringInWaves
 from calm.drop.launch import launch_of
-from calm.errors import NoEquilibrium
+from calm.errors import NoEquilibrium, or_why_not
 from calm.files import MooringFile, Place
 from calm.files.mooring_file import STAND_IN
 from calm.files.rule_texts import RULES as TEXTS
 from calm.solve import expect_many
-
-P = ParamSpec("P")
-T = TypeVar("T")
 
 
 def check(mooring: Mooring, /, *others: Mooring, day: date | None = None) -> Assessment:
@@ -231,16 +227,9 @@ def _softened(finding: Finding) -> Finding:
 
 def handled(mooring: Mooring, result: Result) -> Handling:
     """Launch, recovery and breaks of a mooring that stands, or why one of them is not known."""
-    launch = _or_why_not(launch_of, mooring)
-    recovery = _or_why_not(recovery_of, mooring, result)
+    launch = or_why_not(launch_of, mooring)
+    recovery = or_why_not(recovery_of, mooring, result)
     return Handling(mooring, launch, recovery, breaks_of(mooring), losses_of(mooring))
-
-
-def _or_why_not(solve: Callable[P, T], *given: P.args, **named: P.kwargs) -> T | NoEquilibrium:
-    try:
-        return solve(*given, **named)
-    except NoEquilibrium as failure:
-        return failure
 
 
 def _handled(stand: MooringInEnvironment) -> Handling:

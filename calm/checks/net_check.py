@@ -46,7 +46,7 @@ from calm.checks.situations import (
     in_other_waters,
     strumming_file,
 )
-from calm.errors import NoEquilibrium
+from calm.errors import NoEquilibrium, or_why_not
 from calm.files import Flexible, Piece
 from calm.files.legs import stand_in_anchor
 from calm.files.mooring_file import STAND_IN
@@ -92,25 +92,18 @@ def stands_of_net(net: Net, name: str, day: date | None = None) -> list[MooringI
 
 
 def _situations(net: Net) -> Iterator[tuple[str, NetResult | NoEquilibrium]]:
-    given = _solved(net)
+    given = or_why_not(net.solve)
     yield AS_GIVEN, given
     if isinstance(given, NoEquilibrium):
         return
     for name, file in in_other_waters(net.file, net.water):
-        yield name, _solved(Net(file))
+        yield name, or_why_not(Net(file).solve)
     fouling = net.file.environment.fouling
     if fouling is not None:
         legs = [grown(leg.file.pieces, leg, fouling) for leg in given.legs]
-        yield FOULED, _solved(net.with_lines(legs))
+        yield FOULED, or_why_not(net.with_lines(legs).solve)
     if (strummed := strumming_file(net.file)) is not None:
-        yield STRUMMING, _solved(Net(strummed))
-
-
-def _solved(net: Net) -> NetResult | NoEquilibrium:
-    try:
-        return net.solve()
-    except NoEquilibrium as failure:
-        return failure
+        yield STRUMMING, or_why_not(Net(strummed).solve)
 
 
 def assessment_of_net(

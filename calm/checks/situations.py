@@ -30,7 +30,7 @@ from calm.checks.finding import (
 )
 from calm.checks.growth import grown
 from calm.checks.posture import reaches_the_surface
-from calm.errors import NoEquilibrium, UsageError
+from calm.errors import NoEquilibrium, UsageError, or_why_not
 from calm.files import Cable, Clamp, CurrentTable, MooringFile, Piece, StrummingFactor
 from calm.files.environment import Environment
 from calm.files.logbook import DeployedItem
@@ -75,10 +75,8 @@ def situations_of(mooring: Mooring) -> tuple[Situation, ...]:
 
 def solved(name: str, mooring: Mooring) -> Situation:
     """The situation of that name, with the result or the failure of a mooring."""
-    try:
-        return Situation(name, mooring.solve(), None)
-    except NoEquilibrium as failure:
-        return Situation(name, None, failure)
+    found = or_why_not(mooring.solve)
+    return Situation(name, *((None, found) if isinstance(found, NoEquilibrium) else (found, None)))
 
 
 def _changed(mooring: Mooring, given: Result) -> Iterator[tuple[str, Mooring]]:

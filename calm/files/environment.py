@@ -29,9 +29,9 @@ from calm.files.water import (
     Wind,
     check_density,
     density_notices,
+    quantity_table,
     read_density,
     read_waves,
-    report_at,
     table_of,
 )
 from calm.files.yaml_document import SourceMapping, validate
@@ -346,20 +346,20 @@ def _current(
     position: Position | None,
 ) -> CurrentTable | None:
     current = keys.current
-    report = report_at(section, "current")
     maximum_speed = getattr(keys, "maximum_speed", math.inf)
     if isinstance(current, TableKeys):
         terms = Terms(maximum_speed=maximum_speed)
-        return read_current(current.columns, current.rows, report, problems, terms)
+        return read_current(quantity_table(current, section, problems, "current"), terms)
     if isinstance(current, UniformCurrent):
         u, v = components(current.speed, current.toward)
         if reason := too_fast(u, v, current.w, maximum_speed):
-            problems.append(report(("speed",), reason))
+            problems.append(section.problem(("current", "speed"), reason))
             return None
         return CurrentTable((0.0,), (u,), (v,), (current.w,))
     path = Path(section.home("current").document.path).parent / current.file
     if not (os.path.isfile(path) or os.path.isdir(path)):
-        problems.append(report(("file",), f"`file: {shown(current.file)}`: no such file"))
+        message = f"`file: {shown(current.file)}`: no such file"
+        problems.append(section.problem(("current", "file"), message))
         return None
     if not open_files:
         return None
@@ -374,7 +374,7 @@ def _current(
 
         table, remarks = read_current_file(path, current.time, terms)
     except TimeChoiceError as error:
-        problems.append(report(("time",), str(error)))
+        problems.append(section.problem(("current", "time"), str(error)))
     except InputError as error:
         problems.extend(error.problems)
     else:
@@ -388,4 +388,4 @@ def _check_tables(section: SourceMapping, problems: list[Problem]) -> None:
     check_density(section, problems)
     table = table_of(section.data.get("current"))
     if table is not None:
-        read_current(table.columns, table.rows, report_at(section, "current"), problems)
+        read_current(quantity_table(table, section, problems, "current"))

@@ -25,6 +25,7 @@ from calm.files.definition import (
 )
 from calm.files.yaml_document import SourceMapping
 from calm.physics import seawater
+from calm.records.columns import QuantityTable
 from calm.records.current_terms import left_out
 from calm.records.profile_tables import (
     DIRECTION,
@@ -32,7 +33,6 @@ from calm.records.profile_tables import (
     TEMPERATURE,
     WATER_DENSITY,
     DepthTable,
-    Report,
     SeaWater,
     read_profile,
     read_water,
@@ -124,8 +124,7 @@ def read_density(
     """
     density = _RANGES[fluid]
     if isinstance(given, TableKeys):
-        report = report_at(section, "density")
-        return read_water(given.columns, given.rows, report, problems, density)
+        return read_water(quantity_table(given, section, problems, "density"), density)
     if not isinstance(given, SeaWaterKeys):
         try:
             return density.read(f"{given!r} kg/m^3")
@@ -146,9 +145,20 @@ def table_of(value: object) -> TableKeys | None:
         return None
 
 
-def report_at(section: SourceMapping, *place: str) -> Report:
-    """Return what makes problems at places below a key of a mapping, or a key under that."""
-    return lambda location, message: section.problem((*place, *location), message)
+def quantity_table(
+    table: TableKeys, section: SourceMapping, problems: list[Problem], *place: str
+) -> QuantityTable:
+    """Return a table below a key of a mapping, or a key under that, with places for its mistakes.
+
+    Parameters
+    ----------
+    table : as the model has it
+    section, place : the mapping, and the keys that lead to the table
+    problems : what is wrong is added to them
+    """
+    return QuantityTable(
+        table.columns, table.rows, lambda at, said: section.problem((*place, *at), said), problems
+    )
 
 
 def density_notices(density: float | DepthTable | SeaWater, depth: float | None) -> Iterator[str]:
@@ -212,7 +222,7 @@ def check_density(section: SourceMapping, problems: list[Problem]) -> None:
     density = _RANGES["air" if section.data.get("fluid") == "air" else "water"]
     table = table_of(given)
     if table is not None:
-        read_water(table.columns, table.rows, report_at(section, "density"), problems, density)
+        read_water(quantity_table(table, section, problems, "density"), density)
     for name in SeaWaterKeys.model_fields:
         table = table_of(given.get(name)) if isinstance(given, dict) else None
         if table is not None:
@@ -223,8 +233,7 @@ def _profile(
     name: str, given: float | TableKeys, section: SourceMapping, problems: list[Problem]
 ) -> DepthTable | None:
     if isinstance(given, TableKeys):
-        report = report_at(section, "density", name)
-        return read_profile(name, given.columns, given.rows, report, problems)
+        return read_profile(name, quantity_table(given, section, problems, "density", name))
     return DepthTable((0.0,), (given,))
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -19,25 +20,45 @@ from calm.units import QuantityError, QuantityRange, unit_factor
 Report = Callable[[Sequence[str | int], str], Problem]
 """Makes a problem of a message, at ``("columns", j)`` or ``("rows", i, j)``."""
 
+
+@dataclass(frozen=True)
+class QuantityTable:
+    """Hold a table of quantities as text, and where its mistakes go.
+
+    Attributes
+    ----------
+    columns : names with their unit, ``"depth m"`` or ``"depth[m]"``; without, each value has its
+        own
+    rows : numbers, or quantities with a unit, as text
+    report : makes a mistake of its place and a message
+    problems : to which mistakes are added
+    """
+
+    columns: Sequence[str]
+    rows: Sequence[Sequence[str | None]]
+    report: Report
+    problems: list[Problem]
+
+    def refuse(self, place: Sequence[str | int], message: str) -> None:
+        """Add a mistake."""
+        self.problems.append(self.report(place, message))
+
+
 _BARE_NUMBER = re.compile(r"[-+.,/\deE ]*")
 _NO_WAY = ("direction", "dir", "heading", "bearing")
 
 
 def read_columns(
-    columns: Sequence[str],
-    rows: Sequence[Sequence[str | None]],
-    known: Mapping[str, QuantityRange],
-    report: Report,
-    problems: list[Problem],
-    gaps: Booleans | None = None,
+    table: QuantityTable, known: Mapping[str, QuantityRange], gaps: Booleans | None = None
 ) -> dict[str, Floats]:
     """Return the known columns by name, in SI, NaN where a value is wrong, or lacks in `gaps`."""
-    units = _read_headings(columns, known, report, problems)
+    columns, rows = table.columns, table.rows
+    units = _read_headings(table, known)
     if len(units) == len(columns) and "depth" not in units:
-        problems.append(report(("columns",), "the table has no `depth` column"))
+        table.refuse(("columns",), "the table has no `depth` column")
     values = {name: np.full(len(rows), np.nan) for name in units}
     if not rows:
-        problems.append(report(("rows",), "the table has no rows"))
+        table.refuse(("rows",), "the table has no rows")
     whole = []
     for i, row in enumerate(rows):
         if len(row) == len(columns):
@@ -45,7 +66,7 @@ def read_columns(
             continue
         hint = "; a decimal comma? (write 0.8, not 0,8)" if len(row) > len(columns) else ""
         message = f"the row has {len(row)} values, {len(columns)} are needed{hint}"
-        problems.append(report(("rows", i), message))
+        table.refuse(("rows", i), message)
     if len(units) < len(columns):
         return values
     for j, (name, unit) in enumerate(units.items()):
@@ -65,7 +86,7 @@ def read_columns(
                 if gaps is None or not (gaps[i] and cell == "nan"):
                     values[name][i] = _read_cell(cell, unit, known[name])
             except QuantityError as error:
-                problems.append(report(("rows", i, j), about_quantity(name, cell, error)))
+                table.refuse(("rows", i, j), about_quantity(name, cell, error))
     return values
 
 
@@ -81,15 +102,10 @@ def _read_together(
     return None if (beyond | (numbers > quantity.at_most)).any() else numbers
 
 
-def _read_headings(
-    columns: Sequence[str],
-    known: Mapping[str, QuantityRange],
-    report: Report,
-    problems: list[Problem],
-) -> dict[str, str]:
+def _read_headings(table: QuantityTable, known: Mapping[str, QuantityRange]) -> dict[str, str]:
     """Return the unit of each known column by its name, empty where the column gives none."""
     units: dict[str, str] = {}
-    for j, column in enumerate(columns):
+    for j, column in enumerate(table.columns):
         name, unit = heading(column)
         name = name.lower() if name.lower() in known else name
         if name.lower() in _NO_WAY and "toward" in known:
@@ -97,18 +113,18 @@ def _read_headings(
                 f"`{shown(column)}` does not say which way: call it `toward` where the current "
                 "flows to, or `from` where it comes from"
             )
-            problems.append(report(("columns", j), message))
+            table.refuse(("columns", j), message)
         elif name not in known:
             message = unknown(f"no column is called `{shown(name)}`", name, known)
-            problems.append(report(("columns", j), message))
+            table.refuse(("columns", j), message)
         elif name in units:
-            problems.append(report(("columns", j), f"column `{name}` is given twice"))
+            table.refuse(("columns", j), f"column `{name}` is given twice")
         else:
             try:
                 if unit:
                     column_unit(column, unit, [known[name].dimension])
             except QuantityError as error:
-                problems.append(report(("columns", j), str(error)))
+                table.refuse(("columns", j), str(error))
             else:
                 units[name] = unit
     return units
@@ -121,9 +137,8 @@ def _read_cell(text: str | None, unit: str, quantity: QuantityRange) -> float:
 
 
 def check_depths(
+    table: QuantityTable,
     values: Mapping[str, Floats],
-    report: Report,
-    problems: list[Problem],
     rows: Integers,
     profile: Integers | None = None,
 ) -> None:
@@ -144,17 +159,17 @@ def check_depths(
         if len(mine) > 1 and (mine <= 0.0).all() and mine.any():
             message = "the depths count upwards; depth is positive down, so leave the sign out"
             first = int(rows[start + int(np.argmax(mine < 0.0))])
-            problems.append(report(("rows", first, column), message))
+            table.refuse(("rows", first, column), message)
             continue
         previous = -math.inf
         for i, depth in zip(rows[start:stop].tolist(), mine.tolist(), strict=True):
             place = ("rows", i, column)
             if depth < 0:
-                problems.append(report(place, f"depth {depth:g} m is above the surface"))
+                table.refuse(place, f"depth {depth:g} m is above the surface")
             elif reason := too_deep(depth):
-                problems.append(report(place, reason))
+                table.refuse(place, reason)
             elif depth <= previous:
                 word = "repeats" if depth == previous else "comes after"
                 message = f"depth {depth:g} m {word} {previous:g} m; depths must increase"
-                problems.append(report(place, message))
+                table.refuse(place, message)
             previous = depth

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TypeVar
 
 import numpy as np
 
-from calm.errors import Problem, shown
+from calm.errors import shown
 from calm.physics.line import Floats, Integers
 from calm.quantities import bearing_of
-from calm.records.columns import Report as Report
-from calm.records.columns import check_depths, read_columns
+from calm.records.columns import QuantityTable, check_depths, read_columns
 from calm.records.current_terms import Terms, too_fast
 from calm.records.delimited import is_gap
 from calm.records.headings import heading, magnetic_columns
@@ -83,24 +82,16 @@ class SeaWater:
     salinity: DepthTable
 
 
-def read_current(
-    columns: Sequence[str],
-    rows: Sequence[Sequence[str | None]],
-    report: Report,
-    problems: list[Problem],
-    terms: Terms = _AS_THEY_STAND,
-) -> CurrentTable | None:
-    """Read a current from a table; None, with its mistakes in `problems`, if it has any.
+def read_current(table: QuantityTable, terms: Terms = _AS_THEY_STAND) -> CurrentTable | None:
+    """Read a current from a table; None, with its mistakes added, if it has any.
 
     Parameters
     ----------
-    columns : names with their unit, ``"depth m"`` or ``"depth[m]"``; without, each value has its
-        own. `depth`, with `u` and `v`, or `speed` and `toward` or `from`, and optionally `w`. A
+    table : with `depth`, with `u` and `v`, or `speed` and `toward` or `from`, and optionally `w`. A
         unit such as ``"deg magnetic"`` says that a column is relative to magnetic north.
-    rows : numbers, or quantities with a unit, as text
     terms : the declination that turns what is relative to magnetic north, the greatest speed
     """
-    found = read_currents(columns, rows, report, problems, terms)
+    found = read_currents(table, terms)
     if found is None:
         return None
     depth, u, v, w = (tuple(values.tolist()) for values in found.T)
@@ -108,32 +99,27 @@ def read_current(
 
 
 def read_currents(
-    columns: Sequence[str],
-    rows: Sequence[Sequence[str | None]],
-    report: Report,
-    problems: list[Problem],
-    terms: Terms,
-    profile: Integers | None = None,
+    table: QuantityTable, terms: Terms, profile: Integers | None = None
 ) -> Floats | None:
     """Return (n, 4) depths [m] and u, v, w [m/s] of a table as that of `read_current`.
 
-    None, with its mistakes in `problems`, if it has any.
+    None, with its mistakes added, if it has any.
 
     Parameters
     ----------
-    columns, rows, report, problems, terms : as for `read_current`
+    table, terms : as for `read_current`
     profile : (n,) growing number of the profile of a record that a row is of, which may have gaps,
         NaN then; None where all are of one
     """
-    before = len(problems)
-    plain, turned = _from_magnetic_north(columns, terms, report, problems)
+    columns, rows, before = table.columns, table.rows, len(table.problems)
+    plain, turned = _from_magnetic_north(table, terms)
     gaps = np.zeros(len(rows), bool)
     for j, column in enumerate(plain):
         if profile is not None and heading(column)[0].lower() != "depth":
             cells = [row[j] if len(row) == len(plain) else "" for row in rows]
             blank = {cell for cell in set(cells) if is_gap(cell)}
             gaps |= [cell in blank for cell in cells] if blank else False
-    values = read_columns(plain, rows, _CURRENT, report, problems, gaps)
+    values = read_columns(replace(table, columns=plain), _CURRENT, gaps)
     given = values.keys()
     if len(given) == len(columns):
         ways = [given & {"u", "v"}, given & {"speed", "toward", "from"}]
@@ -141,18 +127,18 @@ def read_currents(
             message = "give `u` and `v`, or `speed` and `toward`, not both"
             if not ways[0]:
                 message = "give `toward`, where the current flows to, or `from`, not both"
-            problems.append(report(("columns",), message))
+            table.refuse(("columns",), message)
         elif not (
             given >= {"u", "v"} or given >= {"speed", "toward"} or given >= {"speed", "from"}
         ):
             message = "a current needs `u` and `v`, or `speed` and `toward`; the columns are "
-            problems.append(report(("columns",), message + ", ".join(given)))
+            table.refuse(("columns",), message + ", ".join(given))
     speeds = values.get("speed", np.zeros(0))
     for i in np.flatnonzero(speeds < 0.0).tolist():
         place = ("rows", i, list(values).index("speed"))
-        problems.append(report(place, f"`speed` {speeds[i]:g} m/s is negative; turn `toward`"))
-    check_depths(values, report, problems, np.flatnonzero(~gaps), profile)
-    if len(problems) > before:
+        table.refuse(place, f"`speed` {speeds[i]:g} m/s is negative; turn `toward`")
+    check_depths(table, values, np.flatnonzero(~gaps), profile)
+    if len(table.problems) > before:
         return None
     if "u" in values:
         u, v = values["u"], values["v"]
@@ -168,8 +154,8 @@ def read_currents(
     for i in np.flatnonzero((fastest > 0.999 * terms.maximum_speed) | np.isinf(fastest)).tolist():
         if reason := too_fast(u[i], v[i], w[i], terms.maximum_speed):
             place = ("rows", i, list(values).index("u" if "u" in values else "speed"))
-            problems.append(report(place, reason))
-    return None if len(problems) > before else np.column_stack([values["depth"], u, v, w])
+            table.refuse(place, reason)
+    return None if len(table.problems) > before else np.column_stack([values["depth"], u, v, w])
 
 
 def turned_notices(columns: Sequence[str], terms: Terms) -> tuple[str, ...]:
@@ -180,19 +166,16 @@ def turned_notices(columns: Sequence[str], terms: Terms) -> tuple[str, ...]:
     return (f"{which} were relative to magnetic north, turned by {terms.declination:g}°",)
 
 
-def _from_magnetic_north(
-    columns: Sequence[str], terms: Terms, report: Report, problems: list[Problem]
-) -> tuple[list[str], float]:
+def _from_magnetic_north(table: QuantityTable, terms: Terms) -> tuple[list[str], float]:
     """Return the columns without the word for their north, and their turn [degrees]."""
+    columns = table.columns
     plain, magnetic = magnetic_columns(columns)
     if not magnetic:
         if terms.declination is not None:
             message = (
                 "no column is relative to magnetic north, such as `toward[deg magnetic]`, so no "
             )
-            problems.append(
-                report(("columns",), message + "`declination` is applied; leave it out")
-            )
+            table.refuse(("columns",), message + "`declination` is applied; leave it out")
         return plain, 0.0
     first = next(
         j for j, (one, other) in enumerate(zip(columns, plain, strict=True)) if one != other
@@ -200,36 +183,26 @@ def _from_magnetic_north(
     if magnetic in ({"u"}, {"v"}):
         one = next(iter(magnetic))
         message = f"`{one}` is relative to magnetic north, `{'v' if one == 'u' else 'u'}` is not"
-        problems.append(report(("columns", first), message))
+        table.refuse(("columns", first), message)
     if terms.declination is None:
         message = (
             f"`{shown(columns[first])}` is relative to magnetic north; give the `declination` "
             "there, "
             "positive to the east (beside `file:`, or `--declination`)"
         )
-        problems.append(report(("columns", first), message))
+        table.refuse(("columns", first), message)
     return plain, terms.declination or 0.0
 
 
 def read_water(
-    columns: Sequence[str],
-    rows: Sequence[Sequence[str | None]],
-    report: Report,
-    problems: list[Problem],
-    density: QuantityRange = WATER_DENSITY,
+    table: QuantityTable, density: QuantityRange = WATER_DENSITY
 ) -> DepthTable | SeaWater | None:
-    """Read densities [kg/m³], or sea water, from a table as that of `read_current`.
+    """Read densities [kg/m³], or sea water, from a table; None, with mistakes added, if it has any.
 
     Its columns are `depth`, and `density` or `temperature` and `salinity`; `density` is the
     plausible range of the fluid.
-
-    Parameters
-    ----------
-    columns, rows, report : as for `read_current`
-    problems : to add to
-    density : the plausible range of the fluid
     """
-    values = _by_depth(columns, rows, {**_WATER, "density": density}, report, problems)
+    values = _by_depth(table, {**_WATER, "density": density})
     if values is None:
         return None
     if "density" in values:
@@ -237,46 +210,28 @@ def read_water(
     return SeaWater(values["temperature"], values["salinity"])
 
 
-def read_profile(
-    name: str,
-    columns: Sequence[str],
-    rows: Sequence[Sequence[str | None]],
-    report: Report,
-    problems: list[Problem],
-) -> DepthTable | None:
-    """Read `temperature` [°C] or `salinity` by depth from a table as that of `read_current`.
-
-    Parameters
-    ----------
-    name : `temperature` or `salinity`
-    columns, rows, report : as for `read_current`
-    problems : to add to
-    """
-    known = {"depth": _DEPTH, name: _WATER[name]}
-    values = _by_depth(columns, rows, known, report, problems)
+def read_profile(name: str, table: QuantityTable) -> DepthTable | None:
+    """Read `temperature` [°C] or `salinity` by depth from a table, as `read_water` does."""
+    values = _by_depth(table, {"depth": _DEPTH, name: _WATER[name]})
     return None if values is None else values[name]
 
 
 def _by_depth(
-    columns: Sequence[str],
-    rows: Sequence[Sequence[str | None]],
-    known: Mapping[str, QuantityRange],
-    report: Report,
-    problems: list[Problem],
+    table: QuantityTable, known: Mapping[str, QuantityRange]
 ) -> dict[str, DepthTable] | None:
     """Return what a table says of the water by its names; None, with mistakes, if it has any."""
-    before = len(problems)
-    values = read_columns(columns, rows, known, report, problems)
+    before = len(table.problems)
+    values = read_columns(table, known)
     given = values.keys() - {"depth"}
-    if len(values) == len(columns):
+    if len(values) == len(table.columns):
         alone = [name for name in known if name != "depth"]
         if len(alone) == 1 and not given:
-            problems.append(report(("columns",), f"the table has no `{alone[0]}` column"))
+            table.refuse(("columns",), f"the table has no `{alone[0]}` column")
         elif len(alone) > 1 and given not in ({"density"}, {"temperature", "salinity"}):
             message = "needs `density`, or `temperature` and `salinity`; the columns are "
-            problems.append(report(("columns",), f"a density {message}{', '.join(values)}"))
-    check_depths(values, report, problems, np.arange(len(rows)))
-    if len(problems) > before:
+            table.refuse(("columns",), f"a density {message}{', '.join(values)}")
+    check_depths(table, values, np.arange(len(table.rows)))
+    if len(table.problems) > before:
         return None
     depth = tuple(values["depth"].tolist())
     return {name: DepthTable(depth, tuple(values[name].tolist())) for name in given}

@@ -18,6 +18,7 @@ import numpy as np
 from calm.errors import InputError, Problem, UsageError
 from calm.physics.line import Floats, Integers
 from calm.records.attributes import refused_by_comments, remarks_in_comments
+from calm.records.columns import QuantityTable
 from calm.records.current_terms import Terms, TimeChoiceError, current_notices, parse_time
 from calm.records.delimited import (
     COMMENT,
@@ -235,7 +236,8 @@ class CurrentHeader:
         for row in rows if self.row.dialect.decimal == "," else ():
             problems += row.mixed_decimals(self.path)
         cells = [[cell or None for cell in row.cells[first:]] for row in rows]
-        found = read_currents(self.columns, cells, report, problems, terms, profile)
+        table = QuantityTable(self.columns, cells, report, problems)
+        found = read_currents(table, terms, profile)
         return np.empty((0, COLUMNS)) if found is None or len(problems) > before else found
 
     def known(self, rows: Sequence[CellRow]) -> list[int]:

@@ -13,6 +13,7 @@ from pydantic import BaseModel
 from calm.assemble.datasheet import Datasheet, datasheet
 from calm.files import Catalogue, Component, Flexible
 from calm.files.catalogue import Assembly
+from calm.files.definition import EstimatedFigure
 from calm.quantities import QUANTITIES
 from calm.report.blocks import Cell, Column, Heading, Pairs, ReportPart, Table
 
@@ -173,6 +174,9 @@ def _text(name: str, value: Any) -> str:
     """A field in one line for people, quantities with their unit, what is nested in brackets."""
     if isinstance(value, float) and name in QUANTITIES:
         return QUANTITIES[name].figure(value)
+    if isinstance(value, EstimatedFigure):
+        low, figure = (_text(value.quantity, each) for each in (value.low, value.value))
+        return f"{_heading(value.quantity)} at least {low}, {figure} likely: {value.source}"
     if isinstance(value, BaseModel):
         value = value.model_dump(exclude_none=True)
     if isinstance(value, Mapping):

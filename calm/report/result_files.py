@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import cache
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -189,41 +188,16 @@ def to_json(documents: list[dict[str, Any]]) -> str:
     """
     told = [{**each, "units": UNITS} if "calm" in each else each for each in documents]
     content = told[0] if len(told) == 1 else told
-    return _indented(content, "\n") + "\n"
-
-
-def _indented(value: Any, line: str) -> str:
-    """Return what `json.dumps` writes with an indent of two; `line` begins a line at this depth.
-
-    Its encoder is fast only without an indent: so it writes all that has no further level in it.
-    """
-    if not isinstance(value, _NESTED) or not value:
-        return _encoder(",")(_finite(value))
-    below = line + "  "
-    members = [*value.values()] if isinstance(value, dict) else value
-    if not any(isinstance(member, _NESTED) for member in members):
-        finite = [*map(_finite, members)]
-        flat = dict(zip(value, finite, strict=True)) if isinstance(value, dict) else finite
-        text = _encoder("," + below)(flat)
-        return text[0] + below + text[1:-1] + line + text[-1]
-    texts = [_indented(member, below) for member in members]
-    if isinstance(value, dict):
-        named = (f"{json.dumps(name)}: {text}" for name, text in zip(value, texts, strict=True))
-        return "{" + below + f",{below}".join(named) + line + "}"
-    return "[" + below + f",{below}".join(texts) + line + "]"
-
-
-@cache
-def _encoder(between: str) -> Callable[[Any], str]:
-    return json.JSONEncoder(separators=(between, ": "), allow_nan=False).encode
+    return json.dumps(_finite(content), indent=2, allow_nan=False) + "\n"
 
 
 def _finite(value: Any) -> Any:
-    """Return None in place of a number that is not finite."""
+    """Return a document with None in place of numbers that are not finite."""
+    if isinstance(value, dict):
+        return {name: _finite(member) for name, member in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(member) for member in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value
-
-
-_NESTED = (dict, list, tuple)
 
 
 def members(value: object, *names: str) -> dict[str, Any]:

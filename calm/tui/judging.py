@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from functools import partial
-from pathlib import Path
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
 from textual.app import App
 from textual.timer import Timer
@@ -68,8 +66,10 @@ class Judging:
             self._is_judging, self._is_wanted = True, False
             session = self._workspace.session
             path, environment = session.file.path, session.standing.environment
-            asked = (session.draft.text, path, environment, session.catalogs)
-            self._work(partial(_judge, *asked, self._workspace.view), fully=False)
+            text, catalogs, keep = session.draft.text, session.catalogs, self._workspace.view
+            self._work(
+                lambda live: live.judge(text, path, environment, catalogs, keep=keep), fully=False
+            )
 
     def ask_fully(self) -> None:
         """Have the launch, the recovery and the breaks judged, too."""
@@ -78,7 +78,8 @@ class Judging:
         is_free = not self._is_judging and self._checked is None
         if is_free and view is not None and not view.complete:
             self._checked = view
-            self._work(partial(_judge_fully, view, self._workspace.session.catalogs), fully=True)
+            catalogs = self._workspace.session.catalogs
+            self._work(lambda live: live.judge_fully(view, catalogs), fully=True)
 
     def take(self, event: Judged) -> bool:
         """Take what a worker has found; whether it is of the last state that was judged."""
@@ -102,10 +103,12 @@ class Judging:
         if self._is_wanted:
             self.ask()
 
-    def _work(self, judge: Callable[[], View], *, fully: bool) -> None:
+    def _work(self, judge: Callable[[Any], View], *, fully: bool) -> None:
         def work() -> None:
             try:
-                view = judge()
+                from calm.tui import live  # with what solves, after the first screen
+
+                view = judge(live)
             except Exception as error:
                 self._app.post_message(JudgingFailed(f"{type(error).__name__}: {error}"))
             else:
@@ -117,22 +120,3 @@ class Judging:
         if self._fully is not None:
             self._fully.stop()
             self._fully = None
-
-
-def _judge(
-    text: str,
-    path: Path | None,
-    environment: str | None,
-    catalogs: Sequence[Path],
-    keep: View | None,
-) -> View:
-    """Judge a text; what solves is loaded by the worker, after the first screen."""
-    from calm.tui.live import judge
-
-    return judge(text, path, environment, catalogs, keep=keep)
-
-
-def _judge_fully(view: View, catalogs: Sequence[Path]) -> View:
-    from calm.tui.live import judge_fully
-
-    return judge_fully(view, catalogs)

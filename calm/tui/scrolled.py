@@ -6,6 +6,8 @@ key of a search. Nothing here has a size that depends on what it shows.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from rich.console import RenderableType
 from rich.segment import Segment
 from textual.events import Paste
@@ -29,18 +31,18 @@ class Scrolled(ScrollView, inherit_bindings=False):
 
 
 class ScrolledText(Scrolled, can_focus=False):
-    """A text for people, wrapped to the width; another one begins at its top."""
+    """Texts for people below each other, wrapped to the width; others begin at the top."""
 
     DEFAULT_CSS = "ScrolledText { overflow-x: hidden; scrollbar-size-vertical: 1; }"
 
     def __init__(self, *, id: str | None = None) -> None:
         super().__init__(id=id)
-        self._text: RenderableType = ""
-        self._drawn: tuple[int, list[list[Segment]]] = (-1, [])  # the width and its lines
+        self._texts: Sequence[RenderableType] = ()
+        self._drawn: tuple[int, list[tuple[list[Segment], int]]] = (-1, [])  # the width and lines
 
-    def show(self, text: RenderableType) -> None:
-        """Show another text."""
-        self._text, self._drawn = text, (-1, [])
+    def show(self, *texts: RenderableType) -> None:
+        """Show other texts."""
+        self._texts, self._drawn = texts, (-1, [])
         self.scroll_to(y=0, animate=False)
         self._lines()
         self.refresh()
@@ -49,19 +51,26 @@ class ScrolledText(Scrolled, can_focus=False):
         """Wrap it to the new width."""
         self._lines()
 
-    def _lines(self) -> list[list[Segment]]:
-        width = self.scrollable_content_region.width
+    def _lines(self, width: int | None = None) -> list[tuple[list[Segment], int]]:
+        """Return the lines in a width, that of now as a rule, each with the number of its text."""
+        width = self.scrollable_content_region.width if width is None else width
         if width > 0 and self._drawn[0] != width:
             console = self.app.console
             options = console.options.update(width=width, height=None)
-            self._drawn = (width, console.render_lines(self._text, options, pad=False))
-            self.virtual_size = Size(width, len(self._drawn[1]))
+            lines = [
+                (line, number)
+                for number, text in enumerate(self._texts)
+                for line in console.render_lines(text, options, pad=False)
+            ]
+            self._drawn = (width, lines)
+            self.virtual_size = Size(width, len(lines))
         return self._drawn[1]
 
     def render_line(self, y: int) -> Strip:
         """A row of the screen."""
         lines, number = self._lines(), y + self.scroll_offset.y
-        strip = Strip(lines[number] if number < len(lines) else []).apply_style(self.rich_style)
+        segments = lines[number][0] if number < len(lines) else []
+        strip = Strip(segments).apply_style(self.rich_style)
         return strip.adjust_cell_length(self.scrollable_content_region.width, self.rich_style)
 
 

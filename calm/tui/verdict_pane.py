@@ -19,7 +19,7 @@ from textual.strip import Strip
 from calm.checks.finding import State
 from calm.files import Place
 from calm.tui.key_table import bindings
-from calm.tui.scrolled import Scrolled
+from calm.tui.scrolled import ScrolledText
 from calm.tui.theme import ELLIPSIS, LOOKS
 from calm.tui.verdict_text import Saying, headline, sayings
 
@@ -31,14 +31,14 @@ if TYPE_CHECKING:
 _CHOSEN = Style(reverse=True)
 
 
-class VerdictPane(Scrolled, can_focus=True):
+class VerdictPane(ScrolledText, can_focus=True):
     """What holds, what does not and why; the figures of the anchor and the top."""
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings("verdict")]
     DEFAULT_CSS = """
     VerdictPane {
         height: auto; max-height: 60%; min-height: 5; width: 1fr; padding: 0 1; margin-top: 1;
-        overflow-x: hidden; scrollbar-size-vertical: 1; background: $background;
+        background: $background;
     }
     VerdictPane:focus { background-tint: $foreground 3%; }
     VerdictPane.-old { text-style: dim; }
@@ -53,17 +53,17 @@ class VerdictPane(Scrolled, can_focus=True):
 
     def __init__(self, *, id: str | None = None) -> None:
         super().__init__(id=id)
-        self._said: list[tuple[Saying, RenderableType]] = []
+        self._said: list[Saying] = []
         self._chosen = 0
-        self._drawn: tuple[int, list[tuple[list[Segment], int]]] = (-1, [])
 
-    def show(self, view: View | None, note: str = "") -> None:
+    def say(self, view: View | None, note: str = "") -> None:
         """Say what is to be said of a line, and a note below it."""
-        self._said = [*_parts(view, note)]
+        parts = [*_parts(view, note)]
+        self._said, self._texts = [each for each, _ in parts], [text for _, text in parts]
         self._chosen = min(self._chosen, len(self._said) - 1)
         before = len(self._drawn[1])
         self._drawn = (-1, [])
-        if len(self._lines(self.scrollable_content_region.width)) != before:
+        if len(self._lines()) != before:
             self.refresh(layout=True)
         self.refresh()
 
@@ -71,34 +71,17 @@ class VerdictPane(Scrolled, can_focus=True):
         """As many lines as it has."""
         return len(self._lines(width))
 
-    def _lines(self, width: int) -> list[tuple[list[Segment], int]]:
-        """The lines in a width, each with the number of what is said in it."""
-        if width > 0 and self._drawn[0] != width:
-            options = self.app.console.options.update(width=width, height=None)
-            lines = [
-                (line, number)
-                for number, (_, shown) in enumerate(self._said)
-                for line in self.app.console.render_lines(shown, options, pad=False)
-            ]
-            self._drawn = (width, lines)
-            self.virtual_size = Size(width, len(lines))
-        return self._drawn[1]
-
     def render_line(self, y: int) -> Strip:
         """A row of the screen."""
-        width = self.scrollable_content_region.width
-        lines, at = self._lines(width), y + self.scroll_offset.y
-        segments, number = lines[at] if at < len(lines) else ([], -1)
-        strip = Strip(segments).apply_style(self.rich_style)
-        strip = strip.adjust_cell_length(width, self.rich_style)
-        if self.has_focus and number == self._chosen:
+        strip, (_, lines), at = super().render_line(y), self._drawn, y + self.scroll_offset.y
+        if self.has_focus and at < len(lines) and lines[at][1] == self._chosen:
             return Strip(Segment(text, style and style + _CHOSEN) for text, style, _ in strip)
         return strip
 
     @property
     def said_here(self) -> str:
         """Return what the line that is chosen says."""
-        return self._said[self._chosen][0].text
+        return self._said[self._chosen].text
 
     def on_focus(self) -> None:
         """The line that is chosen is shown where the focus is."""
@@ -125,7 +108,7 @@ class VerdictPane(Scrolled, can_focus=True):
     def action_go(self) -> None:
         """To the row that the line is about."""
         if self._is_a_way(self._chosen):
-            said = self._said[self._chosen][0]
+            said = self._said[self._chosen]
             text = f"{said.sign} {said.heading}: ".replace(" : ", " ") + said.text
             self.post_message(self.RowWanted(said.places, text))
 
@@ -142,7 +125,7 @@ class VerdictPane(Scrolled, can_focus=True):
             self.action_go()
 
     def _is_a_way(self, number: int) -> bool:
-        return 0 <= number < len(self._said) and bool(self._said[number][0].places)
+        return 0 <= number < len(self._said) and bool(self._said[number].places)
 
     def _follow(self) -> None:
         """Scroll to the line that is chosen."""
@@ -181,11 +164,7 @@ def _text(saying: Saying) -> Text:
     return text.append(saying.text, style="dim" if saying.faint else "")
 
 
-def state_sign(view: View | None, *, old: bool = False) -> str:
-    """The sign of the headline; dots where it is `old`, of what is not edited any more."""
-    return ELLIPSIS if old else headline(view).sign.strip()
-
-
 def state_word(view: View | None, *, old: bool = False) -> str:
-    """The headline in one line with its sign."""
-    return f"{state_sign(view, old=old)} {headline(view).text}".strip()
+    """The headline in one line with its sign; dots for that where it is of an `old` draft."""
+    sign = ELLIPSIS if old else headline(view).sign.strip()
+    return f"{sign} {headline(view).text}".strip()

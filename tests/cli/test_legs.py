@@ -139,7 +139,7 @@ def test_in_still_water_nothing_is_knocked_down(
     assert found["nodes"][0]["depth"] == pytest.approx(500.0 - 0.7 - 200.0 - 0.83, abs=1.5)
 
 
-@pytest.mark.parametrize("command", ["size", "waves", "deck", "diff", "export"])
+@pytest.mark.parametrize("command", ["size", "waves", "deck", "diff"])
 def test_other_commands_say_which_one_solves_nets(
     command: str, net: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -148,12 +148,29 @@ def test_other_commands_say_which_one_solves_nets(
         "waves": ["--hs", "2 m", "--tp", "8 s"],
         "deck": ["-o", tmp_path / "deck"],
         "diff": [net],
-        "export": ["--to", "csv", "-o", tmp_path / "out.csv"],
     }
     assert run(command, net, *more.get(command, [])) == 2
     told = capsys.readouterr().err
     assert f"{net}:5:1" in told
     assert "for `calm run`, `calm check` and `calm batch`" in told
+
+
+def test_a_net_goes_to_moordyn_and_back(
+    net: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Where it was: but floats are points there, of the pull that they have here."""
+    there, back = tmp_path / "net.txt", tmp_path / "back.yaml"
+    assert run("export", net, "--to", "moordyn", "-o", there) == 0
+    assert run("import", there, "-o", back) == 0
+    given, found = load_any(net).solve(), load_any(back).solve()
+    assert len(found.legs) == 4
+    before, after = given.nodes[0], found.nodes[0]
+    assert [after.x, after.y, after.depth] == pytest.approx(
+        [before.x, before.y, before.depth], abs=0.1
+    )
+    assert found.anchors[0].tension == pytest.approx(given.anchors[0].tension, rel=2e-3)
+    assert run("export", net, "--to", "csv", "-o", tmp_path / "out.csv") == 2
+    assert "`--to moordyn` takes it" in capsys.readouterr().err
     assert not (tmp_path / "out.csv").exists()
 
 

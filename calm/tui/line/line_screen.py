@@ -13,7 +13,7 @@ from calm.tui.line.table import LineTable
 from calm.tui.messages import Workspace
 from calm.tui.pictures import Pictures
 from calm.tui.screen import DraftScreen
-from calm.tui.verdict_pane import VerdictPane, state_sign, state_word
+from calm.tui.verdict_pane import VerdictPane, state_word
 
 
 class LineScreen(DraftScreen):
@@ -112,7 +112,7 @@ class LineScreen(DraftScreen):
         if fresh:
             self.pictures.show(last or view, "the last complete line" if last else "")
             note = "The picture shows the last complete line." if last else ""
-            self.verdict.show(view, note)
+            self.verdict.say(view, note)
         self.pictures.set_class(self.workspace.is_old or last is not None, "-old")
         self.verdict.set_class(self.workspace.is_old, "-old")
 
@@ -123,9 +123,7 @@ class LineScreen(DraftScreen):
         here = standing.environment
         if here is not None or len(standing.environments) > 1:
             parts.append(f"environment {here}" if here else "own environment")
-        is_narrow = self.has_class("-narrow") and not self.has_class("-flat")
-        state = state_sign if is_narrow else state_word
-        parts.append(state(self.workspace.view, old=not self.workspace.is_fresh))
+        parts.append(state_word(self.workspace.view, old=not self.workspace.is_fresh))
         return f"{self.workspace.called}  {name}".rstrip(), "   ".join(parts)
 
     # from the verdict to a row, and back

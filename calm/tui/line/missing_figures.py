@@ -8,12 +8,13 @@ from dataclasses import dataclass, field
 from calm.case.parts import parts_of
 from calm.checks.finding import State
 from calm.files import Place
-from calm.files.editing import Draft, clamps_of
+from calm.files.editing import Draft
 from calm.files.rule_texts import RULES
 from calm.files.yaml_document import Location
 from calm.tui.catalogue.component_screen import FormField, form_fields
 from calm.tui.dialogs import Asked, InputSheet
 from calm.tui.line.line_pane import LinePane
+from calm.tui.line.table import location
 from calm.tui.live import View
 
 _MOST_LABELS = 4
@@ -129,15 +130,8 @@ def missing_figures(view: View, draft: Draft) -> list[Missing]:
             if isinstance(own, dict) and part.use in own:
                 targets["components", part.use] = None
             elif part.place.part < 0:
-                targets[_row(part.place)] = None
+                targets[location(part.place)] = None
     return list(found.values())
-
-
-def _row(place: Place) -> Location:
-    """Return where a row of the line stands in the file."""
-    if place.is_clamp:
-        return (*clamps_of(place.item), place.clamp)
-    return ("line", place.item)
 
 
 def filled(

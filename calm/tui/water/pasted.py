@@ -10,6 +10,7 @@ from dataclasses import replace
 
 from calm.errors import Problem
 from calm.files.definition import QuantityField
+from calm.records.columns import QuantityTable
 from calm.records.headings import heading
 from calm.records.profile_tables import (
     DIRECTION,
@@ -113,14 +114,14 @@ def _by_name(
         return Problem("", 0, 0, message)
 
     names = {heading(column)[0] for column in columns}
-    kept: list[Problem] = []
+    copied = QuantityTable(headings, rows, report, [])
     table: CurrentTable | DepthTable | SeaWater | None
     if names & _OF_A_CURRENT:
-        table = read_current(headings, rows, report, kept)
+        table = read_current(copied)
     elif names == {"depth", "density"} or {"temperature", "salinity"} <= names:
-        table = read_water(headings, rows, report, kept)
+        table = read_water(copied)
     else:
-        table = read_profile(next(iter(names - {"depth"})), headings, rows, report, kept)
+        table = read_profile(next(iter(names - {"depth"})), copied)
     if table is None:
         of_the_headings, message = min(problems, key=lambda one: not one[0])
         raise (UnknownColumns if of_the_headings else NoRows)(message)

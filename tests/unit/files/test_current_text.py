@@ -3,6 +3,7 @@
 import pytest
 
 from calm.errors import Problem
+from calm.records.columns import QuantityTable
 from calm.records.current_terms import Terms
 from calm.records.delimited import CopiedTable, NoTableError, copied_table
 from calm.records.profile_tables import CurrentTable, read_current
@@ -12,9 +13,10 @@ def read(text: str, terms: Terms = Terms()) -> tuple[CurrentTable | None, list[s
     copied = copied_table(text)
     assert copied.headings is not None
     problems: list[Problem] = []
-    table = read_current(
-        copied.headings, copied.rows, lambda _, message: Problem("", 0, 0, message), problems, terms
+    given = QuantityTable(
+        copied.headings, copied.rows, lambda _, message: Problem("", 0, 0, message), problems
     )
+    table = read_current(given, terms)
     return table, [problem.message for problem in problems]
 
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 import pytest
 
 from calm.errors import Problem
+from calm.records.columns import QuantityTable
 from calm.records.profile_tables import (
     CurrentTable,
     DepthTable,
@@ -22,7 +23,7 @@ def report(location: Sequence[str | int], message: str) -> Problem:
 
 def current(columns: list[str], *rows: list[str]) -> tuple[CurrentTable | None, list[str]]:
     problems: list[Problem] = []
-    table = read_current(columns, rows, report, problems)
+    table = read_current(QuantityTable(columns, rows, report, problems))
     return table, [str(problem) for problem in problems]
 
 
@@ -126,13 +127,17 @@ def test_places_are_right_after_a_row_of_the_wrong_width() -> None:
 
 
 def test_density() -> None:
-    table = read_water(["depth m", "density g/cm^3"], [["0", "1.02"], ["9", "1.03"]], report, [])
+    table = read_water(
+        QuantityTable(["depth m", "density g/cm^3"], [["0", "1.02"], ["9", "1.03"]], report, [])
+    )
     assert table == DepthTable((0.0, 9.0), (1020.0, 1030.0))
 
 
 def test_temperature_and_salinity() -> None:
     columns = ["salinity", "depth[m]", "temperature[degC]"]
-    found = read_water(columns, [["35", "0", "-1.5"], ["35.16504 g/kg", "9", "4"]], report, [])
+    found = read_water(
+        QuantityTable(columns, [["35", "0", "-1.5"], ["35.16504 g/kg", "9", "4"]], report, [])
+    )
     assert isinstance(found, SeaWater)
     assert found.temperature == DepthTable((0.0, 9.0), (-1.5, 4.0))
     assert found.salinity.value == pytest.approx((35.0, 35.0), rel=1e-15)
@@ -184,17 +189,22 @@ def test_temperature_and_salinity() -> None:
 )
 def test_mistakes_in_a_table_of_the_water(columns: list[str], row: list[str], problem: str) -> None:
     problems: list[Problem] = []
-    assert read_water(columns, [row], report, problems) is None
+    assert read_water(QuantityTable(columns, [row], report, problems)) is None
     assert [str(problem) for problem in problems] == [problem]
 
 
 def test_profile_of_one_quantity() -> None:
-    table = read_profile("salinity", ["depth m", "salinity PSU"], [["5", "35"]], report, [])
+    table = read_profile(
+        "salinity", QuantityTable(["depth m", "salinity PSU"], [["5", "35"]], report, [])
+    )
     assert table == DepthTable((5.0,), (35.0,))
     problems: list[Problem] = []
-    assert read_profile("salinity", ["depth m"], [["5"]], report, problems) is None
+    assert read_profile("salinity", QuantityTable(["depth m"], [["5"]], report, problems)) is None
     assert (
-        read_profile("salinity", ["depth m", "temperature degC"], [["5", "3"]], report, problems)
+        read_profile(
+            "salinity",
+            QuantityTable(["depth m", "temperature degC"], [["5", "3"]], report, problems),
+        )
         is None
     )
     assert [str(problem) for problem in problems] == [
