@@ -173,7 +173,7 @@ def test_full_drag_knows_no_draft_and_no_wind(solve):
     result = solve(WEIGHED.replace("line:", WINDY) + full)
     assert (result.top.depth, result.top.draft, result.top.freeboard) == (0, None, None)
     assert result.top.x == solve(WEIGHED + full).top.x
-    assert any("wind" in warning for warning in result.warnings)
+    assert any("Wind on the float" in warning for warning in result.warnings)
 
 
 def test_a_float_without_mass_or_volume_is_taken_as_just_immersed(solve):
