@@ -54,7 +54,7 @@ class KeyValue:
             raise self.token.refuse(f"the rows of `{self.token.text}` must be pairs")
         pairs = [(row[0].at(), row[1].at()) for row in self.rows]
         if any(b[0] < a[0] for a, b in pairwise(pairs)):
-            raise self.token.refuse(f"the rows of `{self.token.text}` must go on growing")
+            raise self.token.refuse(f"the rows of `{self.token.text}` must increase")
         if len(pairs) == 1:
             return pairs[0][1]
         if self.repeats and pairs[-1][0] > 0.0:
@@ -192,7 +192,7 @@ def read_problem(path: Path, defines: Mapping[str, str], *, allow_include: bool)
 def _section(words: TokenStream, problem: CableProblem) -> None:
     name = _section_name(words)
     if name is None:
-        raise words.next.refuse(f"`{words.next.text}` stands where a section should begin")
+        raise words.next.refuse(f"`{words.next.text}` is where a section should begin")
     words.take()
     if name in _LONG_SECTIONS:
         words.take()

@@ -153,7 +153,7 @@ def import_file(
     if environment is not None:
         lines = environment_lines(environment, output)
         if design.water is not None:
-            what = f"the water of the file: {environment.name} stands in its place"
+            what = f"the water of the file: {environment.name} replaces it"
             design.dropped.append(Remark("environment", what))
         design.record = None
     elif design.water is None and design.tow is None:
