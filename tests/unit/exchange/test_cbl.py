@@ -294,9 +294,9 @@ REFUSED = {
     "branch": (
         "segment = { length = 50",
         "branch = { segment = { length = 5 } } segment = { length = 50",
-        "a branch",
+        "the layout has no `terminal` at the end of a line",
     ),
-    "both ends anchored": ("{ buoy = ball }", "{ anchor = clump }", "several legs"),
+    "both ends anchored": ("{ buoy = ball }", "{ anchor = clump }", "nothing stands between"),
     "horizontal": ("subsurface", "horizontal", "`type = horizontal`"),
     "drifter": ("subsurface", "drifter", "`type = drifter`"),
     "horizontal drifter": ("subsurface", "horizontal-drifter", "`type = horizontal-drifter`"),
