@@ -32,8 +32,8 @@ MOST = 8
 """Things that are wrong, at most."""
 CLOCKS, FURTHEST = 0.01, 13.0
 """Probability that a clock is wrong, and by how much it may be [h]."""
-GAIN, GAINS = 0.02, 0.01
-"""Of a gain less 1, and the probability that it is wrong."""
+GAIN, GAINS, ALL_GAINS = 0.02, 0.01, 0.001
+"""Of a gain less 1, and the probabilities that it is wrong: that of a sensor, that of all alike."""
 EXCHANGED = 0.01
 """Probability that two labels are exchanged."""
 LEAST = {"clock": 0.08, "gain": 0.003, "offset": 2.5, "drift": 1.0, "slip": 1.5, "exchanged": 0.0}
@@ -263,7 +263,9 @@ class _Diagnosis:
         first = first_time(evidence, law.fall, law.share, self.mean, self.spread)
         for j, label in enumerate(self.label):
             mine = np.arange(len(self.label)) == j
-            codes = {0: "offset", **dict.fromkeys(common_unknowns.RAMPS, "drift")}
+            codes = dict.fromkeys(common_unknowns.RAMPS, "drift")
+            if not self.alone:  # currents that are learnt from a sensor agree with its zero
+                codes[0] = "offset"
             if first[j] > 0:
                 codes[int(first[j])] = "slip"
             for code, kind in codes.items():
@@ -281,9 +283,15 @@ class _Diagnosis:
                 fault = Fault(label, kind, 0.0, 0.0, 0.0, 0.0, since, until)
                 yield _Suspect(fault, column, wide, chance, none)
         for label, mine in self._whose():
-            if (label, "gain") not in had:
+            if (label, "gain") not in had and not self.alone:
                 fault = Fault(label, "gain", 0.0, 0.0, 0.0, 0.0, never, never)
-                yield _Suspect(fault, depth * mine, GAIN, float(np.log(GAINS)), none)
+                yield _Suspect(
+                    fault,
+                    depth * mine,
+                    GAIN,
+                    float(np.log(ALL_GAINS if label == ALL else GAINS)),
+                    none,
+                )
             if (label, "clock") not in had:
                 late = self._late(taken, begun.left, mine)
                 if late.fault.value:
@@ -305,7 +313,7 @@ class _Diagnosis:
     def _whose(self) -> Iterator[tuple[str, NDArray[np.bool_]]]:
         for j, label in enumerate(self.label):
             yield label, np.arange(len(self.label)) == j
-        if len(self.label) > 1 and not self.alone:  # what currents are learnt from agrees with them
+        if len(self.label) > 1 and not self.alone:
             yield ALL, np.ones(len(self.label), bool)
 
     def _shift(self, late: float, mine: NDArray[np.bool_]) -> Floats:

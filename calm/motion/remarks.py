@@ -247,3 +247,28 @@ def linear(depth: Floats, point: Integers, still: Floats, wanted: int) -> Floats
     share = (still[wanted] - place[upper]) / (place[upper + 1] - place[upper])
     between: Floats = values[:, upper] * (1.0 - share) + values[:, upper + 1] * share
     return between
+
+
+def pchip(depth: Floats, point: Integers, still: Floats, wanted: int) -> Floats:
+    """Return (n,) depths at a point, by PCHIP (Fritsch and Carlson 1980) of the knockdown [m].
+
+    Over the height in still water above the lowest point of the line, which stays where it is.
+
+    Parameters
+    ----------
+    depth, point, still, wanted : as of `linear`
+    """
+    from scipy.interpolate import PchipInterpolator
+
+    height = still.max() - still
+    _, first = np.unique(height[point], return_index=True)
+    first = first[np.greater(height[point][first], 0.0)]
+    if not len(first):
+        return np.full(len(depth), still[wanted])
+    known = np.isfinite(depth.sum(axis=1))
+    down = np.where(known[:, None], depth - still[point], 0.0)[:, first]
+    places = np.concatenate([[0.0], height[point][first]])
+    values = np.concatenate([np.zeros((len(down), 1)), down], axis=1)
+    between = PchipInterpolator(places, values, axis=1, extrapolate=True)(height[wanted])
+    result: Floats = np.where(known, still[wanted] + between, np.nan)
+    return result

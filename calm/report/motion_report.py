@@ -327,6 +327,7 @@ def held_out_table(held_out: Sequence[HeldOut]) -> Table:
         (Column("bias", "m", numeric=True), lambda one: metres(one.bias)),
         (Column("rms", "m", numeric=True), lambda one: metres(one.rms)),
         (Column("interpolated: rms", "m", numeric=True), lambda one: metres(one.linear_rms)),
+        (Column("PCHIP: rms", "m", numeric=True), lambda one: metres(one.pchip_rms)),
         (
             Column("within 95 % band", "%", numeric=True),
             lambda one: f"{100.0 * one.coverage:.0f}" if isfinite(one.coverage) else "-",
@@ -388,7 +389,7 @@ def held_out_document(held_out: Sequence[HeldOut]) -> list[dict[str, Any]]:
         {
             "label": one.label,
             "n": one.count,
-            **members(one, "bias", "rms", "linear_rms"),
+            **members(one, "bias", "rms", "linear_rms", "pchip_rms"),
             "coverage_95": one.coverage,
         }
         for one in held_out
