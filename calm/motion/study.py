@@ -26,6 +26,7 @@ from calm.motion.remarks import (
     current_remarks,
     datum_remarks,
     difference,
+    factor_remarks,
     false_current_times,
     linear,
     pchip,
@@ -168,6 +169,7 @@ def judged(
         depth, spread = depths_at(result, point)
         held.append(judge_hidden(measured, used, label, depth, spread, still))
     said = [f"{one.sentence()}{'; it is taken off' if one.corrected else ''}" for one in diagnosis]
+    said += factor_remarks(task.common)
     false: Mapping[str, NDArray[np.datetime64]] = {}
     if plain is not None:
         names = level_names(used, labels_of(task.mooring))
