@@ -92,7 +92,7 @@ def _exported_line(mooring: Mooring | Tow, solve: Solve) -> ExportedLine:
     """Return the parts of a mooring or a tow, of which `solve` finds the equilibrium."""
     file, water, line = mooring.file, mooring.water, mooring.line
     if file.environment.fluid == "air":
-        raise UsageError(f"{file.path} is towed in air; the other programs know water alone")
+        raise UsageError(f"{file.path} is towed in air; the other programs know only water")
     secant = _secants(mooring, solve)
     depths = _depths(line, water, isinstance(mooring, Tow))
     parts = []
@@ -231,13 +231,13 @@ def _omitted(mooring: Mooring | Tow) -> tuple[str, ...]:
         "limits of the design check, strengths, ratings and tilts of components",
     ]
     if file.solver.strumming is not None:
-        omitted.append("strumming: the drag of cables is that at rest")
+        omitted.append("strumming: cables have their drag at rest")
     if file.solver.drag == "reynolds":
-        omitted.append("`drag: reynolds`: drags are those of the constant coefficients")
+        omitted.append("`drag: reynolds`: the constant coefficients are written")
     if file.solver.friction != "berteaux":
         omitted.append(f"`friction: {file.solver.friction}`")
     if any(mooring.line.elongation):
-        omitted.append("elongation tables: stiffness is that at the tension found here")
+        omitted.append("elongation tables: the stiffness at the tension found here is written")
     if any(mooring.line.lift) or any(mooring.line.clamp_lift):
         omitted.append("lift of towed bodies")
     return tuple(omitted)

@@ -179,7 +179,7 @@ def test_check_judges_every_leg(
 ) -> None:
     assert run("check", net, "--report", tmp_path / "report", "--workers", 1) == 1
     said = capsys.readouterr()
-    assert "its launch, its recovery and what waves do to it are not judged" in said.err
+    assert "launch, recovery and waves are not" in said.err
     for leg in ("own: main", "own: second", "own: pennant", "own: stem"):
         assert leg in " ".join(said.out.split())
     report = json.loads((tmp_path / "report" / "report.json").read_text())
@@ -318,7 +318,7 @@ def test_an_anchor_that_is_lifted_is_no_result(
     file = tmp_path / "light.yaml"
     file.write_text(NET.replace("anchor-wheels-4", "anchor-wheels-1"))
     assert run("run", file) == 3
-    assert "anchor-lifts: Leg stem pulls up" in capsys.readouterr().err
+    assert "anchor-lifts: Leg stem has a vertical pull of" in capsys.readouterr().err
 
 
 MISTAKES = {
@@ -463,7 +463,7 @@ legs:
     assert run("run", file) == 3
     told = capsys.readouterr().err
     assert "no-equilibrium: Legs" in told
-    assert "140.00 m long in all; the ends are held 200.00 m apart" in told
+    assert "140.00 m long in all, but its ends are held 200.00 m apart" in told
 
 
 SLOPE = """\
@@ -504,7 +504,9 @@ def test_anchors_stand_on_a_seabed_that_slopes_and_hold_less(tmp_path: Path) -> 
 def test_an_anchor_that_slides_by_itself_is_a_mistake(tmp_path: Path) -> None:
     """The angle of friction of 0.6 is 31 degrees."""
     text = SLOPE.replace("slope: 10 deg", "slope: 32 deg")
-    with pytest.raises(InputError, match=r"slides by itself .* it holds on less than 31°"):
+    with pytest.raises(
+        InputError, match=r"slides by itself .* it holds on slopes of less than 31°"
+    ):
         load_any(tmp_path / "slope.yaml", text=text)
 
 
@@ -520,7 +522,7 @@ legs:
     bottom: {held: {depth: 60 m, at: [40 m, 0 m]}}
 """
     )
-    with pytest.raises(NoEquilibrium, match=r"wire-jacketed-8 comes .* below the seabed"):
+    with pytest.raises(NoEquilibrium, match=r"wire-jacketed-8 comes .* below the sloping seabed"):
         load_any(tmp_path / "slope.yaml", text=text).solve()
     level = text.replace("slope: 25 deg", "slope: 0 deg")
     assert load_any(tmp_path / "level.yaml", text=level).solve().status == "converged"
