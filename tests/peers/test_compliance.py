@@ -1,4 +1,4 @@
-"""What CALM writes as NetCDF passes the CF tests of the IOOS compliance checker, without a warning."""
+"""What CALM writes as NetCDF passes the CF tests of the IOOS compliance checker."""
 
 import subprocess
 from pathlib import Path
