@@ -29,8 +29,6 @@ from calm.report.provenance import date
 from calm.report.result_files import members
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
     from matplotlib.axes import Axes
     from numpy import datetime64
     from numpy.typing import NDArray
@@ -198,10 +196,8 @@ def _panels(series: Sequence[SensorSeries]) -> tuple[Any, Any]:
 
 
 def _name(axes: Axes, one: SensorSeries, quantity: str) -> None:
-    text = axes.set_title(
-        f"{one.label}{', hidden' if one.hidden else ''}", fontsize=_FONT_SIZE, loc="left", pad=2
-    )
-    text.set_parse_math(False)
+    title = f"{one.label}{', hidden' if one.hidden else ''}"
+    axes.set_title(title, fontsize=_FONT_SIZE, loc="left", pad=2, parse_math=False)
     axes.set_ylabel(quantity, fontsize=_FONT_SIZE)
     axes.tick_params(labelsize=_FONT_SIZE)
     axes.grid(alpha=0.3)
@@ -214,17 +210,14 @@ TITLES = {
     "length": "length of cables and chains",
 }
 
+_RMS = (
+    "rms: of the difference less its mean over the calm times, the tenth with the least knockdown."
+)
 PLAIN = (
-    "Alone: from the currents with nothing fitted. Estimated: with the pressures of "
-    "all sensors in use. rms: of the difference less its mean over the calm times, "
-    "the tenth with the least knockdown."
+    "Alone: from the currents with nothing fitted. Estimated: with the pressures of all sensors in "
+    f"use. {_RMS}"
 )
-
-
-UNKNOWN = (
-    "The currents are not known: they are inferred from these pressures. rms: of the difference "
-    "less its mean over the calm times, the tenth with the least knockdown."
-)
+UNKNOWN = f"The currents are not known: they are inferred from these pressures. {_RMS}"
 
 
 def motion_part(study: Study, name: str) -> ReportPart:
