@@ -96,7 +96,6 @@ def run(
         Say below the table how the solution was reached, too.
     """
     outputs = Outputs(tuple(files), json, csv, plot, html, pdf, netcdf)
-    outputs.check()
     draws = draws_of(uncertainty, samples, seed)
     from calm.case import Tow
     from calm.case.net import Net, load_any
