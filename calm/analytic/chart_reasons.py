@@ -39,9 +39,9 @@ def contradiction(known: Mapping[str, float]) -> ChartRefusal | None:
     height, distance = known.get("height", 0.0), known.get("distance", 0.0)
     if below is not None and above is not None and "height" in known:
         if abs(above - below - height) <= _ROUNDING * above:
-            return family("Two tensions and the height say one thing: T_B = T_A + w H.")
+            return family("Two tensions and the height are not independent: T_B = T_A + w H.")
         return _inconsistent(
-            "T_B = T_A + w H does not hold.", "Give two of these, and another quantity."
+            "T_B = T_A + w H does not hold.", "Give two of these and one other quantity."
         )
     if above is not None and above <= (below or 0.0) + height:
         least = "that at the other end" if below is not None else "w H" if height else "0"
@@ -52,7 +52,7 @@ def contradiction(known: Mapping[str, float]) -> ChartRefusal | None:
     chord = math.hypot(height, distance)
     if "length" in known and chord > known["length"] * (1.0 + _ROUNDING):
         return _inconsistent(
-            f"The cable, {known['length']:.6g} m, is shorter than the way of {chord:.6g} m.",
+            f"The cable, {known['length']:.6g} m, is shorter than the distance of {chord:.6g} m.",
             "Lengthen the cable or bring its ends closer.",
         )
     return None
@@ -81,7 +81,9 @@ def reason(k: float, known: Mapping[str, float], floats: bool) -> ChartRefusal:
         message = f"A cable without tension at one end is straight, at {angle}."
         return _none(message, "Give a tension, or quantities of that straight cable.")
     if is_taut(known):
-        message = "A cable no longer than the way between its ends would need endless tension."
+        message = (
+            "A cable no longer than the distance between its ends would need infinite tension."
+        )
         return _none(message, "Lengthen the cable or bring its ends closer.")
     if end is not None and not 0.0 < end < math.pi:
         message = "The cable must rise at the end where its tension is greater."
@@ -95,8 +97,8 @@ def reason(k: float, known: Mapping[str, float], floats: bool) -> ChartRefusal:
             "Check which end is which, and the sign of the distance if it is given.",
         )
     return _none(
-        f"No cable in a uniform current at K = {k:g} has these three quantities together.",
-        "Check K and the quantities; give two of them with another to see what is possible.",
+        f"No cable in a uniform current at K = {k:g} satisfies these three quantities.",
+        "Check K and the quantities; replace one of them to see what is possible.",
     )
 
 

@@ -41,9 +41,8 @@ def is_finished(output: Path, identity: str) -> bool:
     before = attributes_of(output).get(IDENTITY)
     if not isinstance(before, str):
         raise UsageError(
-            f"{output} is there already, and is not a result of calm batch that can be read. "
-            "It is kept. "
-            "Give another name to the result, or remove it"
+            f"{output} exists already and is not a readable result of calm batch. It is kept: "
+            "give the result another name, or remove the file"
         )
     refuse_another(output, before, identity)
     return True
@@ -135,15 +134,15 @@ def _held(lock: Path, folder: Path, tell: Callable[[str], None]) -> int:
         try:
             if not _has_lock(handle):
                 tell(
-                    f"{folder.parent} has no locks: nothing would stop a second calm batch "
-                    "from working on the same result"
+                    f"{folder.parent} does not support file locks: nothing would stop a second "
+                    "calm batch from working on the same result"
                 )
                 return handle
             if _is_still(lock, handle):
                 return handle
         except BlockingIOError:
             os.close(handle)
-            raise UsageError(f"another calm batch is at work on {folder}") from None
+            raise UsageError(f"another calm batch is working on {folder}") from None
         except BaseException:
             os.close(handle)
             raise
@@ -246,8 +245,8 @@ def readable(path: Path) -> Iterator[None]:
     except Exception as error:
         reason = str(error).partition("\n")[0] or type(error).__name__
         raise UsageError(
-            f"{path} is finished, and cannot be read: {reason}. Remove it, and the same command "
-            "makes it anew"
+            f"{path} is finished but cannot be read: {reason}. Remove it; the same command "
+            "writes it again"
         ) from None
 
 

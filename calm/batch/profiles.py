@@ -324,8 +324,8 @@ def _checked(
     up = np.broadcast_to(np.zeros(()), east.shape) if w is None else _numbers(w)
     if not east.ndim or not east.shape == north.shape == up.shape:
         raise ValueError(
-            "u, v and w must be profiles by levels, and of one shape: they are of "
-            f"{east.shape}, {north.shape}, {up.shape}"
+            f"u, v and w must have one shape, profiles by levels; they have {east.shape}, "
+            f"{north.shape}, {up.shape}"
         )
     levels = east.shape[-1]
     if down.shape not in {(levels,), (1, levels), east.shape}:

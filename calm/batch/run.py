@@ -109,7 +109,7 @@ def run_batch(
         Where a piece is to be cut to fit, and no length does.
     """
     if record.count == 0:
-        raise UsageError("the record has no profile in the time that was asked for")
+        raise UsageError("the record has no profile in the period asked for")
     say, stop = tell or (lambda _: None), stop or Event()
     if shape and isinstance(mooring, Net):
         raise UsageError("--shape is for single lines; of a net the ends of all pieces are stored")
@@ -205,7 +205,7 @@ def _complete(
             return
         work.forget(damaged)
         tell(f"{len(damaged)} blocks were damaged on the disk; they are solved again")
-    raise OSError(f"{work.store.folder} loses what is written to it")
+    raise OSError(f"{work.store.folder} does not keep what is written to it")
 
 
 def _found(output: Path) -> BatchOutcome:

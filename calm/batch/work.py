@@ -187,11 +187,11 @@ class _Notice(event.Listener):
         if self.reported:
             return
         self.reported = True
-        self.report("compiling the solver for this machine, once: this takes up to a minute")
+        self.report("compiling the solver for this machine, once only; this takes up to a minute")
         if cache_folder() is None:
             self.report(
-                "no folder can be written to keep it in, so every run compiles again; set "
-                "NUMBA_CACHE_DIR to one that can"
+                "no writable folder was found to keep it in, so every run compiles again; set "
+                "NUMBA_CACHE_DIR to one"
             )
 
     def on_end(self, event: Any) -> None:

@@ -202,12 +202,12 @@ def refuse_another(path: Path, before: str, now: str) -> None:
         changes = differences(json.loads(before), json.loads(now))
     except ValueError:
         raise UsageError(
-            f"{path} is damaged: it no longer shows what it was made from. Remove it, and the same "
-            "command begins anew"
+            f"{path} is damaged: it no longer shows what it was made from. Remove it; the "
+            "same command starts afresh"
         ) from None
     raise UsageError(
-        f"{path} was made from another input: {changes}. "
-        "It is kept; give another name to the result, or remove it"
+        f"{path} was made from another input: {changes}. It is kept; give the result "
+        "another name, or remove the file"
     )
 
 

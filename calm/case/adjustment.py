@@ -86,8 +86,8 @@ class Buoyancy(Adjustment):
     """Net force in water of a rigid piece or clamped instrument [N], or of a cable [N/m]."""
 
     note = (
-        "Only the net force in water changes; size, drag and mass stay as they are. A real part "
-        "with this buoyancy has another drag: put it in the file and run it."
+        "Only the net force in water changes; size, drag and mass do not. A real part "
+        "with this buoyancy has a different drag: put it in the file and run that."
     )
 
     @property
@@ -253,7 +253,7 @@ def _buoyancy(text: str, file: MooringFile, parts: Parts) -> Adjustment:
         if isinstance(component, Chain | Anchor):
             raise LookupError(f"{_article(component)} has a weight and no buoyancy to change")
     if any(component != components[0] for component in components):
-        raise LookupError("these parts are not alike; name one")
+        raise LookupError("these parts differ; name one")
     return Buoyancy(text, file, parts)
 
 

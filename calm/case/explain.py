@@ -163,7 +163,8 @@ def explain(result: Result, label: str | None = None) -> Explanation:
             without_drag[name] = 0.0 if name == "knockdown" else float(shares.start[column])
         if miss > FAIR:
             notes.append(
-                f"The shares are rough: they grow unevenly with the drag ({miss:.0%} were scaled)."
+                f"The shares are approximate: they do not grow steadily with the drag ({miss:.0%} "
+                "were scaled)."
             )
     return Explanation(
         label=part.label,

@@ -215,7 +215,8 @@ class Mooring:
         pull, weight = float(solution.force[-1, 2]), self.anchor_weight
         if pull > weight:
             raise Status.ANCHOR_LIFTS.because(
-                f"The line pulls up with {pull:.0f} N; the anchor weighs {weight:.0f} N in water."
+                f"The vertical pull of the line is {pull:.0f} N; the anchor weighs {weight:.0f} N "
+                "in water."
             )
 
     def _refuse_a_heap(self, solution: Solution) -> None:
@@ -239,8 +240,8 @@ class Mooring:
             return too_heavy(lift)
         pulls = "pulls the line's top under water and " if floats_at_rest else ""
         return Status.GROUNDED.because(
-            f"The current {pulls}lays {label} on the seabed: of a line below the surface nothing "
-            "but chain may lie there."
+            f"The current {pulls}lays {label} on the seabed: only the chain of a sub-surface "
+            "line may lie there."
         )
 
     def still_beside(self, solution: Solution) -> Solution | None:
@@ -284,8 +285,8 @@ def refuse_in_the_slope(file: MooringFile, solution: Solution, depth: float) -> 
         pieces = len(file.pieces) - 1
         piece = file.pieces[pieces - 1 - number if solution.line.towed else number]
         raise Status.GROUNDED.because(
-            f"{piece.label} comes {below[worst]:.2f} m below the seabed, which slopes.",
-            advice="Raise it, or move it down the slope: what lies on a slope is not solved.",
+            f"{piece.label} comes {below[worst]:.2f} m below the sloping seabed.",
+            advice="Raise it, or move it down the slope: a line lying on a slope is not solved.",
         )
 
 

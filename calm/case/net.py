@@ -155,9 +155,9 @@ class Net:
             if length < dist(first, last):
                 legs = f"Leg {names[0]} is" if len(names) == 1 else f"Legs {', '.join(names)} are"
                 return Status.NO_EQUILIBRIUM.because(
-                    f"{legs} {say('length', length)} long in all; the ends are held "
+                    f"{legs} {say('length', length)} long in all, but its ends are held "
                     f"{say('length', dist(first, last))} apart.",
-                    advice="Lengthen a leg, or put the ends nearer to each other.",
+                    advice="Lengthen a leg, or bring the ends closer together.",
                 )
         return None
 
@@ -251,7 +251,7 @@ def _refuse_a_lifted_anchor(mooring: Mooring, solution: Solution) -> None:
     pull = float(solution.force[-1, 2])
     if leg.bottom.anchor is not None and pull > mooring.anchor_weight:
         raise Status.ANCHOR_LIFTS.because(
-            f"Leg {leg.name} pulls up with {pull:.0f} N; its anchor weighs "
+            f"Leg {leg.name} has a vertical pull of {pull:.0f} N; its anchor weighs "
             f"{mooring.anchor_weight:.0f} N in water."
         )
 

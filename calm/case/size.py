@@ -148,8 +148,8 @@ def size(
     before = trials.at(adjustment.now)
     if wanted.relation == "=" and before.measured is None:
         raise UsageError(
-            f"{wanted.text}: the mooring as given has no such figure to start from"
-            f"{f' ({before.failure})' if before.failure else ''}; write <= or >="
+            f"{wanted.text}: the mooring as given has no such value to start "
+            f"from{f' ({before.failure})' if before.failure else ''}; write <= or >="
         )
     first = 0.0 if before.measured is None else before.measured - wanted.limit
     sign = -1.0 if wanted.relation == ">=" or (wanted.relation == "=" and first < 0.0) else 1.0
@@ -220,11 +220,11 @@ def _understood(
     if wanted is not None and adjustment is not None and adjustment.whole:
         if any(wanted.place == part.place for part in adjustment.parts):
             mistakes.append(
-                f"{wanted.label} is one of those that {adjustment.text} adds or takes away; "
-                "set the target for another part"
+                f"{wanted.label} is one of the parts that {adjustment.text} adds or removes; set "
+                "the target for another part"
             )
         if wanted.relation == "=":
-            mistakes.append(f"{adjustment.text} goes in steps; write <= or >= in the target")
+            mistakes.append(f"{adjustment.text} changes in steps; write <= or >= in the target")
     if wanted is None or adjustment is None or limits is None or mistakes:
         raise UsageError("\n".join(mistakes))
     return wanted, adjustment, limits
@@ -243,14 +243,16 @@ def _why_not(search: LeastChange, trials: _Trials) -> tuple[str, str]:
                 f"{target.quantity}."
             )
             return message, "Choose another quantity, such as the excursion."
-        message = f"The mooring has no equilibrium with any {change.text} {span}. As it is:"
+        message = f"The mooring has no equilibrium for any {change.text} {span}. As it is:"
         return f"{message} {failure.status}: {failure.message}", failure.advice
     best = trials.at(least)
     assert best.measured is not None
     nearest, where = with_unit(best.measured, target.unit), with_unit(least, change.unit)
     as_it_is = trials.at(change.now).measured
     if as_it_is is not None and abs(best.measured - as_it_is) <= _NOTHING * abs(as_it_is):
-        message = f"The present value is the nearest, at {nearest}; {change.text} was tried {span}."
+        message = (
+            f"The present value comes nearest, with {nearest}; {change.text} was tried {span}."
+        )
     else:
         message = f"The nearest is {nearest}, with {change.text} at {where}; tried {span}."
     for neighbour, side in zip(search.neighbours(least), ("Below", "Above"), strict=True):

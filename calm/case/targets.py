@@ -110,7 +110,7 @@ def parse_target(text: str, pieces: Sequence[Piece]) -> Target:
         raise mistake("relation", f"{what}; write <=, >= or =, as in `{_EXAMPLE}`")
     meant = None
     if found["part"] is not None and quantity == "required_weight":
-        raise mistake("part", "the required weight is the anchor's; leave the brackets out")
+        raise mistake("part", "the required weight belongs to the anchor; leave out the brackets")
     part = TOP if found["part"] is None else found["label"].strip()
     called_top = any(each.label == TOP for each in parts_of(pieces))
     if quantity != "required_weight" and (part != TOP or called_top):

@@ -57,15 +57,15 @@ def _anchor_too_light(result: Result, _: Solution) -> Iterator[str]:
         of = f" of leg {result.name}" if result.file.legs else ""
         yield (
             f"The anchor{of} weighs {say('wet_weight', anchor.weight)} in water; "
-            f"{say('required_weight', anchor.required_weight)} are required to hold the line."
+            f"{say('required_weight', anchor.required_weight)} is required to hold the line."
         )
 
 
 def _anchor_of_unknown_material(result: Result, _: Solution) -> Iterator[str]:
     if not result.file.anchor.material_known:
         yield (
-            f"{result.file.pieces[-1].label} gives only its mass: its weight in water is taken as "
-            "that of steel, 7850 kg/m³; of concrete it would be two thirds of that."
+            f"{result.file.pieces[-1].label} gives only its mass and is taken as steel, 7850 "
+            "kg/m³; concrete of that mass would weigh two thirds as much in water."
         )
 
 
@@ -75,9 +75,9 @@ def _tilted(result: Result | TowResult, _: Solution) -> Iterator[str]:
     for label, tilt, component in leaning:
         limit, warned = component.max_tilt, component.warn_tilt
         if limit is not None and tilt > limit:
-            yield f"{label} leans {tilt:.1f} degrees: not to be trusted beyond {limit:g}."
+            yield f"{label} leans {tilt:.1f} degrees, beyond its limit of {limit:g}."
         elif warned is not None and tilt > warned:
-            yield f"{label} leans {tilt:.1f} degrees, more than the {warned:g} it should."
+            yield f"{label} leans {tilt:.1f} degrees, above its warning limit of {warned:g}."
 
 
 def _stiffness_unknown(result: Result | TowResult, _: Solution) -> Iterator[str]:
@@ -143,7 +143,7 @@ def _beyond_the_table(result: Result | TowResult, solution: Solution) -> Iterato
         if curve is not None and row.tension > curve.limit:
             yield (
                 f"{row.label} is loaded beyond its elongation table: "
-                f"{say('tension', row.tension)}, and it is trusted up to "
+                f"{say('tension', row.tension)}; the table is valid up to "
                 f"{say('tension', curve.limit)}."
             )
 
@@ -161,8 +161,8 @@ def _fast_flow(result: Result | TowResult, solution: Solution) -> Iterator[str]:
         row, limit = max(fast, key=lambda entry: entry[0].reynolds / entry[1])
         others = f" and {len(fast) - 1} more" if len(fast) > 1 else ""
         yield (
-            f"Reynolds number above {_power(limit)} ({row.label}: {_power(row.reynolds)}{others}): "
-            "the drag coefficient needs a look."
+            f"Reynolds number above {_power(limit)} ({row.label}: "
+            f"{_power(row.reynolds)}{others}): check the drag coefficient."
         )
 
 
@@ -195,12 +195,12 @@ def _on_the_seabed(result: Result, solution: Solution) -> Iterator[str]:
     if seabed is not None and solution.grounded_length > 0.0:
         rise = solution.grounded_length * np.sin(np.radians(seabed.slope))
         yield (
-            f"{say('grounded_length', solution.grounded_length)} of line lie on the seabed, taken "
-            f"as level there: on its slope of {seabed.slope:g}° depths differ by up to "
+            f"{say('grounded_length', solution.grounded_length)} of line lies on the seabed, "
+            f"taken as level there: on its slope of {seabed.slope:g}° depths differ by up to "
             f"{say('depth', float(rise))}."
         )
     if solution.landed and result.still_shape is result.shape:
-        yield "In still water the part on the seabed has no direction: the offset is its greatest."
+        yield "In still water the line on the seabed may lie any way: the offset is the greatest."
 
 
 def _other_equilibrium(_: Result | TowResult, solution: Solution) -> Iterator[str]:
@@ -233,16 +233,16 @@ def _wind_ignored(result: Result, solution: Solution) -> Iterator[str]:
     floating = solution.line.floating
     felt = floating is not None and (floating.hull is not None or floating.wind_area is not None)
     if wind is not None and solution.surface and not (solution.riding is not None and felt):
-        yield (
-            "The wind on the float is not taken into account: its part above water is not known."
-        )
+        yield "Wind on the float is neglected: its area above the water is not known."
 
 
 def _below_the_sea(result: TowResult, _: Solution) -> Iterator[str]:
     lowest = float(result.shape.depth.max())
     tow = result.tow
     if tow.towing.in_air and tow.towing.height > 0.0 and lowest > 0.0:
-        yield f"The line reaches {lowest:.1f} m below the sea, but all of it is taken as in air."
+        yield (
+            f"The line reaches {lowest:.1f} m below the surface, but all of it is taken as in air."
+        )
 
 
 def _strums_along_the_flow(result: TowResult, solution: Solution) -> Iterator[str]:
@@ -257,8 +257,8 @@ def _strums_along_the_flow(result: TowResult, solution: Solution) -> Iterator[st
     claimed = np.degrees(law.LEAST_ANGLE)
     if least < claimed:
         yield (
-            f"The cable comes within {least:.1f} degrees of the flow: its drag at rest, "
-            f"C0 = {law.rest:g}, is only claimed above {claimed:.0f} degrees."
+            f"The cable comes within {least:.1f} degrees of the flow: its drag coefficient at "
+            f"rest, C0 = {law.rest:g}, is valid only above {claimed:.0f} degrees."
         )
 
 

@@ -63,8 +63,8 @@ def release_present(handling: Handling) -> Iterator[Verdict]:
     release, pieces = mooring.file.release, mooring.file.pieces
     for clamp in clamps_in(pieces):
         if clamp.component.role == "release":
-            message = f"{clamp.label} has the role of a release, and is clamped: it frees nothing."
-            yield unknown(clamp, message, "Put it into the line, or give it another role.")
+            message = f"{clamp.label} has the role of a release, but is clamped: it frees nothing."
+            yield unknown(clamp, message, "Put it in line, or give it another role.")
     if release is None:
         if not reaches_the_surface(mooring):
             yield unknown(
@@ -76,12 +76,12 @@ def release_present(handling: Handling) -> Iterator[Verdict]:
         return
     piece = pieces[release]
     if _NO_RELEASE.search(_words(piece.use, piece.component.name)):
-        message = f"{piece.label} has the role of a release, and is called what opens nothing."
+        message = f"{piece.label} has the role of a release, but its name is not a release's."
         yield unknown(piece, message, "Give `role: release` to the release alone.")
         return
     above = [part.component for part in every_part(pieces[: release + 1])]
     if not _floats(pieces[: release + 1]):
-        message = f"Nothing floats above {piece.label}: freed, it stays down."
+        message = f"Nothing above {piece.label} floats: once released, it stays on the seabed."
         yield verdict_on(piece, State.FAIL, message, "Put the floats above the release.")
         return
     doubts = []
@@ -90,21 +90,21 @@ def release_present(handling: Handling) -> Iterator[Verdict]:
     if length < LEAST_BELOW_RELEASE and all(one.fit_top_depth is None for one in below):
         message = (
             f"{piece.label} stands {say('depth', length)} above the anchor; "
-            f"{LEAST_BELOW_RELEASE:g} m keep it out of the mud and clear of what falls on it."
+            f"{LEAST_BELOW_RELEASE:g} m would keep it out of the mud and clear of falling gear."
         )
         doubts.append((piece, message, "Hang it higher, on a rope or chain."))
     said = _words(piece.use, piece.component.name, piece.label)
     if sum(component.role == "release" for component in above) == 1 and not _TWICE.search(said):
-        message = f"{piece.label} is the only release: where it fails, nothing else frees the line."
-        doubts.append((piece, message, "Hang two side by side, and call them a `pair`."))
+        message = f"{piece.label} is the only release: if it fails, nothing else frees the line."
+        doubts.append((piece, message, "Use two in parallel, and call them a `pair`."))
     for index, one in enumerate(pieces[:release]):
         if one.component.role == "release" and not _floats(pieces[: index + 1]):
-            message = f"Nothing floats above {one.label}, a release: freed there, nothing comes up."
+            message = f"Nothing above release {one.label} floats: once released, nothing comes up."
             doubts.append((one, message, "Put it below what floats, or give it another role."))
     for one in below:
         if net_buoyancy(one.component, mooring.water.gravity) > 0.0:
-            message = f"{one.label} floats below the release, and stays on the anchor."
-            doubts.append((one, message, "Put it above the release, or take what sinks."))
+            message = f"{one.label} floats, but below the release: it stays on the anchor."
+            doubts.append((one, message, "Put it above the release, or use one that sinks."))
     for part, message, remedy in doubts:
         yield verdict_on(part, State.WARN, message, remedy)
     if not doubts:
@@ -121,8 +121,8 @@ def hardware(handling: Handling) -> Iterator[Verdict]:
     """Return whether the line has any shackle, link or swivel at all, with weight and strength."""
     pieces = handling.mooring.file.pieces
     if not any(piece.component.role == "connector" for piece in pieces):
-        message = "No shackle, link or swivel is in the line: what joins its pieces is not judged."
-        yield verdict_on(None, State.WARN, message, "Put what joins the pieces into the line.")
+        message = "The line lists no shackle, link or swivel: its joints are not judged."
+        yield verdict_on(None, State.WARN, message, "Add the connecting hardware to the line.")
 
 
 @rule("swivel", once=True)
@@ -141,7 +141,7 @@ def swivel(handling: Handling) -> Iterator[Verdict]:
             if held is None:
                 continue
             beside, has_swivel = held
-            ends = f"{piece.label} bears torque and ends at {beside.label}"
+            ends = f"{piece.label} is not torque-balanced and ends at {beside.label}"
             if has_swivel:
                 yield verdict_on(piece, State.PASS, f"{ends}, with a swivel between them.")
             else:
@@ -183,7 +183,7 @@ def clamp_place(handling: Handling) -> Iterator[Verdict]:
     """Clamps on a cable or chain that overlap, or stick out over its end into the next piece."""
     mooring = handling.mooring
     lengths = mooring.line.length.tolist()
-    remedy = "Put it where it has room, or look at its `at` and its length."
+    remedy = "Move it to where it has room, or check its `at` and its length."
     for piece in mooring.file.pieces:
         if not isinstance(piece.component, Flexible):
             continue
@@ -201,7 +201,7 @@ def clamp_place(handling: Handling) -> Iterator[Verdict]:
         for top, bottom, clamp in fixed:
             out = max(-top, bottom - lengths[piece.index])
             if out > max(_TOUCH, (bottom - top) / 2.0 + _TOUCH if clamp.at == 0.0 else _TOUCH):
-                message = f"{clamp.label} sticks out {out:.2f} m over the end of {piece.label}."
+                message = f"{clamp.label} extends {out:.2f} m beyond the end of {piece.label}."
                 yield verdict_on(clamp, State.FAIL, message, remedy)
 
 
@@ -324,7 +324,7 @@ def _of_profiler(result: Result, row: ClampRow) -> Iterator[Verdict]:
     yield at_least(part, row.tension, least, message, "Add buoyancy above it.")
     yield from _way_of(part, wire)
     if component.drive_force is None:
-        told = f"What {part.label} climbs with is not known, nor whether it does in a current."
+        told = f"The drive force of {part.label} is not known, nor whether it can climb."
         yield unknown(part, told, "Give its `drive_force` and `speed`.")
         return
     flow, density = water.at(np.array(row.depth))
@@ -333,8 +333,8 @@ def _of_profiler(result: Result, row: ClampRow) -> Iterator[Verdict]:
     drag = axial_drag_of(component) * float(density) / REFERENCE_DENSITY * past**2
     needed = drag + abs(net_buoyancy(component, water.gravity)) * cos(lean)
     message = (
-        f"{part.label} needs {say('tension', needed)} along {wire.label} against drag and its own "
-        f"weight; its drive has {say('tension', component.drive_force)}."
+        f"{part.label} needs {say('tension', needed)} along {wire.label} against drag and "
+        f"its own weight; its drive gives {say('tension', component.drive_force)}."
     )
     remedy = "Straighten the wire with more buoyancy, or let it travel slower."
     yield at_least(part, component.drive_force, needed, message, remedy)
@@ -349,7 +349,7 @@ def _lasting(travels: Sequence[ProfilerTravel], part: Clamp) -> Iterator[Verdict
         if travel.label == part.label and (travel.time or 0.0) > LONGEST_PROFILE:
             took, most = duration(travel.time or 0.0), duration(LONGEST_PROFILE)
             message = f"A profile of {part.label} takes {took}; its time limit allows {most}."
-            yield verdict_on(part, State.WARN, message, "Divide the way, or let it travel faster.")
+            yield verdict_on(part, State.WARN, message, "Shorten the profile, or travel faster.")
 
 
 def _way_of(part: Clamp, wire: Piece) -> Iterator[Verdict]:

@@ -207,7 +207,7 @@ def _section(component: Flexible) -> float:
 def _late_warning(component: Component) -> Iterator[str]:
     warned, limit = component.warn_tilt, component.max_tilt
     if warned is not None and limit is not None and warned > limit:
-        yield f"warns at {warned:g}°, after its greatest tilt of {limit:g}°"
+        yield f"warns at {warned:g}°, beyond its greatest tilt of {limit:g}°"
 
 
 def _listed(names: Iterable[str]) -> str:
@@ -241,9 +241,9 @@ def figures(handling: Handling) -> Iterator[Verdict]:
     for key in handling.mooring.file.looser:
         if not key.backed:
             told = f"The line gives {key.name} as {said(key, key.value)}; {key.source} has"
-            message = f"{told} {said(key, key.default)}, and nothing says where the other is from."
+            message = f"{told} {said(key, key.default)}, and no source is given for the other."
             yield unknown(None, message, "Give its `source` beside it, or leave it out.")
-    remedy = "Look at its figures, and at their units."
+    remedy = "Check its figures and their units."
     for part in parts_of(handling.mooring.file.pieces):
         for state, found in (
             (State.FAIL, impossible),

@@ -84,7 +84,7 @@ def backup(handling: Handling) -> Iterator[Verdict]:
         worst.margin,
         worst.required,
         f"{after} the part that holds the release has a buoyancy of "
-        f"{say('tension', worst.margin)}; {say('tension', worst.required)} bring it up.",
+        f"{say('tension', worst.margin)}; {say('tension', worst.required)} would raise it.",
         f"Add {say('tension', worst.required - worst.margin)} of buoyancy above the release.",
         State.WARN if alone else State.FAIL,
         source=cite("backup_margin"),
@@ -129,7 +129,7 @@ def launch_strength(handling: Handling) -> Iterator[Verdict]:
             source = cite("launch_safety_factor")
             message = f"{bears}; its breaking load over {factors[1]:g} is {say('tension', limit)}."
         if tension > limit and not launch.anchor_drag_known:
-            message += " That is of an anchor without drag; its own is not known."
+            message += " This assumes an anchor without drag; its own is not known."
             yield unknown(piece, message, "Give the anchor's `kt`.", tension)
             continue
         remedy = "Take a stronger one, or lower the anchor on a parachute or a wire."
@@ -146,9 +146,8 @@ def launch_speed(handling: Handling) -> Iterator[Verdict]:
     anchor, speed = handling.mooring.file.pieces[-1], launch.fall_speed
     slow, fast = (QUANTITIES["speed"].format(one) for one in launch.fall_speed_band)
     message = (
-        f"The anchor lands with {say('speed', speed)} ({slow} to {fast} with double and half the "
-        f"drag along the line and of the anchor); {GREATEST_TOUCHDOWN_SPEED:g} m/s should not be "
-        "exceeded"
+        f"The anchor lands at {say('speed', speed)} ({slow} to {fast} with the drag of line and "
+        f"anchor doubled and halved); {GREATEST_TOUCHDOWN_SPEED:g} m/s should not be exceeded"
     )
     remedy = "Lower it, or add drag: a parachute, a wider anchor."
     if launch.anchor_drag_known:
@@ -156,8 +155,8 @@ def launch_speed(handling: Handling) -> Iterator[Verdict]:
         yield at_most(anchor, speed, limit, f"{message}.", remedy, State.WARN)
         return
     message += (
-        ". Its own drag is not known: that is of a cube of its volume; without any it would be "
-        f"{say('speed', launch.greatest_speed)}."
+        ". Its own drag is not known and is taken as that of a cube of its volume; "
+        f"without drag the speed would be {say('speed', launch.greatest_speed)}."
     )
     if launch.greatest_speed <= GREATEST_TOUCHDOWN_SPEED:
         yield at_most(anchor, speed, GREATEST_TOUCHDOWN_SPEED, message, remedy, State.WARN)
@@ -177,20 +176,20 @@ def recovery(handling: Handling) -> Iterator[Verdict]:
         yield _hauled_in(lowest, float(rise.arrival[rise.released]), rise)
         return
     if rise.rise_speed > 0.0:
-        message = f"Freed below {lowest.label}, the line rises with {say('speed', rise.rise_speed)}"
+        message = f"Released below {lowest.label}, it rises at {say('speed', rise.rise_speed)}"
     else:
-        message = f"Freed below {lowest.label}, the line does not rise"
-    message += f"; {say('speed', limit)} are required."
+        message = f"Released below {lowest.label}, it does not rise"
+    message += f"; {say('speed', limit)} is required."
     if rise.in_still_water:
-        message += " That is in still water: in the current it finds no steady motion."
-    remedy = "Add buoyancy above the release, or take weight off."
+        message += " That is in still water: in the current no steady rise was found."
+    remedy = "Add buoyancy above the release, or remove weight."
     source = Citing.of(handling.mooring.file)("minimum_rise_speed")
     verdict = at_least(lowest, rise.rise_speed, limit, message, remedy, source=source)
     if verdict.state is State.PASS and rise.rise_speed < USUAL_RISE_SPEED:
         verdict = replace(verdict, state=State.WARN, remedy=remedy)
     elif rise.rise_speed > FAST_RISE_SPEED:
         message += f" Beyond {FAST_RISE_SPEED:g} m/s floats leap and the line below them loops."
-        remedy = "Take buoyancy off, or keep the ship clear."
+        remedy = "Remove buoyancy, or keep the ship clear."
         verdict = replace(verdict, state=State.WARN, message=message, remedy=remedy)
     yield verdict
 
@@ -213,13 +212,15 @@ def _hauled_in(lowest: LinePart, arrival: float, rise: Recovery) -> Verdict:
     if isnan(arrival):
         depth = say("depth", float(rise.hangs_at[rise.released]))
         message = (
-            f"Freed, {lowest.label} does not come up: it hangs from the float, down to {depth}."
+            f"Released, {lowest.label} does not come up: it hangs from the float, down to {depth}."
         )
         remedy = "Haul it in; mind its weight."
         return verdict_on(lowest, State.WARN, message, remedy)
     minutes = arrival / 60.0
     return reported(
-        lowest, rise.rise_speed, f"Freed, {lowest.label} comes up after {minutes:.0f} minutes."
+        lowest,
+        rise.rise_speed,
+        f"Released, {lowest.label} comes up after {minutes:.0f} minutes.",
     )
 
 

@@ -55,8 +55,8 @@ from calm.physics.seawater import REFERENCE_DENSITY
 from calm.solve import Status
 
 NOT_HANDLED = (
-    "a net of legs: its launch, its recovery and what waves do to it are not judged; each leg is, "
-    "by the rules of a line"
+    "a net of legs: each leg is judged by the rules of a line; launch, recovery and "
+    "waves are not judged"
 )
 _NOT_SOLVED = Status.NOT_CONVERGED.because("The launch and the recovery of a net are not solved.")
 

@@ -97,7 +97,7 @@ def _tilt_words(
 
 def _doubtful_words(part: JudgedPart, warned: float, leaning: float, _: Result) -> tuple[str, str]:
     leans = f"{part.label} leans {say('tilt', leaning)}"
-    return f"{leans}; from {say('tilt', warned)} on its data are doubtful.", _STRAIGHTER
+    return f"{leans}; above {say('tilt', warned)} its data are doubtful.", _STRAIGHTER
 
 
 @criteria("depth-rating")
@@ -147,7 +147,9 @@ def stretch(result: Result) -> Iterator[Verdict]:
         strains = unknown_stretch(component, tension)
         if strains is not None and (by := max(strains, default=1.0) * length) > limit:
             could = (
-                f"could stretch by {say('length', by)}" if strains else "stretches by no one knows"
+                f"could stretch by {say('length', by)}"
+                if strains
+                else "stretches by an unknown amount"
             )
             yield unknown(
                 piece,
@@ -163,7 +165,7 @@ def stretch(result: Result) -> Iterator[Verdict]:
                 f"{piece.label} is cut to its length under {say('force', piece.measured_load)}; "
                 f"in use it bears {say('force', bears)}."
             )
-            remedy = "Look at the `load` of its `length_at`: ropes are measured under a small load."
+            remedy = "Check the `load` of its `length_at`: ropes are measured under a small load."
             yield verdict_on(piece, State.WARN, message, remedy)
 
 
@@ -182,8 +184,8 @@ def top_depth(mooring: Mooring) -> Iterator[Criterion]:
 
     def words(depth: float, _: Result) -> tuple[str, str]:
         return (
-            f"{label} is {say('depth', depth)} deep; {say('depth', limit)} keep it clear of waves, "
-            "hulls and nets.",
+            f"{label} is {say('depth', depth)} below the surface; {say('depth', limit)} would "
+            "keep it clear of waves, hulls and nets.",
             "Shorten the line, or mark it at the surface.",
         )
 
@@ -206,10 +208,10 @@ def fish_bite(result: Result) -> Iterator[Verdict]:
         if is_synthetic(piece.component):
             highest = min(row.depth_top, row.depth_bottom)
             message = (
-                f"{piece.label} reaches up to {say('depth', highest)}; down to "
-                f"{say('depth', limit)} fish bite through rope."
+                f"{piece.label} reaches up to {say('depth', highest)}; fish bite through rope "
+                f"down to {say('depth', limit)}."
             )
-            remedy = "Take jacketed wire there; `fishbite_depth` tells how deep they bite."
+            remedy = "Use jacketed wire there; `fishbite_depth` sets how deep they bite."
             source = Citing.of(result.file)("fishbite_depth")
             yield at_least(piece, highest, limit, message, remedy, State.WARN, source)
 
@@ -225,8 +227,8 @@ def knockdown(mooring: Mooring) -> Iterator[Criterion]:
                 "Judge a slack line by its excursion: `maximum_excursion`.",
             )
         return (
-            f"The top is knocked down by {say('knockdown', sunk)}; {allowed} are allowed.",
-            "Add buoyancy at the top, or take drag off: `calm run --explain` shows which.",
+            f"The top is knocked down by {say('knockdown', sunk)}; {allowed} is allowed.",
+            "Add buoyancy at the top, or reduce drag: `calm run --explain` shows where.",
         )
 
     yield from _of_the_top(mooring, "knockdown", mooring.file.checks.maximum_knockdown, words)
@@ -238,8 +240,8 @@ def excursion(mooring: Mooring) -> Iterator[Criterion]:
 
     def words(offset: float, allowed: str) -> tuple[str, str]:
         return (
-            f"The top is {say('offset', offset)} off the anchor; {allowed} are allowed.",
-            "Add buoyancy, take drag off, or shorten the line.",
+            f"The top is {say('offset', offset)} off the anchor; {allowed} is allowed.",
+            "Add buoyancy, reduce drag, or shorten the line.",
         )
 
     yield from _of_the_top(mooring, "offset", mooring.file.checks.maximum_excursion, words)
@@ -327,7 +329,7 @@ def watch_circle(result: Result) -> Iterator[Verdict]:
     if limit is None:
         yield reported(top, radius, f"{message}.")
         return
-    message += f"; {say('offset', limit)} are allowed."
+    message += f"; {say('offset', limit)} is allowed."
     yield at_most(top, radius, limit, message, "Shorten the line.")
 
 

@@ -209,9 +209,9 @@ def deployed_depth(handling: Handling) -> Iterator[Verdict]:
         moved, what = depth - designed, "it"
     way = "deeper" if moved > 0.0 else "shallower"
     message = (
-        f"Deployed in {say('depth', depth)} of water, designed for {say('depth', designed)}: "
-        f"{what} is {say('depth', abs(moved))} {way}; {say('depth', limit)} are within "
-        "a sounding's error."
+        f"Deployed in {say('depth', depth)} of water, designed for "
+        f"{say('depth', designed)}: {what} is {say('depth', abs(moved))} {way}; "
+        f"{say('depth', limit)} is within the error of a sounding."
     )
     remedy = "`calm diff` with this file alone shows what that does."
     yield at_most(None, abs(moved), limit, message, remedy, State.WARN)
@@ -237,7 +237,7 @@ def _far_away(mooring: Mooring) -> Verdict | None:
         f"Deployed {away:.0f} km from the planned position: the water and the currents of "
         "this design are those of another place."
     )
-    return unknown(None, message, "Look at both positions, or give the environment of the site.")
+    return unknown(None, message, "Check both positions, or give the environment of the site.")
 
 
 def _as_cut(piece: Piece, items: dict[str, DeployedItem]) -> Piece:
@@ -260,8 +260,8 @@ LEAST_CURRENT = 0.01
 STILL_ONLY = verdict_on(
     None,
     State.WARN,
-    "No environment has a current of 1 cm/s: what tilts, is knocked down and pulls in one is not "
-    "judged.",
+    "No environment has a current of 1 cm/s or more: tilt, knockdown and pull in a "
+    "current are not judged.",
     "Give the current, or an environment that has one.",
 )
 """What `equilibrium` says of a mooring without a current to speak of."""
@@ -287,19 +287,19 @@ def currents(moorings: Sequence[Mooring]) -> Iterator[tuple[Mooring, Verdict]]:
         if 0.0 < speed < WEAK_BESIDE_OTHERS * max(speeds):
             message = (
                 f"The current is {speed:.2g} m/s at its strongest, {say('speed', max(speeds))} in "
-                "another environment: a hundredth is cm/s read as m/s."
+                "another environment: was m/s read as cm/s, or cm/s as m/s?"
             )
-            yield mooring, verdict_on(None, State.WARN, message, "Look at its unit.", speed)
+            yield mooring, verdict_on(None, State.WARN, message, "Check its unit.", speed)
         if speed >= LEAST_CURRENT and (left := _left_out(mooring)):
-            remedy = "Give the current at more levels, or say with a level at each end what it is."
+            remedy = "Give the current at more levels, with one near each end."
             yield mooring, verdict_on(None, State.WARN, left, remedy, speed)
     strongest = max(range(len(speeds)), key=speeds.__getitem__)
     speed = speeds[strongest]
     for mooring, recorded in _records(moorings):
         if speed < SHARE_OF_ITS_RECORD * recorded:
             message = (
-                f"The record that this current is of has {say('speed', recorded)}; the strongest "
-                f"current judged is {say('speed', speed)}."
+                f"The record that this current is taken from reaches {say('speed', recorded)}; "
+                f"the strongest current judged is {say('speed', speed)}."
             )
             remedy = "Add an environment with that current, or solve the record with `calm batch`."
             yield mooring, verdict_on(None, State.WARN, message, remedy, speed, recorded)

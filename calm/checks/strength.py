@@ -138,9 +138,9 @@ def _release_words(
             "Give its `working_load` and its `opening_load`.",
         )
     if does == "bears":
-        allowed = f"what it may bear is {say('tension', limit)}"
+        allowed = f"the allowed load is {say('tension', limit)}"
     elif given is None:
-        allowed = f"its opening load is not given; what it may bear is {say('tension', limit)}"
+        allowed = f"its opening load is not given; the allowed load is {say('tension', limit)}"
     else:
         allowed = f"its opening load is {say('tension', limit)}"
     return (
@@ -166,9 +166,9 @@ def strength_steps(result: Result) -> Iterator[Verdict]:
             piece,
             load,
             WEAK_LINK * cables,
-            f"{piece.label} may bear {say('tension', load)}, the cables above and below it "
-            f"{say('tension', cables)} and more.",
-            "Match its strength to that of the cables beside it, or theirs to its own.",
+            f"{piece.label} is good for {say('tension', load)}, the cables above and below it "
+            f"for {say('tension', cables)} or more.",
+            "Match its strength to that of the cables next to it.",
             State.WARN,
         )
 
@@ -211,9 +211,9 @@ def slack(mooring: Mooring) -> Iterator[Criterion]:
 
 def _words(part: JudgedPart, limit: float, name: str, least: float, _: Result) -> tuple[str, str]:
     return (
-        f"{part.label} bears no more than {say('tension', least)} at its slackest; "
-        f"{say('tension', limit)} keep a {name} taut.",
-        "Add buoyancy above it, or take weight off; `slack: allowed` exempts a piece.",
+        f"{part.label} has a least tension of {say('tension', least)}; "
+        f"{say('tension', limit)} keeps a {name} taut.",
+        "Add buoyancy above it, or remove weight; `slack: allowed` exempts a piece.",
     )
 
 
@@ -226,7 +226,7 @@ def anchor_weight(mooring: Mooring) -> Iterator[Criterion]:
     weight = _weight(mooring)
 
     def words(required: float, result: Result) -> tuple[str, str]:
-        needs = f"{say('tension', required)} are required, {_in_air(mooring, required)}."
+        needs = f"{say('tension', required)} is required, {_in_air(mooring, required)}."
         if weight is None:
             return f"The anchor's weight in water is not known; {needs}", _WHAT_IS_IT
         weighs = f"The anchor weighs {say('tension', weight)} in water; {needs}"
@@ -249,7 +249,7 @@ def anchor_uplift(mooring: Mooring) -> Iterator[Criterion]:
     limit = None if weight is None else weight / factor
 
     def words(vertical: float, _: Result) -> tuple[str, str]:
-        pulls = f"The line pulls up with {say('tension', vertical)}"
+        pulls = f"The vertical pull of the line is {say('tension', vertical)}"
         if limit is None:
             return f"{pulls}; the anchor's weight in water is not known.", _WHAT_IS_IT
         return (
@@ -273,7 +273,7 @@ def anchor_sliding(mooring: Mooring) -> Iterator[Criterion]:
         return friction * (weight / factor - result.anchor.vertical)
 
     def words(_: float, result: Result) -> tuple[str, str]:
-        pulls = f"The line pulls sideways with {say('tension', result.anchor.horizontal)}"
+        pulls = f"The horizontal pull of the line is {say('tension', result.anchor.horizontal)}"
         if weight is None:
             return f"{pulls}; the anchor's weight in water is not known.", _WHAT_IS_IT
         return (

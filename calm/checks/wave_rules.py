@@ -15,7 +15,7 @@ from calm.quantities import say
 from calm.waves.analysis import WaveAnalysis, analyse
 from calm.waves.fatigue import YEAR
 
-_HOW = "Give `waves:` in the environment: a design sea, and a scatter table for its life."
+_HOW = "Give `waves:` in the environment: a design sea, and a scatter table for fatigue."
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ def wave_strength(evidence: MooringInWaves) -> Iterator[Verdict]:
         if waves is not None:
             yield unknown(None, f"Not judged in waves: {waves}.", "Give what is missing.")
         elif reaches_the_surface(mooring):
-            yield unknown(None, "What waves do to it is not judged: no `waves:` are given.", _HOW)
+            yield unknown(None, "Waves are not judged: no `waves:` are given.", _HOW)
         return
     checks = mooring.file.checks
     factor, source = checks.waves_safety_factor, Citing.of(mooring.file)("waves_safety_factor")
@@ -80,10 +80,10 @@ def wave_slack(evidence: MooringInWaves) -> Iterator[Verdict]:
         row = state.components[piece.index]
         if row.tension_std > 0.0 and piece.component.slack != "allowed":
             message = (
-                f"{piece.label} has {say('tension', row.least)} at the least in waves of "
+                f"The least tension of {piece.label} is {say('tension', row.least)} in waves of "
                 f"Hs {state.sea.significant_height:.1f} m; below 0 it falls slack and snatches."
             )
-            remedy = "Give the line more weight or more stretch, or solve it in time: `calm export`"
+            remedy = "Add weight or stretch, or solve it in the time domain: `calm export`"
             yield _sure(waves, at_least(piece, row.least, 0.0, message, f"{remedy}."))
 
 
@@ -95,20 +95,24 @@ def fatigue(evidence: MooringInWaves) -> Iterator[Verdict]:
         return
     given, checks = mooring.file.environment.waves, mooring.file.checks
     if given is None or given.scatter is None:
-        message = "How long it lasts in waves is not known: one sea is no climate."
-        yield unknown(None, message, "Give `waves: {scatter: FILE}`, seas with their shares.")
+        message = "Its fatigue life is not known: one sea is not a wave climate."
+        yield unknown(
+            None,
+            message,
+            "Give `waves: {scatter: FILE}`, seas with their shares of the time.",
+        )
         return
     limit = checks.fatigue_factor * checks.service_time
     source = Citing.of(mooring.file)("fatigue_factor", "service_time")
     for one in waves.fatigue:
         piece = mooring.file.pieces[one.index]
         if one.unknown is not None:
-            message = f"How long {one.label} lasts in waves is not known: {one.unknown}."
+            message = f"The fatigue life of {one.label} is not known: {one.unknown}."
             yield unknown(piece, message, "Give its `fatigue: {curve: NAME}` and its loads.")
         elif one.life is not None and one.life_low is not None and one.life_high is not None:
             message = (
-                f"{one.label} lasts {_years(one.life)} in waves ({_years(one.life_low)} to "
-                f"{_years(one.life_high)}), by {one.curve}; {_years(limit / YEAR)} are asked for."
+                f"The fatigue life of {one.label} is {_years(one.life)} ({_years(one.life_low)} "
+                f"to {_years(one.life_high)}), by {one.curve}; {_years(limit / YEAR)} is required."
             )
             remedy = "Take a thicker one, let the line stretch more, or renew it sooner."
             life = one.life * YEAR

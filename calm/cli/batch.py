@@ -59,10 +59,10 @@ def batch(
 ) -> ExitCode:
     """Solve a mooring, or a net of legs, in every profile of a record or a hindcast.
 
-    Each profile takes the place of the file's current. The result has every
+    Each profile replaces the current of the file. The result has every
     component and every clamped instrument at every time; a profile without
-    equilibrium is NaN with its status, and does not stop the others. Its statistics
-    are printed, and written as RESULT.summary.json and .html.
+    equilibrium is NaN, with its status. Statistics are printed, and written as
+    RESULT.summary.json and .html.
 
     The work is kept in RESULT.part. However a run is interrupted, the same command
     resumes it; the exit code is 75 until everything is solved.
@@ -80,14 +80,14 @@ def batch(
     every
         Only every Nth profile.
     at
-        Latitude and longitude [degrees] of the column to take from a grid, as LAT,LON;
-        the `position` of the mooring file unless given.
+        Latitude and longitude [degrees] of the column to take from a grid, as
+        LAT,LON; by default the `position` of the mooring file.
     scheduler
         Address of a dask scheduler whose workers solve the profiles.
     shape
         Store the shape of the line too.
     no_statistics
-        Leave the statistics out, for a part of a longer record.
+        Write no statistics, for a part of a longer record.
     """
     if every < 1:
         raise UsageError(f"--every: {every} is not 1 or more")
@@ -164,8 +164,8 @@ def _implausible(outcome: BatchOutcome, mooring: Mooring | Net, record: Record) 
     greatest = mooring.file.environment.maximum_speed
     count = grouped(outcome.counts["implausible-current"])
     return (
-        f"{count} profiles without result, as their current is implausible "
-        f"(above `maximum_speed`, {greatest:g} m/s): {first_implausible(record, greatest)}"
+        f"{count} profiles have no result because their current is implausible (above "
+        f"`maximum_speed`, {greatest:g} m/s): {first_implausible(record, greatest)}"
     )
 
 

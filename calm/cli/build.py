@@ -44,31 +44,32 @@ def build(
 ) -> ExitCode:
     """Build or edit a mooring or a tow, and see it bend at every change.
 
-    The line is a table, its picture and the design check beside it. The file keeps its
-    comments, its order and its units: what you do not change stays as it was written.
-    Unsaved work is kept beside the file, and offered after a closed terminal, a crash or a
-    loss of power. Press ? for all keys.
+    The line is a table with its picture and the design check beside it. The
+    file keeps its comments, order and units: what you do not change stays as
+    written. Unsaved work is kept beside the file, and offered again after a
+    closed terminal, a crash or a loss of power. Press ? for all keys.
 
     Parameters
     ----------
     file
         A mooring file, old or new. Without it, a new file that is named when you save.
     environment
-        An environment named in the file, or an environment file, to begin with.
+        The environment to start in: a name from the file, or an environment
+        file.
     serve
-        Open it in a browser of this machine; other machines cannot reach it.
+        Open it in a browser on this machine; other machines cannot reach it.
     port
-        Port of --serve, by default 8000. The address of the page, with the token that it needs,
-        is printed; a tunnel may lead to it from any port.
+        Port of --serve, by default 8000. The address of the page is printed
+        with its token; a tunnel may lead to it from any port.
     allow_host
         A host name under which a proxy forwards the page of --serve. Repeatable.
     idle_timeout
-        Minutes without a key after which a page of --serve is closed, with its work kept; 0 for
-        never.
+        Minutes without a key after which a page of --serve is closed and its
+        work kept; 0 for never.
     """
     if serve:
         if not 0.0 <= idle_timeout < inf:
-            raise UsageError(f"--idle-timeout: {idle_timeout} minutes cannot be waited")
+            raise UsageError(f"--idle-timeout: {idle_timeout} is not a number of minutes from 0")
         return _serve(file, environment, catalog or [], port, allow_host or [], 60.0 * idle_timeout)
     if not _has_terminal():
         raise UsageError(_NO_TERMINAL)

@@ -39,7 +39,7 @@ def list_components(*, kind: Kind | None = None, json: bool = False) -> ExitCode
     Parameters
     ----------
     kind
-        Only those of one kind.
+        Only components of one kind.
     json
         As JSON: objects with every field, in SI units and degrees.
     """
@@ -56,15 +56,15 @@ def list_components(*, kind: Kind | None = None, json: bool = False) -> ExitCode
 def search(words: list[str], /, *, json: bool = False) -> ExitCode:
     """List the components that have every word, those most used first.
 
-    Favourites and what was taken last in the line builder come first, then what the shipped lines
-    use. A misspelt word is read as the one most like it.
+    Favourites and the components last used in the line builder come first, then
+    those that the shipped lines use. Misspelt words are corrected.
 
     Parameters
     ----------
     words
-        Words or parts of words: of the id, the name, the maker, the trade, the material, the
-        source. Sizes in millimetres or inches (`8mm wire`, `17in glass`), limits of figures
-        (`breaking>50kN`, `net<-100`, `depth>=6000`).
+        Words or parts of words from the id, name, maker, trade name, material
+        or source. Sizes in millimetres or inches (`8mm wire`, `17in glass`) and
+        limits (`breaking>50kN`, `net<-100`, `depth>=6000`) are understood.
     json
         As JSON: objects with every field, in SI units and degrees.
     """
@@ -84,10 +84,11 @@ def search(words: list[str], /, *, json: bool = False) -> ExitCode:
 
 @catalog.command(name="show", usage="Usage: calm catalog show [OPTIONS] ID...")
 def show_components(ids: list[str], /, *, json: bool = False) -> ExitCode:
-    """Show every figure of components, where they come from, and what follows from them.
+    """Show every figure of components, with its source, and the figures derived from them.
 
-    That is the net force in water, Kn and Kt, the drag at 1 m/s. Components that are the same item
-    by different sources are shown side by side, the one to use first.
+    Derived are the net force in water and Kn and Kt, the drag at 1 m/s. Entries
+    for the same item from different sources are shown side by side, the one to
+    use first.
 
     Parameters
     ----------
@@ -120,18 +121,21 @@ def add(
 ) -> ExitCode:
     """Add a component to your own catalogue, which every command reads, and show its card.
 
-    It is judged as by `calm catalog check` first: what is impossible or has no source is refused,
-    what a design check lacks is listed.
+    It is checked as by `calm catalog check` first: impossible figures and
+    figures without a source are refused, and what a design check will lack is
+    listed.
 
     Parameters
     ----------
     id
-        Its id: small letters, figures and hyphens. One of the catalogue's is replaced by it.
+        Its id: small letters, figures and hyphens. It replaces an entry of the
+        catalogue with the same id.
     figures
-        Its `kind` and its figures with their units, as `diameter=432 mm`, each in quotes where it
-        has a blank. The manual's page on components lists the keys of each kind.
+        Its `kind` and its figures with their units, such as `diameter=432 mm`,
+        in quotes if they contain a space. The manual's page on components lists
+        the keys of each kind.
     output
-        The catalogue file that it is added to; your own when not given.
+        The catalogue file to add it to; by default your own.
     """
     from calm.checks.catalogue_rules import check_catalogue, missing_figures
     from calm.errors import Problem
@@ -177,20 +181,20 @@ def add(
 
 @catalog.command(usage="Usage: calm catalog check [OPTIONS] [FILE]")
 def check(file: Path | None = None, /, *, json: bool = False) -> ExitCode:
-    """Find what is physically impossible in a catalogue, and list what is missing.
+    """Find impossible figures in a catalogue, and list missing ones.
 
-    A sphere that lifts more than its volume, a rope heavier than a solid bar of its diameter and a
-    cable stiffer than steel are impossible; figures without a source are findings, too. The exit
-    code is 1 when there is a finding.
+    A sphere that lifts more than its volume, a rope heavier than a solid bar of
+    its diameter and a cable stiffer than steel are impossible; figures without
+    a source are findings too. The exit code is 1 if there is a finding.
 
-    Missing figures are listed, but are not findings: figures without which a design check has an
-    unknown, or the sum of the masses is incomplete. Figures that were searched for and not found
+    Figures that a design check or the sum of masses needs are listed if
+    missing, but are not findings. Figures that were searched for and not found
     are marked.
 
     Parameters
     ----------
     file
-        A catalogue file; when not given, the whole catalogue with your own files.
+        A catalogue file; by default the whole catalogue with your own files.
     json
         As JSON: a list of objects with `id`, `finding` (true or false), `message`, `missing` and
         `searched`.

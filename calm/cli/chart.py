@@ -67,8 +67,8 @@ def solve(
     """Find every cable that has three given quantities.
 
     The cable hangs in a uniform current from A, its lower end, to B, its upper;
-    drag is normal to it. Quantities carry their units. The exit code is 3 when
-    no cable fits.
+    drag is normal to it. Give quantities with their units. The exit code is 3
+    when no cable fits.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ def solve(
     speed
         Speed of the current.
     density
-        Density of the water; 1025 kg/m^3 when not given.
+        Density of the water; 1025 kg/m^3 by default.
     phi_a
         Angle to the current at A; negative when the cable first goes down.
     phi_b
@@ -150,7 +150,8 @@ def draw(
     output
         The file to write, as .svg, .png or .pdf.
     lower_end
-        The cables drawn: those whose angle at A is below 90° (when not given), or above.
+        The cables drawn: those whose angle at A is below 90° (the default), or
+        above.
     """
     from calm.drawing.picture import check_format
     from calm.report.chart_page import CHART_FORMATS, chart_picture

@@ -73,12 +73,12 @@ def check(
     against
         An earlier design, with which the report compares the mooring; needs --report.
     allow_unknown
-        Do not let unknown figures change the exit code; the output stays the same.
+        Ignore unknown figures in the exit code; the output stays the same.
     uncertainty
-        Give every finding the probability that its limit is broken, with inputs as uncertain as
-        the file's `uncertainty` says, and list the designs by it.
+        Give every finding the probability of breaking its limit, with inputs as
+        uncertain as `uncertainty` in the file says, and list the designs by it.
     workers
-        How many processes share the work; by default one on each core.
+        Number of processes; by default one for each core.
     """
     outputs = Outputs(tuple(files), json)
     if workers is not None and workers < 1:

@@ -56,26 +56,30 @@ def deck(
     files
         Mooring files.
     output
-        The folder; each of several moorings gets a subfolder of its name.
+        The folder to write; with several moorings, each gets a subfolder of its
+        name.
     page
         The paper.
     environment
-        An environment named in the files, or an environment file, in which depths and lengths are
-        given; more of them are design currents. Without it the file's own, and all that it names.
+        The environment of depths and lengths: a name from the files, or an
+        environment file; further ones are design currents. By default the
+        file's own, with all those it names.
     order
         Which end goes over the side last.
     ship_speed
-        Over the ground, of the ship that tows the line out before the anchor is let go.
+        Speed over the ground at which the ship tows the line out before the
+        anchor is let go.
     streamed
-        Horizontal distance from the anchor to the top float as it is let go; that of the line as
-        it is towed at that speed unless given.
+        Horizontal distance from the anchor to the top float when the anchor is
+        let go; by default that of the line towed at that speed.
     course
-        Of the ship over the ground as it tows the line out; against the current at the surface
-        unless given.
+        Course over the ground as the ship tows the line out; by default against
+        the current at the surface.
     deck_time
-        Of handling each piece and clamp before it goes over, such as "3 min", shackles and rings
-        apart; by role in the file's `document: deck_time:` unless given. Without either the plan
-        has no start of the run.
+        Handling time of each piece and clamp before it goes over, such as "3
+        min", except shackles and rings; by default by role, from `document:
+        deck_time:` in the file. Without either the plan has no start of the
+        run.
     """
     from calm.deck import deck_of
     from calm.deck.deck_items import Order

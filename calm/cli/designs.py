@@ -35,13 +35,14 @@ def diff(
     catalog: CatalogFiles = None,
     json: OutputPath = None,
 ) -> ExitCode:
-    """Compare two designs piece by piece, and say what the change does.
+    """Compare two designs piece by piece, and show the effect of the changes.
 
-    Pieces and clamps are matched by their labels, or else by component and position. Parts added,
-    removed, moved or changed are listed, and depth, knockdown, tensions, anchor, weights and the
-    margins of calm check stand side by side. With one file, its design is compared with its
-    `deployed:`. A design without an equilibrium is compared too. The exit code is
-    0 whether or not the designs differ.
+    Pieces and clamps are matched by label, otherwise by component and position.
+    Parts added, removed, moved or changed are listed; depth, knockdown,
+    tensions, anchor, weights and the margins of calm check are shown side by
+    side. With one file, its design is compared with its `deployed:`. A design
+    without equilibrium is compared too. The exit code is 0 whether or not the
+    designs differ.
 
     Parameters
     ----------
@@ -50,7 +51,8 @@ def diff(
     after
         Another; without it, the `deployed:` of the first is compared with its design.
     environment
-        An environment named in both files, or an environment file, in place of their own.
+        The environment to use instead: a name from both files, or an
+        environment file.
     json
         Write the differences as JSON, - to print it.
     """
@@ -122,8 +124,8 @@ def size(
 ) -> ExitCode:
     """Find the smallest change of a mooring that meets a target.
 
-    The changed mooring is solved as calm run solves it. A change of buoyancy leaves
-    size and drag as they are. When the target cannot be met, the exit code is 3,
+    The changed mooring is solved as by calm run. A change of buoyancy leaves
+    size and drag unchanged. If the target cannot be met, the exit code is 3,
     and the reason and the nearest value are reported.
 
     Parameters
@@ -133,11 +135,12 @@ def size(
     target
         A quantity of a part of the line, <=, >= or =, and a limit with its unit.
     change
-        What to change: the label of a part, and its buoyancy, length or count. A
-        label without its number stands for all pieces numbered under it.
+        What to change: the label of a part, and its buoyancy, length or count.
+        A label without its number means all pieces of that label.
     between
-        The least and the greatest value, with units; when not given, a buoyancy goes from 0
-        to 100 times itself, a length to twice the water depth, a count to 1000.
+        The least and the greatest value, with units; by default a buoyancy may
+        change from 0 to 100 times itself, a length up to twice the water depth,
+        a count up to 1000.
     json
         Write the answer as JSON, - to print it.
     """

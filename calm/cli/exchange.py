@@ -39,34 +39,35 @@ def import_(
 ) -> ExitCode:
     """Make mooring files from designs of other programs.
 
-    The program is found from the content of the file. Every figure is taken from
-    the file. Guesses stand as comments at their lines, and are reported together
-    with what was left out. What CALM cannot represent is refused by name, and
-    nothing is written.
+    The program is found from the content of the file. Every figure is taken
+    from the file. Guesses are marked as comments on their lines, and reported
+    together with what was left out. A file that CALM cannot represent is
+    refused with the reason, and nothing is written.
 
     Parameters
     ----------
     files
         Files of other programs.
     output
-        The mooring file to write; of several files, the folder for them.
+        The mooring file to write; for several files, the folder.
     format
-        The program: mdd, cbl, moordyn, moords or table. Found from the content when not given.
+        The program: mdd, cbl, moordyn, moords or table. By default recognised
+        from the content.
     strict
-        Refuse what would have to be guessed.
+        Refuse files that need guesses.
     define
         A macro of WHOI Cable, as NAME=VALUE. Repeatable.
     environment
-        An environment file, in place of what the file says of the water.
+        An environment file, in place of the water in the file.
     columns
-        The headings of a table by what they hold: name=Item,length=Len.
+        The columns of a table by their headings: name=Item,length=Len.
     elements
         A library of elements, with the figures that a list of names lacks: the mdcodes.mat of
         Mooring Design & Dynamics, the table of moords, or a workbook.
     match_catalogue
-        Use catalogue entries for components that agree with them in name and figures.
+        Use catalogue entries for components that agree in name and figures.
     allow_include
-        Let a file include others from outside its own folder.
+        Allow a file to include others from outside its own folder.
     json
         Write what was guessed and left out as JSON, - to print it.
     """

@@ -43,30 +43,33 @@ def grid(
 ) -> ExitCode:
     """Put temperature, salinity and velocity at their moving depths onto fixed levels.
 
-    A Gaussian process over depth and time, with the scales that the record has.
-    Each value has its standard deviation, which holds the sensor, the error of its
-    depth with the gradient there, and the gap between sensors; and a flag: 8
-    between the sensors of its time, 3 beyond them or where the record says little,
-    9 where there is none.
+    A Gaussian process over depth and time, with the scales of the record
+    itself. Each value has a standard deviation, which includes the sensor, the
+    error of its depth times the local gradient, and the gap between sensors;
+    and a flag: 8 between the sensors at that time, 3 beyond them or where the
+    record says little, 9 for no value.
 
     Parameters
     ----------
     depths
         A result of calm motion.
     values
-        NetCDF files of instruments, by label, serial number or nominal depth; files of
-        one instrument as LABEL=FILE, where they do not say which; or folders of them.
+        NetCDF files of instruments, by label, serial number or nominal depth;
+        files of one instrument as LABEL=FILE, if they do not say which; or
+        folders of files.
     output
         The gridded file, .nc.
     levels
         FIRST:STEP:LAST in metres, such as "0:20:1500", or several with commas.
     step
-        Values are means over so long, such as "1 h"; without, at the times of DEPTHS.
+        Values are means over this time, such as "1 h"; by default at the times
+        of DEPTHS.
     variables
-        temperature, salinity, u, v: those that there are, unless given. As TEMP, PSAL,
-        UCUR, VCUR, all names in the file are in capitals, as OceanSITES has them.
+        temperature, salinity, u, v; by default all that are in the files. As
+        TEMP, PSAL, UCUR, VCUR, all names in the file are in capitals, as in
+        OceanSITES.
     method
-        depth-time, or depth: each time for itself.
+        depth-time, or depth, which treats each time separately.
     flags
         Quality flags of the values that count as measured; 8 never does.
     report
@@ -152,7 +155,7 @@ def fields_of(
         samples = gather(where, series[name], points, time)
         dropped = sum(series[name][i].dropped for i in points)
         if dropped:
-            narrate(f"{name}: {dropped} values are left out for their flag")
+            narrate(f"{name}: {dropped} values are left out because of their flag")
         for i, at in points.items():
             one, column = series[name][i], samples.label.index(where.label[at])
             had = one.dropped or np.isfinite(one.value).any()

@@ -48,40 +48,43 @@ def locate(
 ) -> ExitCode:
     """Find where an anchor lies from acoustic ranges taken by a ship.
 
-    Outliers among the ranges are named and left out, where enough ranges remain. The
-    place comes with its 95 % ellipse, the depth with its interval, and a warning where
-    the ship's positions leave them poorly known. Where two places fit, the one near the
-    planned position is taken, and the other named. Rays are taken as straight.
+    Outliers among the ranges are reported and left out, if enough ranges
+    remain. The position comes with its 95 % ellipse, the depth with its
+    interval, and a warning if the ship's positions leave them poorly known. If
+    two positions fit, the one near the planned position is taken, and the other
+    is given. Rays are taken as straight.
 
     Parameters
     ----------
     file
-        CSV file with the columns latitude, longitude (WGS 84, of the transducer; degrees, or
-        degrees and minutes) and range[m], or time[s], there and back; or a survey without a
-        heading, as programs of WHOI and NOC take it.
+        CSV file with the columns latitude, longitude (WGS 84, of the
+        transducer; degrees, or degrees and minutes) and range[m], or the
+        two-way time[s]; or a survey without a heading, in the forms of WHOI's
+        and NOC's programs.
     sound_speed
-        Speed of sound for times: a speed, or a CSV file with the columns depth[m] and
-        sound_speed[m/s]; 1500 m/s unless given. Ranges in metres are taken as they are.
+        Speed of sound for times: a speed, or a CSV file with the columns
+        depth[m] and sound_speed[m/s]; 1500 m/s by default. Ranges in metres are
+        used as they are.
     transducer
         Depth of the ship's transducer.
     depth
-        Depth of the water at the anchor, where it is known; otherwise it is
-        estimated.
+        Depth of the water at the anchor, if known; otherwise it is estimated.
     above_seabed
         Height above the seabed of the transponder, such as the release.
     plot
-        Draw the ranges as circles about the ship, with the place: .png, .svg or .pdf.
+        Draw the ranges as circles about the ship, with the position found:
+        .png, .svg or .pdf.
     json
         Write the place as JSON, - to print it.
     near
-        Latitude and longitude of about where it was dropped, as LAT,LON: which of two places is
-        meant. The planned position of the file of --update unless given.
+        Approximate latitude and longitude of the drop, to choose between two
+        positions; by default the planned position in the file of --update.
     update
-        A mooring file: write position and depth into its `deployed:`, and say how far that is from
-        its planned position. Where the place is in doubt nothing is written, and the exit code is
-        1.
+        A mooring file: write position and depth into its `deployed:`, and
+        report the distance from its planned position. If the position is in
+        doubt nothing is written, and the exit code is 1.
     accept
-        Write the place in spite of a doubt.
+        Write the position in spite of a doubt.
     """
     from calm.drawing.picture import check_format, image
     from calm.ranging import locate as found_at
@@ -116,7 +119,7 @@ def locate(
     for notice in survey.notices:
         narrate(f"{file}: {notice}")
     if output is not None:
-        narrate("-o is spelt --update from now on: the file is edited in place")
+        narrate("-o is now --update: the file is edited in place")
         update = update or output
     mooring = None if update is None else located_mooring(update)
     about = None if near is None else parse_place(near)
@@ -138,11 +141,11 @@ def locate(
     if edited is None:
         return ExitCode.DONE
     if doubts and not accept:
-        narrate(f"{update} is not written: {'; '.join(doubts)}. --accept writes it all the same")
+        narrate(f"{update} is not written: {'; '.join(doubts)}. --accept writes it anyway")
         return ExitCode.FINDING
     working, text = edited
     lost = working.save(text)
-    narrate(f"{update}: `deployed:` has position and depth" + (f"; {lost}" if lost else ""))
+    narrate(f"{update}: `deployed:` now has position and depth" + (f"; {lost}" if lost else ""))
     return ExitCode.DONE
 
 

@@ -53,15 +53,16 @@ tenth of its time: what it imports is all looked through again and again."""
 
 _VALUES = {
     "FILE|-": "json csv netcdf",
-    "FILE": "html pdf plot catalog currents pressures sea-level onto against update elements",
+    "FILE": "html pdf plot catalog currents pressures sea-level onto against update scatter "
+    "elements",
     "DIR": "report",
     "NAME": "environment",
     "LABEL,...": "hold-out",
     "LAT,LON": "at near",
-    "LENGTH": "diameter streamed",
+    "LENGTH": "diameter streamed length distance",
     "DEPTH": "depth transducer",
-    "HEIGHT": "above-seabed height",
-    "ANGLE": "angle course declination toward",
+    "HEIGHT": "above-seabed height hs swell",
+    "ANGLE": "angle course declination toward phi-a phi-b",
     "SPEED": "speed ship-speed",
     "RANGE": "speeds",
     "CONDITION": "target",
@@ -74,15 +75,19 @@ _VALUES = {
     "SPEED|FILE": "sound-speed",
     "COLUMNS": "columns",
     "HOST": "allow-host",
-    "NUMBER": "port",
+    "NUMBER": "port gamma k cd",
     "MINUTES": "idle-timeout",
     "A/B": "time",
-    "TIME": "deck-time gap step",
+    "TIME": "deck-time gap step tp swell-tp duration",
     "COUNT": "samples workers",
     "N": "every seed",
     "ADDRESS": "scheduler",
     "DENSITY": "density solid-density",
     "N/m": "weight",
+    "FORCE": "tension-a tension-b",
+    "UNITS": "units",
+    "WORD|FILE": "spectrum",
+    "NAME=VALUE": "define",
 }
 """What stands for the value of an option in `--help`; an option not listed tells its type."""
 
@@ -233,7 +238,9 @@ app["--help"].group = app["--version"].group = Group("Options", sort_key=len(_GR
 @app.command(name="strumming", show=False)
 def _strumming(*words: Annotated[str, Parameter(allow_leading_hyphen=True)]) -> Any:
     """Run `calm tow strumming`, which was `calm strumming` before."""
-    narrate("calm strumming is now calm tow strumming; the old name goes with the next version")
+    narrate(
+        "calm strumming is now calm tow strumming; the old name will be removed in the next version"
+    )
     return app(["tow", "strumming", *words], exit_on_error=False, print_error=False)
 
 

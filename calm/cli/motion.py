@@ -23,10 +23,16 @@ from calm.cli.streams import ExitCode, narrate
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import numpy as np
     from xarray import Dataset
 
+    from calm.motion.correction import Task
     from calm.motion.instrument_file import Instruments
+    from calm.motion.measurements import MooringMeasurements
+    from calm.motion.motion_estimate import Read
+    from calm.motion.remarks import Fault
 
 MOTION_EXAMPLES = """Examples:
 
@@ -51,6 +57,7 @@ def motion(
     fit: str | None = None,
     hold_out: str | None = None,
     cross_validate: bool = False,
+    correct: str | None = None,
     sea_level: Path | None = None,
     flags: str = "1,2",
     gap: str = "2 h",
@@ -65,12 +72,12 @@ def motion(
 ) -> ExitCode:
     """Estimate the depth of every instrument at every time from pressures and currents.
 
-    The currents move the line; the pressures correct the drag for the whole record,
-    and the current at each time. The result has the depth of every component and
-    clamped instrument with its standard deviation, and the residuals of the
-    sensors. A current meter of the line, matched by its label, is placed where the line has it.
-    Without currents, what they may have been is learnt from the pressures, of two or
-    more sensors.
+    The currents move the line; the pressures correct the drag for the whole
+    record, and the current at each time. The result has the depth of every
+    component and clamped instrument with its standard deviation, and the
+    residuals of the sensors. A current meter on the line is matched by its
+    label and placed where the line has it. Without currents, they are inferred
+    from the pressures of two or more sensors.
 
     However a run is interrupted, the same command resumes it; the exit code is 75
     until everything is solved.
@@ -92,10 +99,13 @@ def motion(
     fit
         What to estimate for the whole record besides the drag: buoyancy, length.
     hold_out
-        Labels of sensors, separated by commas, that are hidden everywhere; the result
-        is judged at them against interpolation between the others.
+        Labels of sensors, separated by commas, to hide everywhere; the result
+        at these is compared with interpolation between the others.
     cross_validate
-        Hide each sensor in turn, and judge.
+        Hide each sensor in turn, and compare.
+    correct
+        What to correct where a sensor is found wrong, separated by commas: clock,
+        gain, offset, drift. The history of the output says what was corrected.
     sea_level
         Height of the sea surface over time: NetCDF, or CSV with time,level[m].
     flags
@@ -103,10 +113,11 @@ def motion(
     gap
         Interpolate in time between values no further apart than this.
     onto
-        A NetCDF file of instruments, or a folder of files: OUTPUT is then a copy of it
-        with depths, their deviations and flags added (`depth` of several instruments,
-        `DEPTH` of one), and the result stands beside it as OUTPUT's name ending in
-        .motion.nc. Found by label, serial number or nominal depth.
+        A NetCDF file of instruments, or a folder of files: OUTPUT is then a
+        copy of it with depths, their deviations and flags added (`depth` of
+        several instruments, `DEPTH` of one), and the result itself is written
+        beside it, with a name ending in .motion.nc. Found by label, serial
+        number or nominal depth.
     replace_depth
         Replace depths that files of `--onto` already have, in the copy.
     report
@@ -121,9 +132,10 @@ def motion(
     from calm.batch.work import compile_solver
     from calm.case import Tow, load
     from calm.motion.correction import MeasuredRecord, run_motion
+    from calm.motion.diagnosis import diagnosed
     from calm.motion.instrument_file import read_instruments
     from calm.motion.line_places import places_of
-    from calm.motion.motion_estimate import fitted, read_measured
+    from calm.motion.motion_estimate import fitted, put_right, read_measured
     from calm.motion.sensors import split_label
     from calm.motion.study import cross_validated, judged, prepare, series_of, several
     from calm.report.folder import check_folder, printed, write_report
@@ -164,9 +176,16 @@ def motion(
         instruments, matched = read_instruments(onto, places_of(mooring), replacing=replace_depth)
         for line in matched:
             narrate(line)
-    measured, notes, source = read_measured(
-        mooring, pressures, currents, match, flags, apart, sea_level, turned
-    )
+
+    def read(faults: Sequence[Fault] = ()) -> Read:
+        return read_measured(
+            mooring, pressures, currents, match, flags, apart, sea_level, turned, faults
+        )
+
+    def begin(measured: MooringMeasurements) -> Task:
+        return prepare(mooring, measured, names, hidden, teller.note)
+
+    measured, notes, source = read()
     for note in notes:
         narrate(note)
     teller = ProgressTeller()
@@ -175,9 +194,11 @@ def motion(
         several(measured, hidden)
     with stopped_by_a_signal() as stop:
         compile_solver(Batch(mooring), teller.note)
-        task = prepare(mooring, measured, names, hidden, teller.note)
+        task, better, faults = put_right(begin(measured), read, _separated(correct), begin)
+        measured, notes, source = better or (measured, notes, source)
         record = MeasuredRecord(measured, source, notes)
         options: dict[str, Any] = {"fit": sorted(names), "hold_out": sorted(hidden)}
+        options["correct"] = source.get("corrected", "")
         try:
             outcome = run_motion(
                 task, record, output, options,
@@ -189,13 +210,13 @@ def motion(
         if not outcome.done:
             return code
         with open_result(output) as result, readable(output):
-            study = judged(task, measured, result)
-            series = series_of(measured, task.measured.label, result)
+            study = judged(task, measured, result, (*faults, *diagnosed(task)))
+            series = series_of(mooring, measured, task.measured.label, result)
             factor = None
             if "current_factor" in result:
                 factor = np.asarray(result["current_factor"].values, np.float64)
             if onto is not None and instruments is not None:
-                write_copies(instruments, result, apart, copy, [file, *files[:-1]])
+                write_copies(instruments, result, apart, copy, [file, *files[:-1]], source)
         if cross_validate:
             each = cross_validated(mooring, measured, names, hidden, narrate, workers)
             study = replace(study, held_out=(*study.held_out, *each))
@@ -213,12 +234,13 @@ def write_copies(
     gap: np.timedelta64,
     output: Path,
     inputs: list[Path],
+    source: dict[str, str],
 ) -> None:
     """Write the copy of each file, into a folder where they come from one."""
     from calm.dataset.discovery import hashed
     from calm.motion.instrument_file import write_depths
 
-    told = [hashed(path) for path in inputs]
+    told = [*(hashed(path) for path in inputs), *filter(None, [source.get("corrected")])]
     folder = output.suffix != ".nc" or output.is_dir()
     if folder:
         output.mkdir(parents=True, exist_ok=True)

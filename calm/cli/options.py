@@ -20,33 +20,31 @@ if TYPE_CHECKING:
 CatalogFiles = Annotated[
     list[Path] | None,
     Parameter(
-        help="A catalogue of your own; its components hide others of the same id. Repeatable."
+        help="A catalogue of your own; its components replace others of the same id. Repeatable."
     ),
 ]
 EnvironmentName = Annotated[
     str | None,
-    Parameter(
-        help="An environment named in the file, or an environment file, in place of its own."
-    ),
+    Parameter(help="The environment to use instead: a name from the file, or an environment file."),
 ]
-Samples = Annotated[int, Parameter(help="How many draws, a power of two.")]
-Seed = Annotated[int, Parameter(help="Of the draws; the same seed gives the same figures.")]
+Samples = Annotated[int, Parameter(help="Number of samples, a power of two.")]
+Seed = Annotated[int, Parameter(help="Seed of the samples; the same seed gives the same figures.")]
 Threads = Annotated[
-    int | None, Parameter(help="How many threads; one for each processor unless given.")
+    int | None, Parameter(help="Number of threads; by default one for each processor.")
 ]
 Declination = Annotated[
     str | None,
     Parameter(
-        help="Of magnetic north from true north, such as 12.5 deg, positive to the east: turns "
-        "the currents that the record says are relative to magnetic north.",
+        help="Magnetic declination, such as 12.5 deg, positive to the east; applied to "
+        "currents that the record says are relative to magnetic north.",
         allow_leading_hyphen=True,
     ),
 ]
 Units = Annotated[
     str | None,
     Parameter(
-        help="Units that people read, as force=kgf,length=ft,speed=kn,mass=lb, in place of those "
-        "of the file; JSON, CSV and NetCDF stay in SI."
+        help="Units of tables and reports, such as force=kgf,length=ft,speed=kn,mass=lb, in "
+        "place of those of the file; JSON, CSV and NetCDF stay in SI."
     ),
 ]
 

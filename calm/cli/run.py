@@ -83,17 +83,18 @@ def run(
     pdf
         Write the same report as .pdf.
     explain
-        Show how much of the knockdown each drag causes, and what more buoyancy, less
-        drag or another current would change; in the JSON too. Moorings only.
+        Show how much of the knockdown each drag causes, and the effect of more
+        buoyancy, less drag or another current; in the JSON too. Moorings only.
     schematic
-        Draw the line, part by part and not to scale, above its table; where there is no
-        equilibrium, in its place.
+        Draw the line, part by part and not to scale, above its table; in its
+        place if there is no equilibrium.
     uncertainty
-        Solve each mooring for many draws of what its file gives under uncertainty (current,
-        drags, buoyancy, lengths, depth), and show the 5, 50 and 95 % of its figures and
-        where their spread comes from; in the JSON, the picture and the reports too.
+        Solve each mooring for many samples of the inputs under `uncertainty` in
+        its file (current, drags, buoyancy, lengths, depth), and show the 5, 50
+        and 95 % points of its figures and the causes of their spread; in the
+        JSON, the picture and the reports too.
     verbose
-        Say below the table how the solution was reached, too.
+        Also say below the table how the solution was found.
     """
     outputs = Outputs(tuple(files), json, csv, plot, html, pdf, netcdf)
     draws = draws_of(uncertainty, samples, seed)

@@ -41,9 +41,9 @@ def new(
     record
         Write a small synthetic record, NetCDF, for `calm batch`; needs --output.
     output
-        The file to write; the standard output when not given.
+        The file to write; by default the standard output.
     force
-        Overwrite the file if there is one.
+        Overwrite an existing file.
     """
     if record:
         return _new_record(output, force)
@@ -101,13 +101,13 @@ def docs(
 ) -> ExitCode:
     """Print where a page of the manual is on this machine, or open it.
 
-    The address is that of the page's text; `--open` shows the page of the built
-    site in a browser, and needs no network.
+    The path printed is that of the page's text; `--open` shows the page of the
+    built site in a browser, without a network.
 
     Parameters
     ----------
     page
-        Its name, with its book or without: batch, reference/batch, how-to.
+        Its name, with or without its book: batch, reference/batch, how-to.
     open_
         Open the page in a browser.
     """

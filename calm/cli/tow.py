@@ -74,7 +74,7 @@ def tow(
     sensitivity
         Solve with A1, B1 and C1 of bourget-marichal strumming each 10 % smaller and greater.
     schematic
-        Draw the line as `calm run` does; at the speed of its file only.
+        Draw the line as `calm run` does; only at the speed of its file.
     """
     if speeds is not None and sensitivity:
         raise UsageError("give either --speeds or --sensitivity")
@@ -210,9 +210,10 @@ def strumming(
 ) -> ExitCode:
     """Find how a bare towed cable vibrates from the angle at which it tows.
 
-    Bourget & Marichal: a cable towed with nothing at its end is straight, and its
-    angle gives its drag coefficient C*; the excess of C* over that of a cable at
-    rest gives the amplitude a of its vibration. Quantities carry their units.
+    Bourget & Marichal: a cable towed with nothing at its end is straight, and
+    its angle gives its drag coefficient C*; the excess of C* over that of a
+    cable at rest gives the amplitude a of its vibration. Give quantities with
+    their units.
 
     Parameters
     ----------
@@ -227,7 +228,7 @@ def strumming(
     solid_density
         Density of the cable, in place of its weight.
     density
-        Density of the water; 1025 kg/m^3 when not given.
+        Density of the water; 1025 kg/m^3 by default.
     json
         Write the answer as JSON, - to print it.
     """

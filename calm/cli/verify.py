@@ -28,9 +28,9 @@ def verify(
     """Compute figures that are known without CALM, and compare them.
 
     Each figure is published, or comes from a closed form or an independent
-    integration, or is a property that any line must have. Those that CALM meets
-    by construction are checked and not counted. The exit code is 1 when a figure
-    is out of its tolerance.
+    integration, or is a property that any line must have. Figures met by
+    construction are checked but not counted. The exit code is 1 if a figure is
+    out of tolerance.
 
     Parameters
     ----------
@@ -122,9 +122,9 @@ def verify_field(outputs: Outputs) -> ExitCode:
     inside = float(np.mean([one.coverage for one in held]))
     good = ratio <= MEAN and worst <= EACH and BANDS[0] <= inside <= BANDS[1]
     verdict = (
-        f"rms over that of interpolation: {ratio:.2f} in the mean (at most {MEAN}), {worst:.2f} at "
-        f"worst (at most {EACH}); within the bands of 95 %: {100.0 * inside:.0f} % "
-        f"({100.0 * BANDS[0]:.0f} to {100.0 * BANDS[1]:.0f} %)"
+        f"rms relative to interpolation: {ratio:.2f} on average (at most {MEAN}), "
+        f"{worst:.2f} at worst (at most {EACH}); within the 95 % bands: "
+        f"{100.0 * inside:.0f} % ({100.0 * BANDS[0]:.0f} to {100.0 * BANDS[1]:.0f} %)"
     )
     factors = intervals(task)
     document: dict[str, Any] = {

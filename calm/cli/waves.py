@@ -47,10 +47,11 @@ def waves(
 ) -> ExitCode:
     """Estimate tensions and motions of a mooring in waves, about its equilibrium.
 
-    Linear: small waves about the shape in the mean current, drag linearised to
-    what it dissipates. Where a piece falls slack this no longer holds: the status
-    is slack-in-waves and the exit code 3. Without --hs, --scatter or a file as the
-    --spectrum the seas are those of `waves:` of the environment.
+    Linear: small waves about the shape in the mean current, with drag
+    linearised for equal dissipation. If a piece falls slack this is no longer
+    valid: the status is slack-in-waves and the exit code 3. Without --hs,
+    --scatter or a file as the --spectrum, the seas are those under `waves:` in
+    the environment.
 
     Parameters
     ----------
@@ -59,22 +60,24 @@ def waves(
     hs
         Significant wave height, such as "5 m".
     tp
-        Period of the peak, such as "8.4 s"; that of a full sea for
-        pierson-moskowitz, and left out for ochi-hubble, of swell and sea.
+        Peak period, such as "8.4 s"; by default that of a fully developed sea
+        for pierson-moskowitz; not used by ochi-hubble.
     spectrum
-        bretschneider, jonswap, pierson-moskowitz, ochi-hubble, or a file of a
-        measured one: CSV of frequency[Hz],density[m^2/Hz], or NetCDF.
+        bretschneider, jonswap, pierson-moskowitz, ochi-hubble (swell and sea),
+        or a file of a measured one: CSV of frequency[Hz],density[m^2/Hz], or
+        NetCDF.
     gamma
-        Peakedness of jonswap.
-    swell, swell_tp
-        A swell under the sea of --hs, running the same way: its significant height
-        and the period of its peak.
+        Peak enhancement factor of jonswap.
+    swell
+        Significant height of a swell under the sea of --hs, running the same way.
+    swell_tp
+        Peak period of the swell.
     toward
-        Where the waves run, clockwise from north; 90 deg unless given.
+        Direction the waves run, clockwise from north; 90 deg by default.
     scatter
         A CSV file of seas: significant_wave_height[m],peak_period[s],share.
     duration
-        Of the greatest and the least tension.
+        Time over which the greatest and the least tension are sought; 3 h by default.
     json
         Write the answer as JSON, - to print it.
     report
@@ -120,8 +123,9 @@ def waves(
     if analysis.status != SLACK:
         return ExitCode.DONE
     narrate(
-        f"{file}: {SLACK}: the least tension falls below 0, where linear tensions do not hold. "
-        "Give it more weight or more stretch; or `calm export --to moordyn`, to solve it in time."
+        f"{file}: {SLACK}: the least tension falls below 0, where linear tensions do not "
+        "hold. Give the line more weight or more stretch, or solve it in the time "
+        "domain: `calm export --to moordyn`."
     )
     return ExitCode.NO_EQUILIBRIUM
 
@@ -160,7 +164,7 @@ def _asked(
         if name in given and not given[name] > 0.0
     ]
     if not 1.0 <= gamma <= 10.0:
-        complaints.append("--gamma: from 1, of a full sea, to 10")
+        complaints.append("--gamma must be from 1, a fully developed sea, to 10")
     named, path = spectrum in sea_states.SPECTRA, Path(spectrum)
     if not named and not path.is_file():
         near = nearest(spectrum, sea_states.SPECTRA)

@@ -153,7 +153,7 @@ OF_COMPONENT: Mapping[str, tuple[str, str, Attributes]] = {
     "tension_top": ("N", "tension at the upper end", {}),
     "tension_bottom": ("N", "tension at the lower end", {}),
     "tilt": ("degree", "angle of the chord from the vertical", {}),
-    "knockdown": ("m", "depth of the upper end below that in still water", {}),
+    "knockdown": ("m", "depth of the upper end less its depth in still water", {}),
 }
 """Unit, meaning and further attributes of the variables of a piece of the line."""
 
@@ -163,7 +163,7 @@ OF_CLAMP: Mapping[str, tuple[str, str, Attributes]] = {
     "clamp_y": ("m", f"{_NORTH}, of the clamped instrument", {}),
     "clamp_tension": ("N", "tension at the clamp", {}),
     "clamp_tilt": ("degree", "angle of the line at the clamp from the vertical", {}),
-    "clamp_knockdown": ("m", "depth of the clamped instrument below that in still water", {}),
+    "clamp_knockdown": ("m", "depth of the clamped instrument less its depth in still water", {}),
 }
 """The same of a clamped instrument."""
 
@@ -171,7 +171,7 @@ OF_ENDS: Mapping[str, tuple[str, str, Attributes]] = {
     "top_depth": ("m", "depth of the free end", {}),
     "anchor_vertical": ("N", "upward pull of the line on the anchor", {}),
     "anchor_horizontal": ("N", "horizontal pull of the line on the anchor", {}),
-    "used_buoyancy": ("1", "share in use of the buoyancy that is at the surface", {}),
+    "used_buoyancy": ("1", "share of the buoyancy at the surface that is in use", {}),
 }
 """The same of the line as a whole."""
 

@@ -120,7 +120,8 @@ def _cut(result: Result, one: DeckItem, over: int, count: int) -> Cut:
 
 
 def _marks(piece: Piece, longer: float) -> Iterator[Mark]:
-    for clamp in sorted(piece.clamps, key=lambda clamp: clamp.at):
+    fixed = [clamp for clamp in piece.clamps if clamp.component.kind != "profiler"]
+    for clamp in sorted(fixed, key=lambda clamp: clamp.at):
         yield Mark(clamp.label, clamp.at * longer)
 
 

@@ -115,7 +115,7 @@ def deck_of(
         try:
             there = other.solve()
         except NoEquilibrium as failure:
-            notes.append(f"The mooring does not stand in {_name(other)}: {failure}")
+            notes.append(f"The mooring has no equilibrium in {_name(other)}: {failure}")
             continue
         results.append((_name(other), there))
     parts = deck_items_of(result)
@@ -184,9 +184,9 @@ def _standing(mooring: Mooring, notes: list[str]) -> Result:
         except NoEquilibrium:
             raise failure from None
         notes.append(
-            "Still water leaves the line slack, longer than the water is deep: the sheets have it "
-            f"as it stands in a current of {FAINT:g} m/s to the east; the anchor drop is that in "
-            "still water"
+            "The line is longer than the water is deep and slack in still water: the sheets "
+            f"show it in a current of {FAINT:g} m/s to the east; the anchor drop is computed "
+            "in still water"
         )
         return result
 

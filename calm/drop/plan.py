@@ -158,14 +158,14 @@ class DropPlan:
             )
         if self.fall_time < BRIEF:
             said.append(
-                f"The fall takes {self.fall_time:.0f} s only: inertia, which is left out, may make "
-                "it half a second longer and change the fall-back by a metre."
+                f"The fall takes {self.fall_time:.0f} s only: inertia, which is neglected, may "
+                "add half a second and change the fall-back by a metre."
             )
         if self.mooring.line.strumming is not None:
-            said.append("Strumming is left out: the drag of the cables is that at rest.")
+            said.append("Strumming is neglected: cables have their drag at rest.")
         names = ", ".join(each.label for each in self.beyond_rating)
         if names:
-            said.append(f"Deeper in the drop than their depth rating: {names}.")
+            said.append(f"Below their depth rating during the drop: {names}.")
         return tuple(said)
 
     def to_dict(self) -> dict[str, Any]:

@@ -138,7 +138,7 @@ class ComponentMaker:
             figures["friction"] = mu
         component = ImportedComponent(name, "anchor", figures)
         if "mass" in figures and "weight" not in figures:
-            component.guesses["mass"] = "taken for steel: the file gives no weight in water"
+            component.guesses["mass"] = "taken as steel: the file gives no weight in water"
         return component
 
     def buoy(self, definition: CableDefinition, *, afloat: bool) -> ImportedComponent:
@@ -205,7 +205,7 @@ class ComponentMaker:
     def _drop(self, definition: CableDefinition) -> None:
         found = [key for key in _DYNAMICS if key in definition.values]
         what = ", ".join({"ei": "EI", "gj": "GJ"}.get(key, key) for key in found)
-        remark = Remark(definition.name, f"stiffness in bending, added mass and the like ({what})")
+        remark = Remark(definition.name, f"bending stiffness, added mass and the like ({what})")
         if found and remark not in self.dropped:
             self.dropped.append(remark)
 
@@ -264,7 +264,7 @@ def _turned(definition: CableDefinition) -> tuple[tuple[float, float, float], ..
         raise definition.token.refuse(f"buoy `{definition.name}` needs `diameters` at two levels")
     levels = [(row[0].at(), row[1].at()) for row in value.rows]
     if any(b[0] <= a[0] or a[1] < 0.0 for a, b in pairwise(levels)):
-        raise value.token.refuse("the levels of `diameters` must go on growing")
+        raise value.token.refuse("the levels of `diameters` must increase")
     rows = [(0.0, 0.0, 0.0)]
     volume = area = 0.0
     keel = levels[0][0]

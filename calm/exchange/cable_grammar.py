@@ -54,7 +54,7 @@ class KeyValue:
             raise self.token.refuse(f"the rows of `{self.token.text}` must be pairs")
         pairs = [(row[0].at(), row[1].at()) for row in self.rows]
         if any(b[0] < a[0] for a, b in pairwise(pairs)):
-            raise self.token.refuse(f"the rows of `{self.token.text}` must go on growing")
+            raise self.token.refuse(f"the rows of `{self.token.text}` must increase")
         if len(pairs) == 1:
             return pairs[0][1]
         if self.repeats and pairs[-1][0] > 0.0:
@@ -117,6 +117,14 @@ class CableTerminal:
 
 
 @dataclass
+class CableBranch:
+    """Represent a side line: its segments from where it joins, and its terminal."""
+
+    token: Token
+    layout: list[CableTerminal | CableSegment | CableBranch]
+
+
+@dataclass
 class CableProblem:
     """Hold the content of a problem file.
 
@@ -124,8 +132,7 @@ class CableProblem:
     ----------
     description, environment : key and value
     buoys, anchors, connectors, materials : by name
-    layout : terminals and segments in the order of the file
-    branch : the first word of a branch, where there is one
+    layout : terminals, segments and branches in the order of the file
     """
 
     path: Path
@@ -136,8 +143,7 @@ class CableProblem:
     anchors: dict[str, CableDefinition] = field(default_factory=dict)
     connectors: dict[str, CableDefinition] = field(default_factory=dict)
     materials: dict[str, CableDefinition] = field(default_factory=dict)
-    layout: list[CableTerminal | CableSegment] = field(default_factory=list)
-    branch: Token | None = None
+    layout: list[CableTerminal | CableSegment | CableBranch] = field(default_factory=list)
 
     @property
     def kind(self) -> str:
@@ -186,7 +192,7 @@ def read_problem(path: Path, defines: Mapping[str, str], *, allow_include: bool)
 def _section(words: TokenStream, problem: CableProblem) -> None:
     name = _section_name(words)
     if name is None:
-        raise words.next.refuse(f"`{words.next.text}` stands where a section should begin")
+        raise words.next.refuse(f"`{words.next.text}` is where a section should begin")
     words.take()
     if name in _LONG_SECTIONS:
         words.take()
@@ -197,7 +203,7 @@ def _section(words: TokenStream, problem: CableProblem) -> None:
     elif name == "environment":
         problem.environment |= _values(words)
     elif name == "layout":
-        _layout(words, problem)
+        problem.layout += _layout(words)
     elif name != "end":
         _definitions(words, getattr(problem, "buoys" if name == "platforms" else name))
 
@@ -278,21 +284,24 @@ def _rows(words: TokenStream) -> list[tuple[Expression, ...]]:
         rows.append(tuple(row))
 
 
-def _layout(words: TokenStream, problem: CableProblem) -> None:
+def _layout(words: TokenStream) -> list[CableTerminal | CableSegment | CableBranch]:
     """Terminals, segments and what joins them, from the anchor up."""
+    layout: list[CableTerminal | CableSegment | CableBranch] = []
     while words.next.kind == "key":
         key = words.take()
         if key.text == "terminal":
-            problem.layout.append(CableTerminal(key, _block(words)))
+            layout.append(CableTerminal(key, _block(words)))
         elif key.text == "segment":
-            problem.layout.append(_segment(words, key))
+            layout.append(_segment(words, key))
         elif key.text == "connector":
-            _connector(words, key, problem.layout)
+            _connector(words, key, layout)
         elif key.text == "branch":
-            problem.branch = problem.branch or key
-            _skip_block(words, key)
+            words.expect("{")
+            layout.append(CableBranch(key, _layout(words)))
+            words.expect("}")
         else:
             raise key.refuse(f"`{key.text} =` has no place in a layout")
+    return layout
 
 
 def _block(words: TokenStream) -> KeyValues:
@@ -300,16 +309,6 @@ def _block(words: TokenStream) -> KeyValues:
     values = _values(words)
     words.expect("}")
     return values
-
-
-def _skip_block(words: TokenStream, key: Token) -> None:
-    words.expect("{")
-    depth = 1
-    while depth:
-        token = words.take()
-        if token.kind == "end":
-            raise key.refuse(f"`{key.text}` has no end")
-        depth += {"{": 1, "}": -1}.get(token.text, 0) if token.kind == "sign" else 0
 
 
 def _segment(words: TokenStream, key: Token) -> CableSegment:
@@ -325,7 +324,9 @@ def _segment(words: TokenStream, key: Token) -> CableSegment:
     return segment
 
 
-def _connector(words: TokenStream, key: Token, layout: list[CableTerminal | CableSegment]) -> None:
+def _connector(
+    words: TokenStream, key: Token, layout: list[CableTerminal | CableSegment | CableBranch]
+) -> None:
     below = layout[-1] if layout else None
     if not isinstance(below, CableSegment):
         raise key.refuse("a connector stands above a segment")

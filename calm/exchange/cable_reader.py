@@ -11,6 +11,7 @@ from calm.errors import InputError, Problem
 from calm.exchange.cable_components import ComponentMaker, counts_on_depth, varies
 from calm.exchange.cable_formulas import UnknownNameError
 from calm.exchange.cable_grammar import (
+    CableBranch,
     CableDefinition,
     CableProblem,
     CableSegment,
@@ -33,7 +34,7 @@ from calm.files.definition import CATALOGUE_DENSITY
 from calm.quantities import bearing_of
 
 _REFUSED = {
-    "horizontal": "a horizontal array with an anchor at each end",
+    "horizontal": "a horizontal array, which has an anchor at each end",
     "positioned": "a line between two fixed points",
     "horizontal-drifter": "a drifting horizontal array",
     "drifter": "a drifting line without anchor",
@@ -42,7 +43,7 @@ _REFUSED = {
     "webster": "a line under a given tension",
     "tensioned": "a line under a given tension",
 }
-_MOORED = ("general", "surface", "subsurface")
+_MOORED = ("general", "surface", "subsurface", "horizontal", "positioned")
 _REACHES = 0.97  # of the depth: a line as long reaches the surface
 _PARTS = 12  # lengths of a segment whose drag changes with depth
 _CHANGE = 0.02  # of a drag that is worth two lengths
@@ -115,8 +116,16 @@ def _read(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> Des
         if value < 0.0 or (key == "gravity" and value == 0.0):
             raise refused(path, f"its {key} is {value:g}")
     makers = ComponentMaker(density or CATALOGUE_DENSITY, gravity, design.dropped)
-    items = _pieces_of_layout(problem, makers, design)
-    (_lay_tow if problem.kind == "towing" else _lay_mooring)(problem, items, makers, design)
+    if _is_net(problem):
+        from calm.exchange.cable_net import lay_net
+
+        lay_net(problem, makers, design)
+    else:
+        items = pieces_of(problem, problem.segments, makers, design)
+        (_lay_tow if problem.kind == "towing" else _lay_mooring)(problem, items, makers, design)
+    friction = problem.environment.number("bottom-friction")
+    if friction > 0.0 and problem.kind != "towing":
+        design.solver["seabed_friction"] = friction, "its bottom-friction"
     known = {"buoy", "platform", "anchor", "mu", "x-speed", "y-speed", "x", "y", "z", *_FORCES}
     for end in problem.terminals:
         found = [key for key in end.values if key not in known]
@@ -125,17 +134,22 @@ def _read(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> Des
     return design
 
 
+def _is_net(problem: CableProblem) -> bool:
+    """Return whether a line has branches, or an anchor at each end."""
+    anchored = all("anchor" in end.values for end in problem.terminals)
+    branched = any(isinstance(each, CableBranch) for each in problem.layout)
+    return problem.kind != "towing" and (branched or anchored)
+
+
 def _refuse_other_shapes(problem: CableProblem) -> None:
-    """Refuse all but a single line from an anchor to a float, or from a ship to a body."""
+    """Refuse all but moorings and nets of legs, and tows from a ship to a body."""
     kind, layout, ends = problem.kind, problem.layout, problem.terminals
-    if kind in _REFUSED:
+    if kind in _REFUSED and not (kind in _MOORED and _is_net(problem)):
         raise problem.description["type"].token.refuse(
             f"`type = {kind}` is {_REFUSED[kind]}; CALM has single moorings and tows"
         )
     if kind not in (*_MOORED, "towing"):
         raise problem.description["type"].token.refuse(f"`type = {kind}` is not known")
-    if problem.branch is not None:
-        raise problem.branch.refuse("a branch: a mooring of several legs is not a single line")
     segments = problem.segments
     if len(ends) != 2 or not segments:
         counts = f"{len(ends)} terminals and {len(segments)} segments"
@@ -145,8 +159,6 @@ def _refuse_other_shapes(problem: CableProblem) -> None:
     anchored = ["anchor" in end.values for end in ends]
     if any("node" in end.values for end in ends):
         raise ends[1].token.refuse("a loop: its end is tied to a node of the line")
-    if kind != "towing" and all(anchored):
-        raise ends[1].token.refuse("both ends are anchors: a line of several legs")
     if kind != "towing" and not any(anchored):
         raise ends[0].token.refuse("no end is an anchor: a drifting line")
     for values in (*(end.values for end in ends), *(segment.joint for segment in segments)):
@@ -173,11 +185,8 @@ def _lay_mooring(
         raise upper.token.refuse("the upper end is not a buoy")
     reaches = problem.length >= _REACHES * design.water.depth
     afloat = problem.kind == "surface" or (problem.kind == "general" and reaches)
-    buoy = makers.buoy(_defined(problem.buoys, top, upper.token), afloat=afloat)
+    buoy = makers.buoy(defined(problem.buoys, top, upper.token), afloat=afloat)
     design.items = [ImportedPiece(buoy), *reversed(items), ImportedPiece(anchor)]
-    friction = problem.environment.number("bottom-friction")
-    if friction > 0.0:
-        design.solver["seabed_friction"] = friction, "its bottom-friction"
 
 
 def _lay_tow(
@@ -203,23 +212,30 @@ def _lay_tow(
     if speed == 0.0:
         raise ship.token.refuse("the ship of this tow does not move")
     design.tow = ImportedTow(speed, bearing_of(east, north))
-    buoy = makers.buoy(_defined(problem.buoys, towed, body.token), afloat=False)
+    buoy = makers.buoy(defined(problem.buoys, towed, body.token), afloat=False)
     design.items = [*items[::-1], ImportedPiece(buoy)]
 
 
-def _pieces_of_layout(
-    problem: CableProblem, makers: ComponentMaker, design: Design
+def pieces_of(
+    problem: CableProblem, segments: list[CableSegment], makers: ComponentMaker, design: Design
 ) -> list[ImportedPiece]:
-    """Return the pieces between the ends, from the lower one up."""
+    """Return the pieces of segments and their connectors, from the lower one up.
+
+    Parameters
+    ----------
+    segments : in the order of the layout
+    makers : of components
+    design : whose water counts for drags by depth
+    """
     assert design.water is not None
     items: list[ImportedPiece] = []
     below = 0.0
     seabed = design.water.depth or problem.length
-    for segment in problem.segments:
+    for segment in segments:
         length = segment.values.number("length")
         if length <= 0.0:
             raise segment.token.refuse("a segment has no length")
-        material = _defined(problem.materials, segment.values.get("material"), segment.token)
+        material = defined(problem.materials, segment.values.get("material"), segment.token)
         clamps = _clamps(problem, segment, length, makers)
         items += _pieces(material, length, seabed - below, clamps, makers, design.water)
         below += length
@@ -324,7 +340,7 @@ def _heights(segment: CableSegment, length: float) -> list[float]:
     return heights
 
 
-def _defined(
+def defined(
     definitions: dict[str, CableDefinition], value: KeyValue | None, token: Token
 ) -> CableDefinition:
     """Return the definition that a value names; a problem stands at the value, or at `token`."""

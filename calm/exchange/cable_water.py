@@ -54,7 +54,7 @@ def water_of(
     water.density = environment.number("rho", "density") or None
     water.gravity = environment.number("gravity", default=USUAL_GRAVITY)
     if "gravity" not in environment:
-        water.guesses["gravity"] = "the file gives none; the usual one of such files"
+        water.guesses["gravity"] = "the file gives none; the usual value of such files"
     gridded = None
     if "current-file" in environment:
         value = environment["current-file"]
@@ -194,7 +194,7 @@ def _gridded_current(
     here = _at_zero(_at_zero(_at_zero(grid, axes["time"]), axes["y"]), axes["x"])
     others = ["times after the first"] if times > 1 else []
     if np.ptp(grid, axis=(1, 2)).any():
-        others.append("how it changes from place to place: it is that at the anchor")
+        others.append("how it varies horizontally: the profile at the anchor is taken")
     order = np.argsort(axes["depth"])
     return GriddedCurrent(axes["depth"][order], here[order], tuple(others))
 
@@ -203,7 +203,7 @@ def _numbers(path: Path) -> NDArray[np.float64]:
     try:
         numbers = np.array(read_text(path, largest=_LARGEST).split(), np.float64)
     except ValueError:
-        raise refused(path, "holds something else than numbers") from None
+        raise refused(path, "holds something other than numbers") from None
     if not np.all(np.isfinite(numbers)):
         raise refused(path, "holds numbers without a value")
     return numbers

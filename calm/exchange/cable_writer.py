@@ -102,7 +102,7 @@ def cbl_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
             "pull found here"
         )
     if buoy.flexible:
-        lost.append("the free end of the line: a small sphere without weight stands there")
+        lost.append("the free end of the line: a small sphere without weight is put there")
     elif not floating and design.tow is None and buoy.length > 0.0:
         problem.segment(_link(problem), buoy.length)
     if problem.load is not None:
@@ -130,7 +130,7 @@ def _along_the_heading(design: ExportedLine, lost: list[str]) -> ExportedLine:
     heading = degrees(atan2(design.tow.east, design.tow.north)) % 360.0
     lost.append(f"the heading, {heading:.4g} deg true: there x points ahead of the ship")
     if any(level[2] for level in levels):
-        lost.append("currents across the heading: the statics there know x and z alone")
+        lost.append("currents across the heading: its statics know only x and z")
     tow = replace(design.tow, east=speed, north=0.0)
     return replace(design, tow=tow, levels=tuple(levels))
 
@@ -174,10 +174,9 @@ def _material(problem: _Problem, part: ExportedPart) -> str:
     normal = part.area(problem.density) / per / across if across else 0.0
     along = part.area(problem.density, along=True) / per / (pi * across) if across else 0.0
     figures = (
-        f"d = {across:.9g}  m = {max(part.likely_mass / per, _LEAST_MASS):.9g}"
-        f"  wet = {wet if abs(wet) > _LEAST_WEIGHT else _LEAST_WEIGHT:.9g}"
-        f"  Cdn = {normal:.9g}  Cdt = {along:.9g}  EA = {part.stiffness or _RIGID:.9g}"
-        "  EI = 1e-4  GJ = 1e-4"
+        f"d = {across:.9g}  m = {max(part.likely_mass / per, _LEAST_MASS):.9g}  wet = "
+        f"{wet if abs(wet) > _LEAST_WEIGHT else _LEAST_WEIGHT:.9g}  Cdn = {normal:.9g}  Cdt = "
+        f"{along:.9g}  EA = {part.stiffness or _RIGID:.9g}  EI = 1e-4  GJ = 1e-4"
     )
     name = _word(part.use)
     if isinstance(part.component, Chain) and not is_chain(name):

@@ -12,6 +12,7 @@ from calm.case import Result, TowResult
 from calm.errors import NoEquilibrium
 from calm.files import Anchor, Component, Sphere
 from calm.files.definition import STANDARD_GRAVITY
+from calm.files.legs import EndKeys
 from calm.files.rigid import Displacement
 from calm.physics.seawater import REFERENCE_DENSITY
 
@@ -129,6 +130,12 @@ class PartLoad:
         for clamp, _ in part.clamps:
             self.add(clamp)
 
+    def merge(self, other: PartLoad) -> None:
+        """Add what another does."""
+        self.names += other.names
+        for name in ("net", "mass", "area", "along"):
+            setattr(self, name, getattr(self, name) + getattr(other, name))
+
     def per_metre(self, length: float) -> PartLoad:
         """Return the same load, spread over a length [m]."""
         figures = (self.net, self.mass, self.area, self.along)
@@ -193,6 +200,7 @@ class ExportedLine:
     windage : of the float: its area in the air here [m²], and its drag coefficient there
     omitted : what other programs cannot hold
     solve : finds the equilibrium
+    ends : what holds the upper and the lower end of a leg of a net; None for a line of its own
     """
 
     name: str
@@ -209,6 +217,7 @@ class ExportedLine:
     windage: tuple[float, float]
     omitted: tuple[str, ...]
     solve: Callable[[], Result | TowResult]
+    ends: tuple[EndKeys, EndKeys] | None = None
 
     @property
     def mean_density(self) -> float:
@@ -226,6 +235,10 @@ class ExportedLine:
         """
         result = self.solve()
         nodes = np.column_stack([result.shape.x, result.shape.y, result.shape.depth])
+        row = result.components[0]
+        upper = np.array([row.x_top, row.y_top, row.depth_top])
+        if np.linalg.norm(nodes[0] - upper) > np.linalg.norm(nodes[-1] - upper):
+            nodes = nodes[::-1]  # a leg that hangs is found from its lower end
         paths, start = [], 0
         for row in (result.components[i] for i in range(len(self.parts))):
             low = np.array([row.x_bottom, row.y_bottom, row.depth_bottom])

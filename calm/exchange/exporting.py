@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from math import cos, radians, sin
 from pathlib import Path
 
 import numpy as np
 
-from calm.case import Mooring, Tow, load
+from calm.case import Mooring, Result, Tow, TowResult
+from calm.case.net import Net, load_any
 from calm.errors import NoEquilibrium, UsageError, unknown
 from calm.exchange.cable_writer import cbl_file
 from calm.exchange.exported_parts import ExportedLine, ExportedPart, ExportedTow, Levels
@@ -60,18 +62,38 @@ def export_file(
         raise UsageError(
             unknown(f"--to: `{to}` is not a program that CALM writes for", to, WRITERS)
         )
-    design = _exported_line(load(path, environment, list(catalogs)))
-    content, lost = WRITERS[to](design)
+    read = load_any(path, environment, list(catalogs))
+    if isinstance(read, Net):
+        if to != "moordyn":
+            raise UsageError(f"{path} is a net of legs; `--to moordyn` takes it, {to} single lines")
+        designs = []
+        for keys, line, leg in zip(read.file.legs, read.lines, read.solve().legs, strict=True):
+            design = _exported_line(line, partial(_known, leg))
+            designs.append(replace(design, ends=keys.ends))
+        deepest = max(designs, key=lambda design: design.depth)
+        designs[0] = replace(designs[0], name=read.file.name, depth=deepest.depth)
+        content, lost = moordyn_file(*designs)
+        design = deepest
+    else:
+        design = _exported_line(read, read.solve)
+        content, lost = WRITERS[to](design)
     beside = {CURRENTS: current_profile(design)} if to == "moordyn" else {}
     return Exported(content, lost, beside)
 
 
-def _exported_line(mooring: Mooring | Tow) -> ExportedLine:
-    """Return the parts of a mooring or a tow."""
+def _known(leg: Result) -> Result:
+    return leg
+
+
+Solve = Callable[[], Result | TowResult]
+
+
+def _exported_line(mooring: Mooring | Tow, solve: Solve) -> ExportedLine:
+    """Return the parts of a mooring or a tow, of which `solve` finds the equilibrium."""
     file, water, line = mooring.file, mooring.water, mooring.line
     if file.environment.fluid == "air":
-        raise UsageError(f"{file.path} is towed in air; the other programs know water alone")
-    secant = _secants(mooring)
+        raise UsageError(f"{file.path} is towed in air; the other programs know only water")
+    secant = _secants(mooring, solve)
     depths = _depths(line, water, isinstance(mooring, Tow))
     parts = []
     for i in range(len(line.length)):
@@ -109,7 +131,7 @@ def _exported_line(mooring: Mooring | Tow) -> ExportedLine:
         tow = ExportedTow(*_east_and_north(keys.speed, keys.toward), keys.height)
     else:
         anchor = file.anchor, mooring.anchor_weight
-    riding, windage = _riding(mooring)
+    riding, windage = _riding(mooring, solve)
     return ExportedLine(
         name=file.name,
         parts=tuple(parts),
@@ -119,12 +141,12 @@ def _exported_line(mooring: Mooring | Tow) -> ExportedLine:
         gravity=float(water.gravity),
         wind=(0.0, 0.0) if wind is None else _east_and_north(wind.speed, wind.toward),
         tow=tow,
-        afloat=_reaches(mooring),
+        afloat=_reaches(mooring, solve),
         has_draft=line.floating is not None and line.floating.hull is not None,
         riding=riding,
         windage=windage,
         omitted=_omitted(mooring),
-        solve=mooring.solve,
+        solve=solve,
     )
 
 
@@ -133,25 +155,28 @@ def _east_and_north(speed: float, toward: float) -> tuple[float, float]:
     return speed * sin(radians(toward)), speed * cos(radians(toward))
 
 
-def _reaches(mooring: Mooring | Tow) -> bool:
+def _reaches(mooring: Mooring | Tow, solve: Solve) -> bool:
     """Return whether a mooring floats at the surface; by its length where it has no equilibrium."""
     if isinstance(mooring, Tow):
         return False
     try:
-        return mooring.solve().type == "surface"
+        return solve().type == "surface"
     except NoEquilibrium:
         whole = mooring.line.anchor_height + float(mooring.line.length.sum())
         return whole >= float(mooring.water.depth)
 
 
-def _riding(mooring: Mooring | Tow) -> tuple[tuple[float, float], tuple[float, float]]:
+def _riding(
+    mooring: Mooring | Tow, solve: Solve
+) -> tuple[tuple[float, float], tuple[float, float]]:
     """Return how the float stands at the surface: `riding` and `windage` of `ExportedLine`."""
     floating = mooring.line.floating
-    if not _reaches(mooring):
+    if not _reaches(mooring, solve):
         return (1.0, 1.0), (0.0, 1.0)
-    assert isinstance(mooring, Mooring)
     try:
-        used = mooring.solve().top.used_buoyancy
+        result = solve()
+        assert isinstance(result, Result)
+        used = result.top.used_buoyancy
     except NoEquilibrium:
         used = 1.0
     if floating is None:
@@ -163,12 +188,12 @@ def _riding(mooring: Mooring | Tow) -> tuple[tuple[float, float], tuple[float, f
     return (used, seen), (area, floating.wind_cd)
 
 
-def _secants(mooring: Mooring | Tow) -> dict[int, float]:
+def _secants(mooring: Mooring | Tow, solve: Solve) -> dict[int, float]:
     """Stiffness of the pieces that stretch by a table, as it is at their tension here [N]."""
     curves = mooring.line.elongation
     if not any(curves):
         return {}
-    rows = mooring.solve().components
+    rows = solve().components
     secants = {}
     for i, curve in enumerate(curves):
         if curve is not None:
@@ -206,13 +231,13 @@ def _omitted(mooring: Mooring | Tow) -> tuple[str, ...]:
         "limits of the design check, strengths, ratings and tilts of components",
     ]
     if file.solver.strumming is not None:
-        omitted.append("strumming: the drag of cables is that at rest")
+        omitted.append("strumming: cables have their drag at rest")
     if file.solver.drag == "reynolds":
-        omitted.append("`drag: reynolds`: drags are those of the constant coefficients")
+        omitted.append("`drag: reynolds`: the constant coefficients are written")
     if file.solver.friction != "berteaux":
         omitted.append(f"`friction: {file.solver.friction}`")
     if any(mooring.line.elongation):
-        omitted.append("elongation tables: stiffness is that at the tension found here")
+        omitted.append("elongation tables: the stiffness at the tension found here is written")
     if any(mooring.line.lift) or any(mooring.line.clamp_lift):
         omitted.append("lift of towed bodies")
     return tuple(omitted)

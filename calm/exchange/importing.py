@@ -15,9 +15,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from calm.assemble.line_arrays import drag_of
-from calm.case import Tow
-from calm.case.net import Net, load_any
-from calm.errors import CalmError, InputError, Problem, UsageError
+from calm.errors import InputError, Problem, UsageError
 from calm.exchange.cable_reader import is_cbl, read_cbl
 from calm.exchange.design import (
     MOST_PIECES,
@@ -29,6 +27,7 @@ from calm.exchange.design import (
     refused,
 )
 from calm.exchange.design_writer import figure_text, mooring_text
+from calm.exchange.imported_anchors import secure_anchors
 from calm.exchange.list_cells import is_table
 from calm.exchange.list_reader import read_list
 from calm.exchange.mat_file import is_mat
@@ -37,11 +36,8 @@ from calm.exchange.mdd_reader import read_mdd
 from calm.exchange.moordyn_reader import is_moordyn, read_moordyn
 from calm.files import Anchor, Assembly, Catalogue, Rigid, read_mooring
 from calm.files.components import FLEXIBLE_KINDS, KINDS, Component
-from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
 from calm.files.editing.writing import WritingStyle
 from calm.files.yaml_document import read_document
-from calm.physics.materials import STEEL_DENSITY
-from calm.quantities import rounded
 from calm.version import __version__
 
 _HEAD = 70_000  # bytes from which a format is recognised
@@ -157,14 +153,14 @@ def import_file(
     if environment is not None:
         lines = environment_lines(environment, output)
         if design.water is not None:
-            what = f"the water of the file: {environment.name} stands in its place"
+            what = f"the water of the file: {environment.name} replaces it"
             design.dropped.append(Remark("environment", what))
         design.record = None
     elif design.water is None and design.tow is None:
         message = "has no environment; give one: --environment FILE (depth, current, density)"
         raise refused(path, message)
     matched = match_catalogue_entries(design) if match_catalogue else ()
-    secure_anchor(design, lines, output)
+    secure_anchors(design, lines, output)
     text, guessed = mooring_text(design, path.name, lines, __version__)
     _check(path, output, text)
     return Imported(
@@ -251,71 +247,6 @@ _TOLERANCE = 0.05
 """Share by which size, net force and drag may differ from those of a catalogue entry."""
 
 _COMMON_WORDS = 0.5  # share of the words of a name that an entry must have, two at least
-_HOLDS = 1e8  # N: holds whatever is tied to it
-_IN_WATER = (1.0 - CATALOGUE_DENSITY / STEEL_DENSITY) * STANDARD_GRAVITY  # N of a kilogram of steel
-_DIGITS = 2  # that a guessed weight keeps
-_LEAST = 100.0  # N of a guessed weight
-
-
-def secure_anchor(design: Design, environment: list[str] | None, output: Path) -> None:
-    """Give each anchor a weight where the file gives none, or one that the line would lift.
-
-    The shape of the line does not depend on it. The weight is what `calm check` asks for in this
-    current. A line without an equilibrium is left to `calm run`, which says so.
-
-    Parameters
-    ----------
-    design : whose anchors are changed
-    environment : lines in place of the water of the design
-    output : path of the mooring file to come
-    """
-    found = [item.component for item in design.items if item.component.kind == "anchor"]
-    anchors = [] if design.tow else list({id(each): each for each in found}.values())
-    pulls = _pulls(design, anchors, environment, output) if anchors else []
-    for anchor, (pull, required) in zip(anchors, pulls, strict=True):
-        _secure(anchor, pull, required)
-
-
-def _secure(anchor: ImportedComponent, pull: float | None, required: float) -> None:
-    mass, weight = anchor.figures.get("mass"), anchor.figures.get("weight")
-    given = weight if weight is not None or mass is None else _IN_WATER * float(mass)
-    if isinstance(given, float) and (pull is None or pull <= given):
-        return
-    anchor.figures.pop("mass", None)
-    anchor.guesses.pop("mass", None)
-    if pull is None:
-        anchor.figures["weight"], reason = _HOLDS, "the file gives no weight; this holds anything"
-    else:
-        anchor.figures["weight"] = rounded(max(required, _LEAST), _DIGITS, up=True)
-        reason = (
-            "the file gives no weight; 1.5 × (V + H/0.6) in this current"
-            if given is None
-            else f"the file's {given:.5g} N would be lifted: the line pulls up with {pull:.5g} N"
-        )
-    anchor.guesses["weight"] = reason
-
-
-def _pulls(
-    design: Design,
-    anchors: list[ImportedComponent],
-    environment: list[str] | None,
-    output: Path,
-) -> list[tuple[float | None, float]]:
-    """Return the upward pull of the line on each anchor, and the weight that holds it [N]."""
-    figures = [dict(anchor.figures) for anchor in anchors]
-    for anchor in anchors:
-        anchor.figures.pop("mass", None)
-        anchor.figures["weight"] = _HOLDS
-    try:
-        read = load_any(output, text=mooring_text(design, "", environment)[0])
-        assert not isinstance(read, Tow)
-        loads = read.solve().anchors if isinstance(read, Net) else (read.solve().anchor,)
-    except CalmError:
-        return [(None, 0.0)] * len(anchors)
-    finally:
-        for anchor, before in zip(anchors, figures, strict=True):
-            anchor.figures = before
-    return [(each.vertical, each.required_weight or 0.0) for each in loads]
 
 
 @dataclass(frozen=True)

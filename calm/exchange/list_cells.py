@@ -117,7 +117,7 @@ def unit_called(text: str, what: str) -> ColumnUnit | None:
     if what not in _DIMENSIONS:
         raise ValueError(f"`{text}` is not understood")
     hint = ": of 907, 1000 or 1016 kg" if plain.lower() in _AMBIGUOUS else ""
-    raise ValueError(f"`{plain}` is no unit of {_DIMENSIONS[what]} that CALM knows{hint}")
+    raise ValueError(f"`{plain}` is not a unit of {_DIMENSIONS[what]} that CALM knows{hint}")
 
 
 def unit_of_heading(heading: str, what: str) -> ColumnUnit | None:
@@ -144,7 +144,7 @@ def unit_of_heading(heading: str, what: str) -> ColumnUnit | None:
     if last and (unit := _unit(last, what)):
         return unit
     if len(words) > 2 and words[-2].lower() in ("in", "en") and words[-1].isalpha():
-        raise ValueError(f"`{words[-1]}` is no unit of {_DIMENSIONS[what]} that CALM knows")
+        raise ValueError(f"`{words[-1]}` is not a unit of {_DIMENSIONS[what]} that CALM knows")
     return None
 
 
@@ -282,7 +282,7 @@ def decimal_sign(cells: Iterable[tuple[str, str]]) -> tuple[str, str]:
     if decimal == ",":
         return decimal, f"commas are decimal signs, as in {seen[',']}"
     if "," in doubtful:
-        return decimal, f"commas part thousands, as in {doubtful[','][0]}; decimals have points"
+        return decimal, f"commas separate thousands, as in {doubtful[','][0]}; decimals have points"
     return decimal, ""
 
 

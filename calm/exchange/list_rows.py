@@ -127,7 +127,7 @@ def rows_of(
         fixed = row.is_line or row.is_anchor or row.role in _ROLES or is_rigid(row.kind)
         if not fixed and is_long(name, row.figures.get("length", 0.0), size):
             row.line = True
-            guessed.append(Remark(row.where, "taken for a rope, since it is long and thin"))
+            guessed.append(Remark(row.where, "taken as a rope, since it is long and thin"))
         rows.append(row)
     return rows
 
@@ -182,7 +182,7 @@ def _row(
             several = _METRES.search(f"{column.heading} {found.rest}")
             if several and not row.is_line:
                 figure *= int(several[1])
-                row.guesses[what] = "read as that of the whole piece: it is no line"
+                row.guesses[what] = "read as that of the whole piece, since it is not a line"
         row.figures[what] = figure
         if found.tidied:
             row.guesses[what] = f"`{cell}` read as {found.value:g} {found.rest}".rstrip()
@@ -284,7 +284,7 @@ def _anchor(row: ListRow) -> ImportedComponent:
         kept["weight"] = abs(figures["buoyancy"])
     elif figures.get("mass"):
         kept["mass"] = figures["mass"]
-        guesses["mass"] = "taken for steel: the list gives no weight in water"
+        guesses["mass"] = "taken as steel: the list gives no weight in water"
     kept["length"] = figures.get("length", 0.0)
     return ImportedComponent(row.name, "anchor", kept, _of(guesses, kept))
 

@@ -71,7 +71,7 @@ def rigid(element: MddElement) -> ImportedComponent:
         figures["buoyancy"] = (CATALOGUE_DENSITY * volume - element.mass) * KILOGRAM_FORCE
     component = ImportedComponent(element.name, kind, {**figures, "role": role})
     if kind == "body":
-        component.comment = "The file gives it no size, so that it has no drag."
+        component.comment = "The file gives it no size, so it has no drag."
     elif _is_too_small(element):
         component.guesses["diameter"] = (
             f"kept as it is, a placeholder: nothing of this size lifts {element.lift:g} kgf, "
@@ -124,8 +124,8 @@ def _flexible(element: MddElement) -> ImportedComponent:
             )
     if component.kind == "chain":
         component.comment = (
-            "The width that the file gives stands as diameter, which is not that of the bar; "
-            "Cd counts on it."
+            "The width in the file is used as the diameter; it is not that of the bar, but "
+            "Cd refers to it."
         )
     if element.width > 0.0 and element.diameter > 0.0:
         component.guesses["diameter"] = "the file gives a width and a diameter of a sphere"

@@ -112,7 +112,7 @@ def read_moordyn(path: Path) -> Design:
     design = Design("MoorDyn", path.stem, [], _water(options, points, path), notes=[_NOTE])
     types = {row.words.get("name", ""): row for row in tables["types"]}
     file = MoorDynFile(points, types, lines, at, design)
-    design.dropped.append(Remark("line types", "damping, stiffness in bending, added mass"))
+    design.dropped.append(Remark("line types", "damping, bending stiffness, added mass"))
     chain = _from_the_anchor(file)
     if chain is None:
         from calm.exchange.moordyn_net import lay_net

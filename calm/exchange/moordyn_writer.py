@@ -15,6 +15,7 @@ from calm.exchange.exported_parts import (
     PartPath,
     unique_name,
 )
+from calm.files.legs import EndKeys
 
 CURRENTS = "current_profile.txt"
 """The name under which that program looks for the current, beside its input."""
@@ -29,38 +30,93 @@ _LEAST = 1e-3  # kg of mass and of displaced water per metre, for what has none
 
 
 @dataclass
+class _Point:
+    """A point of the file, what acts there, and whether anything holds it."""
+
+    place: Coordinates
+    load: PartLoad
+    kind: str = "Free"
+
+
+@dataclass
+class _Length:
+    """A length of a line type between two points [m]."""
+
+    type: str
+    lower: _Point
+    upper: _Point
+    length: float
+
+
+@dataclass
 class _System:
-    """Types, points and lines of the file, as they grow from the anchor up."""
+    """Types, points and lines of the file, as they grow from the lower end of each leg up.
+
+    `here` is the point reached.
+    """
 
     density: float
     gravity: float
-    place: Coordinates
     types: dict[str, str] = field(default_factory=dict)
-    points: list[str] = field(default_factory=list)
-    lines: list[str] = field(default_factory=list)
-    load: PartLoad = field(init=False)
+    points: list[_Point] = field(default_factory=list)
+    lines: list[_Length] = field(default_factory=list)
+    joined: dict[str, _Point] = field(default_factory=dict)
 
-    def __post_init__(self) -> None:
-        self.load = PartLoad(self.density)
+    @property
+    def here(self) -> _Point:
+        """The point reached."""
+        return self._here
 
-    def end_point(self, kind: str) -> int:
-        """Write the point that the line has reached with what acts there; return its number."""
-        volume = (self.load.mass + self.load.net / self.gravity) / self.density
-        figures = f"{self.load.mass:.9g}  {volume:.9g}  {self.load.area:.9g}  0"
-        x, y, depth = self.place
-        number = len(self.points) + 1
-        self.points.append(f"{number}  {kind}  {x:.6f}  {y:.6f}  {-depth:.6f}  {figures}")
-        return number
+    @property
+    def load(self) -> PartLoad:
+        """What acts at the point reached."""
+        return self._here.load
+
+    def begin(self, place: Coordinates, kind: str) -> None:
+        """Go to a new point."""
+        self._here = _Point(place, PartLoad(self.density), kind)
+        self.points.append(self._here)
+
+    def begin_at(self, node: str, place: Coordinates) -> None:
+        """Go to the point of a node, which is made where it is not there yet."""
+        if node not in self.joined:
+            self.begin(place, "Free")
+            self.joined[node] = self._here
+        self._here = self.joined[node]
+
+    def end_at(self, node: str) -> None:
+        """Make the point reached that of a node."""
+        last = self._here
+        if node not in self.joined:
+            self.joined[node] = last
+            return
+        self._here = self.joined[node]
+        self.points.remove(last)
+        self.load.merge(last.load)
+        for line in self.lines:
+            if line.upper is last:
+                line.upper = self._here
 
     def line(self, name: str, figures: str, length: float, to: Coordinates) -> None:
         """Add an unstretched length [m] of a type from the point reached up to another."""
-        below = self.end_point("Free" if self.points else "Fixed")
-        chosen = unique_name(self.types, name, figures)
-        segments = _SEGMENTS if length > 1.0 else 1
-        self.lines.append(
-            f"{len(self.lines) + 1}  {chosen}  {below}  {below + 1}  {length:.9g}  {segments}  -"
-        )
-        self.place, self.load = to, PartLoad(self.density)
+        below, chosen = self._here, unique_name(self.types, name, figures)
+        self.begin(to, "Free")
+        self.lines.append(_Length(chosen, below, self._here, length))
+
+    def rows(self) -> tuple[list[str], list[str]]:
+        """The tables of the points and of the lines."""
+        points, numbers = [], {id(point): n for n, point in enumerate(self.points, 1)}
+        for number, point in enumerate(self.points, 1):
+            load, (x, y, depth) = point.load, point.place
+            volume = (load.mass + load.net / self.gravity) / self.density
+            figures = f"{load.mass:.9g}  {volume:.9g}  {load.area:.9g}  0"
+            points.append(f"{number}  {point.kind}  {x:.6f}  {y:.6f}  {-depth:.6f}  {figures}")
+        lines = []
+        for n, line in enumerate(self.lines, 1):
+            ends = f"{numbers[id(line.lower)]}  {numbers[id(line.upper)]}"
+            segments = _SEGMENTS if line.length > 1.0 else 1
+            lines.append(f"{n}  {line.type}  {ends}  {line.length:.9g}  {segments}  -")
+        return points, lines
 
     def figures(self, load: PartLoad, stiffness: float) -> str:
         """Return the line type for what acts on a metre."""
@@ -73,8 +129,12 @@ class _System:
         )
 
 
-def moordyn_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
+def moordyn_file(*designs: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
     """Return the content of the file, and what it cannot hold.
+
+    Parameters
+    ----------
+    designs : a line, or the legs of a net
 
     Raises
     ------
@@ -83,28 +143,16 @@ def moordyn_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
     NoEquilibrium
         There is none: its points have no places.
     """
-    if design.tow is not None:
+    first = designs[0]
+    if first.tow is not None:
         raise UsageError("a tow has no anchor; MoorDyn is given moorings alone")
-    paths = design.paths()
-    system = _System(design.mean_density, design.gravity, paths[-1].at(1.0))
+    system = _System(first.mean_density, first.gravity)
     lost = ["rigid pieces in a row: each row is one stiff length"]
-    numbered = list(enumerate(design.parts))[::-1]
-    for flexible, group in groupby(numbered, key=lambda pair: pair[1].flexible):
-        members = list(group)
-        if flexible:
-            for i, part in members:
-                _lay(system, part, paths[i])
-            continue
-        upper = members[-1][0]
-        if upper == 0:
-            members.pop()
-        if members:
-            _lay_rigid(system, [part for _, part in members], paths[members[-1][0]].at(0.0))
-        if upper == 0:
-            _lay_float(system, design, paths[0])
-    if any(design.wind):
+    for design in designs:
+        _lay_line(system, design)
+    if any(first.wind):
         lost.append("wind")
-    if design.afloat:
+    if any(design.afloat for design in designs):
         lost.append(
             "the hull of the float: the upper end is held where it is; its point keeps the float's "
             "mass, volume and drag as it floats here"
@@ -114,9 +162,37 @@ def moordyn_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
             "that the drag of the float acts at its middle and by its axis: its point has the "
             "pull found here"
         )
-    system.end_point("Fixed" if design.afloat else "Free")
-    losses = design.losses(lost)
-    return _text(design, system, losses).encode(), losses
+    losses = first.losses([*lost, *(each for design in designs for each in design.omitted)])
+    return _text(first, system, losses).encode(), losses
+
+
+def _lay_line(system: _System, design: ExportedLine) -> None:
+    """Lay a line, or a leg, from its lower end up."""
+    paths, (top, bottom) = design.paths(), design.ends or (EndKeys(), None)
+    if bottom is not None and bottom.join is not None:
+        system.begin_at(bottom.join, paths[-1].at(1.0))
+    else:
+        hangs = bottom is not None and bottom.free
+        system.begin(paths[-1].at(1.0), "Free" if hangs else "Fixed")
+    numbered = list(enumerate(design.parts))[::-1]
+    for flexible, group in groupby(numbered, key=lambda pair: pair[1].flexible):
+        members = list(group)
+        if flexible:
+            for i, part in members:
+                _lay(system, part, paths[i])
+            continue
+        upper = members[-1][0]
+        floats = upper == 0 and top.free
+        if floats:
+            members.pop()
+        if members:
+            _lay_rigid(system, [part for _, part in members], paths[members[-1][0]].at(0.0))
+        if floats:
+            _lay_float(system, design, paths[0])
+    if top.join is not None:
+        system.end_at(top.join)
+    elif not top.free or design.afloat:
+        system.here.kind = "Fixed"
 
 
 def _lay(system: _System, part: ExportedPart, path: PartPath) -> None:
@@ -188,6 +264,7 @@ def _word(text: str) -> str:
 
 
 def _text(design: ExportedLine, system: _System, lost: tuple[str, ...]) -> str:
+    points, rows = system.rows()
     title = f"{design.name}, by CALM; the current stands in {CURRENTS}; lost:"
     options = (
         ("0", "writeLog"), ("0.1", "CFL"), ("RK2", "tScheme"), ("3.0e5", "kBot"),
@@ -206,11 +283,11 @@ def _text(design: ExportedLine, system: _System, lost: tuple[str, ...]) -> str:
         "---------------------- POINTS ---------------------------------------",
         "ID   Attachment  X   Y   Z   Mass   Volume   CdA   Ca",
         "(#)  (-)        (m) (m) (m)  (kg)   (m^3)   (m^2)  (-)",
-        *system.points,
+        *points,
         "---------------------- LINES ----------------------------------------",
         "ID   LineType   AttachA  AttachB  UnstrLen  NumSegs  LineOutputs",
         "(#)  (name)     (#)      (#)      (m)       (-)      (-)",
-        *system.lines,
+        *rows,
         "---------------------- OPTIONS --------------------------------------",
         *(f"{value}   {name}" for value, name in options),
         "------------------------- need this line ----------------------------",

@@ -107,16 +107,16 @@ class Checks(Model):
         default=1.5,
     )
     anchor_friction: Annotated[float, _FRICTION, Limit(_DEWEY)] = described(
-        "of an anchor on the seabed, where it gives none", 0.6, default=0.6
+        "friction of an anchor on the seabed that gives none", 0.6, default=0.6
     )
     minimum_tension: MinimumTensions = described(
         "above the release", {"wire": "500 N", "rope": "300 N"}, default_factory=MinimumTensions
     )
     backup_margin: Annotated[float, _SHARE, Limit(_URI)] = described(
-        "of the weight lifted, left in buoyancy after any break", 0.1, default=0.1
+        "buoyancy left after any break, as a share of the weight lifted", 0.1, default=0.1
     )
     minimum_rise_speed: Annotated[float, _SPEED, Limit()] = described(
-        "of what comes up once the release has opened", "0.3 m/s", default=0.3
+        "speed of the rise once the release has opened", "0.3 m/s", default=0.3
     )
     launch_safety_factor: Annotated[float, _SAFETY, Limit(_URI)] = described(
         "breaking load over tension, as the line falls behind its anchor", 2, default=2.0
@@ -134,29 +134,29 @@ class Checks(Model):
         "between two renewals of the line", "730 d", default=365.0 * 86_400.0
     )
     minimum_reserve: Annotated[float, _SHARE, Limit()] = described(
-        "share of a surface float's buoyancy that must be left", 0.3, default=0.3
+        "share of a surface float's buoyancy that must remain", 0.3, default=0.3
     )
     rating_margin: Annotated[float, LENGTH, Limit()] = described(
-        "depth that must be left to a depth rating", "100 m", default=100.0
+        "margin to keep to a depth rating", "100 m", default=100.0
     )
     maximum_knockdown: Annotated[float | None, POSITIVE_LENGTH, Limit(THE_DESIGN)] = optional(
-        "most that the top may be pushed down", "50 m"
+        "greatest allowed knockdown of the top", "50 m"
     )
     maximum_excursion: Annotated[float | None, POSITIVE_LENGTH, Limit(THE_DESIGN)] = optional(
-        "most that the top may go to the side", "200 m"
+        "greatest allowed offset of the top", "200 m"
     )
     maximum_tilt: Annotated[
         float | None,
         QuantityField("angle", above=0, at_most=90),
         Limit(THE_DESIGN),
-    ] = optional("most that a piece may lean", "30 deg")
+    ] = optional("greatest allowed tilt of a piece", "30 deg")
     minimum_top_depth: Annotated[
         float | None,
         LENGTH,
         Limit(THIS_PROGRAM, default=10.0),
     ] = optional("least depth of the top of a sub-surface line, at low water too", "10 m")
     fishbite_depth: Annotated[float, LENGTH, Limit(_BERTEAUX)] = described(
-        "down to which fish bite synthetic rope; 0 m where none do", "1500 m", default=1000.0
+        "depth down to which fish bite synthetic rope; 0 m for nowhere", "1500 m", default=1000.0
     )
     accept: tuple[AcceptKeys, ...] = described(
         "findings that this design accepts, each with its reason",

@@ -185,11 +185,9 @@ class EstimatedFigure(Model):
     quantity: Literal[
         "working_load", "breaking_load", "opening_load", "grip", "max_tilt", "depth_rating"
     ] = described("the figure that is estimated", "working_load")
-    value: Annotated[float, WithJsonSchema(_ANY_QUANTITY)] = described(
-        "what it is thought to be", "20 kN"
-    )
+    value: Annotated[float, WithJsonSchema(_ANY_QUANTITY)] = described("best estimate", "20 kN")
     low: Annotated[float, WithJsonSchema(_ANY_QUANTITY)] = described(
-        "the least it can be, by which it is judged", "12 kN"
+        "lower bound, by which it is judged", "12 kN"
     )
     source: Text = described("where the figures come from", "the chain it hangs on")
 
@@ -273,7 +271,7 @@ class Definition(Model):
     warn_tilt: Annotated[float | None, TILT] = optional("tilt to be warned of", "15 deg")
     estimate: Annotated[tuple[EstimatedFigure, ...] | None, BeforeValidator(_listed)] = Field(
         default=None,
-        description="what a figure that is not given is taken as, where a rule asks for it",
+        description="estimates of figures that are not given, for the rules that need them",
         json_schema_extra=_alone_or_listed,
         examples=[
             {

@@ -217,7 +217,9 @@ class LineReader:
     def _tell_of_mass(self, use: str, component: Component) -> None:
         """Notice that in air a net force in water has to do where it is all that is known."""
         if self._in_air and component.mass is None and component.displaced_volume is None:
-            notice = f"{use}: no mass is known; its net force in water is taken for that in air"
+            notice = (
+                f"{use}: no mass is known; its net force in water is taken as its weight in air"
+            )
             if notice not in self._notices:
                 self._notices.append(notice)
 

@@ -276,7 +276,7 @@ def _check_slope(
             if seabed.slope >= most:
                 message = (
                     f"with a friction of {friction:g} the anchor slides by itself on a seabed that "
-                    f"slopes by {seabed.slope:g}°; it holds on less than {most:.3g}°"
+                    f"slopes by {seabed.slope:g}°; it holds on slopes of less than {most:.3g}°"
                 )
                 problems.append(_at(piece, top, message))
 

@@ -48,11 +48,11 @@ RULES = {
         "Current",
         "speed",
         "the strongest current of all environments; the levels that the profile of each has",
-        "0.2 m/s; 0.9 of the strongest of the record that an environment is a time of; a fiftieth "
-        "of that of another environment; a tenth of the depth, "
-        "and 25 m, without a level at either end: a warning",
-        "DNV-RP-C205: a wind drives 0.015 to 0.03 of its speed at the surface, 0.2 m/s one of "
-        "7 m/s",
+        "a warning below 0.2 m/s, below 0.9 of the strongest current of the record that "
+        "an environment is taken from, below a fiftieth of that of another environment, "
+        "or where a tenth of the depth and 25 m at either end have no level",
+        "DNV-RP-C205: wind drives a surface current of 0.015 to 0.03 of its speed, 0.2 "
+        "m/s at 7 m/s",
         "the profiles of a record are the current",
     ),
     "strength": RuleText(
@@ -69,7 +69,7 @@ RULES = {
         "Load of the release",
         "tension",
         "greatest tension of every release, and the pull below it as it opens",
-        "what its loads allow as under `strength`, and its `opening_load`; without one, the same",
+        "the limit of `strength`, and its `opening_load` where given",
         "The maker's static load, and the greatest under which it opens",
         figures=("working_load", "opening_load"),
     ),
@@ -132,8 +132,8 @@ RULES = {
         "unknown where published stiffnesses of such ropes let it stretch by more than 2 % of the "
         "depth of the water; a warning where it is measured under more than its working load, or "
         "a fifth of its breaking load",
-        "A default of this program: a sounding is worth as much; ropes are measured under a small "
-        "load",
+        "A default of this program: a sounding errs by as much; ropes are measured under "
+        "a small load",
     ),
     "fish-bite": RuleText(
         "Fish bite",
@@ -179,9 +179,8 @@ RULES = {
         "tension",
         "H",
         "friction × (weight in water / 1.5 − V)",
-        "The horizontal part of that rule: H ≤ friction (weight in water / 1.5 - V), friction "
-        "0.6 of a "
-        "deadweight",
+        "The horizontal part of that rule: H ≤ friction (weight in water / 1.5 - V), friction 0.6 "
+        "of a deadweight",
         figures=("weight", "density"),
     ),
     "slack": RuleText(
@@ -253,8 +252,8 @@ RULES = {
     "as-deployed": RuleText(
         "As deployed",
         "depth",
-        "how far the depth and the lengths of `deployed` bring the top of the upright line from "
-        "where it was designed to be",
+        "how far the depth and lengths of `deployed` move the top of the upright line "
+        "from its design depth",
         "the error of a sounding, 1 m and 2.3 % of the depth: a warning",
         "IHO S-44, order 2: the error of a sounding, 95 %",
         _ONCE,

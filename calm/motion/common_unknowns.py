@@ -5,7 +5,8 @@ would bend the factors and the datum instead. So every way the sensors may hang 
 its own: all as the file says, or one or two of them elsewhere, throughout or from the time on at
 which their record says so most clearly. The pressures weigh these ways, and the mean and the
 covariance of the mixture are taken. Where two sensors cannot tell which of them it is, the
-covariance is as wide as that.
+covariance is as wide as that. A sensor may drift instead: its error grows over the record, or
+settles early in it.
 """
 
 from __future__ import annotations
@@ -41,7 +42,8 @@ class Common:
     offset : (s,) of the sensors [m]
     moved : (s,) how far below its place in the file a sensor hangs, along the line at rest [m]
     since : (s,) the first time at which it does; NaT where it never does
-    elsewhere : (s,) probability that it does
+    until : (s,) the time up to which it drifts by `moved`, no clamp having slipped; NaT of others
+    elsewhere : (s,) probability that it does, or drifts
     covariance : (q, q)
     scale : of the errors of the currents, on those of `calm.motion.common_unknowns`
     gap : (g, g) error of the logarithm of the factor on a group of levels whose currents are taken
@@ -63,6 +65,7 @@ class Common:
     widened: float = 1.0
     worst: float = 0.07
     law: SpeedLaw | None = None
+    until: NDArray[np.datetime64] | None = None
 
     @property
     def value(self) -> Floats:
@@ -85,6 +88,9 @@ class Common:
         result = np.zeros((len(time), len(point)))
         for j, (one, since) in enumerate(zip(point.tolist(), self.since, strict=True)):
             if np.isnat(since):
+                continue
+            if self.until is not None and not np.isnat(self.until[j]):
+                result[:, j] = np.clip((time - since) / (self.until[j] - since), 0.0, 1.0)
                 continue
             below = still - still[one]
             upper = int(np.where(below <= -REACH, below, -np.inf).argmax())
@@ -132,15 +138,52 @@ class Evidence:
         return matrix
 
 
-def first_time(evidence: Evidence, fall: Floats, mean: Floats, covariance: Floats) -> Integers:
-    """Return (s,) the time from which on each sensor most likely hangs elsewhere, if it does.
+NEVER = -1
+"""In place of a time, where a sensor has too few readings to hang elsewhere."""
+RAMPS: Mapping[int, float] = {-2: 1.0, -3: 0.3}
+"""In place of a time, where a sensor drifts: over which share of the record."""
 
-    0 is throughout; -1 where it has too few readings. Each is weighed beside all that is known
-    beforehand.
+
+def moves(first: Integers, fall: Floats, share: Floats) -> Floats:
+    """Return (n, s) change of what each sensor reads with how far it has moved or drifted.
 
     Parameters
     ----------
+    first : (s,) of `first_time`
     fall : (n, s) change of the depth of each sensor with how far it has moved
+    share : (n,) of the record at each time, 0 to 1
+    """
+    began = (np.arange(len(fall))[:, None] >= first) & (first >= 0)
+    result: Floats = np.where(began, fall, 0.0)
+    for code, part in RAMPS.items():
+        result = np.where(first == code, np.minimum(share / part, 1.0)[:, None], result)
+    return result
+
+
+def chance_of(first: int, times: int) -> tuple[float, float]:
+    """Return the logarithm of how likely a sensor moves or drifts so, and the deviation of it [m].
+
+    Parameters
+    ----------
+    first : of `first_time`
+    times : number of times at which a clamp may slip
+    """
+    if first in RAMPS:
+        return float(np.log(DRIFTS / len(RAMPS))), DRIFT
+    return float(np.log(SLIPPED / times if first else MISPLACED)), ELSEWHERE
+
+
+def first_time(
+    evidence: Evidence, fall: Floats, share: Floats, mean: Floats, covariance: Floats
+) -> Integers:
+    """Return (s,) the time from which on each sensor most likely hangs elsewhere, if it does.
+
+    0 is throughout; `NEVER` where it has too few readings; one of `RAMPS` where it is likelier to
+    drift than to have slipped at any time. Each is weighed beside all that is known beforehand.
+
+    Parameters
+    ----------
+    fall, share : as of `moves`
     mean, covariance : (q,), (q, q) of the unknowns beforehand, without moves
     """
     count = len(fall)
@@ -151,23 +194,38 @@ def first_time(evidence: Evidence, fall: Floats, mean: Floats, covariance: Float
     pull = evidence.pulls(evidence.seen, evidence.left).sum(axis=0)
     left = evidence.left - evidence.seen @ (inverse @ (pull + before @ mean))
     heavy = evidence.weight[:, None, None] * evidence.inverse
-    own = _from_there_on(fall * (heavy @ left[:, :, None])[:, :, 0])
-    cross = _from_there_on(evidence.seen.transpose(0, 2, 1) @ (heavy * fall[:, None, :]))
-    alone = _from_there_on(fall**2 * np.einsum("nss->ns", heavy))
-    size = np.maximum(alone - np.einsum("nqs,qr,nrs->ns", cross, inverse, cross), 0.0)
-    wide = ELSEWHERE**2
-    gain = 0.5 * own**2 / (size + 1.0 / wide) - 0.5 * np.log1p(wide * size)
+    pulls = (heavy @ left[:, :, None])[:, :, 0]
+    crossed = evidence.seen.transpose(0, 2, 1) @ heavy
+    single = np.einsum("nss->ns", heavy)
+
+    def gained(own: Floats, cross: Floats, alone: Floats, wide: float) -> Floats:
+        size = np.maximum(alone - np.einsum("nqs,qr,nrs->ns", cross, inverse, cross), 0.0)
+        gain: Floats = 0.5 * own**2 / (size + wide**-2) - 0.5 * np.log1p(wide**2 * size)
+        return gain
+
+    steps = _from_there_on(fall * pulls), _from_there_on(crossed * fall[:, None, :])
+    gain = gained(*steps, _from_there_on(fall**2 * single), ELSEWHERE)
     gain[1:] += np.log(SLIPPED / count)
     gain[0] += np.log(MISPLACED)
     after = _from_there_on(evidence.known.astype(float))
     can = (after >= FEWEST) & (after[:1] - after >= FEWEST)
     can[0] = after[0] >= FEWEST
-    first: Integers = np.where(can.any(axis=0), np.where(can, gain, -np.inf).argmax(axis=0), -1)
+    gain = np.where(can, gain, -np.inf)
+    first: Integers = np.where(can.any(axis=0), gain.argmax(axis=0), NEVER)
+    best = gain.max(axis=0) + np.where(first > 0, np.log(count), 0.0)  # of a slip at any time
+    for code, part in RAMPS.items():
+        ramp = np.minimum(share / part, 1.0)[:, None]
+        own, cross = (ramp * pulls).sum(axis=0), (crossed * ramp[:, :, None]).sum(axis=0)
+        alone = (ramp**2 * single).sum(axis=0)
+        chance, wide = chance_of(code, count)
+        drift = gained(own[None], cross[None], alone[None], wide)[0]
+        better = (drift + chance > best) & (after[0] >= 2 * FEWEST)
+        first, best = np.where(better, code, first), np.where(better, drift + chance, best)
     return first
 
 
 def fits(
-    evidence: Evidence, fall: Floats, mean: Floats, covariance: Floats
+    evidence: Evidence, fall: Floats, share: Floats, mean: Floats, covariance: Floats
 ) -> Iterator[tuple[bool, Floats, float]]:
     """Yield the best fits where no sensor hangs elsewhere, and then where one does.
 
@@ -176,23 +234,23 @@ def fits(
 
     Parameters
     ----------
-    fall, mean, covariance : as of `first_time`
+    fall, share, mean, covariance : as of `first_time`
 
     Yields
     ------
     Whether one does; (n, s) what is left [m]; the logarithm of how likely this is besides.
     """
     count, _, fixed = evidence.seen.shape
-    first = first_time(evidence, fall, mean, covariance)
-    for sensor in (None, *np.flatnonzero(first >= 0).tolist()):
+    first = first_time(evidence, fall, share, mean, covariance)
+    move = moves(first, fall, share)
+    for sensor in (None, *np.flatnonzero(first != NEVER).tolist()):
         seen, spread, odds = evidence.seen, covariance, 0.0
         if sensor is not None:
-            move = np.zeros((*fall.shape, 1))
-            move[first[sensor] :, sensor, 0] = fall[first[sensor] :, sensor]
-            seen = np.concatenate([seen, move], axis=2)
+            alone = move * (np.arange(fall.shape[1]) == sensor)
+            seen = np.concatenate([seen, alone[:, :, None]], axis=2)
             spread = np.pad(spread, (0, 1))
-            spread[fixed, fixed] = ELSEWHERE**2
-            odds = np.log(SLIPPED / count if first[sensor] else MISPLACED)
+            odds, wide = chance_of(int(first[sensor]), count)
+            spread[fixed, fixed] = wide**2
         before = np.linalg.inv(spread)
         matrix, pull = evidence.normal(seen) + before, evidence.pulls(seen, evidence.left)
         found = np.linalg.solve(matrix, pull.sum(axis=0) + before[:, :fixed] @ mean)
@@ -234,16 +292,15 @@ def hanging_sensors(
     sensors, count = len(first), len(mean)
     offset, moved = count - 2 * sensors, count - sensors
     told = []
-    for way in _ways(np.flatnonzero(first >= 0)):
+    for way in _ways(np.flatnonzero(first != NEVER)):
         spread = covariance.copy()
         chance = 0.0
         for sensor in way:
-            spread[moved + sensor, moved + sensor] = ELSEWHERE**2
-            if first[sensor]:
-                chance += np.log(SLIPPED / times)
-            else:  # its zero may be wrong as well as its place
+            likely, wide = chance_of(int(first[sensor]), times)
+            spread[moved + sensor, moved + sensor] = wide**2
+            chance += likely
+            if not first[sensor]:  # its zero may be wrong as well as its place
                 spread[offset + sensor, offset + sensor] += ELSEWHERE**2
-                chance += np.log(MISPLACED)
         free = np.flatnonzero(np.diag(spread) > 0.0)
         part = np.ix_(free, free)
         before = np.linalg.inv(spread[part])
@@ -312,6 +369,8 @@ OFFSET = 1.0
 ELSEWHERE, MISPLACED, SLIPPED = 20.0, 0.01, 0.01
 """How far from its place in the file a sensor is that is not there [m], and the probabilities that
 it is so from the beginning, and that its clamp slips during the record."""
+DRIFT, DRIFTS = 5.0, 0.01
+"""Of what a sensor drifts by over the record [m], and the probability that it does."""
 TIDE = 1.0
 """Of tide and air pressure [m]; where the sea level is given, `RESIDUAL_TIDE`."""
 RESIDUAL_TIDE = 0.15

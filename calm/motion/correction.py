@@ -193,7 +193,7 @@ class Task:
         `residual`, and of measured currents `current_factor`, `current_doubt`, `plain_depth`.
         """
         one = self.measured.at(slice(start, stop))
-        moments = LineResponse(one, *self._forwards)
+        moments = LineResponse(one, *self.forwards)
         law = self.common.law
         state = None if law is None else unknown_state(moments, self.common)
         beside = self._neighbours[0][start:stop], self._neighbours[1][start:stop]
@@ -231,7 +231,7 @@ class Task:
         return profiles, columns
 
     @cached_property
-    def _forwards(self) -> tuple[Forward, dict[str, Forward]]:
+    def forwards(self) -> tuple[Forward, dict[str, Forward]]:
         return forwards_of(self.mooring, self.common)
 
     @cached_property

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -14,7 +14,8 @@ from calm.batch.finished import open_result
 from calm.case import Mooring
 from calm.dataset.discovery import hashed
 from calm.errors import UsageError, not_among, unknown
-from calm.motion.correction import MeasuredRecord, run_motion, without
+from calm.motion.correction import MeasuredRecord, Task, run_motion, without
+from calm.motion.diagnosis import diagnosed
 from calm.motion.line_response import FACTORS, Forward
 from calm.motion.matching import (
     instruments_of,
@@ -26,8 +27,8 @@ from calm.motion.matching import (
     unusable,
 )
 from calm.motion.measurements import MooringMeasurements, joined, read_currents
-from calm.motion.remarks import Agreement
-from calm.motion.sensors import parse_flags, read_sea_level, read_sensors, split_label
+from calm.motion.remarks import ALL, Agreement, Fault
+from calm.motion.sensors import Sensor, parse_flags, read_sea_level, read_sensors, split_label
 from calm.motion.study import HeldOut, Study, cross_validated, judged, prepare, several
 
 if TYPE_CHECKING:
@@ -66,6 +67,7 @@ def read_measured(
     gap: np.timedelta64 = GAP,
     sea_level: Path | None = None,
     declination: float | None = None,
+    faults: Sequence[Fault] = (),
 ) -> tuple[MooringMeasurements, list[str], dict[str, str]]:
     """Return what was measured, at common times, with notes on what was read and the source files.
 
@@ -77,6 +79,7 @@ def read_measured(
     gap : longest time between two values that are interpolated
     sea_level : file of the height of the sea surface
     declination : added to the directions of the currents [degrees]
+    faults : of the sensors, that are taken off
 
     Raises
     ------
@@ -113,7 +116,7 @@ def read_measured(
     notes += dict.fromkeys(f"{one.source}: {one.note}" for one in sensors if one.note)
     used = []
     for i, at in points.items():
-        one, said = plausible(sensors[i], float(still[at]), seabed)
+        one, said = plausible(corrected(sensors[i], faults), float(still[at]), seabed)
         used.append(one)
         notes += said
     notes += [
@@ -134,7 +137,68 @@ def read_measured(
         "currents": ", ".join(hashed(split_label(one)[1]) for one in currents),
         "pressures": ", ".join(hashed(split_label(one)[1]) for one in pressures),
     }
+    if faults:
+        source["corrected"] = "taken off: " + "; ".join(one.sentence() for one in faults)
     return measured, notes, source
+
+
+CORRECTABLE = ("clock", "gain", "offset", "drift")
+"""What can be taken off what a sensor reads, of `calm.motion.diagnosis.Fault`."""
+
+
+def corrected(sensor: Sensor, faults: Sequence[Fault]) -> Sensor:
+    """Return what a sensor would have read without its faults."""
+    time, depth = sensor.time, sensor.depth
+    for one in faults:
+        if one.label not in (ALL, sensor.label):
+            continue
+        if one.kind == "clock":
+            time = time - np.timedelta64(round(one.value * 3.6e12), "ns")
+        elif one.kind == "gain":
+            depth = depth / one.value
+        elif one.kind == "offset":
+            depth = depth - one.value
+        else:
+            share = (time - one.since) / (one.until - one.since)
+            depth = depth - one.value * np.clip(share, 0.0, 1.0)
+    return replace(sensor, time=time, depth=depth)
+
+
+Read = tuple[MooringMeasurements, list[str], dict[str, str]]
+
+
+def put_right(
+    task: Task,
+    read: Callable[[Sequence[Fault]], Read],
+    kinds: Sequence[str],
+    again: Callable[[MooringMeasurements], Task],
+) -> tuple[Task, Read | None, tuple[Fault, ...]]:
+    """Take off what is wrong with the sensors, and estimate again what is common to the record.
+
+    Parameters
+    ----------
+    task : with the sensors as they are
+    read : reads the files without some faults
+    kinds : of `CORRECTABLE`, those that are taken off where nothing else is as likely
+    again : estimates what is common to the record
+
+    Returns
+    -------
+    The task; what was read without the faults, None where there are none; the faults.
+
+    Raises
+    ------
+    UsageError
+        A kind is none of these.
+    """
+    for kind in kinds:
+        if kind not in CORRECTABLE:
+            raise UsageError(unknown(f"--correct: `{kind}` cannot be taken off", kind, CORRECTABLE))
+    faults = [one for one in diagnosed(task) if one.kind in kinds and one.certain] if kinds else []
+    if not faults:
+        return task, None, ()
+    whole = read(faults)
+    return again(whole[0]), whole, tuple(replace(one, corrected=True) for one in faults)
 
 
 @dataclass(frozen=True, repr=False)
@@ -165,6 +229,11 @@ class MotionEstimate:
     def held_out(self) -> Mapping[str, HeldOut]:
         """Return how well the depths of each hidden sensor were found, by label."""
         return {one.label: one for one in self.study.held_out}
+
+    @property
+    def diagnosis(self) -> tuple[Fault, ...]:
+        """Return what is wrong with the sensors, with sizes and odds."""
+        return self.study.diagnosis
 
     @property
     def remarks(self) -> tuple[str, ...]:
@@ -208,6 +277,7 @@ def estimate_motion(
     flags: Sequence[int] = (1, 2),
     gap: float | None = None,
     declination: float | None = None,
+    correct: Sequence[str] = (),
     workers: int | None = None,
 ) -> MotionEstimate:
     """Estimate the depth of every part of a mooring at every time, as ``calm motion`` does.
@@ -226,6 +296,7 @@ def estimate_motion(
     flags : quality flags of the pressures that count as measured
     gap : longest time between two values that are interpolated [s]; two hours where not given
     declination : added to the directions of the currents [degrees]
+    correct : what is taken off where a sensor is wrong: `clock`, `gain`, `offset`, `drift`
     workers : threads; one for each processor that may be used where not given
 
     Raises
@@ -237,27 +308,36 @@ def estimate_motion(
         kind = type(mooring).__name__
         raise TypeError(f"a Mooring is needed, as calm.load gives it, not a {kind}")
     names = fitted(fit, bool(currents))
-    measured, notes, source = read_measured(
-        mooring,
-        [str(path) for path in pressures],
-        [str(path) for path in currents],
-        match,
-        ",".join(map(str, flags)),
-        GAP if gap is None else np.timedelta64(round(gap * 1e9), "ns"),
-        None if sea_level is None else Path(sea_level),
-        declination,
-    )
+
+    def read(faults: Sequence[Fault] = ()) -> Read:
+        return read_measured(
+            mooring,
+            [str(path) for path in pressures],
+            [str(path) for path in currents],
+            match,
+            ",".join(map(str, flags)),
+            GAP if gap is None else np.timedelta64(round(gap * 1e9), "ns"),
+            None if sea_level is None else Path(sea_level),
+            declination,
+            faults,
+        )
+
+    def begin(measured: MooringMeasurements) -> Task:
+        return prepare(mooring, measured, names, hold_out)
+
+    measured, notes, source = read()
     if cross_validate:
         several(measured, hold_out)
-    task = prepare(mooring, measured, names, hold_out)
-    options = {"fit": sorted(names), "hold_out": sorted(hold_out)}
+    task, better, faults = put_right(begin(measured), read, correct, begin)
+    measured, notes, source = better or (measured, notes, source)
+    options = {"fit": sorted(names), "hold_out": sorted(hold_out), "correct": sorted(correct)}
     with TemporaryDirectory() as folder:
         output = Path(folder) / "motion.nc"
         record = MeasuredRecord(measured, source, notes)
         run_motion(task, record, output, options, workers=workers)
         with open_result(output) as kept:
             dataset = kept.load()
-    study = judged(task, measured, dataset)
+    study = judged(task, measured, dataset, (*faults, *diagnosed(task)))
     if cross_validate:
         each = cross_validated(mooring, measured, names, hold_out, lambda _: None, workers)
         study = replace(study, held_out=(*study.held_out, *each))

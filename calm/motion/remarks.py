@@ -1,4 +1,4 @@
-"""How well depths are computed, and remarks on sensors and currents that are doubtful by that."""
+"""How well depths are computed, and what is said of sensors and currents that are wrong."""
 
 from __future__ import annotations
 
@@ -14,136 +14,77 @@ from calm.physics.line import Floats, Integers
 
 Times = NDArray[np.datetime64]
 
-LEAST = 1.5
-"""A step or a drift that is named [m], at least."""
-CLEAR = 6.0
-"""And so many standard errors."""
-SHARE = 0.6
-"""Share of the variance of the residuals that it explains, at least."""
-FEWEST = 8
-"""Times on either side of a step."""
 FALSE = 0.5
 """Probability from which the current of a level is named as false."""
-CERTAIN, LIKELY = 0.95, 0.5
-"""Probabilities that a sensor hangs elsewhere from which it is named alone, and named at all."""
+ALL = "all sensors"
+LIKELY = 20.0
+"""Odds from which something is said to be wrong."""
 FAR_OFFSET = 2.5
-"""Offsets of a sensor, or of all alike, that are named, in deviations of what is expected."""
-FURTHEST_CLOCK, FEWEST_TOGETHER, EXPLAINED, SHARED, AS_WELL = 13.0, 40, 0.5, 0.85, 0.02
-"""Hours by which clocks are compared, and times for that; the share of the variance that a shift
-leaves of one sensor, and of each of several that agree; how much less a shorter shift may
-explain."""
-LEAST_SHARE, CLEARER = 0.01, 0.2
-"""Share of the depth that is named as a gain, and how much better it explains what is off than the
-same for all."""
+"""Offset of all sensors that is named, in deviations of what is expected."""
 AIR = 10.1
 """What the weight of the air adds to depths by pressure [m]: 1013 hPa."""
 
 
-def sensor_remarks(
-    labels: Sequence[str],
-    time: Times,
-    residual: Floats,
-    down: Floats,
-    common: Common,
-) -> list[str]:
-    """Return sentences on sensors that drift, clamps that slipped, offsets that are too large.
+@dataclass(frozen=True)
+class Fault:
+    """Hold one thing that is wrong.
 
-    They are looked for in the calmer half of the times, where the currents explain little.
-
-    Parameters
+    Attributes
     ----------
-    time : (n,)
-    residual : (n, s) measured less estimated depths [m]
-    down : (n,) knockdown [m]
-    common : offsets of the sensors, and how far they have moved
+    label : of the sensor; `ALL` where it is all of them alike
+    kind : `clock`, `gain`, `offset`, `drift`, `slip` or `exchanged`
+    value, low, high : with the ends of its interval of 95 %: how late its times are [h]; factor on
+        its depths; how much too deep it reads, what that grows to, or how far down the line it has
+        moved [m]; 0 of what is exchanged
+    odds : of this against all else that it may be, and against nothing
+    since : from when on its clamp has slipped, or it drifts; NaT of others
+    until : up to when it drifts; NaT of others
+    other : label of the sensor that it is exchanged with; empty otherwise
+    rival : what it may be as well, where that is not much less likely; empty otherwise
+    corrected : whether it has been taken off
     """
-    throughout = np.isin(common.since, time[:1])
-    said = []
-    known = np.isfinite(down)
-    calm = known & (down <= (np.median(down[known]) if known.any() else 0.0))
-    changes = []
-    for j, label in enumerate(labels):
-        mine = calm & np.isfinite(residual[:, j])
-        found = _change(time[mine], residual[mine, j])
-        if found is not None:
-            changes.append((abs(found[0]), label, found))
-    if changes:
-        # what one sensor does wrong shows in the others the other way round
-        _, label, (size, kind, when) = max(changes)
-        among = _or_another(label, labels, common)
-        if kind == "step":
-            said.append(
-                f"{label}: steps by {size:+.1f} m about {np.datetime_as_string(when, 'm')}: a "
-                f"clamp that slipped{among}"
-            )
-        else:
-            j = labels.index(label)
-            slipped = ""
-            if not throughout[j] and common.elsewhere[j] > LIKELY:
-                slipped = (
-                    f", or its clamp slipped by {common.moved[j]:+.1f} m about "
-                    f"{np.datetime_as_string(common.since[j], 'm')}"
-                )
-            said.append(f"{label}: drifts by {size:+.1f} m over the record{slipped}{among}")
-    for j, label in enumerate(labels):
-        offset = common.offset[j] + common.moved[j] * throughout[j]
-        if abs(offset) > FAR_OFFSET * common_unknowns.OFFSET:
-            said.append(
-                f"{label}: {offset:+.1f} m off throughout: its zero, or a length or a place on the "
-                f"line that is wrong{_or_another(label, labels, common)}"
-            )
-        elif (
-            not throughout[j]
-            and common.elsewhere[j] > LIKELY
-            and not any(one.startswith(f"{label}: ") for one in said)
-        ):
-            said.append(
-                f"{label}: hangs {abs(common.moved[j]):.1f} m {_way(common.moved[j])} its place "
-                f"from {np.datetime_as_string(common.since[j], 'm')} on: a clamp that slipped"
-            )
-    return said
 
+    label: str
+    kind: str
+    value: float
+    low: float
+    high: float
+    odds: float
+    since: np.datetime64
+    until: np.datetime64
+    other: str = ""
+    rival: str = ""
+    corrected: bool = False
 
-def _or_another(label: str, labels: Sequence[str], common: Common) -> str:
-    """Return which other sensor it may be as well, as far as the pressures can tell."""
-    if common.elsewhere[labels.index(label)] > CERTAIN:
-        return ""
-    pairs = zip(labels, common.elsewhere, strict=True)
-    others = [other for other, chance in pairs if chance > 1.0 - CERTAIN and other != label]
-    if not others and len(labels) == 2:
-        others = [other for other in labels if other != label]
-    named = ", ".join(others)
-    return f", or {named} the other way: they cannot tell" if named else ""
+    def same(self, other: Fault) -> bool:
+        """Whether it is the same of the same sensor, by whatever size."""
+        return (self.label, self.kind, self.other) == (other.label, other.kind, other.other)
 
+    @property
+    def certain(self) -> bool:
+        """Whether it can be nothing else."""
+        return self.odds >= LIKELY
 
-def _way(moved: float) -> str:
-    return "below" if moved > 0.0 else "above"
-
-
-def _change(time: Times, residual: Floats) -> tuple[float, str, np.datetime64] | None:
-    """Return a step or a drift: its size [m], which, and when; None where there is none that is
-    clear.
-    """
-    count = len(residual)
-    if count < 2 * FEWEST:
-        return None
-    whole = float(((residual - residual.mean()) ** 2).sum())
-    hours = (time - time[0]) / np.timedelta64(1, "h")
-    rate, start = np.polyfit(hours, residual, 1)
-    left_by_drift = float(((residual - rate * hours - start) ** 2).sum())
-    total = np.cumsum(residual)
-    at = np.arange(FEWEST, count - FEWEST + 1)
-    before, after = total[at - 1] / at, (total[-1] - total[at - 1]) / (count - at)
-    gained = (after - before) ** 2 * at * (count - at) / count
-    best = int(np.argmax(gained))
-    left_by_step = whole - float(gained[best])
-    step = left_by_step <= left_by_drift
-    left = left_by_step if step else left_by_drift
-    size = float(after[best] - before[best]) if step else float(rate * hours[-1])
-    error = np.sqrt(left / count) * np.sqrt(12.0 / count)
-    if abs(size) < max(LEAST, CLEAR * error) or left > (1.0 - SHARE) * whole:
-        return None
-    return size, "step" if step else "drift", time[at[best] - 1]
+    def sentence(self, rival: bool = True) -> str:
+        """Return what is said of it; without the other things that it may be unless asked for."""
+        band = f"({self.low:+.2f} to {self.high:+.2f})"
+        clock = "their clocks are" if self.label == ALL else "its clock is"
+        way = "late" if self.value > 0.0 else "early"
+        when, until = (np.datetime_as_string(one, "m") for one in (self.since, self.until))
+        below = "below" if self.value > 0.0 else "above"
+        text = {
+            "clock": f"{clock} {abs(self.value):.2f} h {way} {band}",
+            "gain": f"reads {self.value:.3f} times the depth ({self.low:.3f} to {self.high:.3f}): "
+            "the gain of the pressures, or their unit, is wrong",
+            "offset": f"{self.value:+.1f} m off throughout: its zero, or a length or a place on "
+            "the line that is wrong",
+            "drift": f"drifts by {self.value:+.1f} m {band} until {until}",
+            "slip": f"hangs {abs(self.value):.1f} m {below} its place from {when} on: a clamp that "
+            "slipped",
+            "exchanged": f"its label and that of {self.other} are exchanged",
+        }[self.kind]
+        also = f", or {self.rival}: they cannot tell" if rival and self.rival else ""
+        return f"{self.label}: {text}{also}"
 
 
 def false_current_times(names: Sequence[str], time: Times, doubt: Floats) -> dict[str, Times]:
@@ -164,89 +105,6 @@ def current_remarks(false: Mapping[str, Times], count: int) -> list[str]:
         f"current at {name}: its direction or speed looks false at {len(when)} of {count} times, "
         f"first at {np.datetime_as_string(when[0], 'm')}"
         for name, when in false.items()
-    ]
-
-
-def clock_remarks(labels: Sequence[str], time: Times, depth: Floats, plain: Floats) -> list[str]:
-    """Return sentences where the currents explain the depths better some hours earlier or later.
-
-    Below the lowest sensor's depths the height of the sea surface is taken off.
-
-    Parameters
-    ----------
-    labels : of the sensors, from the top down
-    time : (n,)
-    depth, plain : (n, s) measured, and by the currents alone [m]
-    """
-    if len(time) < FEWEST_TOGETHER:
-        return []
-    step = float(np.median(np.diff(time)) / np.timedelta64(1, "h"))
-    if len(labels) > 1:
-        labels, depth, plain = labels[:-1], depth - depth[:, -1:], plain - plain[:, -1:]
-    reach = int(FURTHEST_CLOCK / step) if step > 0.0 else 0
-    lags = range(-reach, reach + 1)
-    found: dict[int, list[tuple[str, float, float, bool]]] = {}
-    for j, label in enumerate(labels):
-        alike = np.array([_alike(depth[:, j], plain[:, j], lag) for lag in lags])
-        peaks = np.flatnonzero(
-            (alike >= np.append(alike[1:], 0)) & (alike > np.append(0, alike[:-1]))
-        )
-        near = [at for at in peaks if alike[at] > alike.max() - AS_WELL]  # of a tide, many are
-        best = min(near, key=lambda at: abs(lags[at]), default=reach)
-        now, most = float(alike[reach]), float(alike[best])
-        left = (1.0 - most**2) / (1.0 - max(now, 0.0) ** 2) if now < 1.0 else 1.0
-        if best != reach and left < SHARED:
-            clear = left < EXPLAINED and most > now + 0.1
-            found.setdefault(lags[best], []).append((label, now, most, clear))
-    said = []
-    for lag, sensors in found.items():
-        if not any(clear for *_, clear in sensors) and len(sensors) < max(2, len(labels) / 2):
-            continue
-        whose = ", ".join(label for label, *_ in sensors)
-        which = "the pressures" if len(sensors) == len(labels) else whose
-        _, now, most, _ = max(sensors, key=lambda one: one[2])
-        said.append(
-            f"clocks: {which} some {abs(lag) * step:.3g} h {'behind' if lag > 0 else 'ahead of'} "
-            f"the currents: shifted so, r = {most:.2f} in place of {now:.2f}"
-        )
-    return said
-
-
-def _alike(depth: Floats, plain: Floats, lag: int) -> float:
-    """Return the correlation of depths with those computed so many times before; 0 of few, or of
-    such as differ in size.
-    """
-    count = len(depth) - abs(lag)
-    one, other = depth[max(lag, 0) :][:count], plain[max(-lag, 0) :][:count]
-    both = np.isfinite(one) & np.isfinite(other)
-    if both.sum() < FEWEST_TOGETHER:
-        return 0.0
-    sizes = float(one[both].std()), float(other[both].std())
-    if min(sizes) < LEAST or not 0.5 < sizes[0] / sizes[1] < 2.0:
-        return 0.0
-    return float(np.corrcoef(one[both], other[both])[0, 1])
-
-
-def gain_remarks(labels: Sequence[str], depth: Floats, plain: Floats) -> list[str]:
-    """Return a sentence where all pressures are too great, or too small, by the same share.
-
-    Parameters
-    ----------
-    labels : of the sensors
-    depth, plain : (n, s) measured, and by the currents alone, at calm times [m]
-    """
-    place, off = np.nanmedian(plain, axis=0), np.nanmedian(depth - plain, axis=0)
-    if len(labels) < 2 or not np.isfinite(off).all():
-        return []
-    law = np.stack([place, np.ones_like(place)], axis=1)[:, : 1 + (len(labels) > 2)]
-    found = np.linalg.lstsq(law, off)[0]
-    share = float(found[0])
-    by_share, alike = ((left**2).sum() for left in (off - law @ found, off - off.mean()))
-    if abs(share) < LEAST_SHARE or alike < (2.0 * LEAST) ** 2 or by_share > CLEARER * alike:
-        return []
-    return [
-        f"all sensors: {100.0 * share:+.1f} % of their depth off: the gain of the pressures, or "
-        "their unit, is wrong"
     ]
 
 

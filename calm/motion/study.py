@@ -13,23 +13,22 @@ from calm.case import Mooring
 from calm.errors import UsageError, unknown
 from calm.motion.correction import Task, estimate_in_memory, without
 from calm.motion.line_response import Forward
-from calm.motion.matching import labels_of
+from calm.motion.matching import instruments_of, labels_of
 from calm.motion.measurements import MooringMeasurements, level_names
 from calm.motion.remarks import (
+    ALL,
     BAND,
     Agreement,
+    Fault,
     agreement,
     calm_times,
-    clock_remarks,
     coverage,
     current_remarks,
     datum_remarks,
     difference,
     false_current_times,
-    gain_remarks,
     linear,
     rms,
-    sensor_remarks,
 )
 from calm.motion.unknown_currents import learn_currents, with_knots
 from calm.motion.whole_record import estimate_common
@@ -70,6 +69,7 @@ class Study:
     factors : of each name its value and the ends of its interval of 95 %
     fit, plain : agreement of each used sensor, of what is estimated and of the currents alone
     held_out : of the hidden ones
+    diagnosis : what is wrong with sensors
     remarks : what to doubt, in sentences
     false : times at which the current of a level looks false, by its name
     """
@@ -79,6 +79,7 @@ class Study:
     fit: Mapping[str, Agreement]
     plain: Mapping[str, Agreement]
     held_out: tuple[HeldOut, ...]
+    diagnosis: tuple[Fault, ...]
     remarks: tuple[str, ...]
     false: Mapping[str, NDArray[np.datetime64]]
 
@@ -133,13 +134,16 @@ def intervals(task: Task) -> dict[str, tuple[float, float, float]]:
     }
 
 
-def judged(task: Task, measured: MooringMeasurements, result: Dataset) -> Study:
+def judged(
+    task: Task, measured: MooringMeasurements, result: Dataset, diagnosis: Sequence[Fault] = ()
+) -> Study:
     """Return how a finished result agrees with all that was measured.
 
     Parameters
     ----------
     measured : with the sensors that were hidden
     result : of `calm.motion.correction.run_motion`
+    diagnosis : what is wrong with sensors
     """
     used = task.measured
     residual = np.asarray(result["residual"].values, np.float64)
@@ -161,24 +165,22 @@ def judged(task: Task, measured: MooringMeasurements, result: Dataset) -> Study:
         point = int(measured.point[measured.label.index(label)])
         depth, spread = depths_at(result, point)
         held.append(judge_hidden(measured, used, label, depth, spread, still))
-    said = sensor_remarks(used.label, used.time, residual, down, task.common)
+    said = [f"{one.sentence()}{'; it is taken off' if one.corrected else ''}" for one in diagnosis]
     false: Mapping[str, NDArray[np.datetime64]] = {}
-    gain: list[str] = []
     if plain is not None:
         names = level_names(used, labels_of(task.mooring))
         false = false_current_times(names, used.time, np.asarray(result["current_doubt"].values))
         said += current_remarks(false, len(used.time))
-        calm = calm_times(down, every)
-        gain = gain_remarks(used.label, used.depth[calm], plain[calm])
-    said += gain or datum_remarks(task.common, float(task.mooring.water.depth))
-    if plain is not None:
-        said += clock_remarks(used.label, used.time, used.depth, plain)
+    if not any(one.label == ALL and one.kind == "gain" for one in diagnosis):
+        said += datum_remarks(task.common, float(task.mooring.water.depth))
     if task.common.widened > 1.0:
         said.append(
             "the pressures miss the computed depths by more than all errors that are allowed "
             f"for: the bands are widened {task.common.widened:.2g} times"
         )
-    return Study(task, intervals(task), fit_of, plain_of, tuple(held), tuple(said), false)
+    return Study(
+        task, intervals(task), fit_of, plain_of, tuple(held), tuple(diagnosis), tuple(said), false
+    )
 
 
 def knockdown(used: MooringMeasurements) -> Floats:
@@ -272,8 +274,9 @@ class SensorSeries:
 
     Attributes
     ----------
-    hidden : whether it was hidden from the estimate
-    time, measured, estimated, spread : (n,) depths and standard deviation [m]
+    hidden : whether it was hidden from the estimate, or has no pressure
+    time, measured, estimated, spread : (n,) depths and standard deviation [m]; NaN where none was
+        measured
     plain : (n,) by the currents alone; None of a hidden sensor
     """
 
@@ -296,9 +299,9 @@ def depths_at(result: Dataset, point: int) -> tuple[Floats, Floats]:
 
 
 def series_of(
-    measured: MooringMeasurements, used: tuple[str, ...], result: Dataset
+    mooring: Mooring, measured: MooringMeasurements, used: tuple[str, ...], result: Dataset
 ) -> list[SensorSeries]:
-    """Return the depths of all sensors from the top down.
+    """Return the depths of all sensors from the top down, and then of the other instruments.
 
     Parameters
     ----------
@@ -316,4 +319,11 @@ def series_of(
         found.append(
             SensorSeries(label, hidden, measured.time, measured.depth[:, j], depth, spread, plain)
         )
+    labels, nothing = labels_of(mooring), np.full(len(measured.time), np.nan)
+    for point in instruments_of(mooring):
+        if point not in measured.point:
+            depth, spread = depths_at(result, point)
+            found.append(
+                SensorSeries(labels[point], True, measured.time, nothing, depth, spread, None)
+            )
     return found

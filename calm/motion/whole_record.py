@@ -3,16 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from calm.case import Mooring
 from calm.motion import common_unknowns
-from calm.motion.common_unknowns import Common, Evidence, first_time, fits, hanging_sensors
-from calm.motion.estimate import best_state
-from calm.motion.line_response import STEP, Forward, LineResponse, gap_errors
+from calm.motion.common_unknowns import (
+    RAMPS,
+    Common,
+    Evidence,
+    first_time,
+    fits,
+    hanging_sensors,
+    moves,
+)
+from calm.motion.estimate import Posterior, best_state
+from calm.motion.line_response import STEP, Forward, Linear, LineResponse, gap_errors
 from calm.motion.measurements import MooringMeasurements
 from calm.physics.line import Floats, Integers
 from calm.solve import expect_many
@@ -85,44 +93,25 @@ def estimate_common(
     ----------
     names : of `calm.motion.line_response.FACTORS`, those that are estimated
     """
-    part = measured.at(_chosen(measured))
+    part = measured.at(chosen_times(measured))
     known = assumed(mooring, part, names)
     if not len(part.time):
         return known
     expect_many(SOLVES)
-    common, sensors = known, len(part.label)
+    common, sensors, span = known, len(part.label), measured.time[[0, -1]]
     for _ in range(TURNS):
         moments = LineResponse(part, *forwards_of(mooring, common))
         here = best_state(moments, replace(common, covariance=np.zeros_like(known.covariance)))
-        good = np.isfinite(here.begin.depth).all(axis=1)
-        if not good.any():
+        found = linear_law(moments, common, here.begin, here.before, here.way.spread, span)
+        if not len(found.time):
             return known
-        slope = here.begin.slope[good][:, part.point]
-        currents = slope @ here.way.spread[good] @ slope.transpose(0, 2, 1)
-        down = here.begin.depth[good][:, part.point] - moments.forward.still[part.point]
-        bend = 0.5 * np.einsum("nss->ns", currents) / np.maximum(down, 1.0)
-        there = np.isfinite(part.depth[good])
-        left: Floats = np.where(there, here.before.innovation[good] - bend, 0.0)
-        expected = here.before.expected[good]
-        fixed = np.concatenate(
-            [
-                here.begin.common[good][:, part.point],
-                np.ones((*left.shape, 1)),
-                np.broadcast_to(np.eye(sensors), (*left.shape, sensors)),
-            ],
-            axis=2,
-        )
-        time = part.time[good]
-        depth, still = here.begin.depth[good], moments.forward.still
-        moves = common.fall(time, depth, still, part.point)
-        whole = fixed @ common.value[:-sensors] + moves * common.moved
-        raw: Floats = np.where(there, left + whole, 0.0)
-        begun = replace(known, since=np.full(sensors, measured.time[0]))
-        fall = begun.fall(time, depth, still, part.point)
+        raw, left, expected, currents = found.raw, found.left, found.expected, found.currents
+        fixed, there, fall, share = found.fixed, found.known, found.fall, found.share
         evidence = _evidence(raw, left, fixed, expected, there)
+        begun = replace(known, since=np.full(sensors, span[0]))
         scale, likely = _scale(left, expected, currents, common.scale)
         beside, best = 0.0, 0.0
-        for moved, rest, odds in fits(evidence, fall, *_unmoved(begun)):
+        for moved, rest, odds in fits(evidence, fall, share, *_unmoved(begun)):
             other, gained = _scale(rest, expected, currents, common.scale)
             if not moved:
                 if gained + odds > likely:
@@ -136,11 +125,87 @@ def estimate_common(
         alike = repeated(evidence.pulls(fixed, left)[:, 0]) if names else 1.0
         before = common.value
         begun = replace(begun, scale=scale, widened=_widened(left, expected, there))
-        common = _placed(begun, evidence, fall, time, alike)
+        common = _placed(begun, evidence, fall, found.time, share, alike)
         deviation = np.sqrt(np.diag(common.covariance))
         if (np.abs(common.value - before) <= ENOUGH * deviation).all():
             break
     return common
+
+
+@dataclass(frozen=True)
+class LinearLaw:
+    """What n times say of the unknowns of the whole record, by the slopes at a state.
+
+    Attributes
+    ----------
+    time, share : (n,) times, and the share of the record that is over by then
+    known : (n, s) whether there is a reading
+    raw, left : (n, s) measured less computed depths where the unknowns are 0, and as they are [m]
+    expected, currents : (n, s, s) covariance of `left`, and that part of it which is the currents'
+    fixed : (n, s, q) slopes with factors, datum and offsets
+    fall : (n, s) change of the depth of each sensor with how far it has moved throughout
+    """
+
+    time: NDArray[np.datetime64]
+    share: Floats
+    known: NDArray[np.bool_]
+    raw: Floats
+    left: Floats
+    expected: Floats
+    currents: Floats
+    fixed: Floats
+    fall: Floats
+
+
+def linear_law(
+    moments: LineResponse,
+    common: Common,
+    at: Linear,
+    found: Posterior,
+    spread: Floats,
+    span: NDArray[np.datetime64],
+) -> LinearLaw:
+    """Return what the times at which there is an equilibrium say.
+
+    Parameters
+    ----------
+    at, found : a state of the currents, and what the pressures make of it
+    spread : (n, g, g) prior covariance of the logarithms of the currents
+    span : first and last time of the record
+    """
+    part, still, sensors = moments.measured, moments.forward.still, len(moments.measured.label)
+    good = np.isfinite(at.depth).all(axis=1)
+    time, depth = part.time[good], at.depth[good]
+    slope = at.slope[good][:, part.point]
+    currents = slope @ spread[good] @ slope.transpose(0, 2, 1)
+    bend = np.zeros(currents.shape[:2])
+    if common.law is None:  # of what is computed at the currents as measured
+        down = np.maximum(depth[:, part.point] - still[part.point], 1.0)
+        bend = 0.5 * np.einsum("nss->ns", currents) / down
+    there = np.isfinite(part.depth[good])
+    left: Floats = np.where(there, found.innovation[good] - bend, 0.0)
+    fixed = np.concatenate(
+        [
+            at.common[good][:, part.point],
+            np.ones((*left.shape, 1)),
+            np.broadcast_to(np.eye(sensors), (*left.shape, sensors)),
+        ],
+        axis=2,
+    )
+    whole = fixed @ common.value[: fixed.shape[2]]
+    whole += common.fall(time, depth, still, part.point) * common.moved
+    begun = replace(common, since=np.full(sensors, span[0]), until=None)
+    return LinearLaw(
+        time,
+        (time - span[0]) / max(span[1] - span[0], np.timedelta64(1, "ns")),
+        there,
+        np.where(there, left + whole, 0.0),
+        left,
+        found.expected[good],
+        currents,
+        fixed,
+        begun.fall(time, depth, still, part.point),
+    )
 
 
 def _evidence(
@@ -179,21 +244,22 @@ def _memory(evidence: Evidence, left: Floats) -> float:
 
 
 def _placed(
-    known: Common, evidence: Evidence, fall: Floats, time: NDArray[np.datetime64], alike: float
-) -> Common:
+    known: Common, evidence: Evidence, fall: Floats, time: NDArray[np.datetime64], share: Floats,
+    alike: float,
+) -> Common:  # fmt: skip
     """Return what is common by the linear law of all times, over all ways the sensors may hang.
 
     Parameters
     ----------
     known : beforehand
     fall : (n, s) change of the depth of each sensor with how far down the line it has moved
-    time : (n,) of the evidence
+    time, share : (n,) of the evidence, and of the record, 0 to 1
     alike : so many times that follow each other have the same error, as far as factors go
     """
     sensors = fall.shape[1]
-    first = first_time(evidence, fall, *_unmoved(known))
-    fall = np.where(np.arange(len(time))[:, None] >= first, fall, 0.0)
-    seen = np.concatenate([evidence.seen, fall[:, :, None] * np.eye(sensors)], axis=2)
+    first = first_time(evidence, fall, share, *_unmoved(known))
+    gone = moves(first, fall, share)
+    seen = np.concatenate([evidence.seen, gone[:, :, None] * np.eye(sensors)], axis=2)
     normal, pull = evidence.normal(seen), evidence.pulls(seen, evidence.left).sum(axis=0)
     free = np.linalg.solve(normal + np.eye(len(normal)) / common_unknowns.ELSEWHERE**2, pull)
     longest = _memory(evidence, evidence.left - seen @ free)
@@ -211,14 +277,32 @@ def _placed(
         offset=offset,
         moved=moved,
         since=np.where(first > 0, time[first], known.since),
+        until=_until(first, known.since, time, share),
         elsewhere=found.elsewhere,
         covariance=found.covariance,
     )
 
 
-def _chosen(measured: MooringMeasurements) -> Integers:
-    """Return times that have a current and a pressure, evenly spread where they are many."""
-    currents = np.isfinite(measured.u) & np.isfinite(measured.v)
+def _until(
+    first: Integers, since: NDArray[np.datetime64], time: NDArray[np.datetime64], share: Floats
+) -> NDArray[np.datetime64]:
+    """Return (s,) the times up to which sensors drift; NaT of those that do not."""
+    until = np.full(len(first), "NaT", "M8[ns]")
+    if share[-1] > 0.0:
+        whole = (time[-1] - since) / share[-1]
+        for code, part in RAMPS.items():
+            until = np.where(first == code, since + part * whole, until)
+    return until
+
+
+def chosen_times(measured: MooringMeasurements, alone: bool = False) -> Integers:
+    """Return times that have a current and a pressure, evenly spread where they are many.
+
+    Parameters
+    ----------
+    alone : whether a pressure is enough
+    """
+    currents = (np.isfinite(measured.u) & np.isfinite(measured.v)) | alone
     used = np.flatnonzero(np.isfinite(measured.depth).any(axis=1) & currents.any(axis=1))
     if len(used) <= MOST_TIMES:
         return used

@@ -177,8 +177,9 @@ def locate(
     )
     if missed > MISSED * reach:
         raise UsageError(
-            f"{survey.path}: the ranges meet nowhere: the place that fits best is missed by "
-            f"{missed:.0f} m, by ranges of {reach:.0f} m; are positions and ranges of one survey?"
+            f"{survey.path}: the ranges do not intersect: the best fit misses them by "
+            f"{missed:.0f} m, for ranges of {reach:.0f} m; are positions and ranges from one "
+            "survey?"
         )
     x, other, meant = _nearer(model, x, another_place(model, x, used), near)
     residuals = model.residuals(x)
@@ -188,9 +189,9 @@ def locate(
     latitude, longitude, found = frame.position(place)
     if depth is None and found - survey.transducer < LEVEL * reach:
         raise UsageError(
-            f"{survey.path}: what answers would be {found:.1f} m deep, level with the ship: are "
-            "these horizontal distances? Distances from the transducer to what answers are needed, "
-            "or --depth"
+            f"{survey.path}: the transponder would be {found:.1f} m deep, level with the "
+            "ship: are these horizontal distances? Slant ranges from the transducer are "
+            "needed, or --depth"
         )
     major, minor, bearing, depth_95 = _intervals(
         model.jacobian(x)[used], rms, freedom, depth is not None, float(model.measured(x).max())

@@ -255,13 +255,13 @@ def _doubled(timed: bool, factor: float) -> str:
         one_way = (
             "one-way times: two-way times are needed, there and back"
             if timed
-            else ("half the distances: give the distance from the ship to what answers")
+            else ("half the distances: give the distance from the ship to the transponder")
         )
         return f"the {what} fit far better as {one_way}"
     two_way = (
         "twice the two-way times"
         if timed
-        else ("distances there and back: give the distance from the ship to what answers")
+        else ("distances there and back: give the distance from the ship to the transponder")
     )
     return f"the {what} fit far better as {two_way}"
 

@@ -114,7 +114,7 @@ def read_ranges(path: Path, transducer: float = 0.0) -> Survey:
             notices.append(f"line {line} repeats line {first}: left out")
     if silent:
         lines = ", ".join(map(str, silent))
-        notices.append(f"no answer in line{'s' * (len(silent) > 1)} {lines}: left out")
+        notices.append(f"no reply in line{'s' * (len(silent) > 1)} {lines}: left out")
     latitude, longitude, measured = np.array([*once]).reshape(-1, 3).T
     return Survey(
         path=path,
@@ -159,11 +159,11 @@ def _refusal(name: str, text: str, factor: float) -> str:
     if name == "longitude" and abs(value) > 360.0:
         return "is beyond 360 degrees"
     if not placed and value <= 0.0:
-        return "must be above 0; leave the cell blank where there was no answer"
+        return "must be above 0; leave the cell blank where there was no reply"
     if not placed and value > LONGEST[name]:
         hint = "; did you mean `time[ms]`?" if name == "time" and factor == 1.0 else ""
         unit = DIMENSIONS[_COLUMNS[name]].unit
-        return f"is more than {LONGEST[name]:g} {unit}, farther than is answered{hint}"
+        return f"is more than {LONGEST[name]:g} {unit}, farther than a transponder replies{hint}"
     return ""
 
 

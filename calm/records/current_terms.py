@@ -158,13 +158,13 @@ def current_notices(
     count, still = int(known.sum()), known & (u == 0.0) & (v == 0.0)
     moving = known & ~still
     if count and still.sum() > _ZEROS * count:
-        yield f"{still.sum()} of {count} currents are exactly 0: nothing was measured there?"
+        yield f"{still.sum()} of {count} currents are exactly 0: was nothing measured there?"
     if moving.sum() >= _FEWEST:
         alike = moving & (np.abs(u) == np.abs(v))
         if alike.sum() > _ALIKE * moving.sum():
             yield (
                 f"the currents to the east and to the north are the same in {alike.sum()} of "
-                f"{moving.sum()} values: one of them is a copy of the other?"
+                f"{moving.sum()} values: is one a copy of the other?"
             )
     if times is None or not len(times):
         return
@@ -186,15 +186,15 @@ def current_notices(
         if moving.sum() > _MANY and 1.0 < towards.max() <= _TURN:
             yield (
                 f"all {moving.sum()} currents flow towards {towards.min():.2g} to "
-                f"{towards.max():.2g} degrees: radians, taken for degrees?"
+                f"{towards.max():.2g} degrees: radians read as degrees?"
             )
         if moving.sum() > _MANY and not (u[moving].any() and v[moving].any()):
             yield f"all {moving.sum()} currents are along one axis, their other component 0"
         strongest = float(np.hypot(u[moving], v[moving]).max())
         if strongest < _WEAK:
             yield (
-                f"the strongest of {count} currents is {strongest:.2g} m/s: cm/s or another unit, "
-                "taken for m/s?"
+                f"the strongest of {count} currents is {strongest:.2g} m/s: cm/s or another unit "
+                "read as m/s?"
             )
 
 
@@ -206,7 +206,7 @@ def _stuck_levels(u: Floats, v: Floats) -> Iterator[str]:
     stuck = (count >= _FEWEST) & (same.sum(axis=0) > _ALIKE * count)
     if 0 < stuck.sum() < stuck.size:
         yield (
-            f"{stuck.sum()} of {stuck.size} levels have the same current all the time: level "
+            f"{stuck.sum()} of {stuck.size} levels have the same current throughout: level "
             f"{int(np.argmax(stuck)) + 1} from the first on"
         )
 
@@ -227,6 +227,6 @@ def left_out(top: float, bottom: float, water_depth: float, what: str = "current
     if not gaps:
         return ""
     return (
-        f"the {what} is not given {' and '.join(gaps)}: that of the nearest level is used there, "
-        f"in {say('depth', water_depth)} of water"
+        f"the {what} is not given {' and '.join(gaps)}: the value of the nearest level is "
+        f"used there, in {say('depth', water_depth)} of water"
     )

@@ -186,7 +186,8 @@ def with_swell(sea: SeaState, height: float, period: float) -> SeaState:
     spectrum_of("bretschneider", height, period, 1.0)
     if period <= sea.peak_period:
         raise UsageError(
-            f"a swell of {period:g} s beside a sea of {sea.peak_period:g} s: a swell is the longer"
+            f"a swell of {period:g} s beside a sea of {sea.peak_period:g} s: a swell has the "
+            "longer period"
         )
     swell = ochi_hubble(((height, period, 3.0),))
     form = SpectralForm(_together, (sea.density, swell))
@@ -286,7 +287,7 @@ def _spectral_arrays(path: Path) -> tuple[Floats, Floats]:
         frequency = np.asarray(data[along[0]].values, float)
     density = density[:, np.isfinite(density).all(axis=0)]
     if not density.size:
-        raise InputError([Problem(str(path), 0, 0, "no spectrum of it is without gaps")])
+        raise InputError([Problem(str(path), 0, 0, "every spectrum in it has gaps")])
     return frequency, density[:, int(np.trapezoid(density, frequency, axis=0).argmax())]
 
 

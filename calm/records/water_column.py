@@ -111,7 +111,7 @@ def choose_column(
     index = {dim: int(box[dim][i]) for dim, i in zip(horizontal, chosen, strict=True)}
     dry = "" if chosen == nearest else " that has a current"
     note = (
-        f"the column nearest to {written(wanted)}{dry} is that at {written(place)}, "
+        f"the column nearest to {written(wanted)}{dry} is at {written(place)}, "
         f"{distance[chosen]:.1f} km away"
     )
     return GridColumn(index, place, (note,))

@@ -100,7 +100,7 @@ def exceedance_figure(summary: Summary) -> str:
         curves = [] if one is None else [_Curve(one, line)]
         limit = _limit_of(summary, response)
         panels.append(_Shares(TITLES[response.name], QUANTITY[response.name], curves, limit))
-    return _shares("how often values are passed", panels, 150.0)
+    return _shares("how often values are exceeded", panels, 150.0)
 
 
 def parts_figure(parts: list[PartDistributions]) -> str:
@@ -115,7 +115,7 @@ def parts_figure(parts: list[PartDistributions]) -> str:
             for (label, one), colour in zip(curves[:_MOST_NAMED], _COLOURS, strict=False)
         ]
         panels.append(_Shares(name, name, drawn))
-    return _shares("how often parts pass values", panels, 200.0)
+    return _shares("how often parts exceed values", panels, 200.0)
 
 
 def _shares(title: str, panels: Sequence[_Shares], tall: float) -> str:
@@ -138,7 +138,7 @@ def _shares(title: str, panels: Sequence[_Shares], tall: float) -> str:
         axes.frame(
             numbers(across.low, across.high, 6), decades(up.low, up.high),
             below=f"{panel.title} [{quantity.display_unit}]",
-            beside="" if column else "reached or passed in [% of profiles]",
+            beside="" if column else "reached or exceeded in [% of profiles]",
             grid=True, numbered=(True, not column),
         )  # fmt: skip
         named = [LegendEntry(each.label, line=each.stroke) for each in panel.curves if each.label]

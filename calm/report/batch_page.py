@@ -116,11 +116,11 @@ def _inputs(summary: Summary) -> Iterator[Block]:
 
 
 _EXTRAPOLATED = (
-    f"No level is given for more than {EXTRAPOLATION:.0f} times the length of the record. A level "
-    "says how the mooring would answer to currents like those of the record: not to what the "
-    "record is too short to hold or lost in its gaps, nor to a current field that changes. A "
-    "fitted tail knows no bounds: a tilt beyond 90° or a knockdown below the seabed says that the "
-    "record does not reach so far."
+    f"No level is given beyond {EXTRAPOLATION:.0f} times the length of the record. A "
+    "level describes how the mooring responds to currents like those recorded: it "
+    "covers neither what the record is too short to hold or lost in its gaps, nor a "
+    "current field that changes. A fitted tail has no bounds: a tilt beyond 90° or a "
+    "knockdown below the seabed means that the record cannot be extrapolated so far."
 )
 
 
@@ -263,9 +263,9 @@ def summary_paths(result: Path) -> tuple[Path, Path]:
 _QUANTITIES = ("knockdown", "tilt", "tension")
 _PERIODS = (10, 50, 100)
 _ALL = (
-    "All percentiles, limits and profiles are in the JSON and on the page. Depths and offsets are "
-    "within 1e-4 of the water depth of those of `calm run`, tensions within 2e-4; no profile is "
-    "audited."
+    "All percentiles, limits and profiles are in the JSON and on the page. Depths "
+    "and offsets agree with `calm run` to 1e-4 of the water depth, tensions to 2e-4; "
+    "profiles are not audited one by one."
 )
 
 

@@ -153,8 +153,8 @@ def rules_table(summary: Summary) -> Table:
             lambda rule: str(len(rule.exceedances)),
         ),
         (Column("most often broken by"), _most_often),
-        note="Shares are of the profiles in which a rule is judged. At most: if the rule fails, "
-        "too, in every profile that has a current and was not solved. A limit that is judged in no "
+        note="Shares are of the profiles in which a rule is judged. At most: if the rule also "
+        "fails in every profile with a current that was not solved. A limit judged in no "
         "profile is unknown.",
     )
 
@@ -199,13 +199,13 @@ QUANTITY = {name: name for name in TITLES} | {"anchor_tension": "tension"}
 METHODS_IN_SHORT = {"gev": "GEV", "pot": "POT"}
 
 DEFINITIONS = (
-    "Every profile counts alike: a share of the profiles is a share of the time where the record "
-    "is even. Means, percentiles, maxima and exceedance curves are of the profiles solved. A rule "
-    "fails in a share of the profiles in which it is judged; at most in that share which counts as "
-    "failing every profile with a current that was not solved.",
-    "Percentiles: linear between the order statistics; the value of rank 1 + (n - 1) p of n is "
-    "the p quantile. Tension of a component: the greater of those at its ends. Knockdown and "
-    "depth of a component: of its upper end.",
+    "Every profile has the same weight, so a share of the profiles is a share of the time if the "
+    "record is evenly spaced. Means, percentiles, maxima and exceedance curves are of the "
+    "profiles solved. The share in which a rule fails is of the profiles in which it is judged; "
+    "the share *at most* also counts every profile with a current that was not solved.",
+    "Percentiles: linear between the order statistics; the value of rank 1 + (n - 1) "
+    "p of n is the p quantile. Tension of a component: the greater of its two ends. "
+    "Knockdown and depth of a component: of its upper end.",
 )
 """What must be known to read the figures."""
 
@@ -250,9 +250,9 @@ def left_out(summary: Summary) -> str:
     with_current = summary.solved + summary.unsolved
     return (
         f"{grouped(summary.unsolved)} of {grouped(with_current)} profiles with a current "
-        f"({percent(summary.unsolved / with_current)} %) were not solved. They are in none of the "
-        "means, percentiles, maxima and curves; where they are the strongest currents, these are "
-        "too low."
+        f"({percent(summary.unsolved / with_current)} %) were not solved. They are left "
+        "out of all means, percentiles, maxima and curves, which are too low if these "
+        "are the strongest currents."
     )
 
 
@@ -286,5 +286,5 @@ def stops_tables(summary: Summary) -> Iterator[Table]:
         )
         for one in summary.stops
     )
-    note = "In that share of the profiles the stop is not deeper."
+    note = "The stop is no deeper than this in that share of the profiles."
     yield Table("Stops of profilers", tuple(columns), rows, note=note)

@@ -189,11 +189,11 @@ def _on_the_way(assessment: Assessment) -> Iterator[Block]:
 
 
 _FIGURE_NOTE = (
-    "Elevations: each in the vertical plane of its own excursion; marks and the line in still "
-    "water: of the first environment. Limit: over the tension, the load that a piece may bear "
-    "(its working load, or its breaking load over the safety factor; what lies beyond four times "
-    "the tension is drawn at the edge); over the breaks, the buoyancy required. "
-    "Grey: breaks that are not judged."
+    "Each elevation is in the vertical plane of its own excursion; marks and the "
+    "line in still water are of the first environment. The limit over the tension is "
+    "the allowed load of a piece (its working load, or its breaking load over the "
+    "safety factor; beyond four times the tension it is drawn at the edge), that "
+    "over the breaks the buoyancy required. Grey breaks are not judged."
 )
 
 

@@ -77,7 +77,7 @@ def rules_tables(columns: Sequence[str], found: Sequence[Worst]) -> Iterator[Tab
         (rule.title, [each for each in found if each.finding.rule == rule.name])
         for rule in RULES.values()
     ]
-    title, note = "Rules by environment", "the least margin, the component that has it, and what"
+    title, note = "Rules by environment", "the least margin, its component, and what"
     yield from _states(title, columns, rows, _of_rule, f"Under each state: {note} is unknown.")
 
 
@@ -321,7 +321,8 @@ def limits_table(limits: Iterable[LimitKey], title: str = "Limits as used") -> T
         (Column("as used", numeric=True), lambda key: said(key, key.value)),
         (Column("default", numeric=True), lambda key: said(key, key.default)),
         (Column("source of the default", share=2.0), lambda key: key.source),
-        note="A limit that departs from its default is the design's own; no source stands for it.",
+        note="A limit that departs from its default is the design's own; no source is given "
+        "for it.",
     )
 
 

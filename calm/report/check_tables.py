@@ -85,7 +85,8 @@ def results_table(stands: Sequence[MooringInEnvironment]) -> Table:
         stands,
         (Column("environment"), status),
         *map(figure, _RESULTS),
-        note="Depth, knockdown and offset: of the top. Tilt and tension: the greatest in the line.",
+        note="Depth, knockdown and offset are of the top; tilt and tension are the greatest "
+        "in the line.",
     )
 
 
@@ -108,8 +109,9 @@ def checks_table(findings: Iterable[Finding]) -> Iterator[Table | Prose]:
         (Column("limit", numeric=True), lambda found: say_in_unit(found[0], found[0].limit)),
         (Column("margin", numeric=True), lambda found: margin_of(found[0])),
         (Column("finding and remedy", share=2.5), lambda found: said_of(found[0])),
-        note="Components of which a rule says the same share a row, which shows the worst of them; "
-        "every finding is in checks.csv and report.json. [1] is the first source below the table.",
+        note="Components with the same finding share a row, which shows the worst of them; "
+        "every finding is in checks.csv and report.json. [1] is the first source below "
+        "the table.",
         sortable=True,
     )
     yield Prose(tuple(f"[{number}] {source}" for number, source in enumerate(sources, 1)))
@@ -134,9 +136,9 @@ def breaks_table(backup: Sequence[Break]) -> Table:
         quantity_field("net_buoyancy", "required", "required"),
         quantity_field("net_buoyancy", "loose", "comes loose"),
         (Column("judged"), lambda one: "yes" if one.judged else "no"),
-        note="Not judged: what breaks inside the lowest cluster of floats, or between it and the "
-        "release, in any design leaves the release on the seabed. Comes loose: the net buoyancy of "
-        "what the break leaves to drift, before a release opens.",
+        note="Breaks inside the lowest cluster of floats, or between it and the release, "
+        "leave the release on the seabed in any design and are not judged. Comes loose: "
+        "the net buoyancy of the part that drifts off, before a release opens.",
     )
 
 
@@ -151,7 +153,7 @@ def handling_summary(assessment: Assessment) -> Pairs:
             ("Pull of the falling anchor", say("tension", launch.anchor_tension)),
         ]
         if not launch.anchor_drag_known:
-            pairs.append(("Drag of the anchor", "unknown; that of a cube of its volume is taken"))
+            pairs.append(("Drag of the anchor", "unknown; taken as that of a cube of its volume"))
     if recovery is not None:
         time, still = recovery.time_to_surface, " in still water" * recovery.in_still_water
         pairs += [
@@ -187,7 +189,7 @@ def handling_table(assessment: Assessment) -> Table:
             figures("depth", "hangs at depth", recovery.hangs_at),
         ]
     return table_of(
-        "Tensions on the way down and up",
+        "Tensions in the launch and the rise",
         assessment.mooring.file.pieces[:-1],
         (Column("no.", numeric=True), lambda piece: str(piece.index)),
         (Column("piece"), lambda piece: piece.label),
@@ -208,8 +210,8 @@ def deck_table(items: Sequence[InventoryItem]) -> Table:
             lambda one: "" if one.at is None else place_text(one.at),
         ),
         *map(quantity_field, ("cut_length", "dry_mass", "wet_weight", "lift_mass")),
-        note="On its piece: where a clamp sits, from its upper end. Weight in water: + down. Mass "
-        "of the lift: of the piece with what is clamped on it.",
+        note="On its piece: distance of a clamp from the upper end. Weight in water is "
+        "positive down. Mass of the lift: of the piece with its clamps.",
     )
 
 
@@ -218,9 +220,9 @@ def inventory_table(items: Sequence[InventoryItem]) -> Table:
     groups: dict[str, list[InventoryItem]] = {}
     for item in items:
         groups.setdefault(item.use, []).append(item)
-    note = "Cut length: of wires, ropes and chains. Spares: by hand."
+    note = "Cut lengths are of wires, ropes and chains. Spares are filled in by hand."
     if any(item.dry_mass is None for item in items):
-        note += " ≥: a lower bound, since masses in air are missing: no lift may rely on it."
+        note += " ≥ marks a lower bound, because masses in air are missing: plan no lift on it."
 
     def named(group: Sequence[InventoryItem]) -> str:
         return "Total" if group is items else group[0].name or group[0].use
@@ -259,8 +261,8 @@ def _sum(name: str, items: Sequence[InventoryItem]) -> Cell:
 
 
 _NOTE = (
-    "Of each rule the component that breaks its limit most often; launch, recovery and breaks are "
-    "counted in the first 64 samples. A sample without equilibrium breaks every limit."
+    "Each rule is shown for the component that breaks its limit most often; launch, recovery and "
+    "breaks are counted in the first 64 samples. A sample without equilibrium breaks every limit."
 )
 
 
@@ -281,7 +283,7 @@ def likelihood_tables(named: Iterable[tuple[str, Sequence[Finding]]]) -> Iterato
         return lambda row: "" if row[1] is None else show(row[1])
 
     yield table_of(
-        "How likely a limit is broken",
+        "Probability of breaking a limit",
         rows,
         (Column("design"), lambda row: row[0]),
         (
@@ -379,7 +381,7 @@ def _sentence(found: Sequence[Finding]) -> Line:
     """What is found alike of some components, told of the worst of them."""
     worst = found[0]
     sign, quiet = Span(f"{_SIGNS[worst.state]} ", worst.state), worst.state is not State.FAIL
-    if worst.state is State.UNKNOWN and worst.component is not None:
+    if worst.state is State.UNKNOWN and worst.component is not None and worst.limit is None:
         names = named((one.component or "" for one in found), _LACKING)
         return sign, Span(f"{worst.rule} of {names} is unknown. {worst.remedy}", quiet=True)
     others = "" if len(found) == 1 else f" The same holds for {named_components(found[1:])}."

@@ -162,7 +162,7 @@ def _heading(name: str) -> str:
 def _say(definition: Definition, name: str) -> str:
     value = getattr(definition, name)
     if name == "searched":
-        return ", ".join(_heading(each) for each in value) + " (not printed by the sources seen)"
+        return ", ".join(_heading(each) for each in value) + " (in none of the sources seen)"
     if name == "sources":
         return "\n".join(f"{_heading(each)}: {text}" for each, text in value.items())
     if isinstance(value, tuple):

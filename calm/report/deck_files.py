@@ -143,7 +143,7 @@ def deck_report(deck: Deck, paper: Paper, notes: tuple[str, ...] = ()) -> Report
     parts: list[ReportPart] = [*document_part(deck.file)]
     said = (*deck.notes, *notes)
     if said:
-        parts.append(ReportPart("To be known", (Prose(said, State.WARN),)))
+        parts.append(ReportPart("Warnings", (Prose(said, State.WARN),)))
     parts += _sheets(deck)
     (made_by,) = (f"{name} {number}" for name, number in versions()[:1])
     return Report(

@@ -19,10 +19,10 @@ _SPARES = (
     "default of this program."
 )
 _IMPLIED = (
-    "A shackle is taken to have a bolt, nut and cotter pin unless its name or note says screw pin; "
-    "a termination with a thimble to have one at each end. Where metals touch that corrode each "
-    "other (those of which calm check warns), there is an isolator at each contact and an anode on "
-    "each piece of the baser metal. Nothing else that the line does not list is counted."
+    "A shackle is taken to have a bolt, nut and cotter pin unless its name or note says screw "
+    "pin; a termination with a thimble to have one at each end. Where metals touch that corrode "
+    "each other (those of which calm check warns), there is an isolator at each contact and an "
+    "anode on each piece of the baser metal. Nothing else is counted unless the line lists it."
 )
 
 
@@ -67,10 +67,10 @@ def cutting_part(deck: Deck) -> ReportPart:
         Column("done", share=0.0),
     )
     note = (
-        "Lengths are without load where none is given; marks are measured from the upper end, "
-        f"under the same load. Tolerance: {_SHARE} of the length. Top deeper: by how much where "
-        f"this alone is longer by {_SHARE}, in the environment {deck.environment}. Over side, onto "
-        "drum: in which order; what goes over the side last is spooled first."
+        "Lengths are without load unless one is given; marks are measured from the upper end, "
+        f"under the same load. Tolerance: {_SHARE} of the length. Top deeper: by how much if this "
+        f"piece alone is {_SHARE} longer, in the environment {deck.environment}. Over side, onto "
+        "drum: the order; the piece that goes over last is spooled first."
     )
     table = Table("Wires and ropes", columns, tuple(rows), note, by_hand=True)
     return ReportPart("Cutting and marking list", (table,))
@@ -87,7 +87,7 @@ def hardware_part(deck: Deck) -> ReportPart:
         length = "" if stock.length is None else f"{stock.length:.2f}"
         rows.append(
             (
-                Cell(stock.name, stock.basis, goes_on=True),
+                Cell(stock.name, stock.basis and f"({stock.basis})", goes_on=True),
                 Cell(stock.use),
                 Cell(str(stock.count)),
                 Cell(length),
@@ -133,9 +133,9 @@ def shipping_part(deck: Deck) -> ReportPart:
             lambda one: _at_least("volume", one.volume, one.missing_volumes, one.count),
         ),
         (Column("packed in", share=0.8), lambda one: ""),
-        note="Volume: of the things themselves, without packing: of a sphere, a cylinder and a "
-        "cable by its size, else what it displaces. ≥: a lower bound, since figures are missing. "
-        "Spares are not in it.",
+        note="Volumes are of the parts themselves, without packing: spheres, cylinders and "
+        "cables by their size, others by what they displace. ≥ marks a lower bound, "
+        "because figures are missing. Spares are not included.",
         sums=[total_of(deck.shipped)],
     )
     return ReportPart("Shipping list", (table,))
@@ -160,7 +160,7 @@ def lifts_part(deck: Deck) -> ReportPart:
         )
     if lifts.unknown:
         shown = ", ".join(lifts.unknown[:6]) + (" …" if len(lifts.unknown) > 6 else "")
-        said.append(f"A lower bound: the mass in air is not known of {shown}.")
+        said.append(f"A lower bound: no mass in air is known for {shown}.")
     greatest = max(
         (one for one in lifts.deployment if one.hanging is not None),
         key=lambda one: one.hanging or 0.0,
@@ -168,14 +168,14 @@ def lifts_part(deck: Deck) -> ReportPart:
     )
     if greatest is not None and (greatest.hanging or 0.0) > 0.0:
         said.append(
-            f"Most hangs from the ship with {greatest.label} over the side: "
-            f"{say('wet_weight', greatest.hanging)} in water."
+            f"The greatest hanging load is {say('wet_weight', greatest.hanging)} in water, "
+            f"with {greatest.label} over the side."
         )
     note = (
-        "In air: the piece with what is clamped on it, as the crane lifts it; cables are paid out. "
-        "Hanging: the weight in water of all that is over the side, where it hangs straight down "
-        "from the ship; below 0 it floats. Neither drag nor the swell is in it. Shackles, links "
-        "and swivels are lifted with what is beside them; each has its row in the files."
+        "In air: mass of the piece with its clamps, as the crane lifts it; cables are paid out. "
+        "Hanging: weight in water of everything over the side, hanging straight down from the "
+        "ship; below 0 it floats. Drag and swell are not included. Shackles, links and swivels "
+        "are lifted with the pieces next to them; in the files each has its own row."
     )
     return ReportPart("Lifts", (Prose(tuple(said)), _stages(deck), Note((note,))))
 
@@ -239,11 +239,11 @@ def instruments_part(deck: Deck) -> ReportPart:
         Column("battery\nuntil", share=0.0),
         Column("calibrated", share=0.0),
     )
-    note = f"Depth: in the environment {deck.environment}."
+    note = f"Depths are in the environment {deck.environment}."
     if several:
         note += (
-            f" Least and greatest depth, and tilt: of {len(deck.environments)} environments, "
-            "which one below it."
+            f" Least and greatest depth, and tilt, are over {len(deck.environments)} "
+            "environments; the line below names which."
         )
     table = Table("Instruments and releases", columns, rows, note)
     return ReportPart("Instrument sheet", (table,))

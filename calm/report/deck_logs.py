@@ -29,8 +29,8 @@ def deployment_part(deck: Deck) -> ReportPart:
         Prose(
             (
                 ("Anchor last: the top" if last else "Anchor first: the lower end")
-                + " goes over the side first. Lengths are as cut; clamps are at a place on their "
-                "piece, from its upper end, unstretched.",
+                + " goes over the side first. Lengths are as cut; clamps are placed from the upper "
+                "end of their piece, unstretched.",
             )
         ),
         _releases(deck, _TESTED, [_BOX] * len(_TESTED)),
@@ -48,7 +48,7 @@ def recovery_part(deck: Deck) -> ReportPart:
     if rise is None:
         said.append("The rise is not known: the list goes down the line.")
     elif rise.time_to_surface is None:
-        said.append("Freed, the line does not rise by itself: the list goes down the line.")
+        said.append("Once released, the line does not rise by itself: the list goes down the line.")
     elif rise.time_to_surface == 0.0:
         said.append(
             "Its float is at the surface; what comes up from below is listed with its time."
@@ -56,13 +56,13 @@ def recovery_part(deck: Deck) -> ReportPart:
     else:
         first = rise.time_to_surface / 60.0
         said.append(
-            f"Freed, the line rises with {say('speed', rise.rise_speed)}; the first float is "
-            f"expected after {first:.0f} min."
+            f"Once released, the line rises at {say('speed', rise.rise_speed)}; the first "
+            f"float is expected after {first:.0f} min."
         )
         if rise.tangles:
-            said.append("It may double back in the rise: the order may be another.")
+            said.append("It may double back in the rise: the order may differ.")
         if rise.in_still_water:
-            said.append("The rise is that in still water.")
+            said.append("The rise is computed in still water.")
     blocks: tuple[Block, ...] = (
         _station(deck, ""),
         *_as_deployed(deck),
@@ -262,9 +262,10 @@ def _surfacing(deck: Deck) -> Table:
         (Column("on deck", "UTC", share=0.6), lambda row: ""),
         (Column("whole, runs,\nfouled", share=0.0), lambda row: Cell("☐   ☐   ☐")),
         (Column("remarks", share=0.9), lambda row: row.first.remark or ""),
-        note="After the release, or the depth at which it hangs when all is up. By itself: buoyant "
-        "enough to come up alone; the rest comes with it. The order is that of surfacing, not of "
-        "hauling. Shackles, links and swivels come with the pieces they join.",
+        note="Up after: time since the release, or the depth at which a piece hangs once the "
+        "line is up. By itself: buoyant enough to surface alone; the rest comes up with "
+        "it. The order is that of surfacing, not of hauling. Shackles, links and swivels "
+        "come with the pieces they join.",
         by_hand=True,
     )
 

@@ -264,7 +264,7 @@ def _draw_legend(page: Pen, pages: _Pages, left: float, bottom: float) -> None:
     """The symbols that are drawn, each in words, at the foot of the last column."""
     rows = -(-len(pages.legend) // _LEGEND_COLUMNS)
     top = bottom - rows * _LEGEND_ROW
-    page.letters(left, top - LEADING, "Symbols", size=FONT, bold=True)
+    page.letters(left, top - LEADING - 5.0, "Symbols", size=FONT, bold=True)
     pen = page.draw("g", stroke=INK, stroke_width=0.9, fill=INK)
     step = pages.paper.column_width / _LEGEND_COLUMNS
     for place, sign in enumerate(pages.legend):

@@ -14,7 +14,6 @@ from calm.deck.deck_items import label_of_run
 from calm.drawing.picture import figure_svg
 from calm.drop import DropPlan
 from calm.drop.fall_record import DepthReached
-from calm.drop.plan import DRAG_BAND
 from calm.physics.line import Floats
 from calm.quantities import QUANTITIES, bearing_text, duration, say
 from calm.report.blocks import (
@@ -38,7 +37,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-_DRAG_BAND = f"{DRAG_BAND:g} times smaller or larger"
 _ROWS = 6
 """Of the table of the fall."""
 _DEEPER = 0.5
@@ -68,8 +66,8 @@ def _instructions(plan: DropPlan) -> Prose:
     ]
     if plan.start is None:
         said.append(
-            "How long that takes, and so where the run begins, follows from the time that a piece "
-            "takes on deck: give it (--deck-time)."
+            "The start of the run follows from the time that a piece takes on deck: give "
+            "--deck-time."
         )
     else:
         behind = "before" if plan.start.distance >= 0.0 else "beyond"
@@ -101,15 +99,15 @@ def _figures(plan: DropPlan) -> tuple[tuple[str, str], ...]:
         (
             "Fall time",
             f"{plan.fall_time:.0f} s ± {_error(plan.time_error)} s; {early:.0f} to {late:.0f} s "
-            f"if the anchor's drag is {_DRAG_BAND}",
+            f"with the anchor's drag halved or doubled",
         ),
         (
             "Fall-back, towards the float",
             f"{plan.fall_back:.0f} m ± {_error(plan.distance_error)} m; {near:.0f} to {far:.0f} m "
-            f"if the anchor's drag is {_DRAG_BAND}",
+            f"with the anchor's drag halved or doubled",
         ),
         (
-            "Off that direction",
+            "Lateral offset",
             f"{abs(plan.aside):.0f} m to the {side}, seen from where it is let go",
         ),
         (
@@ -171,7 +169,7 @@ def _depth_blocks(plan: DropPlan) -> list[Block]:
         return []
     depth = QUANTITIES["depth"]
     table = table_of(
-        "Depths in the drop",
+        "Depths during the drop",
         [[*run] for _, run in groupby(listed, key=_shared)],
         (Column("piece or clamp"), label_of_run),
         (
@@ -199,10 +197,10 @@ def _deepest(run: Sequence[DepthReached]) -> DepthReached:
 
 def _notes(plan: DropPlan) -> tuple[str, ...]:
     notes = [
-        "The line is a chain without inertia: what it does in the first 20 s, and the jerk at the "
-        "touchdown, are not in these figures; nor is what waves do.",
-        "± is twice the change that segments and time steps of double length make together; the "
-        "current and the drag of the anchor are known less well.",
+        "The line is modelled as a chain without inertia: the first 20 s, the jerk at "
+        "touchdown and waves are not in these figures.",
+        "± is twice the change when segments and time steps are doubled; the current and "
+        "the drag of the anchor are less certain.",
     ]
     if plan.rest_difference is not None:
         notes.append(

@@ -33,12 +33,10 @@ SMALLEST_SHARE = 0.005
 """Of every whole; drags that cause less of all of them are summed up in one row."""
 
 _SHARES = (
-    "Shares: all drags grow together from nothing to what they are, and at every stage each is "
-    "charged with what its own growth adds. Drag: the horizontal force of the water."
+    "Shares: all drags grow together from zero to their full value, and each is charged with the "
+    "change that its own growth causes. Drag: the horizontal force of the water."
 )
-_CHANGES = (
-    "Buoyancy: of everything buoyant in the line. Drag: of everything. Lengths stay as they are."
-)
+_CHANGES = "Buoyancy is changed for everything buoyant, drag for everything; lengths are not."
 
 
 def line_facts(result: Result) -> tuple[str, ...]:
@@ -59,10 +57,13 @@ def line_facts(result: Result) -> tuple[str, ...]:
     with suppress(NoEquilibrium):
         rise = recovery_of(result.mooring, result, first_only=True)
         if rise.time_to_surface is None:
-            rises = ["Freed, it does not rise by itself"]
+            rises = ["Once released, it does not rise by itself"]
         elif rise.time_to_surface > 0.0:
             up = duration(rise.time_to_surface)
-            rises = [f"Freed, it rises with {say('speed', rise.rise_speed)}: the top is up in {up}"]
+            rises = [
+                f"Once released, it rises at {say('speed', rise.rise_speed)}: the top surfaces in "
+                f"{up}"
+            ]
     return (
         f"Without the anchor {mass}; what floats lifts {say('wet_weight', floats)}, net "
         f"{say('wet_weight', -sum(weights))}",
@@ -109,7 +110,7 @@ def explanation_part(explanation: Explanation) -> ReportPart:
         for name in explanation.quantities
         if name != "used_buoyancy"
     ]
-    title = f"What makes the {' and '.join(wholes)} of {explanation.label}"
+    title = f"What causes the {' and '.join(wholes)} of {explanation.label}"
     blocks: list[Block] = [Prose(explanation.notes)] if explanation.notes else []
     if explanation.causes is not None and len(explanation.causes):
         blocks.append(_causes(explanation, explanation.causes))
@@ -327,9 +328,7 @@ def _figures(
         *(Column(name, numeric=True, short=_SHORT[n]) for n, name in enumerate(names)),
         Column("change", numeric=True),
     )
-    return Table(
-        title, columns, tuple(shown), f"The other {same} stay as they are." if same else ""
-    )
+    return Table(title, columns, tuple(shown), f"The other {same} do not change." if same else "")
 
 
 _SHORT = "before", "after"

@@ -32,8 +32,8 @@ MOST_DRAWN = 600
 _WIDTH, _HEIGHT, _SIZE = 7.4, 2.3, 7.0  # inches, inches, points of the letters
 _COLOURS = {"temperature": "RdYlBu_r", "salinity": "viridis", "u": "PuOr_r", "v": "PuOr_r"}
 _READ = (
-    "Lines: depths of the instruments. Pale: flagged as doubtful, beyond the instruments or in a "
-    "gap of which the record says little. White: no value."
+    "Lines: depths of the instruments. Pale: flagged as doubtful, beyond the "
+    "instruments or in a gap about which the record says little. White: no value."
 )
 
 
@@ -88,9 +88,10 @@ def scales_table(fields: Mapping[str, GriddedQuantity]) -> Table:
             lambda one: f"{100.0 * one[1].scales.share:.2g}",
         ),
         (Column("widened", numeric=True), lambda one: _widened(one[1])),
-        note="Correlations fall to 0.48 over the scale along depth and to 0.37 over that in time; "
-        "the rest of the variance has none. Widened: factors on the bands between instruments, at "
-        "most, and beyond them, by what instruments show that are left out in turn.",
+        note="Correlations fall to 0.48 over the scale along depth and to 0.37 over that in "
+        "time; the rest of the variance is uncorrelated. Widened: the factor on the "
+        "bands between instruments (the greatest) and beyond them, found by leaving out "
+        "each instrument in turn.",
     )
 
 
@@ -107,13 +108,14 @@ def methods_text(
     ]
     for name, field in fields.items():
         said.append(
-            f"{name}: {_used(field)} instruments; correlated over {field.scales.depth:.3g} m along "
-            f"depth and {_hours(field)} h in time; {100.0 * field.scales.share:.2g} % of the "
-            "variance taken as not correlated."
+            f"{name}: {_used(field)} instruments; correlated over {field.scales.depth:.3g} m "
+            f"along depth and {_hours(field)} h in time; {100.0 * field.scales.share:.2g} % "
+            "of the variance taken as uncorrelated."
         )
     said.append(
-        "Standard deviations hold the error of the sensors, that of their depths times the local "
-        "gradient, and the gap between instruments; levels beyond the instruments are flagged."
+        "Standard deviations include the error of the sensors, the error of their depths "
+        "times the local gradient, and the gap between instruments; levels beyond the "
+        "instruments are flagged."
     )
     return tuple(said)
 

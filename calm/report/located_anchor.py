@@ -91,7 +91,7 @@ def _notes(located: Located) -> tuple[str, ...]:
         "Rays are taken as straight, and the sea surface as the ellipsoid WGS 84.",
     ]
     if located.survey.timed:
-        notes.append("Times are taken as those there and back, without any delay of what answers.")
+        notes.append("Times are taken as two-way, without a turn-around delay of the transponder.")
     return tuple(notes)
 
 

@@ -35,16 +35,16 @@ if TYPE_CHECKING:
     from numpy import datetime64
     from numpy.typing import NDArray
 
-    from calm.motion.remarks import Agreement
+    from calm.motion.remarks import Agreement, Fault
     from calm.motion.study import HeldOut, SensorSeries, Study
 
-_DEPTHS = "Depths over time"
+_BARE, _DEPTHS = "Instruments without a pressure", "Depths over time"
 _FALSE = "Times at which a current is more likely false than not"
 _LEGEND = (
-    "Black: measured. Blue: estimated, with its band of 95 %. Orange: by the currents alone. A "
-    "hidden sensor was not used."
+    "Black: measured. Blue: estimated, with its 95 % band. Orange: from the currents "
+    "alone. Hidden sensors were not used."
 )
-_NOTHING = "Nothing in the residuals is clearly a drift, a slipped clamp or a wrong length."
+_NOTHING = "Nothing is clearly wrong: no clock, gain, offset, drift, slipped clamp or label."
 
 
 def motion_report(
@@ -63,6 +63,10 @@ def motion_report(
     time, factor : (n,) the factor on the current over time; None of currents that are not known
     notes : what was said of the input
     """
+    bare = [one for one in series if not np.isfinite(one.measured).any()]
+    bare = sorted(bare, key=lambda one: -float(np.nan_to_num(one.spread).mean()))
+    bare = sorted(bare[:MOST_PANELS], key=lambda one: float(np.nan_to_num(one.estimated).mean()))
+    series = [one for one in series if np.isfinite(one.measured).any()]
     shown = sorted(series, key=lambda one: not one.hidden)[:MOST_PANELS]
     shown = [one for one in series if any(one is each for each in shown)]
     doubts = Prose(study.remarks, State.WARN) if study.remarks else Prose((_NOTHING,))
@@ -71,15 +75,23 @@ def motion_report(
     factors: list[Block] = [factors_table(study.factors, study.task.common.datum)]
     if factor is not None:
         factors.append(Figure("Over time", factor_figure(time, factor)))
+    instruments = [Figure(_BARE, depth_figure(bare), tall=True)] if bare else []
     parts = (
-        ReportPart("Doubtful data", (doubts, *marks)),
+        ReportPart("Doubtful data", (doubts, health_table(study), *marks)),
         ReportPart("Factors", tuple(factors)),
         ReportPart(
             "Measured against computed",
             (sensors_table(study), *held, Note((PLAIN if study.plain else UNKNOWN,))),
         ),
         ReportPart("Inputs", (Prose(tuple(notes) or ("Nothing was left out.",)),)),
-        ReportPart("Depths", (Figure(_DEPTHS, depth_figure(shown), tall=True), Note((_LEGEND,)))),
+        ReportPart(
+            "Depths",
+            (
+                *instruments,
+                Figure(_DEPTHS, depth_figure(shown), tall=True),
+                Note((_LEGEND,)),
+            ),
+        ),
         ReportPart("Scatter", (Figure("Computed against measured depths", scatter_figure(shown)),)),
         ReportPart(
             "Residuals", (Figure("Measured less estimated", residual_figure(shown), tall=True),)
@@ -203,15 +215,15 @@ TITLES = {
 }
 
 PLAIN = (
-    "Alone: by the currents with nothing fitted. Estimated: with the pressures of all sensors that "
-    "are used. rms is that of the difference less its mean over the calm times, the tenth with the "
-    "least knockdown."
+    "Alone: from the currents with nothing fitted. Estimated: with the pressures of "
+    "all sensors in use. rms: of the difference less its mean over the calm times, "
+    "the tenth with the least knockdown."
 )
 
 
 UNKNOWN = (
-    "The currents are not known: what they may have been is learnt from these pressures. rms is "
-    "that of the difference less its mean over the calm times, the tenth with the least knockdown."
+    "The currents are not known: they are inferred from these pressures. rms: of the difference "
+    "less its mean over the calm times, the tenth with the least knockdown."
 )
 
 
@@ -230,6 +242,53 @@ def motion_part(study: Study, name: str) -> ReportPart:
     return ReportPart("", tuple(blocks))
 
 
+_HEALTH: Mapping[str, Column] = {
+    "clock": Column("clock late", "h", numeric=True),
+    "gain": Column("gain", numeric=True),
+    "offset": Column("offset", "m", numeric=True),
+    "drift": Column("drift", "m", numeric=True),
+    "slip": Column("slipped", "m", numeric=True),
+    "exchanged": Column("exchanged with"),
+}
+
+
+def health_table(study: Study) -> Table:
+    """Return what is wrong with each sensor: a dash where nothing is."""
+    found: dict[str, dict[str, str]] = {label: {} for label in study.fit}
+    for one in study.diagnosis:
+        text = one.other or format(one.value, ".3f" if one.kind == "gain" else "+.2f")
+        found.setdefault(one.label, {})[one.kind] = text + ("" if one.certain else " ?")
+    return table_of(
+        "",
+        found.items(),
+        (Column("sensor"), lambda one: one[0]),
+        *(
+            (column, lambda one, kind=kind: one[1].get(kind, "-"))
+            for kind, column in _HEALTH.items()
+        ),
+        note="A question mark: something else is not much less likely, see above.",
+    )
+
+
+def diagnosis_document(diagnosis: Sequence[Fault]) -> list[dict[str, Any]]:
+    """What is wrong with sensors: clocks in seconds, gains as factors, all else in metres."""
+    said = []
+    for one in diagnosis:
+        unit = 3600.0 if one.kind == "clock" else 1.0
+        row: dict[str, Any] = {"label": one.label, "kind": one.kind}
+        row |= {key: unit * getattr(one, key) for key in ("value", "low", "high")}
+        row |= {"odds": one.odds, "corrected": one.corrected}
+        if one.other:
+            row |= {"value": None, "low": None, "high": None, "with": one.other}
+        row |= {
+            key: str(getattr(one, key))[:19]
+            for key in ("since", "until")
+            if not np.isnat(getattr(one, key))
+        }
+        said.append(row)
+    return said
+
+
 def factors_table(factors: Mapping[str, tuple[float, float, float]], datum: float) -> Table:
     """The common factors with their intervals."""
     return table_of(
@@ -238,8 +297,7 @@ def factors_table(factors: Mapping[str, tuple[float, float, float]], datum: floa
         (Column("factor for the whole record"), lambda one: TITLES[one[0]]),
         (Column("value", numeric=True), lambda one: f"{one[1][0]:.3f}"),
         (Column("95 % interval", numeric=True), lambda one: f"{one[1][1]:.3f}–{one[1][2]:.3f}"),
-        note=f"All depths are shifted by {datum:+.1f} m, the datum that the pressures have in "
-        "common.",
+        note=f"All depths are shifted by {datum:+.1f} m, the datum common to all pressures.",
     )
 
 
@@ -318,6 +376,7 @@ def motion_document(study: Study, name: str) -> dict[str, Any]:
             )
         ],
         "held_out": held_out_document(study.held_out),
+        "diagnosis": diagnosis_document(study.diagnosis),
         "doubts": list(study.remarks),
     }
 

@@ -90,17 +90,17 @@ def _members(value: Any) -> dict[str, Any]:
 
 
 _BESIDE = (
-    "what the beams of a current profiler meet, such as its own line or float",
+    "obstacles in the beams of a current profiler, such as its own line or float",
     "growth where no `fouling` is given", "the soil below the anchor", "trawls, ice and ships",
     "terminations and splices", "batteries and memory",
 )  # fmt: skip
 
 UNSEEN = (
-    "A static calculation does not see waves and the tensions they cause; snap loads on a line "
+    "A static calculation does not cover waves and the tensions they cause; snap loads on a line "
     "that falls slack; fatigue, by waves and by vortices; creep, corrosion and wear; the jerk at "
     "the end of the launch and the swing of the line before it; hauling and lifts on recovery.",
-    "No margin in this report covers them. They decide the life of surface moorings in harsh "
-    "weather, and no factor on a static tension replaces looking at them.",
+    "No margin in this report includes them. They decide the life of surface moorings in harsh "
+    "weather, and no factor on a static tension is a substitute for analysing them.",
     f"Nor does it judge {'; '.join(_BESIDE)}.",
 )
 """What is printed in every report."""
@@ -123,7 +123,7 @@ def unseen(findings: Iterable[Finding]) -> tuple[str, ...]:
     if not any(each.rule == "wave-slack" for each in findings):
         return UNSEEN
     static, no_margin, beside = UNSEEN
-    waves = "waves where no `waves:` are given, and linear tensions in them do not see"
+    waves = "waves where no `waves:` are given, and linear tensions in them do not cover"
     static = static.replace("waves and the tensions they cause;", waves).replace(
         "by waves and ", ""
     )

@@ -95,7 +95,7 @@ def uncertainty_part(uncertain: Uncertain) -> ReportPart:
     drawn = drawn_text(uncertain.result.file.uncertainty)
     basis = f"{uncertain.samples} samples, seed {uncertain.seed}; drawn: {drawn}."
     blocks.append(Prose(((Span(basis, quiet=True),),)))
-    return ReportPart("How sure these figures are", tuple(blocks))
+    return ReportPart("Uncertainty of these figures", tuple(blocks))
 
 
 def drawn_text(uncertainty: Uncertainty) -> str:
@@ -148,7 +148,7 @@ def _pieces(uncertain: Uncertain) -> Table:
 
 def _contributions(uncertain: Uncertain) -> Table:
     quantity, unexplained = uncertain.contributions[0].quantity, uncertain.unexplained
-    note = f"No index explains {unexplained:.0%} of the spread: the line answers unevenly."
+    note = f"No single input explains {unexplained:.0%} of the spread: the response is not linear."
     return table_of(
         "",
         uncertain.contributions,

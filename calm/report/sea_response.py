@@ -31,7 +31,7 @@ _NOTE = (
 )
 _LIFE = (
     "Life: years to a damage of 1 in these seas; low and high with deviations of tension 15 % "
-    "greater and less. Curves as other texts print them: compare with the standard."
+    "greater and less. Curves are quoted from other texts: compare them with the standard."
 )
 
 
@@ -58,7 +58,7 @@ def sea_response_part(analysis: WaveAnalysis) -> ReportPart:
     if analysis.warnings:
         blocks.append(Prose(analysis.warnings, State.WARN))
     if analysis.status == SLACK:
-        said = f"Slack: {', '.join(highest.slack)}. Linear tensions do not hold there."
+        said = f"Slack: {', '.join(highest.slack)}. Linear tensions are not valid there."
         blocks.append(Prose((said,), State.FAIL))
     sea = highest.sea
     title = f"{analysis.name}: Hs {sea.significant_height:.1f} m, Tp {sea.peak_period:.1f} s"
@@ -124,12 +124,12 @@ def _told(analysis: WaveAnalysis, state: MooringInSea) -> list[str | tuple[Span,
     said: list[str | tuple[Span, ...]] = []
     if state.follower_std is not None:
         said.append(
-            "Below a float that followed every wave the tension would deviate by "
-            f"{say('tension', state.follower_std)}."
+            "Below a float that followed every wave the standard deviation of tension would "
+            f"be {say('tension', state.follower_std)}."
         )
     one = analysis.accuracy
     good = (
-        f"Twice the elements change deviations by {one.mesh:.1%}, twice the frequencies by "
+        f"Doubling the elements changes deviations by {one.mesh:.1%}, doubling the frequencies by "
         f"{one.frequencies:.1%}; a fifth less drag by {one.linearisation:.0%}."
     ).replace("%", " %")
     return [*said, (Span(good, quiet=True),)]

@@ -26,7 +26,7 @@ FIGURES = ("depth", "layback", "tension", "angle", "body_tension", "frequency")
 _HEADINGS = {"body_tension": "tension\nat body"}
 _NOTE = "Depth and layback: of the body. Tension and angle: at the tow point, from the horizontal."
 _DIGITS = 4
-_WARNED = "!: with warnings, which --json reports."
+_WARNED = "! marks warnings, which --json reports."
 _KNOTS = replace(QUANTITIES["speed"], display="knot")
 
 
@@ -120,7 +120,7 @@ def by_coefficient(tow: Tow, variations: Sequence[Variation]) -> Tabulation:
     return Tabulation(
         name=tow.file.name,
         subject="sensitivity",
-        title=f"{tow.file.name}: what its strumming makes of A1, B1 and C1",
+        title=f"{tow.file.name}: how A1, B1 and C1 affect its strumming",
         headings=("changed",),
         rows=tuple(
             TabulationRow(
@@ -269,10 +269,10 @@ def _notes(cable: BareCable) -> Iterator[str]:
     least = math.degrees(law.LEAST_ANGLE)
     if cable.angle < least:
         yield (
-            f"Below {least:.0f}° the coefficient of a cable at rest, C0 = {law.rest:g}, is not "
-            "claimed: a/D needs a look."
+            f"Below {least:.0f}° the coefficient of a cable at rest, C0 = {law.rest:g}, is "
+            "not validated: check a/D."
         )
     if not amplitude:
         yield f"C* is not above C0 = {law.rest:g}, a cable at rest: it does not vibrate."
     if cn > law.ceiling:
-        yield f"C* is above {law.ceiling:g}, the greatest of the method: look at what was measured."
+        yield f"C* is above {law.ceiling:g}, the maximum of the method: check the measurements."

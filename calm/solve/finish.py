@@ -211,7 +211,7 @@ def closing_refusal(closed: Closed, towed: bool) -> NoEquilibrium:
         return Status.NOT_CONVERGED.because("No closed shape was found near the first one.")
     if closed.ending == SLACK_ON_DIGITS:
         return Status.SLACK.because(
-            "The line is slack: its shape hangs on the last digits of the buoyancy in use."
+            "The line is slack: its shape depends on the last digits of the buoyancy in use."
         )
     end_point = "ship" if towed else "anchor"
     return Status.NOT_CONVERGED.because(
@@ -235,8 +235,8 @@ def refusal_of(found: FoundShape, line: Line, water: Water) -> NoEquilibrium:
         length = float(line.length.sum())
         radius = watch_circle_radius(length, water.depth - line.anchor_height)
         return Status.SLACK.because(
-            f"There is no current and the line, {length:.1f} m uncut, is longer than the "
-            "water is deep: it has no unique shape. Its watch circle has a radius of "
+            f"There is no current and the line, {length:.1f} m unstretched, is longer than "
+            "the water is deep: it has no unique shape. Its watch circle has a radius of "
             f"{radius:.{0 if radius >= 100.0 else 1}f} m."
         )
     if ending == TOO_MANY_AFLOAT:

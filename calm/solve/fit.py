@@ -73,8 +73,8 @@ def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings:
         raise too_heavy(lift)
     clamped = f" and its own {shortest:.2f} m down to the lowest clamp" if shortest else ""
     raise Status.NO_EQUILIBRIUM.because(
-        f"No length of {{piece}} puts the top of the line at {top_depth:g} m: the "
-        f"other pieces, {others:.2f} m uncut{clamped}, have {room:.2f} m of water to stand in.",
+        f"No length of {{piece}} puts the top of the line at {top_depth:g} m: the other pieces, "
+        f"{others:.2f} m unstretched{clamped}, have {room:.2f} m of water to stand in.",
         piece,
     )
 

@@ -259,7 +259,7 @@ def solve_net(
             break
         closer = net.closed(x, 4.0 * settings.angle_step, NEAR) if left else None
         if closer is None:
-            raise _unsettled("a leg comes to lie on the seabed and not")
+            raise _unsettled("a leg alternately lies on the seabed and lifts off")
         x = closer
     coarse = net.ends(x)
     for _ in range(MOST_HALVINGS):

@@ -170,7 +170,7 @@ class Status(Enum):
     CONVERGED = ("converged", "")
     NO_EQUILIBRIUM = (
         "no-equilibrium",
-        "Add buoyancy at the top, take weight off the line, or check the current profile.",
+        "Add buoyancy at the top, remove weight from the line, or check the current profile.",
     )
     NOT_CONVERGED = (
         "not-converged",

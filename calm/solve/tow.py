@@ -113,7 +113,7 @@ def _refuse_limp(towed: Line) -> None:
     clamped = ((towed.clamp_piece == 0) & (towed.clamp_at == 0.0)).any()
     if towed.flexible[0] and not bears and not clamped:
         raise Status.NO_EQUILIBRIUM.because(
-            "The free end of {piece} weighs nothing and has no drag along it, so that nothing "
+            "The free end of {piece} weighs nothing and has no drag along it, so nothing "
             "stretches it.",
             0,
             "Give it a weight or a `ct`, or tow something at its end.",
@@ -278,7 +278,7 @@ def _refuse_misplaced(solution: Solution, towing: Towing) -> None:
             f"The towed line would touch the seabed: {{piece}} comes "
             f"{-depth - height[lowest]:.2f} m below it.",
             piece,
-            "Pay out less line, tow faster, or take weight off.",
+            "Pay out less line, tow faster, or remove weight.",
         )
     if towing.in_air:
         return

@@ -220,7 +220,8 @@ def analyse(
             )
         )
     warnings = [
-        f"{label} gives no `stiffness` and is taken as inextensible: its tensions are too great."
+        f"{label} gives no `stiffness` and is taken as inextensible: its tensions are "
+        "overestimated."
         for label in setting.line.inextensible
     ]
     fatigue = tuple(

@@ -197,9 +197,9 @@ def fatigue_of(
     elif curve.range == "share" and strength is None:
         unknown = "its breaking load is not known"
     elif curve.range == "stress" and bar is None:
-        unknown = "the stress in it is not known: it is no chain"
+        unknown = "the stress in it is not known: it is not a chain"
     elif lost and not size:
-        unknown = "its diameter is not known, of which corrosion takes a share"
+        unknown = "its diameter, which corrosion reduces, is not known"
     elif not left > 0.0:
         unknown = "corrosion leaves nothing of its diameter"
     source = None if curve is None else curve.source

@@ -33,7 +33,7 @@ def test_what_a_person_reads(calm, write_mooring):
     assert lines[1].split()[:2] == ["Test", "unknown"]
     assert "There is no release in the line" in done.out
     assert "? depth-rating of top float, logger is unknown." in done.out
-    assert "A static calculation does not see waves" in done.out
+    assert "A static calculation does not cover waves" in done.out
     assert max(map(len, lines)) <= 80
 
 

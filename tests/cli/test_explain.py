@@ -7,7 +7,7 @@ def test_explanation_follows_the_table(calm, write_mooring):
     done = calm("run", write_mooring(), "--explain")
     assert done.code == 0
     assert done.err == ""
-    table, explanation = done.out.split("\n\nWhat makes the knockdown ")
+    table, explanation = done.out.split("\n\nWhat causes the knockdown ")
     assert "Anchor pulled by" in table
     assert "excursion" in explanation.splitlines()[0]
     for row in ("top float ", "rope ", "all ", "as it is ", "buoyancy +10 % ", "current −10 % "):
@@ -52,7 +52,7 @@ def test_a_change_that_leads_nowhere_is_told(calm, write_mooring, folder):
     done = calm("run", file, "--explain")
     assert done.code == 0
     assert "\nbuoyancy +10 %  anchor-lifts" in done.out
-    assert "! buoyancy +10 %: anchor-lifts: The line pulls up with" in done.out
+    assert "! buoyancy +10 %: anchor-lifts: The vertical pull of the line is" in done.out
 
 
 def test_tows_are_refused(calm, folder, write_mooring):

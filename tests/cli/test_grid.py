@@ -113,7 +113,7 @@ def test_what_was_interpolated_never_counts(calm, depths):
     wrong[:, 1] += 200.0
     write_values("v.nc", wrong, flags=flags)
     result, run = gridded(calm, "v.nc", "--flags", "1,2")
-    assert "temperature: 60 values are left out for their flag" in run.err
+    assert "temperature: 60 values are left out because of their flag" in run.err
     assert "temperature: middle has no good value" in run.err
     off = result["temperature"].values - profile(result["depth"].values)
     assert np.abs(off[result["temperature_qc"].values == 8]).max() < 0.02

@@ -232,7 +232,7 @@ def test_every_mistake_at_once_with_its_line(calm, ranges):
             "is no number",
             "must be above 0",
             "km from the others",
-            "farther than is answered",
+            "farther than a transponder replies",
         ],
         strict=True,
     ):
@@ -256,7 +256,7 @@ def test_every_mistake_at_once_with_its_line(calm, ranges):
         ),
         ("latitude[deg];longitude[deg];range[m]\n48,3;-5.2;2000\n", "degrees are needed, such as"),
         (RANGES.split("48.29")[0], "2 ranges; 3 are needed"),
-        (re.sub(r"\d+\.\d$", "90.0", RANGES, flags=re.M), "the ranges meet nowhere"),
+        (re.sub(r"\d+\.\d$", "90.0", RANGES, flags=re.M), "the ranges do not intersect"),
     ],
 )
 def test_files_that_are_none(calm, ranges, text, said):
@@ -271,7 +271,7 @@ def test_what_was_not_answered_and_what_repeats_is_left_out(calm, ranges):
     done = calm("locate", ranges(text), "--json", "-")
     assert done.code == 0
     assert "line 8 repeats line 3: left out" in done.err
-    assert "no answer in lines 9, 10: left out" in done.err
+    assert "no reply in lines 9, 10: left out" in done.err
     assert json.loads(done.out)["lines"] == [3, 4, 5, 6, 7]
 
 

@@ -280,7 +280,22 @@ def test_a_clamp_that_slipped_is_named(calm, given, truth):
     values[HOURS // 2 :, 1] += 6.0
     given("s.csv", values=values)
     done = calm(*COMMAND, "--pressures", "s.csv", "-o", "d.nc", "--json", "-")
-    assert any("middle: steps" in one for one in json.loads(done.out)["doubts"])
+    assert any("middle: hangs" in one for one in json.loads(done.out)["doubts"])
+
+
+@pytest.mark.thorough
+def test_a_clock_that_is_late_is_taken_off_and_the_history_says_so(calm, given, truth, folder):
+    values = dbar(truth[1])
+    values[1:, 1] = values[:-1, 1].copy()
+    given("s.csv", values=values)
+    done = calm(*COMMAND, "--pressures", "s.csv", "-o", "d.nc", "--json", "-", "--correct", "clock")
+    (found,) = json.loads(done.out)["diagnosis"]
+    assert (found["label"], found["kind"], found["corrected"]) == ("middle", "clock", True)
+    assert found["low"] < 3600.0 < found["high"]
+    with xarray.open_dataset(folder / "d.nc", engine="h5netcdf") as result:
+        assert "taken off: middle: its clock is 1.0" in result.attrs["history"]
+    done = calm(*COMMAND, "--pressures", "s.csv", "-o", "e.nc", "--correct", "clocks")
+    assert done.code == 2 and "did you mean `clock`?" in done.err
 
 
 @pytest.mark.thorough

@@ -29,7 +29,7 @@ def test_what_a_technician_asks_for_stands_below_the_table(calm, folder):
     # 30 kg + 60 m of 0.1 kg/m; 400 N less 60 m of 0.5 N/m; 0.5 m of float and 60 m in 100 m
     assert "Without the anchor 36.0 kg in air; what floats lifts 400 N, net 370 N" in lines
     assert "Line of 60.50 m, scope 0.605; watch circle of " in lines
-    assert "Freed, it rises with " in lines
+    assert "Once released, it rises at " in lines
     assert "Good to " in lines
     assert "marches" not in lines
     assert "marches of" in calm("run", "m.yaml", "-v").out

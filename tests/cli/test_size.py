@@ -14,7 +14,7 @@ def test_what_to_change(calm, write_mooring):
     assert lines[2].startswith("top float.buoyancy: 2000 N → ")
     for row in ("knockdown of the top", "pull on the anchor", "anchor weight needed"):
         assert f"\n{row}" in done.out
-    assert "size, drag and mass stay as they are" in done.out
+    assert "size, drag and mass do not" in done.out
     assert max(map(len, lines)) <= 80
 
 

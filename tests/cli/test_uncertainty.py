@@ -23,7 +23,7 @@ def test_the_table_and_the_json_say_the_same(calm, write_mooring):
     assert set(said["anchor"]) == {"tension", "required_weight"}
     assert said["contributions"] == []  # too few samples for a fit
     shown = calm("run", file, *DRAWS).out
-    assert "How sure these figures are" in shown
+    assert "Uncertainty of these figures" in shown
     for figure in top["depth_top"]:
         assert f"{figure:.1f}" in shown
 
@@ -51,7 +51,7 @@ def test_the_band_is_drawn_and_reported(calm, write_mooring, folder):
     calm("run", write_mooring(), *DRAWS, "--plot", "band.svg", "--html", "sure.html")
     assert "5 to 95 %" in (folder / "band.svg").read_text(encoding="utf-8")
     page = (folder / "sure.html").read_text(encoding="utf-8")
-    assert "How sure these figures are" in page
+    assert "Uncertainty of these figures" in page
 
 
 def test_what_cannot_be_drawn_is_refused(calm, write_mooring, heavy):
@@ -89,12 +89,12 @@ def test_designs_are_listed_by_their_probability(calm, write_mooring, folder):
         encoding="utf-8",
     )
     done = calm("check", safe, "shaky.yaml", "--allow-unknown", *DRAWS, "--report", "out")
-    said = done.out[done.out.index("How likely a limit is broken") :]
+    said = done.out[done.out.index("Probability of breaking a limit") :]
     assert said.index("Shaky") < said.index("Test")
     header, *rows = (folder / "out" / "checks.csv").read_text(encoding="utf-8").splitlines()
     assert header.endswith(",reason,probability")
     assert any(row.rpartition(",")[2] for row in rows)
-    assert "How likely a limit is broken" in (folder / "out" / "report.html").read_text("utf-8")
+    assert "Probability of breaking a limit" in (folder / "out" / "report.html").read_text("utf-8")
 
 
 def test_a_check_refuses_samples_that_are_no_power_of_two(calm, write_mooring):

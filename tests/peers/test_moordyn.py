@@ -7,17 +7,22 @@ import pytest
 
 from calm.exchange.exporting import export_file
 from calm.shipped import shipped_folder
+from tests.cli.test_legs import NET
 
 pytestmark = pytest.mark.peers
 
 SECONDS = 10
 
 
-@pytest.mark.parametrize("name", ["s1000", "cdms-1", "tidal-adcp"])
+@pytest.mark.parametrize("name", ["s1000", "cdms-1", "tidal-adcp", "net"])
 def test_the_line_stays_where_it_is(name, tmp_path, monkeypatch):
     """Its points move by less than 2e-4 of the depth; its segments are some metres long."""
     moordyn = pytest.importorskip("moordyn", reason="needs the extra `peers`")
-    exported = export_file(f"{shipped_folder('lines')}/{name}.yaml", "moordyn")
+    file = shipped_folder("lines") / f"{name}.yaml"
+    if name == "net":
+        file = tmp_path / "net.yaml"
+        file.write_text(NET)
+    exported = export_file(file, "moordyn")
     (tmp_path / "mooring.txt").write_bytes(exported.content)
     for beside, content in exported.beside.items():
         (tmp_path / beside).write_bytes(content)

@@ -40,7 +40,7 @@ def test_the_anchor_needs_what_the_worst_finding_says(anchor, needs, state):
     head = the(told, "needs")
     assert head.text.startswith(needs) and head.state is state
     for each in (each for each in told if each.heading):
-        if found := re.search(r"([\d.]+ k?N) are required", each.text):
+        if found := re.search(r"([\d.]+ k?N) is required", each.text):
             assert f"needs {found[1]}" in head.text and each.state is head.state
             assert each.heading == "Anchor weight" + " (strumming)" * ("strumming" in needs)
 

@@ -12,11 +12,10 @@ import pytest
 import calm
 from calm.motion import common_unknowns
 from calm.motion.correction import Task
+from calm.motion.diagnosis import diagnosed
 from calm.motion.line_response import Forward, points
 from calm.motion.matching import labels_of
 from calm.motion.measurements import MooringMeasurements
-from calm.motion.remarks import sensor_remarks
-from calm.motion.study import knockdown
 from calm.motion.whole_record import estimate_common
 
 FIELD = Path(__file__).parents[2] / "docs" / "field" / "dune2"
@@ -107,13 +106,13 @@ def recovered(mooring, seed, used=USED, slip=None):
     common = estimate_common(mooring, measured, NAMES)
     deviation = np.sqrt(np.diag(common.covariance))[: len(NAMES)]
     missed = (np.log(list(common.factors.values())) - logs) / deviation
-    profiles, more = Task(mooring, measured, common).columns(0, TIMES)
+    task = Task(mooring, measured, common)
+    profiles, more = task.columns(0, TIMES)
     labels = labels_of(mooring)
     hidden = [labels.index(label) for label in BETWEEN if label not in used]
     off = np.abs(profiles.clamp_depth[:, hidden] - depth[:, hidden])
     inside = off <= 1.96 * more["clamp_depth_sd"][:, hidden]
-    said = sensor_remarks(used, measured.time, more["residual"], knockdown(measured), common)
-    return missed, inside, said
+    return missed, inside, [one.sentence() for one in diagnosed(task)]
 
 
 def test_a_twin_is_recovered(mooring):
@@ -149,7 +148,7 @@ def test_of_two_sensors_too_the_one_that_hangs_elsewhere_leaves_the_bands_honest
 
 def test_a_slip_in_strong_currents_is_not_taken_for_their_errors(mooring):
     missed, inside, doubted = recovered(mooring, 414, USED, ("Aquadopp 626", 20.0, 44))
-    assert doubted[0].startswith("Aquadopp 626: ") and "slipped by +19.9 m" in doubted[0]
+    assert doubted[0].startswith("Aquadopp 626: ") and "hangs 19.9 m below" in doubted[0]
     assert (np.abs(missed) < 2.0).all()
     assert inside.mean() > 0.9
 

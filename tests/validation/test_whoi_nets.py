@@ -11,9 +11,15 @@ Coefficients of drag are given for 1025 kg/m³ and scale with the density, as th
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+from calm.case.net import Net, load_any
+from calm.case.net_result import NetResult
+from calm.exchange.importing import import_file
 from calm.solve.net import solve_net
 from calm.solve.net_leg import LegEnd, NetLeg
 from tests.unit.solve.nets import Point, Wire, anchored, line_of, water_of
@@ -86,4 +92,98 @@ def test_multi_leg_3d() -> None:
         [0.0002, 0.0, 26.5772], abs=6e-5
     )
     pulls = [leg.tension[-1] for leg in net.legs]
+    assert pulls == pytest.approx([6011.55, 5982.06, 6011.55, 5982.06], abs=0.02)
+
+
+HEAD = """\
+Problem Description
+    title = "net"  type = {kind}
+Environment
+    rho = 1027  gravity = 9.81  x-current = 0.2  depth = {depth}
+Buoys
+    sinker  type = sphere  d = 6*0.0254  m = 20  Cdn = 1.0
+Anchors
+    clump
+Connectors
+    ball  d = 48*0.0254  wet = -1590*4.448 - 6000  Cdn = 0.8  m = 690/2.2
+    joint  d = 0.168  wet = 4.45*4.448*.8667  Cdn = 0.5  m = 4.45/2.205
+Materials
+    wire  EA = 4.7e6  m = 0.320  wet = 2.64  d = 0.01  Cdt = 0.01  Cdn = 1.5
+Layout
+"""
+
+
+def wire(length: float) -> str:
+    return f"segment = {{ length = {length}  material = wire  nodes = (5, 1.0) }}\n"
+
+
+def clump(x: float, y: float = 0.0) -> str:
+    return f"terminal = {{ anchor = clump  x = {x}  y = {y}  z = 0.0 }}\n"
+
+
+BALL, JOINT = "connector = ball\n", "connector = joint\n"
+HUNG = "terminal = { buoy = sinker }\n"
+
+
+@pytest.fixture
+def imported(tmp_path: Path) -> Callable[[str, float, str], NetResult]:
+    def solve(kind: str, depth: float, layout: str) -> NetResult:
+        path = tmp_path / "net.cbl"
+        path.write_text(HEAD.format(kind=kind, depth=depth) + layout + "End\n")
+        net = load_any(path, text=import_file(path, tmp_path / "net.yaml").text)
+        assert isinstance(net, Net)
+        return net.solve()
+
+    return solve
+
+
+def heights(net: NetResult, depth: float) -> np.ndarray:
+    return np.array([[node.x, depth - node.depth] for node in net.nodes])
+
+
+def test_branch_as_a_file(imported: Callable[[str, float, str], NetResult]) -> None:
+    """The first sphere is a piece of the leg that stands; of the other nodes each has a branch.
+
+    Figures and tolerances as above.
+    """
+    layout = (
+        clump(0.0) + wire(50) + BALL + wire(20) + JOINT
+        + "branch = {\n" + wire(20) + JOINT + wire(10) + HUNG + "}\n"
+        + wire(20) + JOINT + "branch = {\n" + wire(20) + HUNG + "}\n"
+        + wire(20) + BALL + wire(50) + clump(120.0)
+    )  # fmt: skip
+    net = imported("horizontal", 70.0, layout)
+    assert len(net.legs) == 5
+    assert heights(net, 70.0) == pytest.approx(
+        np.array([[50.040, 39.531], [70.080, 39.591]]), abs=6e-4
+    )
+    balls = [(row.x_top, 70.0 - row.depth_top) for row in net.components if row.use == "ball"]
+    assert np.array(balls) == pytest.approx(
+        np.array([[30.011, 40.201], [90.108, 40.290]]), abs=6e-4
+    )
+    pulls = [[anchor.horizontal, anchor.vertical] for anchor in net.anchors]
+    assert np.array(pulls) == pytest.approx(
+        np.array([[9456.2, 12592.6], [9384.5, 12591.4]]), abs=0.1
+    )
+
+
+@pytest.mark.thorough
+def test_multi_leg_as_a_file(imported: Callable[[str, float, str], NetResult]) -> None:
+    branch = "branch = {\n" + wire(40) + clump(30.0) + "}\n"
+    layout = clump(0.0) + wire(50) + BALL + branch + wire(50) + clump(60.0)
+    net = imported("positioned", 44.0, layout)
+    assert heights(net, 44.0)[0] == pytest.approx([30.0002, 40.0537], abs=6e-5)
+    pulls = [anchor.tension for anchor in net.anchors]
+    assert pulls == pytest.approx([4085.8, 6254.6, 4029.9], abs=0.3)
+
+
+@pytest.mark.thorough
+def test_multi_leg_3d_as_a_file(imported: Callable[[str, float, str], NetResult]) -> None:
+    branches = "".join(
+        "branch = {\n" + wire(50) + clump(x, y) + "}\n" for x, y in ((30, -30), (-30, 30))
+    )
+    layout = clump(-30.0, -30.0) + wire(50) + BALL + branches + wire(50) + clump(30.0, 30.0)
+    net = imported("horizontal", 44.0, layout)
+    assert heights(net, 44.0)[0] == pytest.approx([0.0002, 26.5772], abs=6e-5)
+    pulls = [anchor.tension for anchor in net.anchors]
     assert pulls == pytest.approx([6011.55, 5982.06, 6011.55, 5982.06], abs=0.02)

@@ -160,7 +160,7 @@ def _unfit(time: Times, values: Column) -> str:
     if not bool((time[1:] > time[:-1]).all()):
         return "the times do not increase"
     if np.fmax.reduce(values) == np.fmin.reduce(values):
-        return "the values are all alike"
+        return "all values are equal"
     return ""
 
 
@@ -176,11 +176,11 @@ def _by_maxima(
             "the profiles",
         )
     if maxima.max() == maxima.min():
-        return LevelsRefused("gev", f"the {len(maxima)} annual maxima are all alike")
+        return LevelsRefused("gev", f"the {len(maxima)} annual maxima are all equal")
     tail = fit_maxima(maxima)
     rules = (
-        f"maxima of {len(maxima)} years of 365.25 days, counted from the first profile, that have "
-        f"{100 * WHOLE:.0f} % of their profiles{_gaps(time, values, step)}"
+        f"maxima of {len(maxima)} years of 365.25 days, counted from the first profile, "
+        f"with at least {100 * WHOLE:.0f} % of their profiles{_gaps(time, values, step)}"
     )
     growths = {period: -log(-log1p(-1.0 / period)) for period in _periods(years)}
     return _told("gev", tail, 1.0, rules, growths)
@@ -192,7 +192,7 @@ def _by_peaks(
     if years < LEAST_YEARS:
         return LevelsRefused(
             "pot",
-            f"a year of solved profiles is needed; there are {365.25 * years:.0f} days of them",
+            f"a year of solved profiles is needed; there are {365.25 * years:.0f} days",
         )
     thresholds = np.percentile(values[np.isfinite(values)], THRESHOLDS, overwrite_input=True)
     most = 0
@@ -212,7 +212,7 @@ def _over(
     percentile: float, threshold: float, peaks: NDArray[np.float64], years: float, gaps: str
 ) -> Fit | LevelsRefused:
     if peaks.max() == peaks.min():
-        return LevelsRefused("pot", f"the {len(peaks)} peaks are all alike")
+        return LevelsRefused("pot", f"the {len(peaks)} peaks are all equal")
     tail, rate = fit_excesses(peaks, threshold), len(peaks) / years
     rules = (
         f"{len(peaks)} peaks over the {percentile:.0f} % percentile, the highest from "
@@ -230,8 +230,8 @@ def _gaps(time: Times, values: Column, step: np.timedelta64) -> str:
     if missing < _FEW_GAPS:
         return ""
     return (
-        f"; {100 * missing:.1f} % of the time from the first profile to the last is missing, and "
-        "the intervals make no allowance for what happened in it"
+        f"; {100 * missing:.1f} % of the time between the first and the last profile is "
+        "missing, and the intervals do not allow for what happened then"
     )
 
 

@@ -176,7 +176,7 @@ def test_gaps_do_not_count_as_record():
 @pytest.mark.parametrize(
     ("time", "values", "reason"),
     [
-        (times(5), np.ones(5), "all alike"),
+        (times(5), np.ones(5), "all values are equal"),
         (times(5), np.full(5, np.nan), "there are 0 values"),
         (times(5)[::-1], np.arange(5.0), "do not increase"),
     ],
@@ -254,7 +254,7 @@ def test_gaps_and_weak_currents_leave_levels_and_gaps_are_told():
     ended = {"converged": len(time) - 50, "no-current": 20, "slack": 20, "above-surface": 10}
     for fit in return_levels(time, values, ended):
         assert isinstance(fit, Fit)
-        assert "1.1 % of the time from the first profile to the last is missing" in fit.rules
+        assert "1.1 % of the time between the first and the last profile is missing" in fit.rules
     assert all(
         "missing" not in fit.rules for fit in return_levels(*daily_peaks(12, 0.1, 2, 16), {})
     )

@@ -176,7 +176,7 @@ def test_a_disk_that_keeps_nothing_is_given_up(tmp_path, mooring, record, monkey
     monkeypatch.setattr(run_module, "finish", lambda *_: [0])
     outcome = run_batch(mooring, record, tmp_path / "r.nc", block=8)
     assert not outcome.done
-    assert "loses what is written" in outcome.reason
+    assert "does not keep what is written" in outcome.reason
 
 
 def test_the_lock_is_held_until_the_last_thread_has_ended(tmp_path, mooring, record, monkeypatch):

@@ -164,8 +164,8 @@ def test_arrays_of_any_layout_are_taken(subsurface: Mooring) -> None:
 @pytest.mark.parametrize(
     ("shapes", "message"),
     [
-        (((3, 5), (3, 4), (5,)), "of one shape: they are of .3, 5., .3, 4."),
-        (((), (), (5,)), "must be profiles by levels"),
+        (((3, 5), (3, 4), (5,)), "one shape, profiles by levels; they have .3, 5., .3, 4."),
+        (((), (), (5,)), "must have one shape, profiles by levels"),
         (((3, 5), (3, 5), (4,)), "depth must be"),
         (((3, 5), (3, 5), (2, 5)), "depth must be"),
     ],

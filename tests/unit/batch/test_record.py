@@ -73,7 +73,7 @@ def test_the_nearest_column_with_water_is_taken(tmp_path: Path) -> None:
         depth, u, v, w = record.profiles(0, COUNT)
         assert (record.source["latitude"], record.source["longitude"]) == ("48.3", "-5.12")
         assert record.notes[0] == (
-            "the column nearest to 48.3° N 5.2° W that has a current is that at 48.3° N 5.12° W, "
+            "the column nearest to 48.3° N 5.2° W that has a current is at 48.3° N 5.12° W, "
             "5.9 km away"
         )
     column = glorys().isel(latitude=1, longitude=2)
@@ -184,7 +184,7 @@ def test_notes_tell_the_rules(tmp_path: Path) -> None:
         assert record.notes == (
             "the current is not given above 40.0 m and below 250.0 m: that of the nearest level is "
             "used there, in 300.0 m of water",
-            "the strongest of 20 currents is 0.0092 m/s: cm/s or another unit, taken for m/s?",
+            "the strongest of 20 currents is 0.0092 m/s: cm/s or another unit read as m/s?",
             "levels where the current or their depth has no value are left out of their profile",
             "levels above the surface are left out",
             "levels below the seabed are used where they have a value: the current at the seabed "

@@ -255,7 +255,7 @@ def test_two_batches_do_not_work_on_one_result(tmp_path, mooring, record):
 
     def again(progress):
         if not refused:
-            with pytest.raises(UsageError, match="another calm batch is at work"):
+            with pytest.raises(UsageError, match="another calm batch is working"):
                 run_batch(mooring, record, output)
             refused.append(progress)
 

@@ -43,7 +43,7 @@ def test_a_smooth_float_in_its_drag_crisis_has_a_third_of_the_drag(solve):
     assert drags[0] == drags[1] == pytest.approx(512.5 * 0.5 * pi / 4 * 1.2**2)
     assert curve.top.x < constant.top.x
     told = [" ".join(result.warnings) for result in (constant, curve)]
-    assert "Reynolds number above 2e5 (top: 4.4e5): the drag coefficient needs a look." in told[0]
+    assert "Reynolds number above 2e5 (top: 4.4e5): check the drag coefficient." in told[0]
     assert "Reynolds" not in told[1]
 
 
@@ -58,7 +58,7 @@ def test_a_rope_beyond_its_table(solve):
     weak = solve(rope=TABLE.replace("60 kN", "20 kN"))
     [told] = [text for text in weak.warnings if "elongation" in text]
     assert told.startswith("rope is loaded beyond its elongation table: 60")
-    assert told.endswith("N, and it is trusted up to 4000 N.")
+    assert told.endswith("N; the table is valid up to 4000 N.")
 
 
 def test_a_rope_stretches_by_its_table_and_thins(solve):

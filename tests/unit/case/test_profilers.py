@@ -118,7 +118,7 @@ def test_a_profiler_in_the_line_is_refused(tmp_path):
     [
         (("7500 N", "3300 N"), "fail", "which needs 2224 N to travel on it"),
         (("drive_force: 50 N", "drive_force: 5 N"), "fail", "its drive has 5 N"),
-        (("drive_force: 50 N, ", ""), "unknown", "climbs with is not known"),
+        (("drive_force: 50 N, ", ""), "unknown", "The drive force of"),
         (("diameter: 8 mm", "diameter: 14 mm"), "warn", "wire is 14.0 mm thick"),
         (
             ("      - {use: bumper, at: 1380", "      - {use: bumper, at: 600 m}\n"

@@ -138,7 +138,7 @@ def test_a_target_beyond_the_anchor(mooring):
     nearest = LENGTH * (1.0 - 1.0 / sqrt(1.0 + best**2))
     assert f"The nearest is {nearest:.4g}" in sizing.message
     assert "float.buoyancy at 1900 N" in sizing.message or "1899.9" in sizing.message
-    assert "Above that: anchor-lifts: The line pulls up with" in sizing.message
+    assert "Above that: anchor-lifts: The vertical pull of the line is" in sizing.message
     assert "--between" in sizing.advice
 
 
@@ -151,7 +151,7 @@ def test_a_range_that_ends_too_soon(mooring):
 def test_a_change_that_does_nothing(mooring):
     sizing = size(mooring(), "tension(block) >= 2 kN", "thread.length")
     assert sizing.status == "not-met"
-    assert sizing.message.startswith("The present value is the nearest, at 948.683 N")
+    assert sizing.message.startswith("The present value comes nearest, with 948.683 N")
 
 
 def test_a_mooring_without_equilibrium_can_be_mended(mooring):
@@ -185,7 +185,7 @@ def test_a_piece_cut_to_fit_is_cut_anew(mooring):
 
 def test_the_drag_stays_and_that_is_said(mooring):
     sizing = size(mooring(), "knockdown(top) <= 2 m", "float.buoyancy")
-    assert "size, drag and mass stay" in sizing.notes[0]
+    assert "size, drag and mass do not" in sizing.notes[0]
     assert sizing.after.figures.horizontal == pytest.approx(DRAG, rel=1e-9)
 
 
@@ -227,7 +227,7 @@ def test_the_document_is_plain_json(mooring):
         ("knockdown(top) <= 2 kg", "float.buoyancy", None, "`2 kg` is a mass; a length"),
         ("tilt(CDT) <= 2 deg", "float.buoyancy", None, "did you mean `CTD`?"),
         ("tilt(glass) <= 2 deg", "float.buoyancy", None, "2 parts are called `glass`; name one"),
-        ("required_weight(top) <= 2 N", "float.buoyancy", None, "leave the brackets out"),
+        ("required_weight(top) <= 2 N", "float.buoyancy", None, "leave out the brackets"),
         ("tilt <= 2 deg", "float", None, "there is no field to change; allowed: buoyancy, count"),
         ("tilt <= 2 deg", "float.bouyancy", None, "did you mean `buoyancy`?"),
         ("tilt <= 2 deg", "flaot.buoyancy", None, "did you mean `float`?"),
@@ -237,7 +237,7 @@ def test_the_document_is_plain_json(mooring):
         ("tilt <= 2 deg", "block.count", None, "a line has one anchor"),
         ("tilt <= 2 deg", "CTD.buoyancy", None, "CTD.buoyancy is 0; give its range with --between"),
         ("tilt(glass 1) <= 2 deg", "glass.count", None, "set the target for another part"),
-        ("tilt(thread) = 2 deg", "glass.count", None, "glass.count goes in steps"),
+        ("tilt(thread) = 2 deg", "glass.count", None, "glass.count changes in steps"),
         ("tilt <= 2 deg", "float.buoyancy", ("1 m", "2 N"), "`1 m` is a length; a force"),
         ("tilt <= 2 deg", "float.buoyancy", ("3 N", "2 N"), "3 N is not below 2 N"),
         ("tilt <= 2 deg", "thread.length", ("20 m", "90 m"), "`20 m` must be at least 30 m"),

@@ -61,8 +61,8 @@ def test_centimetres_beside_a_storm_are_told(tmp_path):
     state, message = said(small, storm)[0]
     assert state == "warn"
     assert message == (
-        "The current is 0.004 m/s at its strongest, 0.80 m/s in another environment: a hundredth "
-        "is cm/s read as m/s."
+        "The current is 0.004 m/s at its strongest, 0.80 m/s in another environment: "
+        "was m/s read as cm/s, or cm/s as m/s?"
     )
     still = of(tmp_path, UNIFORM.replace("SPEED", "0"))
     assert said(still, storm) == [("pass", "The strongest current judged is 0.80 m/s.")]
@@ -83,7 +83,9 @@ def test_a_profile_that_does_not_cover_the_line_is_told(current, tmp_path):
     found = [message for state, message in said(of(tmp_path, current)) if state == "warn"]
     assert len(found) == bool(GAPS[current])
     if found:
-        assert found[0].startswith(f"The current is not given {GAPS[current]}: that of the nearest")
+        assert found[0].startswith(
+            f"The current is not given {GAPS[current]}: the value of the nearest"
+        )
 
 
 def test_a_mooring_deployed_elsewhere_is_unknown(tmp_path):
@@ -123,7 +125,7 @@ def test_a_rope_that_floats_below_the_release_is_told(tmp_path):
     )
     mooring = load(tmp_path / "m.yaml", text=text.replace("CURRENT", HALF))
     found = assessment_of("m", [stand_of(mooring, "m")]).findings
-    assert "tail floats below the release, and stays on the anchor." in (
+    assert "tail floats, but below the release: it stays on the anchor." in (
         one.message for one in found if one.rule == "release-present"
     )
 
@@ -165,7 +167,7 @@ def test_a_current_weaker_than_its_own_record_is_told(tmp_path):
     calm, storm = (
         of(tmp_path, f"{{file: record.csv, time: '2026-01-01T{hour}:00'}}") for hour in ("00", "06")
     )
-    told = "The record that this current is of has 0.90 m/s; the strongest current judged is "
-    assert said(calm)[0] == ("warn", f"{told}0.30 m/s.")
+    told = "The record that this current is taken from reaches 0.90 m/s; "
+    assert said(calm)[0] == ("warn", f"{told}the strongest current judged is 0.30 m/s.")
     assert [state for state, _ in said(storm)] == ["pass"]
     assert [state for state, _ in said(calm, storm)] == ["pass"]

@@ -113,7 +113,7 @@ FLAWS = (
         "fatigue",
         None,
         "unknown",
-        "one sea is no climate",
+        "one sea is not a wave climate",
     ),
     Flaw(
         "a wire too weak",
@@ -177,7 +177,7 @@ FLAWS = (
         "strength-steps",
         "shackle-13 1",
         "warn",
-        "may bear 1000 N",
+        "is good for 1000 N",
     ),
     Flaw(
         "an anchor lighter than the rule",
@@ -186,7 +186,7 @@ FLAWS = (
         "anchor-weight",
         "deadweight",
         "fail",
-        "are required",
+        "is required",
     ),
     Flaw(
         "an anchor that the line almost lifts",
@@ -195,7 +195,7 @@ FLAWS = (
         "anchor-uplift",
         "deadweight",
         "fail",
-        "The line pulls up with",
+        "The vertical pull of the line is",
     ),
     Flaw(
         "a bed that does not hold",
@@ -217,7 +217,7 @@ FLAWS = (
         "slack",
         "Kevlar 3",
         "fail",
-        "300 N keep a rope taut",
+        "300 N keeps a rope taut",
     ),
     Flaw(
         "an instrument that leans too much",
@@ -281,7 +281,7 @@ FLAWS = (
         "knockdown",
         "ADCP float",
         "fail",
-        "2.0 m are allowed",
+        "2.0 m is allowed",
     ),
     Flaw(
         "an excursion that the design forbids",
@@ -290,7 +290,7 @@ FLAWS = (
         "excursion",
         "ADCP float",
         "fail",
-        "20.0 m are allowed",
+        "20.0 m is allowed",
     ),
     Flaw(
         "a buoy with little in reserve",
@@ -341,7 +341,7 @@ FLAWS = (
         "recovery",
         None,
         "warn",
-        "the line rises with",
+        "it rises at",
     ),
     Flaw(
         "a parafil that breaks in the launch",
@@ -409,7 +409,7 @@ FLAWS = (
         "recovery",
         "release",
         "fail",
-        "0.30 m/s are required",
+        "0.30 m/s is required",
     ),
     Flaw(
         "back-up glass that overtakes the line",
@@ -439,7 +439,7 @@ FLAWS = (
         "knockdown",
         "ADCP float",
         "fail",
-        "13.0 m are allowed",
+        "13.0 m is allowed",
         "fouling",
     ),
     Flaw(
@@ -449,7 +449,7 @@ FLAWS = (
         "knockdown",
         "ADCP float",
         "warn",
-        "13.0 m are allowed",
+        "13.0 m is allowed",
         "strumming",
     ),
     Flaw(
@@ -463,7 +463,7 @@ FLAWS = (
         "top-depth",
         None,
         "warn",
-        "10.0 m keep it clear",
+        "10.0 m would keep it clear",
     ),
     Flaw(
         "a top less deep than the design says",
@@ -472,7 +472,7 @@ FLAWS = (
         "top-depth",
         "ADCP float",
         "fail",
-        "400.0 m keep it clear",
+        "400.0 m would keep it clear",
     ),
     Flaw(
         "a release that the line overloads",
@@ -481,7 +481,7 @@ FLAWS = (
         "release-load",
         None,
         "fail",
-        "what it may bear is 1000 N",
+        "the allowed load is 1000 N",
     ),
     Flaw(
         "a release that does not open under its load",
@@ -513,7 +513,7 @@ FLAWS = (
         "release-present",
         "release",
         "warn",
-        "release is the only release: where it fails, nothing else frees the line.",
+        "release is the only release: if it fails, nothing else frees the line.",
     ),
     Flaw(
         "a release on its anchor",
@@ -530,7 +530,7 @@ FLAWS = (
         "release-present",
         "releases pair",
         "warn",
-        "releases pair stands 0.1 m above the anchor; 1 m keep it out of the mud",
+        "releases pair stands 0.1 m above the anchor; 1 m would keep it out of the mud",
     ),
     Flaw(
         "a release above every float",
@@ -542,7 +542,7 @@ FLAWS = (
         "release-present",
         "release",
         "fail",
-        "Nothing floats above release: freed, it stays down.",
+        "Nothing above release floats: once released, it stays on the seabed.",
     ),
     Flaw(
         "a release that is clamped",
@@ -551,7 +551,7 @@ FLAWS = (
         "release-present",
         "CTD 900 m",
         "unknown",
-        "CTD 900 m has the role of a release, and is clamped: it frees nothing.",
+        "CTD 900 m has the role of a release, but is clamped: it frees nothing.",
     ),
     Flaw(
         "a line without any shackle",
@@ -560,7 +560,7 @@ FLAWS = (
         "hardware",
         None,
         "warn",
-        "what joins its pieces is not judged",
+        "its joints are not judged",
     ),
     Flaw(
         "a rope where fish bite",
@@ -569,7 +569,7 @@ FLAWS = (
         "fish-bite",
         "polyester",
         "warn",
-        "down to 1000.0 m fish bite through rope",
+        "fish bite through rope down to 1000.0 m",
     ),
     Flaw(
         "a release above every float, beside a good one",
@@ -583,7 +583,7 @@ FLAWS = (
         "release-present",
         "upper",
         "warn",
-        "Nothing floats above upper, a release",
+        "Nothing above release upper floats",
     ),
     Flaw(
         "a nylon rope without stiffness",
@@ -663,7 +663,7 @@ FLAWS = (
         "swivel",
         "wire",
         "warn",
-        "wire bears torque and ends at top float",
+        "wire is not torque-balanced and ends at top float",
     ),
     Flaw(
         "a shackle for a release",
@@ -672,7 +672,7 @@ FLAWS = (
         "release-present",
         None,
         "unknown",
-        "has the role of a release, and is called what opens nothing.",
+        "has the role of a release, but its name is not a release's.",
     ),
     Flaw(
         "two clamps in one place",
@@ -690,7 +690,7 @@ FLAWS = (
         "clamp-place",
         "CTD 230 m",
         "fail",
-        "CTD 230 m sticks out 0.21 m over the end of wire.",
+        "CTD 230 m extends 0.21 m beyond the end of wire.",
     ),
     Flaw(
         "a current weaker than a breeze drives",

@@ -39,7 +39,7 @@ def test_good_components_pass(good):
         (GOOD_SPHERE, {"searched": ["buoyancy"]}, "under `searched` `buoyancy`"),
         (GOOD_SPHERE, {"searched": ["stiffness"]}, "a sphere does not have"),
         (GOOD_SPHERE, {"depth_rating": "11500 m"}, "no water is deeper"),
-        (GOOD_SPHERE, {"max_tilt": "20 deg", "warn_tilt": "25 deg"}, "after its greatest tilt"),
+        (GOOD_SPHERE, {"max_tilt": "20 deg", "warn_tilt": "25 deg"}, "beyond its greatest tilt"),
         (GOOD_SPHERE, {"buoyancy": "5300 N"}, "lifts 5300 N"),
         (GOOD_SPHERE, {"buoyancy": "3000 N", "mass": "300 kg"}, "displaces"),
         (GOOD_SPHERE, {"buoyancy": "-1000 N", "mass": "110 kg"}, "denser than lead"),

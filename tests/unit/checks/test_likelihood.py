@@ -1,4 +1,4 @@
-"""How likely a limit is broken: against lines whose limit is passed at a known draw."""
+"""Probability of breaking a limit: against lines whose limit is passed at a known draw."""
 
 from math import erf, sqrt
 

@@ -294,9 +294,9 @@ REFUSED = {
     "branch": (
         "segment = { length = 50",
         "branch = { segment = { length = 5 } } segment = { length = 50",
-        "a branch",
+        "the layout has no `terminal` at the end of a line",
     ),
-    "both ends anchored": ("{ buoy = ball }", "{ anchor = clump }", "several legs"),
+    "both ends anchored": ("{ buoy = ball }", "{ anchor = clump }", "nothing stands between"),
     "horizontal": ("subsurface", "horizontal", "`type = horizontal`"),
     "drifter": ("subsurface", "drifter", "`type = drifter`"),
     "horizontal drifter": ("subsurface", "horizontal-drifter", "`type = horizontal-drifter`"),
@@ -404,7 +404,7 @@ def test_currents_of_a_file_are_those_at_the_anchor_now(tmp_path):
     ]
     told = "\n".join(str(each) for each in made.dropped)
     assert "times after the first" in told
-    assert "from place to place" in told
+    assert "how it varies horizontally" in told
     assert made.guessed == ()
 
 
@@ -422,7 +422,7 @@ def test_currents_of_a_file_that_is_missing_are_guessed(tmp_path):
         ({"count": 40}, "has 120 speeds, not 144"),
         ({"head": "0 0 2 " + GRID[6:]}, "step, start and count"),
         ({"head": GRID.replace("6", "900000000")}, "more than 2000000 speeds"),
-        ({"head": "a b c"}, "something else than numbers"),
+        ({"head": "a b c"}, "something other than numbers"),
         ({"head": GRID + "nan "}, "without a value"),
     ],
 )

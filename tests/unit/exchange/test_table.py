@@ -493,17 +493,17 @@ UNITS_BELOW = (
 NOT_UNDERSTOOD = {
     "a unit of a heading": (
         with_cell("Weight in water (slug)", "30"),
-        "row 1, column 4, `Weight in water (slug)`: `slug` is no unit of force that CALM knows",
+        "row 1, column 4, `Weight in water (slug)`: `slug` is not a unit of force that CALM knows",
     ),
     "one unit of a row": (
-        UNITS_BELOW, "row 1, column 3, `Diameter (ell)`: `ell` is no unit of length"
+        UNITS_BELOW, "row 1, column 3, `Diameter (ell)`: `ell` is not a unit of length"
     ),
     "behind a number": (
         ENGLISH.replace(",22,1.2", ",22 Stein,1.2"),
-        "row 5, AR861 release: Wet weight (kg): `22 Stein`: `Stein` is no unit of force",
+        "row 5, AR861 release: Wet weight (kg): `22 Stein`: `Stein` is not a unit of force",
     ),
     "a ton": (with_cell("Weight in water (tons)", "0.3"), "of 907, 1000 or 1016 kg"),
-    "a length for a weight": (with_cell("Weight in water (mm)", "3"), "`mm` is no unit of force"),
+    "a length for a weight": (with_cell("Weight in water (mm)", "3"), "not a unit of force"),
     "two units": (ENGLISH.replace("Length (m)", "Length (m) (ft)"), "names two units"),
     "a diameter of 8 m": (ENGLISH.replace("(mm)", ""), "is 8 m; which unit is it in?"),
     "two decimal signs": (
@@ -533,7 +533,9 @@ def test_one_decimal_sign_holds_for_the_file(read, tmp_path):
     english = ENGLISH.replace("8 mm wire,100,", '8 mm wire,"1,250",')
     made = read(english)
     assert pieces(made, tmp_path)[3].length == 1250.0
-    assert any("commas part thousands, as in `1,250` (row 4)" in str(one) for one in made.guessed)
+    assert any(
+        "commas separate thousands, as in `1,250` (row 4)" in str(one) for one in made.guessed
+    )
 
 
 LANGUAGES = {

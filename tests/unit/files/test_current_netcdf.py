@@ -243,9 +243,7 @@ def test_column_of_a_place(tmp_path: Path) -> None:
     grid().to_netcdf(path, engine="h5netcdf")
     table, notices = read_current_file(path, None, Terms(220.0, (48.28, -5.31)))
     assert table.u == pytest.approx([1.1 * u for u in U])
-    assert notices == [
-        "the column nearest to 48.28° N 5.31° W is that at 48.3° N 5.3° W, 2.3 km away"
-    ]
+    assert notices == ["the column nearest to 48.28° N 5.31° W is at 48.3° N 5.3° W, 2.3 km away"]
     assert problem(grid(), tmp_path).startswith("it has 4 columns, 48.2° N 5.3° W to 48.3° N 5.2°")
 
 

@@ -7,7 +7,15 @@ import pytest
 from scipy.stats import multivariate_normal
 
 from calm.motion import common_unknowns
-from calm.motion.common_unknowns import Common, Evidence, first_time, fits, hanging_sensors
+from calm.motion.common_unknowns import (
+    Common,
+    Evidence,
+    chance_of,
+    first_time,
+    fits,
+    hanging_sensors,
+    moves,
+)
 
 TIMES, SENSORS = 12, 3
 RANDOM = np.random.default_rng(3)
@@ -16,6 +24,8 @@ FALL = RANDOM.uniform(0.6, 1.0, (TIMES, SENSORS))
 SEEN = np.concatenate(
     [DRAG[:, :, None], np.ones((TIMES, SENSORS, 1)), np.tile(np.eye(SENSORS), (TIMES, 1, 1))], 2
 )  # a factor, the datum, three offsets
+SHARE = np.linspace(0.0, 1.0, TIMES)
+RAMPS = {-2: SHARE, -3: np.minimum(SHARE / 0.3, 1.0)}
 ERROR = np.array([[2.0, 0.8, 0.3], [0.8, 1.5, 0.2], [0.3, 0.2, 1.0]])
 BEFORE = np.square([0.15, 8.0, 1.0, 1.0, 1.0])
 
@@ -38,8 +48,30 @@ def read(slipped=None, by=0.0, start=0):
 @pytest.mark.parametrize("start", [0, 5, 8])
 @pytest.mark.parametrize("sensor", [0, 2])
 def test_the_time_from_which_on_a_sensor_hangs_elsewhere_is_found(sensor, start):
-    first = first_time(evidence(read(sensor, 15.0, start)), FALL, np.zeros(5), np.diag(BEFORE))
+    first = first_time(
+        evidence(read(sensor, 15.0, start)), FALL, SHARE, np.zeros(5), np.diag(BEFORE)
+    )
     assert first[sensor] == start
+
+
+@pytest.mark.parametrize("code", RAMPS)
+def test_a_sensor_that_drifts_has_not_slipped(code):
+    left = read()
+    left[:, 1] += 12.0 * RAMPS[code]
+    first = first_time(evidence(left), FALL, SHARE, np.zeros(5), np.diag(BEFORE))
+    assert first[1] == code
+    column = moves(first, FALL, SHARE)[:, 1]
+    assert column == pytest.approx(RAMPS[code])
+
+
+def test_a_drift_goes_on_to_its_end_and_stays():
+    time = np.array(["2026-01-01", "2026-01-02", "2026-01-05", "2026-01-09"], "M8[ns]")
+    depth, one = np.array([[100.0, 200.0]] * 4), np.ones(1)
+    common = Common(
+        {}, 0.0, one, one, time[:1], one, np.eye(3), 1.0, np.eye(1), until=time[2:3]
+    )  # fmt: skip
+    fall = common.fall(time, depth, depth[0], np.array([1]))
+    assert fall[:, 0] == pytest.approx([0.0, 0.25, 1.0, 1.0])
 
 
 def test_the_time_is_the_likeliest_of_all_by_the_densities_written_out():
@@ -63,18 +95,26 @@ def test_the_time_is_the_likeliest_of_all_by_the_densities_written_out():
             chance = np.log(common_unknowns.SLIPPED / TIMES if first else common_unknowns.MISPLACED)
             density = multivariate_normal(slopes @ mean, whole).logpdf(left.ravel())
             likely[first] = chance + density
-        found.append(first_time(given, FALL, mean, before)[1])
-        assert found[-1] == max(likely, key=likely.get)
-    assert {*found} == {0, 4, 5, 6, 7, 8}
+        for code, ramp in RAMPS.items():
+            move = np.zeros((TIMES, SENSORS))
+            move[:, 1] = ramp
+            whole = known + common_unknowns.DRIFT**2 * np.outer(move.ravel(), move.ravel())
+            density = multivariate_normal(slopes @ mean, whole).logpdf(left.ravel())
+            likely[code] = np.log(common_unknowns.DRIFTS / 2.0) + density
+        start = max((one for one in likely if one >= 0), key=likely.get)
+        likely[start] += np.log(TIMES) * (start > 0)  # a drift against a slip at any time
+        found.append(first_time(given, FALL, SHARE, mean, before)[1])
+        assert found[-1] == max((start, *RAMPS), key=likely.get)
+    assert {*found} == {0, 4, 5, 6, 7, 8, *RAMPS}
     none = Evidence(*(one[:0] for one in vars(given).values()))
-    assert first_time(none, FALL[:0], mean, before).tolist() == [-1, -1, -1]
+    assert first_time(none, FALL[:0], SHARE[:0], mean, before).tolist() == [-1, -1, -1]
 
 
 def test_a_sensor_with_few_readings_on_one_side_has_slipped_at_none_of_them():
     known = np.ones((TIMES, SENSORS), bool)
     known[:9, 1], known[:, 2] = False, False
     left = np.where(known, read(0, 15.0, 10), 0.0)
-    first = first_time(evidence(left, known), FALL, np.zeros(5), np.diag(BEFORE))
+    first = first_time(evidence(left, known), FALL, SHARE, np.zeros(5), np.diag(BEFORE))
     assert first[0] <= 8 and first[1:].tolist() == [-1, -1]
 
 
@@ -84,18 +124,15 @@ def test_fits_and_their_odds_come_to_the_densities_written_out():
     given, slopes = evidence(left), SEEN.reshape(-1, 5)
     error = np.kron(np.eye(TIMES), ERROR)
     known = slopes @ covariance @ slopes.T + error
-    first = first_time(given, FALL, mean, covariance)
-    found = [*fits(given, FALL, mean, covariance)]
+    first = first_time(given, FALL, SHARE, mean, covariance)
+    found = [*fits(given, FALL, SHARE, mean, covariance)]
     assert first[2] == 5 and [one[0] for one in found] == [False, True, True, True]
     for sensor, (_, rest, odds) in enumerate(found, -1):
         whole, chance = known, 0.0
         if sensor >= 0:
-            move = np.zeros((TIMES, SENSORS))
-            move[first[sensor] :, sensor] = FALL[first[sensor] :, sensor]
-            whole = known + common_unknowns.ELSEWHERE**2 * np.outer(move.ravel(), move.ravel())
-            chance = np.log(
-                common_unknowns.SLIPPED / TIMES if first[sensor] else common_unknowns.MISPLACED
-            )
+            move = moves(first, FALL, SHARE) * (np.arange(SENSORS) == sensor)
+            chance, wide = chance_of(int(first[sensor]), TIMES)
+            whole = known + wide**2 * np.outer(move.ravel(), move.ravel())
         density = multivariate_normal(slopes @ mean, whole).logpdf(left.ravel()) + chance
         assert multivariate_normal(None, error).logpdf(rest.ravel()) + odds == pytest.approx(
             density
@@ -103,7 +140,8 @@ def test_fits_and_their_odds_come_to_the_densities_written_out():
     gone = np.ones((TIMES, SENSORS), bool)
     gone[3, 1] = False
     assert all(
-        rest[3, 1] == 0.0 for _, rest, _ in fits(evidence(left, gone), FALL, mean, covariance)
+        rest[3, 1] == 0.0
+        for _, rest, _ in fits(evidence(left, gone), FALL, SHARE, mean, covariance)
     )
 
 

@@ -8,7 +8,7 @@ from scipy.stats import multivariate_t, norm
 
 from calm.motion.line_response import with_factors
 from calm.motion.measurements import MooringMeasurements
-from calm.motion.whole_record import MOST_TIMES, SCALES, _chosen, _scale, repeated
+from calm.motion.whole_record import MOST_TIMES, SCALES, _scale, chosen_times, repeated
 from calm.physics.line import Line
 
 
@@ -63,13 +63,13 @@ def test_times_with_a_current_and_a_pressure_are_taken_evenly():
         np.arange(count).astype("M8[s]"), ("a", "b"), np.array([0, 1]), depth, u,
         np.array([-1]), np.array([-1]), u, 0.0 * u, np.ones(u.shape, np.int8),
     )  # fmt: skip
-    taken = _chosen(one)
+    taken = chosen_times(one)
     assert (taken[0], taken[-1], len(taken)) == (1, count - 2, MOST_TIMES)
     assert {*np.diff(taken).tolist()} == {3} or {*np.diff(taken).tolist()} == {2, 3}
-    few = _chosen(one.at(slice(0, 5)))
+    few = chosen_times(one.at(slice(0, 5)))
     assert few.tolist() == [1, 2, 3, 4]
     half = replace(one, v=np.full_like(u, np.nan))
-    assert not len(_chosen(half))
+    assert not len(chosen_times(half))
 
 
 def test_a_factor_is_of_what_it_says():

@@ -104,7 +104,7 @@ ZONE = "all 720 times are taken as they stand, in UTC"
 @pytest.mark.parametrize(("make", "expected"), [
     (every_day, "its 30 profiles are 24 h apart, means or samples: tides and peaks between them"),
     (lambda one: one * 0 + one * 0, "7200 of 7200 currents are exactly 0"),
-    (with_values("v", lambda one: -one["u"].values), "values: one of them is a copy of the other?"),
+    (with_values("v", lambda one: -one["u"].values), "values: is one a copy of the other?"),
     (with_values("v", lambda one: 0 * one["u"].values), "are along one axis, their other compon"),
     (with_values("u", lambda one: one["u"].values[:1] + 0 * one["u"].values), None),
     (of_attribute("u", "valid_range", [-0.12, 0.12]), "values of `u` are left out, outside its v"),
@@ -292,6 +292,6 @@ def test_comments_above_a_table_refuse_it(tmp_path, comment) -> None:
 def test_directions_in_radians_are_said(tmp_path, turn, told) -> None:
     text = table("speed[m/s],toward[deg]", lambda i, z: f"0.3,{turn(5 * i + z / 100):.4f}")
     (tmp_path / "r.csv").write_text(text)
-    assert [
-        note.endswith("radians, taken for degrees?") for note in notes_of(tmp_path / "r.csv")
-    ] == [True] * told
+    assert [note.endswith("radians read as degrees?") for note in notes_of(tmp_path / "r.csv")] == [
+        True
+    ] * told

@@ -91,7 +91,7 @@ def test_every_part_of_the_report_is_there(section):
         "What fails, is unknown or warns", "Worst finding of each rule", "What is not judged",
         "Signatures", "Rules by environment", "Results by environment", "Schematic",
         "Table of the line", "Elevation, current, tension, plan and breaks",
-        "Launch and recovery in short", "Tensions on the way down and up", "Back-up buoyancy",
+        "Launch and recovery in short", "Tensions in the launch and the rise", "Back-up buoyancy",
         "Inventory", "Pieces for the deck", "Environments", "Mooring file", "SHA-256 of the inputs",
         "waves", "snap", "fatigue", "creep, corrosion", "jerk", "swing", "hauling and lifts",
     ):  # fmt: skip

@@ -57,7 +57,7 @@ def test_pages_are_numbered(sections, pages):
 def test_everything_is_said(sections, pages):
     text = " ".join(pages(printed(check_report(sections))))
     for words in (
-        "Worst finding of each rule on each component", "Tensions on the way down and up",
+        "Worst finding of each rule on each component", "Tensions in the launch and the rise",
         "Inventory", "SHA-256 of the inputs", "snap loads", "Designed by", "still water",
     ):  # fmt: skip
         assert words in text, words

@@ -1,0 +1,348 @@
+"""What is wrong with sensors: clocks, gains, offsets, drifts, slipped clamps, exchanged labels.
+
+Each is one more unknown beside those of the whole record, with a prior of its own, and weighed by
+how likely the pressures then are (a Bayes factor, Kass and Raftery 1995): by Student's law for the
+misfit of a time, and errors that repeat from time to time counted once. The likeliest is taken
+first, and the others are weighed again beside it, until none is likely.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calm.motion import common_unknowns
+from calm.motion.common_unknowns import NEVER, Evidence, chance_of, first_time, moves
+from calm.motion.correction import Task
+from calm.motion.estimate import best_state
+from calm.motion.line_response import LineResponse
+from calm.motion.measurements import interpolated
+from calm.motion.remarks import ALL, LIKELY, Fault
+from calm.motion.unknown_currents import SEABED, unknown_state
+from calm.motion.whole_record import ROBUST, LinearLaw, chosen_times, linear_law, repeated
+from calm.physics.line import Floats
+
+MOST = 8
+"""Things that are wrong, at most."""
+CLOCKS, FURTHEST = 0.01, 13.0
+"""Probability that a clock is wrong, and by how much it may be [h]."""
+GAIN, GAINS = 0.02, 0.01
+"""Of a gain less 1, and the probability that it is wrong."""
+EXCHANGED = 0.01
+"""Probability that two labels are exchanged."""
+LEAST = {"clock": 0.08, "gain": 0.003, "offset": 2.5, "drift": 1.0, "slip": 1.5, "exchanged": 0.0}
+"""What is named, at least: h (and as many steps of the record), 1, m, m, m."""
+FINEST = 0.02
+"""Of a clock, as a share of the step of the record: how well times are known between readings."""
+FEWEST = 20
+"""Times from which anything is said."""
+
+
+@dataclass(frozen=True)
+class _Suspect:
+    """What one fault does to n times of s sensors.
+
+    Attributes
+    ----------
+    fault : what it is
+    column : (n, s) change of the depths that are read with its size
+    wide : deviation of its size beforehand; 0 of one whose size is fixed
+    log : logarithm of its probability beforehand
+    shift : (n, s) what is added to the depths that are read beforehand [m]
+    """
+
+    fault: Fault
+    column: Floats
+    wide: float
+    log: float
+    shift: Floats
+
+
+@dataclass(frozen=True)
+class _Found:
+    """How likely the pressures are with some faults.
+
+    Attributes
+    ----------
+    log : its logarithm
+    value, deviation : of the size of the last fault
+    left : (n, s) what is not explained [m]
+    weight : (n,) what a time counts
+    pulls : (n,) what each time says of the size of the last fault
+    """
+
+    log: float
+    value: float
+    deviation: float
+    left: Floats
+    weight: Floats
+    pulls: Floats
+
+
+def diagnosed(task: Task) -> tuple[Fault, ...]:
+    """Return what is wrong with the sensors of a record, the likeliest first."""
+    law = _law_of(task)
+    if law is None or len(law.time) < FEWEST:
+        return ()
+    return _Diagnosis(task, law).faults()
+
+
+def _law_of(task: Task) -> LinearLaw | None:
+    common = task.common
+    alone = common.law is not None
+    times = chosen_times(task.measured, alone)
+    if not len(times):
+        return None
+    moments = LineResponse(task.measured.at(times), *task.forwards)
+    fixed = replace(common, covariance=np.zeros_like(common.covariance))
+    here = unknown_state(moments, fixed) if alone else best_state(moments, fixed)
+    at, found = (here.at, here.found) if alone else (here.begin, here.before)
+    return linear_law(moments, common, at, found, here.way.spread, task.measured.time[[0, -1]])
+
+
+class _Diagnosis:
+    """The pressures of a record, weighed."""
+
+    def __init__(self, task: Task, law: LinearLaw) -> None:
+        self.label, self.law = task.measured.label, law
+        self.measured = task.measured
+        self.spread = _beforehand(task)
+        self.mean = np.zeros(len(self.spread))
+        self.white = np.linalg.inv(np.linalg.cholesky(law.expected))
+        self.step = float(np.median(np.diff(self.measured.time)) / np.timedelta64(1, "h"))
+        self._kept: dict[int, Floats] = {}
+        self.depth = self._after(0)
+
+    def _after(self, steps: int) -> Floats:
+        if steps not in self._kept:
+            lag = np.timedelta64(round(steps * self.step * 3.6e12), "ns")
+            gap = np.timedelta64(round(2.0 * self.step * 3.6e12), "ns")
+            one, wanted = self.measured, self.law.time + lag
+            columns = [interpolated(one.time, column, wanted, gap) for column in one.depth.T]
+            self._kept[steps] = np.stack(columns, axis=1)
+        return self._kept[steps]
+
+    def _at(self, late: float) -> Floats:
+        """Return (n, s) what the sensors read so many hours later [m].
+
+        Between the times of the record by the slope there and a quarter of the curvature: noise
+        neither grows nor is smoothed so, which alone would speak for a clock that is wrong.
+        """
+        whole = round(late / self.step) if self.step > 0.0 else 0
+        part = late / self.step - whole if self.step > 0.0 else 0.0
+        before, there, after = (self._after(steps) for steps in (whole - 1, whole, whole + 1))
+        bent = 0.5 * part * (after - before) + 0.125 * part**2 * (after - 2.0 * there + before)
+        return there + np.nan_to_num(bent)
+
+    def faults(self) -> tuple[Fault, ...]:
+        """Return what is likely wrong; each weighed beside all others."""
+        taken: list[_Suspect] = []
+        while len(taken) < MOST:
+            likely = self._weighed(taken)
+            best = max(likely, key=lambda one: one[1], default=None)
+            if best is None or best[1] < np.log(LIKELY):
+                break
+            taken.append(best[0])
+            if best[0].fault.kind == "exchanged":  # nothing else holds until they are put right
+                break
+        found = []
+        for i, one in enumerate(taken):
+            rest = [*taken[:i], *taken[i + 1 :]]
+            weighed = sorted(self._weighed(rest), key=lambda each: -each[1])
+            mine = [each for each in weighed if each[0].fault.same(one.fault)]
+            others = [each for each in weighed if not each[0].fault.same(one.fault)]
+            if not mine:
+                continue
+            (suspect, log), *_ = mine
+            odds = np.exp(
+                min(log - np.logaddexp.reduce([0.0, *(each[1] for each in others)]), 50.0)
+            )
+            rival = ""
+            if odds < LIKELY and others:
+                rival = others[0][0].fault.sentence(rival=False)
+            found.append(replace(suspect.fault, odds=float(odds), rival=rival))
+        return tuple(found)
+
+    def _weighed(self, taken: list[_Suspect]) -> list[tuple[_Suspect, float]]:
+        """Return what may be wrong beside what is taken, with the logarithm of its odds."""
+        begun = self._fitted(taken, None, 1.0)
+        result = []
+        for suspect in self._suspects(taken, begun):
+            alike = repeated(self._fitted(taken, suspect, 1.0).pulls)
+            base = self._fitted(taken, None, alike).log
+            found = self._fitted(taken, suspect, alike)
+            fault = suspect.fault
+            value = found.value if suspect.wide else fault.value
+            if fault.kind == "gain":
+                value += 1.0
+            deviation = found.deviation
+            log = found.log - base + suspect.log
+            if fault.kind == "clock":  # a lag anywhere within reach
+                log += float(np.log(np.sqrt(2.0 * np.pi) * deviation / (2.0 * FURTHEST)))
+            size = abs(value - (fault.kind == "gain"))
+            least = LEAST[fault.kind]
+            if fault.kind == "clock":
+                least *= max(self.step, 1.0)
+                deviation = float(np.hypot(deviation, FINEST * self.step))
+            if size < least:
+                continue
+            fault = replace(
+                fault, value=value, low=value - 1.96 * deviation, high=value + 1.96 * deviation
+            )
+            result.append((replace(suspect, fault=fault), log))
+        return result
+
+    def _raw(self, taken: list[_Suspect]) -> Floats:
+        return self.law.raw + sum((one.shift for one in taken), np.zeros_like(self.law.raw))
+
+    def _fitted(self, taken: list[_Suspect], last: _Suspect | None, alike: float) -> _Found:
+        """Return how likely the pressures are with some faults and one more.
+
+        Parameters
+        ----------
+        alike : so many times in a row have the same error
+        """
+        whole = taken if last is None else [*taken, last]
+        free = [one for one in whole if one.wide]
+        columns = np.concatenate(
+            [self.law.fixed, *(one.column[:, :, None] for one in free)], axis=2
+        )
+        raw = self._raw(whole)
+        seen, left = self.white @ columns, (self.white @ raw[:, :, None])[:, :, 0]
+        before = np.pad(np.linalg.inv(self.spread), (0, len(free)))
+        for i, one in enumerate(free, len(self.spread)):
+            before[i, i] = one.wide**-2
+        count, flat = self.law.known.sum(axis=1), seen.reshape(-1, seen.shape[2])
+        weight = np.ones(len(left))
+        for _ in range(4):
+            heavy = flat * np.repeat(weight / alike, left.shape[1])[:, None]
+            normal = heavy.T @ flat + before
+            value = np.linalg.solve(normal, heavy.T @ left.ravel())
+            rest = left - seen @ value
+            misfit = (rest**2).sum(axis=1)
+            weight = (ROBUST + count) / (ROBUST + misfit)
+        log = -0.5 * float(((ROBUST + count) * np.log1p(misfit / ROBUST)).sum()) / alike
+        log -= 0.5 * float(value @ before @ value + np.linalg.slogdet(normal)[1])
+        log += 0.5 * float(np.linalg.slogdet(before)[1])
+        size, deviation, pulls = 0.0, 0.0, weight
+        if last is not None:
+            column = (self.white @ last.column[:, :, None])[:, :, 0]
+            pulls = weight * (column * rest).sum(axis=1)
+            told = float((weight * (column**2).sum(axis=1)).sum()) / alike
+            size = float(value[-1]) if last.wide else 0.0
+            spread = np.linalg.inv(normal)[-1, -1] if last.wide else 1.0 / max(told, 1e-12)
+            deviation = float(np.sqrt(spread))
+        return _Found(log, size, deviation, raw - columns @ value, weight, pulls)
+
+    def _suspects(self, taken: list[_Suspect], begun: _Found) -> Iterator[_Suspect]:
+        law, none = self.law, np.zeros_like(self.law.raw)
+        never = np.datetime64("NaT", "ns")
+        had = {(one.fault.label, one.fault.kind) for one in taken}
+        # not as measured: a gain less than 1 would shrink the errors as well
+        depth = np.nan_to_num(self.depth - begun.left)
+        fixed, raw = law.fixed, self._raw(taken)
+        for one in taken:
+            if one.wide:
+                raw = raw - one.column * one.fault.value
+        inverse = self.white.transpose(0, 2, 1) @ self.white
+        evidence = Evidence(raw, fixed, inverse, begun.weight, law.known)
+        first = first_time(evidence, law.fall, law.share, self.mean, self.spread)
+        for j, label in enumerate(self.label):
+            mine = np.arange(len(self.label)) == j
+            codes = {0: "offset", **dict.fromkeys(common_unknowns.RAMPS, "drift")}
+            if first[j] > 0:
+                codes[int(first[j])] = "slip"
+            for code, kind in codes.items():
+                if (label, kind) in had or first[j] == NEVER:
+                    continue
+                column = moves(np.where(mine, code, NEVER), law.fall, law.share)
+                if kind == "offset":
+                    column = np.broadcast_to(mine * 1.0, none.shape)
+                chance, wide = chance_of(code, len(law.time))
+                since, until = law.time[code] if kind == "slip" else never, never
+                if kind == "drift":
+                    since = self.measured.time[0]
+                    span = self.measured.time[-1] - since
+                    until = since + common_unknowns.RAMPS[code] * span
+                fault = Fault(label, kind, 0.0, 0.0, 0.0, 0.0, since, until)
+                yield _Suspect(fault, column, wide, chance, none)
+        for label, mine in self._whose():
+            if (label, "gain") not in had:
+                fault = Fault(label, "gain", 0.0, 0.0, 0.0, 0.0, never, never)
+                yield _Suspect(fault, depth * mine, GAIN, float(np.log(GAINS)), none)
+            if (label, "clock") not in had:
+                late = self._late(taken, begun.left, mine)
+                if late.fault.value:
+                    yield late
+        missed = self._missed(raw)
+        for i, j in combinations(range(len(self.label)), 2):
+            away = np.nan_to_num(self.depth[:, j] - self.depth[:, i])
+            shift = none.copy()
+            shift[:, i], shift[:, j] = away, -away
+            names = self.label[i], self.label[j]
+            if self._missed(raw + shift) > missed:
+                continue
+            if {(names[0], "exchanged"), (names[1], "exchanged")} & had:
+                continue
+            fault = Fault(names[0], "exchanged", 0.0, 0.0, 0.0, 0.0, never, never, names[1])
+            pairs = len(self.label) * (len(self.label) - 1) / 2
+            yield _Suspect(fault, shift, 0.0, float(np.log(EXCHANGED / pairs)), shift)
+
+    def _whose(self) -> Iterator[tuple[str, NDArray[np.bool_]]]:
+        for j, label in enumerate(self.label):
+            yield label, np.arange(len(self.label)) == j
+        if len(self.label) > 1:
+            yield ALL, np.ones(len(self.label), bool)
+
+    def _shift(self, late: float, mine: NDArray[np.bool_]) -> Floats:
+        """Return (n, s) what is added to the depths of late sensors [m]."""
+        added: Floats = np.where(mine, np.nan_to_num(self._at(late) - self.depth), 0.0)
+        return added
+
+    def _missed(self, left: Floats) -> float:
+        """Return twice the negative logarithm of how likely it is that so much is left [m]."""
+        misfit = np.square((self.white @ left[:, :, None])[:, :, 0]).sum(axis=1)
+        count = self.law.known.sum(axis=1)
+        return float(((ROBUST + count) * np.log1p(misfit / ROBUST)).sum())
+
+    def _late(self, taken: list[_Suspect], left: Floats, mine: NDArray[np.bool_]) -> _Suspect:
+        """Return the clock of some sensors, late by as many hours as is most likely.
+
+        Parameters
+        ----------
+        left : (n, s) what is not explained where their clocks are right [m]
+        """
+        reach, step = int(FURTHEST / self.step) if self.step > 0.0 else 0, self.step
+
+        def miss(late: float) -> float:
+            return self._missed(left + self._shift(late, mine))
+
+        late = min((step * lag for lag in range(-reach, reach + 1)), key=miss)
+        for _ in range(6):
+            suspect = self._clock(late, mine)
+            left = self._fitted([*taken, suspect], None, 1.0).left - suspect.shift
+            step *= 0.5
+            late = min((late - step, late, late + step), key=miss)
+        return self._clock(late, mine)
+
+    def _clock(self, late: float, mine: NDArray[np.bool_]) -> _Suspect:
+        label = ALL if mine.all() and len(mine) > 1 else self.label[int(mine.argmax())]
+        shift, half = self._shift(late, mine), 0.5 * self.step
+        rate = (self._shift(late + half, mine) - self._shift(late - half, mine)) / self.step
+        never = np.datetime64("NaT", "ns")
+        fault = Fault(label, "clock", late, late, late, 0.0, never, never)
+        return _Suspect(fault, rate, 0.0, float(np.log(CLOCKS)), shift)
+
+
+def _beforehand(task: Task) -> Floats:
+    """Return (q, q) covariance of factors, datum and offsets beforehand."""
+    common = task.common
+    depth = task.mooring.water.depth
+    datum = common_unknowns.DATUM if common.law is None else SEABED
+    spread = [common_unknowns.FACTORS[name][1] for name in common.factors]
+    offsets = [common_unknowns.OFFSET] * len(common.offset)
+    return np.diag(np.square([*spread, datum * depth, *offsets]))
