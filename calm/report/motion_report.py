@@ -11,6 +11,7 @@ import numpy as np
 
 from calm.checks.finding import State
 from calm.drawing.picture import figure_svg
+from calm.motion.remarks import no_drag
 from calm.physics.line import Floats
 from calm.report.blocks import (
     Block,
@@ -29,8 +30,6 @@ from calm.report.provenance import date
 from calm.report.result_files import members
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
     from matplotlib.axes import Axes
     from numpy import datetime64
     from numpy.typing import NDArray
@@ -198,10 +197,8 @@ def _panels(series: Sequence[SensorSeries]) -> tuple[Any, Any]:
 
 
 def _name(axes: Axes, one: SensorSeries, quantity: str) -> None:
-    text = axes.set_title(
-        f"{one.label}{', hidden' if one.hidden else ''}", fontsize=_FONT_SIZE, loc="left", pad=2
-    )
-    text.set_parse_math(False)
+    title = f"{one.label}{', hidden' if one.hidden else ''}"
+    axes.set_title(title, fontsize=_FONT_SIZE, loc="left", pad=2, parse_math=False)
     axes.set_ylabel(quantity, fontsize=_FONT_SIZE)
     axes.tick_params(labelsize=_FONT_SIZE)
     axes.grid(alpha=0.3)
@@ -214,17 +211,14 @@ TITLES = {
     "length": "length of cables and chains",
 }
 
+_RMS = (
+    "rms: of the difference less its mean over the calm times, the tenth with the least knockdown."
+)
 PLAIN = (
-    "Alone: from the currents with nothing fitted. Estimated: with the pressures of "
-    "all sensors in use. rms: of the difference less its mean over the calm times, "
-    "the tenth with the least knockdown."
+    "Alone: from the currents with nothing fitted. Estimated: with the pressures of all sensors in "
+    f"use. {_RMS}"
 )
-
-
-UNKNOWN = (
-    "The currents are not known: they are inferred from these pressures. rms: of the difference "
-    "less its mean over the calm times, the tenth with the least knockdown."
-)
+UNKNOWN = f"The currents are not known: they are inferred from these pressures. {_RMS}"
 
 
 def motion_part(study: Study, name: str) -> ReportPart:
@@ -289,12 +283,17 @@ def diagnosis_document(diagnosis: Sequence[Fault]) -> list[dict[str, Any]]:
     return said
 
 
+def _factor_title(one: tuple[str, tuple[float, float, float]]) -> str:
+    far = no_drag(one[0], one[1][0])
+    return f"{TITLES[one[0]]}{': not drag, see below' if far else ''}"
+
+
 def factors_table(factors: Mapping[str, tuple[float, float, float]], datum: float) -> Table:
     """The common factors with their intervals."""
     return table_of(
         "",
         factors.items(),
-        (Column("factor for the whole record"), lambda one: TITLES[one[0]]),
+        (Column("factor for the whole record"), _factor_title),
         (Column("value", numeric=True), lambda one: f"{one[1][0]:.3f}"),
         (Column("95 % interval", numeric=True), lambda one: f"{one[1][1]:.3f}–{one[1][2]:.3f}"),
         note=f"All depths are shifted by {datum:+.1f} m, the datum common to all pressures.",
@@ -334,6 +333,7 @@ def held_out_table(held_out: Sequence[HeldOut]) -> Table:
         (Column("bias", "m", numeric=True), lambda one: metres(one.bias)),
         (Column("rms", "m", numeric=True), lambda one: metres(one.rms)),
         (Column("interpolated: rms", "m", numeric=True), lambda one: metres(one.linear_rms)),
+        (Column("PCHIP: rms", "m", numeric=True), lambda one: metres(one.pchip_rms)),
         (
             Column("within 95 % band", "%", numeric=True),
             lambda one: f"{100.0 * one.coverage:.0f}" if isfinite(one.coverage) else "-",
@@ -395,7 +395,7 @@ def held_out_document(held_out: Sequence[HeldOut]) -> list[dict[str, Any]]:
         {
             "label": one.label,
             "n": one.count,
-            **members(one, "bias", "rms", "linear_rms"),
+            **members(one, "bias", "rms", "linear_rms", "pchip_rms"),
             "coverage_95": one.coverage,
         }
         for one in held_out

@@ -89,7 +89,7 @@ def test_a_rope_of_unknown_stiffness_is_told(calm, buoy):
         (("--hs", "40 m", "--tp", "25 s"), "no sea is higher than 30 m"),
         (("--hs", "3 m", "--tp", "60 s"), "longer than 30 s"),
         ((*SEA, "--spectrum", "jonswop"), "did you mean `jonswap`?"),
-        ((*SEA, "--spectrum", "jonswap", "--gamma", "0.2"), "--gamma: from 1"),
+        ((*SEA, "--spectrum", "jonswap", "--gamma", "0.2"), "--gamma must be from 1"),
         ((*SEA, "--scatter", "none.csv"), "--scatter: gives heights"),
         (("--scatter", "none.csv"), "none.csv"),
     ],
