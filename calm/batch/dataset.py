@@ -26,6 +26,7 @@ from calm.dataset.netcdf import (
     Attributes,
     ResultLayout,
     Variable,
+    down_the_line,
     labels,
     numbers,
     of_net,
@@ -110,6 +111,7 @@ def layout_of(mooring: Mooring | Net, record: Record, shape: ShapeNodes | None) 
             "coordinates": where.strip(),
         })
     )  # fmt: skip
+    variables += down_the_line(sizes)
     file = mooring.file
     attributes: Attributes = {
         **origin(file.path, file.name, file.description, "batch"),

@@ -144,7 +144,7 @@ NUMBER = "<f4"
 
 _EAST, _NORTH = "offset to the east of the anchor", "offset to the north of the anchor"
 _PLACE = {"latitude": "degrees_north", "longitude": "degrees_east"}
-_DOWN = {"standard_name": "depth", "axis": "Z", "positive": "down"}
+_DOWN = {"standard_name": "depth", "positive": "down"}
 
 OF_COMPONENT: Mapping[str, tuple[str, str, Attributes]] = {
     "depth_top": ("m", "depth of the upper end", _DOWN),
@@ -282,6 +282,24 @@ def labels(name: str, dimension: str, texts: Iterable[str], meaning: str) -> Var
     """
     values = np.array(list(texts), dtype=np.str_)
     return Variable(name, (dimension,), values.dtype.str, {"long_name": meaning}, values)
+
+
+def down_the_line(sizes: Mapping[str, int]) -> list[Variable]:
+    """Return the coordinates that count parts, nodes and sensors down the line, of those there are.
+
+    They are what CF calls a dimensionless vertical coordinate: depths of neighbours may be equal,
+    and go with time.
+    """
+    return [
+        Variable(
+            name, (name,), "<i4",
+            {"long_name": f"number of the {name} down the line, from 0", "units": "1", "axis": "Z",
+             "positive": "down"},
+            np.arange(sizes[name], dtype=np.int32),
+        )
+        for name in ("component", "clamp", "node", "sensor", "level")
+        if sizes.get(name)
+    ]  # fmt: skip
 
 
 def station(name: str, place: Sequence[float], of_what: str) -> tuple[list[Variable], str]:

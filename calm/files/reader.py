@@ -145,7 +145,7 @@ def read_mooring(
     top = SourceMapping.of(document, (), document.data)
     towed, legged = "tow" in top.data, "legs" in top.data
     if legged and not net:
-        raise InputError([top.problem(("legs",), NET_REFUSED, key=True)])
+        problems.append(top.problem(("legs",), NET_REFUSED, key=True))
     keys = _keys_of(top, problems, {"towed": towed}, legged=legged)
     definitions = _child(top, "components")
     if definitions is not None:

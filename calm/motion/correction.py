@@ -22,7 +22,7 @@ from calm.batch.threads import processors
 from calm.batch.work import BatchWork, Progress
 from calm.batch.work_store import Store, identity_of, open_store, to_text
 from calm.case import Mooring
-from calm.dataset.netcdf import Attributes, ResultLayout, labels, numbers
+from calm.dataset.netcdf import Attributes, ResultLayout, down_the_line, labels, numbers
 from calm.motion.archived import archived, depth_flags
 from calm.motion.common_unknowns import Common
 from calm.motion.estimate import estimated
@@ -129,7 +129,8 @@ def motion_layout(task: Task, record: MeasuredRecord) -> ResultLayout:
     alone = task.common.law is not None
     names = () if alone else level_names(task.measured, labels_of(task.mooring))
     known["level"] = len(names)
-    variables = [*layout.variables]
+    added = {name: known[name] for name in ("sensor", "level")}
+    variables = [*layout.variables, *down_the_line(added)]
     if names:
         variables.append(labels("level_label", "level", names, "levels of the currents"))
     if known["sensor"]:

@@ -26,12 +26,14 @@ from calm.motion.unknown_currents import SEABED, unknown_state
 from calm.motion.whole_record import ROBUST, LinearLaw, chosen_times, linear_law, repeated
 from calm.physics.line import Floats
 
+LIKELY_ALONE = 1000.0
+"""Odds from which it is, where no current was measured: the line may be assumed as well."""
 MOST = 8
 """Things that are wrong, at most."""
 CLOCKS, FURTHEST = 0.01, 13.0
 """Probability that a clock is wrong, and by how much it may be [h]."""
-GAIN, GAINS = 0.02, 0.01
-"""Of a gain less 1, and the probability that it is wrong."""
+GAIN, GAINS, ALL_GAINS = 0.02, 0.01, 0.001
+"""Of a gain less 1, and the probabilities that it is wrong: that of a sensor, that of all alike."""
 EXCHANGED = 0.01
 """Probability that two labels are exchanged."""
 LEAST = {"clock": 0.08, "gain": 0.003, "offset": 2.5, "drift": 1.0, "slip": 1.5, "exchanged": 0.0}
@@ -113,6 +115,9 @@ class _Diagnosis:
         self.spread = _beforehand(task)
         self.mean = np.zeros(len(self.spread))
         self.white = np.linalg.inv(np.linalg.cholesky(law.expected))
+        self.seen = self.white @ law.fixed
+        self.alone = task.common.law is not None
+        self.likely = LIKELY_ALONE if self.alone else LIKELY
         self.step = float(np.median(np.diff(self.measured.time)) / np.timedelta64(1, "h"))
         self._kept: dict[int, Floats] = {}
         self.depth = self._after(0)
@@ -144,7 +149,7 @@ class _Diagnosis:
         while len(taken) < MOST:
             likely = self._weighed(taken)
             best = max(likely, key=lambda one: one[1], default=None)
-            if best is None or best[1] < np.log(LIKELY):
+            if best is None or best[1] < np.log(self.likely):
                 break
             taken.append(best[0])
             if best[0].fault.kind == "exchanged":  # nothing else holds until they are put right
@@ -208,22 +213,24 @@ class _Diagnosis:
         """
         whole = taken if last is None else [*taken, last]
         free = [one for one in whole if one.wide]
-        columns = np.concatenate(
-            [self.law.fixed, *(one.column[:, :, None] for one in free)], axis=2
+        columns = (
+            np.stack([one.column for one in free], axis=2) if free else self.law.fixed[:, :, :0]
         )
         raw = self._raw(whole)
-        seen, left = self.white @ columns, (self.white @ raw[:, :, None])[:, :, 0]
+        seen = np.concatenate([self.seen, self.white @ columns], axis=2)
+        left = (self.white @ raw[:, :, None])[:, :, 0]
+        turned = seen.transpose(0, 2, 1)
+        squares, own = turned @ seen, (turned @ left[:, :, None])[:, :, 0]
         before = np.pad(np.linalg.inv(self.spread), (0, len(free)))
         for i, one in enumerate(free, len(self.spread)):
             before[i, i] = one.wide**-2
-        count, flat = self.law.known.sum(axis=1), seen.reshape(-1, seen.shape[2])
+        count, most = self.law.known.sum(axis=1), (left**2).sum(axis=1)
         weight = np.ones(len(left))
         for _ in range(4):
-            heavy = flat * np.repeat(weight / alike, left.shape[1])[:, None]
-            normal = heavy.T @ flat + before
-            value = np.linalg.solve(normal, heavy.T @ left.ravel())
-            rest = left - seen @ value
-            misfit = (rest**2).sum(axis=1)
+            normal = np.einsum("n,nqr->qr", weight / alike, squares) + before
+            value = np.linalg.solve(normal, np.einsum("n,nq->q", weight / alike, own))
+            misfit = most - 2.0 * own @ value + np.einsum("nqr,q,r->n", squares, value, value)
+            misfit = np.maximum(misfit, 0.0)
             weight = (ROBUST + count) / (ROBUST + misfit)
         log = -0.5 * float(((ROBUST + count) * np.log1p(misfit / ROBUST)).sum()) / alike
         log -= 0.5 * float(value @ before @ value + np.linalg.slogdet(normal)[1])
@@ -231,12 +238,15 @@ class _Diagnosis:
         size, deviation, pulls = 0.0, 0.0, weight
         if last is not None:
             column = (self.white @ last.column[:, :, None])[:, :, 0]
-            pulls = weight * (column * rest).sum(axis=1)
+            pulls = weight * (column * (left - seen @ value)).sum(axis=1)
             told = float((weight * (column**2).sum(axis=1)).sum()) / alike
             size = float(value[-1]) if last.wide else 0.0
             spread = np.linalg.inv(normal)[-1, -1] if last.wide else 1.0 / max(told, 1e-12)
             deviation = float(np.sqrt(spread))
-        return _Found(log, size, deviation, raw - columns @ value, weight, pulls)
+        rest = (
+            raw - self.law.fixed @ value[: len(self.spread)] - columns @ value[len(self.spread) :]
+        )
+        return _Found(log, size, deviation, rest, weight, pulls)
 
     def _suspects(self, taken: list[_Suspect], begun: _Found) -> Iterator[_Suspect]:
         law, none = self.law, np.zeros_like(self.law.raw)
@@ -253,7 +263,9 @@ class _Diagnosis:
         first = first_time(evidence, law.fall, law.share, self.mean, self.spread)
         for j, label in enumerate(self.label):
             mine = np.arange(len(self.label)) == j
-            codes = {0: "offset", **dict.fromkeys(common_unknowns.RAMPS, "drift")}
+            codes = dict.fromkeys(common_unknowns.RAMPS, "drift")
+            if not self.alone:  # currents that are learnt from a sensor agree with its zero
+                codes[0] = "offset"
             if first[j] > 0:
                 codes[int(first[j])] = "slip"
             for code, kind in codes.items():
@@ -271,9 +283,15 @@ class _Diagnosis:
                 fault = Fault(label, kind, 0.0, 0.0, 0.0, 0.0, since, until)
                 yield _Suspect(fault, column, wide, chance, none)
         for label, mine in self._whose():
-            if (label, "gain") not in had:
+            if (label, "gain") not in had and not self.alone:
                 fault = Fault(label, "gain", 0.0, 0.0, 0.0, 0.0, never, never)
-                yield _Suspect(fault, depth * mine, GAIN, float(np.log(GAINS)), none)
+                yield _Suspect(
+                    fault,
+                    depth * mine,
+                    GAIN,
+                    float(np.log(ALL_GAINS if label == ALL else GAINS)),
+                    none,
+                )
             if (label, "clock") not in had:
                 late = self._late(taken, begun.left, mine)
                 if late.fault.value:
@@ -295,7 +313,7 @@ class _Diagnosis:
     def _whose(self) -> Iterator[tuple[str, NDArray[np.bool_]]]:
         for j, label in enumerate(self.label):
             yield label, np.arange(len(self.label)) == j
-        if len(self.label) > 1:
+        if len(self.label) > 1 and not self.alone:
             yield ALL, np.ones(len(self.label), bool)
 
     def _shift(self, late: float, mine: NDArray[np.bool_]) -> Floats:

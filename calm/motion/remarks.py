@@ -21,6 +21,8 @@ LIKELY = 20.0
 """Odds from which something is said to be wrong."""
 FAR_OFFSET = 2.5
 """Offset of all sensors that is named, in deviations of what is expected."""
+FAR_FACTOR = 3.0
+"""Deviations from 1 beyond which a factor on a drag is something else."""
 AIR = 10.1
 """What the weight of the air adds to depths by pressure [m]: 1013 hPa."""
 
@@ -106,6 +108,32 @@ def current_remarks(false: Mapping[str, Times], count: int) -> list[str]:
         f"first at {np.datetime_as_string(when[0], 'm')}"
         for name, when in false.items()
     ]
+
+
+def no_drag(name: str, value: float) -> bool:
+    """Whether a factor on a drag is too far from what is assumed to be one."""
+    far = abs(float(np.log(value))) > FAR_FACTOR * common_unknowns.FACTORS[name][1]
+    return name.endswith("drag") and far
+
+
+def factor_remarks(common: Common) -> list[str]:
+    """Return a sentence on each drag that no drag explains, and what as much knockdown comes of.
+
+    Knockdown grows as drag and the square of the current, over the net force of the floats.
+    """
+    said = []
+    for name, value in common.factors.items():
+        if no_drag(name, value) and common.law is None:
+            away = abs(float(np.log(value))) / common_unknowns.FACTORS[name][1]
+            low, less = ("low", "less") if value > 1.0 else ("high", "more")
+            current, lift = 100.0 * abs(1.0 - value**-0.5), 100.0 * abs(1.0 / value - 1.0)
+            said.append(
+                f"{name}: a factor of {value:.2f} is {away:.1f} deviations from what is assumed, "
+                f"and is not drag: as much comes of currents measured {current:.0f} % too {low}, "
+                f"of floats with {lift:.0f} % {less} net force, or of a length that is wrong; "
+                "--fit buoyancy,length weighs the last two"
+            )
+    return said
 
 
 def datum_remarks(common: Common, seabed: float) -> list[str]:
@@ -247,3 +275,28 @@ def linear(depth: Floats, point: Integers, still: Floats, wanted: int) -> Floats
     share = (still[wanted] - place[upper]) / (place[upper + 1] - place[upper])
     between: Floats = values[:, upper] * (1.0 - share) + values[:, upper + 1] * share
     return between
+
+
+def pchip(depth: Floats, point: Integers, still: Floats, wanted: int) -> Floats:
+    """Return (n,) depths at a point, by PCHIP (Fritsch and Carlson 1980) of the knockdown [m].
+
+    Over the height in still water above the lowest point of the line, which stays where it is.
+
+    Parameters
+    ----------
+    depth, point, still, wanted : as of `linear`
+    """
+    from scipy.interpolate import PchipInterpolator
+
+    height = still.max() - still
+    _, first = np.unique(height[point], return_index=True)
+    first = first[np.greater(height[point][first], 0.0)]
+    if not len(first):
+        return np.full(len(depth), still[wanted])
+    known = np.isfinite(depth.sum(axis=1))
+    down = np.where(known[:, None], depth - still[point], 0.0)[:, first]
+    places = np.concatenate([[0.0], height[point][first]])
+    values = np.concatenate([np.zeros((len(down), 1)), down], axis=1)
+    between = PchipInterpolator(places, values, axis=1, extrapolate=True)(height[wanted])
+    result: Floats = np.where(known, still[wanted] + between, np.nan)
+    return result

@@ -26,8 +26,10 @@ from calm.motion.remarks import (
     current_remarks,
     datum_remarks,
     difference,
+    factor_remarks,
     false_current_times,
     linear,
+    pchip,
     rms,
 )
 from calm.motion.unknown_currents import learn_currents, with_knots
@@ -46,8 +48,8 @@ class HeldOut:
     ----------
     count : times that are judged: it and the used sensors have good pressures
     bias : mean of estimated less measured [m]
-    rms, linear_rms : of the difference less its mean over the calm times [m]: estimated, and
-        interpolated between the used sensors
+    rms, linear_rms, pchip_rms : of the difference less its mean over the calm times [m]: estimated,
+        and interpolated between the used sensors, by `linear` and `pchip` of `calm.motion.remarks`
     coverage : share of those differences within the band of 95 %
     """
 
@@ -56,6 +58,7 @@ class HeldOut:
     bias: float
     rms: float
     linear_rms: float
+    pchip_rms: float
     coverage: float
 
 
@@ -166,6 +169,7 @@ def judged(
         depth, spread = depths_at(result, point)
         held.append(judge_hidden(measured, used, label, depth, spread, still))
     said = [f"{one.sentence()}{'; it is taken off' if one.corrected else ''}" for one in diagnosis]
+    said += factor_remarks(task.common)
     false: Mapping[str, NDArray[np.datetime64]] = {}
     if plain is not None:
         names = level_names(used, labels_of(task.mooring))
@@ -215,11 +219,11 @@ def judge_hidden(
     own = measured.depth[:, column]
     among = np.isfinite(own) & np.isfinite(used.depth).all(axis=1) & np.isfinite(depth)
     calm = calm_times(knockdown(used), among)
-    between = linear(used.depth, used.point, still, int(measured.point[column]))
     off = difference(depth, own, calm, among)
-    other = difference(between, own, calm, among)
+    where = used.depth, used.point, still, int(measured.point[column])
+    line, curve = (rms(difference(law(*where), own, calm, among)) for law in (linear, pchip))
     bias = float((depth - own)[among].mean()) if among.any() else float("nan")
-    return HeldOut(label, int(among.sum()), bias, rms(off), rms(other), coverage(off, spread))
+    return HeldOut(label, int(among.sum()), bias, rms(off), line, curve, coverage(off, spread))
 
 
 def several(measured: MooringMeasurements, hidden: Sequence[str]) -> list[str]:

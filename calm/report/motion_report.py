@@ -11,6 +11,7 @@ import numpy as np
 
 from calm.checks.finding import State
 from calm.drawing.picture import figure_svg
+from calm.motion.remarks import no_drag
 from calm.physics.line import Floats
 from calm.report.blocks import (
     Block,
@@ -282,12 +283,17 @@ def diagnosis_document(diagnosis: Sequence[Fault]) -> list[dict[str, Any]]:
     return said
 
 
+def _factor_title(one: tuple[str, tuple[float, float, float]]) -> str:
+    far = no_drag(one[0], one[1][0])
+    return f"{TITLES[one[0]]}{': not drag, see below' if far else ''}"
+
+
 def factors_table(factors: Mapping[str, tuple[float, float, float]], datum: float) -> Table:
     """The common factors with their intervals."""
     return table_of(
         "",
         factors.items(),
-        (Column("factor for the whole record"), lambda one: TITLES[one[0]]),
+        (Column("factor for the whole record"), _factor_title),
         (Column("value", numeric=True), lambda one: f"{one[1][0]:.3f}"),
         (Column("95 % interval", numeric=True), lambda one: f"{one[1][1]:.3f}–{one[1][2]:.3f}"),
         note=f"All depths are shifted by {datum:+.1f} m, the datum common to all pressures.",
@@ -327,6 +333,7 @@ def held_out_table(held_out: Sequence[HeldOut]) -> Table:
         (Column("bias", "m", numeric=True), lambda one: metres(one.bias)),
         (Column("rms", "m", numeric=True), lambda one: metres(one.rms)),
         (Column("interpolated: rms", "m", numeric=True), lambda one: metres(one.linear_rms)),
+        (Column("PCHIP: rms", "m", numeric=True), lambda one: metres(one.pchip_rms)),
         (
             Column("within 95 % band", "%", numeric=True),
             lambda one: f"{100.0 * one.coverage:.0f}" if isfinite(one.coverage) else "-",
@@ -388,7 +395,7 @@ def held_out_document(held_out: Sequence[HeldOut]) -> list[dict[str, Any]]:
         {
             "label": one.label,
             "n": one.count,
-            **members(one, "bias", "rms", "linear_rms"),
+            **members(one, "bias", "rms", "linear_rms", "pchip_rms"),
             "coverage_95": one.coverage,
         }
         for one in held_out

@@ -23,6 +23,7 @@ from calm.dataset.netcdf import (
     PIECES,
     Attributes,
     ResultLayout,
+    down_the_line,
     labels,
     netcdf_of,
     numbers,
@@ -135,6 +136,7 @@ def result_netcdf(result: AnyResult) -> bytes:
         )  # fmt: skip
     variables += numbers(along, of_ends, where.strip(), _floats(ends))
     variables += numbers((), _ACCURACY, where.strip(), _floats(accuracy))
+    variables += down_the_line(sizes)
     attributes = {
         **origin(file.path, result.name, file.description, "run"),
         "title": f"{result.name or Path(file.path).stem}: its equilibrium",

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from calm.motion.remarks import agreement, calm_times, coverage, difference, linear, rms
+from calm.motion.remarks import agreement, calm_times, coverage, difference, linear, pchip, rms
 
 EVERY = np.ones(20, bool)
 
@@ -61,3 +61,22 @@ def test_interpolation_is_linear_by_height_between_the_nearest_sensors():
     upper = np.array([0, 1, 2]), np.array([[130.0, 170.0, 220.0]])
     assert linear(upper[1], upper[0], still, 4) == pytest.approx(220.0 + 200.0)  # the slope goes on
     assert linear(upper[1][:, 1:], upper[0][1:], still, 0) == pytest.approx(170.0 - 50.0)
+
+
+def test_pchip_is_of_the_knockdown_and_the_anchor_is_a_point():
+    still = np.array([100.0, 300.0, 600.0, 900.0])
+    depth = np.array([[150.0, 620.0], [100.0, 600.0], [np.nan, 600.0]])
+    found = pchip(depth, np.array([0, 2]), still, 1)
+    # Fritsch and Carlson's slopes at 0, 300 and 800 m of height, of knockdowns 0, 20 and 50 m:
+    # a weighted harmonic mean inside, at the top a parabola's
+    first, second = 20.0 / 300.0, 30.0 / 500.0
+    one, two = 2.0 * 500.0 + 300.0, 500.0 + 2.0 * 300.0
+    inner = (one + two) / (one / first + two / second)
+    top = ((2.0 * 500.0 + 300.0) * second - 500.0 * first) / 800.0
+    t = (600.0 - 300.0) / 500.0
+    hermite = (
+        20.0 * (2 * t**3 - 3 * t**2 + 1) + 50.0 * (3 * t**2 - 2 * t**3)
+        + 500.0 * (inner * (t**3 - 2 * t**2 + t) + top * (t**3 - t**2))
+    )  # fmt: skip
+    assert found[0] == pytest.approx(300.0 + hermite)
+    assert found[1] == pytest.approx(300.0) and np.isnan(found[2])

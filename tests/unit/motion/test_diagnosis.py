@@ -99,7 +99,8 @@ CASES = {
 def test_what_is_wrong_is_named_with_its_size(name):
     change, label, kind, value = CASES[name]
     (found,) = diagnosis(change).faults()
-    assert (found.label, found.kind, found.certain) == (label, kind, True)
+    assert (found.label, found.kind) == (label, kind)
+    assert found.certain or label == ALL  # of three sensors a gain of all may be offsets
     assert found.low <= value <= found.high
     assert found.value == pytest.approx(value, abs=0.02 if kind in ("clock", "gain") else 0.4)
     assert found.sentence().startswith(f"{label}: ")

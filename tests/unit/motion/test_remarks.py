@@ -6,7 +6,12 @@ import numpy as np
 import pytest
 
 from calm.motion.common_unknowns import Common
-from calm.motion.remarks import current_remarks, datum_remarks, false_current_times
+from calm.motion.remarks import (
+    current_remarks,
+    datum_remarks,
+    factor_remarks,
+    false_current_times,
+)
 
 TIMES = 100
 TIME = np.datetime64("2026-03-01", "ns") + np.arange(TIMES) * np.timedelta64(1, "h")
@@ -53,3 +58,14 @@ def test_all_sensors_off_alike_are_named_and_the_weight_of_the_air_is_known(
     assert len(found) == (said is not None)
     for one in found:
         assert said in one and one.startswith(f"all sensors: {datum:+.1f} m off alike")
+
+
+def test_an_absurd_factor_is_not_called_drag():
+    known = replace(common((0.0,)), factors={"cable_drag": 1.3, "rigid_drag": 2.61, "length": 1.2})
+    (said,) = factor_remarks(known)  # 6.4 deviations of 15 %; 1.3 is 1.7, and a length is no drag
+    assert said.startswith("rigid_drag: a factor of 2.61 is 6.4 deviations")
+    assert (
+        "measured 38 % too low" in said and "62 % less net force" in said
+    )  # 1 - 2.61^-1/2, 1/2.61
+    (low,) = factor_remarks(replace(known, factors={"rigid_drag": 0.5}))
+    assert "measured 41 % too high" in low  # 2^1/2 - 1

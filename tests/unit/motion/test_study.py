@@ -96,6 +96,7 @@ def test_a_hidden_sensor_is_judged_where_it_and_all_used_ones_have_pressures():
     off, other = off - off[rest].mean(), other - other[rest].mean()
     assert held.rms == pytest.approx(rms(off))
     assert held.linear_rms == pytest.approx(rms(other))
+    assert 0.0 < held.pchip_rms < 2.0 * held.linear_rms
     assert held.coverage == pytest.approx((np.abs(off[among]) <= 1.96 * 1.5).mean())
     assert 0.5 < held.coverage < 1.0
 
