@@ -42,7 +42,7 @@ def is_finished(output: Path, identity: str) -> bool:
     if not isinstance(before, str):
         raise UsageError(
             f"{output} exists already and is not a readable result of calm batch. It is kept: "
-            "give the result another name, or remove the file"
+            "give the result another name, or remove it"
         )
     refuse_another(output, before, identity)
     return True

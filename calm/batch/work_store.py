@@ -207,7 +207,7 @@ def refuse_another(path: Path, before: str, now: str) -> None:
         ) from None
     raise UsageError(
         f"{path} was made from another input: {changes}. It is kept; give the result "
-        "another name, or remove the file"
+        "another name, or remove it"
     )
 
 

@@ -81,7 +81,6 @@ def check(
         Number of processes; by default one for each core.
     """
     outputs = Outputs(tuple(files), json)
-    outputs.check()
     if workers is not None and workers < 1:
         raise UsageError(f"--workers: {workers} is not 1 or more")
     if against is not None and (report is None or len(files) > 1):

@@ -58,7 +58,6 @@ def diff(
     """
     files = (before,) if after is None else (before, after)
     outputs = Outputs(files, json)
-    outputs.check()
     from calm.case import load
 
     lines = read_all(load, files, environment, catalog or [])
@@ -146,7 +145,6 @@ def size(
         Write the answer as JSON, - to print it.
     """
     outputs = Outputs((file,), json)
-    outputs.check()
     import calm
     from calm.case import Tow
     from calm.case.size import size as sized

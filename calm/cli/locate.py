@@ -95,7 +95,6 @@ def locate(
     from calm.report.located_anchor import located_figure, located_part
 
     outputs = Outputs((file,), json)
-    outputs.check()
     if plot is not None:
         check_format(plot, (".png", ".svg", ".pdf"))
         check_destination(plot)

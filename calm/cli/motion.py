@@ -146,7 +146,6 @@ def motion(
         raise UsageError(f"--workers: {workers} is not 1 or more")
     names = fitted(_separated(fit), bool(currents))
     outputs = Outputs(files=(file,), json=json)
-    outputs.check()
     if report is not None:
         check_folder(report)
     currents = currents or []

@@ -169,7 +169,7 @@ class Outputs:
         for file in self.files:
             yield path if len(self.files) == 1 else path.with_stem(f"{path.stem}-{file.stem}")
 
-    def check(self) -> None:
+    def __post_init__(self) -> None:
         """Refuse outputs that could not be written, before anything is solved.
 
         UsageError: a path that cannot be written, that another output or a mooring file has

@@ -97,7 +97,6 @@ def run(
         Also say below the table how the solution was found.
     """
     outputs = Outputs(tuple(files), json, csv, plot, html, pdf, netcdf)
-    outputs.check()
     draws = draws_of(uncertainty, samples, seed)
     from calm.case import Tow
     from calm.case.net import Net, load_any

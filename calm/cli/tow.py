@@ -84,7 +84,6 @@ def tow(
         raise UsageError("--schematic draws a tow at the speed of its file")
     chosen = None if speeds is None else speed_range(speeds)
     outputs = Outputs(tuple(files), json, csv, plot)
-    outputs.check()
     tows = _only_tows(files, environment, catalog or [])
     show_units(units, [tow.file for tow in tows])
     if chosen is not None:
@@ -236,7 +235,6 @@ def strumming(
     from calm.report.tabulation import bare_cable_document, bare_cable_part
 
     outputs = Outputs(json=json)
-    outputs.check()
     cable = _cable(
         quantities(
             {

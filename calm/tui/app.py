@@ -6,6 +6,7 @@ import os
 import sys
 import time
 from collections.abc import Iterable, Mapping, Sequence
+from functools import partial
 from typing import Any, ClassVar
 
 from rich.console import RenderableType
@@ -20,6 +21,7 @@ from textual.timer import Timer
 from calm.errors import CalmError
 from calm.files.editing import KeptWork, WorkingFile
 from calm.tui import saving
+from calm.tui.dialogs import choose
 from calm.tui.help_screen import Actions, Commands
 from calm.tui.judging import Judging
 from calm.tui.line.builder import BuilderScreen
@@ -339,20 +341,15 @@ class BuildApp(InTurn):
             self.exit(0)
 
     def _offer(self, kept: KeptWork) -> None:
-        def take(answer: str | None) -> None:
-            if answer == "recover":
-                self.session.recover(kept)
-                self.taken_over("Recovered; save it to keep it")
-            elif answer == "discard":
-                self.push_screen(saving.confirmation(kept), throw_away)
-            else:
-                self._mend(as_judged=True)
+        def recover() -> None:
+            self.session.recover(kept)
+            self.taken_over("Recovered; save it to keep it")
 
-        def throw_away(answer: str | None) -> None:
-            if answer is None:
-                self._offer(kept)
-            else:
-                self.session.file.discard(kept)
-                self._mend(as_judged=True)
+        def throw_away() -> None:
+            self.session.file.discard(kept)
+            go_on()
 
-        self.push_screen(saving.offer(self.session, kept), take)
+        go_on = partial(self._mend, as_judged=True)
+        sure = saving.confirmation(kept, throw_away, partial(self._offer, kept))
+        discard = partial(choose, self, sure)
+        choose(self, saving.offer(self.session, kept, recover, go_on, discard))

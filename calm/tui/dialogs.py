@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from textual import on
-from textual.app import ComposeResult
+from textual.app import App, ComposeResult
 from textual.binding import BindingType
 from textual.containers import Vertical, VerticalScroll
 from textual.events import Key
 from textual.markup import escape
-from textual.screen import ModalScreen
+from textual.screen import ModalScreen, Screen
 from textual.widgets import Static
 
 from calm.tui.checking import Check, Reading, anything
@@ -35,26 +35,52 @@ _FRAME = """
 """
 
 
+T = TypeVar("T")
+Then = Callable[[], object]
+
+
+def ask(app: App[Any], screen: Screen[T | None], take: Callable[[T], object]) -> None:
+    """Put a screen over this one; what it gives is taken, and nothing where it is left."""
+
+    def taken(given: T | None) -> None:
+        if given is not None:
+            take(given)
+
+    app.push_screen(screen, taken)
+
+
+def choose(app: App[Any], question: Question) -> None:
+    """Ask a question, and do what the answer stands for."""
+    ask(app, question, lambda then: then())
+
+
 @dataclass(frozen=True)
 class Answer:
-    """An answer: its key, its text, and the value that it stands for."""
+    """An answer: its key, its text, and what is done then."""
 
     key: str
     title: str
-    value: str
+    then: Then | None = None
 
 
-class Question(ModalScreen[str | None]):
-    """One of several answers, by its key or with the mouse; Esc gives none unless one `must` be."""
+class Question(ModalScreen[Then | None]):
+    """One of several answers, by its key or with the mouse; Esc is `back` unless one `must` be."""
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings("question")]
     DEFAULT_CSS = "Question {" + _FRAME + "}"
 
     def __init__(
-        self, title: str, text: str, answers: Sequence[Answer], *, must: bool = False
+        self,
+        title: str,
+        text: str,
+        answers: Sequence[Answer],
+        *,
+        back: Then | None = None,
+        must: bool = False,
     ) -> None:
         super().__init__()
-        self._title, self._text, self._answers, self._must = title, text, answers, must
+        self._title, self._text, self._answers = title, text, answers
+        self._back, self._must = back, must
 
     def compose(self) -> ComposeResult:
         """Return what is asked, and the answers below each other."""
@@ -67,24 +93,24 @@ class Question(ModalScreen[str | None]):
                     f"{escape(answer.title)}[/]"
                 )
             if not self._must:
-                yield Static("[@click=screen.answer('')][b]Esc[/b]  go back[/]")
+                yield Static("[@click=screen.leave][b]Esc[/b]  go back[/]")
 
     def on_key(self, event: Key) -> None:
         """The key of an answer gives it; every other key does nothing."""
         for answer in self._answers:
             if event.key in (answer.key, answer.key.lower()):
                 event.stop()
-                self.dismiss(answer.value)
+                self.dismiss(answer.then)
                 return
 
     def action_answer_number(self, number: int) -> None:
         """Give an answer by its number."""
-        self.dismiss(self._answers[number].value)
+        self.dismiss(self._answers[number].then)
 
-    def action_answer(self, value: str) -> None:
-        """Give an answer; none where it is empty."""
-        if value or not self._must:
-            self.dismiss(value or None)
+    def action_leave(self) -> None:
+        """Give none of the answers."""
+        if not self._must:
+            self.dismiss(self._back)
 
 
 @dataclass(frozen=True)

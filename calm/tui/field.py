@@ -113,13 +113,6 @@ class Field(Horizontal):
         """Return what the text comes to."""
         return self.check(self.input.value)
 
-    def ask(self, key: str, title: str, check: Check, placeholder: str) -> None:
-        """Ask for something else."""
-        self.key, self.check = key, check
-        self.query_one(".field-title", Static).update(title, layout=False)
-        self.input.placeholder = placeholder
-        self.reset("")
-
     def reset(self, text: str) -> None:
         """Show another text as the one to begin with."""
         self.begun = self._shown = text

@@ -207,7 +207,7 @@ leave | escape | leave |  | Leave everything as it was.
 app.focus_next | down | next |  | To the next value.
 app.focus_previous | up | last |  | To the one before.
 [question]
-answer('') | escape | go back |  | Go back, where possible.
+leave | escape | go back |  | Go back, where possible.
 [help]
 dismiss | escape,q,enter,question_mark,f1 | close |  | Close it.
 """

@@ -18,7 +18,7 @@ from calm.files import read_mooring
 from calm.files.editing import KeptWork, state_folder
 from calm.files.editing.working_file import Keeper
 from calm.tui.checking import Reading
-from calm.tui.dialogs import Answer, Asked, InputSheet, Question
+from calm.tui.dialogs import Answer, Asked, InputSheet, Question, Then, ask, choose
 from calm.tui.messages import Workspace, place_of
 from calm.tui.screen import DraftScreen
 from calm.tui.session import Session
@@ -30,8 +30,6 @@ _SUFFIX = ".yaml"
 _CHANGED = "The file was changed by another program; saving will ask"
 _GONE = "The file is gone from the disk and not saved any more; saving writes it again"
 _READ_AGAIN = "Read again: another program has changed it"
-
-Then = Callable[[], object]
 
 
 class Saving:
@@ -103,9 +101,7 @@ class Saving:
     def _ask_for_name(self, then: Then | None = None, begin: Path | None = None) -> None:
         path = self._session.file.path
 
-        def take(texts: dict[str, str] | None) -> None:
-            if texts is None:
-                return
+        def take(texts: dict[str, str]) -> None:
             chosen = chosen_path(texts["path"])
             if path is not None and os.path.realpath(chosen) == os.path.realpath(path):
                 self._save(then)
@@ -114,53 +110,45 @@ class Saving:
             else:
                 self._write(lambda: self._session.save_as(chosen), then)
 
-        text = str(begin or path or "")
-        asked = [Asked("path", "File", text, _is_writable, placeholder="e.g. iroise-2026.yaml")]
-        self._app.push_screen(
-            InputSheet("Save as", f"In {Path.cwd()}, unless you give a folder.", asked), take
-        )
+        begun = str(begin or path or "")
+        asked = [Asked("path", "File", begun, _is_writable, placeholder="e.g. iroise-2026.yaml")]
+        text = f"In {Path.cwd()}, unless you give a folder."
+        ask(self._app, InputSheet("Save as", text, asked), take)
 
     def _ask_to_overwrite(self, path: Path, then: Then | None) -> None:
         """Of another file that is there, or of one's own that is protected."""
         is_own = path == self._session.file.path
-
-        def take(answer: str | None) -> None:
-            if answer == "overwrite":
-                write = self._session.save if is_own else lambda: self._session.save_as(path)
-                self._write(write, then)
-            elif answer == "other":
-                self._ask_for_name(then, _free_name(path))
-
+        write = self._session.save if is_own else lambda: self._session.save_as(path)
         title = f"{path.name} is write-protected" if is_own else f"{path.name} is there already"
         protected = not is_own and not os.access(path, os.W_OK)
         text = f"{path}{', and write-protected' if protected else ''}"
         answers = [
-            Answer("o", "overwrite it", "overwrite"),
-            Answer("n", "save under another name", "other"),
+            Answer("o", "overwrite it", lambda: self._write(write, then)),
+            Answer(
+                "n", "save under another name", lambda: self._ask_for_name(then, _free_name(path))
+            ),
         ]
-        self._app.push_screen(Question(title, text, answers), take)
+        choose(self._app, Question(title, text, answers))
 
     def _ask_of_change(self, then: Then | None) -> None:
         path, stamp = self._session.file.path, self._session.file.stamp
         assert path is not None
-
-        def take(answer: str | None) -> None:
-            if answer == "overwrite":
-                self._write(self._session.save, then)
-            elif answer == "theirs":
-                self._take_theirs()
-            elif answer == "other":
-                self._ask_for_name(then, _free_name(path))
-
+        theirs = "read the file from the disk; undo brings back your line"
         answers = [
-            Answer("o", "overwrite it with your line", "overwrite"),
-            Answer("n", "save your line under another name", "other"),
-            Answer("t", "read the file from the disk; undo brings back your line", "theirs"),
+            Answer(
+                "o", "overwrite it with your line", lambda: self._write(self._session.save, then)
+            ),
+            Answer(
+                "n",
+                "save your line under another name",
+                lambda: self._ask_for_name(then, _free_name(path)),
+            ),
+            Answer("t", theirs, self._take_theirs),
         ]
         when = f" It was written {moment(stamp[0] / 1e9)}." if stamp else ""
         title = f"{self._session.name} was changed by another program"
         text = f"The file on the disk differs from your line.{when}"
-        self._app.push_screen(Question(title, text, answers), take)
+        choose(self._app, Question(title, text, answers))
 
     # the file on the disk
 
@@ -207,21 +195,18 @@ class Saving:
         if isinstance(self._app.screen, Question):
             return  # that one first
 
-        def take(answer: str | None) -> None:
-            if answer == "save":
-                self._save(self._app.leave)
-            elif answer == "discard":
-                self._session.file.forget()
-                self._app.leave()
+        def discard() -> None:
+            self._session.file.forget()
+            self._app.leave()
 
         answers = [
-            Answer("s", "save and leave", "save"),
-            Answer("d", "leave without saving", "discard"),
+            Answer("s", "save and leave", lambda: self._save(self._app.leave)),
+            Answer("d", "leave without saving", discard),
         ]
         name, file = self._session.name, self._session.file
         is_gone = file.stamp is None and file.changed_on_disk()
         told = "is gone from the disk" if is_gone else "has changes that are not saved"
-        self._app.push_screen(Question("Not saved", f"{name} {told}.", answers), take)
+        choose(self._app, Question("Not saved", f"{name} {told}.", answers))
 
 
 class Presence:
@@ -302,10 +287,8 @@ def moment(seconds: float) -> str:
     return time.strftime("%Y-%m-%d at %H:%M", time.localtime(seconds))
 
 
-def offer(session: Session, kept: KeptWork) -> Question:
-    """Return whether it is to be recovered; it says when it was kept and whether the file is
-    newer.
-    """
+def offer(session: Session, kept: KeptWork, recover: Then, later: Then, discard: Then) -> Question:
+    """Ask whether it is to be recovered, saying when it was kept and whether the file is newer."""
     whose = "" if kept.keeper.is_here else f" on {kept.keeper.host}, where it may still be open"
     sentences = [f"An earlier run ended before {session.name} was saved. It kept its work"]
     sentences.append(f"{moment(kept.at)}{whose}.")
@@ -318,14 +301,14 @@ def offer(session: Session, kept: KeptWork) -> Question:
             "saving will ask."
         )
     answers = [
-        Answer("r", "recover it; undo goes back to the file", "recover"),
-        Answer("k", "keep it for later; go on with the file", "later"),
-        Answer("d", "throw it away", "discard"),
+        Answer("r", "recover it; undo goes back to the file", recover),
+        Answer("k", "keep it for later; go on with the file", later),
+        Answer("d", "throw it away", discard),
     ]
     return Question("Work that was not saved", " ".join(sentences), answers, must=True)
 
 
-def confirmation(kept: KeptWork) -> Question:
-    """Return whether it is really to be thrown away: nothing brings it back."""
-    answers = [Answer("y", "yes, throw it away for good", "discard")]
-    return Question("Throw the work away?", f"It was kept {moment(kept.at)}.", answers)
+def confirmation(kept: KeptWork, discard: Then, back: Then) -> Question:
+    """Ask whether it is really to be thrown away: nothing brings it back."""
+    answers = [Answer("y", "yes, throw it away for good", discard)]
+    return Question("Throw the work away?", f"It was kept {moment(kept.at)}.", answers, back=back)

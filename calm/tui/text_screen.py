@@ -15,7 +15,7 @@ from textual.widgets import Static, TextArea
 
 from calm.errors import Problem
 from calm.files.editing.changes import retyped
-from calm.tui.dialogs import Asked, InputSheet
+from calm.tui.dialogs import Asked, InputSheet, ask
 from calm.tui.key_table import bindings, hints
 from calm.tui.messages import Workspace, is_elsewhere, mistakes, said
 from calm.tui.screen import DraftScreen, KeyBar
@@ -199,15 +199,9 @@ class TextScreen(DraftScreen):
 
     def action_find(self) -> None:
         """Ask for words, and go to them."""
-
-        def take(texts: dict[str, str] | None) -> None:
-            if texts is not None:
-                self.find(texts["words"])
-
         asked = [Asked("words", "Find", placeholder="a label, a key, a number")]
-        self.app.push_screen(
-            InputSheet("Find in the text", "F3 goes to the next place.", asked), take
-        )
+        sheet = InputSheet("Find in the text", "F3 goes to the next place.", asked)
+        ask(self.app, sheet, lambda texts: self.find(texts["words"]))
 
     def action_find_next(self) -> None:
         """To the next place of what was sought."""

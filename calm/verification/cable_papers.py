@@ -91,11 +91,6 @@ def buoy(buoyancy: float, depth: float) -> tuple[Line, Water]:
 
 
 @cache
-def _below_the_surface() -> Ends:
-    return finely(*buoy(BUOY_LIFT, 25.0))
-
-
-@cache
 def _afloat() -> Solution:
     return solve_mooring(*buoy(_BUOYANCY, 20.0), FINE)
 
@@ -162,7 +157,7 @@ against the march as well.""",
                 CaseColumn[Ends]("tension T_A, march", "N", 5e-3, lambda ends: ends.tension),
                 CaseColumn[Ends]("angle φ_A, march", "°", 2e-3, lambda ends: 90.0 - ends.lean),
             ],
-            [("buoy", _below_the_surface, (20.0, 18.782, 250.00, 22.027))],
+            [("buoy", partial(finely, buoy, BUOY_LIFT, 25.0), (20.0, 18.782, 250.00, 22.027))],
             "The cable is cut to 28.467 m, half a millimetre being the last digit of its length.",
             Kind.INDEPENDENT,
         ),

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import cache
 from math import atan2, cos, degrees, hypot, inf, nan, pi, radians, sin
 from typing import Generic, TypeVar
 
@@ -347,9 +348,10 @@ def ends_of(solution: Solution) -> Ends:
     return Ends(x, z, horizontal, vertical)
 
 
-def finely(line: Line, water: Water) -> Ends:
-    """Return the ends of a line, solved at `FINE`."""
-    return ends_of(solve_mooring(line, water, FINE))
+@cache
+def finely(made: Callable[..., tuple[Line, Water]], *given: float) -> Ends:
+    """Return the ends of a line that is made of some figures, solved at `FINE`."""
+    return ends_of(solve_mooring(*made(*given), FINE))
 
 
 @dataclass(frozen=True)

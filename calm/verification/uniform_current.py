@@ -75,19 +75,7 @@ def float_on_a_rope(weight: float, ct: float, speed: float) -> tuple[Line, Water
     return line_of(_FLOAT, cable(_LENGTH, 0.0127, weight, 1.3, ct)), stream(1010.0, speed)
 
 
-@cache
-def _thread_ends(speed: float) -> Ends:
-    return finely(*float_on_a_thread(speed))
-
-
-@cache
-def _ball_ends() -> Ends:
-    return finely(*ball_on_a_thread())
-
-
-@cache
-def _rope_ends(weight: float, ct: float, speed: float) -> Ends:
-    return finely(*float_on_a_rope(weight, ct, speed))
+_thread_ends, _rope_ends = partial(finely, float_on_a_thread), partial(finely, float_on_a_rope)
 
 
 def _drop(length: float, ends: Ends) -> float:
@@ -157,7 +145,7 @@ against them.""",
         *table(
             _thread(0.5, 5.5e-7, 5.5e-7, 5.5e-5),
             [
-                ("C2 ball on a thread", _ball_ends,
+                ("C2 ball on a thread", partial(finely, ball_on_a_thread),
                  (0.161321, 0.374174, 25.5398, 0.215569, 0.048857)),
             ],
             _PRINTED,

@@ -87,7 +87,7 @@ def test_progress_is_told_to_a_terminal_and_wiped(cases, monkeypatch):
     monkeypatch.setattr("sys.stderr", terminal)
     monkeypatch.setattr("calm.cli.progress.monotonic", lambda: next(seconds))
     verify()
-    assert terminal.getvalue() == "\r0 of 2 figures\r1 of 2 figures\r\x1b[K"
+    assert terminal.getvalue() == "\r\x1b[K0 of 2 figures\r\x1b[K1 of 2 figures\r\x1b[K"
 
 
 def test_published_figures_are_reached_from_the_command(calm):

@@ -17,8 +17,8 @@ from calm.assemble.catalogue_search import COLUMNS, Index, Listed
 from calm.errors import CalmError
 from calm.files.components import FLEXIBLE_KINDS, RIGID_KINDS
 from calm.tui.catalogue.component_list import ComponentList, Remembered
-from calm.tui.checking import anything, distance, length
-from calm.tui.field import Field
+from calm.tui.checking import distance, length
+from calm.tui.dialogs import Asked, InputSheet, ask
 from calm.tui.key_table import bindings
 from calm.tui.messages import Told
 from calm.tui.scrolled import ScrolledEntry, ScrolledText
@@ -45,10 +45,8 @@ class CataloguePane(Vertical):
         & #catalogue-title { height: 1; color: $text-muted; }
         & #catalogue-search { height: 1; background: $surface; }
         & #catalogue-search:focus { background: $surface; background-tint: $foreground 8%; }
-        & #catalogue-ask { height: auto; display: none; }
         & #catalogue-found { height: 1fr; layout: vertical; }
         & #catalogue-card { height: 1fr; margin-top: 1; }
-        &.-asking #catalogue-ask { display: block; }
     }
     .-narrow CataloguePane #catalogue-found { layout: horizontal; }
     .-narrow CataloguePane ComponentList { width: 1fr; }
@@ -75,21 +73,17 @@ class CataloguePane(Vertical):
         self._used: list[str] = []
         self._role = ""
         self._by: str | None = None
-        self._asked: Listed | None = None
         self._shown: Listed | None = None
         self._target = ""
 
     def compose(self) -> ComposeResult:
-        """Title, search, what is asked for, and the list with its card."""
+        """Title, search, and the list with its card."""
         yield Static(id="catalogue-title", markup=False)
         yield ScrolledEntry(
             id="catalogue-search",
             compact=True,
             placeholder="words of id, name, maker, kind, role; breaking>50kN",
         )
-        with Vertical(id="catalogue-ask"):
-            yield Field("length", "Length", id="ask-length")
-            yield Field("label", "Label", anything, id="ask-label", placeholder="may stay empty")
         with Horizontal(id="catalogue-found"):
             yield ComponentList()
             yield ScrolledText(id="catalogue-card")
@@ -136,7 +130,6 @@ class CataloguePane(Vertical):
         """
         self.purpose, self.clampable, self.towed = purpose, clampable, towed
         self._used, self._role = used, role
-        self._leave_asking()
         self.retitle(target)
         with self.prevent(Input.Changed):
             self.search.value = ""
@@ -203,8 +196,7 @@ class CataloguePane(Vertical):
 
     def action_choose(self, by: int) -> None:
         """Move the cursor of the list."""
-        if self._asked is None:
-            self.listing.cursor += by
+        self.listing.cursor += by
 
     @on(Input.Submitted, "#catalogue-search")
     @on(ComponentList.Pressed)
@@ -214,52 +206,28 @@ class CataloguePane(Vertical):
         if chosen is None:
             return
         if self.purpose == "clamp":
-            self._ask(chosen, "at", "From the top")
+            place = "e.g. 2 m down the piece"
+            self._ask(chosen, Asked("at", "From the top", "", distance(), place))
         elif chosen.kind in FLEXIBLE_KINDS and self.purpose != "replace":
-            self._ask(chosen, "length", "Length")
+            lengths = "e.g. 480 m, or fit 105 m"
+            self._ask(chosen, Asked("length", "Length", "", length(towed=self.towed), lengths))
         else:
             self._give({"use": chosen.id})
-            self.search.action_select_all()
 
     def _give(self, values: dict[str, str]) -> None:
         self.remembered.take(values["use"])
         self.post_message(self.Taken(self.purpose, values))
-
-    def _ask(self, chosen: Listed, key: str, title: str) -> None:
-        self._asked = chosen
-        self.add_class("-asking")
-        first = self.query_one("#ask-length", Field)
-        check = distance() if key == "at" else length(towed=self.towed)
-        placeholder = "e.g. 2 m down the piece" if key == "at" else "e.g. 480 m, or fit 105 m"
-        first.ask(key, title, check, placeholder)
-        self.query_one("#ask-label", Field).reset("")
-        first.focus_input()
-
-    @on(Field.Entered)
-    def _answered(self, event: Field.Entered) -> None:
-        event.stop()
-        first, label = self.query_one("#ask-length", Field), self.query_one("#ask-label", Field)
-        if event.field is first:
-            label.focus_input()
-            return
-        if self._asked is None or not (first.settle() and label.settle()):
-            return
-        values = {"use": self._asked.id, first.key: first.text}
-        if label.text:
-            values["label"] = label.text
-        self._leave_asking()
-        self._give(values)
-        self.search.focus()
         self.search.action_select_all()
 
-    def _leave_asking(self) -> None:
-        self._asked = None
-        self.remove_class("-asking")
+    def _ask(self, chosen: Listed, asked: Asked) -> None:
+        """Ask for the length or the place, and for a label."""
+
+        def take(texts: dict[str, str]) -> None:
+            self._give({"use": chosen.id} | {key: text for key, text in texts.items() if text})
+
+        label = Asked("label", "Label", placeholder="may stay empty")
+        ask(self.app, InputSheet(chosen.id, "", [asked, label]), take)
 
     def action_close(self) -> None:
-        """Leave what is asked for, then the catalogue."""
-        if self._asked is None:
-            self.post_message(self.Closed())
-        else:
-            self._leave_asking()
-            self.search.focus()
+        """Leave the catalogue."""
+        self.post_message(self.Closed())

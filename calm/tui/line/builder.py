@@ -13,7 +13,7 @@ from calm.files.components import KINDS
 from calm.files.editing import Draft
 from calm.tui import key_table
 from calm.tui.cell_editor import CellEditor
-from calm.tui.dialogs import InputSheet
+from calm.tui.dialogs import InputSheet, ask, choose
 from calm.tui.key_table import bindings, hints
 from calm.tui.line.comparing import Advising, Comparing
 from calm.tui.line.line_pane import LinePane
@@ -135,7 +135,7 @@ class BuilderScreen(LineScreen):
 
     def action_begin(self) -> None:
         """Begin an empty line with a mooring."""
-        from calm.templates import TEMPLATES, template
+        from calm.templates import Template, template
         from calm.tui.line.mooring_sheet import beginning
 
         session = self.session
@@ -143,12 +143,10 @@ class BuilderScreen(LineScreen):
             self.tell("There is a line already; a new file can begin with a mooring")
             return
 
-        def take(answer: str | None) -> None:
-            if answer is not None:
-                kind = list(TEMPLATES)[int(answer) - 1]
-                self.line.attempt(lambda: session.write(template(kind), f"begin with {kind}"))
+        def begin(kind: Template) -> None:
+            self.line.attempt(lambda: session.write(template(kind), f"begin with {kind}"))
 
-        self.app.push_screen(beginning(), take)
+        choose(self.app, beginning(begin))
 
     def action_history(self) -> None:
         """Show what was done, and go back to before any of it."""
@@ -161,11 +159,10 @@ class BuilderScreen(LineScreen):
             self.tell("There is nothing to undo yet")
             return
 
-        def take(answer: str | None) -> None:
-            if answer is not None:
-                self._go("undone", lambda: [steps.undo() for _ in range(int(answer))][-1])
+        def undo(count: int) -> None:
+            self._go("undone", lambda: [steps.undo() for _ in range(count)][-1])
 
-        self.app.push_screen(history(self.session), take)
+        choose(self.app, history(self.session, undo))
 
     def action_search(self) -> None:
         """Search the catalogue for a piece below."""
@@ -175,13 +172,10 @@ class BuilderScreen(LineScreen):
         """Define a component of one's own, and put it into the line."""
         from calm.tui.catalogue.component_screen import ComponentScreen
 
-        def take(defined: tuple[str, dict[str, str]] | None) -> None:
-            if defined is not None:
-                self._put_component(*defined)
-
         index = self.workspace.index
         listed = () if index is None else tuple(index.catalogue.ids())
-        self.app.push_screen(ComponentScreen(listed, self._own), take)
+        form = ComponentScreen(listed, self._own)
+        ask(self.app, form, lambda defined: self._put_component(*defined))
 
     @on(LinePane.ChangeWanted)
     def _change_component(self, event: LinePane.ChangeWanted) -> None:
@@ -198,16 +192,15 @@ class BuilderScreen(LineScreen):
             self.tell(f"{id} {what}")
             return
 
-        def take(defined: tuple[str, dict[str, str]] | None) -> None:
-            if defined is not None:
-                changed: dict[Location, str | None] = {
-                    ("components", id, key): text or None
-                    for key, text in defined[1].items()
-                    if text != values.get(key, "")
-                }
-                self.line.attempt(lambda: session.put_all(changed, f"change {id}"))
+        def take(defined: tuple[str, dict[str, str]]) -> None:
+            changed: dict[Location, str | None] = {
+                ("components", id, key): text or None
+                for key, text in defined[1].items()
+                if text != values.get(key, "")
+            }
+            self.line.attempt(lambda: session.put_all(changed, f"change {id}"))
 
-        self.app.push_screen(ComponentScreen(begun=(id, values)), take)
+        ask(self.app, ComponentScreen(begun=(id, values)), take)
 
     @property
     def _own(self) -> dict[str, Any]:
@@ -269,11 +262,10 @@ class BuilderScreen(LineScreen):
         """Show a sheet, and write what is entered."""
         session = self.session
 
-        def take(texts: dict[str, str] | None) -> None:
-            if texts is not None:
-                self.line.attempt(lambda: session.do(changed(session.draft, texts), label))
+        def take(texts: dict[str, str]) -> None:
+            self.line.attempt(lambda: session.do(changed(session.draft, texts), label))
 
-        self.app.push_screen(sheet, take)
+        ask(self.app, sheet, take)
 
     def _put_component(self, id: str, values: dict[str, str]) -> None:
         """Define a component in the file, and show it in the catalogue."""

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING
 
 from textual.events import Paste
@@ -10,7 +11,7 @@ from textual.events import Paste
 from calm.files import Place
 from calm.files.editing import Value
 from calm.tui.checking import anything, count
-from calm.tui.dialogs import Answer, Asked, InputSheet, Question
+from calm.tui.dialogs import Answer, Asked, InputSheet, Question, ask, choose
 from calm.tui.field import Field
 from calm.tui.line.line_cell import LineCell
 from calm.tui.line.mooring_sheet import (
@@ -53,40 +54,30 @@ class ColumnSheet(InputSheet):
 def ask_column(pane: LinePane, spots: Sequence[Place]) -> None:
     """Ask which column of some rows is to be filled, and for its values."""
 
-    def fill(answer: str | None) -> None:
-        filling = ColumnFilling(pane.workspace, spots, answer or "")
-        if answer is not None and (sheet := filling.sheet) is not None:
-            pane.app.push_screen(sheet, take_into(filling))
-        elif answer is not None:
+    def fill(column: str) -> None:
+        filling = ColumnFilling(pane.workspace, spots, column)
+        if (sheet := filling.sheet) is None:
             pane.workspace.tell("None of these rows has such a value")
-
-    def take_into(filling: ColumnFilling) -> Callable[[dict[str, str] | None], None]:
-        def take(texts: dict[str, str] | None) -> None:
-            if texts is not None:
-                pane.attempt(lambda: filling.write(texts))
-
-        return take
+        else:
+            ask(pane.app, sheet, lambda texts: pane.attempt(lambda: filling.write(texts)))
 
     answers = [
-        Answer("s", "serial numbers", "serial"),
-        Answer("l", "lengths", "length"),
-        Answer("n", "labels", "label"),
-        Answer("c", "codes of releases that have serial numbers", "codes"),
+        Answer("s", "serial numbers", partial(fill, "serial")),
+        Answer("l", "lengths", partial(fill, "length")),
+        Answer("n", "labels", partial(fill, "label")),
+        Answer("c", "codes of releases that have serial numbers", partial(fill, "codes")),
     ]
     text = f"Of {len(spots)} rows, one below the other; a list copied elsewhere can be pasted."
-    pane.app.push_screen(Question("Fill a column", text, answers), fill)
+    choose(pane.app, Question("Fill a column", text, answers))
 
 
 def ask_times(pane: LinePane, chosen: Sequence[Place]) -> None:
     """Ask how often rows are to be repeated, and do it."""
 
-    def take(texts: dict[str, str] | None) -> None:
-        if texts is not None:
-            times = int(texts["count"])
-            pane.attempt(lambda: pane.session.duplicate(chosen, times=times))
+    def take(texts: dict[str, str]) -> None:
+        pane.attempt(lambda: pane.session.duplicate(chosen, times=int(texts["count"])))
 
-    asked = [Asked("count", "Copies below", check=count)]
-    pane.app.push_screen(InputSheet("Repeat", "", asked), take)
+    ask(pane.app, InputSheet("Repeat", "", [Asked("count", "Copies below", check=count)]), take)
 
 
 def ask_equipment(pane: LinePane, spot: Place) -> None:
@@ -97,12 +88,12 @@ def ask_equipment(pane: LinePane, spot: Place) -> None:
         pane.workspace.tell(f"{label} is an assembly, whose parts have serial numbers; it has none")
         return
 
-    def take(texts: dict[str, str] | None) -> None:
-        changed = equipment_changes(values, texts or {})
+    def take(texts: dict[str, str]) -> None:
+        changed = equipment_changes(values, texts)
         if changed:
             pane.attempt(lambda: pane.session.put(spot, changed, f"equipment of {label}"))
 
-    pane.app.push_screen(equipment_sheet(label, values, is_clamp=spot.is_clamp), take)
+    ask(pane.app, equipment_sheet(label, values, is_clamp=spot.is_clamp), take)
 
 
 def rows_meant(table: LineTable) -> tuple[Place, ...]:

@@ -5,13 +5,14 @@ from __future__ import annotations
 import subprocess
 import sys
 from difflib import unified_diff
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from calm.errors import CalmError
 from calm.files.editing import WorkingFile
 from calm.tui.checking import needed
-from calm.tui.dialogs import Answer, Asked, InputSheet, LongText, Question
+from calm.tui.dialogs import Answer, Asked, InputSheet, LongText, Question, ask, choose
 from calm.tui.line.line_pane import LinePane
 from calm.tui.pictures import Pictures
 
@@ -48,9 +49,7 @@ class Comparing:
         if not self._line.settle():
             return
 
-        def take(texts: dict[str, str] | None) -> None:
-            if texts is None:
-                return
+        def take(texts: dict[str, str]) -> None:
             if not texts["file"]:
                 self._pictures.put_beside(None)
                 return
@@ -63,7 +62,7 @@ class Comparing:
 
         asked = [Asked("file", "File", placeholder="e.g. other.yaml")]
         text = "Its line is drawn dashed beside this one; no name takes it away again."
-        self._line.app.push_screen(InputSheet("Compare with another file", text, asked), take)
+        ask(self._line.app, InputSheet("Compare with another file", text, asked), take)
 
     def _judge(self, text: str, file: Path | None) -> None:
         """Judge a text beside the line's: of another file, or of its own as it was saved."""
@@ -94,8 +93,8 @@ class Comparing:
         view = self._workspace.view
         if before.result is not None and view and type(before.result) is type(view.result):
             self._pictures.put_beside((name, before.result.shape))
-        answers = [Answer("b", "back to the line", "back")]
-        self._line.app.push_screen(Question(f"Beside {name}", "\n".join(lines), answers))
+        answers = [Answer("b", "back to the line")]
+        choose(self._line.app, Question(f"Beside {name}", "\n".join(lines), answers))
 
 
 def changed_lines(before: str, after: str) -> list[str]:
@@ -128,18 +127,16 @@ class Papers:
             self._workspace.tell("Reports and sheets need a mooring that stands")
             return
 
-        def take(answer: str | None) -> None:
-            if answer == "bill":
-                self._line.app.push_screen(LongText(_bill(result), wide=True))
-            elif answer is not None:
-                self._ask_where(answer)
+        def bill() -> None:
+            self._line.app.push_screen(LongText(_bill(result), wide=True))
 
+        report, deck = (partial(self._ask_where, what) for what in _COMMANDS)
         answers = [
-            Answer("b", "bill and totals: pieces, cut lengths, masses, weights, buoyancy", "bill"),
-            Answer("r", "report of the design check: page, PDF, tables", "report"),
-            Answer("d", "sheets for the deck: diagram, logs, cutting list, anchor drop", "deck"),
+            Answer("b", "bill and totals: pieces, cut lengths, masses, weights, buoyancy", bill),
+            Answer("r", "report of the design check: page, PDF, tables", report),
+            Answer("d", "sheets for the deck: diagram, logs, cutting list, anchor drop", deck),
         ]
-        self._line.app.push_screen(Question("On paper", "", answers), take)
+        choose(self._line.app, Question("On paper", "", answers))
 
     def _ask_where(self, what: str) -> None:
         session, path = self._workspace.session, self._workspace.session.file.path
@@ -147,13 +144,12 @@ class Papers:
             self._workspace.tell("Save the file first: reports are made from the saved file")
             return
 
-        def take(texts: dict[str, str] | None) -> None:
-            if texts is not None:
-                self._write(what, path, Path(texts["folder"]).expanduser())
+        def take(texts: dict[str, str]) -> None:
+            self._write(what, path, Path(texts["folder"]).expanduser())
 
         folder = path.with_name(f"{path.stem}-{what}")
         asked = [Asked("folder", "Folder", str(folder), needed("a folder"))]
-        self._line.app.push_screen(InputSheet("Where to write it", "", asked), take)
+        ask(self._line.app, InputSheet("Where to write it", "", asked), take)
 
     def _write(self, what: str, path: Path, folder: Path) -> None:
         """Have the command write it; what it says last is reported."""
@@ -197,9 +193,6 @@ def _bill(result: Result) -> RenderableType:
     return shown(ReportPart("Bill", (inventory_table(items), Pairs(totals))))
 
 
-_OTHER = "another"
-
-
 class Advising:
     """Asks which change is wanted, and puts it into the line once its effect was seen."""
 
@@ -220,31 +213,24 @@ class Advising:
         catalogue = None if workspace.index is None else workspace.index.catalogue
         found = offers(view, catalogue)[:9]
         answers = [
-            Answer(str(number), offer.title, str(number)) for number, offer in enumerate(found, 1)
+            Answer(str(number), offer.title, partial(self._try, offer, view))
+            for number, offer in enumerate(found, 1)
         ]
         result = view.result
         if isinstance(result, Result):
-            answers.append(Answer("o", "another target, as in `calm size`", _OTHER))
-
-        def take(answer: str | None) -> None:
-            if answer == _OTHER and isinstance(result, Result):
-                self._ask_for_target(view, result.mooring)
-            elif answer is not None:
-                self._try(found[int(answer) - 1], view)
-
+            other = partial(self._ask_for_target, view, result.mooring)
+            answers.append(Answer("o", "another target, as in `calm size`", other))
         text = "What it changes is shown before it is taken."
         if not found:
             text = "No finding has a remedy that can be computed here. " + text
         if isinstance(result, Result) and not view.complete:
             text += " Launch, recovery, breaks and waves are still being judged."
-        self._line.app.push_screen(Question("Advice", text, answers), take)
+        choose(self._line.app, Question("Advice", text, answers))
 
     def _ask_for_target(self, view: View, mooring: Mooring) -> None:
         from calm.tui.advice import sized
 
-        def take(texts: dict[str, str] | None) -> None:
-            if texts is None:
-                return
+        def take(texts: dict[str, str]) -> None:
             try:
                 offer = sized(mooring, texts["target"], texts["change"])
             except CalmError as error:
@@ -259,7 +245,7 @@ class Advising:
             Asked("change", "Change", f"{label.strip('├ ')}.buoyancy", needed("a change")),
         ]
         text = "LABEL.buoyancy, LABEL.length or LABEL.count; depth(LABEL) = 100 m, tilt(LABEL) …"
-        self._line.app.push_screen(InputSheet("A target to meet", text, asked), take)
+        ask(self._line.app, InputSheet("A target to meet", text, asked), take)
 
     def _try(self, offer: Offer, before: View) -> None:
         """Work the change out in a thread, and what it would do."""
@@ -286,14 +272,13 @@ class Advising:
     def _show(self, offer: Offer, before: Draft, made: Draft, lines: list[str]) -> None:
         session = self._workspace.session
 
-        def take(answer: str | None) -> None:
-            if answer is None:
-                self._workspace.tell("Not taken")
-            elif session.draft is before:
+        def take() -> None:
+            if session.draft is before:
                 self._line.attempt(lambda: session.do(made, offer.label), f"{offer.label}: taken")
             else:
                 self._workspace.tell("The line has changed meanwhile; ask again", wrong=True)
 
         self._workspace.tell("")
-        answers = [Answer("y", "take it", "take")]
-        self._line.app.push_screen(Question(offer.title, "\n".join(lines), answers), take)
+        back = partial(self._workspace.tell, "Not taken")
+        answers = [Answer("y", "take it", take)]
+        choose(self._line.app, Question(offer.title, "\n".join(lines), answers, back=back))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import ClassVar
 
 from textual import on
@@ -15,7 +16,7 @@ from calm.files import Place
 from calm.tui.catalogue.catalogue_pane import Purpose
 from calm.tui.cell_editor import CellEditor
 from calm.tui.checking import Reading
-from calm.tui.dialogs import Answer, Question
+from calm.tui.dialogs import Answer, Question, ask, choose
 from calm.tui.key_table import bindings
 from calm.tui.line.column_sheet import ask_column, ask_equipment, ask_times, rows_meant
 from calm.tui.line.line_cell import LineCell
@@ -171,7 +172,7 @@ class LinePane(EditableTable):
             return
         text = "\n".join(f"{each.sign} {each.heading}  {each.text}" for each in found)
         called = row.texts.get("label") or row.texts["component"]
-        self.app.push_screen(Question(called, text, [Answer("b", "back to the row", "back")]))
+        choose(self.app, Question(called, text, [Answer("b", "back to the row")]))
 
     # rows
 
@@ -207,14 +208,13 @@ class LinePane(EditableTable):
         if not chosen or not self.settle():
             return
 
-        def take(texts: dict[str, str] | None) -> None:
-            if texts is not None:
-                self.attempt(
-                    lambda: self.session.assemble(chosen, texts["id"]),
-                    f"{texts['id']} is defined in the file; add it again with a",
-                )
+        def take(texts: dict[str, str]) -> None:
+            self.attempt(
+                lambda: self.session.assemble(chosen, texts["id"]),
+                f"{texts['id']} is defined in the file; add it again with a",
+            )
 
-        self.app.push_screen(naming(self.session), take)
+        ask(self.app, naming(self.session), take)
 
     def action_find(self) -> None:
         """Find words in the line."""
@@ -248,20 +248,16 @@ class LinePane(EditableTable):
         """Repeat what is chosen."""
         chosen = self._chosen_of_a_kind()
         named = [each for spot in chosen for each in namings(self.session.draft, spot)]
+        one = partial(self._duplicate, chosen)
         if not named:
-            self._duplicate(chosen)
+            one()
             return
-
-        def take(answer: str | None) -> None:
-            if answer:
-                self._duplicate(chosen, named if answer == "both" else ())
-
         text = "\n".join(f"{each.where} names {each.text}" for each in named)
         answers = [
-            Answer("o", "the one that is there; the copy stands for itself", "one"),
-            Answer("b", "both (`NAME *`) in what is accepted", "both"),
+            Answer("o", "the one that is there; the copy stands for itself", one),
+            Answer("b", "both (`NAME *`) in what is accepted", partial(one, named)),
         ]
-        self.app.push_screen(Question("Is the copy meant, too?", text, answers), take)
+        choose(self.app, Question("Is the copy meant, too?", text, answers))
 
     def _duplicate(self, chosen: tuple[Place, ...], also: Sequence[Named] = ()) -> None:
         def change() -> Place | None:

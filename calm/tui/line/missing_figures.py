@@ -12,7 +12,7 @@ from calm.files.editing import Draft
 from calm.files.rule_texts import RULES
 from calm.files.yaml_document import Location
 from calm.tui.catalogue.component_screen import FormField, form_fields
-from calm.tui.dialogs import Asked, InputSheet
+from calm.tui.dialogs import Asked, InputSheet, ask
 from calm.tui.line.line_pane import LinePane
 from calm.tui.line.table import location
 from calm.tui.live import View
@@ -41,10 +41,9 @@ class Filling:
             workspace.tell("No figure of a component is missing")
             return
 
-        def take(texts: dict[str, str] | None) -> None:
-            given = texts or {}
-            source = given.pop("source", "")
-            figures = {_keys(asked): text for asked, text in given.items() if text}
+        def take(texts: dict[str, str]) -> None:
+            source = texts.pop("source", "")
+            figures = {_keys(asked): text for asked, text in texts.items() if text}
             if figures:
                 count = len(figures)
                 self._line.attempt(
@@ -54,7 +53,7 @@ class Filling:
                     f"{count} figure{'s' * (count != 1)} filled in",
                 )
 
-        self._line.app.push_screen(figures_sheet(missing), take)
+        ask(self._line.app, figures_sheet(missing), take)
 
 
 def figures_sheet(missing: Sequence[Missing]) -> InputSheet:

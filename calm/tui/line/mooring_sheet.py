@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 from calm.case.parts import parts_of
@@ -11,7 +12,7 @@ from calm.files import Flexible, MooringFile, Piece, Place
 from calm.files.definition import LENGTH, POSITIVE_LENGTH, QuantityField
 from calm.files.editing import Draft, EditError, Value
 from calm.files.yaml_document import Location
-from calm.templates import TEMPLATES
+from calm.templates import TEMPLATES, Template
 from calm.tui.checking import Reading, anything, day, moment, quantity
 from calm.tui.dialogs import Answer, Asked, InputSheet, Question
 from calm.tui.session import Session
@@ -279,21 +280,21 @@ def _index(draft: Draft, rows: Location, called: tuple[str, str]) -> int | None:
 _MOST_STEPS = 9
 
 
-def beginning() -> Question:
-    """Ask with which of the `TEMPLATES` an empty line begins; the answer is its number, from 1."""
+def beginning(begin: Callable[[Template], object]) -> Question:
+    """Ask with which of the `TEMPLATES` an empty line begins, and begin with that kind."""
     answers = [
-        Answer(str(number), f"{kind}: {meaning}", str(number))
+        Answer(str(number), f"{kind}: {meaning}", partial(begin, kind))
         for number, (kind, meaning) in enumerate(TEMPLATES.items(), 1)
     ]
     text = "Each stands as given: change depth, current and pieces to yours."
     return Question("Begin with", text, answers)
 
 
-def history(session: Session) -> Question:
-    """Return how many steps to take back, the last ones listed; it answers with their number."""
+def history(session: Session, undo: Callable[[int], object]) -> Question:
+    """Ask how many steps to take back, the last ones listed, and `undo` as many."""
     steps = session.history.steps
     answers = [
-        Answer(str(number), f"before: {label}", str(number))
+        Answer(str(number), f"before: {label}", partial(undo, number))
         for number, label in enumerate(steps[:_MOST_STEPS], 1)
     ]
     more = len(steps) - _MOST_STEPS

@@ -17,7 +17,7 @@ from calm.checks.strength import strength
 from calm.files import Place
 from calm.quantities import QUANTITIES
 from calm.tui.checking import needed
-from calm.tui.dialogs import Asked, InputSheet
+from calm.tui.dialogs import Asked, InputSheet, ask
 from calm.tui.messages import Workspace
 from calm.tui.table import TableCells, TableColumn
 from calm.tui.theme import CURSOR, LOOKS, MARK
@@ -255,13 +255,12 @@ class Going:
     def ask(self) -> None:
         """Ask for the words, and go to the next row that has them."""
 
-        def take(texts: dict[str, str] | None) -> None:
-            if texts is not None:
-                self.words = texts["words"]
-                self.to_words()
+        def take(texts: dict[str, str]) -> None:
+            self.words = texts["words"]
+            self.to_words()
 
         asked = [Asked("words", "Words", self.words, needed("a word"), "id, label, serial, maker")]
-        self._table.app.push_screen(InputSheet("Find in the line", "", asked), take)
+        ask(self._table.app, InputSheet("Find in the line", "", asked), take)
 
     def to_words(self, by: int = 1) -> None:
         """To the next row, or the one before, that has all words: id, label, serial, maker."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from math import exp, isclose
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,7 +14,7 @@ from numpy import float32
 from calm.errors import CalmError, UsageError
 from calm.records.profile_tables import speed_and_direction
 from calm.tui.checking import Check, Reading, anything
-from calm.tui.dialogs import Answer, Asked, InputSheet, Question
+from calm.tui.dialogs import Answer, Asked, InputSheet, Question, choose
 from calm.tui.water.form import CURRENT_COLUMNS, USUAL_DEPTH
 
 if TYPE_CHECKING:
@@ -55,18 +56,20 @@ class Currents:
     def offer_presets(self) -> None:
         """A profile to begin with."""
 
-        def take(name: str | None) -> None:
-            if name is not None:
-                deep, speed = self._screen.water.depth or USUAL_DEPTH, _PRESETS[name]
-                rows = [(f"{part * deep:.4g}", f"{speed(part):.2g}", "90") for part in _SHARES]
-                self._screen.put_table(CURRENT_COLUMNS, rows, "a preset current")
+        def take(speed: Callable[[float], float]) -> None:
+            deep = self._screen.water.depth or USUAL_DEPTH
+            rows = [(f"{part * deep:.4g}", f"{speed(part):.2g}", "90") for part in _SHARES]
+            self._screen.put_table(CURRENT_COLUMNS, rows, "a preset current")
 
         if self._screen.settle():
             depth = self._screen.water.depth
             down = f"{USUAL_DEPTH:g} m, as no depth is given" if depth is None else f"{depth:g} m"
-            answers = [Answer(str(key), name, name) for key, name in enumerate(_PRESETS, 1)]
+            answers = [
+                Answer(str(key), name, partial(take, speed))
+                for key, (name, speed) in enumerate(_PRESETS.items(), 1)
+            ]
             text = f"A table down to {down}, towards the east, for you to change."
-            self._screen.app.push_screen(Question("A current to start from", text, answers), take)
+            choose(self._screen.app, Question("A current to start from", text, answers))
 
     def ask_for_file(self) -> None:
         """A current from CSV or NetCDF: referred to, or its profile copied."""

@@ -11,7 +11,7 @@ from textual.message import Message
 from calm.records.delimited import CopiedTable, NoTableError, copied_table
 from calm.tui.cell_editor import CellEditor
 from calm.tui.checking import Reading
-from calm.tui.dialogs import Asked, InputSheet
+from calm.tui.dialogs import Asked, InputSheet, ask
 from calm.tui.table import EditableTable
 from calm.tui.water.grid_cells import GridCells
 from calm.tui.water.pasted import (
@@ -104,11 +104,10 @@ class Grid(EditableTable):
             except NoRows as error:
                 return Reading(text, str(error))
 
-        def take(answers: dict[str, str] | None) -> None:
-            if answers is not None:
-                rows, chosen = taken(answers["columns"]), answers["columns"]
-                self.cells.change(rows, f"{len(rows)} rows pasted: {chosen}")
-                self.call_after_refresh(self.cells.focus)  # a table may not be shown yet
+        def take(answers: dict[str, str]) -> None:
+            rows, chosen = taken(answers["columns"]), answers["columns"]
+            self.cells.change(rows, f"{len(rows)} rows pasted: {chosen}")
+            self.call_after_refresh(self.cells.focus)  # a table may not be shown yet
 
         text = "It takes the place of all rows."
         if copied.headings is None:
@@ -116,7 +115,7 @@ class Grid(EditableTable):
         first = "   ".join(copied.rows[0])
         text += f" Its first row reads  {first}"
         asked = Asked("columns", "Columns", ", ".join(headings), check)
-        self.app.push_screen(InputSheet("A table is pasted", text, [asked]), take)
+        ask(self.app, InputSheet("A table is pasted", text, [asked]), take)
 
     @on(GridCells.Pressed)
     def _edit_pressed(self) -> None:

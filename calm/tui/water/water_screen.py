@@ -18,7 +18,7 @@ from textual.widgets import Static
 from calm.files.editing import Draft, Value
 from calm.tui.cell_editor import CellEditor
 from calm.tui.checking import needed
-from calm.tui.dialogs import Asked, InputSheet
+from calm.tui.dialogs import Asked, InputSheet, ask
 from calm.tui.field import Field
 from calm.tui.key_table import bindings, hints
 from calm.tui.messages import Workspace, said
@@ -317,9 +317,7 @@ class WaterScreen(DraftScreen):
     def action_new_environment(self) -> None:
         """A named environment with the current of the one that is shown."""
 
-        def take(texts: dict[str, str] | None) -> None:
-            if texts is None:
-                return
+        def take(texts: dict[str, str]) -> None:
             name, water = texts["name"], self.water
             if name in self.session.standing.environments:
                 self.workspace.tell(f"There is an environment {name} already", wrong=True)
@@ -336,7 +334,7 @@ class WaterScreen(DraftScreen):
         if self.settle():
             asked = [Asked("name", "Name", check=needed("a name"), placeholder="e.g. storm")]
             text = "It says only what differs from the file's own environment."
-            self.app.push_screen(InputSheet("Another environment", text, asked), take)
+            ask(self.app, InputSheet("Another environment", text, asked), take)
 
     def action_drop_environment(self) -> None:
         """Take the named environment out of the file."""

@@ -182,8 +182,8 @@ def test_directions_say_their_way(tmp_path: Path) -> None:
 def test_notes_tell_the_rules(tmp_path: Path) -> None:
     with opened(write("oceansites", tmp_path)) as record:
         assert record.notes == (
-            "the current is not given above 40.0 m and below 250.0 m: that of the nearest level is "
-            "used there, in 300.0 m of water",
+            "the current is not given above 40.0 m and below 250.0 m: the value of the nearest "
+            "level is used there, in 300.0 m of water",
             "the strongest of 20 currents is 0.0092 m/s: cm/s or another unit read as m/s?",
             "levels where the current or their depth has no value are left out of their profile",
             "levels above the surface are left out",

@@ -93,7 +93,7 @@ def test_a_file_system_without_locks_is_told(tmp_path, mooring, record, monkeypa
 
     monkeypatch.setattr(fcntl, "flock", none)
     assert run_batch(mooring, record, tmp_path / "r.nc", tell=told.append).done
-    assert any("has no locks" in text for text in told)
+    assert any("does not support file locks" in text for text in told)
 
 
 def test_a_long_reading_is_told(tmp_path, mooring, record, monkeypatch):
@@ -203,8 +203,8 @@ def test_what_is_no_result_is_left_alone(tmp_path, mooring, record):
     (tmp_path / "s.nc.part").mkdir()
     (tmp_path / "s.nc.part" / "mine").write_text("mine")
     for name, words in (
-        ("r.nc", "not a result"),
-        ("r.zarr", "not a result"),
+        ("r.nc", "not a readable result"),
+        ("r.zarr", "not a readable result"),
         ("s.nc", "in the way"),
     ):
         with pytest.raises(UsageError, match=words):

@@ -207,7 +207,7 @@ def test_a_part_called_top_keeps_its_own_figures(tmp_path):
 
 def test_what_is_no_result_is_refused(mooring):
     for other in (make_result(3).drop_vars("status"), make_result(3).drop_attrs(deep=True)):
-        with pytest.raises(UsageError, match="not a readable result of calm batch"):
+        with pytest.raises(UsageError, match="not a result of calm batch"):
             summarize(other, mooring)
 
 
