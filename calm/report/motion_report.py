@@ -302,23 +302,18 @@ def factors_table(factors: Mapping[str, tuple[float, float, float]], datum: floa
 
 def sensors_table(study: Study) -> Table:
     """Return how sensors in use agree with the currents alone, and with what is estimated."""
-    if not study.plain:
-        return table_of(
-            "",
-            study.fit.items(),
-            (Column("sensor"), lambda one: one[0]),
-            (Column("times", numeric=True), lambda one: str(one[1].count)),
-            (Column("estimated: rms", "m", numeric=True), lambda one: metres(one[1].rms)),
-        )
-    return table_of(
-        "",
-        study.plain.items(),
-        (Column("sensor"), lambda one: one[0]),
-        (Column("times", numeric=True), lambda one: str(one[1].count)),
+    alone = (
         (Column("alone: bias", "m", numeric=True), lambda one: metres(one[1].bias)),
         (Column("rms", "m", numeric=True), lambda one: metres(one[1].rms)),
         (Column("r", numeric=True), lambda one: share(one[1].r)),
         (Column("slope", numeric=True), lambda one: share(one[1].slope)),
+    )
+    return table_of(
+        "",
+        (study.plain or study.fit).items(),
+        (Column("sensor"), lambda one: one[0]),
+        (Column("times", numeric=True), lambda one: str(one[1].count)),
+        *(alone if study.plain else ()),
         (Column("estimated: rms", "m", numeric=True), lambda one: metres(study.fit[one[0]].rms)),
     )
 
@@ -383,10 +378,8 @@ def motion_document(study: Study, name: str) -> dict[str, Any]:
 
 def factors_document(factors: Mapping[str, tuple[float, float, float]]) -> dict[str, Any]:
     """Each factor with its value and the ends of its interval."""
-    return {
-        name: {"value": value, "low": low, "high": high}
-        for name, (value, low, high) in factors.items()
-    }
+    keys = ("value", "low", "high")
+    return {name: dict(zip(keys, three, strict=True)) for name, three in factors.items()}
 
 
 def held_out_document(held_out: Sequence[HeldOut]) -> list[dict[str, Any]]:

@@ -84,7 +84,7 @@ def build_result(**changes):
     limits = Record(steel=3.0, synthetic=5.0, surface=5.0)
     file = Record(
         pieces=pieces, checks=Record(safety_factor=limits), environment=Record(depth=1100.0),
-        solver=Record(strumming=None),
+        solver=Record(strumming=None), legs=(),
     )  # fmt: skip
     water = Record(
         depth=1100.0,
@@ -150,7 +150,7 @@ def build_tow_result(**changes):
     file = Record(
         name="Survey", pieces=pieces, environment=Record(depth=300.0, fluid="water"),
         checks=Record(safety_factor=Record(steel=3.0, synthetic=5.0, surface=5.0)),
-        solver=Record(strumming=BourgetMarichalKeys()),
+        solver=Record(strumming=BourgetMarichalKeys()), legs=(),
     )  # fmt: skip
     water = Record(level=np.array([0.0, 100.0]), u=np.array([0.5, 0.0]), v=np.array([0.0, 0.0]))
     along = np.linspace(1.0, 0.0, 12)
