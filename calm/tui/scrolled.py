@@ -51,20 +51,22 @@ class ScrolledText(Scrolled, can_focus=False):
         """Wrap it to the new width."""
         self._lines()
 
-    def _lines(self, width: int | None = None) -> list[tuple[list[Segment], int]]:
-        """Return the lines in a width, that of now as a rule, each with the number of its text."""
-        width = self.scrollable_content_region.width if width is None else width
+    def _lines(self) -> list[tuple[list[Segment], int]]:
+        """Return the lines in the width of now, each with the number of its text."""
+        width = self.scrollable_content_region.width
         if width > 0 and self._drawn[0] != width:
-            console = self.app.console
-            options = console.options.update(width=width, height=None)
-            lines = [
-                (line, number)
-                for number, text in enumerate(self._texts)
-                for line in console.render_lines(text, options, pad=False)
-            ]
-            self._drawn = (width, lines)
-            self.virtual_size = Size(width, len(lines))
+            self._drawn = (width, self._wrapped(width))
+            self.virtual_size = Size(width, len(self._drawn[1]))
         return self._drawn[1]
+
+    def _wrapped(self, width: int) -> list[tuple[list[Segment], int]]:
+        console = self.app.console
+        options = console.options.update(width=width, height=None)
+        return [
+            (line, number)
+            for number, text in enumerate(self._texts)
+            for line in console.render_lines(text, options, pad=False)
+        ]
 
     def render_line(self, y: int) -> Strip:
         """A row of the screen."""

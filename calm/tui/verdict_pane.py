@@ -69,7 +69,8 @@ class VerdictPane(ScrolledText, can_focus=True):
 
     def get_content_height(self, container: Size, viewport: Size, width: int) -> int:
         """As many lines as it has."""
-        return len(self._lines(width))
+        known, lines = self._drawn
+        return len(lines if known == width else self._wrapped(width))
 
     def render_line(self, y: int) -> Strip:
         """A row of the screen."""

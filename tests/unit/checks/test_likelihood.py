@@ -92,6 +92,7 @@ def test_what_is_judged_once_is_counted_in_the_first_samples():
     assert all((one.probability * HANDLED).is_integer() for one in once)
 
 
+@pytest.mark.thorough
 def test_what_has_no_limit_has_no_probability():
     found = judged(buoyancy="2 %", samples=64)
     for one in found.all_findings():

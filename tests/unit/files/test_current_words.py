@@ -378,8 +378,8 @@ def test_files_that_mhkit_wrote(which: str) -> None:
     assert table.u == pytest.approx([0.52, 0.42, 0.32, 0.22, 0.12], rel=1e-6)
     assert table.v == pytest.approx([-0.25, -0.2, -0.15, -0.1, -0.05], rel=1e-6)
     assert notices == [
-        "the current is not given above 43.5 m and below 59.5 m: that of the nearest level is used "
-        "there, in 100.0 m of water"
+        "the current is not given above 43.5 m and below 59.5 m: the value of the nearest level "
+        "is used there, in 100.0 m of water"
     ]
 
 

@@ -148,7 +148,7 @@ def test_a_slack_surface_line_without_current():
     error = refused(line(FLOAT, rope(120, weight=0.5)), water(100))
     assert error.status == "slack"
     # the length is 121 m in 100 m of water: √(121² − 100²) = 68.1
-    assert "121.0 m uncut" in error.message
+    assert "121.0 m unstretched" in error.message
     assert "radius of 68.1 m" in error.message
 
 
