@@ -77,7 +77,7 @@ def read_measured(
     match : by `label`, or by nominal `height` or `depth`
     flags : of the pressures that count as measured, separated by commas
     gap : longest time between two values that are interpolated
-    sea_level : file of the height of the sea surface
+    sea_level : the height of the sea surface, as a path
     declination : added to the directions of the currents [degrees]
     faults : of the sensors, that are taken off
 
@@ -292,7 +292,7 @@ def estimate_motion(
     fit : what to estimate for the whole record besides the drag: `buoyancy`, `length`
     hold_out : labels of sensors that are hidden, and at which the result is judged
     cross_validate : hide each used sensor in turn, and judge
-    sea_level : file of the height of the sea surface over time
+    sea_level : the height of the sea surface over time, as a path
     flags : quality flags of the pressures that count as measured
     gap : longest time between two values that are interpolated [s]; two hours where not given
     declination : added to the directions of the currents [degrees]
