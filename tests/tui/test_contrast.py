@@ -103,9 +103,8 @@ def test_every_word_is_legible_in_every_theme(drive, folder, theme):
     drive(story, doubtful(folder))
 
 
-@pytest.mark.parametrize(
-    "ground, dark", [pytest.param("15;0", True, marks=pytest.mark.thorough), ("0;15", False)]
-)
+@pytest.mark.parametrize("ground, dark", [("15;0", True), ("0;15", False)])
+@pytest.mark.thorough
 @pytest.mark.usefixtures("painted")
 def test_every_word_is_legible_in_eight_and_sixteen_colours(drive, folder, ground, dark):
     async def story(driver):

@@ -42,7 +42,14 @@ def figures(result) -> dict[str, tuple[float, ...]]:
     return found | {row.label: (None, row.depth, row.tension, row.tilt) for row in result.clamps}
 
 
-@pytest.mark.parametrize("name", [*MOORINGS, "a-frame-sheared-tow", "helicopter-bird"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        *MOORINGS,
+        pytest.param("a-frame-sheared-tow", marks=pytest.mark.thorough),
+        "helicopter-bird",
+    ],
+)
 def test_rows_are_those_of_run(name: str) -> None:
     path = LINES / f"{name}.yaml"
     view, result = judge(text_of(name), path), calm.load(path).solve()

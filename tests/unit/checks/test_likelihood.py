@@ -8,6 +8,8 @@ import calm
 from calm.case.draws import CAUSES
 from calm.checks.assess import HANDLED, with_probabilities
 
+pytestmark = pytest.mark.thorough
+
 PLUMB = """
 name: {name}
 environment: {{depth: 500 m}}
@@ -63,7 +65,6 @@ def test_an_anchor_is_too_light_where_the_float_lifts_more():
     assert found.draws == (256, 0)
 
 
-@pytest.mark.thorough
 def test_the_top_is_too_shallow_where_the_water_is():
     # upright at 500 - 400 - stretch 7.6 m; 90 m is reached 2.4 m shallower, of 5 m a deviation
     found = judged(depth="1 %")
@@ -75,7 +76,6 @@ def test_the_top_is_too_shallow_where_the_water_is():
     )
 
 
-@pytest.mark.thorough
 def test_a_sample_without_equilibrium_breaks_every_limit():
     # the anchor is lifted at 4000 b - 400 > 4000, b > 1.1
     found = judged(weight="4 kN", buoyancy="10 %")
@@ -84,7 +84,6 @@ def test_a_sample_without_equilibrium_breaks_every_limit():
     assert probability(found, "anchor-weight", "anchor") > 0.99
 
 
-@pytest.mark.thorough
 def test_what_is_judged_once_is_counted_in_the_first_samples():
     found = judged(weight="20 kN", buoyancy="20 %")
     once = [one for one in found.findings if one.limit is not None]
@@ -92,14 +91,12 @@ def test_what_is_judged_once_is_counted_in_the_first_samples():
     assert all((one.probability * HANDLED).is_integer() for one in once)
 
 
-@pytest.mark.thorough
 def test_what_has_no_limit_has_no_probability():
     found = judged(buoyancy="2 %", samples=64)
     for one in found.all_findings():
         assert (one.probability is None) == (one.limit is None)
 
 
-@pytest.mark.thorough
 def test_the_order_and_the_share_of_the_blocks_change_nothing():
     shared = []
 
