@@ -1,10 +1,12 @@
 """Every run of the tests tries the same examples and sees no catalogue but the shipped one."""
 
 import os
+from collections.abc import Iterator
 
 import pytest
 from hypothesis import settings
 
+from calm.quantities import show_in
 from calm.solve.solution import COLD, expect_many
 
 settings.register_profile("ci", derandomize=True, deadline=None, database=None)
@@ -25,6 +27,13 @@ def solve_compiled() -> None:
     `CALM_COMPILED=never` has the tests solve as the laws stand.
     """
     expect_many(COLD)
+
+
+@pytest.fixture(autouse=True)
+def usual_units() -> Iterator[None]:
+    """Units that a command has chosen are those of its process."""
+    yield
+    show_in({})
 
 
 @pytest.fixture
