@@ -14,7 +14,7 @@ from calm.batch.solving import read_profile
 from calm.batch.statuses import STATUSES
 from calm.case.net import Net, net_result
 from calm.case.net_result import NetResult
-from calm.dataset.netcdf import OF_CLAMP, OF_COMPONENT
+from calm.dataset.netcdf import OF_CLAMP, OF_COMPONENT, OF_ENDS
 from calm.errors import NoEquilibrium
 from calm.files import CurrentTable
 from calm.physics.line import Floats
@@ -49,7 +49,7 @@ class NetProfiles:
         pieces, legs = net.file.pieces, len(net.file.legs)
         clamps = sum(len(piece.clamps) for piece in pieces)
         sizes = dict.fromkeys(OF_COMPONENT, len(pieces)) | dict.fromkeys(OF_CLAMP, clamps)
-        sizes |= dict.fromkeys(_OF_LEG, legs)
+        sizes |= dict.fromkeys(OF_ENDS, legs)
         columns = {name: np.full((len(status), size), np.nan) for name, size in sizes.items()}
         read = np.zeros((depth.shape[1], 4))
         for case in np.flatnonzero(status == 0).tolist():
@@ -70,9 +70,6 @@ class NetProfiles:
             for name, column in _columns(result).items():
                 columns[name][case] = column
         return columns
-
-
-_OF_LEG = ("top_depth", "anchor_vertical", "anchor_horizontal", "used_buoyancy")
 
 
 def _columns(result: NetResult) -> dict[str, Any]:

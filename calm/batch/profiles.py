@@ -169,12 +169,16 @@ class Batch:
 
     mooring: Mooring | Net
     _starts: Floats | None = field(default=None, init=False, repr=False, compare=False)
-    _net: NetProfiles | None = field(default=None, init=False, repr=False, compare=False)
 
     @cached_property
     def water(self) -> Water:
         """The water of the mooring with no current but what the wind drives."""
         return assemble_water(replace(self.mooring.file.environment, current=_STILL))
+
+    @cached_property
+    def _net(self) -> NetProfiles:
+        assert isinstance(self.mooring, Net)
+        return NetProfiles(self.mooring)
 
     def solve(
         self,
@@ -199,9 +203,6 @@ class Batch:
         return measured if shape == measured.status.shape else _shaped(measured, shape)
 
     def _solve_net(self, net: Net, current: tuple[Floats, ...]) -> Profiles:
-        if self._net is None:
-            vars(self).update(_net=NetProfiles(net))
-        assert self._net is not None
         status = np.zeros(len(current[1]), np.int8)
         status[self._implausible(current)] = _IMPLAUSIBLE
         columns: dict[str, Any] = self._net.solve(current, status)
