@@ -6,7 +6,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import groupby
 
 from calm.deck import Deck
-from calm.deck.deck_items import DeckInstrument, DeckItem, Extreme, label_of_run
+from calm.deck.deck_items import (
+    DeckInstrument,
+    DeckItem,
+    Extreme,
+    label_of_run,
+    name_of_run,
+    rows_on_paper,
+)
 from calm.deck.hardware import LENGTH_ERROR, Mark
 from calm.deck.shipping import total_of
 from calm.quantities import QUANTITIES, say
@@ -30,18 +37,25 @@ def cutting_part(deck: Deck) -> ReportPart:
     """Lengths, marks, and how exactly they have to be."""
     rows: list[tuple[Cell, ...]] = []
     kinds = {one.label: one for one in deck.parts}
-    for cut in deck.cuts:
+    clusters = {
+        one.label: row.cluster for row in rows_on_paper(deck.parts) for one in row.items
+    }  # fmt: skip
+    for _, alike in groupby(deck.cuts, lambda one: clusters.get(one.item.label) or id(one)):
+        cuts = [*alike]
+        cut, last = cuts[0], cuts[-1]
+        many = f"{len(cuts)} × " if len(cuts) > 1 else ""
         load = "" if cut.load == 0.0 else f"at {say('tension', cut.load)}"
         effect = "-" if cut.effect is None else f"{cut.effect:+.2f}"
+        label = label_of_run([one.item for one in cuts])
         rows.append(
             (
-                Cell(cut.item.label, cut.item.name, strong=True, goes_on=True),
-                Cell(f"{cut.length:.2f}", load),
+                Cell(label, cut.item.name, strong=True, goes_on=True),
+                Cell(f"{many}{cut.length:.2f}", load),
                 Cell(f"± {cut.tolerance:.2f}"),
                 Cell(effect),
                 Cell(cut.termination or ""),
-                Cell(str(cut.over)),
-                Cell(str(cut.onto)),
+                Cell("–".join(dict.fromkeys((str(cut.over), str(last.over))))),
+                Cell("–".join(dict.fromkeys((str(cut.onto), str(last.onto))))),
                 Cell(),
                 Cell("☐"),
             )
@@ -183,7 +197,9 @@ def lifts_part(deck: Deck) -> ReportPart:
 def _marked(marks: Sequence[Mark], items: Mapping[str, DeckItem]) -> str:
     """Return the places of some marks, and what is clamped there."""
     places = ", ".join(f"{mark.at:.2f}" for mark in marks)
-    return f"mark at {places}: {label_of_run([items[mark.label] for mark in marks])}"
+    marked = [items[mark.label] for mark in marks]
+    words = name_of_run(marked) if len(marked) > 1 else marked[0].label
+    return f"mark at {places}: {words}"
 
 
 def _alike(marks: Iterable[Mark], items: Mapping[str, DeckItem]) -> list[list[Mark]]:

@@ -43,6 +43,7 @@ _CONTINUED = 16.0  # height of a continuation mark
 _SKY, _MAST, _SUBMERGED = 7.0, 26.0, 11.0
 _LEGEND_ROW, _LEGEND_COLUMNS = 21.0, 4
 _GROUND = 44.0
+_EVEN = 0.7  # of the first column: how far down the last one reaches at least, where it can
 _NEAR_THE_END = 0.3  # of a column: where a break is looked for
 _WORDS = {
     Symbol.SPHERE: "float", Symbol.BALL: "ball", Symbol.GLASS: "glass float",
@@ -186,12 +187,17 @@ def _pages(deck: Deck, paper: Paper) -> _Pages:
     need = _GROUND + LEADING - (-len(legend) // _LEGEND_COLUMNS) * _LEGEND_ROW
     bottom = paper.size[1] - _MARGIN - block.height
     foot = block.height
-    while True:  # a page that had nothing but the legend takes over some parts
+    even: tuple[_PageColumn, ...] = ()
+    while True:  # the last column takes over parts until it is about as long as the others
         columns = tuple(_columns(heights, paper, foot, afloat))
-        if len(columns) % paper.columns or columns[-1].end + need <= bottom:
+        if even and len(columns) > len(even):
             break
+        if len(columns) % paper.columns or columns[-1].end + need <= bottom:
+            even = columns
+            if len(columns) == 1 or columns[-1].end >= _EVEN * columns[0].end:
+                break
         foot += 2 * LEADING
-    return _Pages(one_line(deck.file.name), paper, block, column, columns, legend)
+    return _Pages(one_line(deck.file.name), paper, block, column, even, legend)
 
 
 _TOP = _MARGIN + _TITLE_ROOM + HEAD
