@@ -119,7 +119,7 @@ def hardware_part(deck: Deck) -> ReportPart:
         Column("to bring", numeric=True),
         Column("packed", share=0.0),
     )
-    table = Table("Hardware", columns, tuple(rows), _SPARES)
+    table = Table("", columns, tuple(rows), _SPARES)
     blocks: tuple[Block, ...] = (table,)
     if not deck.hardware:
         blocks = (Prose(("The line lists no hardware.",)),)
@@ -129,7 +129,7 @@ def hardware_part(deck: Deck) -> ReportPart:
 def shipping_part(deck: Deck) -> ReportPart:
     """All that is shipped, and what the sums lack."""
     table = table_of(
-        "Shipped",
+        "",
         deck.shipped,
         (Column("component", share=1.6), lambda one: one.name),
         (Column("id"), lambda one: one.use),

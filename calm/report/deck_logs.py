@@ -278,5 +278,5 @@ def _expected(items: Sequence[RecoveredItem]) -> Cell:
             said.append(f"{one.time / 60.0:.1f} min")
         elif one.hangs_at is not None:
             said.append(f"at {say('depth', one.hangs_at)}")
-    text = " to ".join(dict.fromkeys(said))
+    text = " to ".join(dict.fromkeys(said)).replace(" min to", " to")
     return Cell(text, "by itself" if any(one.by_itself for one in items) else "")

@@ -233,7 +233,7 @@ def whereabouts(plan: DropPlan, place: tuple[float, float]) -> str:
     )
 
 
-_WIDTH, _HEIGHT = 7.05, 3.5  # inches: an A4 page between its margins
+_WIDTH, _HEIGHT = 7.05, 3.0  # inches: an A4 page between its margins
 _FONT_SIZE = 8.0  # points
 _WATER, _SEABED = "#2b7bba", "#b8a07e"
 _DASHES = ("-", (0, (6, 2)), (0, (4, 2, 1, 2)), (0, (1, 1.5)), (0, (2, 1)), "-")
@@ -248,7 +248,7 @@ def drop_figure(plan: DropPlan) -> str:
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(_WIDTH, _HEIGHT))
-    figure.subplots_adjust(0.08, 0.11, 0.985, 0.97, wspace=0.06)
+    figure.subplots_adjust(0.08, 0.14, 0.985, 0.97, wspace=0.06)
     shapes, speed = figure.subplots(1, 2, sharey=True, width_ratios=(3.2, 1.0))
     _draw_shapes(shapes, plan)
     _draw_speed(speed, plan)
