@@ -88,6 +88,17 @@ def test_a_tow_is_changed_as_a_mooring_is(tmp_path):
     assert towed.solve(environment="ebb").tow.file.environment.name == "ebb"
 
 
+def test_the_same_serial_number_twice_is_said(mooring):
+    clamps = [
+        {"use": "logger", "at": f"{at} m", "label": f"T{at}", "serial": "7"} for at in (20, 40)
+    ]
+    said = "T20 and T40 have the same serial number, 7."
+    assert said in mooring.with_("upper", clamps=clamps).solve().warnings
+    clamps[1]["serial"] = "8"
+    warnings = mooring.with_("upper", clamps=clamps).solve().warnings
+    assert not [warning for warning in warnings if "serial" in warning]
+
+
 def test_rows_are_found_by_label(mooring):
     result = mooring.solve()
     assert result.components["upper"] == result.components[1]
