@@ -99,11 +99,15 @@ def _pieces(state: MooringInSea) -> Table:
         (_number(f"max\n{unit}"), lambda one: tension.format(one.tension_max)),
         (_number(f"min\n{unit}"), lambda one: tension.format(one.tension_min)),
         (_number("Tz\ns"), lambda one: _period(one.zero_crossing_period)),
-        (_number("slack\n%"), lambda one: f"{100.0 * one.slack_probability:.2g}"),
+        (_number("slack\n%"), lambda one: _percent(one.slack_probability)),
         (_number("heave\nm"), lambda one: f"{one.heave_std:.2f}"),
         (_number("tilt\n°"), lambda one: f"{one.tilt_std:.1f}"),
     )
     return table_of("", state.components, *fields, note=_NOTE)
+
+
+def _percent(share: float) -> str:
+    return f"{round(100.0 * share, 2):.3g}"
 
 
 def _period(period: float) -> str:
@@ -113,7 +117,7 @@ def _period(period: float) -> str:
 _SEAS: tuple[Field[MooringInSea], ...] = (
     (_number("Hs\nm"), lambda state: f"{state.sea.significant_height:.1f}"),
     (_number("Tp\ns"), lambda state: f"{state.sea.peak_period:.1f}"),
-    (_number("share\n%"), lambda state: f"{100.0 * state.sea.share:.2g}"),
+    (_number("share\n%"), lambda state: _percent(state.sea.share)),
     (_number("std at the top\nN"), lambda state: f"{state.components[0].tension_std:.0f}"),
     (_number("greatest there\nN"), lambda state: f"{state.components[0].tension_max:.0f}"),
     (Column("slack"), lambda state: ", ".join(state.slack) or "-"),

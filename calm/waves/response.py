@@ -9,8 +9,8 @@ import numpy as np
 
 from calm.physics.line import Floats
 from calm.records.sea_states import SeaState
-from calm.waves.buoy import SIDEWAYS_ADDED, Buoy, Complexes
-from calm.waves.lumped_line import LumpedLine
+from calm.waves.buoy import SIDEWAYS_ADDED, Buoy
+from calm.waves.lumped_line import Complexes, LumpedLine
 
 SETTLED = 5e-3
 """Change of the flow past the nodes, over the greatest, below which drag is linearised well enough:
@@ -269,8 +269,8 @@ def _solved(
         matrix.real, matrix.imag = stiffness - each**2 * inertia, each * resistance
         matrix[:3, 2 * _BAND] += -(each**2) * moved, -(each**2) * moved, resisting[one]
         pushed = push[one, :free].ravel()
-        *_, found, _ = zgbsv(_BAND, _BAND, matrix.T, pushed, overwrite_ab=True)
-        motion[one, :free] = found.reshape(free, 3)
+        *_, found, singular = zgbsv(_BAND, _BAND, matrix.T, pushed, overwrite_ab=True)
+        motion[one, :free] = np.nan if singular else found.reshape(free, 3)
     return motion
 
 
