@@ -307,7 +307,7 @@ def _in_sea(
     motion, _ = response.moments(response.motion)
     turn = np.diff(response.motion, axis=1)
     turn = turn - (turn * line.spring).sum(2, keepdims=True) * line.spring
-    lean, _ = response.moments(turn / line.span[:, None])
+    lean, _ = response.moments(line.upper_ends(turn / line.span[:, None]))
     rows: list[PieceInWaves] = []
     worst: list[tuple[float, Floats]] = []
     for piece in mooring.file.pieces[:-1]:
@@ -337,7 +337,7 @@ def _in_sea(
                 zero_crossing_period=apart,
                 slack_probability=passing_probability(mean, deviation, apart, duration),
                 heave_std=float(motion[node, 2]),
-                tilt_std=degrees(float(np.linalg.norm(lean[spring]))),
+                tilt_std=degrees(float(np.linalg.norm(lean[piece.index]))),
                 greatest=max(mean + most, float((line.tension + departs)[own].max())),
                 least=min(mean - most, float((line.tension - departs)[own].min())),
             )

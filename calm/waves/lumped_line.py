@@ -82,15 +82,16 @@ class LumpedLine:
     top_pieces: int
     inextensible: tuple[str, ...]
 
-    def upper_ends(self, pull: Complexes) -> Complexes:
-        """Return what of tensions (f, n-1) in the middle of springs is at the upper ends of pieces.
+    def upper_ends(self, middle: Complexes) -> Complexes:
+        """Return what of figures (f, n-1, …) in the middle of springs is at upper ends of pieces.
 
         It goes on above the middle of the first spring as it does below it.
         """
         first, next_one = self.piece_spring, self.piece_below
         share = self.span[first] / (self.span[first] + self.span[next_one])
-        ends = pull[:, first] + share * (pull[:, first] - pull[:, next_one])
-        return np.asarray(np.where(first >= 0, ends, 0.0))
+        shape = (-1,) + (1,) * (middle.ndim - 2)
+        ends = middle[:, first] + share.reshape(shape) * (middle[:, first] - middle[:, next_one])
+        return np.asarray(np.where((first >= 0).reshape(shape), ends, 0.0))
 
 
 def lumped_line(mooring: Mooring, solution: Solution, longest: float) -> LumpedLine:

@@ -11,7 +11,7 @@ from calm.errors import InputError
 from calm.records import sea_states
 from calm.shipped import shipped_folder
 from calm.waves.analysis import analyse
-from calm.waves.buoy import Buoy
+from calm.waves.buoy import Buoy, buoy_of
 from calm.waves.fatigue import greatest_of, passing_probability
 from calm.waves.lumped_line import LumpedLine, lumped_line
 from calm.waves.response import Waves, _slope, _solved, respond, wave_numbers
@@ -274,3 +274,37 @@ def test_netcdf_that_is_no_spectrum(tmp_path, change, message):
     found.to_netcdf(tmp_path / "sea.nc", engine="scipy")
     with pytest.raises(InputError, match=message):
         sea_states.measured_spectrum(tmp_path / "sea.nc")
+
+
+def test_the_end_of_a_heavy_chain_rests_on_no_element(tmp_path):
+    """Below a float the tension varies fast along a chain: coarse and fine elements agree to 1 %."""
+    (tmp_path / "buoy.yaml").write_text(HEAVY)
+    mooring = load(tmp_path / "buoy.yaml")
+    solution = mooring.equilibrium(mooring.water)
+    sea, buoy = (
+        sea_states.spectrum_of("bretschneider", 0.5, 3.0, 3.3),
+        buoy_of(mooring, solution, False),
+    )
+    found = []
+    for longest in (1.6, 0.1):
+        line = lumped_line(mooring, solution, longest)
+        response, _ = respond(line, buoy, waves(sea.frequencies(32), 80.0), sea)
+        found.append(response.moments(line.upper_ends(response.pull))[0])
+    assert found[0] == pytest.approx(found[1], rel=0.01)
+
+
+HEAVY = """\
+name: Coastal buoy
+environment: {depth: 80 m, current: {speed: 0.3 m/s, toward: 90 deg}}
+line:
+  - {use: buoy}
+  - {use: chain, length: 5 m}
+  - {use: nylon, length: 60 m}
+  - {use: block}
+components:
+  buoy: {kind: cylinder, role: float, diameter: 1.6 m, length: 1.2 m, mass: 700 kg,
+         volume: 2.4127 m^3, hull: cylinder}
+  chain: {kind: chain, diameter: 16 mm, mass: 5.6 kg/m}
+  nylon: {kind: cable, diameter: 20 mm, weight: 0.3 N/m, mass: 0.25 kg/m, stiffness: 12 kN}
+  block: {kind: anchor, weight: 30 kN}
+"""
