@@ -201,6 +201,7 @@ def test_what_weighs_as_much_as_its_water_moves_with_it():
     loose = replace(
         loose, water_across=loose.mass, water_along=loose.mass,
         added_across=0.7 * loose.mass, added_along=0.2 * loose.mass,
+        across_drag=3.0 * loose.mass, along_drag=loose.mass, any_drag=2.0 * loose.mass,
     )  # fmt: skip
     sea = sea_states.spectrum_of("bretschneider", 2.0, 8.0, 3.3)
     sent = waves(sea.frequencies(5))
