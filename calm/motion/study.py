@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from calm.case import Mooring
 from calm.errors import UsageError, unknown
-from calm.motion.correction import Task, estimate_in_memory, without
+from calm.motion.correction import Task, estimate_in_memory
 from calm.motion.line_response import Forward
-from calm.motion.matching import instruments_of, labels_of
+from calm.motion.matching import instruments_of, labels_of, without
 from calm.motion.measurements import MooringMeasurements, level_names
 from calm.motion.remarks import (
     ALL,
