@@ -21,6 +21,7 @@ from calm.motion.diagnosis import diagnosed
 from calm.motion.line_response import FACTORS
 from calm.motion.matching import CORRECTABLE, GAP, read_measured
 from calm.motion.remarks import Agreement, Fault
+from calm.motion.sensor_fit import SensorFit, fit_of
 from calm.motion.study import HeldOut, Study, cross_validated, judged, prepare, several
 
 if TYPE_CHECKING:
@@ -100,6 +101,9 @@ class Recovery:
         self.task: Task | None = None
         self._faults: tuple[Fault, ...] = ()
         self._read()
+        if asked.judge and asked.judge not in self.measured.label:
+            what = f"--judge: no sensor is called `{asked.judge}`"
+            raise UsageError(unknown(what, asked.judge, self.measured.label))
         if asked.cross_validate:
             several(self.measured, self.hidden)
 
@@ -163,6 +167,8 @@ class Recovery:
         assert self.task is not None
         asked, task = self.asked, self.task
         study = judged(task, self.measured, result, (*self._faults, *diagnosed(task)))
+        if asked.judge:
+            study = replace(study, judged=fit_of(task, self.measured, asked.judge))
         if asked.cross_validate:
             each = cross_validated(
                 asked.mooring, self.measured, self.names, self.hidden, tell, workers
@@ -204,6 +210,11 @@ class MotionEstimate:
     def diagnosis(self) -> tuple[Fault, ...]:
         """Return what is wrong with the sensors, with sizes and odds."""
         return self.study.diagnosis
+
+    @property
+    def judged(self) -> SensorFit | None:
+        """Return whether the sensor of `judge` fits the line, with the odds."""
+        return self.study.judged
 
     @property
     def remarks(self) -> tuple[str, ...]:
