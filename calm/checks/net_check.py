@@ -22,7 +22,7 @@ from calm.checks.arrangement import (
     release_present,
     swivel,
 )
-from calm.checks.assess import equilibrium, failed_stand, judged_stand
+from calm.checks.assess import check, equilibrium, failed_stand, judged_stand
 from calm.checks.assessment import (
     Acceptance,
     Assessment,
@@ -59,6 +59,15 @@ NOT_HANDLED = (
     "waves are not judged"
 )
 _NOT_SOLVED = Status.NOT_CONVERGED.because("The launch and the recovery of a net are not solved.")
+
+
+def check_any(*designs: Mooring | Net) -> Assessment:
+    """Judge a mooring, or a net, loaded in each of the environments it is judged in."""
+    nets = [each for each in designs if isinstance(each, Net)]
+    if not nets:
+        return check(*(each for each in designs if isinstance(each, Mooring)))
+    name = nets[0].file.name
+    return assessment_of_net(name, [one for net in nets for one in stands_of_net(net, name)])
 
 
 def stands_of_net(net: Net, name: str, day: date | None = None) -> list[MooringInEnvironment]:
@@ -242,6 +251,12 @@ class NetGraph:
             for part in self._free(self.opened | set(cut))
             if any(self.pieces[one].component.role == "release" for one in part)
         ]
+
+    @property
+    def coming_up(self) -> set[int]:
+        """Return the pieces that come up once all releases open; without any, all but anchors."""
+        parts = self._rising(()) if self.opened else self.chains
+        return {one for part in parts for one in part if isinstance(one, int)}
 
     def breaks(self, whole: Mooring) -> tuple[Break, ...]:
         """Return the breaks below every piece that comes up, down the file.

@@ -139,14 +139,13 @@ def test_in_still_water_nothing_is_knocked_down(
     assert found["nodes"][0]["depth"] == pytest.approx(500.0 - 0.7 - 200.0 - 0.83, abs=1.5)
 
 
-@pytest.mark.parametrize("command", ["size", "waves", "deck", "diff"])
+@pytest.mark.parametrize("command", ["size", "waves", "diff"])
 def test_other_commands_say_which_one_solves_nets(
     command: str, net: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     more: dict[str, list[str | Path]] = {
         "size": ["--target", "top.depth=100 m", "--change", "main float.buoyancy"],
         "waves": ["--hs", "2 m", "--tp", "8 s"],
-        "deck": ["-o", tmp_path / "deck"],
         "diff": [net],
     }
     assert run(command, net, *more.get(command, [])) == 2
@@ -550,3 +549,36 @@ def test_the_anchor_of_a_line_is_judged_on_the_slope(
     assert "down a slope of 10°" in sliding["message"]
     held = friction * (anchor["weight"] / 1.5 - anchor["vertical"])
     assert sliding["limit"] == pytest.approx(held, rel=1e-9)
+
+
+def test_the_deck_of_a_net_lists_it_leg_by_leg(
+    net: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run("deck", net, "-o", tmp_path / "deck") == 0
+    assert "launch, recovery and waves are not judged" in capsys.readouterr().err
+    sheets = {
+        name: [*csv.DictReader((tmp_path / "deck" / f"{name}.csv").read_text().splitlines())]
+        for name in ("deployment", "recovery", "cutting", "lifts", "parts")
+    }
+    assert Counter(row["leg"] for row in sheets["deployment"]) == {
+        "main": 3, "second": 5, "pennant": 3, "stem": 3,
+    }  # fmt: skip
+    # all but the anchor comes up: the release is the top of its leg
+    assert [row["label"] for row in sheets["recovery"]][-1] == "release-ar861"
+    weights = [float(row["weight_in_water[N]"]) for row in sheets["parts"] if row["leg"] == "stem"]
+    last = sheets["lifts"][11]  # leg by leg: what hangs with the anchor is its own leg
+    assert (last["label"], last["leg"]) == ("anchor-wheels-4", "stem")
+    assert float(last["hanging[N]"]) == pytest.approx(sum(weights), rel=1e-9)
+    assert json.loads((tmp_path / "deck" / "plan.json").read_text())["status"] == "net"
+    diagram = (tmp_path / "deck" / "diagram.svg").read_text()
+    for words in ("main: free end to node A", "from node A", "pennant: node A to free end"):
+        assert words in diagram
+    # by how much the top of its leg is deeper where a wire is half a percent longer
+    longer = tmp_path / "longer.yaml"
+    longer.write_text(NET.replace("length: 150 m", "length: 150.75 m"))
+    before, after = (load_any(file).solve().components.depth_top[0] for file in (net, longer))
+    row = next(row for row in sheets["cutting"] if row["leg"] == "main")
+    effect = float(row["top_deeper_by_half_percent[m]"])
+    # both within the errors that they state, some millimetres
+    assert effect == pytest.approx(after - before, abs=5e-3)
+    assert effect == pytest.approx(-0.75, abs=0.02)
