@@ -113,7 +113,8 @@ SIZE_EXAMPLES = """Examples:
       --change "top float.buoyancy" --json -
 
 Targets: knockdown, depth, excursion, tilt or tension of a label or of top, and
-required_weight of the anchor, in a net required_weight(LEG). Changes: LABEL.buoyancy, LABEL.length, LABEL.count."""
+required_weight of the anchor, in a net required_weight(LEG). Changes:
+LABEL.buoyancy, LABEL.length, LABEL.count."""
 
 
 def size(
