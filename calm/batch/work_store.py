@@ -252,7 +252,7 @@ MOST_TOLD = 5
 
 _NO_MATTER = frozenset(
     {"path", "line", "column", "checks", "notices", "variants", "description", "current"}
-    | {"sources", "searched", "prefer"}
+    | {"sources", "searched", "prefer", "waves", "seas"}
 )
 """What of a mooring file changes no figure of its results: every profile has its own current."""
 

@@ -22,10 +22,10 @@ from calm.case.tow import Tow
 from calm.errors import NoEquilibrium
 from calm.files import MooringFile, Piece
 from calm.files.environment import Environment
-from calm.files.legs import EndKeys, Leg, nodes_of
+from calm.files.legs import EndKeys, Leg, leg_numbers, nodes_of
 from calm.files.mooring_file import STAND_IN
 from calm.physics.hull import AIR_DENSITY
-from calm.physics.line import Floats, Water
+from calm.physics.line import Floats, Line, Water
 from calm.quantities import say
 from calm.solve import Settings, Solution, Status
 from calm.solve.net import NetSolution, solve_net
@@ -105,6 +105,28 @@ class Net:
         listed = tuple(replace(piece, index=index) for index, piece in enumerate(pieces))
         return Net(replace(self.file, pieces=listed, legs=tuple(legs)))
 
+    def with_length(self, index: int, length: float) -> Net:
+        """Return the net with another unstretched length [m] of a piece of the file."""
+        number = leg_numbers(self.file.legs)[index]
+        own = index - self.file.legs[number].first
+        lines = [line.line for line in self.lines]
+        lines[number] = lines[number].with_length(own, length)
+        return self.with_own(lines)
+
+    def with_own(self, lines: Sequence[Line], water: Water | None = None) -> Net:
+        """Return the net with lines for its legs that are not its file's, and other water."""
+        other, own = Net(self.file), zip(self.lines, lines, strict=True)
+        vars(other)["lines"] = tuple(
+            Mooring(each.file, line=line, water=each.water) for each, line in own
+        )
+        vars(other).update({"water": water or self.water, "near": self.standing})
+        return other
+
+    @cached_property
+    def standing(self) -> NetSolution:
+        """The net in its own water; NoEquilibrium where it does not stand."""
+        return self.equilibrium(self.water, vars(self).get("near"))
+
     def _end(self, end: EndKeys, nodes: Mapping[str, int], mooring: Mooring) -> LegEnd:
         if end.join is not None:
             return LegEnd(node=nodes[end.join])
@@ -169,7 +191,7 @@ class Net:
         NoEquilibrium
             With status, message and advice, where there is none that passes every check.
         """
-        solution = self.equilibrium(self.water)
+        solution = self.standing
         still: Sequence[Solution | None] = solution.legs
         if self.water.moving:
             try:

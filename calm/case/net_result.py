@@ -159,3 +159,8 @@ class NetResult:
 _OF_ANCHORS = ("required_weight", "weight", "grounded_length")
 
 AnyResult = Result | TowResult | NetResult
+
+
+def legs_of(result: Result | NetResult) -> tuple[Result, ...]:
+    """Return the legs of a net; a mooring is one."""
+    return result.legs if isinstance(result, NetResult) else (result,)

@@ -22,7 +22,7 @@ from calm.checks.arrangement import (
     release_present,
     swivel,
 )
-from calm.checks.assess import equilibrium, failed_stand, judged_stand
+from calm.checks.assess import check, equilibrium, failed_stand, judged_stand
 from calm.checks.assessment import (
     Acceptance,
     Assessment,
@@ -38,11 +38,13 @@ from calm.checks.handling import Handling, backup
 from calm.checks.inventory import inventory_of
 from calm.checks.recovery import Break, Loss, losses_among, required_margin
 from calm.checks.situations import (
+    DEPLOYED,
     FOULED,
     LEAST_CURRENT,
     STILL_ONLY,
     STRUMMING,
     currents,
+    deployed_file,
     in_other_waters,
     strumming_file,
 )
@@ -59,6 +61,16 @@ NOT_HANDLED = (
     "waves are not judged"
 )
 _NOT_SOLVED = Status.NOT_CONVERGED.because("The launch and the recovery of a net are not solved.")
+
+
+def check_any(*designs: Mooring | Net, day: date | None = None) -> Assessment:
+    """Judge a mooring, or a net, loaded in each of the environments it is judged in."""
+    nets = [each for each in designs if isinstance(each, Net)]
+    if not nets:
+        return check(*(each for each in designs if isinstance(each, Mooring)), day=day)
+    name = nets[0].file.name
+    stands = [one for net in nets for one in stands_of_net(net, name, day)]
+    return assessment_of_net(name, stands, day)
 
 
 def stands_of_net(net: Net, name: str, day: date | None = None) -> list[MooringInEnvironment]:
@@ -104,6 +116,10 @@ def _situations(net: Net) -> Iterator[tuple[str, NetResult | NoEquilibrium]]:
         yield FOULED, or_why_not(net.with_lines(legs).solve)
     if (strummed := strumming_file(net.file)) is not None:
         yield STRUMMING, or_why_not(Net(strummed).solve)
+    if net.file.deployed is not None:
+        deployed = deployed_file(net.file)
+        if (deployed.pieces, deployed.environment) != (net.file.pieces, net.file.environment):
+            yield DEPLOYED, or_why_not(Net(deployed).solve)
 
 
 def assessment_of_net(
@@ -242,6 +258,12 @@ class NetGraph:
             for part in self._free(self.opened | set(cut))
             if any(self.pieces[one].component.role == "release" for one in part)
         ]
+
+    @property
+    def coming_up(self) -> set[int]:
+        """Return the pieces that come up once all releases open; without any, all but anchors."""
+        parts = self._rising(()) if self.opened else self.chains
+        return {one for part in parts for one in part if isinstance(one, int)}
 
     def breaks(self, whole: Mooring) -> tuple[Break, ...]:
         """Return the breaks below every piece that comes up, down the file.

@@ -43,13 +43,14 @@ def deck(
     catalog: CatalogFiles = None,
     units: Units = None,
 ) -> ExitCode:
-    """Draw the diagram and write the lists for the deployment of moorings.
+    """Draw the diagram and write the lists for the deployment of moorings and nets.
 
     Writes deck.pdf with a mooring diagram for the wall, deployment and recovery
     logs, cutting list, hardware bill, shipping list, lifts, instrument sheet and,
     anchor last, the plan of the anchor drop; the diagram by itself as diagram.pdf
     and diagram.svg; the lists as CSV files and as sheets of deck.xlsx; and the plan
-    as plan.json.
+    as plan.json. A net of legs is drawn as a whole, as net.svg too, and listed leg
+    by leg; its drop is not planned.
 
     Parameters
     ----------
@@ -97,7 +98,7 @@ def deck(
             "deck_time": (deck_time, "time"),
         }
     )
-    designs, tows = read_designs(files, environment, catalog or [], None, "calm deck")
+    designs, tows = read_designs(files, environment, catalog or [], None, "calm deck", nets=True)
     if tows:
         narrate(f"not drawn, because they are tows: {', '.join(map(str, tows))}")
     show_units(units, [one.file for design in designs for one in design.moorings])
@@ -107,7 +108,7 @@ def deck(
         for notice in dict.fromkeys(n for one in design.moorings for n in one.file.notices):
             narrate(f"{design.path}: {notice}")
         try:
-            decks.append(deck_of(design.lines, Order(order), **ship))
+            decks.append(deck_of(design.moorings, Order(order), **ship))
         except NoEquilibrium as failure:
             narrate(f"{design.path}: {failure}")
             return ExitCode.NO_EQUILIBRIUM
@@ -135,12 +136,15 @@ def _contents(deck: Deck, paper: Paper, notes: tuple[str, ...]) -> Mapping[str, 
         deck_report,
         deck_workbook,
         diagram_report,
+        net_svg,
     )
     from calm.report.diagram import diagram_svg
     from calm.report.folder import printed
     from calm.report.result_files import to_json
 
     texts = {"diagram.svg": diagram_svg(deck, paper), **deck_csvs(deck)}
+    if deck.file.legs:
+        texts["net.svg"] = net_svg(deck)
     plan = {"calm": __version__, **_plan(deck), "verdict": _verdict(deck)}
     texts["plan.json"] = to_json([plan])
     return {
@@ -154,6 +158,8 @@ def _contents(deck: Deck, paper: Paper, notes: tuple[str, ...]) -> Mapping[str, 
 def _plan(deck: Deck) -> dict[str, Any]:
     """The plan of the anchor drop, or why there is none."""
 
+    if deck.file.legs:
+        return {"status": "net", "message": "The drop of a net of legs is not solved."}
     if deck.plan is None:
         return {"status": str(deck.order), "message": "The anchor goes first: it is not dropped."}
     if isinstance(deck.plan, NoEquilibrium):

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
@@ -23,16 +22,10 @@ from calm.cli.streams import ExitCode, narrate
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     import numpy as np
     from xarray import Dataset
 
-    from calm.motion.correction import Task
     from calm.motion.instrument_file import Instruments
-    from calm.motion.measurements import MooringMeasurements
-    from calm.motion.motion_estimate import Read
-    from calm.motion.remarks import Fault
 
 MOTION_EXAMPLES = """Examples:
 
@@ -58,6 +51,7 @@ def motion(
     hold_out: str | None = None,
     cross_validate: bool = False,
     correct: str | None = None,
+    judge: str = "",
     sea_level: Path | None = None,
     flags: str = "1,2",
     gap: str = "2 h",
@@ -106,6 +100,9 @@ def motion(
     correct
         What to correct where a sensor is found wrong, separated by commas: clock,
         gain, offset, drift. The history of the output says what was corrected.
+    judge
+        Label of a suspicious sensor: it is hidden as with --hold-out, and whether its
+        pressures fit the line is said, with the odds: yes, no, or cannot tell.
     sea_level
         Height of the sea surface over time: NetCDF, or CSV with time,level[m].
     flags
@@ -131,20 +128,17 @@ def motion(
     from calm.batch.profiles import Batch
     from calm.batch.work import compile_solver
     from calm.case import Tow, load
-    from calm.motion.correction import MeasuredRecord, run_motion
-    from calm.motion.diagnosis import diagnosed
     from calm.motion.instrument_file import read_instruments
     from calm.motion.line_places import places_of
-    from calm.motion.motion_estimate import fitted, put_right, read_measured
+    from calm.motion.motion_estimate import MotionRequest, Recovery
     from calm.motion.sensors import split_label
-    from calm.motion.study import cross_validated, judged, prepare, series_of, several
+    from calm.motion.study import series_of
     from calm.report.folder import check_folder, printed, write_report
     from calm.report.html import page
     from calm.report.motion_report import motion_document, motion_part, motion_report
 
     if workers is not None and workers < 1:
         raise UsageError(f"--workers: {workers} is not 1 or more")
-    names = fitted(_separated(fit), bool(currents))
     outputs = Outputs(files=(file,), json=json)
     if report is not None:
         check_folder(report)
@@ -177,52 +171,38 @@ def motion(
         for line in matched:
             narrate(line)
 
-    def read(faults: Sequence[Fault] = ()) -> Read:
-        return read_measured(
-            mooring, pressures, currents, match, flags, apart, sea_level, turned, faults
+    recovery = Recovery(
+        MotionRequest(
+            mooring, pressures, currents, match, _separated(fit), _separated(hold_out),
+            cross_validate, _separated(correct), judge, sea_level, flags, apart, turned,
         )
-
-    def begin(measured: MooringMeasurements) -> Task:
-        return prepare(mooring, measured, names, hidden, teller.note)
-
-    measured, notes, source = read()
-    for note in notes:
+    )  # fmt: skip
+    for note in recovery.notes:
         narrate(note)
     teller = ProgressTeller()
-    hidden = _separated(hold_out)
-    if cross_validate:
-        several(measured, hidden)
     with stopped_by_a_signal() as stop:
         compile_solver(Batch(mooring), teller.note)
-        task, better, faults = put_right(begin(measured), read, _separated(correct), begin)
-        measured, notes, source = better or (measured, notes, source)
-        record = MeasuredRecord(measured, source, notes)
-        options: dict[str, Any] = {"fit": sorted(names), "hold_out": sorted(hidden)}
-        options["correct"] = source.get("corrected", "")
         try:
-            outcome = run_motion(
-                task, record, output, options,
-                workers=workers, progress=teller, tell=teller.note, stop=stop,
-            )  # fmt: skip
+            outcome = recovery.estimate(
+                output, workers=workers, progress=teller, tell=teller.note, stop=stop
+            )
         finally:
             teller.clear()
-        code = ended(outcome, output, record.count)
+        code = ended(outcome, output, len(recovery.measured.time))
         if not outcome.done:
             return code
         with open_result(output) as result, readable(output):
-            study = judged(task, measured, result, (*faults, *diagnosed(task)))
-            series = series_of(mooring, measured, task.measured.label, result)
+            study = recovery.study(result, narrate, workers)
+            series = series_of(mooring, recovery.measured, study.task.measured.label, result)
             factor = None
             if "current_factor" in result:
                 factor = np.asarray(result["current_factor"].values, np.float64)
             if onto is not None and instruments is not None:
-                write_copies(instruments, result, apart, copy, [file, *files[:-1]], source)
-        if cross_validate:
-            each = cross_validated(mooring, measured, names, hidden, narrate, workers)
-            study = replace(study, held_out=(*study.held_out, *each))
+                inputs = [file, *files[:-1]]
+                write_copies(instruments, result, apart, copy, inputs, recovery.source)
     name = mooring.file.name or file.stem
     if report is not None:
-        said = motion_report(study, series, measured.time, factor, name, notes)
+        said = motion_report(study, series, recovery.measured.time, factor, name, recovery.notes)
         write_report(report, {"motion.html": page(said).encode(), "motion.pdf": printed(said)})
     outputs.write_answer(lambda: motion_document(study, name), motion_part(study, name))
     return code

@@ -93,7 +93,8 @@ def verify_field(outputs: Outputs) -> ExitCode:
     from calm.checks.finding import State
     from calm.motion.correction import estimate_in_memory
     from calm.motion.line_response import Forward
-    from calm.motion.motion_estimate import fitted, read_measured
+    from calm.motion.matching import read_measured
+    from calm.motion.motion_estimate import fitted
     from calm.motion.study import intervals, judge_hidden, prepare
     from calm.report.blocks import Heading, Prose, ReportPart
     from calm.report.motion_report import (

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from itertools import groupby
 from math import inf, isnan
 from typing import TYPE_CHECKING, Protocol
 
+from calm.case.net_result import legs_of
 from calm.case.result_tables import ClampRow, rows_by_place, rows_down
 from calm.files import Flexible
+from calm.files.legs import legs_down
 
 if TYPE_CHECKING:
     from calm.case import Result
+    from calm.case.net_result import NetResult
     from calm.case.result_tables import ComponentRow
     from calm.checks.recovery import Recovery
     from calm.files import Clamp, Piece
@@ -228,13 +231,15 @@ def name_of_run(items: Sequence[DeckItem]) -> str:
     return ", ".join(f"{count} × {name}" for name, count in counts.items())
 
 
-def deck_items_of(result: Result) -> tuple[DeckItem, ...]:
-    """Down the line to the anchor, the clamps of a piece after it, down that piece."""
+def deck_items_of(result: Result | NetResult) -> tuple[DeckItem, ...]:
+    """Down the line to the anchor, or each leg, the clamps of a piece after it, down that piece."""
     deployed = result.file.deployed
     items = {item.label: item for item in deployed.items} if deployed else {}
-    bottom = result.mooring.water.depth
+    seabeds = [leg.mooring.water.depth for leg in legs_of(result)]
+    own = legs_down(result.file)
     found: list[DeckItem] = []
     for row, clamps in rows_down(result):
+        bottom = seabeds[own[row.index]]
         found.append(_deck_item(row.part, row, row, items, bottom))
         found += (_deck_item(clamp.part, row, clamp, items, bottom) for clamp in clamps)
     return tuple(found)
@@ -301,7 +306,7 @@ class DeckInstrument:
 
 
 def instruments_of(
-    parts: Sequence[DeckItem], results: Sequence[tuple[str, Result]]
+    parts: Sequence[DeckItem], results: Sequence[tuple[str, Result | NetResult]]
 ) -> tuple[DeckInstrument, ...]:
     """The instruments and releases, down the line.
 
@@ -367,14 +372,20 @@ def over_the_side(parts: Sequence[DeckItem], order: Order) -> tuple[DeckItem, ..
     return tuple(each for piece, *clamps in reversed(groups) for each in (piece, *reversed(clamps)))
 
 
-def surfacing(parts: Sequence[DeckItem], recovery: Recovery | None) -> tuple[RecoveredItem, ...]:
+def surfacing(
+    parts: Sequence[DeckItem], pieces: Collection[int], recovery: Recovery | None
+) -> tuple[RecoveredItem, ...]:
     """Return what comes up, the first first; what hangs below, and what stays, comes after it in
     order.
 
     Without a solved rise there are no times, and the order is that of the line.
+
+    Parameters
+    ----------
+    parts : down the line
+    pieces : indices of those that come up
     """
-    released = parts[-1].index - 1 if recovery is None else recovery.released
-    rising = [one for one in parts if one.index <= released]
+    rising = [one for one in parts if one.index in pieces]
     if recovery is None:
         return tuple(RecoveredItem(one, None, None, False) for one in rising)
     found = [_surfacing(one, recovery) for one in rising]

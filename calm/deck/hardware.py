@@ -9,14 +9,19 @@ from dataclasses import dataclass
 from math import ceil
 from typing import TYPE_CHECKING
 
+from calm.case import Mooring
+from calm.case.net import Net
+from calm.case.net_result import legs_of
 from calm.checks.arrangement import unlike_metals
 from calm.deck.deck_items import Order
 from calm.errors import NoEquilibrium
 from calm.files import Cable, Chain, Flexible, Piece
+from calm.files.legs import leg_numbers
 from calm.solve import expect_many
 
 if TYPE_CHECKING:
     from calm.case import Result
+    from calm.case.net_result import NetResult
     from calm.deck.deck_items import DeckItem
     from calm.files import Component
 
@@ -50,8 +55,8 @@ class Cut:
     marks : of the clamps, down the cable, measured under the same load
     termination : as the file says; None where it does not
     tolerance : of its length [m]
-    effect : how much deeper the top is where this is longer by `LENGTH_ERROR` [m]; None where such
-        a line does not stand
+    effect : how much deeper the top of its line or leg is where this is longer by `LENGTH_ERROR`
+        [m]; None where such a line does not stand
     over, onto : its number over the side, and onto the drum, which is the other way round
     """
 
@@ -72,7 +77,7 @@ class Cut:
         return ";".join(f"{mark.label.replace(';', ',')}@{mark.at:.3f}" for mark in self.marks)
 
 
-def cuts_of(result: Result, parts: Sequence[DeckItem], order: Order) -> tuple[Cut, ...]:
+def cuts_of(result: Result | NetResult, parts: Sequence[DeckItem], order: Order) -> tuple[Cut, ...]:
     """Return all that is cut and marked, down the line.
 
     Parameters
@@ -99,7 +104,7 @@ def _is_cut(one: DeckItem) -> bool:
     )
 
 
-def _cut(result: Result, one: DeckItem, over: int, count: int) -> Cut:
+def _cut(result: Result | NetResult, one: DeckItem, over: int, count: int) -> Cut:
     piece = one.part
     assert isinstance(piece, Piece) and isinstance(piece.component, Flexible)
     assert one.cut_length is not None
@@ -125,17 +130,20 @@ def _marks(piece: Piece, longer: float) -> Iterator[Mark]:
         yield Mark(clamp.label, clamp.at * longer)
 
 
-def _effect(result: Result, index: int, length: float) -> float | None:
+def _effect(result: Result | NetResult, index: int, length: float) -> float | None:
     """Return how much deeper the top is, in the same water, where a piece is cut too long [m]."""
-    from calm.case import Mooring
-
-    mooring = result.mooring
-    longer = mooring.line.with_length(index, length * (1.0 + LENGTH_ERROR))
+    longer, mooring = length * (1.0 + LENGTH_ERROR), result.mooring
     try:
-        solution = Mooring(mooring.file, line=longer).equilibrium(mooring.water)
+        if isinstance(mooring, Net):
+            number = leg_numbers(mooring.file.legs)[index]
+            leg = mooring.with_length(index, longer).standing.legs[number]
+            upper = leg.position[-1 if leg.line.towed else 0]
+            return -float(upper[2]) - legs_of(result)[number].top.depth
+        line = mooring.line.with_length(index, longer)
+        solution = Mooring(mooring.file, line=line).equilibrium(mooring.water)
     except NoEquilibrium:
         return None
-    return -float(solution.position[0, 2]) - result.top.depth
+    return -float(solution.position[0, 2]) - legs_of(result)[0].top.depth
 
 
 SPARE_SHARE = 0.1
@@ -189,13 +197,14 @@ class Stock:
         return self.count + self.spares
 
 
-def hardware_of(parts: Sequence[DeckItem]) -> tuple[Stock, ...]:
-    """The connectors of a line, the chains, and what belongs to them.
+def hardware_of(legs: Sequence[Sequence[DeckItem]]) -> tuple[Stock, ...]:
+    """The connectors of a line or of legs, the chains, and what belongs to them.
 
     A shackle has a bolt with nut and cotter pin, unless its definition says that its pin is screwed
     in. A termination that names a thimble has one at each end. Where metals that corrode each other
     touch, an isolator is between them and an anode at the baser one.
     """
+    parts = [one for leg in legs for one in leg]
     groups: dict[tuple[str, str], list[DeckItem]] = {}
     for one in parts:
         kind = _kind(one)
@@ -204,7 +213,7 @@ def hardware_of(parts: Sequence[DeckItem]) -> tuple[Stock, ...]:
     found = [_stock(kind, use, group) for (kind, use), group in groups.items()]
     found += _pins(groups)
     found += _thimbles(parts)
-    found += _against_corrosion(parts)
+    found += _against_corrosion(legs)
     return tuple(sorted(found, key=lambda stock: ORDER.index(stock.kind)))
 
 
@@ -250,10 +259,13 @@ def _is_bolted(component: Component) -> bool:
     return "screw" not in f"{component.name or ''} {component.note or ''}".lower()
 
 
-def _against_corrosion(parts: Sequence[DeckItem]) -> Iterator[Stock]:
+def _against_corrosion(legs: Sequence[Sequence[DeckItem]]) -> Iterator[Stock]:
     """Yield isolators and anodes for the contacts of which `calm check` warns."""
-    pieces = [one.part for one in parts if isinstance(one.part, Piece)]
-    contacts = [(base, noble) for base, noble, _ in unlike_metals(pieces)]
+    contacts = [
+        (base, noble)
+        for leg in legs
+        for base, noble, _ in unlike_metals([o.part for o in leg if isinstance(o.part, Piece)])
+    ]
     names = Counter(tuple(sorted((base.use, noble.use))) for base, noble in contacts)
     for (one, other), count in names.items():
         name, basis = f"isolator between {one} and {other}", "one for each contact of unlike metals"

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from itertools import groupby
+from typing import TYPE_CHECKING, TypeVar
 
-from calm.case import Mooring
-from calm.checks.assess import check
+from calm.case import Mooring, Result
+from calm.case.net import Net
+from calm.case.net_result import NetResult, legs_of
 from calm.checks.finding import OWN
+from calm.checks.net_check import NetGraph, check_any
 from calm.checks.recovery import recovery_of
 from calm.deck.deck_items import (
     DeckInstrument,
@@ -26,10 +29,10 @@ from calm.drop import DropPlan, drop_plan
 from calm.drop.launch import SHIP_SPEED
 from calm.errors import NoEquilibrium
 from calm.files import CurrentTable
+from calm.files.legs import legs_down
 from calm.solve import Status
 
 if TYPE_CHECKING:
-    from calm.case import Result
     from calm.checks.assessment import Assessment
     from calm.checks.recovery import Recovery
     from calm.files import MooringFile
@@ -39,26 +42,29 @@ HANDLED = ("float", "instrument", "release", "line")
 FAINT = 0.1
 """Current in which a line is drawn that still water leaves slack [m/s]."""
 
+_Listed = TypeVar("_Listed")
+
 
 @dataclass(frozen=True)
 class Deck:
-    """The sheets of one mooring.
+    """The sheets of one mooring, or of a net of legs.
 
     Attributes
     ----------
     result : in the environment of the sheets
     environment : its name
     order : in which the line goes over the side
-    parts : every piece and clamp, down the line
+    parts : every piece and clamp, down the line, of a net leg by leg
     deployment, recovery : in the order over the side, and in that of surfacing
-    rise : of the line without its anchor; None where it could not be solved
+    rise : of the line without its anchor; None where it could not be solved, and of a net
     cuts, hardware, shipped, lifts, instruments : what the sheets of these names say
-    plan : of the anchor drop, or why it could not be solved; None where the anchor goes first
+    plan : of the anchor drop, or why it could not be solved; None where the anchor goes first,
+        and of a net
     notes : what is not known, and why
     assessment : what the design check says of the mooring
     """
 
-    result: Result
+    result: Result | NetResult
     environment: str
     order: Order
     parts: tuple[DeckItem, ...]
@@ -80,16 +86,27 @@ class Deck:
         """Return the file as read, in the environment of the sheets."""
         return self.result.file
 
+    def leg(self, index: int) -> str:
+        """Return the name of the leg that a piece is in; nothing of a single line."""
+        return self.file.legs[legs_down(self.file)[index]].name if self.file.legs else ""
+
+    def by_leg(
+        self, items: Iterable[_Listed], index: Callable[[_Listed], int]
+    ) -> Iterator[tuple[str, list[_Listed]]]:
+        """Yield the name of each leg, and what is listed of it; of a line all at once."""
+        for name, group in groupby(items, key=lambda one: self.leg(index(one))):
+            yield name, [*group]
+
 
 def deck_of(
-    moorings: Sequence[Mooring],
+    moorings: Sequence[Mooring | Net],
     order: Order = Order.ANCHOR_LAST,
     ship_speed: float = SHIP_SPEED,
     streamed: float | None = None,
     course: float | None = None,
     deck_time: float | None = None,
 ) -> Deck:
-    """The sheets of a mooring.
+    """The sheets of a mooring, or of a net, of which neither drop nor rise is solved.
 
     Parameters
     ----------
@@ -119,15 +136,22 @@ def deck_of(
             continue
         results.append((_name(other), there))
     parts = deck_items_of(result)
-    assessment = check(*moorings)
-    inventory = assessment.inventory
+    assessment = check_any(*moorings)
+    inventory, legs = assessment.inventory, legs_down(first.file)
     rise: Recovery | None = None
-    try:
-        rise = recovery_of(first, result)
-    except NoEquilibrium as failure:
-        notes.append(f"The rise of the line is not known: {failure}")
     plan: DropPlan | NoEquilibrium | None = None
-    if order is Order.ANCHOR_LAST:
+    if isinstance(first, Net):
+        notes += assessment.notices
+        rising = NetGraph(legs_of(result)).coming_up
+    else:
+        assert isinstance(result, Result)
+        try:
+            rise = recovery_of(first, result)
+        except NoEquilibrium as failure:
+            notes.append(f"The rise of the line is not known: {failure}")
+        released = first.file.pieces[-1].index if rise is None else rise.released + 1
+        rising = set(range(released))
+    if order is Order.ANCHOR_LAST and isinstance(first, Mooring):
         try:
             stands = result if result.mooring is first else None
             times = _deck_times(first.file, deck_time)
@@ -135,19 +159,20 @@ def deck_of(
         except NoEquilibrium as failure:
             plan = failure
             notes.append(f"The anchor drop is not planned: {failure}")
-    released = first.file.pieces[-1].index - 1 if rise is None else rise.released
     return Deck(
         result=result,
         environment=_name(first),
         order=order,
         parts=parts,
         deployment=over_the_side(parts, order),
-        recovery=surfacing(parts, rise),
+        recovery=surfacing(parts, rising, rise),
         rise=rise,
         cuts=cuts_of(result, parts, order),
-        hardware=hardware_of(parts),
+        hardware=hardware_of(
+            [[*leg] for _, leg in groupby(parts, key=lambda one: legs[one.index])]
+        ),
         shipped=shipped_of(first.file, inventory),
-        lifts=lifts_of(inventory, released, order),
+        lifts=lifts_of(inventory, legs, rising, order),
         instruments=instruments_of(parts, results),
         environments=tuple(name for name, _ in results),
         notes=tuple(notes),
@@ -164,7 +189,7 @@ def _deck_times(file: MooringFile, each: float | None) -> Mapping[str, float] | 
     return None if given is None else {str(role): time for role, time in given.items()}
 
 
-def _standing(mooring: Mooring, notes: list[str]) -> Result:
+def _standing(mooring: Mooring | Net, notes: list[str]) -> Result | NetResult:
     """The mooring solved; one that still water leaves slack in a current that hardly moves it.
 
     Raises
@@ -175,7 +200,7 @@ def _standing(mooring: Mooring, notes: list[str]) -> Result:
     try:
         return mooring.solve()
     except NoEquilibrium as failure:
-        if failure.status != Status.SLACK.label:
+        if failure.status != Status.SLACK.label or isinstance(mooring, Net):
             raise
         faint = CurrentTable((0.0,), (FAINT,), (0.0,), (0.0,))
         environment = replace(mooring.file.environment, current=faint)
@@ -191,5 +216,5 @@ def _standing(mooring: Mooring, notes: list[str]) -> Result:
         return result
 
 
-def _name(mooring: Mooring) -> str:
+def _name(mooring: Mooring | Net) -> str:
     return mooring.file.environment.name or OWN

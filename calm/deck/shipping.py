@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import groupby
 from math import pi
 from typing import TYPE_CHECKING
 
@@ -159,20 +160,28 @@ class Lifts:
         return max(known, key=lambda lift: lift.mass or 0.0, default=None)
 
 
-def lifts_of(inventory: Sequence[InventoryItem], released: int, order: Order) -> Lifts:
-    """The stages of a mooring.
+def lifts_of(
+    inventory: Sequence[InventoryItem], legs: Sequence[int], rising: Collection[int], order: Order
+) -> Lifts:
+    """The stages of a mooring, leg by leg.
 
     Parameters
     ----------
-    released : index of the lowest piece that comes up
+    legs : number of the leg of each piece
+    rising : indices of the pieces that come up
     """
     pieces = [one for one in inventory if one.clamped_on is None]
     weights = _weights(inventory)
-    down = pieces if order is Order.ANCHOR_LAST else pieces[::-1]
-    up = [piece for piece in pieces if piece.index <= released]
-    rising = tuple(_stages(up[::-1], weights))[::-1]
+    down: list[Lift] = []
+    up: list[Lift] = []
+    step = 1 if order is Order.ANCHOR_LAST else -1
+    by_leg = [[*group] for _, group in groupby(pieces, key=lambda one: legs[one.index])]
+    for leg in by_leg[::step]:
+        down += _stages(leg[::step], weights)
+    for leg in by_leg:
+        up += [*_stages([one for one in leg if one.index in rising][::-1], weights)][::-1]
     unknown = tuple(one.label for one in pieces if _is_lifted(one) and one.lift_mass is None)
-    return Lifts(tuple(_stages(down, weights)), rising, unknown)
+    return Lifts(tuple(down), tuple(up), unknown)
 
 
 def _weights(inventory: Sequence[InventoryItem]) -> dict[int, float | None]:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from calm.case import Result, TowResult
-from calm.case.net_result import AnyResult, NetResult
+from calm.case.net_result import AnyResult, NetResult, legs_of
 from calm.case.result_tables import rows_down
 from calm.quantities import QUANTITIES, bearing_of, bearing_text
 
@@ -166,11 +166,6 @@ def water_of(result: AnyResult) -> Water:
 def lines_of(result: AnyResult) -> Sequence[Result | TowResult]:
     """Return the lines of a result: the legs of a net, else the result itself."""
     return (result,) if isinstance(result, TowResult) else legs_of(result)
-
-
-def legs_of(result: Result | NetResult) -> Sequence[Result]:
-    """Return the legs of a net; a mooring is one."""
-    return result.legs if isinstance(result, NetResult) else (result,)
 
 
 def plan_of(result: AnyResult, beside: Sequence[Shape] = ()) -> LinePicture:

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
 MOST_LEGS = 40
 NET_REFUSED = (
-    "this is a net of legs, for `calm run`, `calm check` and `calm batch`; this takes a single "
-    "line: one free end, one anchor"
+    "this is a net of legs, for `calm run`, `check`, `batch`, `deck`, `size`, `diff` and `export`; "
+    "this takes a single line: one free end, one anchor"
 )
 
 _Offset = Annotated[float, QuantityField("length")]
@@ -288,7 +288,7 @@ def _check_net(legs: Sequence[Leg], top: SourceMapping, problems: list[Problem])
             message = unknown(f"no node is called `{join}`", join, known)
             problems.append(section.problem(place, message))
         elif meeting.count(join) == 1:
-            others = [other for other in meeting if other != join]
+            others = dict.fromkeys(other for other in meeting if other != join)
             message = unknown(f"no other leg joins at `{join}`", join, others)
             problems.append(section.problem(place, message))
     for name, keys in (known or {}).items():
@@ -324,6 +324,11 @@ def _check_held(legs: Sequence[Leg], section: SourceMapping, problems: list[Prob
 def leg_numbers(legs: Sequence[Leg]) -> list[int]:
     """Return the number of the leg that each piece of the file is in."""
     return [number for number, leg in enumerate(legs) for _ in range(leg.first, leg.end)]
+
+
+def legs_down(file: MooringFile) -> list[int]:
+    """Return the same of any file: a single line is one leg."""
+    return leg_numbers(file.legs) or [0] * len(file.pieces)
 
 
 def nodes_of(legs: Sequence[Leg]) -> Mapping[str, int]:

@@ -28,7 +28,7 @@ from calm.motion.common_unknowns import Common
 from calm.motion.estimate import estimated
 from calm.motion.line_response import Forward, LineResponse, points
 from calm.motion.matching import labels_of
-from calm.motion.measurements import FREE, MooringMeasurements, by_neighbours, level_names
+from calm.motion.measurements import MooringMeasurements, by_neighbours, level_names
 from calm.motion.unknown_currents import unknown_state
 from calm.motion.whole_record import forwards_of
 from calm.physics.line import Floats
@@ -284,22 +284,3 @@ class MeasuredRecord(Record):
             digest.update(str(array.shape).encode())
             digest.update(np.ascontiguousarray(array).data)
         return digest.hexdigest()
-
-
-def without(measured: MooringMeasurements, labels: Sequence[str]) -> MooringMeasurements:
-    """Return what was measured but for some sensors: hidden everywhere, their currents' depths
-    too.
-    """
-    kept = [i for i, label in enumerate(measured.label) if label not in labels]
-    point = measured.point[kept]
-    places = point.tolist()
-    return replace(
-        measured,
-        label=tuple(measured.label[i] for i in kept),
-        point=point,
-        depth=measured.depth[:, kept],
-        level_sensor=np.array(
-            [places.index(at) if at in places else FREE for at in measured.level_point.tolist()],
-            np.int64,
-        ),
-    )

@@ -16,9 +16,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.motion import common_unknowns
-from calm.motion.common_unknowns import NEVER, Evidence, chance_of, first_time, moves
+from calm.motion.common_unknowns import (
+    NEVER,
+    Evidence,
+    chance_of,
+    first_time,
+    moves,
+)
 from calm.motion.correction import Task
-from calm.motion.estimate import best_state
+from calm.motion.estimate import best_state, posterior
 from calm.motion.line_response import LineResponse
 from calm.motion.measurements import interpolated
 from calm.motion.remarks import ALL, LIKELY, Fault
@@ -45,7 +51,7 @@ FEWEST = 20
 
 
 @dataclass(frozen=True)
-class _Suspect:
+class Suspect:
     """What one fault does to n times of s sensors.
 
     Attributes
@@ -85,15 +91,19 @@ class _Found:
     pulls: Floats
 
 
+Weighed = list[tuple[Suspect, float]]
+
+
 def diagnosed(task: Task) -> tuple[Fault, ...]:
     """Return what is wrong with the sensors of a record, the likeliest first."""
-    law = _law_of(task)
+    law = law_near(task, task)
     if law is None or len(law.time) < FEWEST:
         return ()
-    return _Diagnosis(task, law).faults()
+    return Diagnosis(task, law).faults()
 
 
-def _law_of(task: Task) -> LinearLaw | None:
+def law_near(task: Task, whole: Task) -> LinearLaw | None:
+    """Return what the times say of the sensors of the whole, near the state of those of a task."""
     common = task.common
     alone = common.law is not None
     times = chosen_times(task.measured, alone)
@@ -103,14 +113,19 @@ def _law_of(task: Task) -> LinearLaw | None:
     fixed = replace(common, covariance=np.zeros_like(common.covariance))
     here = unknown_state(moments, fixed) if alone else best_state(moments, fixed)
     at, found = (here.at, here.found) if alone else (here.begin, here.before)
+    if whole is not task:
+        moments = LineResponse(whole.measured.at(times), *task.forwards)
+        common = whole.common
+        fixed = replace(common, covariance=np.zeros_like(common.covariance))
+        found = posterior(moments.measured, at, here.way.spread, fixed, moments.forward.still)
     return linear_law(moments, common, at, found, here.way.spread, task.measured.time[[0, -1]])
 
 
-class _Diagnosis:
+class Diagnosis:
     """The pressures of a record, weighed."""
 
-    def __init__(self, task: Task, law: LinearLaw) -> None:
-        self.label, self.law = task.measured.label, law
+    def __init__(self, task: Task, law: LinearLaw, judged: str = "") -> None:
+        self.label, self.law, self.judged = task.measured.label, law, judged
         self.measured = task.measured
         self.spread = _beforehand(task)
         self.mean = np.zeros(len(self.spread))
@@ -145,9 +160,9 @@ class _Diagnosis:
 
     def faults(self) -> tuple[Fault, ...]:
         """Return what is likely wrong; each weighed beside all others."""
-        taken: list[_Suspect] = []
+        taken: list[Suspect] = []
         while len(taken) < MOST:
-            likely = self._weighed(taken)
+            likely = self.weighed(taken)
             best = max(likely, key=lambda one: one[1], default=None)
             if best is None or best[1] < np.log(self.likely):
                 break
@@ -157,7 +172,7 @@ class _Diagnosis:
         found = []
         for i, one in enumerate(taken):
             rest = [*taken[:i], *taken[i + 1 :]]
-            weighed = sorted(self._weighed(rest), key=lambda each: -each[1])
+            weighed = sorted(self.weighed(rest), key=lambda each: -each[1])
             mine = [each for each in weighed if each[0].fault.same(one.fault)]
             others = [each for each in weighed if not each[0].fault.same(one.fault)]
             if not mine:
@@ -172,14 +187,14 @@ class _Diagnosis:
             found.append(replace(suspect.fault, odds=float(odds), rival=rival))
         return tuple(found)
 
-    def _weighed(self, taken: list[_Suspect]) -> list[tuple[_Suspect, float]]:
+    def weighed(self, taken: list[Suspect]) -> Weighed:
         """Return what may be wrong beside what is taken, with the logarithm of its odds."""
-        begun = self._fitted(taken, None, 1.0)
+        begun = self.fitted(taken, None, 1.0)
         result = []
         for suspect in self._suspects(taken, begun):
-            alike = repeated(self._fitted(taken, suspect, 1.0).pulls)
-            base = self._fitted(taken, None, alike).log
-            found = self._fitted(taken, suspect, alike)
+            alike = repeated(self.fitted(taken, suspect, 1.0).pulls)
+            base = self.fitted(taken, None, alike).log
+            found = self.fitted(taken, suspect, alike)
             fault = suspect.fault
             value = found.value if suspect.wide else fault.value
             if fault.kind == "gain":
@@ -193,7 +208,7 @@ class _Diagnosis:
             if fault.kind == "clock":
                 least *= max(self.step, 1.0)
                 deviation = float(np.hypot(deviation, FINEST * self.step))
-            if size < least:
+            if size < least and fault.label != self.judged:
                 continue
             fault = replace(
                 fault, value=value, low=value - 1.96 * deviation, high=value + 1.96 * deviation
@@ -201,10 +216,10 @@ class _Diagnosis:
             result.append((replace(suspect, fault=fault), log))
         return result
 
-    def _raw(self, taken: list[_Suspect]) -> Floats:
+    def _raw(self, taken: list[Suspect]) -> Floats:
         return self.law.raw + sum((one.shift for one in taken), np.zeros_like(self.law.raw))
 
-    def _fitted(self, taken: list[_Suspect], last: _Suspect | None, alike: float) -> _Found:
+    def fitted(self, taken: list[Suspect], last: Suspect | None, alike: float) -> _Found:
         """Return how likely the pressures are with some faults and one more.
 
         Parameters
@@ -248,7 +263,7 @@ class _Diagnosis:
         )
         return _Found(log, size, deviation, rest, weight, pulls)
 
-    def _suspects(self, taken: list[_Suspect], begun: _Found) -> Iterator[_Suspect]:
+    def _suspects(self, taken: list[Suspect], begun: _Found) -> Iterator[Suspect]:
         law, none = self.law, np.zeros_like(self.law.raw)
         never = np.datetime64("NaT", "ns")
         had = {(one.fault.label, one.fault.kind) for one in taken}
@@ -264,7 +279,8 @@ class _Diagnosis:
         for j, label in enumerate(self.label):
             mine = np.arange(len(self.label)) == j
             codes = dict.fromkeys(common_unknowns.RAMPS, "drift")
-            if not self.alone:  # currents that are learnt from a sensor agree with its zero
+            # currents that are learnt from a sensor agree with its zero
+            if not self.alone or label == self.judged:
                 codes[0] = "offset"
             if first[j] > 0:
                 codes[int(first[j])] = "slip"
@@ -281,11 +297,11 @@ class _Diagnosis:
                     span = self.measured.time[-1] - since
                     until = since + common_unknowns.RAMPS[code] * span
                 fault = Fault(label, kind, 0.0, 0.0, 0.0, 0.0, since, until)
-                yield _Suspect(fault, column, wide, chance, none)
+                yield Suspect(fault, column, wide, chance, none)
         for label, mine in self._whose():
             if (label, "gain") not in had and not self.alone:
                 fault = Fault(label, "gain", 0.0, 0.0, 0.0, 0.0, never, never)
-                yield _Suspect(
+                yield Suspect(
                     fault,
                     depth * mine,
                     GAIN,
@@ -308,7 +324,7 @@ class _Diagnosis:
                 continue
             fault = Fault(names[0], "exchanged", 0.0, 0.0, 0.0, 0.0, never, never, names[1])
             pairs = len(self.label) * (len(self.label) - 1) / 2
-            yield _Suspect(fault, shift, 0.0, float(np.log(EXCHANGED / pairs)), shift)
+            yield Suspect(fault, shift, 0.0, float(np.log(EXCHANGED / pairs)), shift)
 
     def _whose(self) -> Iterator[tuple[str, NDArray[np.bool_]]]:
         for j, label in enumerate(self.label):
@@ -327,7 +343,7 @@ class _Diagnosis:
         count = self.law.known.sum(axis=1)
         return float(((ROBUST + count) * np.log1p(misfit / ROBUST)).sum())
 
-    def _late(self, taken: list[_Suspect], left: Floats, mine: NDArray[np.bool_]) -> _Suspect:
+    def _late(self, taken: list[Suspect], left: Floats, mine: NDArray[np.bool_]) -> Suspect:
         """Return the clock of some sensors, late by as many hours as is most likely.
 
         Parameters
@@ -342,18 +358,18 @@ class _Diagnosis:
         late = min((step * lag for lag in range(-reach, reach + 1)), key=miss)
         for _ in range(6):
             suspect = self._clock(late, mine)
-            left = self._fitted([*taken, suspect], None, 1.0).left - suspect.shift
+            left = self.fitted([*taken, suspect], None, 1.0).left - suspect.shift
             step *= 0.5
             late = min((late - step, late, late + step), key=miss)
         return self._clock(late, mine)
 
-    def _clock(self, late: float, mine: NDArray[np.bool_]) -> _Suspect:
+    def _clock(self, late: float, mine: NDArray[np.bool_]) -> Suspect:
         label = ALL if mine.all() and len(mine) > 1 else self.label[int(mine.argmax())]
         shift, half = self._shift(late, mine), 0.5 * self.step
         rate = (self._shift(late + half, mine) - self._shift(late - half, mine)) / self.step
         never = np.datetime64("NaT", "ns")
         fault = Fault(label, "clock", late, late, late, 0.0, never, never)
-        return _Suspect(fault, rate, 0.0, float(np.log(CLOCKS)), shift)
+        return Suspect(fault, rate, 0.0, float(np.log(CLOCKS)), shift)
 
 
 def _beforehand(task: Task) -> Floats:

@@ -1,20 +1,132 @@
-"""Which sensor hangs where on the line, and which of its readings can be right."""
+"""What was measured, out of files: which sensor hangs where, and which readings can be right."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import combinations
+from pathlib import Path
 
 import numpy as np
 
 from calm.case import Mooring
 from calm.case.parts import clamps_down
-from calm.errors import UsageError, nearest
+from calm.dataset.discovery import hashed
+from calm.errors import UsageError, nearest, not_among
 from calm.files import Clamp, Piece
-from calm.motion.measurements import MooringMeasurements
-from calm.motion.sensors import Sensor
+from calm.motion.line_response import Forward
+from calm.motion.measurements import FREE, MooringMeasurements, joined, read_currents
+from calm.motion.remarks import ALL, Fault
+from calm.motion.sensors import Sensor, parse_flags, read_sea_level, read_sensors, split_label
 from calm.physics.line import Floats
+
+_MATCHES = ("label", "height", "depth")
+GAP = np.timedelta64(2, "h")
+"""Longest time between two values that are interpolated, where nothing else is asked for."""
+
+
+def read_measured(
+    mooring: Mooring,
+    pressures: Sequence[str],
+    currents: Sequence[str] = (),
+    match: str = "label",
+    flags: str = "1,2",
+    gap: np.timedelta64 = GAP,
+    sea_level: Path | None = None,
+    declination: float | None = None,
+    faults: Sequence[Fault] = (),
+) -> tuple[MooringMeasurements, list[str], dict[str, str]]:
+    """Return what was measured, at common times, with notes on what was read and the source files.
+
+    Parameters
+    ----------
+    pressures, currents : files, as their paths or as ``LABEL=PATH``
+    match : by `label`, or by nominal `height` or `depth`
+    flags : of the pressures that count as measured, separated by commas
+    gap : longest time between two values that are interpolated
+    sea_level : the height of the sea surface, as a path
+    declination : added to the directions of the currents [degrees]
+    faults : of the sensors, that are taken off
+
+    Raises
+    ------
+    InputError, UsageError
+        A file cannot be read, the mooring has no position, or no sensor is left.
+    """
+    if match not in _MATCHES:
+        raise UsageError(not_among("--match", match, _MATCHES))
+    position = mooring.file.position
+    if position is None:
+        raise UsageError(
+            f"{mooring.file.path} has no `position`, whose latitude turns pressures into depths"
+        )
+    place = position.latitude, position.longitude
+    seabed = float(mooring.water.depth)
+    wanted = parse_flags(flags)
+    sensors = read_sensors(pressures, wanted, position.latitude, seabed)
+    labels, still = labels_of(mooring), Forward(mooring, {}).still
+    notes: list[str] = []
+    if match == "label":
+        sensors = named_by_serial(sensors, mooring)
+        points, notes = matched_by_label(sensors, labels)
+    else:
+        points = matched_by_place(sensors, instruments_of(mooring), still, labels)
+        notes = [
+            f"the sensor at {sensors[i].nominal:.1f} m of {sensors[i].source} is `{labels[at]}`"
+            for i, at in points.items()
+        ]
+        sensors = [replace(one, label=labels[points[i]]) for i, one in enumerate(sensors)]
+    read = read_currents(
+        currents, seabed, place, declination, mooring.file.environment.maximum_speed
+    )
+    notes += dict.fromkeys(f"{one.source}: {one.note}" for one in sensors if one.note)
+    used = []
+    for i, at in points.items():
+        one, said = plausible(corrected(sensors[i], faults), float(still[at]), seabed)
+        used.append(one)
+        notes += said
+        if one.dropped:
+            notes.append(f"{one.label}: {one.dropped} pressures left out for their flag")
+    if not any(np.isfinite(one.depth).any() for one in used):
+        raise UsageError("--pressures: no sensor has a good pressure: " + "; ".join(notes))
+    level = None if sea_level is None else read_sea_level(sea_level)
+    measured = joined(read, used, list(points.values()), labels, still, gap, level)
+    notes += [f"{one.source}: {note}" for one in read for note in one.notes]
+    lost = unusable(measured, still)
+    notes += [f"{label} {reason}" for label, reason in lost.items()]
+    measured = without(measured, list(lost))
+    if not measured.label:
+        raise UsageError("--pressures: no sensor is left: " + "; ".join(notes))
+    source = {
+        "currents": ", ".join(hashed(split_label(one)[1]) for one in currents),
+        "pressures": ", ".join(hashed(split_label(one)[1]) for one in pressures),
+    }
+    if faults:
+        source["corrected"] = "taken off: " + "; ".join(one.sentence() for one in faults)
+    return measured, notes, source
+
+
+CORRECTABLE = ("clock", "gain", "offset", "drift")
+"""What can be taken off what a sensor reads, of `calm.motion.diagnosis.Fault`."""
+
+
+def corrected(sensor: Sensor, faults: Sequence[Fault]) -> Sensor:
+    """Return what a sensor would have read without its faults."""
+    time, depth = sensor.time, sensor.depth
+    for one in faults:
+        if one.label not in (ALL, sensor.label):
+            continue
+        if one.kind == "clock":
+            time = time - np.timedelta64(round(one.value * 3.6e12), "ns")
+        elif one.kind == "gain":
+            depth = depth / one.value
+        elif one.kind == "offset":
+            depth = depth - one.value
+        else:
+            share = (time - one.since) / (one.until - one.since)
+            depth = depth - one.value * np.clip(share, 0.0, 1.0)
+    return replace(sensor, time=time, depth=depth)
+
 
 CERTAIN = 2.0
 """An order of sensors counts as the only one where any other is off by so much more [m]."""
@@ -210,7 +322,7 @@ def plausible(sensor: Sensor, place: float, seabed: float) -> tuple[Sensor, list
 
 
 def unusable(measured: MooringMeasurements, still: Floats) -> dict[str, str]:
-    """Sensors that cannot be used, each with the reason; what cannot be right is refused.
+    """Return why sensors cannot be used, by label; what cannot be right is refused.
 
     Raises
     ------
@@ -267,3 +379,22 @@ def _other_unit(least: Floats, place: Floats) -> str:
         if known.any() and near.all() and (np.abs(meant - place[known]) > MISPLACED).any():
             return unit
     return ""
+
+
+def without(measured: MooringMeasurements, labels: Sequence[str]) -> MooringMeasurements:
+    """Return what was measured but for some sensors: hidden everywhere, their currents' depths
+    too.
+    """
+    kept = [i for i, label in enumerate(measured.label) if label not in labels]
+    point = measured.point[kept]
+    places = point.tolist()
+    return replace(
+        measured,
+        label=tuple(measured.label[i] for i in kept),
+        point=point,
+        depth=measured.depth[:, kept],
+        level_sensor=np.array(
+            [places.index(at) if at in places else FREE for at in measured.level_point.tolist()],
+            np.int64,
+        ),
+    )

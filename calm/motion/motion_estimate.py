@@ -6,38 +6,26 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from threading import Event
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from calm.batch.finished import open_result
+from calm.batch.run import BatchOutcome
+from calm.batch.work import Progress
 from calm.case import Mooring
-from calm.dataset.discovery import hashed
-from calm.errors import UsageError, not_among, unknown
-from calm.motion.correction import MeasuredRecord, Task, run_motion, without
+from calm.errors import UsageError, unknown
+from calm.motion.correction import MeasuredRecord, Task, run_motion
 from calm.motion.diagnosis import diagnosed
-from calm.motion.line_response import FACTORS, Forward
-from calm.motion.matching import (
-    instruments_of,
-    labels_of,
-    matched_by_label,
-    matched_by_place,
-    named_by_serial,
-    plausible,
-    unusable,
-)
-from calm.motion.measurements import MooringMeasurements, joined, read_currents
-from calm.motion.remarks import ALL, Agreement, Fault
-from calm.motion.sensors import Sensor, parse_flags, read_sea_level, read_sensors, split_label
+from calm.motion.line_response import FACTORS
+from calm.motion.matching import CORRECTABLE, GAP, read_measured
+from calm.motion.remarks import Agreement, Fault
+from calm.motion.sensor_fit import SensorFit, fit_of
 from calm.motion.study import HeldOut, Study, cross_validated, judged, prepare, several
 
 if TYPE_CHECKING:
     from xarray import Dataset
-
-_MATCHES = ("label", "height", "depth")
-
-GAP = np.timedelta64(2, "h")
-"""Longest time between two values that are interpolated, where nothing else is asked for."""
 
 
 def fitted(asked: Sequence[str] = (), currents: bool = True) -> tuple[str, ...]:
@@ -58,147 +46,135 @@ def fitted(asked: Sequence[str] = (), currents: bool = True) -> tuple[str, ...]:
     return tuple(name for name in FACTORS if name in asked or name in usual)
 
 
-def read_measured(
-    mooring: Mooring,
-    pressures: Sequence[str],
-    currents: Sequence[str] = (),
-    match: str = "label",
-    flags: str = "1,2",
-    gap: np.timedelta64 = GAP,
-    sea_level: Path | None = None,
-    declination: float | None = None,
-    faults: Sequence[Fault] = (),
-) -> tuple[MooringMeasurements, list[str], dict[str, str]]:
-    """Return what was measured, at common times, with notes on what was read and the source files.
+@dataclass(frozen=True)
+class MotionRequest:
+    """Hold a mooring that was recovered, the files of its sensors, and what is asked for.
 
-    Parameters
+    Attributes
     ----------
-    pressures, currents : files, as their paths or as ``LABEL=PATH``
-    match : by `label`, or by nominal `height` or `depth`
-    flags : of the pressures that count as measured, separated by commas
-    gap : longest time between two values that are interpolated
-    sea_level : the height of the sea surface, as a path
-    declination : added to the directions of the currents [degrees]
-    faults : of the sensors, that are taken off
+    mooring : with a position
+    pressures, currents, match, flags, gap, sea_level, declination : see `read_measured`
+    fit : what is estimated besides the drag
+    hold_out : labels of sensors that are hidden, and at which the result is judged
+    cross_validate : whether each used sensor is hidden in turn
+    correct : of `CORRECTABLE`, what is taken off where nothing else is as likely
+    judge : label of a sensor that is hidden, and of which is said whether it fits; empty of none
+    """
+
+    mooring: Mooring
+    pressures: Sequence[str]
+    currents: Sequence[str] = ()
+    match: str = "label"
+    fit: Sequence[str] = ()
+    hold_out: Sequence[str] = ()
+    cross_validate: bool = False
+    correct: Sequence[str] = ()
+    judge: str = ""
+    sea_level: Path | None = None
+    flags: str = "1,2"
+    gap: np.timedelta64 = GAP
+    declination: float | None = None
+
+
+class Recovery:
+    """What was recovered: read, put right, estimated and judged, in this order.
+
+    Attributes
+    ----------
+    measured, notes, source : what was read, see `read_measured`
+    task : what is estimated; None before `estimate`
 
     Raises
     ------
     InputError, UsageError
-        A file cannot be read, the mooring has no position, or no sensor is left.
+        A file cannot be read, or what is asked for cannot be done.
     """
-    if match not in _MATCHES:
-        raise UsageError(not_among("--match", match, _MATCHES))
-    position = mooring.file.position
-    if position is None:
-        raise UsageError(
-            f"{mooring.file.path} has no `position`, whose latitude turns pressures into depths"
-        )
-    place = position.latitude, position.longitude
-    seabed = float(mooring.water.depth)
-    wanted = parse_flags(flags)
-    sensors = read_sensors(pressures, wanted, position.latitude, seabed)
-    labels, still = labels_of(mooring), Forward(mooring, {}).still
-    notes: list[str] = []
-    if match == "label":
-        sensors = named_by_serial(sensors, mooring)
-        points, notes = matched_by_label(sensors, labels)
-    else:
-        points = matched_by_place(sensors, instruments_of(mooring), still, labels)
-        notes = [
-            f"the sensor at {sensors[i].nominal:.1f} m of {sensors[i].source} is `{labels[at]}`"
-            for i, at in points.items()
-        ]
-        sensors = [replace(one, label=labels[points[i]]) for i, one in enumerate(sensors)]
-    read = read_currents(
-        currents, seabed, place, declination, mooring.file.environment.maximum_speed
-    )
-    level = None if sea_level is None else read_sea_level(sea_level)
-    notes += dict.fromkeys(f"{one.source}: {one.note}" for one in sensors if one.note)
-    used = []
-    for i, at in points.items():
-        one, said = plausible(corrected(sensors[i], faults), float(still[at]), seabed)
-        used.append(one)
-        notes += said
-    notes += [
-        f"{one.label}: {one.dropped} pressures left out for their flag"
-        for one in used
-        if one.dropped
-    ]
-    if not any(np.isfinite(one.depth).any() for one in used):
-        raise UsageError("--pressures: no sensor has a good pressure: " + "; ".join(notes))
-    measured = joined(read, used, list(points.values()), labels, still, gap, level)
-    notes += [f"{one.source}: {note}" for one in read for note in one.notes]
-    lost = unusable(measured, still)
-    notes += [f"{label} {reason}" for label, reason in lost.items()]
-    measured = without(measured, list(lost))
-    if not measured.label:
-        raise UsageError("--pressures: no sensor is left: " + "; ".join(notes))
-    source = {
-        "currents": ", ".join(hashed(split_label(one)[1]) for one in currents),
-        "pressures": ", ".join(hashed(split_label(one)[1]) for one in pressures),
-    }
-    if faults:
-        source["corrected"] = "taken off: " + "; ".join(one.sentence() for one in faults)
-    return measured, notes, source
 
+    def __init__(self, asked: MotionRequest) -> None:
+        for kind in asked.correct:
+            if kind not in CORRECTABLE:
+                what = f"--correct: `{kind}` cannot be taken off"
+                raise UsageError(unknown(what, kind, CORRECTABLE))
+        self.asked, self.names = asked, fitted(asked.fit, bool(asked.currents))
+        judged_too = [asked.judge] if asked.judge and asked.judge not in asked.hold_out else []
+        self.hidden = [*asked.hold_out, *judged_too]
+        self.task: Task | None = None
+        self._faults: tuple[Fault, ...] = ()
+        self._read()
+        if asked.judge and asked.judge not in self.measured.label:
+            what = f"--judge: no sensor is called `{asked.judge}`"
+            raise UsageError(unknown(what, asked.judge, self.measured.label))
+        if asked.cross_validate:
+            several(self.measured, self.hidden)
 
-CORRECTABLE = ("clock", "gain", "offset", "drift")
-"""What can be taken off what a sensor reads, of `calm.motion.diagnosis.Fault`."""
+    def _read(self) -> None:
+        asked = self.asked
+        self.measured, self.notes, self.source = read_measured(
+            asked.mooring, asked.pressures, asked.currents, asked.match, asked.flags, asked.gap,
+            asked.sea_level, asked.declination, self._faults,
+        )  # fmt: skip
 
+    def estimate(
+        self,
+        output: Path,
+        *,
+        workers: int | None = None,
+        progress: Callable[[Progress], None] | None = None,
+        tell: Callable[[str], None] = lambda _: None,
+        stop: Event | None = None,
+    ) -> BatchOutcome:
+        """Estimate what is common to the record, take off what is wrong, and write every time.
 
-def corrected(sensor: Sensor, faults: Sequence[Fault]) -> Sensor:
-    """Return what a sensor would have read without its faults."""
-    time, depth = sensor.time, sensor.depth
-    for one in faults:
-        if one.label not in (ALL, sensor.label):
-            continue
-        if one.kind == "clock":
-            time = time - np.timedelta64(round(one.value * 3.6e12), "ns")
-        elif one.kind == "gain":
-            depth = depth / one.value
-        elif one.kind == "offset":
-            depth = depth - one.value
-        else:
-            share = (time - one.since) / (one.until - one.since)
-            depth = depth - one.value * np.clip(share, 0.0, 1.0)
-    return replace(sensor, time=time, depth=depth)
+        Parameters
+        ----------
+        output, workers, progress, tell, stop : see `calm.motion.correction.run_motion`
+        """
+        asked = self.asked
+        self.task = prepare(asked.mooring, self.measured, self.names, self.hidden, tell)
+        if asked.correct:
+            wrong = [
+                one for one in diagnosed(self.task) if one.kind in asked.correct and one.certain
+            ]
+            if wrong:
+                self._faults = tuple(replace(one, corrected=True) for one in wrong)
+                self._read()
+                self.task = prepare(asked.mooring, self.measured, self.names, self.hidden, tell)
+        options = {
+            "fit": sorted(self.names),
+            "hold_out": sorted(self.hidden),
+            "correct": self.source.get("corrected", ""),
+        }
+        record = MeasuredRecord(self.measured, self.source, self.notes)
+        return run_motion(
+            self.task, record, output, options,
+            workers=workers, progress=progress, tell=tell, stop=stop,
+        )  # fmt: skip
 
+    def study(
+        self,
+        result: Dataset,
+        tell: Callable[[str], None] = lambda _: None,
+        workers: int | None = None,
+    ) -> Study:
+        """Return how a finished result agrees with all that was measured.
 
-Read = tuple[MooringMeasurements, list[str], dict[str, str]]
-
-
-def put_right(
-    task: Task,
-    read: Callable[[Sequence[Fault]], Read],
-    kinds: Sequence[str],
-    again: Callable[[MooringMeasurements], Task],
-) -> tuple[Task, Read | None, tuple[Fault, ...]]:
-    """Take off what is wrong with the sensors, and estimate again what is common to the record.
-
-    Parameters
-    ----------
-    task : with the sensors as they are
-    read : reads the files without some faults
-    kinds : of `CORRECTABLE`, those that are taken off where nothing else is as likely
-    again : estimates what is common to the record
-
-    Returns
-    -------
-    The task; what was read without the faults, None where there are none; the faults.
-
-    Raises
-    ------
-    UsageError
-        A kind is none of these.
-    """
-    for kind in kinds:
-        if kind not in CORRECTABLE:
-            raise UsageError(unknown(f"--correct: `{kind}` cannot be taken off", kind, CORRECTABLE))
-    faults = [one for one in diagnosed(task) if one.kind in kinds and one.certain] if kinds else []
-    if not faults:
-        return task, None, ()
-    whole = read(faults)
-    return again(whole[0]), whole, tuple(replace(one, corrected=True) for one in faults)
+        Parameters
+        ----------
+        result : of `estimate`
+        tell : is told what is going on
+        workers : threads
+        """
+        assert self.task is not None
+        asked, task = self.asked, self.task
+        study = judged(task, self.measured, result, (*self._faults, *diagnosed(task)))
+        if asked.judge:
+            study = replace(study, judged=fit_of(task, self.measured, asked.judge))
+        if asked.cross_validate:
+            each = cross_validated(
+                asked.mooring, self.measured, self.names, self.hidden, tell, workers
+            )
+            study = replace(study, held_out=(*study.held_out, *each))
+        return study
 
 
 @dataclass(frozen=True, repr=False)
@@ -234,6 +210,11 @@ class MotionEstimate:
     def diagnosis(self) -> tuple[Fault, ...]:
         """Return what is wrong with the sensors, with sizes and odds."""
         return self.study.diagnosis
+
+    @property
+    def judged(self) -> SensorFit | None:
+        """Return whether the sensor of `judge` fits the line, with the odds."""
+        return self.study.judged
 
     @property
     def remarks(self) -> tuple[str, ...]:
@@ -278,6 +259,7 @@ def estimate_motion(
     gap: float | None = None,
     declination: float | None = None,
     correct: Sequence[str] = (),
+    judge: str = "",
     workers: int | None = None,
 ) -> MotionEstimate:
     """Estimate the depth of every part of a mooring at every time, as ``calm motion`` does.
@@ -297,6 +279,7 @@ def estimate_motion(
     gap : longest time between two values that are interpolated [s]; two hours where not given
     declination : added to the directions of the currents [degrees]
     correct : what is taken off where a sensor is wrong: `clock`, `gain`, `offset`, `drift`
+    judge : label of a sensor that is hidden, and of which is said whether it fits the line
     workers : threads; one for each processor that may be used where not given
 
     Raises
@@ -307,38 +290,27 @@ def estimate_motion(
     if not isinstance(mooring, Mooring):
         kind = type(mooring).__name__
         raise TypeError(f"a Mooring is needed, as calm.load gives it, not a {kind}")
-    names = fitted(fit, bool(currents))
-
-    def read(faults: Sequence[Fault] = ()) -> Read:
-        return read_measured(
+    recovery = Recovery(
+        MotionRequest(
             mooring,
             [str(path) for path in pressures],
             [str(path) for path in currents],
             match,
+            fit,
+            hold_out,
+            cross_validate,
+            correct,
+            judge,
+            None if sea_level is None else Path(sea_level),
             ",".join(map(str, flags)),
             GAP if gap is None else np.timedelta64(round(gap * 1e9), "ns"),
-            None if sea_level is None else Path(sea_level),
             declination,
-            faults,
         )
-
-    def begin(measured: MooringMeasurements) -> Task:
-        return prepare(mooring, measured, names, hold_out)
-
-    measured, notes, source = read()
-    if cross_validate:
-        several(measured, hold_out)
-    task, better, faults = put_right(begin(measured), read, correct, begin)
-    measured, notes, source = better or (measured, notes, source)
-    options = {"fit": sorted(names), "hold_out": sorted(hold_out), "correct": sorted(correct)}
+    )
     with TemporaryDirectory() as folder:
         output = Path(folder) / "motion.nc"
-        record = MeasuredRecord(measured, source, notes)
-        run_motion(task, record, output, options, workers=workers)
+        recovery.estimate(output, workers=workers)
         with open_result(output) as kept:
             dataset = kept.load()
-    study = judged(task, measured, dataset, (*faults, *diagnosed(task)))
-    if cross_validate:
-        each = cross_validated(mooring, measured, names, hold_out, lambda _: None, workers)
-        study = replace(study, held_out=(*study.held_out, *each))
-    return MotionEstimate(study, tuple(notes), dataset)
+    study = recovery.study(dataset, workers=workers)
+    return MotionEstimate(study, tuple(recovery.notes), dataset)

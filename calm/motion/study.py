@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from calm.case import Mooring
 from calm.errors import UsageError, unknown
-from calm.motion.correction import Task, estimate_in_memory, without
+from calm.motion.correction import Task, estimate_in_memory
 from calm.motion.line_response import Forward
-from calm.motion.matching import instruments_of, labels_of
+from calm.motion.matching import instruments_of, labels_of, without
 from calm.motion.measurements import MooringMeasurements, level_names
 from calm.motion.remarks import (
     ALL,
@@ -32,6 +32,7 @@ from calm.motion.remarks import (
     pchip,
     rms,
 )
+from calm.motion.sensor_fit import SensorFit
 from calm.motion.unknown_currents import learn_currents, with_knots
 from calm.motion.whole_record import estimate_common
 from calm.physics.line import Floats
@@ -75,6 +76,7 @@ class Study:
     diagnosis : what is wrong with sensors
     remarks : what to doubt, in sentences
     false : times at which the current of a level looks false, by its name
+    judged : whether the sensor that was asked for fits the line; None of none
     """
 
     task: Task
@@ -85,6 +87,7 @@ class Study:
     diagnosis: tuple[Fault, ...]
     remarks: tuple[str, ...]
     false: Mapping[str, NDArray[np.datetime64]]
+    judged: SensorFit | None = None
 
 
 def prepare(

@@ -104,7 +104,7 @@ def called(law: Law) -> Any:
     njit: Any = numba.njit
     dispatcher = njit(
         clone(law), no_cpython_wrapper=True, no_cfunc_wrapper=True, forceinline=law in _within,
-        **OPTIONS,
+        pipeline_class=_linked_compiler(), **OPTIONS,
     )  # fmt: skip
     resolve, plain = dispatcher.get_call_template, numba.types.unliteral
 
@@ -114,6 +114,56 @@ def called(law: Law) -> Any:
 
     dispatcher.get_call_template = once_for_all_numbers
     return dispatcher
+
+
+@cache
+def _linked_compiler() -> Any:
+    """The compiler of the laws that others call, of which no machine code is made by themselves.
+
+    Each is linked into the law that is called from Python, and optimised in it once; numba itself
+    optimises and translates every law again on each level of the calls.
+    """
+    numba: Any = __import__("numba")
+    core, make_function = numba.core, numba._dynfunc.make_function
+    library: Any = core.codegen.JITCodeLibrary
+    lowering: Any = core.typed_passes.NativeLowering
+    compiler: Any = core.compiler.CompilerBase
+
+    class LinkedLibrary(library):  # type: ignore[misc]
+        def _optimize_final_module(self) -> None:
+            pass
+
+        def _finalize_final_module(self) -> None:
+            self._finalize_dynamic_globals()
+            self._finalized = True
+
+    @core.compiler_machinery.register_pass(mutates_CFG=True, analysis_only=False)
+    class LinkedLowering(lowering):  # type: ignore[misc]
+        _name = "linked_lowering"
+
+        def run_pass(self, state: Any) -> bool:
+            target, name = state.targetctx, state.func_id.func_qualname
+            state.library = LinkedLibrary(target.codegen(), name)
+            state.flags.no_compile = True
+            super().run_pass(state)
+            lowered = state["cr"]
+            module = lowered.fndesc.lookup_module()
+            key = make_function(module, name, "", 0, lowered.env, (state.library,))
+            target.insert_user_function(key, lowered.fndesc, [state.library])
+            state["cr"] = lowered._replace(cfunc=key)
+            return True
+
+    class LinkedCompiler(compiler):  # type: ignore[misc]
+        def define_pipelines(self) -> list[Any]:
+            pipeline = core.compiler.DefaultPassBuilder.define_nopython_pipeline(self.state)
+            pipeline.passes = [
+                (LinkedLowering if each is lowering else each, about)
+                for each, about in pipeline.passes
+            ]
+            pipeline.finalize()
+            return [pipeline]
+
+    return LinkedCompiler
 
 
 @cache

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from datetime import datetime
 from io import BytesIO
 from operator import attrgetter
 from typing import Any
 
+from calm.case.net_result import NetResult
 from calm.checks.finding import State
 from calm.deck import Deck
+from calm.drawing.picture import figure_svg
+from calm.drawing.plot import draw
 from calm.drop import DropPlan
 from calm.records.delimited import table_csv
-from calm.report.blocks import PageBreak, Plate, Prose, Report, ReportPart, Section
+from calm.report.blocks import Figure, PageBreak, Plate, Prose, Report, ReportPart, Section
 from calm.report.check_summary import short_verdict
 from calm.report.deck_lists import (
     cutting_part,
@@ -25,6 +28,7 @@ from calm.report.deck_lists import (
 from calm.report.deck_logs import deployment_part, recovery_part
 from calm.report.diagram import Paper, diagram_pages
 from calm.report.drop_sheet import drop_part
+from calm.report.net_sheet import net_part
 from calm.report.provenance import date, document_part, input_hash, moment, versions
 
 Rows = Iterable[Sequence[object]]
@@ -70,17 +74,24 @@ def deck_sheets(deck: Deck) -> dict[str, tuple[Sequence[str], Rows]]:
     """The head and the rows of each sheet by its name, in SI; None where unknown."""
     stages = {f"deployment, {deck.order}": deck.lifts.deployment, "recovery": deck.lifts.recovery}
     lifts = [(stage, one) for stage, each in stages.items() for one in each]
-    rows: dict[str, Iterable[object]] = {
+    rows: dict[str, Sequence[Any]] = {
         "parts": deck.assessment.inventory,
         "cutting": deck.cuts,
         "instruments": deck.instruments,
         "hardware": deck.hardware,
         "shipping": deck.shipped,
         "lifts": lifts,
-        "deployment": enumerate(deck.deployment, 1),
-        "recovery": enumerate(deck.recovery, 1),
+        "deployment": [*enumerate(deck.deployment, 1)],
+        "recovery": [*enumerate(deck.recovery, 1)],
     }
-    return {name: _sheet(_COLUMNS[name], items) for name, items in rows.items()}
+    sheets = {name: _sheet(_COLUMNS[name], items) for name, items in rows.items()}
+    if deck.file.legs:
+        for name, index in _INDEX.items():
+            heads, listed = sheets[name]
+            legs = [deck.leg(index(one)) for one in rows[name]]
+            whole = ((*row, leg) for row, leg in zip(listed, legs, strict=True))
+            sheets[name] = (*heads, "leg"), whole
+    return sheets
 
 
 _COLUMNS = {
@@ -124,6 +135,17 @@ A column of which nothing is shown, `-`, is filled in by hand; one without an at
 stands before each item."""
 
 
+_INDEX: dict[str, Callable[[Any], int]] = {
+    "parts": attrgetter("index"),
+    "cutting": attrgetter("item.index"),
+    "instruments": attrgetter("item.index"),
+    "lifts": lambda one: one[1].index,
+    "deployment": lambda one: one[1].index,
+    "recovery": lambda one: one[1].item.index,
+}
+"""Of each sheet that has a last column `leg` for a net, the piece that a row is of."""
+
+
 def _sheet(columns: str, items: Iterable[Any]) -> tuple[Sequence[str], Rows]:
     """The head of a sheet and its rows."""
     named = [column.partition("=") for column in columns.split()]
@@ -144,6 +166,9 @@ def deck_report(deck: Deck, paper: Paper, notes: tuple[str, ...] = ()) -> Report
     said = (*deck.notes, *notes)
     if said:
         parts.append(ReportPart("Warnings", (Prose(said, State.WARN),)))
+    if isinstance(deck.result, NetResult):
+        shape = Figure("The net from the side, the current, and from above", net_svg(deck))
+        parts.append(ReportPart("The net", (shape, *net_part(deck.result).blocks[1:-1])))
     parts += _sheets(deck)
     (made_by,) = (f"{name} {number}" for name, number in versions()[:1])
     return Report(
@@ -156,6 +181,11 @@ def deck_report(deck: Deck, paper: Paper, notes: tuple[str, ...] = ()) -> Report
         verdict=short_verdict(deck.assessment.all_findings()),
         foot=f"{made_by}, inputs SHA-256 {input_hash([deck.file])}",
     )
+
+
+def net_svg(deck: Deck) -> str:
+    """A net from the side and from above."""
+    return figure_svg(draw(deck.result))
 
 
 def diagram_report(deck: Deck, paper: Paper) -> Report:

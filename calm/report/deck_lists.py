@@ -18,6 +18,7 @@ from calm.deck.hardware import LENGTH_ERROR, Mark
 from calm.deck.shipping import total_of
 from calm.quantities import QUANTITIES, say
 from calm.report.blocks import Block, Cell, Column, Note, Prose, ReportPart, Table, table_of
+from calm.report.net_sheet import leg_titles
 from calm.report.sheet import figure_cell, quantity_column
 
 _SHARE = f"{LENGTH_ERROR:.1%}".replace("%", " %")
@@ -40,10 +41,14 @@ def cutting_part(deck: Deck) -> ReportPart:
     clusters = {
         one.label: row.cluster for row in rows_on_paper(deck.parts) for one in row.items
     }  # fmt: skip
+    legs, above = leg_titles(deck.result), ""
     for _, alike in groupby(deck.cuts, lambda one: clusters.get(one.item.label) or id(one)):
         cuts = [*alike]
         cut, last = cuts[0], cuts[-1]
         many = f"{len(cuts)} × " if len(cuts) > 1 else ""
+        leg = deck.leg(cut.item.index)
+        rows += [(Cell(legs[leg], strong=True),)] if leg != above else []
+        above = leg
         load = "" if cut.load == 0.0 else f"at {say('tension', cut.load)}"
         effect = "-" if cut.effect is None else f"{cut.effect:+.2f}"
         label = label_of_run([one.item for one in cuts])
@@ -82,7 +87,8 @@ def cutting_part(deck: Deck) -> ReportPart:
     )
     note = (
         "Lengths are without load unless one is given; marks are measured from the upper end, "
-        f"under the same load. Tolerance: {_SHARE} of the length. Top deeper: by how much if this "
+        f"under the same load. Tolerance: {_SHARE} of the length. Top deeper: by how much "
+        f"{'that of its leg is ' if deck.file.legs else ''}if this "
         f"piece alone is {_SHARE} longer, in the environment {deck.environment}. Over side, onto "
         "drum: the order; the piece that goes over last is spooled first."
     )
@@ -187,9 +193,10 @@ def lifts_part(deck: Deck) -> ReportPart:
         )
     note = (
         "In air: mass of the piece with its clamps, as the crane lifts it; cables are paid out. "
-        "Hanging: weight in water of everything over the side, hanging straight down from the "
-        "ship; below 0 it floats. Drag and swell are not included. Shackles, links and swivels "
-        "are lifted with the pieces next to them; in the files each has its own row."
+        "Hanging: weight in water of everything over the side, of a net of the leg alone, hanging "
+        "straight down from the ship; below 0 it floats. Drag and swell are not included. "
+        "Shackles, links and swivels are lifted with the pieces next to them; in the files each "
+        "has its own row."
     )
     return ReportPart("Lifts", (Prose(tuple(said)), _stages(deck), Note((note,))))
 
@@ -212,8 +219,9 @@ def _stages(deck: Deck) -> Table:
     joints = {one.label for one in deck.parts if one.is_joint}
     recovery = {one.label: one.hanging for one in deck.lifts.recovery}
     return table_of(
-        "In the order over the side",
+        f"In the order over the side{', leg by leg' * bool(deck.file.legs)}",
         [one for one in deck.lifts.deployment if one.label not in joints],
+        *([(Column("leg"), lambda one: deck.leg(one.index))] if deck.file.legs else []),
         (Column("no.", numeric=True), lambda one: str(one.index)),
         (Column("at the rail", share=2.0), lambda one: one.label),
         (
@@ -238,7 +246,11 @@ def _stages(deck: Deck) -> Table:
 def instruments_part(deck: Deck) -> ReportPart:
     """Every instrument and release: where it hangs, and what the file says of it."""
     several = len(deck.environments) > 1
-    rows = tuple(_instrument_row(one, several) for one in deck.instruments)
+    legs = leg_titles(deck.result)
+    rows: list[tuple[Cell, ...]] = []
+    for name, own in deck.by_leg(deck.instruments, lambda one: one.item.index):
+        rows += [(Cell(legs[name], strong=True),)] if name else []
+        rows += [_instrument_row(one, several) for one in own]
     columns = (
         Column("instrument", share=2.0),
         Column("serial number", share=0.8),
@@ -261,7 +273,7 @@ def instruments_part(deck: Deck) -> ReportPart:
             f" Least and greatest depth, and tilt, are over {len(deck.environments)} "
             "environments; the line below names which."
         )
-    table = Table("Instruments and releases", columns, rows, note)
+    table = Table("Instruments and releases", columns, tuple(rows), note)
     return ReportPart("Instrument sheet", (table,))
 
 

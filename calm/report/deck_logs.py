@@ -3,13 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from calm.deck import Deck
 from calm.deck.deck_items import DeckItem, DeckRow, Order, RecoveredItem, rows_on_paper
 from calm.drop import DropPlan
 from calm.quantities import QUANTITIES, say
-from calm.report.blocks import Block, Cell, Column, Pairs, Prose, ReportPart, Table, table_of
+from calm.report.blocks import (
+    Block,
+    Cell,
+    Column,
+    Field,
+    Pairs,
+    Prose,
+    ReportPart,
+    Table,
+    table_of,
+)
 from calm.report.drop_sheet import whereabouts
+from calm.report.net_sheet import leg_titles
 from calm.report.provenance import position_text
 
 _BOX = Cell("☐")
@@ -29,14 +41,16 @@ def deployment_part(deck: Deck) -> ReportPart:
         Prose(
             (
                 ("Anchor last: the top" if last else "Anchor first: the lower end")
-                + " goes over the side first. Lengths are as cut; clamps are placed from the upper "
-                "end of their piece, unstretched.",
+                + f"{' of each leg' if deck.file.legs else ''} goes over the side first. "
+                + (_LEGS if deck.file.legs else "")
+                + "Lengths are as cut; clamps are placed from the upper end of their piece, "
+                "unstretched.",
             )
         ),
         _releases(deck, _TESTED, [_BOX] * len(_TESTED)),
         _soundings(),
         _positions(deck),
-        _over_the_side(deck),
+        *_over_the_side(deck),
     )
     return ReportPart("Deployment log", blocks, _LEAST)
 
@@ -45,7 +59,9 @@ def recovery_part(deck: Deck) -> ReportPart:
     """Return what is done at the release, and the order in which the line comes up."""
     rise = deck.rise
     said = []
-    if rise is None:
+    if deck.file.legs:
+        said.append("The rise of a net is not solved: the lists go down each leg.")
+    elif rise is None:
         said.append("The rise is not known: the list goes down the line.")
     elif rise.time_to_surface is None:
         said.append("Once released, the line does not rise by itself: the list goes down the line.")
@@ -69,11 +85,15 @@ def recovery_part(deck: Deck) -> ReportPart:
         Prose(tuple(said)),
         _releases(deck, _FIRED, ()),
         _events(),
-        _surfacing(deck),
+        *_surfacing(deck),
     )
     return ReportPart("Recovery log", blocks, _LEAST)
 
 
+_LEGS = (
+    "The legs stand in the order of the file, anchor first from the last to the first; which goes "
+    "when is not planned. "
+)
 _EVENTS = (
     "On station", "First float seen, bearing", "All floats counted", "Hooked", "All on board",
 )  # fmt: skip
@@ -161,7 +181,7 @@ def _releases(deck: Deck, checks: Sequence[str], boxes: Sequence[Cell]) -> Table
     return Table("Releases", columns, tuple(rows), by_hand=True)
 
 
-def _over_the_side(deck: Deck) -> Table:
+def _over_the_side(deck: Deck) -> list[Table]:
     order = {id(one): number for number, one in enumerate(deck.deployment, 1)}
 
     def length(row: DeckRow) -> str:
@@ -170,9 +190,7 @@ def _over_the_side(deck: Deck) -> Table:
             return placed(row.items, deck)
         return "\n".join(filter(None, (row.lengths, placed(row.floats, deck))))
 
-    return table_of(
-        "Order over the side",
-        rows_on_paper(deck.deployment),
+    fields: tuple[Field[DeckRow], ...] = (
         (Column("no.", numeric=True), lambda row: _numbers(row, order)),
         (Column("piece", share=3.2), _piece),
         (Column("length,\nor place", "m", share=1.3), length),
@@ -180,8 +198,20 @@ def _over_the_side(deck: Deck) -> Table:
         (Column("over", "UTC", share=0.6), lambda row: ""),
         (Column("remarks"), lambda row: ""),
         (Column("☐", share=0.0), lambda row: _BOX),
-        by_hand=True,
     )
+    return [
+        table_of(title, rows_on_paper(items), *fields, by_hand=True)
+        for title, items in _titled("Order over the side", deck, deck.deployment)
+    ]
+
+
+def _titled(title: str, deck: Deck, items: Sequence[DeckItem]) -> list[tuple[str, list[DeckItem]]]:
+    """Return what is listed of each leg under a title of its own."""
+    legs = leg_titles(deck.result)
+    return [
+        (f"{title}: {legs[name]}" if name else title, own)
+        for name, own in deck.by_leg(items, lambda one: one.index)
+    ]
 
 
 def _positions(deck: Deck) -> Table:
@@ -245,12 +275,11 @@ def _events() -> Table:
     )
 
 
-def _surfacing(deck: Deck) -> Table:
+def _surfacing(deck: Deck) -> list[Table]:
     order = {id(one.item): number for number, one in enumerate(deck.recovery, 1)}
     risen = {id(one.item): one for one in deck.recovery}
-    return table_of(
-        "Order of surfacing",
-        rows_on_paper([one.item for one in deck.recovery if not one.item.is_joint]),
+    listed = [one.item for one in deck.recovery if not one.item.is_joint]
+    fields: tuple[Field[DeckRow], ...] = (
         (Column("no.", numeric=True), lambda row: _numbers(row, order)),
         (Column("piece", share=3.4), _piece),
         (Column("serial\nnumber", share=0.8), lambda row: row.first.deployed_serial or ""),
@@ -262,12 +291,18 @@ def _surfacing(deck: Deck) -> Table:
         (Column("on deck", "UTC", share=0.6), lambda row: ""),
         (Column("whole, runs,\nfouled", share=0.0), lambda row: Cell("☐   ☐   ☐")),
         (Column("remarks", share=0.9), lambda row: row.first.remark or ""),
-        note="Up after: time since the release, or the depth at which a piece hangs once the "
+    )
+    note = (
+        "Up after: time since the release, or the depth at which a piece hangs once the "
         "line is up. By itself: buoyant enough to surface alone; the rest comes up with "
         "it. The order is that of surfacing, not of hauling. Shackles, links and swivels "
-        "come with the pieces they join.",
-        by_hand=True,
+        "come with the pieces they join."
     )
+    tables = [
+        table_of(title, rows_on_paper(items), *fields, by_hand=True)
+        for title, items in _titled("Order of surfacing", deck, listed)
+    ]
+    return [*tables[:-1], *(replace(last, note=note) for last in tables[-1:])]
 
 
 def _expected(items: Sequence[RecoveredItem]) -> Cell:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from itertools import count
 
+from calm.case import Result
+from calm.case.net_result import legs_of
 from calm.deck import Deck
 from calm.drawing.schematic.deck_parts import parts_of
 from calm.drawing.schematic.line_column import (
@@ -30,6 +32,7 @@ from calm.drawing.schematic.sign import LINES, Sign, Symbol
 from calm.drawing.schematic.symbols import SEABED_ROOM, draw_cable, figure_of
 from calm.quantities import QUANTITIES, say
 from calm.report.check_summary import short_verdict
+from calm.report.net_sheet import end_text, leg_title
 from calm.report.provenance import title_pairs
 
 _HEADINGS = (
@@ -121,12 +124,16 @@ class TitleBlock:
 
 @dataclass(frozen=True)
 class _PageColumn:
-    """A column of a page: its parts, and the marks at which the line goes on; "" at its ends."""
+    """A column of a page: its parts, what it comes from and leads to, and the leg it is of.
+
+    `above` and `below` are None where the line ends at the sea and on the seabed.
+    """
 
     parts: tuple[PlacedPart, ...]
-    above: str
-    below: str
+    above: str | None
+    below: str | None
     afloat: bool
+    leg: str
 
     @property
     def end(self) -> float:
@@ -134,15 +141,22 @@ class _PageColumn:
         return self.parts[-1].top + self.parts[-1].height
 
 
+_Stacks = tuple[tuple[tuple[float, _PageColumn], ...], ...]
+"""Columns in reading order, in each its legs with how far down they begin [pt]."""
+
+
 @dataclass(frozen=True)
 class _Pages:
-    """The pages of a diagram: their columns in reading order, and what each page has besides."""
+    """The pages of a diagram: their columns in reading order, and what each page has besides.
+
+    In a column stand one or several legs, each with how far it is moved down.
+    """
 
     title: str
     paper: Paper
     block: TitleBlock
     column: LineColumn
-    columns: tuple[_PageColumn, ...]
+    columns: _Stacks
     legend: tuple[Sign, ...]
 
     @property
@@ -176,25 +190,38 @@ def diagram_svg(deck: Deck, paper: Paper) -> str:
 
 
 def _pages(deck: Deck, paper: Paper) -> _Pages:
-    parts = parts_of(deck)
+    lines = legs_of(deck.result)
+    listed = [items for _, items in deck.by_leg(deck.parts, lambda one: one.index)]
+    legs = [
+        parts_of(deck, items, surface=line.type == "surface")
+        for line, items in zip(lines, listed, strict=True)
+    ]
+    parts = [part for leg in legs for part in leg]
     block = title_block_of(deck, paper)
     headings = [ColumnHead(words, QUANTITIES[name].display_unit) for words, name in _HEADINGS]
     rows = (row for part in parts for row in part.rows)
     column = column_of(rows, headings, paper.column_width)
-    heights = measured(parts, column)
-    afloat = deck.result.type == "surface"
     legend = tuple({part.sign.symbol: part.sign for part in parts}.values())
     need = _GROUND + LEADING - (-len(legend) // _LEGEND_COLUMNS) * _LEGEND_ROW
     bottom = paper.size[1] - _MARGIN - block.height
     foot = block.height
-    even: tuple[_PageColumn, ...] = ()
-    while True:  # the last column takes over parts until it is about as long as the others
-        columns = tuple(_columns(heights, paper, foot, afloat))
+    even: _Stacks = ()
+    while True:  # the last column takes over parts until it is about as long as the first
+        marks = _marks()
+        columns = _stacked(
+            (
+                one
+                for line, leg in zip(lines, legs, strict=True)
+                for one in _columns(line, measured(leg, column), paper, foot, marks)
+            ),
+            bottom,
+        )
         if even and len(columns) > len(even):
             break
-        if len(columns) % paper.columns or columns[-1].end + need <= bottom:
+        first, last = (down + one.end for down, one in (columns[0][-1], columns[-1][-1]))
+        if len(columns) % paper.columns or last + need <= bottom:
             even = columns
-            if len(columns) == 1 or columns[-1].end >= _EVEN * columns[0].end:
+            if len(columns) == 1 or len(legs) > 1 or last >= _EVEN * first:
                 break
         foot += 2 * LEADING
     return _Pages(one_line(deck.file.name), paper, block, column, even, legend)
@@ -204,20 +231,52 @@ _TOP = _MARGIN + _TITLE_ROOM + HEAD
 
 
 def _columns(
-    parts: Sequence[PlacedPart], paper: Paper, foot: float, afloat: bool
+    line: Result, parts: Sequence[PlacedPart], paper: Paper, foot: float, marks: Iterator[str]
 ) -> Iterator[_PageColumn]:
-    """The columns in reading order; `foot` is the height of the title block [pt]."""
+    """The columns of a line or a leg in reading order.
+
+    Parameters
+    ----------
+    foot : the height of the title block [pt]
+    marks : of the places where a line goes on
+    """
+    afloat, (top, bottom) = line.type == "surface", _ends(line)
     sea = _MAST - parts[0].height / 2 if afloat else _SKY + _SUBMERGED
     room = paper.size[1] - foot - _MARGIN - _TOP - 2 * _CONTINUED - sea - SEABED_ROOM
-    marks, above = _marks(), ""
+    above = top
     for group in _broken(parts, room):
-        below = "" if group[-1] is parts[-1] else next(marks)
-        if above:
-            line = placed(group, _TOP + _CONTINUED)
+        mark = "" if group[-1] is parts[-1] else next(marks)
+        if above is not None:
+            there = placed(group, _TOP + _CONTINUED)
         else:
-            line = placed(group, _TOP + sea, _TOP + sea + group[0].height / 2)
-        yield _PageColumn(line, above, below, afloat and not above)
-        above = below
+            there = placed(group, _TOP + sea, _TOP + sea + group[0].height / 2)
+        below = f"continues at {mark}" if mark else bottom
+        leg = leg_title(line) if line.file.legs else ""
+        yield _PageColumn(there, above, below, afloat and above is None, leg)
+        above = f"from {mark}"
+
+
+def _stacked(columns: Iterable[_PageColumn], bottom: float) -> _Stacks:
+    """The columns, of legs as many in one as there is room for above `bottom`."""
+    found: list[list[tuple[float, _PageColumn]]] = []
+    for one in columns:
+        down = found[-1][-1][0] + found[-1][-1][1].end + _CONTINUED + HEAD - _TOP if found else 0.0
+        if found and one.leg and down + one.end + _GROUND <= bottom:
+            found[-1].append((down, one))
+        else:
+            found.append([(0.0, one)])
+    return tuple(map(tuple, found))
+
+
+def _ends(line: Result) -> tuple[str | None, str | None]:
+    """What a leg comes from and leads to; None where it ends at the sea and on the seabed."""
+    if not line.file.legs:
+        return None, None
+    top, bottom = line.file.legs[0].ends
+    return (
+        None if top.free else f"from {end_text(top)}",
+        None if bottom.anchor is not None else end_text(bottom),
+    )
 
 
 def _fill(page: Pen, pages: _Pages, number: int) -> None:
@@ -230,7 +289,8 @@ def _fill(page: Pen, pages: _Pages, number: int) -> None:
     first = number * paper.columns
     there = pages.columns[first : first + paper.columns]
     for at, column in enumerate(there):
-        _draw_column(page, column, pages.column, paper.left(at))
+        for down, one in column:
+            _draw_column(page.group(0.0, down), one, pages.column, paper.left(at))
     bottom = height - _MARGIN - block.height
     if number + 1 == pages.count:
         place = len(there) - (len(there) == paper.columns)
@@ -241,18 +301,20 @@ def _fill(page: Pen, pages: _Pages, number: int) -> None:
 
 def _draw_column(page: Pen, one: _PageColumn, column: LineColumn, left: float) -> None:
     draw_headings(page, column, left, _TOP - HEAD)
+    if one.leg:
+        page.write(left, _TOP - 8.0, one.leg, column.text[1], size=FONT, bold=True)
     start, end = one.parts[0].top, one.end
     surface = one.parts[0].middle if one.afloat else _TOP + _SKY
-    if not one.above:
+    if one.above is None:
         row = None if one.afloat else TextRow("sea surface", "")
         draw_sea(page, column, left, (surface, end), row)
-    if not one.below:
+    if one.below is None:
         draw_ground(page, column, left, end, TextRow("seabed", ""))
-    if one.above:
-        _draw_continued(page, column, left, start - _CONTINUED, f"from {one.above}")
+    if one.above is not None:
+        _draw_continued(page, column, left, start - _CONTINUED, one.above)
     draw_parts(page, one.parts, column, left)
-    if one.below:
-        _draw_continued(page, column, left, end, f"continues at {one.below}")
+    if one.below is not None:
+        _draw_continued(page, column, left, end, one.below)
 
 
 def _draw_continued(page: Pen, column: LineColumn, left: float, top: float, words: str) -> None:
@@ -342,15 +404,19 @@ def title_block_of(deck: Deck, paper: Paper) -> TitleBlock:
 
 def _known(deck: Deck) -> dict[str, str]:
     """The anchor's weights, what floats the release after the worst break, and the verdict."""
-    anchor = deck.assessment.inventory[-1]
-    for one in deck.assessment.inventory:
-        if one.role == "anchor":
-            anchor = one
-    mass = "unknown" if anchor.dry_mass is None else say("dry_mass", anchor.dry_mass)
-    weight = "unknown" if anchor.wet_weight is None else say("wet_weight", anchor.wet_weight)
+    anchors = [one for one in deck.assessment.inventory if one.role == "anchor"]
+    if not deck.file.legs:
+        anchors = anchors[-1:] or [deck.assessment.inventory[-1]]
+    texts = [
+        ", ".join(
+            "unknown" if value is None else say(name, value)
+            for name, value in (("dry_mass", one.dry_mass), ("wet_weight", one.wet_weight))
+        )
+        for one in anchors
+    ]
     breaks = [one.margin for one in deck.assessment.backup if one.judged]
     return {
-        "anchor in air, in water": f"{mass}, {weight}",
+        "anchor in air, in water": "; ".join(dict.fromkeys(texts)),
         "least backup": say("tension", min(breaks)) if breaks else "none",
         "design check": short_verdict(deck.assessment.all_findings()).text,
     }

@@ -54,7 +54,7 @@ def motion_report(
     name: str,
     notes: Sequence[str],
 ) -> Report:
-    """Return the report: factors, agreement, what to doubt, depths, scatter and residuals.
+    """Return the report: factors, agreement, what to doubt, depths and residuals.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def motion_report(
         factors.append(Figure("Over time", factor_figure(time, factor)))
     instruments = [Figure(_BARE, depth_figure(bare), tall=True)] if bare else []
     parts = (
-        ReportPart("Doubtful data", (doubts, health_table(study), *marks)),
+        ReportPart("Doubtful data", (*judged_prose(study), doubts, health_table(study), *marks)),
         ReportPart("Factors", tuple(factors)),
         ReportPart(
             "Measured against computed",
@@ -91,7 +91,6 @@ def motion_report(
                 Note((_LEGEND,)),
             ),
         ),
-        ReportPart("Scatter", (Figure("Computed against measured depths", scatter_figure(shown)),)),
         ReportPart(
             "Residuals", (Figure("Measured less estimated", residual_figure(shown), tall=True),)
         ),
@@ -132,29 +131,6 @@ def residual_figure(series: Sequence[SensorSeries]) -> str:
         axes.plot(one.time.astype("datetime64[s]"), one.measured - one.estimated, **_MEASURED)
         axes.axhline(0.0, color="#999999", linewidth=0.5)
         _name(axes, one, "residual [m]")
-    return figure_svg(figure)
-
-
-def scatter_figure(series: Sequence[SensorSeries]) -> str:
-    """Estimated against measured depths, a panel for each sensor."""
-    from matplotlib.figure import Figure
-
-    columns = min(len(series), 4)
-    rows = -(-len(series) // columns)
-    figure = Figure(figsize=(_WIDTH, 1.9 * rows))
-    figure.subplots_adjust(0.08, 0.1 / rows + 0.06, 0.99, 0.95, hspace=0.5, wspace=0.35)
-    grid = figure.subplots(rows, columns, squeeze=False)
-    for axes in grid.flat[len(series) :]:
-        axes.set_axis_off()
-    for axes, one in zip(grid.flat, series, strict=False):
-        if one.plain is not None:
-            axes.plot(one.measured, one.plain, ".", color=_ALONE["color"], markersize=1.5)
-        axes.plot(one.measured, one.estimated, ".", color=_ESTIMATED["color"], markersize=1.5)
-        known = one.measured[np.isfinite(one.measured)]
-        if known.size:
-            axes.plot([known.min(), known.max()], [known.min(), known.max()], "k-", linewidth=0.5)
-        _name(axes, one, "computed [m]")
-        axes.set_xlabel("measured [m]", fontsize=_FONT_SIZE)
     return figure_svg(figure)
 
 
@@ -231,9 +207,19 @@ def motion_part(study: Study, name: str) -> ReportPart:
     ]
     if study.held_out:
         blocks.append(held_out_table(study.held_out))
+    blocks += judged_prose(study)
     if study.remarks:
         blocks.append(Prose(study.remarks, State.WARN))
     return ReportPart("", tuple(blocks))
+
+
+def judged_prose(study: Study) -> list[Block]:
+    """Return what is said of the sensor that was judged, if one was."""
+    one = study.judged
+    if one is None:
+        return []
+    state = {True: State.PASS, False: State.FAIL, None: State.UNKNOWN}[one.fits]
+    return [Prose((one.sentence(),), state)]
 
 
 _HEALTH: Mapping[str, Column] = {
@@ -372,6 +358,7 @@ def motion_document(study: Study, name: str) -> dict[str, Any]:
         ],
         "held_out": held_out_document(study.held_out),
         "diagnosis": diagnosis_document(study.diagnosis),
+        **({} if study.judged is None else {"judge": asdict(study.judged)}),
         "doubts": list(study.remarks),
     }
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from calm.case import Result
-from calm.case.net_result import NetResult
+from calm.case.net_result import NetResult, legs_of
 from calm.checks.finding import State
 from calm.files.legs import EndKeys
 from calm.quantities import say
@@ -33,11 +33,17 @@ def net_part(result: NetResult) -> ReportPart:
 def leg_title(leg: Result) -> str:
     """Name of a leg and what holds its ends."""
     (keys,) = leg.file.legs
-    top = "at the surface" if leg.type == "surface" else _held(keys.top)
-    return f"{leg.name}: {top} to {_held(keys.bottom)}"
+    top = "at the surface" if leg.type == "surface" else end_text(keys.top)
+    return f"{leg.name}: {top} to {end_text(keys.bottom)}"
 
 
-def _held(end: EndKeys) -> str:
+def leg_titles(result: Result | NetResult) -> dict[str, str]:
+    """The titles of the legs by their names; a single line has none."""
+    return {leg.name: f"leg {leg_title(leg)}" for leg in legs_of(result) if leg.file.legs}
+
+
+def end_text(end: EndKeys) -> str:
+    """What holds an end of a leg, in words."""
     if end.join is not None:
         return f"node {end.join}"
     if end.held is not None:

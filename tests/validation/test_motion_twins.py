@@ -4,6 +4,7 @@ Whatever is drawn from the laws that `calm.motion` assumes must lie within its i
 these say. The line is that of docs/field/dune2; everything that was measured is made.
 """
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,8 @@ from calm.motion.diagnosis import diagnosed
 from calm.motion.line_response import Forward, points
 from calm.motion.matching import labels_of
 from calm.motion.measurements import MooringMeasurements
+from calm.motion.sensor_fit import fit_of
+from calm.motion.study import prepare
 from calm.motion.whole_record import estimate_common
 
 FIELD = Path(__file__).parents[2] / "docs" / "field" / "dune2"
@@ -182,3 +185,32 @@ def test_what_a_block_holds_changes_nothing(mooring):
     part, less = task.columns(20, 30)
     np.testing.assert_allclose(part.clamp_depth, whole.clamp_depth[20:30], rtol=0.0, atol=1e-9)
     np.testing.assert_allclose(less["depth_sd"], more["depth_sd"][20:30], rtol=0.0, atol=1e-9)
+
+
+def judged(mooring, off, used=THREE, label="Aquadopp 226", readings=slice(None)):
+    """Whether a sensor that reads too deep by so much fits the line by the others."""
+    measured, _, depth = twin(mooring, 0, used)
+    mine = used.index(label)
+    strong = np.argsort(depth[:, measured.point[mine]])[::-1][readings]
+    pressure = np.full_like(measured.depth[:, mine], np.nan)
+    pressure[strong] = measured.depth[strong, mine] + off
+    whole = measured.depth.copy()
+    whole[:, mine] = pressure
+    measured = replace(measured, depth=whole)
+    return fit_of(prepare(mooring, measured, NAMES, [label]), measured, label)
+
+
+def test_a_sound_sensor_fits_and_one_ten_metres_off_does_not(mooring):
+    sound, off = judged(mooring, 0.0), judged(mooring, 10.0)
+    assert sound.fits and 10.0 <= sound.odds <= 20.0  # a zero of 1 m against one of 20 m
+    assert off.fits is False and off.odds < 1e-3
+    assert off.sentence().startswith("Aquadopp 226: its pressures do not fit the line (odds ")
+    assert "m off throughout" in off.reason
+
+
+def test_a_sensor_that_one_far_below_hardly_constrains_cannot_be_judged(mooring):
+    """Known in strong currents alone, and by a sensor that hardly moves."""
+    for off in (0.0, 10.0):
+        found = judged(mooring, off, USED, "Aquadopp 626", slice(0, 24))
+        assert found.fits is None and 0.05 < found.odds < 5.0
+        assert "cannot be told" in found.sentence()

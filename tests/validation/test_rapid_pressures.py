@@ -17,7 +17,8 @@ from scipy.interpolate import PchipInterpolator
 import calm
 from calm.motion.correction import estimate_in_memory
 from calm.motion.line_response import Forward
-from calm.motion.motion_estimate import fitted, read_measured
+from calm.motion.matching import read_measured
+from calm.motion.motion_estimate import fitted
 from calm.motion.remarks import calm_times, coverage, difference, rms
 from calm.motion.study import prepare
 

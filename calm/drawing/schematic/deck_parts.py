@@ -21,8 +21,10 @@ from calm.files.file_differences import own_labels
 from calm.quantities import QUANTITIES
 
 
-def parts_of(deck: Deck) -> tuple[ShownPart, ...]:
-    """The parts down the line; connectors that follow one another make one junction.
+def parts_of(deck: Deck, listed: Sequence[DeckItem], *, surface: bool) -> tuple[ShownPart, ...]:
+    """The parts listed, down a line or a leg, whose top is at the `surface` or below it.
+
+    Connectors that follow one another make one junction.
 
     Beside each stand cut length or place on the wire, stretched length, depth, height, tension and
     net buoyancy.
@@ -33,7 +35,7 @@ def parts_of(deck: Deck) -> tuple[ShownPart, ...]:
     found: list[ShownPart] = []
     joints: list[DeckItem] = []
     cable: Symbol | None = None
-    for row in rows_on_paper(deck.parts):
+    for row in rows_on_paper(listed):
         if _is_connector(row.first):
             joints += (*row.items, *row.joints)
             continue
@@ -46,7 +48,7 @@ def parts_of(deck: Deck) -> tuple[ShownPart, ...]:
         found.append(_piece(row, cable, weights, codes))
     if joints:
         found.append(_junction(joints, own, weights))
-    if deck.result.type == "surface":
+    if surface:
         found[0] = replace(found[0], sign=afloat(found[0].sign))
     return tuple(found)
 

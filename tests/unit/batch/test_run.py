@@ -17,6 +17,7 @@ from calm.batch.run import LARGEST_BLOCK, run_batch
 from calm.batch.statuses import STATUSES, Ending
 from calm.batch.threads import in_threads
 from calm.batch.work import compile_solver
+from calm.batch.work_store import identity_of, to_text
 from calm.errors import UsageError
 from tests.unit.batch.made import MOORING, MadeRecord, content, made_mooring
 
@@ -29,6 +30,15 @@ def mooring(tmp_path):
 @pytest.fixture
 def record():
     return MadeRecord()
+
+
+def test_waves_of_the_file_change_no_identity(tmp_path, mooring, record):
+    (tmp_path / "waves").mkdir()
+    waves = "environment:\n  waves: {significant_height: 3 m, peak_period: 8 s}"
+    wavy = made_mooring(tmp_path / "waves", MOORING.replace("environment:", waves))
+    assert wavy.file.environment.seas
+    texts = [to_text(identity_of(each, record, {}, Event())) for each in (mooring, wavy)]
+    assert texts[0] == texts[1]
 
 
 @pytest.mark.parametrize("ending", [".nc", ".zarr"])

@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import quad
 
 from calm.motion.common_unknowns import Common
-from calm.motion.diagnosis import GAIN, _Diagnosis
+from calm.motion.diagnosis import GAIN, Diagnosis
 from calm.motion.measurements import interpolated
 from calm.motion.remarks import ALL
 from calm.motion.whole_record import ROBUST, LinearLaw
@@ -48,7 +48,7 @@ def diagnosis(change=lambda depth: depth, seed=3):
     common = Common({"cable_drag": 1.0}, 0.0, none, none, never, none, np.eye(8), 1.0, np.eye(1))
     water = SimpleNamespace(water=SimpleNamespace(depth=300.0))
     measured = SimpleNamespace(time=TIME, label=LABELS, depth=depth)
-    return _Diagnosis(SimpleNamespace(measured=measured, common=common, mooring=water), law)
+    return Diagnosis(SimpleNamespace(measured=measured, common=common, mooring=water), law)
 
 
 def later(depth, hours, columns):
@@ -131,7 +131,7 @@ def test_the_weight_of_a_fault_is_that_of_the_likelihood_integrated_over_its_siz
     given.spread = held
     suspect = next(
         one
-        for one in given._suspects([], given._fitted([], None, 1.0))
+        for one in given._suspects([], given.fitted([], None, 1.0))
         if one.fault.label == "upper" and one.fault.kind == "gain"
     )
     law, inverse = given.law, np.linalg.inv(given.law.expected)
@@ -141,7 +141,7 @@ def test_the_weight_of_a_fault_is_that_of_the_likelihood_integrated_over_its_siz
         misfit = np.einsum("ns,nst,nt->n", left, inverse, left)
         return -0.5 * float(((ROBUST + 3) * np.log1p(misfit / ROBUST)).sum())
 
-    found, none = given._fitted([], suspect, 1.0), given._fitted([], None, 1.0)
+    found, none = given.fitted([], suspect, 1.0), given.fitted([], None, 1.0)
     best = log(found.value)
     whole, _ = quad(
         lambda z: np.exp(log(z) - best - 0.5 * (z / GAIN) ** 2) / GAIN / np.sqrt(2.0 * np.pi),

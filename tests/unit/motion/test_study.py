@@ -10,7 +10,8 @@ import xarray
 import calm.motion.study as module
 from calm.errors import UsageError
 from calm.motion.common_unknowns import Common
-from calm.motion.correction import Task, without
+from calm.motion.correction import Task
+from calm.motion.matching import without
 from calm.motion.measurements import MooringMeasurements
 from calm.motion.study import (
     cross_validated,

@@ -9,9 +9,10 @@ import pytest
 import calm.motion.correction as module
 from calm.batch.statuses import STATUSES
 from calm.motion.common_unknowns import Common
-from calm.motion.correction import MeasuredRecord, Task, plain, without
+from calm.motion.correction import MeasuredRecord, Task, plain
 from calm.motion.estimate import Estimate
 from calm.motion.line_response import ReadCurrents
+from calm.motion.matching import without
 from calm.motion.measurements import MooringMeasurements
 
 STILL = np.array([60.0, 150.0, 40.0, 250.0])  # two clamps, then two components
