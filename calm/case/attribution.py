@@ -17,14 +17,21 @@ current.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from math import radians
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from calm.physics.line import Floats, Integers, Line, Water
-from calm.solve import Settings, Solution, solve_mooring
+from calm.files.legs import nodes_of
+from calm.physics.line import Floats, Line, Water
+from calm.solve import Settings
 from calm.solve.mooring import Nearby
+from calm.solve.net import NearbyNet
+
+if TYPE_CHECKING:
+    from calm.case.net import Net
 
 STAGES = (4, 8)
 """Gauss points in t: the second number where the first misses the whole by `FAIR`."""
@@ -34,12 +41,15 @@ LEAST_DRAG = 1e-3
 
 _STEP = 2e-4
 """Growth of a drag for its derivative: large against the tolerance, small against its own use."""
-_SETTINGS = Settings(angle_step=radians(4.0), tolerance=1e-10)
+SETTINGS = Settings(angle_step=radians(4.0), tolerance=1e-10)
 """Coarse, since the shares are scaled to the whole in the end."""
 
 
-SolverPart = tuple[int, int]
-"""Index of a piece in the arrays, and of a clamp on it, or -1 for none."""
+SolverPart = tuple[int, int, int]
+"""Number of a leg, 0 of a single line; index of a piece of it, and of a clamp, or -1 for none."""
+
+Varied = Callable[[int, Line], Floats]
+"""What is seen (3,), in the columns of `Attribution`, where a leg of a number has another line."""
 
 
 @dataclass(frozen=True)
@@ -51,59 +61,55 @@ class Attribution:
 
     Attributes
     ----------
-    piece, clamp : (p,) indices in the line; clamp is -1 where the piece itself is meant
+    parts : p of them
     start : (3,) without drag, or with the least of it
     shares : (p, 3) what each drag adds to it; the sums are the whole growth
     miss : (3,) error of the sums before they were scaled, as a share of the whole growth
     """
 
-    piece: Integers
-    clamp: Integers
+    parts: list[SolverPart]
     start: Floats
     shares: Floats
     miss: Floats
 
 
 def attribute(
-    line: Line, water: Water, start: Floats | None, whole: Floats, point: SolverPart
+    lines: Sequence[Line],
+    near: Callable[[Sequence[Line]], Varied],
+    start: Floats | None,
+    whole: Floats,
 ) -> Attribution:
     """Share out a point's depth and excursion, and the buoyancy in use, among the drags.
 
     Parameters
     ----------
-    line, water : see `calm.physics.line`
+    lines : of the legs; a single line is one
+    near : what is seen of the point with such lines, solved by `SETTINGS`
     start : (3,) the values without drag, in the columns of `Attribution`; None where the line has
         no unique shape then, and the shares are to count from `LEAST_DRAG`
     whole : (3,) the values with all the drag
-    point : the top of a piece, or a clamp
 
     Raises
     ------
     NoEquilibrium
         The line has no equilibrium at one of the stages.
     """
-    parts = _parts_with_drag(line)
+    parts = [(leg, *part) for leg, line in enumerate(lines) for part in _parts_with_drag(line)]
     least = 0.0
     if start is None:
         least = LEAST_DRAG
-        first = solve_mooring(with_drag(line, least), water, _SETTINGS)
-        start = _observed(first.position, first.buoyancy_used, _node(first, point))
+        first = [with_drag(line, least) for line in lines]
+        start = near(first)(0, first[0])
     growth = whole - start
     for stages in STAGES:
-        shares = _integral(line, water, parts, least, stages, point)
+        shares = _integral(lines, near, parts, least, stages)
         total = shares.sum(axis=0)
         grows = np.abs(growth) > 1e-9 * np.maximum(np.abs(whole), 1.0)
         miss = np.where(grows, total / np.where(grows, growth, 1.0) - 1.0, 0.0)
         if np.abs(miss).max() <= FAIR:
             break
     scaled = shares * np.where(grows & (total != 0.0), growth / np.where(total, total, 1.0), 0.0)
-    return Attribution(
-        piece=np.array([p for p, _ in parts], dtype=np.int64),
-        clamp=np.array([m for _, m in parts], dtype=np.int64),
-        start=start,
-        shares=scaled,
-        miss=miss,
-    )
+    return Attribution(parts=parts, start=start, shares=scaled, miss=miss)
 
 
 def with_drag(line: Line, factor: float) -> Line:
@@ -116,7 +122,7 @@ def with_drag(line: Line, factor: float) -> Line:
     )
 
 
-def _parts_with_drag(line: Line) -> list[SolverPart]:
+def _parts_with_drag(line: Line) -> list[tuple[int, int]]:
     """Parts that have drag, down the line, the clamps of a piece after it."""
     pieces = np.flatnonzero((line.normal_drag > 0.0) | (line.tangential_drag > 0.0))
     clamps = np.flatnonzero(line.clamp_drag > 0.0)
@@ -124,8 +130,7 @@ def _parts_with_drag(line: Line) -> list[SolverPart]:
     return sorted(parts)
 
 
-def _with_part(line: Line, part: SolverPart, factor: float) -> Line:
-    piece, clamp = part
+def _with_part(line: Line, piece: int, clamp: int, factor: float) -> Line:
     if clamp >= 0:
         factors = np.ones(len(line.clamp_drag))
         factors[clamp] = factor
@@ -140,7 +145,11 @@ def _with_part(line: Line, part: SolverPart, factor: float) -> Line:
 
 
 def _integral(
-    line: Line, water: Water, parts: list[SolverPart], least: float, stages: int, point: SolverPart
+    lines: Sequence[Line],
+    near: Callable[[Sequence[Line]], Varied],
+    parts: list[SolverPart],
+    least: float,
+    stages: int,
 ) -> Floats:
     """(p, 3) ∫ ∂y/∂λ ds from `least` to 1, with s = t² and ∂y/∂λ = (∂y/∂ln λ)/s."""
     abscissae, weights = np.polynomial.legendre.leggauss(stages)
@@ -149,23 +158,38 @@ def _integral(
     shares = np.zeros((len(parts), 3))
     for abscissa, weight in zip(abscissae, weights, strict=True):
         t = low + half * (1.0 + abscissa)
-        stage = with_drag(line, t * t)
-        nearby = Nearby(stage, water, _SETTINGS)
-        node = nearby.node(*point)
-        there = _observed(*nearby.shape(stage), node)
-        for i, part in enumerate(parts):
-            more = _observed(*nearby.shape(_with_part(stage, part, 1.0 + _STEP)), node)
+        stage = [with_drag(line, t * t) for line in lines]
+        varied = near(stage)
+        there = varied(0, stage[0])
+        for i, (leg, piece, clamp) in enumerate(parts):
+            more = varied(leg, _with_part(stage[leg], piece, clamp, 1.0 + _STEP))
             shares[i] += half * weight * 2.0 / t * (more - there) / _STEP
     return shares
+
+
+def of_a_line(water: Water, point: SolverPart) -> Callable[[Sequence[Line]], Varied]:
+    """What is seen of a point of a single line: the top of a piece, or a clamp."""
+
+    def near(lines: Sequence[Line]) -> Varied:
+        nearby = Nearby(lines[0], water, SETTINGS)
+        node = nearby.node(*point[1:])
+        return lambda _, line: _observed(*nearby.shape(line), node)
+
+    return near
+
+
+def of_a_net(net: Net, point: SolverPart) -> Callable[[Sequence[Line]], Varied]:
+    """The same of a point of a net."""
+
+    def near(lines: Sequence[Line]) -> Varied:
+        legs, nodes = net.with_own(lines).legs, len(nodes_of(net.file.legs))
+        nearby = NearbyNet(legs, nodes, net.water, SETTINGS, net.standing)
+        node = nearby.node(*point)
+        return lambda leg, line: _observed(*nearby.shape(leg, line, point[0]), node)
+
+    return near
 
 
 def _observed(position: Floats, used: float, node: int) -> Floats:
     x, y, z = position[node]
     return np.array([-z, np.hypot(x, y), used])
-
-
-def _node(solution: Solution, point: SolverPart) -> int:
-    piece, clamp = point
-    if clamp >= 0:
-        return int(np.flatnonzero(solution.element_clamp == clamp)[0])
-    return int(solution.piece_nodes[piece, 0])

@@ -2,18 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from calm.case.attribution import FAIR, Attribution, SolverPart, attribute, with_drag
+from calm.case.attribution import (
+    FAIR,
+    Attribution,
+    SolverPart,
+    attribute,
+    of_a_line,
+    of_a_net,
+    with_drag,
+)
 from calm.case.draws import Draw, drawn_water
 from calm.case.mooring import Mooring
+from calm.case.net import Net
+from calm.case.net_result import NetResult, legs_of
 from calm.case.parts import TOP, clamps_in, one_part
 from calm.case.result_tables import ColumnTable
-from calm.case.targets import Figures, figures_of
+from calm.case.targets import Figures, figures_of, leg_at
 from calm.errors import NoEquilibrium, UsageError
 from calm.files import Place
 from calm.physics.line import Floats, Line, Water
@@ -118,13 +128,14 @@ def _change_document(change: WhatIf) -> dict[str, Any]:
     return {"change": change.name, "status": "converged", **asdict(change.figures)}
 
 
-def explain(result: Result, label: str | None = None) -> Explanation:
-    """Explain a solved mooring.
+def explain(result: Result | NetResult, label: str | None = None) -> Explanation:
+    """Explain a solved mooring, or a net of legs.
 
     Parameters
     ----------
-    result : of a mooring
-    label : of the piece (its upper end) or clamp to explain; ``top``, the free end, when absent
+    result : of a mooring or a net
+    label : of the piece (its upper end) or clamp to explain; ``top``, the free end, when absent, of
+        a net that of the first leg that has one
 
     Returns
     -------
@@ -137,26 +148,38 @@ def explain(result: Result, label: str | None = None) -> Explanation:
         No part above the anchor is called so.
     """
     mooring = result.mooring
+    pieces = [
+        piece
+        for leg in legs_of(result)
+        for piece in leg.file.pieces[: len(leg.mooring.line.length)]
+    ]
+    free = [
+        leg.file.pieces[0].label
+        for leg in legs_of(result)
+        for keys in leg.file.legs
+        if keys.top.free
+    ]
     try:
-        part = one_part(mooring.file.pieces[:-1], label or TOP)
+        part = one_part(pieces, label or (free or [TOP])[0])
     except LookupError as error:
         raise UsageError(str(error.args[0])) from None
     expect_many(SOLVES)
     figures = figures_of(result, part.place)
     quantities: tuple[str, ...] = ("knockdown", "excursion")
-    if figures.knockdown is None or result.type == "surface":
-        quantities = ("excursion", "used_buoyancy") if result.type == "surface" else ("excursion",)
-    notes = list(_notes(result, quantities))
+    surface = leg_at(result, part.place).type == "surface"
+    if figures.knockdown is None or surface:
+        quantities = ("excursion", "used_buoyancy") if surface else ("excursion",)
+    notes = list(_notes(result, quantities, surface=surface))
     causes, without_drag, miss = None, dict.fromkeys(quantities, 0.0), 0.0
     try:
-        shares = _shares(mooring, figures, "knockdown" in quantities, _point(mooring, part.place))
+        shares = _shares(result, figures, "knockdown" in quantities, part.place)
     except NoEquilibrium as failure:
         notes.append(
             "The shares of the drags cannot be found: with less drag the line has no equilibrium "
             f"({failure.status}: {failure.message})"
         )
     else:
-        causes = _causes(mooring, shares)
+        causes = _causes(result, shares)
         columns = [_COLUMNS.index(name) for name in quantities]
         miss = float(np.abs(shares.miss[columns]).max()) if mooring.water.moving else 0.0
         for name, column in zip(quantities, columns, strict=True):
@@ -182,8 +205,15 @@ _COLUMNS = ("knockdown", "excursion", "used_buoyancy")
 """What the columns of an `Attribution` add up to."""
 
 
-def _notes(result: Result, quantities: tuple[str, ...]) -> Iterator[str]:
-    if result.type == "surface":
+def _notes(
+    result: Result | NetResult, quantities: tuple[str, ...], *, surface: bool
+) -> Iterator[str]:
+    if isinstance(result, NetResult):
+        yield (
+            "Excursions are from the origin of the file's places; the anchor is the one that "
+            "needs the most weight."
+        )
+    if surface:
         yield (
             "A float at the surface is not knocked down: its excursion and the buoyancy it "
             "uses are explained instead."
@@ -197,59 +227,86 @@ def _notes(result: Result, quantities: tuple[str, ...]) -> Iterator[str]:
         yield "There is no current, and so no drag."
 
 
-def _point(mooring: Mooring, place: Place) -> SolverPart:
-    """Index of the piece, and of the clamp or -1, by which the solver knows the part."""
-    pieces = mooring.file.pieces
-    own = replace(place, clamp=-1)
-    index = next(piece.index for piece in pieces if piece.place == own)
-    clamps = [clamp.place for clamp in clamps_in(pieces)]
-    return index, clamps.index(place) if place.is_clamp else -1
-
-
-def _shares(mooring: Mooring, figures: Figures, stands: bool, point: SolverPart) -> Attribution:
+def _shares(
+    result: Result | NetResult, figures: Figures, stands: bool, place: Place
+) -> Attribution:
+    mooring, point = result.mooring, _point(result, place)
+    lines = [leg.mooring.line for leg in legs_of(result)]
     whole = np.array([figures.depth, figures.excursion, figures.used_buoyancy])
     start = None
+    if isinstance(mooring, Net):
+        near = of_a_net(mooring, point)
+        if stands:
+            bare = [with_drag(line, 0.0) for line in lines]
+            start = near(bare)(0, bare[0])
+        return attribute(lines, near, start, whole)
     if stands:
         assert figures.knockdown is not None
         start = np.array([figures.depth - figures.knockdown, 0.0, 1.0])
-    return attribute(mooring.line, mooring.water, start, whole, point)
+    return attribute(lines, of_a_line(mooring.water, point), start, whole)
 
 
-def _causes(mooring: Mooring, shares: Attribution) -> Causes:
-    pieces, clamps = mooring.file.pieces, clamps_in(mooring.file.pieces)
-    parts = list(zip(shares.piece.tolist(), shares.clamp.tolist(), strict=True))
+def _point(result: Result | NetResult, place: Place) -> SolverPart:
+    """Leg, piece and clamp, or -1, by which the solver knows a part."""
+    leg = leg_at(result, place)
+    pieces, own = leg.file.pieces, replace(place, clamp=-1)
+    index = next(piece.index for piece in pieces if piece.place == own)
+    clamps = [clamp.place for clamp in clamps_in(pieces)]
+    number = [each is leg for each in legs_of(result)].index(True)
+    return number, index, clamps.index(place) if place.is_clamp else -1
+
+
+def _causes(result: Result | NetResult, shares: Attribution) -> Causes:
+    legs = legs_of(result)
+    labels = []
+    for leg, piece, clamp in shares.parts:
+        pieces = legs[leg].file.pieces
+        labels.append((clamps_in(pieces)[clamp] if clamp >= 0 else pieces[piece]).label)
+    first = [leg.file.legs[0].first if leg.file.legs else 0 for leg in legs]
     return Causes(
-        index=shares.piece,
-        label=[(clamps[m] if m >= 0 else pieces[p]).label for p, m in parts],
-        clamped=[m >= 0 for _, m in parts],
-        drag=_drags(mooring, parts),
+        index=np.array([first[leg] + piece for leg, piece, _ in shares.parts], dtype=np.int64),
+        label=labels,
+        clamped=[clamp >= 0 for *_, clamp in shares.parts],
+        drag=_drags(result, shares.parts),
         knockdown=shares.shares[:, 0],
         excursion=shares.shares[:, 1],
         used_buoyancy=shares.shares[:, 2],
     )
 
 
-def _drags(mooring: Mooring, parts: list[SolverPart]) -> Floats:
+def _drags(result: Result | NetResult, parts: list[SolverPart]) -> Floats:
     """(p,) size of the horizontal force of the water on each part [N]."""
-    solution = solve_mooring(mooring.line, mooring.water, mooring.settings)
-    change = np.diff(solution.force[: solution.hanging + 1, :2], axis=0)
-    piece = solution.element_piece[: solution.hanging]
-    clamp = solution.element_clamp[: solution.hanging]
-    sums = [change[(piece == p) & (clamp == m)].sum(axis=0) for p, m in parts]
-    return np.array([np.hypot(*force) for force in sums])
+    mooring = result.mooring
+    if isinstance(mooring, Net):
+        solutions = mooring.standing.legs
+    else:
+        solutions = (solve_mooring(mooring.line, mooring.water, mooring.settings),)
+    found = []
+    for leg, p, m in parts:
+        one = solutions[leg]
+        own = len(one.line.length) - 1 - p if one.line.towed else p
+        mine = (one.element_piece == own) & (one.element_clamp == m)
+        mine &= np.arange(len(mine)) < one.hanging
+        found.append(float(np.hypot(*np.diff(one.force[:, :2], axis=0)[mine].sum(axis=0))))
+    return np.array(found)
 
 
-def _variations(mooring: Mooring) -> Iterator[tuple[str, Mooring]]:
-    line, water, percent = mooring.line, mooring.water, f"{CHANGE:.0%}".replace("%", " %")
-    yield f"buoyancy +{percent}", _with(mooring, line=_with_buoyancy(line, 1.0 + CHANGE))
-    yield f"drag −{percent}", _with(mooring, line=with_drag(line, 1.0 - CHANGE))
-    yield f"current +{percent}", _with(mooring, water=drawn_water(water, Draw(1.0 + CHANGE)))
-    yield f"current −{percent}", _with(mooring, water=drawn_water(water, Draw(1.0 - CHANGE)))
+def _variations(mooring: Mooring | Net) -> Iterator[tuple[str, Mooring | Net]]:
+    percent = f"{CHANGE:.0%}".replace("%", " %")
+    yield f"buoyancy +{percent}", _with(mooring, lambda line: _with_buoyancy(line, 1.0 + CHANGE))
+    yield f"drag −{percent}", _with(mooring, lambda line: with_drag(line, 1.0 - CHANGE))
+    for sign, share in (("+", 1.0 + CHANGE), ("−", 1.0 - CHANGE)):
+        flow = drawn_water(mooring.water, Draw(share))
+        yield f"current {sign}{percent}", _with(mooring, lambda line: line, flow)
 
 
-def _with(mooring: Mooring, line: Line | None = None, water: Water | None = None) -> Mooring:
-    """Return the same mooring with a line or water that differs from its file."""
-    return Mooring(mooring.file, line=line or mooring.line, water=water or mooring.water)
+def _with(
+    mooring: Mooring | Net, changed: Callable[[Line], Line], water: Water | None = None
+) -> Mooring | Net:
+    """Return the same mooring or net with lines or water that differ from its file."""
+    if isinstance(mooring, Net):
+        return mooring.with_own([changed(leg.line) for leg in mooring.lines], water)
+    return Mooring(mooring.file, line=changed(mooring.line), water=water or mooring.water)
 
 
 def _with_buoyancy(line: Line, factor: float) -> Line:
@@ -266,7 +323,7 @@ def _with_buoyancy(line: Line, factor: float) -> Line:
     )
 
 
-def _changed(name: str, mooring: Mooring, place: Place) -> WhatIf:
+def _changed(name: str, mooring: Mooring | Net, place: Place) -> WhatIf:
     try:
         return WhatIf(name, figures_of(mooring.solve(), place))
     except NoEquilibrium as failure:

@@ -7,9 +7,12 @@ from typing import Any
 
 from calm.case.adjustment import Adjustment, parse_change, parse_range
 from calm.case.mooring import Mooring
+from calm.case.net import Net
+from calm.case.net_result import NetResult
 from calm.case.result import Result
 from calm.case.targets import Figures, Target, figures_of, parse_target
 from calm.errors import NoEquilibrium, UsageError
+from calm.files import Place
 from calm.solve import expect_many
 from calm.solve.least_change import LeastChange
 from calm.units import with_unit
@@ -37,17 +40,19 @@ class Trial:
     measured : the target's quantity, SI and degrees; None without an equilibrium
     result : the solved mooring, or None
     failure : why there is none
+    place : of the part whose depth and excursion are told; the top of a single line
     """
 
     value: float
     measured: float | None = None
-    result: Result | None = field(default=None, repr=False)
+    result: Result | NetResult | None = field(default=None, repr=False)
     failure: NoEquilibrium | None = None
+    place: Place | None = None
 
     @property
     def figures(self) -> Figures | None:
-        """Return the figures of the line and its top."""
-        return None if self.result is None else figures_of(self.result)
+        """Return the figures of the line and its top, of a net those of the part aimed at."""
+        return None if self.result is None else figures_of(self.result, self.place)
 
 
 @dataclass(frozen=True)
@@ -125,7 +130,7 @@ def _trial_document(trial: Trial) -> dict[str, Any]:
 
 
 def size(
-    mooring: Mooring, target: str, change: str, between: tuple[str, str] | None = None
+    mooring: Mooring | Net, target: str, change: str, between: tuple[str, str] | None = None
 ) -> Sizing:
     """Find the smallest change of a mooring that meets a target.
 
@@ -197,19 +202,20 @@ class _Trials:
     def _solved(self, value: float) -> Trial:
         file = self.change.file if value == self.change.now else self.change.to(value)
         try:
-            result = Mooring(file).solve()
+            result = Net(file).solve() if file.legs else Mooring(file).solve()
         except NoEquilibrium as failure:
             return Trial(value, failure=failure)
-        return Trial(value, self.target.value(result), result)
+        place = self.target.place if file.legs else None
+        return Trial(value, self.target.value(result), result, place=place)
 
 
 def _understood(
-    mooring: Mooring, target: str, change: str, between: tuple[str, str] | None
+    mooring: Mooring | Net, target: str, change: str, between: tuple[str, str] | None
 ) -> tuple[Target, Adjustment, tuple[float, float]]:
     mistakes: list[str] = []
     wanted, adjustment, limits = None, None, None
     try:
-        wanted = parse_target(target, mooring.file.pieces)
+        wanted = parse_target(target, mooring.file)
     except UsageError as error:
         mistakes.append(str(error))
     try:

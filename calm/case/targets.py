@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from dataclasses import dataclass
 from math import hypot
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from calm.case.net_result import EndLoad, NetResult, legs_of
 from calm.case.parts import TOP, one_part, parts_of
+from calm.case.result import AnchorLoad, Result
 from calm.case.result_tables import ClampRow, ComponentRow, rows_by_place
 from calm.errors import UsageError, unknown
-from calm.files import Piece, Place
+from calm.files import MooringFile, Place
+from calm.files.mooring_file import STAND_IN
 from calm.units import DIMENSIONS, QuantityError, parse_quantity
-
-if TYPE_CHECKING:
-    from calm.case.result import Result
 
 QUANTITIES = {
     "knockdown": "length",
@@ -49,7 +48,8 @@ class Target:
     ----------
     text : as it was written
     quantity : one of `QUANTITIES`
-    label, place : of the part; None for the top of the line, and for the anchor's required weight
+    label, place : of the part; None for the top of the line, and for the anchor's required weight,
+        of which `label` is the leg in a net
     relation : ``<=``, ``>=`` or ``=``
     limit : SI, degrees
     """
@@ -66,10 +66,13 @@ class Target:
         """SI unit, or degrees."""
         return DIMENSIONS[QUANTITIES[self.quantity]].unit
 
-    def value(self, result: Result) -> float | None:
+    def value(self, result: Result | NetResult) -> float | None:
         """The quantity in a result; None for a knockdown that has no meaning."""
         if self.quantity == "required_weight":
-            return result.anchor.required_weight
+            if isinstance(result, Result):
+                return result.anchor.required_weight
+            (anchor,) = (one for one in result.anchors if self.label in (None, one.leg))
+            return anchor.required_weight
         value: float | None = getattr(spot_of(result, self.place), self.quantity)
         return value
 
@@ -79,14 +82,15 @@ class Target:
         return {name: getattr(self, name) for name in names}
 
 
-def parse_target(text: str, pieces: Sequence[Piece]) -> Target:
+def parse_target(text: str, file: MooringFile) -> Target:
     """Read a target, e.g. ``tilt(current meter 2) <= 5 deg`` or ``required_weight <= 8 kN``.
 
     Parameters
     ----------
     text : a quantity, the part of the line in brackets (``top``, when not given), ``<=``, ``>=``
         or ``=``, and a limit with its unit
-    pieces : of the line, in which labels are looked up
+    file : in which labels are looked up; the required weight in a net is of the anchor of a leg,
+        named in the brackets where there are several: ``required_weight(stem) <= 8 kN``
 
     Raises
     ------
@@ -108,8 +112,14 @@ def parse_target(text: str, pieces: Sequence[Piece]) -> Target:
     if relation not in RELATIONS:
         what = f"`{relation}` is not a relation" if relation else "there is no relation"
         raise mistake("relation", f"{what}; write <=, >= or =, as in `{_EXAMPLE}`")
-    meant = None
-    if found["part"] is not None and quantity == "required_weight":
+    meant, pieces, leg = None, file.pieces, None
+    if file.legs and quantity == "required_weight":
+        anchored = [each.name for each in file.legs if each.bottom.anchor is not None]
+        leg = found["label"] and found["label"].strip()
+        if leg not in anchored and (leg is not None or len(anchored) != 1):
+            said = f"no leg `{leg}` has an anchor" if leg else "name the leg of the anchor"
+            raise mistake("part" if leg else "quantity", unknown(said, leg or "", anchored))
+    elif found["part"] is not None and quantity == "required_weight":
         raise mistake("part", "the required weight belongs to the anchor; leave out the brackets")
     part = TOP if found["part"] is None else found["label"].strip()
     called_top = any(each.label == TOP for each in parts_of(pieces))
@@ -118,12 +128,14 @@ def parse_target(text: str, pieces: Sequence[Piece]) -> Target:
             meant = one_part(pieces, part)
         except LookupError as error:
             raise mistake("label", str(error.args[0])) from None
+    elif file.legs and quantity != "required_weight":
+        raise mistake("quantity", f"a net has no one top; name a piece: `{quantity}(LABEL)`")
     try:
         limit = parse_quantity(found["limit"], QUANTITIES[quantity])
     except QuantityError as error:
         shown = f"`{found['limit']}` {error}" if found["limit"] else "there is no limit"
         raise mistake("limit", shown) from None
-    label, place = (None, None) if meant is None else (meant.label, meant.place)
+    label, place = (leg, None) if meant is None else (meant.label, meant.place)
     return Target(text, quantity, label, RELATIONS[relation], limit, place)
 
 
@@ -145,7 +157,7 @@ class Spot:
     tension: float
 
 
-def spot_of(result: Result, place: Place | None = None) -> Spot:
+def spot_of(result: Result | NetResult, place: Place | None = None) -> Spot:
     """Return what a result says of the part at a place; of the top of the line where none is
     given.
     """
@@ -168,23 +180,39 @@ class Figures:
     ----------
     depth, knockdown, excursion : of the line's top or another part of it
     used_buoyancy : share in use of the buoyancy at the surface, 1 below it
-    tension, vertical, horizontal, required_weight : of the anchor
+    tension, vertical, horizontal, required_weight : of the anchor; None where there is none
     """
 
     depth: float
     knockdown: float | None
     excursion: float
     used_buoyancy: float
-    tension: float
-    vertical: float
-    horizontal: float
-    required_weight: float
+    tension: float | None
+    vertical: float | None
+    horizontal: float | None
+    required_weight: float | None
 
 
-def figures_of(result: Result, place: Place | None = None) -> Figures:
-    """The figures of a result; those of the line are of the part at a place, by default the top."""
-    spot, anchor = spot_of(result, place), result.anchor
+def figures_of(result: Result | NetResult, place: Place | None = None) -> Figures:
+    """The figures of a result; those of the line are of the part at a place, by default the top.
+
+    Of a net the anchor is the one that needs the most weight.
+    """
+    spot, leg = spot_of(result, place), leg_at(result, place)
+    anchor: AnchorLoad | EndLoad | None = leg.anchor
+    if isinstance(result, NetResult):
+        anchor = max(result.anchors, key=lambda one: one.required_weight or 0.0, default=None)
+    names = ("tension", "vertical", "horizontal", "required_weight")
     return Figures(
-        *(spot.depth, spot.knockdown, spot.excursion, result.top.used_buoyancy),
-        *(anchor.tension, anchor.vertical, anchor.horizontal, anchor.required_weight),
+        *(spot.depth, spot.knockdown, spot.excursion, leg.top.used_buoyancy),
+        *(None if anchor is None else getattr(anchor, name) for name in names),
     )
+
+
+def leg_at(result: Result | NetResult, place: Place | None = None) -> Result:
+    """The leg that the part at a place is in, by default the first; a single line is one."""
+    for leg in legs_of(result):
+        own = [piece for piece in leg.file.pieces if piece.use != STAND_IN]
+        if place is None or any(part.place == place for part in parts_of(own)):
+            return leg
+    raise KeyError(place)

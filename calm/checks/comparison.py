@@ -8,13 +8,16 @@ from datetime import date
 from math import hypot
 from typing import Any
 
-from calm.case import Mooring, Result, Tow, TowResult
+from calm.case import Mooring, Tow, TowResult
+from calm.case.net import Net
+from calm.case.net_result import AnyResult, NetResult
 from calm.case.result_tables import ClampRow, ComponentRow, rows_by_place
-from calm.checks.assess import RULES, check
+from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment
 from calm.checks.finding import State
 from calm.checks.inventory import total_of
-from calm.errors import NoEquilibrium
+from calm.checks.net_check import check_any
+from calm.errors import NoEquilibrium, or_why_not
 from calm.files import Flexible
 from calm.files.file_differences import Change, Differences, differences
 from calm.quantities import QUANTITIES
@@ -83,7 +86,7 @@ class Comparison:
 class _Design:
     """A design solved: `failure` says why it has no result."""
 
-    result: Result | TowResult | None
+    result: AnyResult | None
     failure: str
     assessment: Assessment | None
 
@@ -94,11 +97,11 @@ _Figures = dict[str, tuple[str, str, Number | str]]
 
 def comparison_of(
     names: tuple[str, str],
-    before: Mooring | Tow,
-    after: Mooring | Tow,
+    before: Mooring | Tow | Net,
+    after: Mooring | Tow | Net,
     day: date | None = None,
 ) -> Comparison:
-    """Solve and judge two moorings, or solve two tows; one that does not stand is compared too.
+    """Solve and judge two moorings or nets, or two tows; one that does not stand is compared too.
 
     Parameters
     ----------
@@ -124,13 +127,18 @@ def comparison_of(
 _NONE = "", "", None
 
 
-def _solved(line: Mooring | Tow, day: date | None) -> _Design:
+def _solved(line: Mooring | Tow | Net, day: date | None) -> _Design:
     if isinstance(line, Tow):
         try:
             return _Design(line.solve(), "", None)
         except NoEquilibrium as failure:
             return _Design(None, str(failure), None)
-    assessment = check(line, day=day)
+    assessment = check_any(line, day=day)
+    if isinstance(line, Net):
+        net = or_why_not(line.solve)
+        if isinstance(net, NoEquilibrium):
+            return _Design(None, str(net), assessment)
+        return _Design(net, "", assessment)
     situation = assessment.stands[0].situations[0]
     return _Design(
         situation.result,
@@ -150,6 +158,8 @@ def _figures_of(design: _Design) -> _Figures:
             "body.tension": ("pull on the body", "tension", result.body.tension),
             "tow_point.tension": ("pull on the tow point", "tension", result.tow_point.tension),
         }
+    elif isinstance(result, NetResult):
+        found |= _figures_of_net(result)
     elif result is not None:
         top, anchor = result.top, result.anchor
         found |= {
@@ -179,6 +189,24 @@ def _figures_of(design: _Design) -> _Figures:
             "mass_in_air": ("mass in air, as far as known", "dry_mass", total.dry_mass),
             "weight_in_water": ("weight in water", "wet_weight", total.wet_weight),
         }
+    return found
+
+
+def _figures_of_net(result: NetResult) -> _Figures:
+    """Where its nodes and free ends are, and what its anchors bear."""
+    found: _Figures = {}
+    for node in result.nodes:
+        found[f"{node.name}.depth"] = (f"depth of node {node.name}", "depth", node.depth)
+    for leg in result.legs:
+        if leg.file.legs[0].top.free:
+            found[f"{leg.name}.top.depth"] = (f"top of leg {leg.name}", "depth", leg.top.depth)
+    for end in (*result.anchors, *result.held):
+        what = "anchor" if end in result.anchors else "held end"
+        name, of = f"{end.leg}.{what.replace(' ', '_')}", f"of leg {end.leg}"
+        found[f"{name}.tension"] = (f"pull on the {what} {of}", "tension", end.tension)
+        if end.required_weight is not None:
+            needed = (f"anchor weight needed {of}", "required_weight", end.required_weight)
+            found[f"{name}.required_weight"] = needed
     return found
 
 

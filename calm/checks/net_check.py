@@ -38,11 +38,13 @@ from calm.checks.handling import Handling, backup
 from calm.checks.inventory import inventory_of
 from calm.checks.recovery import Break, Loss, losses_among, required_margin
 from calm.checks.situations import (
+    DEPLOYED,
     FOULED,
     LEAST_CURRENT,
     STILL_ONLY,
     STRUMMING,
     currents,
+    deployed_file,
     in_other_waters,
     strumming_file,
 )
@@ -61,13 +63,14 @@ NOT_HANDLED = (
 _NOT_SOLVED = Status.NOT_CONVERGED.because("The launch and the recovery of a net are not solved.")
 
 
-def check_any(*designs: Mooring | Net) -> Assessment:
+def check_any(*designs: Mooring | Net, day: date | None = None) -> Assessment:
     """Judge a mooring, or a net, loaded in each of the environments it is judged in."""
     nets = [each for each in designs if isinstance(each, Net)]
     if not nets:
-        return check(*(each for each in designs if isinstance(each, Mooring)))
+        return check(*(each for each in designs if isinstance(each, Mooring)), day=day)
     name = nets[0].file.name
-    return assessment_of_net(name, [one for net in nets for one in stands_of_net(net, name)])
+    stands = [one for net in nets for one in stands_of_net(net, name, day)]
+    return assessment_of_net(name, stands, day)
 
 
 def stands_of_net(net: Net, name: str, day: date | None = None) -> list[MooringInEnvironment]:
@@ -113,6 +116,10 @@ def _situations(net: Net) -> Iterator[tuple[str, NetResult | NoEquilibrium]]:
         yield FOULED, or_why_not(net.with_lines(legs).solve)
     if (strummed := strumming_file(net.file)) is not None:
         yield STRUMMING, or_why_not(Net(strummed).solve)
+    if net.file.deployed is not None:
+        deployed = deployed_file(net.file)
+        if (deployed.pieces, deployed.environment) != (net.file.pieces, net.file.environment):
+            yield DEPLOYED, or_why_not(Net(deployed).solve)
 
 
 def assessment_of_net(

@@ -154,24 +154,27 @@ def as_deployed(mooring: Mooring) -> Mooring:
     NoEquilibrium
         What is cut to fit has no length that fits as designed.
     """
-    deployed = mooring.file.deployed
+    file = mooring.file if mooring.file.deployed is None else cut_like(mooring.file, mooring)
+    return Mooring(deployed_file(file))
+
+
+def deployed_file(file: MooringFile) -> MooringFile:
+    """The same of a file in which nothing is cut to fit, such as that of a net."""
+    deployed = file.deployed
     if deployed is None:
-        raise UsageError(f"{mooring.file.path} has no `deployed:` to compare its design with")
+        raise UsageError(f"{file.path} has no `deployed:` to compare its design with")
     items = {item.label: item for item in deployed.items}
-    file = cut_like(mooring.file, mooring)
     depth, position = deployed.depth, deployed.position
     environment = replace(
         file.environment,
         depth=file.environment.depth if depth is None else depth,
         position=position or file.environment.position,
     )
-    return Mooring(
-        replace(
-            file,
-            position=position or file.position,
-            environment=environment,
-            pieces=tuple(_as_cut(piece, items) for piece in file.pieces),
-        )
+    return replace(
+        file,
+        position=position or file.position,
+        environment=environment,
+        pieces=tuple(_as_cut(piece, items) for piece in file.pieces),
     )
 
 

@@ -119,7 +119,7 @@ def _read(
     workers: int | None,
     against: Path | None,
     ready: Callable[[], None],
-) -> tuple[list[DesignFile], list[Path], Mooring | None]:
+) -> tuple[list[DesignFile], list[Path], Mooring | Net | None]:
     """What is judged, the tows among the files, and the earlier design; or all their mistakes.
 
     `ready` is called while other processes read.
@@ -128,20 +128,20 @@ def _read(
         return *read_designs(
             files, environments, catalogs, workers, meanwhile=ready, nets=True
         ), None
-    import calm
     from calm.case import Tow
+    from calm.case.net import load_any
 
     problems: list[Problem] = []
-    earlier: Mooring | Tow | None = None
+    earlier: Mooring | Tow | Net | None = None
     designs: list[DesignFile] = []
     tows: list[Path] = []
     try:
         first = environments[0] if environments else None
-        earlier = calm.load(against, environment=first, catalogs=catalogs)
+        earlier = load_any(against, first, catalogs)
     except InputError as error:
         problems += error.problems
     try:
-        designs, tows = read_designs(files, environments, catalogs, workers)
+        designs, tows = read_designs(files, environments, catalogs, workers, nets=True)
     except InputError as error:
         problems = [*error.problems, *problems]
     if problems:
@@ -167,14 +167,14 @@ class CheckedMooring(NamedTuple):
 
 
 def _beside(
-    path: Path, earlier: Mooring, design: DesignFile, assessment: Assessment
+    path: Path, earlier: Mooring | Net, design: DesignFile, assessment: Assessment
 ) -> DrawnSection:
     """The section of a mooring, with what differs from an earlier design."""
     from calm.checks.comparison import comparison_of
     from calm.report.check_report import mooring_section
 
     names = str(path), str(design.path)
-    return _drawn(mooring_section(assessment, comparison_of(names, earlier, design.lines[0])), 1)
+    return _drawn(mooring_section(assessment, comparison_of(names, earlier, design.moorings[0])), 1)
 
 
 def _drawn(section: Section, number: int) -> DrawnSection:

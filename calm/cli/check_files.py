@@ -24,13 +24,6 @@ class DesignFile:
     name: str
     moorings: tuple[Mooring | Net, ...]
 
-    @property
-    def lines(self) -> tuple[Mooring, ...]:
-        """The moorings that are single lines: all of them or none."""
-        from calm.case import Mooring
-
-        return tuple(each for each in self.moorings if isinstance(each, Mooring))
-
 
 def read_designs(
     files: Sequence[Path],

@@ -16,6 +16,7 @@ from calm.errors import NoEquilibrium, UsageError
 
 if TYPE_CHECKING:
     from calm.case import Mooring, Tow
+    from calm.case.net import Net
     from calm.checks.comparison import Comparison
 
 DIFF_EXAMPLES = """Examples:
@@ -47,7 +48,7 @@ def diff(
     Parameters
     ----------
     before
-        A mooring or tow file.
+        A mooring, tow or net file.
     after
         Another; without it, the `deployed:` of the first is compared with its design.
     environment
@@ -58,9 +59,9 @@ def diff(
     """
     files = (before,) if after is None else (before, after)
     outputs = Outputs(files, json)
-    from calm.case import load
+    from calm.case.net import load_any
 
-    lines = read_all(load, files, environment, catalog or [])
+    lines = read_all(load_any, files, environment, catalog or [])
     for file, line in zip(files, lines, strict=True):
         for notice in line.file.notices:
             narrate(f"{file}: {notice}")
@@ -71,22 +72,27 @@ def diff(
     return ExitCode.DONE
 
 
-def compared(files: tuple[Path, ...], lines: list[Mooring | Tow]) -> Comparison:
+def compared(files: tuple[Path, ...], lines: list[Mooring | Tow | Net]) -> Comparison:
     """Two designs, or one with what was deployed of it.
 
     UsageError: a mooring and a tow; a single tow, or a file that says nothing of a deployment.
     """
-    from calm.case import Mooring
+    from calm.case import Mooring, Tow
+    from calm.case.net import Net
     from calm.checks.comparison import comparison_of
-    from calm.checks.situations import as_deployed
+    from calm.checks.situations import as_deployed, deployed_file
 
     first, last = lines[0], lines[-1]
-    if isinstance(first, Mooring) != isinstance(last, Mooring):
+    if isinstance(first, Tow) != isinstance(last, Tow):
         raise UsageError(f"{files[0]} and {files[1]}: a mooring is not compared with a tow")
     if len(lines) == 2:
         return comparison_of((str(files[0]), str(files[1])), first, last)
-    if not isinstance(first, Mooring):
+    if isinstance(first, Tow):
         raise UsageError(f"{files[0]} is a tow; give the file to compare it with")
+    if isinstance(first, Net):
+        laid = replace(deployed_file(first.file), deployed=None)
+        planned = replace(first.file, deployed=None)
+        return comparison_of(("design", "deployed"), Net(planned), Net(laid))
     try:
         deployed = as_deployed(first)
         design, there = (Mooring(replace(one.file, deployed=None)) for one in (first, deployed))
@@ -107,7 +113,8 @@ SIZE_EXAMPLES = """Examples:
       --change "top float.buoyancy" --json -
 
 Targets: knockdown, depth, excursion, tilt or tension of a label or of top, and
-required_weight of the anchor. Changes: LABEL.buoyancy, LABEL.length, LABEL.count."""
+required_weight of the anchor, in a net required_weight(LEG). Changes:
+LABEL.buoyancy, LABEL.length, LABEL.count."""
 
 
 def size(
@@ -131,7 +138,7 @@ def size(
     Parameters
     ----------
     file
-        A mooring file.
+        A mooring file, or that of a net of legs.
     target
         A quantity of a part of the line, <=, >= or =, and a limit with its unit.
     change
@@ -145,12 +152,12 @@ def size(
         Write the answer as JSON, - to print it.
     """
     outputs = Outputs((file,), json)
-    import calm
     from calm.case import Tow
+    from calm.case.net import load_any
     from calm.case.size import size as sized
     from calm.report.explanation import refusal, sizing_part
 
-    mooring = calm.load(file, environment=environment, catalogs=catalog or [])
+    mooring = load_any(file, environment, catalog or [])
     if isinstance(mooring, Tow):
         raise UsageError(f"{file} is a tow; calm size changes moorings")
     show_units(units, [mooring.file])

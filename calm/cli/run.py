@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from calm.case import Mooring, Result, Tow
     from calm.case.explain import Explanation
     from calm.case.net import Net
-    from calm.case.net_result import AnyResult
+    from calm.case.net_result import AnyResult, NetResult
     from calm.case.uncertain import Uncertain
     from calm.drawing.schematic.in_terminal import TerminalSchematic
 
@@ -84,7 +84,7 @@ def run(
         Write the same report as .pdf.
     explain
         Show how much of the knockdown each drag causes, and the effect of more
-        buoyancy, less drag or another current; in the JSON too. Moorings only.
+        buoyancy, less drag or another current; in the JSON too. Not of tows.
     schematic
         Draw the line, part by part and not to scale, above its table; in its
         place if there is no equilibrium.
@@ -103,9 +103,9 @@ def run(
 
     lines = read_all(load_any, files, environment, catalog or [])
     show_units(units, [line.file for line in lines])
-    of_moorings = {"--explain": explain, "--uncertainty": uncertainty}
-    _refuse(of_moorings, "moorings; these are tows", Tow, files, lines)
-    _refuse(of_moorings, "single lines; these are nets of legs", Net, files, lines)
+    drawn = {"--uncertainty": uncertainty}
+    _refuse({"--explain": explain} | drawn, "moorings; these are tows", Tow, files, lines)
+    _refuse(drawn, "single lines; these are nets of legs", Net, files, lines)
     return solve_and_show(
         lines, outputs, explain=explain, schematic=schematic, draws=draws, verbose=verbose
     )
@@ -171,19 +171,21 @@ def solve_and_show(
         Say how each solution was reached.
     """
     from calm.case import Result
+    from calm.case.net_result import NetResult
 
     drawn_often = None if draws is None else _to_draw_often(*draws)
     outcomes = []
     for file, line in zip(outputs.files, lines, strict=True):
         result, failure = _solved(file, line)
         mooring = result if isinstance(result, Result) else None
+        moored = result if isinstance(result, Result | NetResult) else None
         outcomes.append(
             FileOutcome(
                 file,
                 line.file.name,
                 result,
                 failure,
-                explanation=_explained(mooring) if mooring and explain else None,
+                explanation=_explained(moored) if moored and explain else None,
                 schematic=_schematic(line, result) if schematic else (),
                 uncertain=drawn_often(mooring) if mooring and drawn_often else None,
                 verbose=verbose,
@@ -224,7 +226,7 @@ def _refuse(
         raise UsageError(f"{asked[0]} is for {what}: {', '.join(those)}")
 
 
-def _explained(result: Result) -> Explanation:
+def _explained(result: Result | NetResult) -> Explanation:
     from calm.case.explain import explain
 
     return explain(result)

@@ -201,6 +201,10 @@ def _around(file: MooringFile) -> dict[str, ComparedValue]:
     for name in ("position", "tow", "solver", "checks", "uncertainty", "document", "deployed"):
         if (part := getattr(file, name)) is not None:
             found |= {f"{name}.{key}": one for key, one in _figures(part).items()}
+    for leg in file.legs:
+        for side, end in zip(("top", "bottom"), leg.ends, strict=True):
+            held = {f"legs.{leg.name}.{side}.{key}": one for key, one in _figures(end).items()}
+            found |= held
     for name, overlay in file.variants.items():
         given = overlay if isinstance(overlay, dict) else {"": overlay}
         found |= {f"environments.{name}.{key}": _text(_said(one)) for key, one in given.items()}

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
 MOST_LEGS = 40
 NET_REFUSED = (
-    "this is a net of legs, for `calm run`, `calm check`, `calm batch` and `calm deck`; this takes "
-    "a single line: one free end, one anchor"
+    "this is a net of legs, for `calm run`, `check`, `batch`, `deck`, `size`, `diff` and `export`; "
+    "this takes a single line: one free end, one anchor"
 )
 
 _Offset = Annotated[float, QuantityField("length")]

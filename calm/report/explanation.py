@@ -13,6 +13,8 @@ from math import floor, hypot, log10
 from typing import TYPE_CHECKING
 
 from calm.case import Result
+from calm.case.net_result import NetResult
+from calm.case.parts import parts_of
 from calm.checks.finding import State
 from calm.checks.inventory import inventory_of
 from calm.checks.recovery import recovery_of
@@ -166,7 +168,8 @@ def _cells(columns: list[_Column], shares: list[float], wholes: list[float]) -> 
 
 
 def _changes(explanation: Explanation) -> Table:
-    columns = [_COLUMNS[name] for name in (*explanation.quantities, *_ANCHOR)]
+    anchor = _ANCHOR if explanation.figures.tension is not None else ()
+    columns = [_COLUMNS[name] for name in (*explanation.quantities, *anchor)]
     heads = (Column(""), *(Column(each.heading, each.unit, numeric=True) for each in columns))
     now = explanation.figures
     as_it_is = (Cell(_figure_text(column, now), strong=True) for column in columns)
@@ -259,7 +262,9 @@ def _comparison(sizing: Sizing, before: Trial, after: Trial) -> Table:
     aimed = (name, target.unit.replace("deg", "°"), *measured)
     rows = [tuple(Cell(text, strong=True) for text in aimed)]
     afloat = after.result is not None and after.result.type == "surface"
-    for field, quantity, words in _ROWS:
+    net = isinstance(after.result, NetResult)
+    for field, quantity, told in _ROWS:
+        words = told.replace("the top", _place_told(after)) if net else told
         if words == name or (field == "used_buoyancy" and not afloat):
             continue
         shown = QUANTITIES[quantity]
@@ -267,6 +272,13 @@ def _comparison(sizing: Sizing, before: Trial, after: Trial) -> Table:
         rows.append((Cell(words), Cell(shown.display_unit), *map(Cell, map(shown.format, figures))))
     heads = (Column(name, numeric=True) for name in _SHORT)
     return Table("", (Column(""), Column("", share=0.0), *heads), tuple(rows))
+
+
+def _place_told(trial: Trial) -> str:
+    """The label of the part of a net whose depth and excursion are told."""
+    assert trial.result is not None
+    parts = parts_of(trial.result.file.pieces)
+    return next((part.label for part in parts if part.place == trial.place), parts[0].label)
 
 
 def _new_warnings(sizing: Sizing) -> list[str]:

@@ -79,7 +79,7 @@ def sized(mooring: Mooring, target: str, change: str) -> Offer:
         They cannot be understood.
     """
     adjustment = parse_change(change, mooring.file)
-    parse_target(target, mooring.file.pieces)
+    parse_target(target, mooring.file)
     item = adjustment.parts[0].place.item
     key, unit = change.rpartition(".")[2], f" {adjustment.unit}" if adjustment.unit else ""
     clamps = (f"clamps.{part.place.clamp}" for part in adjustment.parts if part.place.is_clamp)

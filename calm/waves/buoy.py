@@ -8,18 +8,16 @@ from math import pi, sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from calm.errors import UsageError
 from calm.files import Cylinder, Sphere
 from calm.files.rigid import Displacement, Rigid
 from calm.physics.line import Floats
+from calm.waves.lumped_line import Complexes
 
 if TYPE_CHECKING:
     from calm.case import Mooring
     from calm.solve import Solution
-
-Complexes = NDArray[np.complex128]
 
 DISC_ADDED = 4.0 / 3.0
 """Added mass of a disc at the surface over ρR³: half of that of one deep down, 8/3 (Lamb 1932)."""

@@ -14,6 +14,8 @@ import pytest
 import xarray
 from scipy.optimize import fsolve
 
+from calm.case.adjustment import parse_change
+from calm.case.explain import explain
 from calm.case.net import load_any
 from calm.checks.criterion import READINGS, pieces_of
 from calm.cli.main import main
@@ -139,19 +141,18 @@ def test_in_still_water_nothing_is_knocked_down(
     assert found["nodes"][0]["depth"] == pytest.approx(500.0 - 0.7 - 200.0 - 0.83, abs=1.5)
 
 
-@pytest.mark.parametrize("command", ["size", "waves", "diff"])
+@pytest.mark.parametrize("command", ["waves", "motion"])
 def test_other_commands_say_which_one_solves_nets(
     command: str, net: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     more: dict[str, list[str | Path]] = {
-        "size": ["--target", "top.depth=100 m", "--change", "main float.buoyancy"],
         "waves": ["--hs", "2 m", "--tp", "8 s"],
-        "diff": [net],
+        "motion": ["--pressures", net, "-o", tmp_path / "m.nc"],
     }
     assert run(command, net, *more.get(command, [])) == 2
     told = capsys.readouterr().err
     assert f"{net}:5:1" in told
-    assert "for `calm run`, `calm check` and `calm batch`" in told
+    assert "for `calm run`, `check`, `batch`, `deck`, `size`, `diff` and `export`" in told
 
 
 def test_a_net_goes_to_moordyn_and_back(
@@ -197,12 +198,11 @@ def test_check_refuses_to_count_samples_of_a_net(
     assert "--uncertainty is for single lines" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("option", ["--explain", "--uncertainty"])
 def test_options_for_single_lines_are_refused(
-    option: str, net: Path, capsys: pytest.CaptureFixture[str]
+    net: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert run("run", net, option) == 2
-    assert f"{option} is for single lines" in capsys.readouterr().err
+    assert run("run", net, "--uncertainty") == 2
+    assert "--uncertainty is for single lines" in capsys.readouterr().err
 
 
 def test_files_of_a_net_have_the_leg_of_each_part(
@@ -551,6 +551,7 @@ def test_the_anchor_of_a_line_is_judged_on_the_slope(
     assert sliding["limit"] == pytest.approx(held, rel=1e-9)
 
 
+@pytest.mark.thorough
 def test_the_deck_of_a_net_lists_it_leg_by_leg(
     net: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -582,3 +583,116 @@ def test_the_deck_of_a_net_lists_it_leg_by_leg(
     # both within the errors that they state, some millimetres
     assert effect == pytest.approx(after - before, abs=5e-3)
     assert effect == pytest.approx(-0.75, abs=0.02)
+
+
+ONE_LINE = """\
+name: One line
+environment: {depth: 200 m, current: {speed: 0.6 m/s, toward: 70 deg}}
+line:
+  - {use: sphere-steel-1250, label: float}
+  - {use: wire-jacketed-8, length: 60 m, label: upper, clamps: [{use: sbe37, at: 20 m}]}
+  - {use: rcm11}
+  - {use: wire-jacketed-8, length: 80 m, label: lower}
+  - {use: anchor-wheels-4}
+"""
+
+
+@pytest.mark.thorough
+def test_a_net_of_one_line_cut_in_two_is_explained_as_the_line(tmp_path: Path) -> None:
+    """Both by the same integral, one by the search of a line, one by the slopes of a net."""
+    text = ONE_LINE.replace("line:\n", "legs:\n  above:\n    line:\n").replace("  - {", "      - {")
+    text = text.replace("      - {use: wire-jacketed-8, length: 80 m, label: lower}",
+                        "    bottom: {join: A}\n  below:\n    top: {join: A}\n    line:\n"
+                        "      - {use: wire-jacketed-8, length: 80 m, label: lower}")  # fmt: skip
+    one, two = tmp_path / "one.yaml", tmp_path / "two.yaml"
+    one.write_text(ONE_LINE)
+    two.write_text(text)
+    results = [load_any(file).solve() for file in (one, two)]
+    for label in ("float", "sbe37", "lower"):
+        line, net = (explain(result, label) for result in results)  # type: ignore[arg-type]
+        assert line.causes is not None and net.causes is not None
+        assert net.causes.label == line.causes.label
+        assert net.quantities == line.quantities
+        for name in ("drag", "knockdown", "excursion"):
+            # the shares are scaled to figures that state errors of a few 1e-5 of themselves
+            expected = getattr(line.causes, name)
+            assert getattr(net.causes, name) == pytest.approx(expected, rel=2e-3, abs=1e-4), name
+        assert net.without_drag["excursion"] == pytest.approx(0.0, abs=1e-3)
+        for ours, theirs in zip(net.changes, line.changes, strict=True):
+            assert ours.figures is not None and theirs.figures is not None
+            assert ours.figures.excursion == pytest.approx(theirs.figures.excursion, rel=1e-3)
+
+
+@pytest.mark.thorough
+def test_a_net_is_explained(net: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run("run", net, "--explain", "--json", "-") == 0
+    found = json.loads(capsys.readouterr().out)["explain"]
+    assert found["label"] == "main float"
+    for name in ("knockdown", "excursion"):
+        whole = found["figures"][name] - found["without_drag"][name]
+        assert sum(row[name] for row in found["causes"]) == pytest.approx(whole, rel=1e-6)
+    assert {row["label"] for row in found["causes"]} >= {"rcm11", "sbe37 2", "release-ar861"}
+
+
+@pytest.mark.thorough
+def test_a_piece_of_a_net_is_sized(net: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    change = ["--change", "main float.buoyancy", "--json", "-"]
+    assert run("size", net, "--target", "required_weight(stem) <= 10 kN", *change) == 0
+    found = json.loads(capsys.readouterr().out)
+    sphere = f"use: sphere-steel-1250, buoyancy: {found['after']['value']} N"
+    net.write_text(NET.replace("use: sphere-steel-1250", sphere))
+    (anchor,) = document(net, capsys)["anchors"]
+    assert anchor["required_weight"] == pytest.approx(10e3, rel=1e-5)
+    assert run("size", net, "--target", "knockdown <= 1 m", *change) == 2
+    assert "name a piece: `knockdown(LABEL)`" in capsys.readouterr().err
+
+
+def test_more_floats_in_one_leg_move_no_other(net: Path) -> None:
+    file = load_any(net).file
+    four = parse_change("glass-17in.count", file)
+    seven = four.to(7.0)
+    assert [piece.label for piece in seven.pieces if piece.use == "glass-17in"][
+        -1
+    ] == "glass-17in 7"
+    lines = [[piece.use for piece in seven.pieces[leg.first : leg.end]] for leg in seven.legs]
+    assert [len(line) for line in lines] == [2, 8, 2, 3]
+    assert lines[3] == ["release-ar861", "wire-jacketed-8", "anchor-wheels-4"]
+
+
+@pytest.mark.thorough
+def test_two_nets_are_compared(
+    net: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    other = tmp_path / "other.yaml"
+    other.write_text(
+        NET.replace("length: 60 m", "length: 70 m")
+        .replace("    top: {join: A}\n    bottom: free", "    top: {join: B}\n    bottom: free")
+        .replace("    bottom: {join: A}\n  pennant", "    bottom: {join: B}\n  pennant")
+        + "  link:\n    line: [{use: wire-jacketed-8, length: 5 m}]\n"
+        "    top: {join: B}\n    bottom: {join: A}\n"
+    )
+    assert run("diff", net, other, "--json", "-") == 0
+    found = json.loads(capsys.readouterr().out)
+    changed = {row["where"]: (row["from"], row["to"]) for row in found["changed"]}
+    assert changed["legs.pennant.top.join"] == ("A", "B")
+    assert changed["wire-jacketed-8 2.length"] == (60.0, 70.0)
+    figures = {row["name"]: (row["from"], row["to"]) for row in found["figures"]}
+    with_link = document(other, capsys)
+    depths = {node["name"]: node["depth"] for node in with_link["nodes"]}
+    assert figures["A.depth"][1] == pytest.approx(depths["A"], abs=1e-6)
+    assert figures["B.depth"][0] is None
+    assert figures["stem.anchor.tension"][1] == pytest.approx(with_link["anchor"]["tension"])
+    assert figures["margin.backup"] != (None, None)
+
+
+@pytest.mark.thorough
+def test_a_net_is_compared_with_what_was_deployed_of_it(
+    net: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    deployed = "deployed: {depth: 510 m, items: [{label: wire-jacketed-8 4, length: 205 m}]}\n"
+    net.write_text(NET + deployed)
+    assert run("diff", net, "--json", "-") == 0
+    figures = {row["name"]: row for row in json.loads(capsys.readouterr().out)["figures"]}
+    moved = figures["A.depth"]["to"] - figures["A.depth"]["from"]
+    # ten metres deeper on a stem, little inclined, that is five metres longer
+    assert moved == pytest.approx(5.0, abs=0.05)
