@@ -155,7 +155,7 @@ class Mooring:
     def with_(
         self, label: str | None = None, /, environment: str | Path | None = None, **keys: Any
     ) -> Mooring:
-        """Return the same mooring with some values of its file changed, as `Origin.with_values`.
+        """Return the same mooring with some values of its file changed, as `Origin.changed`.
 
         Parameters
         ----------
@@ -314,18 +314,13 @@ class Origin:
         environment: str | Path | None,
         keys: Mapping[str, Any],
     ) -> Mooring | Tow:
-        """Return what is read with other values, or in another environment."""
-        other = self.with_values(file, label, keys)
-        other = replace(other, environment=environment or self.environment)
-        return as_read(other.read(), other)
-
-    def with_values(self, file: MooringFile, label: str | None, keys: Mapping[str, Any]) -> Origin:
-        """Return the same with values put into the text.
+        """Read the same with values put into its text, or in another environment.
 
         Parameters
         ----------
         file : as it was read
         label : of the piece or clamp that has the keys; None where they are those of the file
+        environment : None for its own
         keys : names and values as the file writes them; None takes a key out; where the file has a
             mapping under a name, its keys are changed one by one
 
@@ -342,7 +337,8 @@ class Origin:
                 where = (*place, name) if key is None else (*place, name, key)
                 written = str(each) if isinstance(each, (int, float)) else each
                 draft = draft.put_at(where, written)
-        return replace(self, text=draft.text)
+        other = replace(self, text=draft.text, environment=environment or self.environment)
+        return as_read(other.read(), other)
 
 
 def _place_of(file: MooringFile, label: str) -> Location:
