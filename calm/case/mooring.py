@@ -19,8 +19,7 @@ from calm.case.result import Result
 from calm.case.tow import Tow
 from calm.errors import NoEquilibrium, UsageError, unknown
 from calm.files import MooringFile, read_mooring
-from calm.files.editing import Draft
-from calm.files.editing.draft import LINE, clamps_of
+from calm.files.editing import LINE, Draft, clamps_of
 from calm.files.yaml_document import Location
 from calm.physics.drag import BLOCK_CD, area_drag
 from calm.physics.line import Line, Water

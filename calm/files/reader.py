@@ -163,6 +163,7 @@ def read_mooring(
         pieces = (*pieces, stand_in_anchor(0, len(top.data["line"])))
     if legged:
         legs, pieces = read_legs(top, reader, problems)
+        line_is_whole = bool(pieces) and len(problems) == before
     else:
         (_check_tow if towed else _check_anchor)(pieces, top, problems)
         _check_one_fit(pieces, top, problems)
