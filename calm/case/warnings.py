@@ -249,7 +249,7 @@ def _strums_along_the_flow(result: TowResult, solution: Solution) -> Iterator[st
     law = solution.line.strumming
     if law is None or result.strumming is None:
         return
-    current, _ = solution.water.at(-solution.position[:-1, 2])
+    current = solution.water.current_at(-solution.position[:-1, 2])
     speed = np.linalg.norm(current, axis=1)
     sine = np.divide(flow_across(solution), speed, out=np.ones(len(speed)), where=speed > 0)
     cables = solution.line.diameter[solution.element_piece] > 0.0
