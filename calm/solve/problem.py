@@ -379,7 +379,9 @@ def _surfacing(line: Line, water: Water, track: Track, lift: Floats) -> list[Buo
                     rigid_above=float(above),
                     upto=float(upto[piece]),
                     surface_lift=float(at_surface[piece]),
-                    least=1.0 - float(carried[piece:].min()) / float(line.buoyancy[piece]),
+                    least=1.0 - float(carried[piece:].min()) / at_surface[piece].item()
+                    if at_surface[piece] > 0.0
+                    else 1.0,
                 )
             )
         place += len(part.loads)
