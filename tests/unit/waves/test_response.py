@@ -5,6 +5,7 @@ from math import cos, pi, sin, sqrt
 
 import numpy as np
 import pytest
+from scipy.special import j1
 
 from calm.case import load
 from calm.errors import InputError
@@ -226,6 +227,15 @@ def test_heave_of_a_disc_against_a_panel_method():
     assert np.abs(lifting / resisting) == pytest.approx([0.982, 0.940, 0.871, 0.803], rel=0.05)
 
 
+def test_a_disc_without_mass_follows_the_water_below_it():
+    """Added mass and radiation push it as they hold it: e^(-kT) 2 J1(kR)/(kR), and no phase."""
+    omega = np.array([0.3, 1.0, 2.0, 3.5])
+    number, none = omega**2 / GRAVITY, Buoy(0.0, 3000.0, 1.2, 0.6, 0.0, 0.0)
+    resisting, lifting = none.heave(omega, number, DENSITY, GRAVITY)
+    expected = np.exp(-0.6 * number) * 2.0 * j1(1.2 * number) / (1.2 * number)
+    assert lifting / resisting == pytest.approx(expected, rel=1e-12)
+
+
 def test_a_given_heave_is_followed():
     given = Buoy(2000.0, 3000.0, 1.4, 0.8, 0.0, 0.0, rao=((0.1, 1.0, 0.0), (2.0, 0.5, 90.0)))
     line = plumb(1000.0, 0.4, 4e6, 5000.0, 50)
@@ -352,3 +362,11 @@ components:
   nylon: {kind: cable, diameter: 20 mm, weight: 0.3 N/m, mass: 0.25 kg/m, stiffness: 12 kN}
   block: {kind: anchor, weight: 30 kN}
 """
+
+
+def test_a_float_displaces_what_it_weighs_and_what_pulls_it_down(tmp_path):
+    """700 kg and the line's pull, 2.56 kN: as much as the cylinder does at its draft."""
+    (tmp_path / "buoy.yaml").write_text(HEAVY)
+    mooring = load(tmp_path / "buoy.yaml")
+    buoy = buoy_of(mooring, mooring.equilibrium(mooring.water), False)
+    assert buoy.displaced == pytest.approx(1025.0 * pi * 0.8**2 * buoy.draft, rel=1e-3)
