@@ -16,7 +16,7 @@ from calm.case.memory import Forgetful, Memory
 from calm.case.parts import naming_the_piece, parts_of
 from calm.case.profilers import profilers_of
 from calm.case.result import Result
-from calm.case.tow import Tow
+from calm.case.tow import FROM_NO_FILE, Tow
 from calm.errors import NoEquilibrium, UsageError, unknown
 from calm.files import MooringFile, read_mooring
 from calm.files.editing import LINE, Draft, clamps_of
@@ -170,10 +170,8 @@ class Mooring:
             No piece has the label, or the mooring was not loaded from a file.
         """
         if self.origin is None:
-            raise UsageError("a mooring that was not loaded from a file has no values to change")
-        origin = self.origin.with_values(self.file, label, keys)
-        origin = replace(origin, environment=environment or origin.environment)
-        changed = as_read(origin.read(), origin)
+            raise UsageError(FROM_NO_FILE)
+        changed = self.origin.changed(self.file, label, environment, keys)
         assert isinstance(changed, Mooring)
         return changed
 
@@ -307,6 +305,18 @@ class Origin:
             text=self.text,
             net=net,
         )
+
+    def changed(
+        self,
+        file: MooringFile,
+        label: str | None,
+        environment: str | Path | None,
+        keys: Mapping[str, Any],
+    ) -> Mooring | Tow:
+        """Return what is read with other values, or in another environment."""
+        other = self.with_values(file, label, keys)
+        other = replace(other, environment=environment or self.environment)
+        return as_read(other.read(), other)
 
     def with_values(self, file: MooringFile, label: str | None, keys: Mapping[str, Any]) -> Origin:
         """Return the same with values put into the text.

@@ -304,6 +304,6 @@ def _heavier(mooring: Mooring, weight: float) -> str:
 def _in_air(mooring: Mooring, weight: float) -> str:
     """Return what weighs so much in water [N]."""
     water = mooring.water
-    _, density = water.at(np.array(water.depth))
+    density = water.density_at(np.array(water.depth))
     steel, concrete = anchor_dry_mass(weight, float(density), water.gravity)
     return f"{steel:.0f} kg of steel or {concrete:.0f} kg of concrete in air"

@@ -60,8 +60,9 @@ def waves(
     hs
         Significant wave height, such as "5 m".
     tp
-        Peak period, such as "8.4 s"; by default that of a fully developed sea
-        for pierson-moskowitz; not used by ochi-hubble.
+        Peak period, such as "8.4 s", 1.41 times a mean zero-crossing period Tz;
+        by default that of a fully developed sea for pierson-moskowitz; not used
+        by ochi-hubble.
     spectrum
         bretschneider, jonswap, pierson-moskowitz, ochi-hubble (swell and sea),
         or a file of a measured one: CSV of frequency[Hz],density[m^2/Hz], or
@@ -180,7 +181,7 @@ def _asked(
         complaints.append(
             f"--scatter: gives heights and periods; leave {', '.join(chosen) or 'the file'} out"
         )
-    elif scatter is None and not named and chosen:
+    elif scatter is None and path.is_file() and not named and chosen:
         complaints.append(f"{', '.join(chosen)}: a measured spectrum has its own")
     elif scatter is None and named and (chosen or spectrum != "bretschneider"):
         needs = ["--hs", *(["--tp"] if spectrum not in sea_states.OF_HEIGHT else [])]

@@ -98,7 +98,7 @@ def _exported_line(mooring: Mooring | Tow, solve: Solve) -> ExportedLine:
     parts = []
     for i in range(len(line.length)):
         piece = file.pieces[i]
-        density = float(water.at(np.array(depths[i]))[1])
+        density = float(water.density_at(np.array(depths[i])))
         excess = (density - REFERENCE_DENSITY) * float(water.gravity)
         on = [k for k in range(len(line.clamp_at)) if line.clamp_piece[k] == i]
         clamps = tuple(

@@ -214,8 +214,9 @@ class FatigueKeys(Model):
     curve: Literal[
         "dnv-studless-chain", "dnv-stud-chain", "dnv-polyester", "api-studless-chain",
         "api-stud-chain", "api-connecting-link", "api-stranded-wire", "api-spiral-strand",
+        "sots-shackle", "sots-peened-shackle", "sots-link", "sots-wire",
     ] | None = described(
-        "of DNV-OS-E301 or API RP 2SK, where it is not that of its kind",
+        "of DNV-OS-E301, API RP 2SK or SOTS, where it is not that of its kind",
         "dnv-stud-chain",
         default=None,
     )  # fmt: skip

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from math import exp, pi, sqrt
+from math import exp, isfinite, nan, pi, sqrt
 from math import gamma as gamma_function
 from pathlib import Path
 from typing import Any
@@ -37,6 +37,12 @@ form has less than 1e-4 of its variance."""
 UNSEEN = 1e-3
 """Share of the variance of a measured sea that is longer than all that is solved for."""
 
+PEAK_BY_MEAN = "Tp is 1.41 Tz, the mean zero-crossing period; 1.29 Tz of jonswap"
+"""The ratio follows from the moments of the forms: 1.408 and 1.286."""
+
+SHARES = 0.02
+"""How far shares of the time may be from 1 in all, where they are rounded."""
+
 _STANDARD_NAMES = (
     "sea_surface_wave_variance_spectral_density",
     "sea_surface_wave_directional_variance_spectral_density",
@@ -45,6 +51,10 @@ _SPECTRAL_NAMES = ("spectral_wave_density", "ef", "efth")
 
 LARGEST_FREQUENCY = 10.0
 """Above it lines are not solved for [rad/s]."""
+
+SHORTEST_PERIOD, BEYOND = 2.0, 0.02
+"""Of a peak [s]: a hundredth of such a sea is above `LARGEST_FREQUENCY`; and the share of a
+measured sea that may be."""
 
 
 @dataclass(frozen=True)
@@ -158,19 +168,23 @@ def spectrum_of(kind: str, height: float, period: float | None, gamma: float) ->
             raise UsageError("ochi-hubble has the periods that go with its height; give no period")
         return _most_probable(height)
     period = full_sea_period(height) if period is None else period
-    if height > HIGHEST or period > LONGEST_PERIOD:
-        raise UsageError(
-            f"waves of {height:g} m and {period:g} s: no sea is higher than {HIGHEST:g} m or "
-            f"longer than {LONGEST_PERIOD:g} s"
-        )
-    length = 9.80665 * period**2 / (2.0 * pi)
-    if height > STEEPEST * length:
-        raise UsageError(
-            f"waves of {height:g} m and {period:g} s would break: {length:.1f} m long, they are "
-            f"{STEEPEST * length:.1f} m high at most"
-        )
+    if wrong := _impossible(height, period):
+        raise UsageError(wrong)
     form = jonswap(height, period, gamma) if kind == "jonswap" else bretschneider(height, period)
     return SeaState(height, period, form)
+
+
+def _impossible(height: float, period: float) -> str | None:
+    """Return why no sea has this height [m] and peak period [s], or is not solved for."""
+    length, said = 9.80665 * period**2 / (2.0 * pi), f"waves of {height:.3g} m and {period:.3g} s"
+    if height > HIGHEST or period > LONGEST_PERIOD:
+        return f"{said}: no sea is higher than {HIGHEST:g} m or longer than {LONGEST_PERIOD:g} s"
+    if period < SHORTEST_PERIOD:
+        return f"{said}: seas are solved for from a peak period of {SHORTEST_PERIOD:g} s"
+    if height > STEEPEST * length:
+        highest = f"{length:.1f} m long, they are {STEEPEST * length:.2f} m high at most"
+        return f"{said} would break: {highest}"
+    return None
 
 
 def with_swell(sea: SeaState, height: float, period: float) -> SeaState:
@@ -235,20 +249,35 @@ def measured_spectrum(path: Path) -> SeaState:
     if is_netcdf(path):
         return _sea_of(path, *_spectral_arrays(path))
     rows = _figures(path, ("frequency[Hz]", "density[m^2/Hz]"))
-    return _sea_of(path, *np.array(rows).T)
+    frequency, density = np.array([row for _, row in rows]).reshape(-1, 2).T
+    return _sea_of(path, frequency, density, [line for line, _ in rows])
 
 
-def _sea_of(path: Path, frequency: Floats, density: Floats) -> SeaState:
-    """Return the sea of densities [m²/Hz] at frequencies [Hz]."""
-    if len(frequency) < 3 or np.any(np.diff(frequency) <= 0.0) or not frequency[0] >= 0.0:
-        raise InputError([Problem(str(path), 2, 1, "needs three frequencies or more that grow")])
-    if not np.all(density >= 0.0) or not density.any():
-        raise InputError([Problem(str(path), 2, 2, "densities are not negative, nor all zero")])
+def _sea_of(path: Path, frequency: Floats, density: Floats, lines: Sequence[int] = ()) -> SeaState:
+    """Return the sea of densities [m²/Hz] at frequencies [Hz], of these lines of a table."""
+    falls = np.diff(frequency, prepend=-1e-12) <= 0.0
+    problems = [
+        Problem(str(path), lines[int(row)] if lines else 0, column, message)
+        for wrong, column, message in (
+            (falls, 1, "frequencies are not negative, and grow"),
+            (~(density >= 0.0), 2, "a density is not negative"),
+        )
+        for row in np.flatnonzero(wrong)
+    ]
+    if len(frequency) < 3 or not density.any():
+        message = "needs three frequencies or more, and densities that are not all zero"
+        problems.append(Problem(str(path), 0, 0, message))
+    if problems:
+        raise InputError(problems)
     omega, spectral = 2.0 * pi * frequency, density / (2.0 * pi)
     parts = 0.5 * (spectral[1:] + spectral[:-1]) * np.diff(omega)
     height = 4.0 * sqrt(float(parts.sum()))
-    if height > HIGHEST:
-        message = f"waves of {height:.3g} m: no sea is higher than {HIGHEST:g} m; look at its unit"
+    wrong = _impossible(height, 1.0 / max(float(frequency[int(density.argmax())]), 1e-9))
+    beyond = float(parts[omega[1:] > LARGEST_FREQUENCY].sum() / parts.sum())
+    if wrong is None and beyond > BEYOND:
+        wrong = f"{beyond:.0%} of its variance is above {LARGEST_FREQUENCY / (2.0 * pi):.2g} Hz"
+    if wrong is not None:
+        message = f"{wrong}; look at its units"
         raise InputError([Problem(str(path), 0, 0, message)])
     lowest = omega[int(np.searchsorted(parts.cumsum(), UNSEEN * parts.sum()))]
     peak = float(omega[int(density.argmax())])
@@ -305,8 +334,9 @@ def scatter_states(path: Path, kind: str, gamma: float) -> list[SeaState]:
     if kind == "ochi-hubble":
         raise UsageError("ochi-hubble has periods of its own; a scatter table gives them")
     problems, states = [], []
-    whole = sum(max(row[2], 0.0) for row in rows)
-    for number, (height, period, share) in enumerate(rows, 2):
+    shares = [max(share, 0.0) for _, (*_, share) in rows]
+    whole = sum(shares)
+    for number, (height, period, share) in rows:
         if height <= 0.0 or period <= 0.0 or share < 0.0:
             message = "height and period are above 0, and a share is not negative"
             problems.append(Problem(str(path), number, 1, message))
@@ -318,26 +348,37 @@ def scatter_states(path: Path, kind: str, gamma: float) -> list[SeaState]:
             continue
         if share > 0.0:
             states.append(SeaState(height, period, sea.density, share / whole))
-    if problems or not states:
-        raise InputError(problems or [Problem(str(path), 1, 1, "no sea has a share of the time")])
+    if not problems and not states:
+        problems.append(Problem(str(path), 1, 1, "no sea has a share of the time"))
+    counts = all(share == round(share) for share in shares)
+    if not counts and min(abs(whole - 1.0), abs(whole / 100.0 - 1.0)) > SHARES:
+        message = f"shares add up to {whole:.4g}, not 1 or 100; a calm sea has a low height"
+        problems.append(Problem(str(path), 1, 1, message))
+    if problems:
+        raise InputError(problems)
     return states
 
 
-def _figures(path: Path, names: tuple[str, ...]) -> list[tuple[float, ...]]:
-    """Return the rows of a table by the names of its columns."""
+def _figures(path: Path, names: tuple[str, ...]) -> list[tuple[int, tuple[float, ...]]]:
+    """Return the rows of a table by the names of its columns, with their lines."""
     example = ",".join(names)
     table = read_table(path, example)
     header = [cell.strip() for cell in table.header.cells]
     missing = [name for name in names if name not in header]
     if missing:
-        message = f"no column `{'`, `'.join(missing)}`; write {example}"
+        message = f"no column `{'`, `'.join(missing)}`; write {example}, not {','.join(header)}"
+        if "peak_period[s]" in missing:
+            message += f" ({PEAK_BY_MEAN})"
         raise InputError([Problem(str(path), table.header.number, 1, message)])
     places = [header.index(name) for name in names]
     rows, problems = [], []
     for row in table.rows:
         try:
-            rows.append(tuple(float(row.cells[place]) for place in places))
+            figures = tuple(float(row.cells[place]) for place in places)
         except (ValueError, IndexError):
+            figures = (nan,)
+        rows.append((row.number, figures))
+        if not all(isfinite(each) for each in figures):
             problems.append(Problem(str(path), row.number, 1, f"not numbers as in {example}"))
     if problems:
         raise InputError(problems)

@@ -6,7 +6,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import groupby
 
 from calm.deck import Deck
-from calm.deck.deck_items import DeckInstrument, DeckItem, Extreme, label_of_run
+from calm.deck.deck_items import (
+    DeckInstrument,
+    DeckItem,
+    Extreme,
+    label_of_run,
+    name_of_run,
+    rows_on_paper,
+)
 from calm.deck.hardware import LENGTH_ERROR, Mark
 from calm.deck.shipping import total_of
 from calm.quantities import QUANTITIES, say
@@ -31,22 +38,29 @@ def cutting_part(deck: Deck) -> ReportPart:
     """Lengths, marks, and how exactly they have to be."""
     rows: list[tuple[Cell, ...]] = []
     kinds = {one.label: one for one in deck.parts}
+    clusters = {
+        one.label: row.cluster for row in rows_on_paper(deck.parts) for one in row.items
+    }  # fmt: skip
     legs, above = leg_titles(deck.result), ""
-    for cut in deck.cuts:
+    for _, alike in groupby(deck.cuts, lambda one: clusters.get(one.item.label) or id(one)):
+        cuts = [*alike]
+        cut, last = cuts[0], cuts[-1]
+        many = f"{len(cuts)} × " if len(cuts) > 1 else ""
         leg = deck.leg(cut.item.index)
         rows += [(Cell(legs[leg], strong=True),)] if leg != above else []
         above = leg
         load = "" if cut.load == 0.0 else f"at {say('tension', cut.load)}"
         effect = "-" if cut.effect is None else f"{cut.effect:+.2f}"
+        label = label_of_run([one.item for one in cuts])
         rows.append(
             (
-                Cell(cut.item.label, cut.item.name, strong=True, goes_on=True),
-                Cell(f"{cut.length:.2f}", load),
+                Cell(label, cut.item.name, strong=True, goes_on=True),
+                Cell(f"{many}{cut.length:.2f}", load),
                 Cell(f"± {cut.tolerance:.2f}"),
                 Cell(effect),
                 Cell(cut.termination or ""),
-                Cell(str(cut.over)),
-                Cell(str(cut.onto)),
+                Cell("–".join(dict.fromkeys((str(cut.over), str(last.over))))),
+                Cell("–".join(dict.fromkeys((str(cut.onto), str(last.onto))))),
                 Cell(),
                 Cell("☐"),
             )
@@ -111,7 +125,7 @@ def hardware_part(deck: Deck) -> ReportPart:
         Column("to bring", numeric=True),
         Column("packed", share=0.0),
     )
-    table = Table("Hardware", columns, tuple(rows), _SPARES)
+    table = Table("", columns, tuple(rows), _SPARES)
     blocks: tuple[Block, ...] = (table,)
     if not deck.hardware:
         blocks = (Prose(("The line lists no hardware.",)),)
@@ -121,7 +135,7 @@ def hardware_part(deck: Deck) -> ReportPart:
 def shipping_part(deck: Deck) -> ReportPart:
     """All that is shipped, and what the sums lack."""
     table = table_of(
-        "Shipped",
+        "",
         deck.shipped,
         (Column("component", share=1.6), lambda one: one.name),
         (Column("id"), lambda one: one.use),
@@ -190,7 +204,9 @@ def lifts_part(deck: Deck) -> ReportPart:
 def _marked(marks: Sequence[Mark], items: Mapping[str, DeckItem]) -> str:
     """Return the places of some marks, and what is clamped there."""
     places = ", ".join(f"{mark.at:.2f}" for mark in marks)
-    return f"mark at {places}: {label_of_run([items[mark.label] for mark in marks])}"
+    marked = [items[mark.label] for mark in marks]
+    words = name_of_run(marked) if len(marked) > 1 else marked[0].label
+    return f"mark at {places}: {words}"
 
 
 def _alike(marks: Iterable[Mark], items: Mapping[str, DeckItem]) -> list[list[Mark]]:

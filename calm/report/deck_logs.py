@@ -48,9 +48,9 @@ def deployment_part(deck: Deck) -> ReportPart:
             )
         ),
         _releases(deck, _TESTED, [_BOX] * len(_TESTED)),
-        *_over_the_side(deck),
-        _positions(deck),
         _soundings(),
+        _positions(deck),
+        *_over_the_side(deck),
     )
     return ReportPart("Deployment log", blocks, _LEAST)
 
@@ -133,7 +133,7 @@ def placed(items: Sequence[DeckItem], deck: Deck) -> str:
     """Return where clamps sit: from the upper end of their piece, anchor first from the lower end
     too.
     """
-    places = [one.at for one in items if one.on is not None and one.at is not None]
+    places = [at for one in items for at in one.places]
     if not places:
         return ""
     text = f"at {_span(places)}"
@@ -188,12 +188,12 @@ def _over_the_side(deck: Deck) -> list[Table]:
         first = row.first
         if first.on is not None or first.is_rigid:
             return placed(row.items, deck)
-        return "\n".join(filter(None, (f"{first.cut_length:.2f}", placed(row.floats, deck))))
+        return "\n".join(filter(None, (row.lengths, placed(row.floats, deck))))
 
     fields: tuple[Field[DeckRow], ...] = (
         (Column("no.", numeric=True), lambda row: _numbers(row, order)),
         (Column("piece", share=3.2), _piece),
-        (Column("length,\nor place", "m", share=0.9), length),
+        (Column("length,\nor place", "m", share=1.3), length),
         (Column("serial\nnumber", share=0.7), lambda row: row.first.serial or ""),
         (Column("over", "UTC", share=0.6), lambda row: ""),
         (Column("remarks"), lambda row: ""),
@@ -313,5 +313,5 @@ def _expected(items: Sequence[RecoveredItem]) -> Cell:
             said.append(f"{one.time / 60.0:.1f} min")
         elif one.hangs_at is not None:
             said.append(f"at {say('depth', one.hangs_at)}")
-    text = " to ".join(dict.fromkeys(said))
+    text = " to ".join(dict.fromkeys(said)).replace(" min to", " to")
     return Cell(text, "by itself" if any(one.by_itself for one in items) else "")

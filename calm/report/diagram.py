@@ -46,6 +46,7 @@ _CONTINUED = 16.0  # height of a continuation mark
 _SKY, _MAST, _SUBMERGED = 7.0, 26.0, 11.0
 _LEGEND_ROW, _LEGEND_COLUMNS = 21.0, 4
 _GROUND = 44.0
+_EVEN = 0.7  # of the first column: how far down the last one reaches at least, where it can
 _NEAR_THE_END = 0.3  # of a column: where a break is looked for
 
 
@@ -130,6 +131,10 @@ class _PageColumn:
         return self.parts[-1].top + self.parts[-1].height
 
 
+_Stacks = tuple[tuple[tuple[float, _PageColumn], ...], ...]
+"""Columns in reading order, in each its legs with how far down they begin [pt]."""
+
+
 @dataclass(frozen=True)
 class _Pages:
     """The pages of a diagram: their columns in reading order, and what each page has besides.
@@ -141,7 +146,7 @@ class _Pages:
     paper: Paper
     block: TitleBlock
     column: LineColumn
-    columns: tuple[tuple[tuple[float, _PageColumn], ...], ...]
+    columns: _Stacks
     legend: tuple[Sign, ...]
 
     @property
@@ -190,7 +195,8 @@ def _pages(deck: Deck, paper: Paper) -> _Pages:
     need = _GROUND + LEADING - (-len(legend) // _LEGEND_COLUMNS) * _LEGEND_ROW
     bottom = paper.size[1] - _MARGIN - block.height
     foot = block.height
-    while True:  # a page that had nothing but the legend takes over some parts
+    even: _Stacks = ()
+    while True:  # the last column takes over parts until it is about as long as the first
         marks = _marks()
         columns = _stacked(
             (
@@ -200,11 +206,15 @@ def _pages(deck: Deck, paper: Paper) -> _Pages:
             ),
             bottom,
         )
-        down, last = columns[-1][-1]
-        if len(columns) % paper.columns or down + last.end + need <= bottom:
+        if even and len(columns) > len(even):
             break
+        first, last = (down + one.end for down, one in (columns[0][-1], columns[-1][-1]))
+        if len(columns) % paper.columns or last + need <= bottom:
+            even = columns
+            if len(columns) == 1 or len(legs) > 1 or last >= _EVEN * first:
+                break
         foot += 2 * LEADING
-    return _Pages(one_line(deck.file.name), paper, block, column, columns, legend)
+    return _Pages(one_line(deck.file.name), paper, block, column, even, legend)
 
 
 _TOP = _MARGIN + _TITLE_ROOM + HEAD
@@ -236,9 +246,7 @@ def _columns(
         above = f"from {mark}"
 
 
-def _stacked(
-    columns: Iterable[_PageColumn], bottom: float
-) -> tuple[tuple[tuple[float, _PageColumn], ...], ...]:
+def _stacked(columns: Iterable[_PageColumn], bottom: float) -> _Stacks:
     """The columns, of legs as many in one as there is room for above `bottom`."""
     found: list[list[tuple[float, _PageColumn]]] = []
     for one in columns:

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import groupby
 from math import ceil
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from calm.checks.finding import State
-from calm.deck.deck_items import label_of_run
 from calm.drawing.picture import figure_svg
 from calm.drop import DropPlan
 from calm.drop.fall_record import DepthReached
@@ -170,8 +168,8 @@ def _depth_blocks(plan: DropPlan) -> list[Block]:
     depth = QUANTITIES["depth"]
     table = table_of(
         "Depths during the drop",
-        [[*run] for _, run in groupby(listed, key=_shared)],
-        (Column("piece or clamp"), label_of_run),
+        _by_component(listed),
+        (Column("piece or clamp, the deepest of its kind"), _named),
         (
             quantity_column("depth", "greatest depth"),
             lambda run: Cell(
@@ -186,9 +184,16 @@ def _depth_blocks(plan: DropPlan) -> list[Block]:
     return [table]
 
 
-def _shared(one: DepthReached) -> str:
-    """Return what floats that follow one another have in common; an instrument has its own row."""
-    return one.part.use if one.part.component.role == "float" else one.label
+def _by_component(listed: Sequence[DepthReached]) -> list[list[DepthReached]]:
+    """Return what shares a row: components of one rating; what sinks beyond it stands alone."""
+    rows: dict[object, list[DepthReached]] = {}
+    for one in listed:
+        rows.setdefault(one.label if one.beyond else (one.part.use, one.rating), []).append(one)
+    return [*rows.values()]
+
+
+def _named(run: Sequence[DepthReached]) -> str:
+    return _deepest(run).label + (f", of {len(run)}" if len(run) > 1 else "")
 
 
 def _deepest(run: Sequence[DepthReached]) -> DepthReached:
@@ -228,7 +233,7 @@ def whereabouts(plan: DropPlan, place: tuple[float, float]) -> str:
     )
 
 
-_WIDTH, _HEIGHT = 7.05, 3.5  # inches: an A4 page between its margins
+_WIDTH, _HEIGHT = 7.05, 3.0  # inches: an A4 page between its margins
 _FONT_SIZE = 8.0  # points
 _WATER, _SEABED = "#2b7bba", "#b8a07e"
 _DASHES = ("-", (0, (6, 2)), (0, (4, 2, 1, 2)), (0, (1, 1.5)), (0, (2, 1)), "-")
@@ -243,7 +248,7 @@ def drop_figure(plan: DropPlan) -> str:
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(_WIDTH, _HEIGHT))
-    figure.subplots_adjust(0.08, 0.11, 0.985, 0.97, wspace=0.06)
+    figure.subplots_adjust(0.08, 0.14, 0.985, 0.97, wspace=0.06)
     shapes, speed = figure.subplots(1, 2, sharey=True, width_ratios=(3.2, 1.0))
     _draw_shapes(shapes, plan)
     _draw_speed(speed, plan)

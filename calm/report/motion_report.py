@@ -358,6 +358,7 @@ def motion_document(study: Study, name: str) -> dict[str, Any]:
         ],
         "held_out": held_out_document(study.held_out),
         "diagnosis": diagnosis_document(study.diagnosis),
+        "line": {"fits": study.fits, "causes": diagnosis_document(study.line)},
         **({} if study.judged is None else {"judge": asdict(study.judged)}),
         "doubts": list(study.remarks),
     }

@@ -36,11 +36,12 @@ _LIFE = (
 
 
 def sea_response_report(analysis: WaveAnalysis) -> Report:
-    """Return the tables with pictures of the highest sea: spectrum, and tension down the line."""
-    part = sea_response_part(analysis)
-    drawn = Figure("Tension: its spectrum at the top; along the line", _drawn(_highest(analysis)))
-    pictures = ReportPart("In the highest sea", (drawn,))
-    section = Section(analysis.name, (part, pictures))
+    """Return the tables with pictures of the tension: spectrum, along the line, over Hs."""
+    said = "Tension in the highest sea: its spectrum at the top; along the line"
+    if several := len(analysis.states) > 1:
+        said += ". Tension at the top over Hs"
+    pictures = ReportPart("Tension", (Figure(said, _drawn(analysis, several)),))
+    section = Section(analysis.name, (sea_response_part(analysis), pictures))
     return Report(f"{analysis.name}: in waves", "", (), (section,), date())
 
 
@@ -99,11 +100,15 @@ def _pieces(state: MooringInSea) -> Table:
         (_number(f"max\n{unit}"), lambda one: tension.format(one.tension_max)),
         (_number(f"min\n{unit}"), lambda one: tension.format(one.tension_min)),
         (_number("Tz\ns"), lambda one: _period(one.zero_crossing_period)),
-        (_number("slack\n%"), lambda one: f"{100.0 * one.slack_probability:.2g}"),
+        (_number("slack\n%"), lambda one: _percent(one.slack_probability)),
         (_number("heave\nm"), lambda one: f"{one.heave_std:.2f}"),
         (_number("tilt\n°"), lambda one: f"{one.tilt_std:.1f}"),
     )
     return table_of("", state.components, *fields, note=_NOTE)
+
+
+def _percent(share: float) -> str:
+    return f"{round(100.0 * share, 2):.3g}"
 
 
 def _period(period: float) -> str:
@@ -113,7 +118,7 @@ def _period(period: float) -> str:
 _SEAS: tuple[Field[MooringInSea], ...] = (
     (_number("Hs\nm"), lambda state: f"{state.sea.significant_height:.1f}"),
     (_number("Tp\ns"), lambda state: f"{state.sea.peak_period:.1f}"),
-    (_number("share\n%"), lambda state: f"{100.0 * state.sea.share:.2g}"),
+    (_number("share\n%"), lambda state: _percent(state.sea.share)),
     (_number("std at the top\nN"), lambda state: f"{state.components[0].tension_std:.0f}"),
     (_number("greatest there\nN"), lambda state: f"{state.components[0].tension_max:.0f}"),
     (Column("slack"), lambda state: ", ".join(state.slack) or "-"),
@@ -135,12 +140,13 @@ def _told(analysis: WaveAnalysis, state: MooringInSea) -> list[str | tuple[Span,
     return [*said, (Span(good, quiet=True),)]
 
 
-def _drawn(state: MooringInSea) -> str:
+def _drawn(analysis: WaveAnalysis, several: bool) -> str:
     from matplotlib import figure as drawing
 
+    state = _highest(analysis)
     figure = drawing.Figure(figsize=(7.4, 3.2))
-    figure.subplots_adjust(0.09, 0.15, 0.99, 0.97, wspace=0.25)
-    left, right = figure.subplots(1, 2)
+    figure.subplots_adjust(0.09, 0.15, 0.99, 0.97, wspace=0.4)
+    left, right, *over = figure.subplots(1, 3 if several else 2)
     left.plot(*state.spectrum, color="#0b3c5d")
     left.set(xlabel="frequency [rad/s]", ylabel="spectrum of tension [N² s/rad]", xscale="log")
     depth, *tensions = state.along
@@ -149,4 +155,11 @@ def _drawn(state: MooringInSea) -> str:
     right.set(xlabel="tension [N]", ylabel="depth [m]")
     right.invert_yaxis()
     right.legend(frameon=False)
+    for axes in over:
+        heights = [each.sea.significant_height for each in analysis.states]
+        tops = [each.components[0] for each in analysis.states]
+        axes.plot(heights, [each.tension_std for each in tops], "+", color="#0b3c5d", label="std")
+        axes.plot(heights, [each.tension_max for each in tops], ".", color="#0b3c5d", label="max")
+        axes.set(xlabel="Hs [m]", ylabel="tension at the top [N]", ylim=(0.0, None))
+        axes.legend(frameon=False)
     return figure_svg(figure)

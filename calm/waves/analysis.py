@@ -107,7 +107,7 @@ class WaveAnalysis:
     ----------
     name : of the mooring
     states : in the order given
-    accuracy : in the highest of them
+    accuracy : in the highest and in the shortest of them
     fatigue : of each piece, by the shares of the seas; a single one lasts all the year
     warnings : what rests on assumptions
     """
@@ -167,10 +167,13 @@ class _Setting:
         waves = self.waves(sea)
         return respond(self.line, self.buoy, waves, sea, drag_factor=drag, first=first, once=once)
 
-    def deviations(self, sea: SeaState, first: Floats | None) -> tuple[Floats, Floats]:
-        """Return the deviations of tension of the pieces [N], 0 on the seabed, and the flow."""
-        response, flow = self.respond(sea, first)
-        return _by_piece(self.line, response), flow
+    def deviations(
+        self, seas: Sequence[SeaState], first: Sequence[Floats | None], **how: Any
+    ) -> tuple[Floats, list[Floats]]:
+        """Return the deviations of tension (seas, pieces) [N], 0 on the seabed, and the flows."""
+        found = [self.respond(sea, flow, **how) for sea, flow in zip(seas, first, strict=True)]
+        deviations = [_by_piece(self.line, response) for response, _ in found]
+        return np.array(deviations), [flow for _, flow in found]
 
 
 def analyse(
@@ -184,7 +187,7 @@ def analyse(
 
     The line is lumped masses about its equilibrium in the mean current, the waves are linear and
     long-crested, the drag is linearised to what it dissipates. Elements and frequencies are refined
-    in the highest sea until the deviations of tension settle to 1 %.
+    in the highest and in the shortest sea until the deviations of tension settle to 1 %.
 
     Parameters
     ----------
@@ -208,7 +211,9 @@ def analyse(
             )
     solution = mooring.equilibrium(mooring.water)
     highest = max(seas, key=lambda sea: sea.significant_height)
-    setting, flow, accuracy = _settled(mooring, solution, highest, toward)
+    shortest = min(seas, key=lambda sea: sea.shortest or sea.peak_period)
+    judged = [highest] if shortest == highest else [highest, shortest]
+    setting, flow, accuracy = _settled(mooring, solution, judged, toward)
     states, before = [], highest
     for sea in watched(seas):
         near = flow * (sea.significant_height / before.significant_height)
@@ -235,36 +240,36 @@ def analyse(
 
 
 def _settled(
-    mooring: Mooring, solution: Solution, sea: SeaState, toward: float
+    mooring: Mooring, solution: Solution, seas: Sequence[SeaState], toward: float
 ) -> tuple[_Setting, Floats, WaveAccuracy]:
-    """Return elements and frequencies that are enough for a sea, and what twice as many change.
+    """Return elements and frequencies that are enough for seas, and what twice as many change.
 
-    Between them stands the flow past the nodes in that sea, with which each next one begins.
+    Between them stands the flow past the nodes in the first of them.
     """
-    _, density = mooring.water.at(np.array(0.0))
+    density = mooring.water.density_at(np.array(0.0))
     water = Waves(np.zeros(0), toward, mooring.water.depth, float(density), mooring.water.gravity)
     longest, count = COARSEST * mooring.water.depth, FEWEST
     buoy = buoy_of(mooring, solution, follows=False)
     setting = _Setting(lumped_line(mooring, solution, longest), buoy, water, count)
-    found, flow = setting.deviations(sea, None)
+    found, flows = setting.deviations(seas, [None] * len(seas))
     mesh = frequencies = np.inf
     for _ in range(MOST_HALVINGS):
         if mesh > SETTLED:
             longest *= 0.5
             finer = replace(setting, line=lumped_line(mooring, solution, longest))
-            better, passing = finer.deviations(sea, _carried(setting.line, finer.line, flow))
+            carried = [_carried(setting.line, finer.line, flow) for flow in flows]
+            better, passing = finer.deviations(seas, carried)
             mesh = _change(found, better)
             if mesh > SETTLED:
-                setting, found, flow = finer, better, passing
+                setting, found, flows = finer, better, passing
         if frequencies > SETTLED:
             more = replace(setting, count=2 * setting.count)
-            better, passing = more.deviations(sea, flow)
+            better, passing = more.deviations(seas, flows)
             frequencies = _change(found, better)
             if frequencies > SETTLED:
-                setting, found, flow = more, better, passing
-    less, _ = setting.respond(sea, flow, once=True, drag=0.8)
-    linear = _change(found, _by_piece(setting.line, less))
-    return setting, flow, WaveAccuracy(mesh, frequencies, linear)
+                setting, found, flows = more, better, passing
+    less, _ = setting.deviations(seas, flows, once=True, drag=0.8)
+    return setting, flows[0], WaveAccuracy(mesh, frequencies, _change(found, less))
 
 
 def _carried(line: LumpedLine, finer: LumpedLine, flow: Floats) -> Floats:
@@ -274,13 +279,12 @@ def _carried(line: LumpedLine, finer: LumpedLine, flow: Floats) -> Floats:
 
 
 def _change(before: Floats, after: Floats) -> float:
-    counted = after > SMALL * after.max(initial=0.0)
+    counted = after > SMALL * after.max(1, initial=0.0, keepdims=True)
     return float(np.abs(before[counted] / after[counted] - 1.0).max(initial=0.0))
 
 
 def _by_piece(line: LumpedLine, response: WaveResponse) -> Floats:
-    deviation, _ = response.moments(response.pull)
-    return np.where(line.piece_spring >= 0, deviation[line.piece_spring], 0.0)
+    return response.moments(line.upper_ends(response.pull))[0]
 
 
 def _in_sea(
@@ -299,10 +303,11 @@ def _in_sea(
     moments = moments_of(response.omega, spectral)
     tension, period = response.moments(response.pull)
     departs = np.array([_most(*each, duration) for each in zip(tension, period, strict=True)])
+    deviations, periods = response.moments(line.upper_ends(response.pull))
     motion, _ = response.moments(response.motion)
     turn = np.diff(response.motion, axis=1)
     turn = turn - (turn * line.spring).sum(2, keepdims=True) * line.spring
-    lean, _ = response.moments(turn / line.span[:, None])
+    lean, _ = response.moments(line.upper_ends(turn / line.span[:, None]))
     rows: list[PieceInWaves] = []
     worst: list[tuple[float, Floats]] = []
     for piece in mooring.file.pieces[:-1]:
@@ -319,7 +324,8 @@ def _in_sea(
         own = slice(spring, int(below.min()) if len(below) else len(tension))
         at = spring + int(tension[own].argmax())
         worst.append((float(line.tension[at]), moments[:, at]))
-        deviation, most = float(tension[spring]), float(departs[spring])
+        deviation, apart = float(deviations[piece.index]), float(periods[piece.index])
+        most = _most(deviation, apart, duration)
         rows.append(
             PieceInWaves(
                 index=piece.index,
@@ -328,12 +334,10 @@ def _in_sea(
                 tension_std=deviation,
                 tension_max=mean + most,
                 tension_min=mean - most,
-                zero_crossing_period=float(period[spring]),
-                slack_probability=passing_probability(
-                    mean, deviation, float(period[spring]), duration
-                ),
+                zero_crossing_period=apart,
+                slack_probability=passing_probability(mean, deviation, apart, duration),
                 heave_std=float(motion[node, 2]),
-                tilt_std=degrees(float(np.linalg.norm(lean[spring]))),
+                tilt_std=degrees(float(np.linalg.norm(lean[piece.index]))),
                 greatest=max(mean + most, float((line.tension + departs)[own].max())),
                 least=min(mean - most, float((line.tension - departs)[own].min())),
             )

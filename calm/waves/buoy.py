@@ -8,18 +8,16 @@ from math import pi, sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from calm.errors import UsageError
 from calm.files import Cylinder, Sphere
 from calm.files.rigid import Displacement, Rigid
 from calm.physics.line import Floats
+from calm.waves.lumped_line import Complexes
 
 if TYPE_CHECKING:
     from calm.case import Mooring
     from calm.solve import Solution
-
-Complexes = NDArray[np.complex128]
 
 DISC_ADDED = 4.0 / 3.0
 """Added mass of a disc at the surface over ρR³: half of that of one deep down, 8/3 (Lamb 1932)."""
@@ -139,7 +137,7 @@ def buoy_of(mooring: Mooring, solution: Solution, follows: bool) -> Buoy | None:
     masses = [each.component.mass for each in above]
     if any(mass is None for mass in masses):
         raise UsageError(f"{piece.label} gives no `mass`, which decides how it heaves")
-    _, density = mooring.water.at(np.array(0.0))
+    density = mooring.water.density_at(np.array(0.0))
     panels = None
     if component.heave == "panels" and not follows:
         profile = _profile(component, draft)

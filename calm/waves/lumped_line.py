@@ -7,6 +7,7 @@ from math import pi
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from calm.assemble import mass_in_air
 from calm.files import Cable, Chain, Cylinder, Flexible
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
     from calm.case import Mooring
     from calm.files import Component
     from calm.solve import Solution
+
+Complexes = NDArray[np.complex128]
 
 SHORTEST = 0.05
 """Elements below it are no springs of their own: what they weigh hangs at the node [m]."""
@@ -52,6 +55,7 @@ class LumpedLine:
     current : (n, 3) [m/s]
     piece_spring : (pieces,) the spring below the upper end of each piece, of those at the top below
         their lower end; -1 where there is none
+    piece_below : (pieces,) the next one of the same piece; where there is none the same one
     piece_node : (pieces,) the node at the upper end of each piece; -1 on the seabed
     top_pieces : how many pieces are the float at the top and what it carries above the surface
     inextensible : labels of cables whose stiffness is not known
@@ -73,9 +77,21 @@ class LumpedLine:
     span: Floats
     current: Floats
     piece_spring: Integers
+    piece_below: Integers
     piece_node: Integers
     top_pieces: int
     inextensible: tuple[str, ...]
+
+    def upper_ends(self, middle: Complexes) -> Complexes:
+        """Return what of figures (f, n-1, …) in the middle of springs is at upper ends of pieces.
+
+        It goes on above the middle of the first spring as it does below it.
+        """
+        first, next_one = self.piece_spring, self.piece_below
+        share = self.span[first] / (self.span[first] + self.span[next_one])
+        shape = (-1,) + (1,) * (middle.ndim - 2)
+        ends = middle[:, first] + share.reshape(shape) * (middle[:, first] - middle[:, next_one])
+        return np.asarray(np.where((first >= 0).reshape(shape), ends, 0.0))
 
 
 def lumped_line(mooring: Mooring, solution: Solution, longest: float) -> LumpedLine:
@@ -154,9 +170,9 @@ def lumped_line(mooring: Mooring, solution: Solution, longest: float) -> LumpedL
     spring /= span[:, None]
     tangent = np.vstack([spring[:1], spring[:-1] + spring[1:], spring[-1:]])
     tangent /= np.linalg.norm(tangent, axis=1)[:, None]
-    current, density = mooring.water.at(np.maximum(-where[:, 2], 0.0))
+    water, depth = mooring.water, np.maximum(-where[:, 2], 0.0)
     for name in ("across_drag", "along_drag", "any_drag"):
-        node[name] *= density / REFERENCE_DENSITY
+        node[name] *= water.density_at(depth) / REFERENCE_DENSITY
     count = len(solution.line.length)
     piece_node = np.array([starts.get(piece, -1) for piece in range(count)])
     piece_spring = np.where(piece_node >= 0, np.minimum(piece_node, n - 2), -1)
@@ -164,6 +180,8 @@ def lumped_line(mooring: Mooring, solution: Solution, longest: float) -> LumpedL
         piece_node[:buoy], piece_spring[:buoy] = 0, 0
     elif count > 1:
         piece_spring[0] = piece_spring[1]
+    owner = np.array([each[0] for each in elements])
+    below = np.minimum(piece_spring + 1, n - 2)
     return LumpedLine(
         position=where,
         **node,
@@ -172,8 +190,9 @@ def lumped_line(mooring: Mooring, solution: Solution, longest: float) -> LumpedL
         stiffness=stiffness,
         spring=spring,
         span=span,
-        current=np.asarray(current, float),
+        current=water.current_at(depth),
         piece_spring=piece_spring,
+        piece_below=np.where(owner[below] == owner[piece_spring], below, piece_spring),
         piece_node=piece_node,
         top_pieces=max(buoy, 1),
         inextensible=tuple(inextensible),

@@ -9,12 +9,12 @@ import numpy as np
 
 from calm.physics.line import Floats
 from calm.records.sea_states import SeaState
-from calm.waves.buoy import SIDEWAYS_ADDED, Buoy, Complexes
-from calm.waves.lumped_line import LumpedLine
+from calm.waves.buoy import SIDEWAYS_ADDED, Buoy
+from calm.waves.lumped_line import Complexes, LumpedLine
 
-SETTLED = 2e-3
+SETTLED = 5e-3
 """Change of the flow past the nodes, over the greatest, below which drag is linearised well enough:
-that of the tension is a hundredth of it."""
+that of the tension is a twentieth of it."""
 
 STILL = 1e-12
 """Flow past a node that nothing moves, against division by nothing [m/s]."""
@@ -229,15 +229,8 @@ def _ahead(line: LumpedLine, waves: Waves) -> float:
     return float(east * np.sin(radians(waves.toward)) + north * np.cos(radians(waves.toward)))
 
 
-_SYMMETRIC = np.array([[0, 3, 4], [3, 1, 5], [4, 5, 2]])
-"""Where the nine of a symmetric matrix are among its six: the diagonal, then 01, 02, 12."""
-
-_ROWS, _COLUMNS = np.array([0, 1, 2, 0, 0, 1]), np.array([0, 1, 2, 1, 2, 2])
-
-# cofactor of each of the six: the product of the first two less that of the last two
-_COFACTORS = np.array(
-    [[1, 2, 5, 5], [0, 2, 4, 4], [0, 1, 3, 3], [4, 5, 3, 2], [3, 5, 4, 1], [3, 4, 0, 5]]
-).T
+_BAND = 5
+"""Diagonals beside the main one: a node of three directions is held by its neighbours."""
 
 
 def _solved(
@@ -248,11 +241,10 @@ def _solved(
     forced: Complexes,
     damping: Floats,
 ) -> Complexes:
-    """Return the motion (f, n, 3) of the nodes: elimination node by node, the fixed end first.
+    """Return the motion (f, n, 3) of the nodes, of each frequency by a banded matrix."""
+    from scipy.linalg.lapack import zgbsv
 
-    All matrices are symmetric: six figures each, of all frequencies side by side.
-    """
-    omega, n = waves.omega, len(line.mass)
+    omega, free = waves.omega, len(line.mass) - 1
     eye, t, s = np.eye(3), line.tangent, line.spring
     outer = t[:, :, None] * t[:, None, :]
     mass = line.mass[:, None, None] * eye + line.added_across[:, None, None] * (eye - outer)
@@ -260,38 +252,38 @@ def _solved(
     axial = s[:, :, None] * s[:, None, :]
     sideways = line.tension / line.span
     springs = line.stiffness[:, None, None] * axial + sideways[:, None, None] * (eye - axial)
-    diagonal = np.zeros((n, 3, 3))
-    diagonal[:-1] += springs
-    diagonal[1:] += springs
-    parts = np.stack([diagonal, mass, damping], -1)[:, _ROWS, _COLUMNS]
-    matrices = parts @ np.array([np.ones(len(omega)), -(omega**2), 1j * omega])
+    held = springs.copy()
+    held[1:] += springs[:-1]
+    stiffness, inertia, resistance = (
+        _banded(each[:free], beside)
+        for each, beside in ((held, springs), (mass, None), (damping, None))
+    )
+    resisting, moved = np.zeros(len(omega), complex), 0.0
     if buoy is not None:
         resisting, _ = buoy.heave(omega, waves.number, waves.density, waves.gravity)
         moved = buoy.mass + SIDEWAYS_ADDED * buoy.displaced
-        matrices[0, :2] -= omega**2 * moved
-        matrices[0, 2] += resisting
-    # what the node below does to one: its spring before and behind the inverse of that node
-    below = np.einsum("nab,ncd->nacbd", springs, springs)[:, _ROWS, _COLUMNS]
-    double = np.where(_ROWS == _COLUMNS, 0.5, 1.0)
-    below = double * (below[:, :, _ROWS, _COLUMNS] + below[:, :, _COLUMNS, _ROWS])
-    below, springs = below.astype(complex), springs.astype(complex)
-    push = np.ascontiguousarray(
-        (forced + np.einsum("ncd,fnd->fnc", damping, water)).transpose(1, 2, 0)
-    )
-    motion = np.zeros((n, 3, len(omega)), complex)
-    for i in range(n - 2, -1, -1):
-        matrix = matrices[i]
-        if i < n - 2:
-            matrix -= below[i] @ matrices[i + 1]
-            push[i] += springs[i] @ motion[i + 1]
-        one, other, third, last = matrix[_COFACTORS]
-        cofactors = one * other - third * last
-        determinant = (matrix[[0, 3, 4]] * cofactors[[0, 3, 4]]).sum(0)
-        np.divide(cofactors, determinant, out=matrix)  # its inverse from here on
-        motion[i] = (matrix[_SYMMETRIC] * push[i]).sum(1)
-    for i in range(1, n - 1):
-        motion[i] += (matrices[i][_SYMMETRIC] * (springs[i - 1] @ motion[i - 1])).sum(1)
-    return motion.transpose(2, 0, 1)
+    push = forced + np.einsum("ncd,fnd->fnc", damping, water)
+    motion = np.zeros(push.shape, complex)
+    for one, each in enumerate(omega):
+        matrix = np.empty(stiffness.shape, complex)
+        matrix.real, matrix.imag = stiffness - each**2 * inertia, each * resistance
+        matrix[:3, 2 * _BAND] += -(each**2) * moved, -(each**2) * moved, resisting[one]
+        pushed = push[one, :free].ravel()
+        *_, found, singular = zgbsv(_BAND, _BAND, matrix.T, pushed, overwrite_ab=True)
+        motion[one, :free] = np.nan if singular else found.reshape(free, 3)
+    return motion
+
+
+def _banded(blocks: Floats, springs: Floats | None) -> Floats:
+    """Return the columns of the banded matrix of (n, 3, 3) blocks, springs between neighbours."""
+    columns = np.zeros((len(blocks), 3, 3 * _BAND + 1))
+    for row, column in np.ndindex(3, 3):
+        at = 2 * _BAND + row - column
+        columns[:, column, at] = blocks[:, row, column]
+        if springs is not None:
+            columns[1:, column, at - 3] = -springs[:-1, row, column]
+            columns[:-1, column, at + 3] = -springs[:-1, row, column]
+    return columns.reshape(-1, 3 * _BAND + 1)
 
 
 def _pull(line: LumpedLine, motion: Complexes) -> Complexes:

@@ -197,6 +197,7 @@ def test_a_report_has_the_life_and_its_pictures(calm, buoy, tmp_path):
     assert "Of unknown life: rope." in shown.out
     page = (tmp_path / "report" / "waves.html").read_text()
     assert page.count("<svg") == 1
+    assert "Hs [m]" in page  # several seas: tension over height
     assert "dnv-studless-chain" in page
     assert (tmp_path / "report" / "waves.pdf").read_bytes().startswith(b"%PDF")
     (tmp_path / "file").write_text("")

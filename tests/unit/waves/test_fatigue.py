@@ -172,3 +172,22 @@ def test_what_is_not_known_has_no_life(component, reason):
 def test_what_is_still_has_no_damage_and_no_end():
     found = fatigue_of(chain(), 1, "chain", [(1.0, 3000.0, np.zeros(4))])
     assert (found.damage_per_year, found.life, found.unknown) == (0.0, None, None)
+
+
+@pytest.mark.parametrize(
+    ("curve", "power", "factor"),
+    [("sots-shackle", 3.7, 1.5), ("sots-peened-shackle", 3.7, 2.25), ("sots-link", 3.8, 1.7),
+     ("sots-wire", 4.6, 2.4)],
+)  # fmt: skip
+def test_shackles_and_links_as_the_southern_ocean_time_series_has_them(curve, power, factor):
+    """A cycle of a narrow band does (√2 σ / (factor U))^q Γ(1 + q/2); its own evaluation."""
+    deviation, breaking, period = 2500.0, 28_500.0 * 9.81, 6.0
+    omega = 2.0 * pi / period
+    moments = deviation**2 * omega ** np.array([0.0, 1.0, 2.0, 4.0])
+    each = (sqrt(2.0) * deviation / (factor * breaking)) ** power * gamma(1.0 + power / 2.0)
+    shackle = Cable(
+        kind="cable", diameter="20 mm", weight="1 N/m", breaking_load=f"{breaking} N",
+        fatigue={"curve": curve},
+    )  # fmt: skip
+    found = fatigue_of(shackle, 0, "shackle", [(1.0, 1e4, moments)])
+    assert found.damage_per_year == pytest.approx(each * YEAR / period, rel=1e-6)
