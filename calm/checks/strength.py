@@ -266,7 +266,7 @@ def anchor_sliding(mooring: Mooring) -> Iterator[Criterion]:
     """Horizontal pull H ≤ friction (weight in water / factor - V)."""
     weight, factor = _weight(mooring), mooring.file.checks.anchor_factor
     friction, seabed = mooring.file.anchor_friction, mooring.file.environment.seabed
-    down = "" if seabed is None else f" down a slope of {seabed.slope:g}°"
+    down = "" if seabed is None else f" down a slope of {seabed.slope:.4g}°"
 
     def held(result: Result) -> float:
         assert weight is not None
