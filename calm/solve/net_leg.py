@@ -36,13 +36,14 @@ from calm.physics.passing import (
     Z,
     pass_line,
 )
-from calm.physics.referee import RefereeShape, element_loads, find_ends, worst_moment
-from calm.physics.seabed import closure, lay_line
+from calm.physics.referee import RefereeShape
+from calm.physics.seabed import lay_line
 from calm.physics.track import Load
 from calm.solve.audit import referee_of
 from calm.solve.closing import place
 from calm.solve.finish import risen, touching
 from calm.solve.problem import BELOW, CHANGED, Unknown, problem_of
+from calm.solve.search import residuals
 from calm.solve.solution import Settings, Solution, Status
 
 
@@ -306,15 +307,16 @@ class LegCourse:
 
     def _audited(self, line: Line) -> tuple[float, float]:
         """Closure and moment residual of the last march, recomputed from its coordinates."""
-        referee = referee_of(line, self.water, 0.0, False)
-        record = [list(column[: self.nodes]) for column in self.record]
-        shape = RefereeShape(record, self.nodes, self.hung - 1, referee.first, referee.last)
-        find_ends(shape)
-        loads = [[0.0] * self.nodes for _ in range(3)]
-        element_loads(referee.moored, shape, loads)
-        limits = self.problem.limits
-        off = closure(referee.moored, shape, loads, self.stage >= 0, limits.friction, limits.excess)
-        return off, worst_moment(referee.moored, shape, loads)
+        referee = referee_of(line, self.water, 0.0, self.compiled)
+        shape = RefereeShape(self.record, self.nodes, self.hung - 1, referee.first, referee.last)
+        loads: Any = np.zeros((3, self.nodes))
+        asked = (
+            referee.moored, shape, loads if self.compiled else loads.tolist(), self.stage >= 0,
+            self.problem.limits,
+        )  # fmt: skip
+        law = entry(residuals, *asked) if self.compiled else residuals
+        off, moment = law(*asked)
+        return off, moment
 
 
 def pulled(line: Line, force: tuple[float, float, float]) -> Line:
