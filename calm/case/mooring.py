@@ -19,8 +19,7 @@ from calm.case.result import Result
 from calm.case.tow import FROM_NO_FILE, Tow
 from calm.errors import NoEquilibrium, UsageError, unknown
 from calm.files import MooringFile, read_mooring
-from calm.files.editing import Draft
-from calm.files.editing.draft import LINE, clamps_of
+from calm.files.editing import LINE, Draft, clamps_of
 from calm.files.yaml_document import Location
 from calm.physics.drag import BLOCK_CD, area_drag
 from calm.physics.line import Line, Water
@@ -276,7 +275,8 @@ def refuse_in_the_slope(file: MooringFile, solution: Solution, depth: float) -> 
     anchor = file.legs[0].bottom.anchor if file.legs else None
     origin = (0.0, 0.0) if anchor is None else anchor.at
     place = solution.position[: solution.hanging + 1]
-    below = -place[:, 2] - depth - (place[:, :2] - np.array(origin)) @ np.array(seabed.deepening)
+    below = -place[:, 2] - depth - seabed.deeper(place[:, :2] - np.array(origin))
+    below = np.nan_to_num(below, nan=-np.inf)  # outside a grid nothing is known
     worst = int(np.argmax(below))
     if below[worst] > solution.depth_error + 1e-6 * depth:
         number = solution.piece_at(worst)

@@ -205,7 +205,7 @@ def _on_the_seabed(result: Result, solution: Solution) -> Iterator[str]:
         rise = solution.grounded_length * np.sin(np.radians(seabed.slope))
         yield (
             f"{say('grounded_length', solution.grounded_length)} of line lies on the seabed, "
-            f"taken as level there: on its slope of {seabed.slope:g}° depths differ by up to "
+            f"taken as level there: on its slope of {seabed.slope:.4g}° depths differ by up to "
             f"{say('depth', float(rise))}."
         )
     if solution.landed and result.still_shape is result.shape:
@@ -258,7 +258,7 @@ def _strums_along_the_flow(result: TowResult, solution: Solution) -> Iterator[st
     law = solution.line.strumming
     if law is None or result.strumming is None:
         return
-    current, _ = solution.water.at(-solution.position[:-1, 2])
+    current = solution.water.current_at(-solution.position[:-1, 2])
     speed = np.linalg.norm(current, axis=1)
     sine = np.divide(flow_across(solution), speed, out=np.ones(len(speed)), where=speed > 0)
     cables = solution.line.diameter[solution.element_piece] > 0.0

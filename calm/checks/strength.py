@@ -273,7 +273,7 @@ def anchor_sliding(mooring: Mooring) -> Iterator[Criterion]:
     """Horizontal pull H ≤ friction (weight in water / factor - V)."""
     weight, factor = _weight(mooring), mooring.file.checks.anchor_factor
     friction, seabed = mooring.file.anchor_friction, mooring.file.environment.seabed
-    down = "" if seabed is None else f" down a slope of {seabed.slope:g}°"
+    down = "" if seabed is None else f" down a slope of {seabed.slope:.4g}°"
 
     def held(result: Result) -> float:
         assert weight is not None
@@ -311,6 +311,6 @@ def _heavier(mooring: Mooring, weight: float) -> str:
 def _in_air(mooring: Mooring, weight: float) -> str:
     """Return what weighs so much in water [N]."""
     water = mooring.water
-    _, density = water.at(np.array(water.depth))
+    density = water.density_at(np.array(water.depth))
     steel, concrete = anchor_dry_mass(weight, float(density), water.gravity)
     return f"{steel:.0f} kg of steel or {concrete:.0f} kg of concrete in air"

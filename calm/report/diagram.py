@@ -28,11 +28,11 @@ from calm.drawing.schematic.line_column import (
 )
 from calm.drawing.schematic.pen import INK, SOFT, Pen, picture, svg_text, wrapped
 from calm.drawing.schematic.shown_parts import TextRow, one_line
-from calm.drawing.schematic.sign import LINES, Sign, Symbol
+from calm.drawing.schematic.sign import LINES, WORDS, Sign
 from calm.drawing.schematic.symbols import SEABED_ROOM, draw_cable, figure_of
 from calm.quantities import QUANTITIES, say
 from calm.report.check_summary import short_verdict
-from calm.report.net_sheet import end_text, leg_title
+from calm.report.net_sheet import ends_told, leg_title
 from calm.report.provenance import title_pairs
 
 _HEADINGS = (
@@ -48,16 +48,6 @@ _LEGEND_ROW, _LEGEND_COLUMNS = 21.0, 4
 _GROUND = 44.0
 _EVEN = 0.7  # of the first column: how far down the last one reaches at least, where it can
 _NEAR_THE_END = 0.3  # of a column: where a break is looked for
-_WORDS = {
-    Symbol.SPHERE: "float", Symbol.BALL: "ball", Symbol.GLASS: "glass float",
-    Symbol.FOAM: "foam float", Symbol.STREAMLINED: "streamlined float",
-    Symbol.BUOY: "surface buoy", Symbol.CURRENT_METER: "current meter", Symbol.ADCP: "ADCP",
-    Symbol.CTD: "CTD or logger", Symbol.TRAP: "sediment trap", Symbol.INSTRUMENT: "instrument",
-    Symbol.RELEASE: "release", Symbol.RELEASE_PAIR: "pair of releases",
-    Symbol.SHACKLE: "shackle", Symbol.SWIVEL: "swivel", Symbol.LINK: "link or ring",
-    Symbol.CHAIN: "chain", Symbol.WIRE: "wire", Symbol.ROPE: "rope",
-    Symbol.WHEELS: "anchor, wheels", Symbol.BLOCK: "anchor", Symbol.BODY: "body",
-}  # fmt: skip
 
 
 class Paper(StrEnum):
@@ -240,7 +230,7 @@ def _columns(
     foot : the height of the title block [pt]
     marks : of the places where a line goes on
     """
-    afloat, (top, bottom) = line.type == "surface", _ends(line)
+    afloat, (top, bottom) = line.type == "surface", ends_told(line)
     sea = _MAST - parts[0].height / 2 if afloat else _SKY + _SUBMERGED
     room = paper.size[1] - foot - _MARGIN - _TOP - 2 * _CONTINUED - sea - SEABED_ROOM
     above = top
@@ -266,17 +256,6 @@ def _stacked(columns: Iterable[_PageColumn], bottom: float) -> _Stacks:
         else:
             found.append([(0.0, one)])
     return tuple(map(tuple, found))
-
-
-def _ends(line: Result) -> tuple[str | None, str | None]:
-    """What a leg comes from and leads to; None where it ends at the sea and on the seabed."""
-    if not line.file.legs:
-        return None, None
-    top, bottom = line.file.legs[0].ends
-    return (
-        None if top.free else f"from {end_text(top)}",
-        None if bottom.anchor is not None else end_text(bottom),
-    )
 
 
 def _fill(page: Pen, pages: _Pages, number: int) -> None:
@@ -343,7 +322,7 @@ def _draw_legend(page: Pen, pages: _Pages, left: float, bottom: float) -> None:
         else:
             figure = figure_of(Sign(sign.symbol))
             figure.draw(pen.group(x, y, min(0.5, 20.0 / figure.height)))
-        page.letters(x + 18.0, y, _WORDS[sign.symbol], size=FONT)
+        page.letters(x + 18.0, y, WORDS[sign.symbol], size=FONT)
 
 
 def _broken(parts: Sequence[PlacedPart], room: float) -> Iterator[list[PlacedPart]]:

@@ -143,7 +143,7 @@ def _loads(solution: Solution) -> Floats:
     length = np.linalg.norm(chord, axis=1)
     axis = chord / np.where(length > 0.0, length, 1.0)[:, None]
     depth = -0.5 * (solution.position[:-1, 2] + solution.position[1:, 2])
-    current, density = water.at(depth)
+    current, density = water.current_at(depth), water.density_at(depth)
     along = np.sum(current * axis, axis=1, keepdims=True) * axis
     across = np.where(line.directional[piece][:, None], current - along, current)
     along = np.where(line.directional[piece][:, None], along, 0.0)
