@@ -16,11 +16,10 @@ from calm.case.memory import Forgetful, Memory
 from calm.case.parts import naming_the_piece, parts_of
 from calm.case.profilers import profilers_of
 from calm.case.result import Result
-from calm.case.tow import Tow
+from calm.case.tow import FROM_NO_FILE, Tow
 from calm.errors import NoEquilibrium, UsageError, unknown
 from calm.files import MooringFile, read_mooring
-from calm.files.editing import Draft
-from calm.files.editing.draft import LINE, clamps_of
+from calm.files.editing import LINE, Draft, clamps_of
 from calm.files.yaml_document import Location
 from calm.physics.drag import BLOCK_CD, area_drag
 from calm.physics.line import Line, Water
@@ -155,7 +154,7 @@ class Mooring:
     def with_(
         self, label: str | None = None, /, environment: str | Path | None = None, **keys: Any
     ) -> Mooring:
-        """Return the same mooring with some values of its file changed, as `Origin.with_values`.
+        """Return the same mooring with some values of its file changed, as `Origin.changed`.
 
         Parameters
         ----------
@@ -171,10 +170,8 @@ class Mooring:
             No piece has the label, or the mooring was not loaded from a file.
         """
         if self.origin is None:
-            raise UsageError("a mooring that was not loaded from a file has no values to change")
-        origin = self.origin.with_values(self.file, label, keys)
-        origin = replace(origin, environment=environment or origin.environment)
-        changed = as_read(origin.read(), origin)
+            raise UsageError(FROM_NO_FILE)
+        changed = self.origin.changed(self.file, label, environment, keys)
         assert isinstance(changed, Mooring)
         return changed
 
@@ -278,7 +275,8 @@ def refuse_in_the_slope(file: MooringFile, solution: Solution, depth: float) -> 
     anchor = file.legs[0].bottom.anchor if file.legs else None
     origin = (0.0, 0.0) if anchor is None else anchor.at
     place = solution.position[: solution.hanging + 1]
-    below = -place[:, 2] - depth - (place[:, :2] - np.array(origin)) @ np.array(seabed.deepening)
+    below = -place[:, 2] - depth - seabed.deeper(place[:, :2] - np.array(origin))
+    below = np.nan_to_num(below, nan=-np.inf)  # outside a grid nothing is known
     worst = int(np.argmax(below))
     if below[worst] > solution.depth_error + 1e-6 * depth:
         number = solution.piece_at(worst)
@@ -309,13 +307,20 @@ class Origin:
             net=net,
         )
 
-    def with_values(self, file: MooringFile, label: str | None, keys: Mapping[str, Any]) -> Origin:
-        """Return the same with values put into the text.
+    def changed(
+        self,
+        file: MooringFile,
+        label: str | None,
+        environment: str | Path | None,
+        keys: Mapping[str, Any],
+    ) -> Mooring | Tow:
+        """Read the same with values put into its text, or in another environment.
 
         Parameters
         ----------
         file : as it was read
         label : of the piece or clamp that has the keys; None where they are those of the file
+        environment : None for its own
         keys : names and values as the file writes them; None takes a key out; where the file has a
             mapping under a name, its keys are changed one by one
 
@@ -332,7 +337,8 @@ class Origin:
                 where = (*place, name) if key is None else (*place, name, key)
                 written = str(each) if isinstance(each, (int, float)) else each
                 draft = draft.put_at(where, written)
-        return replace(self, text=draft.text)
+        other = replace(self, text=draft.text, environment=environment or self.environment)
+        return as_read(other.read(), other)
 
 
 def _place_of(file: MooringFile, label: str) -> Location:

@@ -53,13 +53,15 @@ class Net:
         water, ends = assemble_water(environment), [e for leg in self.file.legs for e in leg.ends]
         if all(end.held is None or end.held.depth >= 0.0 for end in ends):
             return water
-        below, (current, density) = water.level > 0.0, water.at(np.zeros(()))
+        below, surface = water.level > 0.0, np.zeros(())
         level = np.array([-_SKIN, 0.0, *water.level[below]])
         u, v, w = (
             np.array([0.0, speed, *column[below]])
-            for speed, column in zip(current, (water.u, water.v, water.w), strict=True)
+            for speed, column in zip(
+                water.current_at(surface), (water.u, water.v, water.w), strict=True
+            )
         )
-        density = np.array([AIR_DENSITY, density, *water.density[below]])
+        density = np.array([AIR_DENSITY, water.density_at(surface), *water.density[below]])
         return replace(water, level=level, u=u, v=v, w=w, density=density)
 
     @property

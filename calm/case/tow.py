@@ -6,7 +6,8 @@ from collections.abc import Iterable
 from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
 from math import atan2, degrees, hypot
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from calm.assemble import assemble_line, assemble_water
 from calm.case.measure import clamps_of, components_of, shape_of
@@ -21,6 +22,11 @@ from calm.files.strumming_keys import BourgetMarichalKeys
 from calm.physics.line import Line, Water
 from calm.records.profile_tables import components
 from calm.solve import Settings, Solution, Status, Towing, fit_tow_length, solve_tow
+
+if TYPE_CHECKING:
+    from calm.case.mooring import Origin
+
+FROM_NO_FILE = "what was not loaded from a file has no values to change"
 
 
 @dataclass(frozen=True)
@@ -102,6 +108,7 @@ class Tow:
     file: MooringFile
     memory: Memory = field(repr=False, compare=False)
     _line: Line | None = field(repr=False, compare=False)
+    origin: Origin | None = field(default=None, repr=False, compare=False)
 
     def __init__(
         self, file: MooringFile, memory: Memory | None = None, line: Line | None = None
@@ -169,14 +176,33 @@ class Tow:
         keys = self.keys.model_copy(update={"speed": speed})
         return Tow(replace(self.file, tow=keys), line=self.line)
 
-    def solve(self) -> TowResult:
-        """Find the steady shape.
+    def with_(
+        self, label: str | None = None, /, environment: str | Path | None = None, **keys: Any
+    ) -> Tow:
+        """Return the same tow with some values of its file changed, as `Mooring.with_`:
+        ``tow.with_("cable", length="800 m")``, ``tow.with_(tow={"speed": "4 kn"})``.
+
+        Raises
+        ------
+        InputError, UsageError
+            As there.
+        """
+        if self.origin is None:
+            raise UsageError(FROM_NO_FILE)
+        changed = self.origin.changed(self.file, label, environment, keys)
+        assert isinstance(changed, Tow)
+        return changed
+
+    def solve(self, environment: str | Path | None = None) -> TowResult:
+        """Find the steady shape, in another of its environments where one is given.
 
         Raises
         ------
         NoEquilibrium
             With status, message and advice, where there is none that passes every check.
         """
+        if environment is not None:
+            return self.with_(environment=environment).solve()
         with naming_the_piece(self.file.pieces, towed=True):
             solution = self.memory.of(solve_tow, self.line, self.water, self.towing, self.settings)
         return _result_of(self, solution)

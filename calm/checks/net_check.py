@@ -350,6 +350,6 @@ def _lifts(leg: Result) -> Floats:
     """Net force of each piece of a leg with its clamps where it stands [N]; 0 of an anchor."""
     line, water, rows = leg.mooring.line, leg.mooring.water, slice(len(leg.mooring.line.length))
     depth = 0.5 * (leg.components.depth_top[rows] + leg.components.depth_bottom[rows])
-    _, density = water.at(np.maximum(depth, 0.0))
+    density = water.density_at(np.maximum(depth, 0.0))
     force = line.net_force((density - REFERENCE_DENSITY) * water.gravity)
     return np.append(force, 0.0)

@@ -8,7 +8,7 @@ first, and the others are weighed again beside it, until none is likely.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 
@@ -28,6 +28,7 @@ from calm.motion.estimate import best_state, posterior
 from calm.motion.line_response import LineResponse
 from calm.motion.measurements import interpolated
 from calm.motion.remarks import ALL, LIKELY, Fault
+from calm.motion.suspects import NO_TIME, Suspect, line_suspects
 from calm.motion.unknown_currents import SEABED, unknown_state
 from calm.motion.whole_record import ROBUST, LinearLaw, chosen_times, linear_law, repeated
 from calm.physics.line import Floats
@@ -42,32 +43,18 @@ GAIN, GAINS, ALL_GAINS = 0.02, 0.01, 0.001
 """Of a gain less 1, and the probabilities that it is wrong: that of a sensor, that of all alike."""
 EXCHANGED = 0.01
 """Probability that two labels are exchanged."""
-LEAST = {"clock": 0.08, "gain": 0.003, "offset": 2.5, "drift": 1.0, "slip": 1.5, "exchanged": 0.0}
-"""What is named, at least: h (and as many steps of the record), 1, m, m, m."""
+LEAST = {
+    "clock": 0.08, "gain": 0.003, "offset": 2.5, "drift": 1.0, "slip": 1.5, "exchanged": 0.0,
+    "currents": 0.1, "speed": 0.15, "slows": 0.2, "buoyancy": 0.06, "length": 0.004, "drag": 0.3,
+    "fouling": 0.2,
+}  # fmt: skip
+"""What is named, at least: h (and as many steps of the record), 1, m, m, m; then logarithms."""
+RIVALS = 3
+"""Other explanations that are named, at most."""
 FINEST = 0.02
 """Of a clock, as a share of the step of the record: how well times are known between readings."""
 FEWEST = 20
 """Times from which anything is said."""
-
-
-@dataclass(frozen=True)
-class Suspect:
-    """What one fault does to n times of s sensors.
-
-    Attributes
-    ----------
-    fault : what it is
-    column : (n, s) change of the depths that are read with its size
-    wide : deviation of its size beforehand; 0 of one whose size is fixed
-    log : logarithm of its probability beforehand
-    shift : (n, s) what is added to the depths that are read beforehand [m]
-    """
-
-    fault: Fault
-    column: Floats
-    wide: float
-    log: float
-    shift: Floats
 
 
 @dataclass(frozen=True)
@@ -95,20 +82,23 @@ Weighed = list[tuple[Suspect, float]]
 
 
 def diagnosed(task: Task) -> tuple[Fault, ...]:
-    """Return what is wrong with the sensors of a record, the likeliest first."""
-    law = law_near(task, task)
+    """Return what is wrong with the sensors, the currents and the line, the likeliest first."""
+    law, causes = law_near(task, task)
     if law is None or len(law.time) < FEWEST:
         return ()
-    return Diagnosis(task, law).faults()
+    return Diagnosis(task, law, causes).faults()
 
 
-def law_near(task: Task, whole: Task) -> LinearLaw | None:
-    """Return what the times say of the sensors of the whole, near the state of those of a task."""
+def law_near(task: Task, whole: Task) -> tuple[LinearLaw | None, list[Suspect]]:
+    """Return what the times say of the sensors of the whole, near the state of those of a task.
+
+    And what may be wrong with the line and its currents, with what it does to them.
+    """
     common = task.common
     alone = common.law is not None
     times = chosen_times(task.measured, alone)
     if not len(times):
-        return None
+        return None, []
     moments = LineResponse(task.measured.at(times), *task.forwards)
     fixed = replace(common, covariance=np.zeros_like(common.covariance))
     here = unknown_state(moments, fixed) if alone else best_state(moments, fixed)
@@ -118,13 +108,17 @@ def law_near(task: Task, whole: Task) -> LinearLaw | None:
         common = whole.common
         fixed = replace(common, covariance=np.zeros_like(common.covariance))
         found = posterior(moments.measured, at, here.way.spread, fixed, moments.forward.still)
-    return linear_law(moments, common, at, found, here.way.spread, task.measured.time[[0, -1]])
+    law = linear_law(moments, common, at, found, here.way.spread, task.measured.time[[0, -1]])
+    return law, [] if alone else list(line_suspects(task, moments, here.way, at))
 
 
 class Diagnosis:
     """The pressures of a record, weighed."""
 
-    def __init__(self, task: Task, law: LinearLaw, judged: str = "") -> None:
+    def __init__(
+        self, task: Task, law: LinearLaw, causes: Sequence[Suspect] = (), judged: str = ""
+    ) -> None:
+        self.causes = causes
         self.label, self.law, self.judged = task.measured.label, law, judged
         self.measured = task.measured
         self.spread = _beforehand(task)
@@ -164,9 +158,13 @@ class Diagnosis:
         while len(taken) < MOST:
             likely = self.weighed(taken)
             best = max(likely, key=lambda one: one[1], default=None)
-            if best is None or best[1] < np.log(self.likely):
+            if best is None:
                 break
-            taken.append(best[0])
+            # what does nearly the same to the depths is likely together
+            kin = [log for one, log in likely if one.fault.alike(best[0].fault)]
+            if np.logaddexp.reduce(kin) < np.log(self.likely):
+                break
+            taken.append(self._bent(taken, best[0]))
             if best[0].fault.kind == "exchanged":  # nothing else holds until they are put right
                 break
         found = []
@@ -181,11 +179,27 @@ class Diagnosis:
             odds = np.exp(
                 min(log - np.logaddexp.reduce([0.0, *(each[1] for each in others)]), 50.0)
             )
-            rival = ""
-            if odds < LIKELY and others:
-                rival = others[0][0].fault.sentence(rival=False)
+            near = [each for each in others if each[1] > log - np.log(LIKELY)][:RIVALS]
+            rival = ", or ".join(
+                f"{each.fault.sentence(rival=False)} ({np.exp(min(other - log, 9.0)):.2g} times "
+                "as likely)"
+                for each, other in near
+            )
+            if odds >= LIKELY:
+                rival = ""
             found.append(replace(suspect.fault, odds=float(odds), rival=rival))
         return tuple(found)
+
+    def _bent(self, taken: list[Suspect], one: Suspect) -> Suspect:
+        """Return a suspect with the change that its size makes, which is not proportional."""
+        if one.ahead is None:
+            return one
+        size = one.fault.size
+        for _ in range(3):
+            one = one.at(size)
+            size = self.fitted(taken, one, 1.0).value
+        self.causes = [one if one.fault.same(each.fault) else each for each in self.causes]
+        return one
 
     def weighed(self, taken: list[Suspect]) -> Weighed:
         """Return what may be wrong beside what is taken, with the logarithm of its odds."""
@@ -196,23 +210,18 @@ class Diagnosis:
             base = self.fitted(taken, None, alike).log
             found = self.fitted(taken, suspect, alike)
             fault = suspect.fault
-            value = found.value if suspect.wide else fault.value
-            if fault.kind == "gain":
-                value += 1.0
+            size = found.value if suspect.wide else fault.size
             deviation = found.deviation
             log = found.log - base + suspect.log
             if fault.kind == "clock":  # a lag anywhere within reach
                 log += float(np.log(np.sqrt(2.0 * np.pi) * deviation / (2.0 * FURTHEST)))
-            size = abs(value - (fault.kind == "gain"))
             least = LEAST[fault.kind]
             if fault.kind == "clock":
                 least *= max(self.step, 1.0)
                 deviation = float(np.hypot(deviation, FINEST * self.step))
-            if size < least and fault.label != self.judged:
+            if abs(size) < least and fault.label != self.judged:
                 continue
-            fault = replace(
-                fault, value=value, low=value - 1.96 * deviation, high=value + 1.96 * deviation
-            )
+            fault = fault.sized(size, deviation)
             result.append((replace(suspect, fault=fault), log))
         return result
 
@@ -265,14 +274,13 @@ class Diagnosis:
 
     def _suspects(self, taken: list[Suspect], begun: _Found) -> Iterator[Suspect]:
         law, none = self.law, np.zeros_like(self.law.raw)
-        never = np.datetime64("NaT", "ns")
         had = {(one.fault.label, one.fault.kind) for one in taken}
         # not as measured: a gain less than 1 would shrink the errors as well
         depth = np.nan_to_num(self.depth - begun.left)
         fixed, raw = law.fixed, self._raw(taken)
         for one in taken:
             if one.wide:
-                raw = raw - one.column * one.fault.value
+                raw = raw - one.column * one.fault.size
         inverse = self.white.transpose(0, 2, 1) @ self.white
         evidence = Evidence(raw, fixed, inverse, begun.weight, law.known)
         first = first_time(evidence, law.fall, law.share, self.mean, self.spread)
@@ -291,16 +299,17 @@ class Diagnosis:
                 if kind == "offset":
                     column = np.broadcast_to(mine * 1.0, none.shape)
                 chance, wide = chance_of(code, len(law.time))
-                since, until = law.time[code] if kind == "slip" else never, never
+                since, until = law.time[code] if kind == "slip" else NO_TIME, NO_TIME
                 if kind == "drift":
                     since = self.measured.time[0]
                     span = self.measured.time[-1] - since
                     until = since + common_unknowns.RAMPS[code] * span
                 fault = Fault(label, kind, 0.0, 0.0, 0.0, 0.0, since, until)
                 yield Suspect(fault, column, wide, chance, none)
+        yield from (one for one in self.causes if (one.fault.label, one.fault.kind) not in had)
         for label, mine in self._whose():
             if (label, "gain") not in had and not self.alone:
-                fault = Fault(label, "gain", 0.0, 0.0, 0.0, 0.0, never, never)
+                fault = Fault(label, "gain", 0.0, 0.0, 0.0, 0.0, NO_TIME, NO_TIME)
                 yield Suspect(
                     fault,
                     depth * mine,
@@ -322,7 +331,7 @@ class Diagnosis:
                 continue
             if {(names[0], "exchanged"), (names[1], "exchanged")} & had:
                 continue
-            fault = Fault(names[0], "exchanged", 0.0, 0.0, 0.0, 0.0, never, never, names[1])
+            fault = Fault(names[0], "exchanged", 0.0, 0.0, 0.0, 0.0, NO_TIME, NO_TIME, names[1])
             pairs = len(self.label) * (len(self.label) - 1) / 2
             yield Suspect(fault, shift, 0.0, float(np.log(EXCHANGED / pairs)), shift)
 
@@ -367,8 +376,7 @@ class Diagnosis:
         label = ALL if mine.all() and len(mine) > 1 else self.label[int(mine.argmax())]
         shift, half = self._shift(late, mine), 0.5 * self.step
         rate = (self._shift(late + half, mine) - self._shift(late - half, mine)) / self.step
-        never = np.datetime64("NaT", "ns")
-        fault = Fault(label, "clock", late, late, late, 0.0, never, never)
+        fault = Fault(label, "clock", late, late, late, 0.0, NO_TIME, NO_TIME)
         return Suspect(fault, rate, 0.0, float(np.log(CLOCKS)), shift)
 
 

@@ -208,8 +208,8 @@ class MotionEstimate:
 
     @property
     def diagnosis(self) -> tuple[Fault, ...]:
-        """Return what is wrong with the sensors, with sizes and odds."""
-        return self.study.diagnosis
+        """Return what is wrong with sensors, line and currents, with sizes and odds."""
+        return (*self.study.diagnosis, *self.study.line)
 
     @property
     def judged(self) -> SensorFit | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,13 +16,17 @@ Times = NDArray[np.datetime64]
 
 FALSE = 0.5
 """Probability from which the current of a level is named as false."""
-ALL = "all sensors"
+ALL, LINE, CURRENTS = "all sensors", "the line", "all currents"
+OF_LINE = ("currents", "speed", "slows", "buoyancy", "length", "drag", "fouling")
+"""Faults that are not of sensors but of the line and its currents: their sizes are logarithms."""
 LIKELY = 20.0
 """Odds from which something is said to be wrong."""
 FAR_OFFSET = 2.5
 """Offset of all sensors that is named, in deviations of what is expected."""
 FAR_FACTOR = 3.0
 """Deviations from 1 beyond which a factor on a drag is something else."""
+WORST = 0.15
+"""Share of the knockdown from which the error of the line itself is named."""
 AIR = 10.1
 """What the weight of the air adds to depths by pressure [m]: 1013 hPa."""
 
@@ -34,10 +38,10 @@ class Fault:
     Attributes
     ----------
     label : of the sensor; `ALL` where it is all of them alike
-    kind : `clock`, `gain`, `offset`, `drift`, `slip` or `exchanged`
+    kind : `clock`, `gain`, `offset`, `drift`, `slip`, `exchanged`, or one of `OF_LINE`
     value, low, high : with the ends of its interval of 95 %: how late its times are [h]; factor on
         its depths; how much too deep it reads, what that grows to, or how far down the line it has
-        moved [m]; 0 of what is exchanged
+        moved [m]; 0 of what is exchanged; of `OF_LINE` a factor on what the file or the meter says
     odds : of this against all else that it may be, and against nothing
     since : from when on its clamp has slipped, or it drifts; NaT of others
     until : up to when it drifts; NaT of others
@@ -58,9 +62,29 @@ class Fault:
     rival: str = ""
     corrected: bool = False
 
+    @property
+    def size(self) -> float:
+        """Return what is estimated of it, 0 where nothing is wrong."""
+        if self.kind in OF_LINE:
+            return float(np.log(self.value))
+        return self.value - (self.kind == "gain")
+
+    def sized(self, size: float, deviation: float) -> Fault:
+        """Return the same of another size, with its deviation."""
+        three = [size, size - BAND * deviation, size + BAND * deviation]
+        if self.kind in OF_LINE:
+            three = [float(np.exp(one)) for one in three]
+        value, low, high = (one + (self.kind == "gain") for one in three)
+        return replace(self, value=value, low=low, high=high)
+
     def same(self, other: Fault) -> bool:
         """Whether it is the same of the same sensor, by whatever size."""
         return (self.label, self.kind, self.other) == (other.label, other.kind, other.other)
+
+    def alike(self, other: Fault) -> bool:
+        """Whether it is the same, or both are of the line as a whole and all its currents."""
+        both = {self.label, other.label} <= {LINE, CURRENTS}
+        return both or self.same(other)
 
     @property
     def certain(self) -> bool:
@@ -74,7 +98,20 @@ class Fault:
         way = "late" if self.value > 0.0 else "early"
         when, until = (np.datetime_as_string(one, "m") for one in (self.since, self.until))
         below = "below" if self.value > 0.0 else "above"
+        share = f"{self.value:.2f} ({self.low:.2f} to {self.high:.2f})"
+        low, longer, high = sorted(
+            100.0 * abs(one - 1.0) for one in (self.value, self.low, self.high)
+        )
         text = {
+            "currents": f"they read {share} of the current",
+            "speed": f"its speeds are {share} of the current",
+            "slows": f"its speeds change to {share} of the current by the end: a rotor that slows",
+            "buoyancy": f"the net force of its floats is {share} of that in the file: one that is "
+            "missing, flooded or not as listed",
+            "length": f"its cables are {longer:.1f} % ({low:.1f} to {high:.1f}) "
+            f"{'longer' if self.value > 1.0 else 'shorter'} than in the file",
+            "drag": f"its drag is {share} of that assumed",
+            "fouling": f"its drag changes to {share} of itself by the end: fouling",
             "clock": f"{clock} {abs(self.value):.2f} h {way} {band}",
             "gain": f"reads {self.value:.3f} times the depth ({self.low:.3f} to {self.high:.3f}): "
             "the gain of the pressures, or their unit, is wrong",
@@ -116,24 +153,21 @@ def no_drag(name: str, value: float) -> bool:
     return name.endswith("drag") and far
 
 
-def factor_remarks(common: Common) -> list[str]:
-    """Return a sentence on each drag that no drag explains, and what as much knockdown comes of.
+def alone_remarks(common: Common) -> list[str]:
+    """Return a sentence where a line whose currents are not known does not fit its pressures.
 
-    Knockdown grows as drag and the square of the current, over the net force of the floats.
+    What is wrong with it they cannot tell: currents are found that agree with most lines.
     """
-    said = []
-    for name, value in common.factors.items():
-        if no_drag(name, value) and common.law is None:
-            away = abs(float(np.log(value))) / common_unknowns.FACTORS[name][1]
-            low, less = ("low", "less") if value > 1.0 else ("high", "more")
-            current, lift = 100.0 * abs(1.0 - value**-0.5), 100.0 * abs(1.0 / value - 1.0)
-            said.append(
-                f"{name}: a factor of {value:.2f} is {away:.1f} deviations from what is assumed, "
-                f"and is not drag: as much comes of currents measured {current:.0f} % too {low}, "
-                f"of floats with {lift:.0f} % {less} net force, or of a length that is wrong; "
-                "--fit buoyancy,length weighs the last two"
-            )
-    return said
+    length = common.factors.get("length", 1.0)
+    far = abs(float(np.log(length))) > FAR_OFFSET * common_unknowns.FACTORS["length"][1]
+    if not far and common.worst < WORST:
+        return []
+    return [
+        f"{LINE}: does not fit the pressures (its cables would be {100.0 * abs(length - 1.0):.1f} "
+        f"% {'longer' if length > 1.0 else 'shorter'} than in the file, and its own error "
+        f"{100.0 * common.worst:.0f} % of the knockdown): a length, a float or the depth of the "
+        "water is wrong"
+    ]
 
 
 def datum_remarks(common: Common, seabed: float) -> list[str]:

@@ -8,10 +8,11 @@ import numpy as np
 
 from calm.motion.common_unknowns import MISPLACED, SPIKE
 from calm.motion.correction import Task
-from calm.motion.diagnosis import FEWEST, MOST, Diagnosis, Suspect, Weighed, law_near
+from calm.motion.diagnosis import FEWEST, MOST, Diagnosis, Weighed, law_near
 from calm.motion.matching import without
 from calm.motion.measurements import MooringMeasurements
 from calm.motion.remarks import LIKELY
+from calm.motion.suspects import Suspect
 from calm.motion.whole_record import LinearLaw
 
 FITS = 5.0
@@ -81,10 +82,10 @@ def fit_of(task: Task, measured: MooringMeasurements, label: str) -> SensorFit:
         covariance=np.eye(len(common.value) + 2),
     )
     whole = Task(task.mooring, with_it, common)
-    law = law_near(task, whole)
+    law, _ = law_near(task, whole)
     if law is None or law.known[:, at].sum() < FEWEST:
         return SensorFit(label, None, 1.0, "")
-    diagnosis = Diagnosis(whole, law, label)
+    diagnosis = Diagnosis(whole, law, judged=label)
     taken: list[Suspect] = []
     mine, others = _of_it(diagnosis, taken)
     while len(taken) < MOST and others:
@@ -94,7 +95,7 @@ def fit_of(task: Task, measured: MooringMeasurements, label: str) -> SensorFit:
         taken.append(best[0])
         mine, others = _of_it(diagnosis, taken)
     against = [log - np.log(MISPLACED) * (one.fault.kind == "offset") for one, log in mine]
-    nothing = _says_nothing(diagnosis, Diagnosis(whole, _unrelated(law, at), label), taken)
+    nothing = _says_nothing(diagnosis, Diagnosis(whole, _unrelated(law, at), judged=label), taken)
     with_it = np.logaddexp.reduce([0.0, *(log for _, log in others)])
     without_it = np.logaddexp.reduce([*against, nothing])
     odds = float(np.exp(np.clip(with_it - without_it, -50.0, 50.0)))

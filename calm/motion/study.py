@@ -18,15 +18,16 @@ from calm.motion.measurements import MooringMeasurements, level_names
 from calm.motion.remarks import (
     ALL,
     BAND,
+    OF_LINE,
     Agreement,
     Fault,
     agreement,
+    alone_remarks,
     calm_times,
     coverage,
     current_remarks,
     datum_remarks,
     difference,
-    factor_remarks,
     false_current_times,
     linear,
     pchip,
@@ -74,6 +75,8 @@ class Study:
     fit, plain : agreement of each used sensor, of what is estimated and of the currents alone
     held_out : of the hidden ones
     diagnosis : what is wrong with sensors
+    line : what is wrong with the line or its currents
+    fits : whether the line fits its pressures in these currents
     remarks : what to doubt, in sentences
     false : times at which the current of a level looks false, by its name
     judged : whether the sensor that was asked for fits the line; None of none
@@ -85,6 +88,8 @@ class Study:
     plain: Mapping[str, Agreement]
     held_out: tuple[HeldOut, ...]
     diagnosis: tuple[Fault, ...]
+    line: tuple[Fault, ...]
+    fits: bool
     remarks: tuple[str, ...]
     false: Mapping[str, NDArray[np.datetime64]]
     judged: SensorFit | None = None
@@ -149,7 +154,7 @@ def judged(
     ----------
     measured : with the sensors that were hidden
     result : of `calm.motion.correction.run_motion`
-    diagnosis : what is wrong with sensors
+    diagnosis : what is wrong
     """
     used = task.measured
     residual = np.asarray(result["residual"].values, np.float64)
@@ -172,8 +177,11 @@ def judged(
         depth, spread = depths_at(result, point)
         held.append(judge_hidden(measured, used, label, depth, spread, still))
     said = [f"{one.sentence()}{'; it is taken off' if one.corrected else ''}" for one in diagnosis]
-    said += factor_remarks(task.common)
+    sensors = tuple(one for one in diagnosis if one.kind not in OF_LINE)
+    line = tuple(one for one in diagnosis if one.kind in OF_LINE)
     false: Mapping[str, NDArray[np.datetime64]] = {}
+    unfit = alone_remarks(task.common) if alone else []
+    said += unfit
     if plain is not None:
         names = level_names(used, labels_of(task.mooring))
         false = false_current_times(names, used.time, np.asarray(result["current_doubt"].values))
@@ -185,8 +193,18 @@ def judged(
             "the pressures miss the computed depths by more than all errors that are allowed "
             f"for: the bands are widened {task.common.widened:.2g} times"
         )
+    fits = not (line or unfit or task.common.widened > 1.0)
     return Study(
-        task, intervals(task), fit_of, plain_of, tuple(held), tuple(diagnosis), tuple(said), false
+        task,
+        intervals(task),
+        fit_of,
+        plain_of,
+        tuple(held),
+        sensors,
+        line,
+        fits,
+        tuple(said),
+        false,
     )
 
 

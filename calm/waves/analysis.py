@@ -246,7 +246,7 @@ def _settled(
 
     Between them stands the flow past the nodes in the first of them.
     """
-    _, density = mooring.water.at(np.array(0.0))
+    density = mooring.water.density_at(np.array(0.0))
     water = Waves(np.zeros(0), toward, mooring.water.depth, float(density), mooring.water.gravity)
     longest, count = COARSEST * mooring.water.depth, FEWEST
     buoy = buoy_of(mooring, solution, follows=False)

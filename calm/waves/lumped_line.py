@@ -175,9 +175,9 @@ def lumped_line(mooring: Mooring, solution: Solution, longest: float) -> LumpedL
     spring /= span[:, None]
     tangent = np.vstack([spring[:1], spring[:-1] + spring[1:], spring[-1:]])
     tangent /= np.linalg.norm(tangent, axis=1)[:, None]
-    current, density = mooring.water.at(np.maximum(-where[:, 2], 0.0))
+    water, depth = mooring.water, np.maximum(-where[:, 2], 0.0)
     for name in ("across_drag", "along_drag", "any_drag"):
-        node[name] *= density / REFERENCE_DENSITY
+        node[name] *= water.density_at(depth) / REFERENCE_DENSITY
     count = len(solution.line.length)
     piece_node = np.array([starts.get(piece, -1) for piece in range(count)])
     piece_spring = np.where(piece_node >= 0, np.minimum(piece_node, n - 2), -1)
@@ -195,7 +195,7 @@ def lumped_line(mooring: Mooring, solution: Solution, longest: float) -> LumpedL
         stiffness=stiffness,
         spring=spring,
         span=span,
-        current=np.asarray(current, float),
+        current=water.current_at(depth),
         piece_spring=piece_spring,
         piece_below=np.where(owner[below] == owner[piece_spring], below, piece_spring),
         piece_node=piece_node,

@@ -196,7 +196,7 @@ def test_a_report_has_the_life_and_its_pictures(calm, buoy, tmp_path):
     shown = calm("waves", path, "--report", str(tmp_path / "report"))
     assert shown.code in (0, 3)
     assert "dnv-studless-chain" in shown.out
-    assert "Of unknown life: rope." in shown.out
+    assert "Life unknown: rope." in shown.out
     page = (tmp_path / "report" / "waves.html").read_text()
     assert page.count("<svg") == 1
     assert "Hs [m]" in page  # several seas: tension over height

@@ -7,10 +7,13 @@ import pytest
 
 from calm.motion.common_unknowns import Common
 from calm.motion.remarks import (
+    LINE,
+    Fault,
+    alone_remarks,
     current_remarks,
     datum_remarks,
-    factor_remarks,
     false_current_times,
+    no_drag,
 )
 
 TIMES = 100
@@ -61,11 +64,26 @@ def test_all_sensors_off_alike_are_named_and_the_weight_of_the_air_is_known(
 
 
 def test_an_absurd_factor_is_not_called_drag():
-    known = replace(common((0.0,)), factors={"cable_drag": 1.3, "rigid_drag": 2.61, "length": 1.2})
-    (said,) = factor_remarks(known)  # 6.4 deviations of 15 %; 1.3 is 1.7, and a length is no drag
-    assert said.startswith("rigid_drag: a factor of 2.61 is 6.4 deviations")
-    assert (
-        "measured 38 % too low" in said and "62 % less net force" in said
-    )  # 1 - 2.61^-1/2, 1/2.61
-    (low,) = factor_remarks(replace(known, factors={"rigid_drag": 0.5}))
-    assert "measured 41 % too high" in low  # 2^1/2 - 1
+    assert no_drag("rigid_drag", 2.61) and no_drag("rigid_drag", 0.5)
+    assert not no_drag("cable_drag", 1.3)  # 1.7 deviations of 15 %
+    assert not no_drag("length", 2.0)
+
+
+def test_a_fault_of_the_line_has_the_size_of_a_logarithm():
+    never = np.datetime64("NaT", "ns")
+    one = Fault(LINE, "length", 1.0, 1.0, 1.0, 0.0, never, never).sized(-0.02, 0.005)
+    assert one.size == pytest.approx(-0.02) and one.value == pytest.approx(np.exp(-0.02))
+    said = one.sentence()
+    assert said == "the line: its cables are 2.0 % (1.0 to 2.9) shorter than in the file"
+    gain = Fault("a", "gain", 1.0, 1.0, 1.0, 0.0, never, never).sized(0.03, 0.001)
+    assert (gain.value, gain.size) == (pytest.approx(1.03), pytest.approx(0.03))
+
+
+def test_a_line_that_misses_pressures_alone_is_named():
+    known = replace(common((0.0,)), factors={"length": 1.003}, worst=0.07)
+    assert alone_remarks(known) == []
+    (said,) = alone_remarks(replace(known, factors={"length": 0.99}))
+    assert said.startswith(
+        "the line: does not fit the pressures (its cables would be 1.0 % shorter"
+    )
+    assert len(alone_remarks(replace(known, worst=0.15))) == 1

@@ -1,0 +1,116 @@
+"""Twins whose line or currents are not those of the file: what is wrong is named with its size.
+
+Made as those of `test_motion_twins`, whose line and errors they have besides.
+"""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import calm
+from calm.motion.correction import Task
+from calm.motion.diagnosis import diagnosed
+from calm.motion.line_response import Forward
+from calm.motion.remarks import CURRENTS, LINE
+from calm.motion.whole_record import estimate_common
+from tests.validation import test_motion_twins as twins
+
+pytestmark = pytest.mark.thorough
+TIMES, PARTS = twins.TIMES, 8
+SHARE = np.linspace(0.0, 1.0, TIMES)[:, None]
+TOP = twins.LEVELS[0]
+
+
+@pytest.fixture(scope="module")
+def mooring():
+    return calm.load(twins.FIELD / "mooring.yaml")
+
+
+def growing(factor):
+    """What solves a line whose drag grows to so much of itself by the end, in eight steps."""
+
+    class Growing:
+        def __init__(self, mooring, factors):
+            steps = np.geomspace(1.0, factor, PARTS)
+            names = "cable_drag", "rigid_drag"
+            lines = [{**factors, **{n: factors[n] * step for n in names}} for step in steps]
+            self._lines = [Forward(mooring, line) for line in lines]
+            self.still = self._lines[0].still
+
+        def solve(self, level, u, v):
+            parts = np.array_split(np.arange(len(level)), PARTS)
+            found = [
+                line.solve(level[at], u[at], v[at])
+                for line, at in zip(self._lines, parts, strict=True)
+            ]
+            names = "clamp_depth", "depth_top"
+            both = {n: np.concatenate([getattr(one, n) for one in found]) for n in names}
+            return SimpleNamespace(**both)
+
+    return Growing
+
+
+def other_line(**factors):
+    """What solves a line with other factors than those that a twin is made with."""
+    names = {*twins.NAMES, *factors}
+    return lambda mooring, made: Forward(
+        mooring, {name: made.get(name, 1.0) * factors.get(name, 1.0) for name in names}
+    )
+
+
+def misread(factor, level=slice(None), grows=False):
+    def change(measured):
+        read = np.ones_like(measured.u)
+        read[:, level] = 1.0 + (factor - 1.0) * (SHARE if grows else 1.0)
+        return replace(measured, u=measured.u * read, v=measured.v * read)
+
+    return change
+
+
+def found(mooring, monkeypatch, forward=Forward, change=lambda measured: measured, seed=1):
+    monkeypatch.setattr(twins, "Forward", forward)
+    measured = change(twins.twin(mooring, seed, twins.THREE)[0])
+    monkeypatch.undo()
+    return diagnosed(Task(mooring, measured, estimate_common(mooring, measured, twins.NAMES)))
+
+
+def test_of_a_line_that_is_as_the_file_says_nothing_is_said(mooring, monkeypatch):
+    assert all(not found(mooring, monkeypatch, seed=seed) for seed in (0, 1, 2))
+
+
+def test_currents_that_read_low_are_told_from_missing_floats_but_not_from_drag(
+    mooring, monkeypatch
+):
+    """Knockdown is proportional to drag and the square of the current, so these two are one."""
+    (low,) = found(mooring, monkeypatch, change=misread(0.7))
+    assert (low.label, low.kind) == (CURRENTS, "currents") and not low.certain
+    assert low.low < 0.7 < low.high
+    assert "its drag is 1.9" in low.rival and "net force" not in low.rival
+    assert low.sentence().endswith("they cannot tell")
+
+
+def test_missing_floats_are_the_likeliest_where_they_are_missing(mooring, monkeypatch):
+    (less,) = found(mooring, monkeypatch, other_line(buoyancy=0.65))
+    assert (less.label, less.kind) == (LINE, "buoyancy")
+    assert less.low < 0.65 < less.high
+
+
+def test_cables_that_are_shorter_are_named(mooring, monkeypatch):
+    (short,) = found(mooring, monkeypatch, other_line(length=0.99), seed=2)
+    assert (short.label, short.kind) == (LINE, "length") and short.certain
+    assert short.low < 0.99 < short.high
+
+
+def test_a_drag_that_grows_is_told_from_all_else(mooring, monkeypatch):
+    (grown,) = found(mooring, monkeypatch, growing(2.0))
+    assert (grown.label, grown.kind) == (LINE, "fouling") and grown.certain
+    assert grown.low < 2.0 < grown.high
+
+
+def test_a_rotor_that_slows_is_one_sentence(mooring, monkeypatch):
+    (slow,) = found(mooring, monkeypatch, change=misread(0.5, [0], grows=True))
+    assert (slow.label, slow.kind) == (TOP, "slows") and slow.certain
+    # of another course than assumed, linear in time and not in its logarithm
+    assert slow.value == pytest.approx(0.5, abs=0.12)
