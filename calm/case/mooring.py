@@ -237,7 +237,8 @@ def refuse_in_the_slope(file: MooringFile, solution: Solution, depth: float) -> 
     anchor = file.legs[0].bottom.anchor if file.legs else None
     origin = (0.0, 0.0) if anchor is None else anchor.at
     place = solution.position[: solution.hanging + 1]
-    below = -place[:, 2] - depth - (place[:, :2] - np.array(origin)) @ np.array(seabed.deepening)
+    below = -place[:, 2] - depth - seabed.deeper(place[:, :2] - np.array(origin))
+    below = np.nan_to_num(below, nan=-np.inf)  # outside a grid nothing is known
     worst = int(np.argmax(below))
     if below[worst] > solution.depth_error + 1e-6 * depth:
         number = solution.piece_at(worst)

@@ -36,13 +36,20 @@ class Origin:
             net=net,
         )
 
-    def with_values(self, file: MooringFile, label: str | None, keys: Mapping[str, Any]) -> Origin:
-        """Return the same with values put into the text.
+    def changed(
+        self,
+        file: MooringFile,
+        label: str | None,
+        environment: str | Path | None,
+        keys: Mapping[str, Any],
+    ) -> Origin:
+        """Return the same with values put into the text, or in another environment.
 
         Parameters
         ----------
         file : as it was read
         label : of the piece or clamp that has the keys; None where they are those of the file
+        environment : None for its own
         keys : names and values as the file writes them; None takes a key out; where the file has a
             mapping under a name, its keys are changed one by one
 
@@ -59,7 +66,7 @@ class Origin:
                 where = (*place, name) if key is None else (*place, name, key)
                 written = str(each) if isinstance(each, (int, float)) else each
                 draft = draft.put_at(where, written)
-        return replace(self, text=draft.text)
+        return replace(self, text=draft.text, environment=environment or self.environment)
 
 
 def _place_of(file: MooringFile, label: str) -> Location:
@@ -88,7 +95,7 @@ class ReadFromFile:
     def with_(
         self, label: str | None = None, /, environment: str | Path | None = None, **keys: Any
     ) -> Self:
-        """Return the same with some values of its file changed, as `Origin.with_values`.
+        """Return the same with some values of its file changed, as `Origin.changed`.
 
         Parameters
         ----------
@@ -105,8 +112,7 @@ class ReadFromFile:
         """
         if self.origin is None:
             raise UsageError("what was not loaded from a file has no values to change")
-        origin = self.origin.with_values(self.file, label, keys)
-        origin = replace(origin, environment=environment or origin.environment)
+        origin = self.origin.changed(self.file, label, environment, keys)
         file = origin.read(net=bool(self.file.legs))
         if (file.tow is None) != (self.file.tow is None):
             raise UsageError("a mooring does not become a tow, nor a tow a mooring")

@@ -205,7 +205,7 @@ def _on_the_seabed(result: Result, solution: Solution) -> Iterator[str]:
         rise = solution.grounded_length * np.sin(np.radians(seabed.slope))
         yield (
             f"{say('grounded_length', solution.grounded_length)} of line lies on the seabed, "
-            f"taken as level there: on its slope of {seabed.slope:g}° depths differ by up to "
+            f"taken as level there: on its slope of {seabed.slope:.4g}° depths differ by up to "
             f"{say('depth', float(rise))}."
         )
     if solution.landed and result.still_shape is result.shape:

@@ -232,6 +232,9 @@ def _omitted(mooring: Mooring | Tow) -> tuple[str, ...]:
     ]
     if file.solver.strumming is not None:
         omitted.append("strumming: cables have their drag at rest")
+    anchor = file.legs[0].bottom.anchor if file.legs else None
+    if file.environment.seabed is not None or (anchor is not None and anchor.depth is not None):
+        omitted.append("the slope of the seabed: it is level there, as deep as the deepest anchor")
     if file.solver.drag == "reynolds":
         omitted.append("`drag: reynolds`: the constant coefficients are written")
     if file.solver.friction != "berteaux":

@@ -696,3 +696,96 @@ def test_a_net_is_compared_with_what_was_deployed_of_it(
     moved = figures["A.depth"]["to"] - figures["A.depth"]["from"]
     # ten metres deeper on a stem, little inclined, that is five metres longer
     assert moved == pytest.approx(5.0, abs=0.05)
+
+
+def gridded(folder: Path, depth: Any, name: str = "elevation", sign: float = -1.0) -> Path:
+    """A grid about 48 N 355 E, nodes some 30 m apart, of depths by metres east and north."""
+    latitude, longitude = 48.0 + np.arange(-40, 41) * 3e-4, 355.0 + np.arange(-40, 41) * 4e-4
+    metres = 111.2e3 * np.cos(np.radians(48.0))
+    east, north = (longitude - 355.0) * metres, (latitude - 48.0) * 111.2e3
+    values = sign * np.array([[depth(e, n) for e in east] for n in north])
+    file = folder / "grid.nc"
+    xarray.Dataset({name: (("lat", "lon"), values)}, {"lat": latitude, "lon": longitude}).to_netcdf(
+        file, engine="h5netcdf"
+    )
+    return file
+
+
+GRIDDED = "position: {latitude: 48 deg, longitude: -5 deg}\n" + SLOPE.replace(
+    "{slope: 10 deg, toward: 90 deg}", "{file: grid.nc}"
+)
+
+
+@pytest.mark.parametrize(("name", "sign"), [("elevation", -1.0), ("depth", 1.0)])
+def test_a_grid_of_a_plane_is_the_plane(tmp_path: Path, name: str, sign: float) -> None:
+    """A plane is exact between nodes; the grid lies on the ellipsoid, here taken as a sphere."""
+    steep = np.tan(np.radians(10.0))
+    gridded(tmp_path, lambda east, north: 90.0 + steep * east, name, sign)
+    plane = load(tmp_path / "slope.yaml", text=SLOPE).solve()
+    grid = load(tmp_path / "grid.yaml", text=GRIDDED).solve()
+    for ours, theirs in zip(grid.anchors, plane.anchors, strict=True):
+        assert ours.depth == pytest.approx(theirs.depth, abs=0.03)  # 5 m by 0.4 %: the sphere
+        assert ours.required_weight == pytest.approx(theirs.required_weight, rel=0.01)
+
+
+def test_an_export_says_that_its_seabed_is_level(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "slope.yaml"
+    file.write_text(SLOPE)
+    assert run("export", file, "--to", "moordyn", "-o", tmp_path / "slope.txt") == 0
+    told = capsys.readouterr().err
+    assert "lost: the slope of the seabed: it is level there" in told
+    depths = [anchor.depth for anchor in load(file).solve().anchors]
+    written = (tmp_path / "slope.txt").read_text()
+    deepest = next(line for line in written.splitlines() if "WtrDpth" in line)
+    assert float(deepest.split()[0]) == pytest.approx(max(depths) + 0.7, abs=1e-6)
+
+
+def test_a_line_that_hangs_into_a_knoll_of_a_grid_is_refused(tmp_path: Path) -> None:
+    text = (
+        GRIDDED[: GRIDDED.index("legs:")]
+        + """\
+legs:
+  span:
+    line: [{use: wire-jacketed-8, length: 130 m}]
+    top: {held: {depth: 40 m, at: [0 m, 0 m]}}
+    bottom: {held: {depth: 40 m, at: [120 m, 0 m]}}
+"""
+    )
+    # a wire of 130 m sags by some 20 m between ends 120 m apart, over the top of the knoll
+    for height, stands in ((60.0, False), (10.0, True)):
+        gridded(
+            tmp_path,
+            lambda e, n, h=height: 200.0 - h * np.exp(-((e - 60.0) ** 2 + n * n) / 900.0),
+        )
+        net = load(tmp_path / "grid.yaml", text=text)
+        if stands:
+            assert net.solve().status == "converged"
+        else:
+            with pytest.raises(NoEquilibrium, match="below the sloping seabed"):
+                net.solve()
+
+
+BROKEN_GRIDS = [
+    (GRIDDED[GRIDDED.index("environment") :], "a grid needs the `position`"),
+    (GRIDDED.replace("longitude: -5", "longitude: 5"), "too few nodes about the position"),
+    (GRIDDED.replace("[30 m, 0 m]", "[3 km, 0 m]"), "the grid of the seabed has no depth here"),
+    (GRIDDED.replace("grid.nc", "grid.tif"), "gdal_translate -of netCDF grid.tif grid.nc"),
+    (GRIDDED.replace("grid.nc", "absent.nc"), "no such file"),
+    (GRIDDED.replace("grid.nc", "words.nc"), "cannot be read as NetCDF"),
+    (GRIDDED.replace("grid.nc", "other.nc"), "it holds salinity"),
+    (GRIDDED.replace("{file: grid.nc}", "{slope: 3 deg, file: grid.nc}"), "unknown key `slope`"),
+]
+
+
+@pytest.mark.parametrize(("text", "told"), BROKEN_GRIDS)
+def test_a_grid_that_cannot_be_used_is_a_mistake(tmp_path: Path, text: str, told: str) -> None:
+    gridded(tmp_path, lambda east, north: 100.0)
+    (tmp_path / "grid.tif").write_bytes(b"II*\0")
+    (tmp_path / "words.nc").write_text("no grid")
+    other = xarray.Dataset({"salinity": (("lat", "lon"), np.ones((3, 3)))})
+    other.to_netcdf(tmp_path / "other.nc", engine="h5netcdf")
+    with pytest.raises(InputError) as mistakes:
+        load(tmp_path / "grid.yaml", text=text)
+    assert told in str(mistakes.value)
