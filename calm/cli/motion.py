@@ -52,6 +52,7 @@ def motion(
     cross_validate: bool = False,
     correct: str | None = None,
     judge: str = "",
+    prior: Path | None = None,
     sea_level: Path | None = None,
     flags: str = "1,2",
     gap: str = "2 h",
@@ -103,6 +104,9 @@ def motion(
     judge
         Label of a suspicious sensor: it is hidden as with --hold-out, and whether its
         pressures fit the line is said, with the odds: yes, no, or cannot tell.
+    prior
+        A record of currents near the mooring, of any time, such as a hindcast: without
+        --currents the shapes of its profiles are taken, not their strength.
     sea_level
         Height of the sea surface over time: NetCDF, or CSV with time,level[m].
     flags
@@ -145,7 +149,7 @@ def motion(
     currents = currents or []
     files = [split_label(text)[1] for text in (*currents, *pressures)]
     files += [path for path in (sea_level, onto) if path is not None]
-    check_output(output, file, *files)
+    check_output(output, file, *files, *filter(None, [prior]))
     copy = output
     if onto is not None:
         if onto.is_dir():
@@ -174,7 +178,7 @@ def motion(
     recovery = Recovery(
         MotionRequest(
             mooring, pressures, currents, match, _separated(fit), _separated(hold_out),
-            cross_validate, _separated(correct), judge, sea_level, flags, apart, turned,
+            cross_validate, _separated(correct), judge, sea_level, flags, apart, turned, prior,
         )
     )  # fmt: skip
     for note in recovery.notes:

@@ -1,6 +1,6 @@
 """The depths at each time, over all ways to read the currents and the sensors.
 
-What the pressures make of one way to read them is found by Gauss-Newton steps on the march.
+What the pressures make of one way is found by Gauss-Newton steps on the march.
 """
 
 from __future__ import annotations
@@ -339,7 +339,6 @@ def posterior(
     taken = ((beside @ inverse) * beside).sum(axis=2)
     _, size = np.linalg.slogdet(expected)
     misfit = (innovation * solved).sum(axis=1)
-    even = np.full(g, 1.0 / max(g, 1))
     depth[lost] = np.nan
     return Posterior(
         logs,
@@ -349,7 +348,7 @@ def posterior(
         np.where(lost, -np.inf, -0.5 * (misfit + size)),
         innovation,
         expected,
-        logs @ even,
+        logs.sum(axis=1) / max(g, 1),
     )
 
 

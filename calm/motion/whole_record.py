@@ -38,11 +38,8 @@ FURTHEST = 1.0
 """Of the logarithm of a factor, at most."""
 SCALES = (0.2, 2.5)
 """Least and greatest factor on the errors of the currents."""
-SHARES, USUAL_SHARE, SHARE_KNOWN = (
-    (0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07, 0.085, 0.1),
-    0.07,
-    0.25,
-)
+SHARES = (0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07, 0.085, 0.1)
+USUAL_SHARE, SHARE_KNOWN = 0.07, 0.25
 """Errors of the line that are tried, as shares of the knockdown, the one that is assumed, and the
 standard deviation of its logarithm beforehand."""
 USUAL, MISSED = (0.8, 0.95), 1.5
