@@ -126,7 +126,6 @@ def motion(
     json
         Write the factors and how well depths agree as JSON, - to print it.
     """
-    import numpy as np
 
     from calm.batch.finished import open_result, readable
     from calm.batch.profiles import Batch
@@ -198,15 +197,12 @@ def motion(
         with open_result(output) as result, readable(output):
             study = recovery.study(result, narrate, workers)
             series = series_of(mooring, recovery.measured, study.task.measured.label, result)
-            factor = None
-            if "current_factor" in result:
-                factor = np.asarray(result["current_factor"].values, np.float64)
             if onto is not None and instruments is not None:
                 inputs = [file, *files[:-1]]
                 write_copies(instruments, result, apart, copy, inputs, recovery.source)
     name = mooring.file.name or file.stem
     if report is not None:
-        said = motion_report(study, series, recovery.measured.time, factor, name, recovery.notes)
+        said = motion_report(study, series, recovery.measured.time, name, recovery.notes)
         write_report(report, {"motion.html": page(said).encode(), "motion.pdf": printed(said)})
     outputs.write_answer(lambda: motion_document(study, name), motion_part(study, name))
     return code

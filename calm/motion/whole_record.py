@@ -36,16 +36,16 @@ SOLVES = 500
 """Moorings whose solving takes as long as laying out all that are tried here."""
 FURTHEST = 1.0
 """Of the logarithm of a factor, at most."""
-SCALES = (0.2, 2.5)
+SCALES = (0.5, 2.5)
 """Least and greatest factor on the errors of the currents."""
 SHARES = (0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07, 0.085, 0.1)
-USUAL_SHARE, SHARE_KNOWN = 0.07, 0.25
+USUAL_SHARE, SHARE_KNOWN = 0.07, 0.3
 """Errors of the line that are tried, as shares of the knockdown, the one that is assumed, and the
 standard deviation of its logarithm beforehand."""
 USUAL, MISSED = (0.8, 0.95), 1.5
 """Shares of the times, the first of which miss usually, and by so much more than is expected where
 bands are widened, by what the second share misses."""
-SCALE_KNOWN = 0.25
+SCALE_KNOWN = 0.15
 """Standard deviation of its logarithm beforehand."""
 LONGEST_MEMORY = 25
 """Times over which errors that repeat are looked for."""
@@ -113,7 +113,12 @@ def estimate_common(
         fixed, there, fall, share = found.fixed, found.known, found.fall, found.share
         evidence = _evidence(raw, left, fixed, expected, there)
         begun = replace(known, since=np.full(sensors, span[0]))
-        worst = _worst(left, expected, found.bent, common.worst)
+        assumed = expected + (USUAL_SHARE**2 - common.worst**2) * found.bent
+        scale, likely = _scale(left, assumed, currents, common.scale)
+        worst = USUAL_SHARE
+        if _widened(left, assumed + ((scale / common.scale) ** 2 - 1.0) * currents, there) == 1.0:
+            # of times that miss by more, most would be left to spikes and false currents
+            worst = _worst(left, expected, found.bent, common.worst)
         expected = expected + (worst**2 - common.worst**2) * found.bent
         scale, likely = _scale(left, expected, currents, common.scale)
         beside, best = 0.0, 0.0

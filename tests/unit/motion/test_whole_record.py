@@ -15,21 +15,21 @@ from calm.physics.line import Line
 def test_the_scale_of_the_currents_is_the_likeliest_by_students_law():
     random = np.random.default_rng(4)
     rest, currents = np.diag([1.0, 0.5]), np.array([[4.0, 1.5], [1.5, 1.0]])
-    tried = np.exp(np.linspace(np.log(0.2), np.log(2.5), 41))
+    tried = np.exp(np.linspace(np.log(0.5), np.log(2.5), 41))
     for true, given in ((0.4, 1.0), (0.9, 1.3), (1.3, 0.8), (3.0, 1.0)):
         covariance = rest + true**2 * currents
         left = random.multivariate_normal(np.zeros(2), covariance, 40)
         likely = [
             multivariate_t(shape=rest + scale**2 * currents, df=4).logpdf(left).sum()
-            + norm(0.0, 0.25).logpdf(np.log(scale))
+            + norm(0.0, 0.15).logpdf(np.log(scale))
             for scale in tried
         ]
         expected = np.tile(rest + given**2 * currents, (40, 1, 1))
         found, best = _scale(left, expected, given**2 * np.tile(currents, (40, 1, 1)), given)
         assert found == pytest.approx(tried[int(np.argmax(likely))])
         constant = multivariate_t(shape=np.eye(2), df=4).logpdf([0.0, 0.0])
-        assert best == pytest.approx(max(likely) - 40 * constant - norm(0.0, 0.25).logpdf(0.0))
-    assert SCALES == (0.2, 2.5)
+        assert best == pytest.approx(max(likely) - 40 * constant - norm(0.0, 0.15).logpdf(0.0))
+    assert SCALES == (0.5, 2.5)
 
 
 def test_the_error_of_the_line_is_that_of_the_pressures():
