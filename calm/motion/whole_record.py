@@ -113,10 +113,10 @@ def estimate_common(
         fixed, there, fall, share = found.fixed, found.known, found.fall, found.share
         evidence = _evidence(raw, left, fixed, expected, there)
         begun = replace(known, since=np.full(sensors, span[0]))
-        assumed = expected + (USUAL_SHARE**2 - common.worst**2) * found.bent
-        scale, likely = _scale(left, assumed, currents, common.scale)
+        usual = expected + (USUAL_SHARE**2 - common.worst**2) * found.bent
+        scale, likely = _scale(left, usual, currents, common.scale)
         worst = USUAL_SHARE
-        if _widened(left, assumed + ((scale / common.scale) ** 2 - 1.0) * currents, there) == 1.0:
+        if _widened(left, usual + ((scale / common.scale) ** 2 - 1.0) * currents, there) == 1.0:
             # of times that miss by more, most would be left to spikes and false currents
             worst = _worst(left, expected, found.bent, common.worst)
         expected = expected + (worst**2 - common.worst**2) * found.bent

@@ -9,7 +9,7 @@ import pytest
 import calm.motion.whole_record as module
 from calm.motion import common_unknowns
 from calm.motion.measurements import MooringMeasurements
-from calm.motion.whole_record import _scale, _worst, estimate_common, repeated
+from calm.motion.whole_record import _scale, _widened, _worst, estimate_common, repeated
 
 STILL = np.array([50.0, 100.0, 180.0])  # of three points; the first and the last have sensors
 GAIN = np.array([[90.0, 60.0], [50.0, 45.0], [15.0, 20.0]])
@@ -90,7 +90,11 @@ def best(one, start=None):
             seen = np.concatenate([seen, (fall[:, None] * [0.0, 1.0])[:, :, None]], axis=2)
             left = left - seen[:, :, 4] * state[4]
         left = np.where(known, left, 0.0)
+        usual = rest + (0.07**2 - worst**2) * bent + by_currents
+        tried, _ = _scale(left, usual, by_currents, scale)
+        usual = usual + ((tried / scale) ** 2 - 1.0) * by_currents
         before, worst = worst, _worst(left, rest + by_currents, bent, worst)
+        worst = worst if _widened(left, usual, known) == 1.0 else 0.07
         rest = rest + (worst**2 - before**2) * bent
         scale, _ = _scale(left, rest + by_currents, by_currents, scale)
         by_currents = scale**2 * slope @ spread @ slope.transpose(0, 2, 1)
