@@ -56,16 +56,6 @@ def depth_figure(series: Sequence[SensorSeries]) -> str:
     return figure_svg(figure)
 
 
-def residual_figure(series: Sequence[SensorSeries]) -> str:
-    """Measured less estimated depths of each sensor over time."""
-    figure, panels = _panels(series)
-    for axes, one in zip(panels, series, strict=True):
-        axes.plot(one.time.astype("datetime64[s]"), one.measured - one.estimated, **_MEASURED)
-        axes.axhline(0.0, color="#999999", linewidth=0.5)
-        _name(axes, one, "residual [m]")
-    return figure_svg(figure)
-
-
 def false_figure(time: Any, false: Mapping[str, Any]) -> str:
     """A row of marks for each level whose current looks false at some of the times (n,)."""
     from matplotlib.figure import Figure

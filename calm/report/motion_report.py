@@ -29,7 +29,6 @@ from calm.report.motion_figures import (
     depth_figure,
     false_figure,
     overview_figure,
-    residual_figure,
 )
 from calm.report.provenance import date
 from calm.report.result_files import members
@@ -110,9 +109,6 @@ def motion_report(
                 Figure(_DEPTHS, depth_figure(shown), tall=True),
                 Note((_LEGEND,)),
             ),
-        ),
-        ReportPart(
-            "Residuals", (Figure("Measured less estimated", residual_figure(shown), tall=True),)
         ),
     )
     span = f"{str(time[0])[:16]} to {str(time[-1])[:16]}, {len(time)} times"
