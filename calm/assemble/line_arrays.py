@@ -328,7 +328,7 @@ def assemble_floating(
     hull = _hull(component)
     if hull is None and component.k_surface is None:
         return None
-    _, density = water.at(np.zeros(()))
+    density = water.density_at(np.zeros(()))
     volume = _volume(component) or 0.0
     net = net_buoyancy(component, water.gravity)
     lift = net + (float(density) - CATALOGUE_DENSITY) * water.gravity * volume

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from math import prod
 from typing import TYPE_CHECKING, Any
@@ -45,6 +45,7 @@ from calm.solve.solution import FOUND
 from calm.solve.starts import fill_starts
 
 if TYPE_CHECKING:
+    import pandas
     from xarray import Dataset
 
 BLOCK = 1024
@@ -126,6 +127,20 @@ class Profiles:
         variables["status"] = (profile, self.status, meanings)
         labels = {"component": [*self.component_label], "clamp": [*self.clamp_label]}
         return Dataset(variables, coords=labels)
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """Return a data frame with a row a profile and a column for each quantity and label:
+        ``frame["tilt", "adcp"]``; what belongs to no part has the label 0, or that of its leg.
+        """
+        import pandas
+
+        frames = {}
+        for name in (one.name for one in fields(self) if not one.name.endswith("_label")):
+            values = getattr(self, name).reshape(self.status.size, -1)
+            named = self.clamp_label if name in netcdf.OF_CLAMP else self.component_label
+            labels = range(values.shape[1]) if name in (*netcdf.OF_ENDS, "status") else named
+            frames[name] = pandas.DataFrame(values, columns=[*labels])
+        return pandas.concat(frames, axis=1)
 
 
 def solve_profiles(

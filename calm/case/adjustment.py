@@ -183,20 +183,8 @@ class Count(Adjustment):
             one = replace(one, label=_unnumbered(one.label), clamps=clamps)
         repeats = (placed(one, replace(one.place, repeat=number)) for number in range(int(value)))
         line = (*pieces[: one.index], *repeats, *pieces[last.index + 1 :])
-        return with_pieces(self.file, numbered(line), one.index, len(line) - len(pieces))
-
-
-def with_pieces(file: MooringFile, pieces: tuple[Piece, ...], index: int, more: int) -> MooringFile:
-    """The file with other pieces, `more` of them in the leg that has the piece of an index."""
-    legs = tuple(
-        replace(
-            leg,
-            first=leg.first + more * (leg.first > index),
-            end=leg.end + more * (leg.end > index),
-        )
-        for leg in file.legs
-    )
-    return replace(file, pieces=pieces, legs=legs)
+        legs = tuple(leg.grown(one.index, len(line) - len(pieces)) for leg in self.file.legs)
+        return replace(self.file, pieces=numbered(line), legs=legs)
 
 
 def _unnumbered(label: str) -> str:

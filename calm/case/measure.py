@@ -276,7 +276,7 @@ def on_anchor(clamp: Clamp, anchor: ComponentRow) -> ClampRow:
 
 def anchor_weight_of(anchor: Piece, water: Water) -> float:
     """Weight in the water at the seabed of an anchor with what is clamped on it [N]."""
-    _, density = water.at(np.array(water.depth))
+    density = water.density_at(np.array(water.depth))
     excess = (float(density) - REFERENCE_DENSITY) * water.gravity
     return -sum(
         net_buoyancy(part.component, water.gravity)
@@ -331,7 +331,7 @@ def _figures(pieces: Sequence[Piece], name: str) -> Floats:
 def _reynolds(pieces: Sequence[Piece], solution: Solution) -> Floats:
     """(n,) greatest Reynolds number per metre of diameter, in the solver's order [1/m]."""
     middle = -0.5 * (solution.position[:-1] + solution.position[1:])[:, 2]
-    speed = np.linalg.norm(solution.water.at(middle)[0], axis=1)
+    speed = np.linalg.norm(solution.water.current_at(middle), axis=1)
     greatest = np.zeros(len(solution.line.length))
     np.maximum.at(greatest, solution.element_piece, speed / solution.water.viscosity_at(middle))
     return greatest

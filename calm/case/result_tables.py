@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from itertools import chain
@@ -15,9 +15,11 @@ from calm.errors import unknown
 from calm.files import Clamp, Piece, Place
 from calm.files.mooring_file import STAND_IN
 from calm.physics.line import Floats
+from calm.quantities import QUANTITIES
 
 if TYPE_CHECKING:
     import pandas
+    from xarray import Dataset
 
 Row = TypeVar("Row")
 
@@ -107,11 +109,27 @@ class ColumnTable(Generic[Row]):
         return [{name: _known(getattr(row, name)) for name in names} for row in self]
 
     def to_pandas(self) -> pandas.DataFrame:
-        """Return a pandas data frame; pandas is not installed with CALM."""
+        """Return a pandas data frame with a row for each of its own."""
         import pandas
 
         names = (name for name in self.names() if name != _OF_THE_FILE)
         return pandas.DataFrame({name: getattr(self, name) for name in names})
+
+    def to_xarray(self) -> Dataset:
+        """Return a dataset over `label`, with units and meanings."""
+        return _dataset(self.to_pandas(), "label")
+
+
+def _dataset(columns: Mapping[str, Any], along: str) -> Dataset:
+    """Columns of equal length as a dataset of one dimension."""
+    from xarray import Dataset
+
+    said = {
+        name: {"units": QUANTITIES[name].unit or "1", "long_name": QUANTITIES[name].meaning}
+        for name in columns
+        if name in QUANTITIES
+    }
+    return Dataset({name: (along, [*columns[name]], said.get(name)) for name in columns})
 
 
 def _end_to_end(parts: Sequence[Any]) -> Any:
@@ -245,6 +263,10 @@ class Shape:
         import pandas
 
         return pandas.DataFrame(vars(self))
+
+    def to_xarray(self) -> Dataset:
+        """Return a dataset over `node`, with units and meanings."""
+        return _dataset(vars(self), "node")
 
 
 class WithClamps(Protocol):

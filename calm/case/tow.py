@@ -6,11 +6,13 @@ from collections.abc import Iterable
 from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
 from math import atan2, degrees, hypot
+from pathlib import Path
 from typing import Any
 
 from calm.assemble import assemble_line, assemble_water
 from calm.case.measure import clamps_of, components_of, shape_of
 from calm.case.memory import Forgetful, Memory
+from calm.case.origin import Origin, ReadFromFile
 from calm.case.parts import cut_like, naming_the_piece
 from calm.case.result import Accuracy, Solved, document_of
 from calm.case.strumming import StrummingBand, strumming_of, tow_band
@@ -92,7 +94,7 @@ class TowResult(Solved):
 
 
 @dataclass(frozen=True, init=False)
-class Tow:
+class Tow(ReadFromFile):
     """A tow as read from its file; `line`, `water` and `towing` are what the solver takes.
 
     The line follows from the file where it is not given. `memory` keeps what was solved for other
@@ -102,6 +104,7 @@ class Tow:
     file: MooringFile
     memory: Memory = field(repr=False, compare=False)
     _line: Line | None = field(repr=False, compare=False)
+    origin: Origin | None = field(default=None, repr=False, compare=False)
 
     def __init__(
         self, file: MooringFile, memory: Memory | None = None, line: Line | None = None
@@ -169,14 +172,16 @@ class Tow:
         keys = self.keys.model_copy(update={"speed": speed})
         return Tow(replace(self.file, tow=keys), line=self.line)
 
-    def solve(self) -> TowResult:
-        """Find the steady shape.
+    def solve(self, environment: str | Path | None = None) -> TowResult:
+        """Find the steady shape, in another of its environments where one is given.
 
         Raises
         ------
         NoEquilibrium
             With status, message and advice, where there is none that passes every check.
         """
+        if environment is not None:
+            return self.with_(environment=environment).solve()
         with naming_the_piece(self.file.pieces, towed=True):
             solution = self.memory.of(solve_tow, self.line, self.water, self.towing, self.settings)
         return _result_of(self, solution)

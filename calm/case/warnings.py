@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from calm.case.parts import clamps_in
+from calm.case.parts import clamps_in, parts_of
 from calm.files import Cable, Component
 from calm.physics.line import Floats
 from calm.physics.materials import fibre_of, published_stiffnesses
@@ -49,6 +49,15 @@ def _overloaded(result: Result | TowResult, _: Solution) -> Iterator[str]:
         elif row.utilisation > 1.0:
             pull = say("tension", row.tension)
             yield f"{row.label} is overloaded: {pull} is above its working load."
+
+
+def _same_serial(result: Result | TowResult, _: Solution) -> Iterator[str]:
+    seen: dict[tuple[str, str], str] = {}
+    for part in parts_of(result.file.pieces):
+        if part.serial is not None:
+            other = seen.setdefault((part.use, part.serial), part.label)
+            if other != part.label:
+                yield f"{other} and {part.label} have the same serial number, {part.serial}."
 
 
 def _anchor_too_light(result: Result, _: Solution) -> Iterator[str]:
@@ -196,7 +205,7 @@ def _on_the_seabed(result: Result, solution: Solution) -> Iterator[str]:
         rise = solution.grounded_length * np.sin(np.radians(seabed.slope))
         yield (
             f"{say('grounded_length', solution.grounded_length)} of line lies on the seabed, "
-            f"taken as level there: on its slope of {seabed.slope:g}° depths differ by up to "
+            f"taken as level there: on its slope of {seabed.slope:.4g}° depths differ by up to "
             f"{say('depth', float(rise))}."
         )
     if solution.landed and result.still_shape is result.shape:
@@ -249,7 +258,7 @@ def _strums_along_the_flow(result: TowResult, solution: Solution) -> Iterator[st
     law = solution.line.strumming
     if law is None or result.strumming is None:
         return
-    current, _ = solution.water.at(-solution.position[:-1, 2])
+    current = solution.water.current_at(-solution.position[:-1, 2])
     speed = np.linalg.norm(current, axis=1)
     sine = np.divide(flow_across(solution), speed, out=np.ones(len(speed)), where=speed > 0)
     cables = solution.line.diameter[solution.element_piece] > 0.0
@@ -263,6 +272,7 @@ def _strums_along_the_flow(result: TowResult, solution: Solution) -> Iterator[st
 
 
 _OF_ANY: tuple[Callable[[Result | TowResult, Solution], Iterator[str]], ...] = (
+    _same_serial,
     _overloaded,
     _tilted,
     _stiffness_unknown,

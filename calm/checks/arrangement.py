@@ -265,7 +265,7 @@ def clamp_grip(result: Result) -> Iterator[Verdict]:
     for part in _clamps(result.mooring):
         assert part.clamp is not None
         depth = np.array(float(result.clamps.depth[part.clamp]))
-        flow, density = water.at(depth)
+        flow, density = water.current_at(depth), water.density_at(depth)
         flow = np.asarray(flow, float).reshape(3)
         across = drag_of(part.component)[0]
         drag = across * float(density) / REFERENCE_DENSITY
@@ -283,7 +283,7 @@ def clamp_grip_on_the_way(handling: Handling) -> Iterator[Verdict]:
     """
     launch, rise = handling.launch, handling.recovery
     deep = np.array(handling.mooring.water.depth)
-    density = float(handling.mooring.water.at(deep)[1])
+    density = float(handling.mooring.water.density_at(deep))
     for part in _clamps(handling.mooring):
         drag = axial_drag_of(part.component) * density / REFERENCE_DENSITY
         lift = _lift(part, handling.mooring, density)
@@ -327,7 +327,7 @@ def _of_profiler(result: Result, row: ClampRow) -> Iterator[Verdict]:
         told = f"The drive force of {part.label} is not known, nor whether it can climb."
         yield unknown(part, told, "Give its `drive_force` and `speed`.")
         return
-    flow, density = water.at(np.array(row.depth))
+    flow, density = water.current_at(np.array(row.depth)), water.density_at(np.array(row.depth))
     lean = radians(row.tilt)
     past = (component.speed or 0.0) + float(np.linalg.norm(flow)) * sin(lean)
     drag = axial_drag_of(component) * float(density) / REFERENCE_DENSITY * past**2

@@ -91,7 +91,7 @@ def _tilt_words(
 ) -> tuple[str, str]:
     leans = f"{part.label} leans {say('tilt', leaning)}"
     if limit is None:
-        return f"{leans}; its limit is not known.", "Give its `max_tilt`."
+        return f"{leans}; its limit is not known.", "Give its `max_tilt`, 90 deg if it has none."
     return f"{leans}; {say('tilt', limit)} is its limit.", _STRAIGHTER
 
 

@@ -169,7 +169,7 @@ def _lifts(line: Line, water: Water, result: Result) -> Floats:
     """(n,) net forces of the pieces with their clamps where they stand, + up [N]."""
     rows = slice(len(line.length))
     depth = 0.5 * (result.components.depth_top[rows] + result.components.depth_bottom[rows])
-    _, density = water.at(depth)
+    density = water.density_at(depth)
     return line.net_force((density - REFERENCE_DENSITY) * water.gravity)
 
 

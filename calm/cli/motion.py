@@ -130,7 +130,8 @@ def motion(
     from calm.batch.finished import open_result, readable
     from calm.batch.profiles import Batch
     from calm.batch.work import compile_solver
-    from calm.case import Tow, load
+    from calm.case import Tow
+    from calm.case.mooring import load_line
     from calm.motion.instrument_file import read_instruments
     from calm.motion.line_places import places_of
     from calm.motion.motion_estimate import MotionRequest, Recovery
@@ -161,7 +162,7 @@ def motion(
         check_output(output, file, *files)
     elif replace_depth:
         raise UsageError("--replace needs --onto")
-    mooring = load(file, environment, catalog or [])
+    mooring = load_line(file, environment, catalog or [])
     if isinstance(mooring, Tow):
         raise UsageError(f"{file} is a tow; calm motion is for moorings")
     for notice in mooring.file.notices:

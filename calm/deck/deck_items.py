@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from itertools import groupby
@@ -15,6 +15,7 @@ from calm.case.net_result import legs_of
 from calm.case.result_tables import ClampRow, rows_by_place, rows_down
 from calm.files import Flexible
 from calm.files.legs import legs_down
+from calm.quantities import QUANTITIES
 
 if TYPE_CHECKING:
     from calm.case import Result
@@ -99,6 +100,13 @@ class DeckItem:
         return any((self.serial, self.deployed_serial, self.remark))
 
     @property
+    def places(self) -> tuple[float, ...]:
+        """Return where it is clamped, or the two stops between which it travels [m]."""
+        travel = getattr(self.part, "travel", None)
+        ends = (self.at,) if travel is None else (min(end, self.of_length or end) for end in travel)
+        return tuple(end for end in ends if end is not None)
+
+    @property
     def kind(self) -> tuple[object, ...]:
         """Return what is alike in items that share a row where they follow one another.
 
@@ -146,6 +154,21 @@ class DeckRow:
         return floats + self.floats[0].name if self.floats else name_of_run(self.items)
 
     @property
+    def cluster(self) -> tuple[object, ...]:
+        """Return what is alike in chains with floats that share a row; nothing of other rows."""
+        if not self.floats or any(one._is_told_of for one in (*self.items, *self.floats)):
+            return ()
+        first, floats = self.first, [(one.name, one.places) for one in self.floats]
+        stem = first.label.rstrip("0123456789")
+        return stem, first.name, round(first.cut_length or 0.0, 3), tuple(floats)
+
+    @property
+    def lengths(self) -> str:
+        """Cut length of a cable or chain as shown, and how many there are of several."""
+        many = f"{len(self.items)} × " if len(self.items) > 1 else ""
+        return many + QUANTITIES["length"].format(self.first.cut_length)
+
+    @property
     def joined(self) -> str:
         """Return the hardware in words, such as `2 × 13 shackle`; nothing without."""
         counts = Counter(one.hardware for one in self.joints)
@@ -168,7 +191,18 @@ def rows_on_paper(items: Sequence[DeckItem]) -> tuple[DeckRow, ...]:
             rows[-1] = replace(last, floats=run)
         else:
             rows.append(DeckRow(run))
-    return tuple(rows)
+    return tuple(_joined_clusters(rows))
+
+
+def _joined_clusters(rows: Sequence[DeckRow]) -> Iterator[DeckRow]:
+    """The rows, like clusters of floats that one `count` has made joined."""
+    for _, alike in groupby(rows, key=lambda row: row.cluster or id(row)):
+        one, *others = alike
+        yield DeckRow(
+            sum((row.items for row in others), one.items),
+            sum((row.floats for row in others), one.floats),
+            sum((row.joints for row in others), one.joints),
+        )
 
 
 def _lies_on(run: tuple[DeckItem, ...], row: DeckRow, items: Sequence[DeckItem]) -> bool:

@@ -86,7 +86,7 @@ def towed(
         raise nothing_limits()
     flow = replace(water, u=water.u - ship.east, v=water.v - ship.north)
     mover = Mover(chain_of(line, fineness.bars), _sea(flow), anchor, held=True)
-    current, _ = flow.at(np.zeros(()))
+    current = flow.current_at(np.zeros(()))
     astern = np.array([current[0], current[1], 0.0])
     if not astern.any():
         astern[:2] = -ship.east, -ship.north
@@ -247,7 +247,7 @@ def _slowed(mover: Mover, state: ChainState, streamed: float) -> ChainState:
 
     sea = mover.sea
     reach = float(mover.chain.length.sum())
-    current, _ = sea.water.at(np.zeros(()))
+    current = sea.water.current_at(np.zeros(()))
     whole = float(np.linalg.norm(current[:2]))
 
     def excess(share: float) -> float:

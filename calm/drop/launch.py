@@ -136,7 +136,7 @@ def falling_anchor(mooring: Mooring) -> FallingAnchor:
 
 def course_into_current(water: Water) -> float:
     """Return the course against the current at the surface, north where there is none [degrees]."""
-    (east, north, _), _ = water.at(np.zeros(()))
+    east, north, _ = water.current_at(np.zeros(()))
     return bearing_of(-east, -north) if east or north else 0.0
 
 
@@ -154,7 +154,7 @@ def ship_of(mooring: Mooring, speed: float, course: float, streamed: float | Non
         It makes no way through the water, or the line does not span the distance.
     """
     east, north = speed * sin(radians(course)), speed * cos(radians(course))
-    (u, v, _), _ = mooring.water.at(np.zeros(()))
+    u, v, _ = mooring.water.current_at(np.zeros(()))
     through = hypot(u - east, v - north)
     if not (speed > 0.0 and through >= SLOWEST_SHIP):
         raise UsageError(

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from calm.case import Mooring, Result, Tow, TowResult
-from calm.case.net import Net, load_any
+from calm.case.net import Net, load
 from calm.errors import NoEquilibrium, UsageError, unknown
 from calm.exchange.cable_writer import cbl_file
 from calm.exchange.exported_parts import ExportedLine, ExportedPart, ExportedTow, Levels
@@ -62,7 +62,7 @@ def export_file(
         raise UsageError(
             unknown(f"--to: `{to}` is not a program that CALM writes for", to, WRITERS)
         )
-    read = load_any(path, environment, list(catalogs))
+    read = load(path, environment, list(catalogs))
     if isinstance(read, Net):
         if to != "moordyn":
             raise UsageError(f"{path} is a net of legs; `--to moordyn` takes it, {to} single lines")
@@ -98,7 +98,7 @@ def _exported_line(mooring: Mooring | Tow, solve: Solve) -> ExportedLine:
     parts = []
     for i in range(len(line.length)):
         piece = file.pieces[i]
-        density = float(water.at(np.array(depths[i]))[1])
+        density = float(water.density_at(np.array(depths[i])))
         excess = (density - REFERENCE_DENSITY) * float(water.gravity)
         on = [k for k in range(len(line.clamp_at)) if line.clamp_piece[k] == i]
         clamps = tuple(
@@ -232,6 +232,9 @@ def _omitted(mooring: Mooring | Tow) -> tuple[str, ...]:
     ]
     if file.solver.strumming is not None:
         omitted.append("strumming: cables have their drag at rest")
+    anchor = file.legs[0].bottom.anchor if file.legs else None
+    if file.environment.seabed is not None or (anchor is not None and anchor.depth is not None):
+        omitted.append("the slope of the seabed: it is level there, as deep as the deepest anchor")
     if file.solver.drag == "reynolds":
         omitted.append("`drag: reynolds`: the constant coefficients are written")
     if file.solver.friction != "berteaux":

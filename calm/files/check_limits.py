@@ -165,6 +165,15 @@ class Checks(Model):
     )
 
 
+GREATER_FLATTERS = (
+    *("breaking_load", "working_load", "opening_load", "grip"),
+    *("depth_rating", "max_tilt", "warn_tilt", "buoyancy"),
+)
+"""Limits by which a component is judged, and its lift: each flatters the greater it is."""
+LESSER_FLATTERS = ("weight", "diameter", "cn", "ct", "cx", "cd", "drag_area", "kn", "kt")
+"""Weight and drag of a component, each of which flatters the less it is; an anchor's do not."""
+
+
 @dataclass(frozen=True)
 class LimitKey:
     """Represent a key of `checks:`, such as ``safety_factor.steel``.

@@ -8,7 +8,7 @@ per metre.
 
 from __future__ import annotations
 
-from collections.abc import Set
+from collections.abc import Iterator, Set
 from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field, ValidationInfo, model_validator
@@ -40,7 +40,7 @@ from calm.files.rigid import (
     Rigid,
     Sphere,
 )
-from calm.physics.materials import STEEL_DENSITY, density_of
+from calm.physics.materials import STEEL_DENSITY, density_of, fibre_of
 from calm.physics.stretch import ElongationCurve
 
 _LOAD = QuantityField("number", at_least=0, at_most=1)
@@ -322,3 +322,32 @@ def contradicted(kind: str, base: Set[str], override: Set[str]) -> frozenset[str
     elif override & {"mass", "density"}:
         void.add("weight")
     return frozenset(void - override)
+
+
+def odd_overrides(
+    use: str, definition: Component, component: Component, given: Set[str]
+) -> Iterator[str]:
+    """Yield what is odd about values that a line gives in place of a definition's.
+
+    Parameters
+    ----------
+    use : id of the definition
+    definition, component : before and after
+    given : the keys of the line
+    """
+    if "mass" in given and component.net_buoyancy == definition.net_buoyancy:
+        yield (
+            f"`mass` of {use} is overridden, its net force in water is not; override that too if "
+            "it changes"
+        )
+    if isinstance(definition, Anchor) and isinstance(component, Anchor) and "weight" in given:
+        share = 1.0 - CATALOGUE_DENSITY / (definition.material_density or STEEL_DENSITY)
+        in_air = definition.net_buoyancy / -share
+        if abs((component.weight or 0.0) - in_air) < 0.01 * in_air:
+            yield f"`weight` of {use} is what it weighs in air; `weight` is that in water"
+    fibre = fibre_of(definition.material)
+    if fibre is not None and fibre_of(component.material) is None:
+        yield (
+            f"`material: {component.material}` of {use}, which is {fibre.name}: it is no longer "
+            "judged as a rope of fibre"
+        )

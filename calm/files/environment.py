@@ -20,6 +20,7 @@ from calm.files.definition import (
     described,
     optional,
 )
+from calm.files.seabed import Seabed, SeabedGiven, read_seabed
 from calm.files.water import (
     USUAL_DENSITY,
     Density,
@@ -88,7 +89,7 @@ class Environment:
         What grows on the cables.
     maximum_speed : float
         A faster current counts as a mistake of its source [m/s]; inf in a tow and in air.
-    seabed : SeabedKeys or None
+    seabed : SeabedKeys, SeabedGrid or None
         How it slopes; level where it is not given.
     waves : WaveKeys or None
         As they are written.
@@ -109,7 +110,7 @@ class Environment:
     maximum_speed: float = math.inf
     waves: WaveKeys | None = None
     seas: tuple[SeaState, ...] = ()
-    seabed: SeabedKeys | None = None
+    seabed: Seabed | None = None
 
 
 class Fouling(Model):
@@ -125,21 +126,6 @@ class Fouling(Model):
     density: Annotated[float | None, DENSITY] = optional(
         "of the growth; as heavy as water when absent", "1025 kg/m^3"
     )
-
-
-class SeabedKeys(Model):
-    """A seabed that slopes, as a plane: how steep, and towards where it gets deeper [degrees]."""
-
-    slope: Annotated[float, QuantityField("angle", at_least=0, at_most=45)] = described(
-        "from the horizontal", "3 deg"
-    )
-    toward: Toward = described("where it gets deeper, clockwise from north", "120 deg")
-
-    @property
-    def deepening(self) -> tuple[float, float]:
-        """Return by how much the depth grows with each metre to the east and to the north."""
-        way, steep = math.radians(self.toward), math.tan(math.radians(self.slope))
-        return steep * math.sin(way), steep * math.cos(way)
 
 
 class UniformCurrent(Model):
@@ -237,7 +223,7 @@ class EnvironmentKeys(TowEnvironmentKeys):
         "growth on everything from the surface down, for the design check",
         {"depth": "50 m", "thickness": "20 mm"},
     )
-    seabed: SeabedKeys | None = optional(
+    seabed: SeabedGiven | None = optional(
         "how the seabed slopes below the anchors", {"slope": "3 deg", "toward": "120 deg"}
     )
     waves: WaveKeys | None = optional(
@@ -283,6 +269,9 @@ def read_environment(
     current = _current(keys, section, problems, notices, open_files, position)
     waves = getattr(keys, "waves", None)
     seas = () if waves is None else read_waves(waves, section, problems, open_files)
+    where = None if position is None else (position.latitude, position.longitude)
+    sloping = getattr(keys, "seabed", None) if open_files else None
+    seabed = read_seabed(sloping, where, keys.depth, section, problems)
     if density is None or current is None or len(problems) > before:
         return None
     notices.extend(density_notices(density, keys.depth))
@@ -305,7 +294,7 @@ def read_environment(
         maximum_speed=getattr(keys, "maximum_speed", math.inf),
         waves=waves,
         seas=seas,
-        seabed=getattr(keys, "seabed", None),
+        seabed=seabed,
     )
 
 

@@ -184,8 +184,7 @@ def _part_figures(part: Piece | Clamp, name: str) -> dict[str, ComparedValue]:
     if isinstance(part, Clamp):
         found["at"] = _figure("at", part.at)
     elif isinstance(part.component, Flexible):
-        fits = part.length is None
-        found["length"] = _figure("length", "fit" if fits else part.length)
+        found["length"] = _figure("length", "fit" if part.length is None else part.length)
         for key in ("fit_top_depth", "fit_body_depth"):
             found[key.removeprefix("fit_")] = _figure(key, getattr(part, key))
         found["measured_load"] = _figure("measured_load", part.measured_load)
@@ -194,17 +193,14 @@ def _part_figures(part: Piece | Clamp, name: str) -> dict[str, ComparedValue]:
 
 def _around(file: MooringFile) -> dict[str, ComparedValue]:
     """Return all that is not the line."""
-    found = {"name": _figure("name", file.name)}
-    found["description"] = _figure("description", file.description or None)
+    found = {name: _figure(name, getattr(file, name) or None) for name in ("name", "description")}
     around = _figures(file.environment, frozenset({"position", "seas"}))  # they follow from others
     found |= {f"environment.{key}": one for key, one in around.items()}
-    for name in ("position", "tow", "solver", "checks", "uncertainty", "document", "deployed"):
-        if (part := getattr(file, name)) is not None:
-            found |= {f"{name}.{key}": one for key, one in _figures(part).items()}
-    for leg in file.legs:
-        for side, end in zip(("top", "bottom"), leg.ends, strict=True):
-            held = {f"legs.{leg.name}.{side}.{key}": one for key, one in _figures(end).items()}
-            found |= held
+    names = "position", "tow", "solver", "checks", "uncertainty", "document", "deployed"
+    parts = {name: part for name in names if (part := getattr(file, name)) is not None}
+    for name, part in (parts | {f"legs.{leg.name}": leg for leg in file.legs}).items():
+        given = _figures(part, frozenset({"first", "end"}))
+        found |= {f"{name}.{key}": one for key, one in given.items()}
     for name, overlay in file.variants.items():
         given = overlay if isinstance(overlay, dict) else {"": overlay}
         found |= {f"environments.{name}.{key}": _text(_said(one)) for key, one in given.items()}

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
+import numpy as np
 from pydantic import BeforeValidator, Field
 
 from calm.errors import Problem, unknown
@@ -127,9 +128,10 @@ class Leg:
         if anchor is not None and anchor.depth is not None:
             environment = replace(environment, depth=anchor.depth)
         elif anchor is not None and environment.seabed is not None and environment.depth:
-            (east, north), (by_east, by_north) = anchor.at, environment.seabed.deepening
-            depth = environment.depth + east * by_east + north * by_north
-            environment = replace(environment, depth=depth)
+            deeper = float(environment.seabed.deeper(np.array([anchor.at]))[0])
+            environment = replace(environment, depth=environment.depth + deeper)
+        if anchor is not None and environment.seabed is not None:
+            environment = replace(environment, seabed=environment.seabed.at(*anchor.at))
         return replace(
             file,
             name=self.name,
@@ -137,6 +139,14 @@ class Leg:
             pieces=tuple(pieces),
             legs=(self,),
             notices=(),
+        )
+
+    def grown(self, index: int, more: int) -> Leg:
+        """Return the leg where there are more pieces after that of an index in the file."""
+        return replace(
+            self,
+            first=self.first + more * (self.first > index),
+            end=self.end + more * (self.end > index),
         )
 
     @property

@@ -8,8 +8,16 @@ from dataclasses import replace
 
 from calm.errors import Problem, about_quantity, shown, unknown
 from calm.files.catalogue import Assembly, Catalogue, CatalogueEntry, define
-from calm.files.check_limits import LimitKey
-from calm.files.components import KINDS, Anchor, Cable, Component, Flexible, contradicted
+from calm.files.check_limits import GREATER_FLATTERS, LESSER_FLATTERS, LimitKey
+from calm.files.components import (
+    KINDS,
+    Anchor,
+    Cable,
+    Component,
+    Flexible,
+    contradicted,
+    odd_overrides,
+)  # fmt: skip
 from calm.files.definition import IN_AIR, LENGTH, POSITIVE_LENGTH, QuantityField, quantity_of
 from calm.files.logbook import (
     MOST_PIECES,
@@ -29,13 +37,6 @@ _ITEM_KEYS = frozenset(ItemKeys.model_fields)
 _ASSEMBLY_KEYS = frozenset({"use", "label", "count"})
 _CLAMP_KEYS = frozenset(ClampKeys.model_fields)
 _WORDS = {"at": "place", "top_depth": "top depth", "body_depth": "body depth"}
-_LIMITS = (
-    *("breaking_load", "working_load", "opening_load", "grip"),
-    *("depth_rating", "max_tilt", "warn_tilt", "buoyancy"),
-)
-"""Limits by which a component is judged, and its lift: each flatters the greater it is."""
-_LOADS = ("weight", "diameter", "cn", "ct", "cx", "cd", "drag_area", "kn", "kt")
-"""Weight and drag of a component, each of which flatters the less it is; an anchor's do not."""
 
 
 class LineReader:
@@ -302,9 +303,7 @@ class LineReader:
                 message = unknown(f"`{key}` cannot be set on an assembly", key, _ASSEMBLY_KEYS)
                 self._refuse(item, (key,), message, key=True)
             return definition
-        own_keys = item_keys
-        if not isinstance(definition, Flexible):
-            own_keys = item_keys - {"length"}
+        own_keys = item_keys if isinstance(definition, Flexible) else item_keys - {"length"}
         overriding = {key: value for key, value in item.data.items() if key not in own_keys}
         if definition is None or not overriding:
             return definition
@@ -320,12 +319,10 @@ class LineReader:
         if isinstance(component, Assembly) or component is None:
             return None
         self._keep_looser_limits(entry, item, definition, component)
-        force_stays = component.net_buoyancy == definition.net_buoyancy
-        if "mass" in overriding and force_stays and not self._in_air:
-            self._notices.append(
-                f"line {item.problem((), '').line}: `mass` of {entry.id} is overridden, its net "
-                "force in water is not; override that too if it changes"
-            )
+        if not self._in_air:
+            place = f"line {item.problem((), '').line}: "
+            doubts = odd_overrides(entry.id, definition, component, overriding.keys())
+            self._notices += (place + doubt for doubt in doubts)
         return component
 
     def _keep_looser_limits(
@@ -336,9 +333,9 @@ class LineReader:
         component: Component,
     ) -> None:
         """Keep what the line lets a component bear, lift, weigh or resist beyond its definition."""
-        loads = () if isinstance(definition, Anchor) else _LOADS
+        loads = () if isinstance(definition, Anchor) else LESSER_FLATTERS
         sourced = item.data.get("sources")
-        for key in (*_LIMITS, *loads):
+        for key in (*GREATER_FLATTERS, *loads):
             before, after = (getattr(each, key, None) for each in (definition, component))
             if before is None or after is None:
                 continue

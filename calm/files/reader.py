@@ -4,7 +4,6 @@ found, or everything resolved.
 
 from __future__ import annotations
 
-import math
 import os.path
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -17,7 +16,7 @@ from calm.files.catalogue import Catalogue
 from calm.files.check_limits import Checks, read_accepts
 from calm.files.components import Anchor, Flexible
 from calm.files.definition import Model, Text, described, optional
-from calm.files.environment import Position, SeabedKeys, read_environment
+from calm.files.environment import Position, read_environment
 from calm.files.legs import (
     NET_REFUSED,
     Leg,
@@ -39,6 +38,7 @@ from calm.files.mooring_file import (
     travelling,
     unknown_releases,
 )
+from calm.files.seabed import check_anchors
 from calm.files.uncertainty import Uncertainty
 from calm.files.yaml_document import SourceMapping, compose, read_document, validate
 from calm.units import QuantityError
@@ -163,6 +163,7 @@ def read_mooring(
         pieces = (*pieces, stand_in_anchor(0, len(top.data["line"])))
     if legged:
         legs, pieces = read_legs(top, reader, problems)
+        line_is_whole = bool(pieces) and len(problems) == before
     else:
         (_check_tow if towed else _check_anchor)(pieces, top, problems)
         _check_one_fit(pieces, top, problems)
@@ -180,7 +181,7 @@ def read_mooring(
         position = keys.position if keys else None
         surroundings = read_environment(*chosen, problems, notices, towed=towed, position=position)
     if surroundings is not None and surroundings.seabed is not None:
-        _check_slope(surroundings.seabed, pieces, checks, top, problems)
+        check_anchors(surroundings.seabed, pieces, legs, checks, top, problems)
     if surroundings is not None and legged:
         check_held_depths(legs, top, surroundings.depth, problems)
     elif surroundings is not None:
@@ -258,27 +259,6 @@ def _check_anchor(pieces: Sequence[Piece], top: SourceMapping, problems: list[Pr
 
 def _anchored(pieces: Sequence[Piece]) -> bool:
     return any(isinstance(piece.component, Anchor) for piece in pieces)
-
-
-def _check_slope(
-    seabed: SeabedKeys,
-    pieces: Sequence[Piece],
-    checks: Checks,
-    top: SourceMapping,
-    problems: list[Problem],
-) -> None:
-    """Check that no anchor slides down the seabed by its own weight."""
-    for piece in pieces:
-        if isinstance(piece.component, Anchor):
-            own = piece.component.friction
-            friction = checks.anchor_friction if own is None else own
-            most = math.degrees(math.atan(friction))
-            if seabed.slope >= most:
-                message = (
-                    f"with a friction of {friction:g} the anchor slides by itself on a seabed that "
-                    f"slopes by {seabed.slope:g}°; it holds on slopes of less than {most:.3g}°"
-                )
-                problems.append(_at(piece, top, message))
 
 
 def _check_one_fit(pieces: Sequence[Piece], top: SourceMapping, problems: list[Problem]) -> None:

@@ -336,10 +336,13 @@ class Water(_Arrays):
         zero = np.zeros_like(self.u)
         return replace(self, u=zero, v=zero, w=zero)
 
-    def at(self, depth: Floats) -> tuple[Floats, Floats]:
-        """Current (..., 3) [m/s] and density (...) [kg/m³] at depths of any shape [m]."""
-        current = np.stack([np.interp(depth, self.level, c) for c in (self.u, self.v, self.w)], -1)
-        return current, np.interp(depth, self.level, self.density)
+    def current_at(self, depth: Floats) -> Floats:
+        """Current (..., 3) [m/s] at depths of any shape [m]."""
+        return np.stack([np.interp(depth, self.level, c) for c in (self.u, self.v, self.w)], -1)
+
+    def density_at(self, depth: Floats) -> Floats:
+        """Density (...) [kg/m³] at depths of any shape [m]."""
+        return np.interp(depth, self.level, self.density)
 
     def viscosity_at(self, depth: Floats) -> Floats:
         """Kinematic viscosity (...) [m²/s] at depths of any shape [m]."""

@@ -6,13 +6,20 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import groupby
 
 from calm.deck import Deck
-from calm.deck.deck_items import DeckInstrument, DeckItem, Extreme, label_of_run
+from calm.deck.deck_items import (
+    DeckInstrument,
+    DeckItem,
+    Extreme,
+    label_of_run,
+    name_of_run,
+    rows_on_paper,
+)
 from calm.deck.hardware import LENGTH_ERROR, Mark
 from calm.deck.shipping import total_of
 from calm.quantities import QUANTITIES, say
 from calm.report.blocks import Block, Cell, Column, Note, Prose, ReportPart, Table, table_of
 from calm.report.net_sheet import leg_titles
-from calm.report.sheet import figure_cell, quantity_column
+from calm.report.sheet import figure_cell, quantity_column, quantity_field
 
 _SHARE = f"{LENGTH_ERROR:.1%}".replace("%", " %")
 _SPARES = (
@@ -30,41 +37,39 @@ _IMPLIED = (
 def cutting_part(deck: Deck) -> ReportPart:
     """Lengths, marks, and how exactly they have to be."""
     rows: list[tuple[Cell, ...]] = []
+    length = QUANTITIES["length"]
     kinds = {one.label: one for one in deck.parts}
+    clusters = {
+        one.label: row.cluster for row in rows_on_paper(deck.parts) for one in row.items
+    }  # fmt: skip
     legs, above = leg_titles(deck.result), ""
-    for cut in deck.cuts:
+    for _, alike in groupby(deck.cuts, lambda one: clusters.get(one.item.label) or id(one)):
+        cuts = [*alike]
+        cut, last = cuts[0], cuts[-1]
+        many = f"{len(cuts)} × " if len(cuts) > 1 else ""
         leg = deck.leg(cut.item.index)
         rows += [(Cell(legs[leg], strong=True),)] if leg != above else []
         above = leg
         load = "" if cut.load == 0.0 else f"at {say('tension', cut.load)}"
-        effect = "-" if cut.effect is None else f"{cut.effect:+.2f}"
-        rows.append(
-            (
-                Cell(cut.item.label, cut.item.name, strong=True, goes_on=True),
-                Cell(f"{cut.length:.2f}", load),
-                Cell(f"± {cut.tolerance:.2f}"),
-                Cell(effect),
-                Cell(cut.termination or ""),
-                Cell(str(cut.over)),
-                Cell(str(cut.onto)),
-                Cell(),
-                Cell("☐"),
-            )
+        effect = "-" if cut.effect is None else f"{cut.effect * length.scale:+.2f}"
+        label = label_of_run([one.item for one in cuts])
+        over, onto = (
+            "–".join(dict.fromkeys((str(one), str(other))))
+            for one, other in ((cut.over, last.over), (cut.onto, last.onto))
         )
+        named = Cell(label, cut.item.name, strong=True, goes_on=True)
+        tolerance = f"± {length.format(cut.tolerance)}"
+        figures = (tolerance, effect, cut.termination or "", over, onto, "", "☐")
+        rows.append((named, Cell(many + length.format(cut.length), load), *map(Cell, figures)))
         rows += [
-            (
-                Cell(_marked(marks, kinds), indented=True),
-                Cell(),
-                *[Cell()] * 6,
-                Cell("☐"),
-            )
+            (Cell(_marked(marks, kinds), indented=True), *[Cell()] * 7, Cell("☐"))
             for marks in _alike(cut.marks, kinds)
         ]
     columns = (
         Column("wire or rope, marks below", share=2.4),
-        Column("length", "m", numeric=True),
-        Column("tolerance", "m", numeric=True),
-        Column("top deeper", "m", numeric=True),
+        quantity_column("length", "length"),
+        quantity_column("length", "tolerance"),
+        quantity_column("length", "top deeper"),
         Column("terminations", share=0.9),
         Column("over side", numeric=True),
         Column("onto drum", numeric=True),
@@ -90,28 +95,20 @@ def hardware_part(deck: Deck) -> ReportPart:
         if stock.kind != kind:
             kind = stock.kind
             rows.append((Cell(kind),))
-        length = "" if stock.length is None else f"{stock.length:.2f}"
-        rows.append(
-            (
-                Cell(stock.name, stock.basis and f"({stock.basis})", goes_on=True),
-                Cell(stock.use),
-                Cell(str(stock.count)),
-                Cell(length),
-                Cell(str(stock.spares)),
-                Cell(str(stock.total)),
-                Cell("☐"),
-            )
-        )
+        length = "" if stock.length is None else QUANTITIES["length"].format(stock.length)
+        figures = (stock.use, str(stock.count), length, str(stock.spares), str(stock.total), "☐")
+        named = Cell(stock.name, stock.basis and f"({stock.basis})", goes_on=True)
+        rows.append((named, *map(Cell, figures)))
     columns = (
         Column("hardware", share=2.4),
         Column("id", share=0.8),
         Column("in the line", numeric=True),
-        Column("length", "m", numeric=True),
+        quantity_column("length", "length"),
         Column("spares", numeric=True),
         Column("to bring", numeric=True),
         Column("packed", share=0.0),
     )
-    table = Table("Hardware", columns, tuple(rows), _SPARES)
+    table = Table("", columns, tuple(rows), _SPARES)
     blocks: tuple[Block, ...] = (table,)
     if not deck.hardware:
         blocks = (Prose(("The line lists no hardware.",)),)
@@ -121,14 +118,14 @@ def hardware_part(deck: Deck) -> ReportPart:
 def shipping_part(deck: Deck) -> ReportPart:
     """All that is shipped, and what the sums lack."""
     table = table_of(
-        "Shipped",
+        "",
         deck.shipped,
         (Column("component", share=1.6), lambda one: one.name),
         (Column("id"), lambda one: one.use),
         (Column("pieces", numeric=True), lambda one: str(one.count)),
         (
-            Column("length", "m", numeric=True),
-            lambda one: "" if one.length is None else f"{one.length:.1f}",
+            quantity_column("length", "length"),
+            lambda one: "" if one.length is None else QUANTITIES["length"].format(one.length),
         ),
         (
             quantity_column("dry_mass", "mass in air"),
@@ -189,8 +186,10 @@ def lifts_part(deck: Deck) -> ReportPart:
 
 def _marked(marks: Sequence[Mark], items: Mapping[str, DeckItem]) -> str:
     """Return the places of some marks, and what is clamped there."""
-    places = ", ".join(f"{mark.at:.2f}" for mark in marks)
-    return f"mark at {places}: {label_of_run([items[mark.label] for mark in marks])}"
+    places = ", ".join(QUANTITIES["at"].format(mark.at) for mark in marks)
+    marked = [items[mark.label] for mark in marks]
+    words = name_of_run(marked) if len(marked) > 1 else marked[0].label
+    return f"mark at {places}: {words}"
 
 
 def _alike(marks: Iterable[Mark], items: Mapping[str, DeckItem]) -> list[list[Mark]]:
@@ -208,18 +207,9 @@ def _stages(deck: Deck) -> Table:
         *([(Column("leg"), lambda one: deck.leg(one.index))] if deck.file.legs else []),
         (Column("no.", numeric=True), lambda one: str(one.index)),
         (Column("at the rail", share=2.0), lambda one: one.label),
-        (
-            quantity_column("lift_mass", "lift in\nair"),
-            lambda one: figure_cell("lift_mass", one.mass),
-        ),
-        (
-            quantity_column("wet_weight", "lift in\nwater"),
-            lambda one: figure_cell("wet_weight", one.weight),
-        ),
-        (
-            quantity_column("wet_weight", "hangs at\ndeployment"),
-            lambda one: figure_cell("wet_weight", one.hanging),
-        ),
+        quantity_field("lift_mass", "mass", "lift in\nair"),
+        quantity_field("wet_weight", "weight", "lift in\nwater"),
+        quantity_field("wet_weight", "hanging", "hangs at\ndeployment"),
         (
             quantity_column("wet_weight", "hangs at\nrecovery"),
             lambda one: figure_cell("wet_weight", recovery.get(one.label)),

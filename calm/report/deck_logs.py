@@ -48,9 +48,9 @@ def deployment_part(deck: Deck) -> ReportPart:
             )
         ),
         _releases(deck, _TESTED, [_BOX] * len(_TESTED)),
-        *_over_the_side(deck),
-        _positions(deck),
         _soundings(),
+        _positions(deck),
+        *_over_the_side(deck),
     )
     return ReportPart("Deployment log", blocks, _LEAST)
 
@@ -98,7 +98,7 @@ _EVENTS = (
     "On station", "First float seen, bearing", "All floats counted", "Hooked", "All on board",
 )  # fmt: skip
 _TESTED = ("tested in\nthe laboratory", "tested\nat depth", "armed,\non deck")
-_FIRED = ("enabled\nUTC", "range\nm", "command\nsent, UTC", "confirmed\nUTC")
+_FIRED = ("enabled\nUTC", "range", "command\nsent, UTC", "confirmed\nUTC")
 
 
 def _station(deck: Deck, day: str) -> Table:
@@ -133,7 +133,7 @@ def placed(items: Sequence[DeckItem], deck: Deck) -> str:
     """Return where clamps sit: from the upper end of their piece, anchor first from the lower end
     too.
     """
-    places = [one.at for one in items if one.on is not None and one.at is not None]
+    places = [at for one in items for at in one.places]
     if not places:
         return ""
     text = f"at {_span(places)}"
@@ -144,7 +144,7 @@ def placed(items: Sequence[DeckItem], deck: Deck) -> str:
 
 
 def _span(values: Sequence[float]) -> str:
-    ends = dict.fromkeys((f"{values[0]:.2f}", f"{values[-1]:.2f}"))
+    ends = dict.fromkeys(map(QUANTITIES["at"].format, (values[0], values[-1])))
     return " to ".join(ends)
 
 
@@ -188,12 +188,12 @@ def _over_the_side(deck: Deck) -> list[Table]:
         first = row.first
         if first.on is not None or first.is_rigid:
             return placed(row.items, deck)
-        return "\n".join(filter(None, (f"{first.cut_length:.2f}", placed(row.floats, deck))))
+        return "\n".join(filter(None, (row.lengths, placed(row.floats, deck))))
 
     fields: tuple[Field[DeckRow], ...] = (
         (Column("no.", numeric=True), lambda row: _numbers(row, order)),
         (Column("piece", share=3.2), _piece),
-        (Column("length,\nor place", "m", share=0.9), length),
+        (Column("length,\nor place", QUANTITIES["length"].display_unit, share=1.3), length),
         (Column("serial\nnumber", share=0.7), lambda row: row.first.serial or ""),
         (Column("over", "UTC", share=0.6), lambda row: ""),
         (Column("remarks"), lambda row: ""),
@@ -250,15 +250,16 @@ def _where_it_stands(deck: Deck) -> tuple[Cell, Cell]:
 
 
 def _soundings() -> Table:
+    unit = QUANTITIES["depth"].display_unit
     return table_of(
         "Soundings",
         range(1, _SOUNDINGS + 1),
         (Column("sounding", share=0.0), str),
         (Column("time", "UTC"), lambda one: ""),
         (Column("position", share=2.0), lambda one: ""),
-        (Column("uncorrected", "m"), lambda one: ""),
-        (Column("correction", "m"), lambda one: ""),
-        (Column("corrected", "m"), lambda one: ""),
+        (Column("uncorrected", unit), lambda one: ""),
+        (Column("correction", unit), lambda one: ""),
+        (Column("corrected", unit), lambda one: ""),
         by_hand=True,
     )
 
@@ -313,5 +314,5 @@ def _expected(items: Sequence[RecoveredItem]) -> Cell:
             said.append(f"{one.time / 60.0:.1f} min")
         elif one.hangs_at is not None:
             said.append(f"at {say('depth', one.hangs_at)}")
-    text = " to ".join(dict.fromkeys(said))
+    text = " to ".join(dict.fromkeys(said)).replace(" min to", " to")
     return Cell(text, "by itself" if any(one.by_itself for one in items) else "")

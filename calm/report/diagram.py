@@ -28,11 +28,11 @@ from calm.drawing.schematic.line_column import (
 )
 from calm.drawing.schematic.pen import INK, SOFT, Pen, picture, svg_text, wrapped
 from calm.drawing.schematic.shown_parts import TextRow, one_line
-from calm.drawing.schematic.sign import LINES, Sign, Symbol
+from calm.drawing.schematic.sign import LINES, WORDS, Sign
 from calm.drawing.schematic.symbols import SEABED_ROOM, draw_cable, figure_of
 from calm.quantities import QUANTITIES, say
 from calm.report.check_summary import short_verdict
-from calm.report.net_sheet import end_text, leg_title
+from calm.report.net_sheet import ends_told, leg_title
 from calm.report.provenance import title_pairs
 
 _HEADINGS = (
@@ -46,17 +46,8 @@ _CONTINUED = 16.0  # height of a continuation mark
 _SKY, _MAST, _SUBMERGED = 7.0, 26.0, 11.0
 _LEGEND_ROW, _LEGEND_COLUMNS = 21.0, 4
 _GROUND = 44.0
+_EVEN = 0.7  # of the first column: how far down the last one reaches at least, where it can
 _NEAR_THE_END = 0.3  # of a column: where a break is looked for
-_WORDS = {
-    Symbol.SPHERE: "float", Symbol.BALL: "ball", Symbol.GLASS: "glass float",
-    Symbol.FOAM: "foam float", Symbol.STREAMLINED: "streamlined float",
-    Symbol.BUOY: "surface buoy", Symbol.CURRENT_METER: "current meter", Symbol.ADCP: "ADCP",
-    Symbol.CTD: "CTD or logger", Symbol.TRAP: "sediment trap", Symbol.INSTRUMENT: "instrument",
-    Symbol.RELEASE: "release", Symbol.RELEASE_PAIR: "pair of releases",
-    Symbol.SHACKLE: "shackle", Symbol.SWIVEL: "swivel", Symbol.LINK: "link or ring",
-    Symbol.CHAIN: "chain", Symbol.WIRE: "wire", Symbol.ROPE: "rope",
-    Symbol.WHEELS: "anchor, wheels", Symbol.BLOCK: "anchor", Symbol.BODY: "body",
-}  # fmt: skip
 
 
 class Paper(StrEnum):
@@ -140,6 +131,10 @@ class _PageColumn:
         return self.parts[-1].top + self.parts[-1].height
 
 
+_Stacks = tuple[tuple[tuple[float, _PageColumn], ...], ...]
+"""Columns in reading order, in each its legs with how far down they begin [pt]."""
+
+
 @dataclass(frozen=True)
 class _Pages:
     """The pages of a diagram: their columns in reading order, and what each page has besides.
@@ -151,7 +146,7 @@ class _Pages:
     paper: Paper
     block: TitleBlock
     column: LineColumn
-    columns: tuple[tuple[tuple[float, _PageColumn], ...], ...]
+    columns: _Stacks
     legend: tuple[Sign, ...]
 
     @property
@@ -200,7 +195,8 @@ def _pages(deck: Deck, paper: Paper) -> _Pages:
     need = _GROUND + LEADING - (-len(legend) // _LEGEND_COLUMNS) * _LEGEND_ROW
     bottom = paper.size[1] - _MARGIN - block.height
     foot = block.height
-    while True:  # a page that had nothing but the legend takes over some parts
+    even: _Stacks = ()
+    while True:  # the last column takes over parts until it is about as long as the first
         marks = _marks()
         columns = _stacked(
             (
@@ -210,11 +206,15 @@ def _pages(deck: Deck, paper: Paper) -> _Pages:
             ),
             bottom,
         )
-        down, last = columns[-1][-1]
-        if len(columns) % paper.columns or down + last.end + need <= bottom:
+        if even and len(columns) > len(even):
             break
+        first, last = (down + one.end for down, one in (columns[0][-1], columns[-1][-1]))
+        if len(columns) % paper.columns or last + need <= bottom:
+            even = columns
+            if len(columns) == 1 or len(legs) > 1 or last >= _EVEN * first:
+                break
         foot += 2 * LEADING
-    return _Pages(one_line(deck.file.name), paper, block, column, columns, legend)
+    return _Pages(one_line(deck.file.name), paper, block, column, even, legend)
 
 
 _TOP = _MARGIN + _TITLE_ROOM + HEAD
@@ -230,7 +230,7 @@ def _columns(
     foot : the height of the title block [pt]
     marks : of the places where a line goes on
     """
-    afloat, (top, bottom) = line.type == "surface", _ends(line)
+    afloat, (top, bottom) = line.type == "surface", ends_told(line)
     sea = _MAST - parts[0].height / 2 if afloat else _SKY + _SUBMERGED
     room = paper.size[1] - foot - _MARGIN - _TOP - 2 * _CONTINUED - sea - SEABED_ROOM
     above = top
@@ -246,9 +246,7 @@ def _columns(
         above = f"from {mark}"
 
 
-def _stacked(
-    columns: Iterable[_PageColumn], bottom: float
-) -> tuple[tuple[tuple[float, _PageColumn], ...], ...]:
+def _stacked(columns: Iterable[_PageColumn], bottom: float) -> _Stacks:
     """The columns, of legs as many in one as there is room for above `bottom`."""
     found: list[list[tuple[float, _PageColumn]]] = []
     for one in columns:
@@ -258,17 +256,6 @@ def _stacked(
         else:
             found.append([(0.0, one)])
     return tuple(map(tuple, found))
-
-
-def _ends(line: Result) -> tuple[str | None, str | None]:
-    """What a leg comes from and leads to; None where it ends at the sea and on the seabed."""
-    if not line.file.legs:
-        return None, None
-    top, bottom = line.file.legs[0].ends
-    return (
-        None if top.free else f"from {end_text(top)}",
-        None if bottom.anchor is not None else end_text(bottom),
-    )
 
 
 def _fill(page: Pen, pages: _Pages, number: int) -> None:
@@ -335,7 +322,7 @@ def _draw_legend(page: Pen, pages: _Pages, left: float, bottom: float) -> None:
         else:
             figure = figure_of(Sign(sign.symbol))
             figure.draw(pen.group(x, y, min(0.5, 20.0 / figure.height)))
-        page.letters(x + 18.0, y, _WORDS[sign.symbol], size=FONT)
+        page.letters(x + 18.0, y, WORDS[sign.symbol], size=FONT)
 
 
 def _broken(parts: Sequence[PlacedPart], room: float) -> Iterator[list[PlacedPart]]:

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from calm.motion.study import HeldOut, SensorSeries, Study
 
 _BARE, _DEPTHS = "Instruments without a pressure", "Depths over time"
-_FALSE = "Times at which a current is more likely false than not"
+_FALSE = "Times when a current is probably wrong"
 _LEGEND = (
     "Black: measured. Blue: estimated, with its 95 % band. Orange: from the currents "
     "alone. Hidden sensors were not used."
@@ -159,12 +159,10 @@ TITLES = {
     "length": "length of cables and chains",
 }
 
-_RMS = (
-    "rms: of the difference less its mean over the calm times, the tenth with the least knockdown."
-)
+_RMS = "rms: of the difference, less its mean in calm times, the tenth with the least knockdown."
 PLAIN = (
-    "Alone: from the currents with nothing fitted. Estimated: with the pressures of all sensors in "
-    f"use. {_RMS}"
+    "Alone: computed from the currents, with nothing fitted. Estimated: with the pressures of all "
+    f"sensors in use. {_RMS}"
 )
 UNKNOWN = f"The currents are not known: they are inferred from these pressures. {_RMS}"
 
@@ -218,7 +216,7 @@ def health_table(study: Study) -> Table:
             (column, lambda one, kind=kind: one[1].get(kind, "-"))
             for kind, column in _HEALTH.items()
         ),
-        note="A question mark: something else is not much less likely, see above.",
+        note="A question mark: another cause is nearly as likely; see above.",
     )
 
 

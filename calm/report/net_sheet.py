@@ -42,6 +42,17 @@ def leg_titles(result: Result | NetResult) -> dict[str, str]:
     return {leg.name: f"leg {leg_title(leg)}" for leg in legs_of(result) if leg.file.legs}
 
 
+def ends_told(line: Result) -> tuple[str | None, str | None]:
+    """What a leg comes from and leads to; None where it ends at the sea and on the seabed."""
+    if not line.file.legs:
+        return None, None
+    top, bottom = line.file.legs[0].ends
+    return (
+        None if top.free else f"from {end_text(top)}",
+        None if bottom.anchor is not None else end_text(bottom),
+    )
+
+
 def end_text(end: EndKeys) -> str:
     """What holds an end of a leg, in words."""
     if end.join is not None:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Sequence
+from typing import Any
 
 from rich import table
 from rich.cells import cell_len
 from rich.console import Console, ConsoleOptions, Group, RenderableType, RenderResult
+from rich.containers import Lines
 from rich.padding import Padding
 from rich.segment import Segment
 from rich.table import Table as RichTable
@@ -148,7 +151,28 @@ class _Printer:
 
     def _text(self, text: str, style: str = "") -> Text:
         """A text as it is: never markup, and nothing in it that steers a terminal."""
-        return Text(self._sign(printable(text)), style=style)
+        return _Words(self._sign(printable(text)), style=style)
+
+
+class _Words(Text):
+    """A text whose long words break after a hyphen, an underscore, a point or a slash."""
+
+    def wrap(self, console: Console, width: int, **options: Any) -> Lines:
+        """Return its lines, none wider than `width` cells."""
+        places: list[int] = []
+        for word in re.finditer(r"\S+", self.plain):
+            start = word.start()
+            while word.end() - start > width:
+                ends = [one.end() for one in _BREAKS.finditer(self.plain, start, start + width)]
+                if not ends:
+                    break
+                start = ends[-1]
+                places.append(start)
+        parted = Text("\n").join(self.divide(places)) if places else self.copy()
+        return Text.wrap(parted, console, width, **options)
+
+
+_BREAKS = re.compile("[-_./]")
 
 
 def _together(block: Block, following: Block) -> bool:

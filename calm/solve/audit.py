@@ -171,5 +171,7 @@ def flow_across(solution: Solution) -> Floats:
 
 def _flow(solution: Solution) -> Floats:
     """Current (k, 3) at the middle of every element [m/s]."""
-    current, _ = solution.water.at(-0.5 * (solution.position[:-1] + solution.position[1:])[:, 2])
+    current = solution.water.current_at(
+        -0.5 * (solution.position[:-1] + solution.position[1:])[:, 2]
+    )
     return current

@@ -37,7 +37,8 @@ class FallingAnchor:
 
     def force(self, flow: Water) -> Floats:
         """(3,) weight and drag [N] at the seabed of the water that flows past it."""
-        current, density = flow.at(np.array(flow.depth))
+        bottom = np.array(flow.depth)
+        current, density = flow.current_at(bottom), flow.density_at(bottom)
         drag = self.drag * float(density) / REFERENCE_DENSITY * float(np.linalg.norm(current))
         force: Floats = drag * current - [0.0, 0.0, self.weight]
         return force

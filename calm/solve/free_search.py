@@ -110,7 +110,7 @@ def _mean_current(moving: Moving, place: FreePlace, angle_step: float) -> Floats
     piece, clamp, height = trace.piece, trace.clamp, trace.position[:, 2]
     drag = line.normal_drag[piece] * np.where(line.flexible[piece], trace.cut, 1.0)
     drag[clamp >= 0] = line.clamp_drag[clamp[clamp >= 0]]
-    current, _ = water.at(-0.5 * (height[1:] + height[:-1]))
+    current = water.current_at(-0.5 * (height[1:] + height[:-1]))
     total = float(drag.sum())
     mean: Floats = drag @ current / total if total > 0.0 else np.zeros(3)
     return mean * [1.0, 1.0, 0.0]

@@ -14,12 +14,21 @@ from math import inf, isfinite
 
 import numpy as np
 
-from calm.errors import NoEquilibrium
-from calm.physics.line import Floats, Line, MarchError, Trace, Water
-from calm.solve.finish import refuse_unbalanced, risen, touching
-from calm.solve.net_leg import HANGING_DOWN, PULLED, STANDING, LegCourse, LegEnd, NetLeg, Passed
+from calm.physics.line import Floats, MarchError, Trace, Water
+from calm.solve.finish import refuse_unbalanced
+from calm.solve.net_leg import (
+    HANGING_DOWN,
+    PULLED,
+    STANDING,
+    LegCourse,
+    LegEnd,
+    NetLeg,
+    Passed,
+    refuse_misplaced,
+    unsettled,
+)
 from calm.solve.net_start import NetStart, start_of
-from calm.solve.solution import Settings, Solution, Status, expect_many, runs_compiled
+from calm.solve.solution import Settings, Solution, expect_many, runs_compiled
 
 MOST_STEPS, HALVINGS = 60, 9
 """Newton steps towards a shape, and how often one is halved that leads nowhere."""
@@ -59,7 +68,7 @@ class NetSolution:
     lands: tuple[bool, ...]
 
 
-class _Net:
+class NetSearch:
     """All legs, and what is unknown of them: of each leg its own, then the places of the nodes."""
 
     def __init__(
@@ -209,9 +218,11 @@ class _Net:
         for each, lies in zip(self.courses, lands, strict=True):
             each.lands = lies
 
-    def in_water(self, water: Water) -> _Net:
+    def in_water(self, water: Water) -> NetSearch:
         """The same net in other water."""
-        other = _Net(tuple(each.leg for each in self.courses), self.nodes, water, self.settings)
+        other = NetSearch(
+            tuple(each.leg for each in self.courses), self.nodes, water, self.settings
+        )
         other.lie_as([each.lands for each in self.courses])
         return other
 
@@ -251,22 +262,22 @@ def solve_net(
     """
     legs, settings = tuple(legs), settings or Settings()
     expect_many(4.0 * len(legs))
-    net, x = _roughly(legs, nodes, water, settings, near)
+    net, x = roughly(legs, nodes, water, settings, near)
     for left in range(len(legs), -1, -1):
         net.keep_cuts(x, 2.0 * settings.angle_step)
-        x = _closed_or_refused(net, x, 2.0 * settings.angle_step)
-        if not _lands_elsewhere(net, x):
+        x = closed_or_refused(net, x, 2.0 * settings.angle_step)
+        if not any([each.lies_otherwise() for each in net.courses]):
             break
         closer = net.closed(x, 4.0 * settings.angle_step, NEAR) if left else None
         if closer is None:
-            raise _unsettled("a leg alternately lies on the seabed and lifts off")
+            raise unsettled("a leg alternately lies on the seabed and lifts off")
         x = closer
     coarse = net.ends(x)
     for _ in range(MOST_HALVINGS):
         for each in net.courses:
             assert each.cuts is not None
             each.cuts = each.cuts.halved()
-        x = _closed_or_refused(net, x, settings.angle_step)
+        x = closed_or_refused(net, x, settings.angle_step)
         fine = net.ends(x)
         depth, tension = (
             max(float(np.abs(a[k] - b[k]).max()) for a, b in zip(coarse, fine, strict=True))
@@ -280,77 +291,14 @@ def solve_net(
     return _told(net, x, 0.5 * depth, 0.5 * tension, marches)
 
 
-class NearbyNet:
-    """A net and those in which one leg differs a little, by the slopes and the cuts of the net.
-
-    Parameters
-    ----------
-    legs, nodes, water, settings, near : as of `solve_net`
-
-    Raises
-    ------
-    NoEquilibrium
-        As `solve_net` does.
-    """
-
-    def __init__(
-        self, legs: Sequence[NetLeg], nodes: int, water: Water, settings: Settings,
-        near: NetSolution | None = None,
-    ) -> None:  # fmt: skip
-        self._net, x = _roughly(tuple(legs), nodes, water, settings, near)
-        self._step = settings.angle_step
-        self._net.keep_cuts(x, self._step)
-        self._x = _closed_or_refused(self._net, x, self._step)
-        _, self._slopes = self._net.residual(self._x, self._step, slopes=True)
-
-    def node(self, leg: int, piece: int, clamp: int = -1) -> int:
-        """The node at the top of a piece of a leg, or at a clamp, in every one of these shapes."""
-        each = self._net.courses[leg]
-        trace, own, at = Trace.of(each.record, each.nodes), piece, int(each.kind == PULLED)
-        if clamp >= 0:
-            return int(np.argmax(trace.clamp == clamp))
-        if each.kind == HANGING_DOWN:  # listed from its lower end
-            own = len(each.leg.line.length) - 1 - piece
-            return int(np.flatnonzero(trace.piece == own)[-1]) + 1
-        return int(np.argmax(trace.piece == own + at))
-
-    def shape(self, number: int, line: Line, leg: int) -> tuple[Floats, float]:
-        """Nodes of a leg where that of a number has another line, and its buoyancy in use.
-
-        Two steps by the slopes of the net itself leave an error of the third order in the change.
-
-        Raises
-        ------
-        NoEquilibrium
-        """
-        net, x = self._net, self._x
-        own = net.courses[number]
-        other = LegCourse(replace(own.leg, line=line), own.water, own.settings, own.compiled)
-        other.cuts, other.lands = own.cuts, own.lands
-        net.courses[number] = other
-        try:
-            for _ in range(2):
-                left, _ = net.residual(x, self._step, slopes=False)
-                x = x - np.linalg.lstsq(self._slopes, left, rcond=1e-14)[0] * net.scale
-            net.residual(x, self._step, slopes=False)
-            each = net.courses[leg]
-            position, end = Trace.of(each.record, each.nodes).position, net.place_of(each.end, x)
-            position[:, :2] += end[:2] - position[-1, :2]
-            return position, each.share
-        except MarchError as failure:
-            raise _unsettled(str(failure)) from None
-        finally:
-            net.courses[number] = own
-
-
-def _told(net: _Net, x: Floats, depth: float, tension: float, marches: int) -> NetSolution:
+def _told(net: NetSearch, x: Floats, depth: float, tension: float, marches: int) -> NetSolution:
     """The solution, every leg audited and every node in balance."""
     found, _ = net.residual(x, net.settings.angle_step, slopes=False)
     found = np.abs(found * net.rows)
     first = net.at[-1]
     miss = float(found[:first].max())
     if miss > net.settings.tolerance * net.water.depth:
-        raise _unsettled(f"a leg misses its end by {miss:.2g} m")
+        raise unsettled(f"a leg misses its end by {miss:.2g} m")
     imbalance = np.linalg.norm(found[first:].reshape(-1, 3), axis=1)
     errors = depth + miss + 1e-9 * net.length, tension + 1e-8 * net.force
     legs = []
@@ -359,11 +307,11 @@ def _told(net: _Net, x: Floats, depth: float, tension: float, marches: int) -> N
         legs.append(each.solution(x[net.at[i] : net.at[i + 1]], end, errors))
     greatest = max(float(each.tension.max()) for each in legs)
     if len(imbalance) and float(imbalance.max()) > 1e-6 * greatest:
-        raise _unsettled(f"the pulls at a node leave {imbalance.max():.2g} N over")
+        raise unsettled(f"the pulls at a node leave {imbalance.max():.2g} N over")
     before = 0
     for each, leg in zip(net.courses, legs, strict=True):
         refuse_unbalanced(leg.closure, leg.moment_residual)
-        _refuse_misplaced(each, leg, errors[0], before)
+        refuse_misplaced(each, leg, errors[0], before)
         before += len(each.leg.line.length)
     return NetSolution(
         tuple(legs), x[first:].reshape(-1, 3).copy(), imbalance, miss, *errors, marches, x,
@@ -371,17 +319,17 @@ def _told(net: _Net, x: Floats, depth: float, tension: float, marches: int) -> N
     )  # fmt: skip
 
 
-def _roughly(
+def roughly(
     legs: tuple[NetLeg, ...], nodes: int, water: Water, settings: Settings,
     near: NetSolution | None,
-) -> tuple[_Net, Floats]:  # fmt: skip
+) -> tuple[NetSearch, Floats]:  # fmt: skip
     """A net about closed, sought near another, where it about is, and from still water on.
 
     Raises
     ------
     NoEquilibrium
     """
-    net, step = _Net(legs, nodes, water, settings), 4.0 * settings.angle_step
+    net, step = NetSearch(legs, nodes, water, settings), 4.0 * settings.angle_step
     if near is not None:
         net.lie_as(near.lands)
         if (x := net.closed(near.unknowns, step, NEAR)) is not None:
@@ -392,7 +340,7 @@ def _roughly(
     before = net.in_water(water.still())
     x = before.closed(before.begin(start_of(legs, nodes, water.still())), step, NEAR)
     if x is None:
-        raise _unsettled("not even in still water do its legs come together")
+        raise unsettled("not even in still water do its legs come together")
     way, stride = 0.0, 0.25
     while way < 1.0:
         following = min(way + stride, 1.0)
@@ -402,62 +350,16 @@ def _roughly(
         if closer is None:
             stride *= 0.5
             if stride < 0.01:
-                raise _unsettled(f"beyond {way:.0%} of the current its legs do not come together")
+                raise unsettled(f"beyond {way:.0%} of the current its legs do not come together")
             continue
         x, way, before = closer, following, net
     return net, x
 
 
-def _closed_or_refused(net: _Net, x: Floats, step: float) -> Floats:
+def closed_or_refused(net: NetSearch, x: Floats, step: float) -> Floats:
+    """The unknowns closed to the last digits; NoEquilibrium where they are not."""
     closer = net.closed(x, step, CLOSED)
     if closer is None:
-        raise _unsettled("its legs do not come together to the last digits")
+        raise unsettled("its legs do not come together to the last digits")
     net.residual(closer, step, slopes=False)
     return closer
-
-
-def _lands_elsewhere(net: _Net, x: Floats) -> bool:
-    """Whether a leg lies on the seabed that was taken to hang clear, or the other way round."""
-    changed = False
-    for each in net.courses:
-        if not isfinite(each.leg.lower.seabed) or each.kind == HANGING_DOWN:
-            continue
-        lowest = min(each.record[2][: each.hung])
-        deeper = bool(lowest < each.leg.lower.seabed - 1e-6 * net.water.depth)
-        lies = each.stage >= 0 if each.lands else deeper
-        if lies != each.lands:
-            each.lands, changed = lies, True
-    return changed
-
-
-def _refuse_misplaced(each: LegCourse, leg: Solution, near: float, before: int) -> None:
-    """Refuse a leg that is out of the water, or in the seabed where it cannot lie."""
-    near += 1e-6 * each.water.depth
-    height, hung = leg.position[:, 2], leg.position[: leg.hanging + 1, 2]
-    bed = each.leg.lower.seabed if isfinite(each.leg.lower.seabed) else -each.water.depth
-    worst, pieces = int(np.argmin(hung)), len(each.leg.line.length)
-
-    def piece(node: int) -> int:
-        own = leg.piece_at(node)
-        return before + (pieces - 1 - own if each.kind == HANGING_DOWN else own)
-
-    if hung[worst] < bed - near:
-        raise touching(piece(worst), float(bed - hung[worst]))
-    if leg.afloat:
-        height = np.where(np.arange(len(height)) > leg.piece_nodes[leg.afloat[0], 1], height, 0.0)
-        if leg.buoyancy_used < 0.0:
-            raise Status.ABOVE_SURFACE.because(
-                "More than the float at the upper end of {piece} would come to the surface.",
-                piece(0),
-            )
-    highest = int(np.argmax(height))
-    if height[highest] > near + each.highest:
-        raise risen(piece(highest), float(height[highest]))
-
-
-def _unsettled(why: str) -> NoEquilibrium:
-    return Status.NOT_CONVERGED.because(
-        f"The net does not come to rest: {why}.",
-        advice="Check the lengths of its legs against the distances of their ends; solve it with "
-        "fewer legs, or with less current, to find what prevents it.",
-    )

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from math import inf
+from math import inf, isfinite
 from typing import Any
 
 import numpy as np
 
+from calm.errors import NoEquilibrium
 from calm.physics.compiled import entry
 from calm.physics.line import (
     COLUMNS,
@@ -35,13 +36,15 @@ from calm.physics.passing import (
     Z,
     pass_line,
 )
-from calm.physics.referee import RefereeShape, element_loads, find_ends, worst_moment
-from calm.physics.seabed import closure, lay_line
+from calm.physics.referee import RefereeShape
+from calm.physics.seabed import lay_line
 from calm.physics.track import Load
 from calm.solve.audit import referee_of
 from calm.solve.closing import place
+from calm.solve.finish import risen, touching
 from calm.solve.problem import BELOW, CHANGED, Unknown, problem_of
-from calm.solve.solution import Settings, Solution
+from calm.solve.search import residuals
+from calm.solve.solution import Settings, Solution, Status
 
 
 @dataclass(frozen=True)
@@ -207,6 +210,19 @@ class LegCourse:
                 packed[i] = tuple(self.problem.course.loads[i])
         return depth, out
 
+    def lies_otherwise(self) -> bool:
+        """Whether it lies on the seabed but was taken to hang clear, or the other way round.
+
+        It is taken to do so from then on.
+        """
+        if not isfinite(self.leg.lower.seabed) or self.kind == HANGING_DOWN:
+            return False
+        lowest = min(self.record[2][: self.hung])
+        deeper = bool(lowest < self.leg.lower.seabed - 1e-6 * self.water.depth)
+        before = self.lands
+        self.lands = self.stage >= 0 if before else deeper
+        return self.lands != before
+
     @property
     def goal(self) -> float | None:
         """Height at which an end that is held is to come out [m]."""
@@ -291,15 +307,16 @@ class LegCourse:
 
     def _audited(self, line: Line) -> tuple[float, float]:
         """Closure and moment residual of the last march, recomputed from its coordinates."""
-        referee = referee_of(line, self.water, 0.0, False)
-        record = [list(column[: self.nodes]) for column in self.record]
-        shape = RefereeShape(record, self.nodes, self.hung - 1, referee.first, referee.last)
-        find_ends(shape)
-        loads = [[0.0] * self.nodes for _ in range(3)]
-        element_loads(referee.moored, shape, loads)
-        limits = self.problem.limits
-        off = closure(referee.moored, shape, loads, self.stage >= 0, limits.friction, limits.excess)
-        return off, worst_moment(referee.moored, shape, loads)
+        referee = referee_of(line, self.water, 0.0, self.compiled)
+        shape = RefereeShape(self.record, self.nodes, self.hung - 1, referee.first, referee.last)
+        loads: Any = np.zeros((3, self.nodes))
+        asked = (
+            referee.moored, shape, loads if self.compiled else loads.tolist(), self.stage >= 0,
+            self.problem.limits,
+        )  # fmt: skip
+        law = entry(residuals, *asked) if self.compiled else residuals
+        off, moment = law(*asked)
+        return off, moment
 
 
 def pulled(line: Line, force: tuple[float, float, float]) -> Line:
@@ -326,4 +343,38 @@ def pulled(line: Line, force: tuple[float, float, float]) -> Line:
         elongation=(None, *line.elongation) if line.elongation else (),
         drag_curve=(None, *line.drag_curve) if line.drag_curve else (),
         floating=None,
+    )
+
+
+def refuse_misplaced(each: LegCourse, leg: Solution, near: float, before: int) -> None:
+    """Refuse a leg that is out of the water, or in the seabed where it cannot lie."""
+    near += 1e-6 * each.water.depth
+    height, hung = leg.position[:, 2], leg.position[: leg.hanging + 1, 2]
+    bed = each.leg.lower.seabed if isfinite(each.leg.lower.seabed) else -each.water.depth
+    worst, pieces = int(np.argmin(hung)), len(each.leg.line.length)
+
+    def piece(node: int) -> int:
+        own = leg.piece_at(node)
+        return before + (pieces - 1 - own if each.kind == HANGING_DOWN else own)
+
+    if hung[worst] < bed - near:
+        raise touching(piece(worst), float(bed - hung[worst]))
+    if leg.afloat:
+        height = np.where(np.arange(len(height)) > leg.piece_nodes[leg.afloat[0], 1], height, 0.0)
+        if leg.buoyancy_used < 0.0:
+            raise Status.ABOVE_SURFACE.because(
+                "More than the float at the upper end of {piece} would come to the surface.",
+                piece(0),
+            )
+    highest = int(np.argmax(height))
+    if height[highest] > near + each.highest:
+        raise risen(piece(highest), float(height[highest]))
+
+
+def unsettled(why: str) -> NoEquilibrium:
+    """Why a net does not come to rest, with advice."""
+    return Status.NOT_CONVERGED.because(
+        f"The net does not come to rest: {why}.",
+        advice="Check the lengths of its legs against the distances of their ends; solve it with "
+        "fewer legs, or with less current, to find what prevents it.",
     )

@@ -159,7 +159,7 @@ class _Lumps:
 
     def _flow(self) -> Floats:
         """(n, 3) drag on the lumps [N]."""
-        current, _ = self.water.at(-self.place[:, 2])
+        current = self.water.current_at(-self.place[:, 2])
         axis = np.zeros_like(self.place)
         a, b = self.springs.T
         way = self.place[b] - self.place[a]
@@ -176,7 +176,7 @@ class _Lumps:
 def _points(line: Line, water: Water) -> list[tuple[float, float, float, float]]:
     """What hangs where on a line [m]: net force [N], drag across it and drag any way."""
     found, top = [], 0.0
-    _, density = water.at(np.array(0.5 * water.depth))
+    density = water.density_at(np.array(0.5 * water.depth))
     excess = (float(density) - 1025.0) * water.gravity
     for i, length in enumerate(line.length.tolist()):
         parts = 20 if line.flexible[i] else 1

@@ -14,7 +14,14 @@ from calm.physics.line import COLUMNS, Floats, Line, Water
 from calm.physics.passing import LEFT
 from calm.physics.profile import Interval, Profile, Sea
 from calm.physics.track import Course, Load, Rod, Track
-from calm.solve.solution import SUPPORTED, Settings, standing_length, standing_lift, support_of
+from calm.solve.solution import (
+    SUPPORTED,
+    Settings,
+    standing_length,
+    standing_lift,
+    support_of,
+    surface_lift,
+)
 
 COARSE_STEP = np.radians(4.0).item()
 """Angle step of the marches that only look for the neighbourhood of a root."""
@@ -351,8 +358,7 @@ def reach_of(limits: Limits, step: float) -> float:
 
 def _surfacing(line: Line, water: Water, track: Track, lift: Floats) -> list[BuoyantPiece]:
     """The rigid buoyant pieces of a line, from the top down."""
-    _, density = water.at(np.zeros(1))
-    at_surface = line.buoyancy + (float(density[0]) - 1025.0) * water.gravity * line.volume
+    at_surface = surface_lift(line, water)
     upto, carried = np.cumsum(line.length), np.cumsum(lift)
     found, place = [], 0
     for number, part in enumerate(track.stages):
@@ -373,7 +379,9 @@ def _surfacing(line: Line, water: Water, track: Track, lift: Floats) -> list[Buo
                     rigid_above=float(above),
                     upto=float(upto[piece]),
                     surface_lift=float(at_surface[piece]),
-                    least=1.0 - float(carried[piece:].min()) / float(line.buoyancy[piece]),
+                    least=1.0 - float(carried[piece:].min()) / at_surface[piece].item()
+                    if at_surface[piece] > 0.0
+                    else 1.0,
                 )
             )
         place += len(part.loads)

@@ -34,6 +34,7 @@ from calm.solve.problem import (
     NOT_RECORDED,
     OTHER,
     About,
+    Limits,
     LineProblem,
     Search,
     Unknown,
@@ -295,11 +296,27 @@ def audit_shape(problem: LineProblem, referee: Referee, closed: Closed) -> tuple
     """Closure and moment residual of the shape in the record `FINE`."""
     record, elements = problem.work.records[FINE], problem.work.elements
     shape = RefereeShape(record, closed.nodes, closed.hanging, referee.first, referee.last)
-    moored, limits = referee.moored, problem.limits
     take_loads(problem, referee)
+    return residuals(referee.moored, shape, elements, closed.landed, problem.limits)
+
+
+def residuals(
+    moored: Moored,
+    shape: RefereeShape,
+    elements: Sequence[MutableSequence[float]],
+    landed: bool,
+    limits: Limits,
+) -> tuple[float, float]:
+    """Closure and moment residual of a shape, recomputed from its coordinates.
+
+    Parameters
+    ----------
+    elements : (3, n) room for the loads of every element
+    landed : whether the shape lies on the seabed at its end
+    """
     find_ends(shape)
     element_loads(moored, shape, elements)
-    off = closure(moored, shape, elements, closed.landed, limits.friction, limits.excess)
+    off = closure(moored, shape, elements, landed, limits.friction, limits.excess)
     return off, worst_moment(moored, shape, elements)
 
 

@@ -278,14 +278,14 @@ def standing_lift(line: Line, water: Water) -> Floats:
     """
     below = np.cumsum(line.length[::-1])[::-1] - 0.5 * line.length
     depth = np.maximum(water.depth - line.anchor_height - below, 0.0)
-    _, density = water.at(depth)
+    density = water.density_at(depth)
     return line.net_force((density - REFERENCE_DENSITY) * water.gravity)
 
 
 def surface_lift(line: Line, water: Water) -> Floats:
     """(n,) net force of every piece without its clamps in the water of the surface, + up [N]."""
-    _, density = water.at(np.zeros(1))
-    return line.buoyancy + (float(density[0]) - REFERENCE_DENSITY) * water.gravity * line.volume
+    excess = float(water.density_at(np.zeros(()))) - REFERENCE_DENSITY
+    return line.buoyancy + excess * water.gravity * line.volume
 
 
 def standing_length(line: Line, lift: Floats) -> float:

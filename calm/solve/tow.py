@@ -131,8 +131,8 @@ def _relative(line: Line, water: Water, towing: Towing) -> Water:
         return replace(water, u=u, v=v)
     half = 0.5 * SURFACE_BAND * float(line.length.sum())
     below = water.level > half
-    current, density = water.at(np.array(half))
-    surface = current - (towing.east, towing.north, 0.0)
+    density = water.density_at(np.array(half))
+    surface = water.current_at(np.array(half)) - (towing.east, towing.north, 0.0)
     air = np.array([towing.wind[0] - towing.east, towing.wind[1] - towing.north, 0.0])
 
     # the density changes first: dense air, or water with the speed of the wind, would drag hard
@@ -251,7 +251,7 @@ def _frequency(tow: Towed) -> float:
     law, line = tow.line.strumming, tow.line
     assert law is not None
     diameter = float(line.diameter[line.diameter > 0.0][-1])
-    flow, _ = tow.water.at(np.array(0.5 * SURFACE_BAND * tow.span))
+    flow = tow.water.current_at(np.array(0.5 * SURFACE_BAND * tow.span))
     force = np.array(tow.force)
     across = float(np.linalg.norm(np.cross(flow, force)) / np.linalg.norm(force))
     return law.strouhal * across / diameter

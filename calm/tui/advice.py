@@ -24,6 +24,7 @@ from calm.tui.live import View, judge
 
 if TYPE_CHECKING:
     from calm.case import Mooring
+    from calm.case.net import Net
 
 _DIGITS = 3
 _ANCHOR = ("anchor-weight", "anchor-uplift", "anchor-sliding")
@@ -70,7 +71,7 @@ def _against_lifting(view: View, catalogue: Catalogue | None) -> Iterator[Offer]
         yield from _anchors(view.file.pieces[-1], needed, catalogue)
 
 
-def sized(mooring: Mooring, target: str, change: str) -> Offer:
+def sized(mooring: Mooring | Net, target: str, change: str) -> Offer:
     """The smallest change that meets a target, both as `calm size` reads them.
 
     Raises

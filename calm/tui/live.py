@@ -15,10 +15,13 @@ from pathlib import Path
 
 from calm.case import Mooring, Result, Tow, TowResult
 from calm.case.memory import Memory
+from calm.case.net import Net
+from calm.case.net_result import AnyResult, NetResult, legs_of
 from calm.case.parts import cut_like, parts_of
-from calm.checks.assess import assessment_of, findings_of, stand_of
+from calm.checks.assess import findings_of
 from calm.checks.assessment import MooringInEnvironment, Situation
 from calm.checks.finding import AS_GIVEN, OWN, Finding, State
+from calm.checks.net_check import check
 from calm.checks.strength import strength
 from calm.errors import InputError, NoEquilibrium, Problem, internal_failure
 from calm.files import MooringFile, Piece, Place, read_mooring
@@ -62,7 +65,7 @@ class View:
     problems: tuple[Problem, ...] = ()
     missing: tuple[str, ...] = ()
     file: MooringFile | None = None
-    result: Result | TowResult | None = None
+    result: AnyResult | None = None
     failure: NoEquilibrium | None = None
     findings: tuple[Finding, ...] = ()
     tighter: tuple[Finding, ...] = ()
@@ -139,12 +142,12 @@ def judge_fully(view: View, catalogs: Sequence[str | Path] = ()) -> View:
 
     A tow, and a line without an anchor of its own or without equilibrium, is returned as it is.
     """
-    if view.complete or not view.anchored or not isinstance(view.result, Result):
+    if view.complete or not view.anchored or not isinstance(view.result, Result | NetResult):
         return view
     started = time.perf_counter()
     file = view.result.file
     moorings, problems = _in_all_environments(view, view.result.mooring, catalogs)
-    assessment = assessment_of(file.name, [stand_of(each, file.name) for each in moorings])
+    assessment = check(*moorings)
     findings, tighter = tuple(assessment.all_findings()), tuple(assessment.tighter_findings())
     rows = tuple(rows_of(file, view.result, (*findings, *tighter)))
     return replace(
@@ -155,24 +158,29 @@ def judge_fully(view: View, catalogs: Sequence[str | Path] = ()) -> View:
 
 
 def _in_all_environments(
-    view: View, here: Mooring, catalogs: Sequence[str | Path]
-) -> tuple[list[Mooring], list[Problem]]:
+    view: View, here: Mooring | Net, catalogs: Sequence[str | Path]
+) -> tuple[list[Mooring | Net], list[Problem]]:
     """The mooring in each of its environments, as long in all as here; what is wrong with them."""
     names: list[str | None] = [None, *view.environments]
     if view.environment not in names:
         names.append(view.environment)
-    found: list[Mooring] = []
+    found: list[Mooring | Net] = []
     problems: list[Problem] = []
     for name in names:
         if name == view.environment:
             found.append(here)
             continue
         try:
-            file = read_mooring(view.path, environment=name, catalogs=catalogs, text=view.text)
+            file = read_mooring(
+                view.path, environment=name, catalogs=catalogs, text=view.text, net=True
+            )
         except InputError as error:
             problems += error.problems
         else:
-            found.append(Mooring(cut_like(file, here), memory=view.memory))
+            if isinstance(here, Net):
+                found.append(Net(file))
+            else:
+                found.append(Mooring(cut_like(file, here), memory=view.memory))
     return found, problems
 
 
@@ -185,7 +193,7 @@ def _judged(view: View, catalogs: Sequence[str | Path]) -> View:
     try:
         file = read_mooring(
             view.path, environment=view.environment, catalogs=catalogs, text=view.text,
-            stand_in=True,
+            stand_in=True, net=True,
         )  # fmt: skip
     except InputError as error:
         return _wrong(view, error.problems)
@@ -198,7 +206,7 @@ def _judged(view: View, catalogs: Sequence[str | Path]) -> View:
 
 def _lacking(file: MooringFile) -> Iterator[str]:
     """Return what no mooring stands without and this line has not; nothing of a tow."""
-    if file.tow is not None:
+    if file.tow is not None or file.legs:
         return
     clamps = [clamp.component for piece in file.pieces for clamp in piece.clamps]
     parts = [*(piece.component for piece in file.pieces), *clamps]
@@ -209,7 +217,9 @@ def _lacking(file: MooringFile) -> Iterator[str]:
 
 
 def _solved(view: View, file: MooringFile) -> View:
-    line = Mooring(file, memory=view.memory) if file.tow is None else Tow(file, view.memory)
+    line: Mooring | Tow | Net = Net(file)
+    if not file.legs:
+        line = Mooring(file, memory=view.memory) if file.tow is None else Tow(file, view.memory)
     try:
         result, failure = line.solve(), None
     except NoEquilibrium as error:
@@ -223,13 +233,16 @@ def _solved(view: View, file: MooringFile) -> View:
 
 
 def _found(
-    view: View, file: MooringFile, result: Result | None, failure: NoEquilibrium | None
+    view: View,
+    file: MooringFile,
+    result: Result | NetResult | None,
+    failure: NoEquilibrium | None,
 ) -> Iterator[Finding]:
     """Return what the rules of a standing line find; none of them is of a tow."""
     if file.tow is None:
-        as_given = Situation(AS_GIVEN, result, failure)
         here = file.environment.name or OWN
-        yield from findings_of(as_given, file.name, here)
+        for each in (None,) if result is None else legs_of(result):
+            yield from findings_of(Situation(AS_GIVEN, each, failure), file.name, here)
 
 
 def _wrong(view: View, problems: Sequence[Problem]) -> View:
@@ -283,7 +296,7 @@ class FoundRow:
 
 
 def rows_of(
-    file: MooringFile, result: Result | TowResult | None, findings: Iterable[Finding] = ()
+    file: MooringFile, result: AnyResult | None, findings: Iterable[Finding] = ()
 ) -> Iterator[FoundRow]:
     """Down the file; with figures where there is a result, and what the findings say of each."""
     figures: dict[Place, _Figures] = {}

@@ -19,9 +19,8 @@ from textual.widgets import Static
 from calm.tui.theme import CURSOR, ELLIPSIS
 
 if TYPE_CHECKING:
-    from calm.case import Result, TowResult
+    from calm.case.net_result import AnyResult
     from calm.case.result_tables import Shape
-    from calm.physics.line import Water
     from calm.tui.live import View
 
 Tab = Literal["elevation", "plan", "tension", "schematic"]
@@ -118,37 +117,37 @@ class Picture(DrawnRows, can_focus=True):
         result = None if self._view is None else self._view.result
         if result is None or size.width < 20 or size.height < 6:
             return _words(self._view, size)
+        from calm.drawing.line_picture import lines_of
         from calm.drawing.schematic.in_terminal import schematic_text
         from calm.drawing.sketch import plan, tension
 
         if self.tab == "plan":
             return plan(result, *size, self._beside)
+        lines = lines_of(result)
         if self.tab == "tension":
-            return tension(result, *size)
+            rows = size.height // len(lines)
+            if rows < _LEAST[1]:
+                return [Text("(too small for the tension of each leg)", style="dim")]
+            return [row for line in lines for row in tension(line, size.width, rows)]
         if self.tab == "schematic":
-            text = schematic_text(result.file, result, size.width)
-            return [Text(line) for line in text.splitlines()]
+            texts = [schematic_text(line.file, line, size.width) for line in lines]
+            return [Text(row) for text in texts for row in text.splitlines()]
         return self._elevation(result, size)
 
-    def _elevation(self, result: Result | TowResult, size: Size) -> list[Text]:
+    def _elevation(self, result: AnyResult, size: Size) -> list[Text]:
+        from calm.drawing.line_picture import water_of
         from calm.drawing.sketch import current_profile, elevation
 
         if size.width < _LEAST_BESIDE or result.file.environment.depth is None:
             return elevation(result, *size, self._beside)
         beside = min(size.width // _BESIDE, _MOST_BESIDE)
         line = elevation(result, size.width - beside - 1, size.height, self._beside)
-        profile = current_profile(_water_of(result), beside, size.height)
+        profile = current_profile(water_of(result), beside, size.height)
         rows = []
         for left, right in zip(line, profile, strict=True):
             left.truncate(size.width - beside, pad=True)
             rows.append(left.append_text(right))
         return rows
-
-
-def _water_of(result: Result | TowResult) -> Water:
-    from calm.case import Result
-
-    return result.mooring.water if isinstance(result, Result) else result.tow.water
 
 
 def _words(view: View | None, size: Size) -> list[Text]:

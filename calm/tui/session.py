@@ -138,7 +138,7 @@ class Session:
     def insert(self, spot: Place | None, values: Mapping[str, str], *, below: bool) -> Place:
         """A new piece beside a row; at the top of an empty line."""
         index = 0 if spot is None else spot.item + below
-        draft = self.draft.insert(index, dict(values))
+        draft = self.draft.insert(index, dict(values), above=not below)
         self._edit(draft, f"add {values['use']}", new=_rows_of(draft, index, 1))
         return Place(index)
 
@@ -263,7 +263,7 @@ class Session:
         label = f"paste {count} row{'s' * (count != 1)}"
         if self.copied.items:
             index = 0 if spot is None else spot.item + below
-            draft = self.draft.paste(index, self.copied.items)
+            draft = self.draft.paste(index, self.copied.items, above=not below)
             self._edit(draft, label, new=_rows_of(draft, index, count))
             return Place(index + (count - 1) * below)
         if not self.copied.clamps or spot is None:

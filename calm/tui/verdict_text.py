@@ -14,6 +14,7 @@ from calm.tui.theme import ELLIPSIS, LOOKS, worst
 
 if TYPE_CHECKING:
     from calm.case import Result, TowResult
+    from calm.case.net_result import AnyResult, NetResult
     from calm.checks.assessment import MooringInEnvironment
     from calm.files import Place
     from calm.tui.live import View
@@ -156,13 +157,16 @@ def _say(name: str, value: float | None) -> str:
 
 
 def _figures(
-    result: Result | TowResult | None, findings: Sequence[Finding], *, pending: bool
+    result: AnyResult | None, findings: Sequence[Finding], *, pending: bool
 ) -> Iterator[Saying]:
     """The ends of the line; whoever has a result has loaded what solves it, the start has not."""
     from calm.case import Result
+    from calm.case.net_result import NetResult
 
     if isinstance(result, Result):
         yield from _mooring(result, findings, pending)
+    elif isinstance(result, NetResult):
+        yield from _net(result)
     elif result is not None:
         yield from _tow(result)
 
@@ -222,6 +226,17 @@ def _situation(finding: Finding) -> str:
 def _gravity(finding: Finding | None) -> State | None:
     """The state of a figure in words, whose sign is wanted only where it is grave."""
     return finding.state if finding is not None and _graver(finding) else None
+
+
+def _net(result: NetResult) -> Iterator[Saying]:
+    """What the anchors and held ends of a net bear, and where its nodes are."""
+    for end in (*result.anchors, *result.held):
+        needs = end.required_weight
+        said = "" if needs is None else f", needs {_say('required_weight', needs)} in water"
+        heading = f"{'Held end' if needs is None else 'Anchor'} of {end.leg}"
+        yield Saying(f"{_say('tension', end.tension)}{said}", heading)
+    for node in result.nodes:
+        yield Saying(f"{_say('depth', node.depth)} deep", f"Node {node.name}")
 
 
 def _tow(result: TowResult) -> Iterator[Saying]:

@@ -137,7 +137,7 @@ def buoy_of(mooring: Mooring, solution: Solution, follows: bool) -> Buoy | None:
     masses = [each.component.mass for each in above]
     if any(mass is None for mass in masses):
         raise UsageError(f"{piece.label} gives no `mass`, which decides how it heaves")
-    _, density = mooring.water.at(np.array(0.0))
+    density = mooring.water.density_at(np.array(0.0))
     panels = None
     if component.heave == "panels" and not follows:
         profile = _profile(component, draft)

@@ -82,6 +82,11 @@ class LumpedLine:
     top_pieces: int
     inextensible: tuple[str, ...]
 
+    def turned(self, motion: Complexes) -> Complexes:
+        """Return the turn (f, n-1, 3) of the springs, across them, by a motion (f, n, 3) [rad]."""
+        turn = np.diff(motion, axis=1) / self.span[:, None]
+        return np.asarray(turn - (turn * self.spring).sum(2, keepdims=True) * self.spring)
+
     def upper_ends(self, middle: Complexes) -> Complexes:
         """Return what of figures (f, n-1, …) in the middle of springs is at upper ends of pieces.
 
@@ -170,9 +175,9 @@ def lumped_line(mooring: Mooring, solution: Solution, longest: float) -> LumpedL
     spring /= span[:, None]
     tangent = np.vstack([spring[:1], spring[:-1] + spring[1:], spring[-1:]])
     tangent /= np.linalg.norm(tangent, axis=1)[:, None]
-    current, density = mooring.water.at(np.maximum(-where[:, 2], 0.0))
+    water, depth = mooring.water, np.maximum(-where[:, 2], 0.0)
     for name in ("across_drag", "along_drag", "any_drag"):
-        node[name] *= density / REFERENCE_DENSITY
+        node[name] *= water.density_at(depth) / REFERENCE_DENSITY
     count = len(solution.line.length)
     piece_node = np.array([starts.get(piece, -1) for piece in range(count)])
     piece_spring = np.where(piece_node >= 0, np.minimum(piece_node, n - 2), -1)
@@ -190,7 +195,7 @@ def lumped_line(mooring: Mooring, solution: Solution, longest: float) -> LumpedL
         stiffness=stiffness,
         spring=spring,
         span=span,
-        current=np.asarray(current, float),
+        current=water.current_at(depth),
         piece_spring=piece_spring,
         piece_below=np.where(owner[below] == owner[piece_spring], below, piece_spring),
         piece_node=piece_node,

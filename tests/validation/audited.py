@@ -15,7 +15,7 @@ def closure_of(solution: Solution) -> float:
     """Relative departure of the sum of the loads from the force at the line's end."""
     excess = 0.0
     if solution.landed:
-        _, density = solution.water.at(np.array(solution.water.depth))
+        density = solution.water.density_at(np.array(solution.water.depth))
         excess = (float(density) - REFERENCE_DENSITY) * solution.water.gravity
     return closure(
         _moored(solution), shape_of(solution), loads_of(solution).T.tolist(), solution.landed,

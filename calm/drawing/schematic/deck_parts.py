@@ -86,10 +86,10 @@ def _piece(
         one_line(codes.get(first.serial, "")) if first.role == "release" else "",
     ]
     if first.on is not None:
-        places = dict.fromkeys((row.items[0].at or 0.0, row.items[-1].at or 0.0))
+        places = dict.fromkeys((row.items[0].places[0], row.items[-1].places[-1]))
         lengths = " – ".join(place_text(at) for at in places), ""
     elif len(row.items) > 1:
-        lengths = "", ""
+        lengths = "" if first.is_rigid else row.lengths, ""
     else:
         lengths = _said("length", first.cut_length), _said("length", first.stretched)
     row_beside = TextRow(

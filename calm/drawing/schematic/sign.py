@@ -40,6 +40,19 @@ class Symbol(StrEnum):
     BODY = auto()
 
 
+WORDS = {
+    Symbol.SPHERE: "float", Symbol.BALL: "ball", Symbol.GLASS: "glass float",
+    Symbol.FOAM: "foam float", Symbol.STREAMLINED: "streamlined float",
+    Symbol.BUOY: "surface buoy", Symbol.CURRENT_METER: "current meter", Symbol.ADCP: "ADCP",
+    Symbol.CTD: "CTD or logger", Symbol.TRAP: "sediment trap", Symbol.INSTRUMENT: "instrument",
+    Symbol.RELEASE: "release", Symbol.RELEASE_PAIR: "pair of releases",
+    Symbol.SHACKLE: "shackle", Symbol.SWIVEL: "swivel", Symbol.LINK: "link or ring",
+    Symbol.CHAIN: "chain", Symbol.WIRE: "wire", Symbol.ROPE: "rope",
+    Symbol.WHEELS: "anchor, wheels", Symbol.BLOCK: "anchor", Symbol.BODY: "body",
+}  # fmt: skip
+"""What a legend calls each symbol."""
+
+
 BALLS = (Symbol.BALL, Symbol.GLASS)
 LINES = (Symbol.CHAIN, Symbol.WIRE, Symbol.ROPE)
 

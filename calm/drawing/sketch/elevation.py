@@ -11,7 +11,8 @@ import numpy as np
 from rich.cells import cell_len
 from rich.text import Text
 
-from calm.case import Result
+from calm.case import Result, TowResult
+from calm.case.net_result import AnyResult, NetResult
 from calm.drawing.line_picture import (
     LineKind,
     LinePicture,
@@ -28,11 +29,9 @@ from calm.quantities import bearing_of, bearing_text, say
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from calm.case import TowResult
     from calm.case.result_tables import Shape
 
     Floats = NDArray[np.float64]
-    from calm.case import Result
 
 
 LEAST_SPAN = 0.1
@@ -48,7 +47,7 @@ _NEED = ("float", "release", "anchor", "instrument")
 
 
 def elevation(
-    result: Result | TowResult, width: int, height: int, beside: Sequence[Shape] = ()
+    result: AnyResult, width: int, height: int, beside: Sequence[Shape] = ()
 ) -> list[Text]:
     """A line in the vertical plane of its excursion, or of its tow, from 20 by 6 cells on.
 
@@ -57,15 +56,16 @@ def elevation(
     Shapes `beside` a mooring, of other environments or designs, are dashed.
     """
     side = elevation_of(result, beside)
-    if isinstance(result, Result):  # its seabed is the foot of the picture
-        side = replace(side, top=0.0, bottom=result.mooring.water.depth)
+    moored = not isinstance(result, TowResult)
+    if moored:  # its seabed is the foot of the picture
+        held = [line.y.min() for line in side.lines] if isinstance(result, NetResult) else []
+        side = replace(side, top=float(min(0.0, *held, 0.0)), bottom=side.seabed or side.bottom)
     seabed = side.seabed if side.seabed is not None and side.seabed <= side.bottom else None
     head = header_rows(height)
     rows = height - head - 2
     named = _names(side, rows, int(_SHARE_OF_NAMES * width)) if width >= _NAMED_FROM else []
     room = max((cell_len(text) for _, text in named), default=-1) + 1
     across, down = _span(side), (side.top, side.bottom)
-    moored = isinstance(result, Result)
     unit = f"m to {bearing_text(bearing_of(*plane_of(result)))}" if moored else "m behind"
     caption, size = _caption(result), (width, height)
     frame = scaled_frame(size, caption, across, down, unit, "m", seabed=seabed, beside=room)
@@ -90,8 +90,10 @@ def draw_picture(frame: PlotFrame, picture: LinePicture) -> None:
                 frame.mark(mark.x, mark.y, sign, style)
 
 
-def _caption(result: Result | TowResult) -> str:
+def _caption(result: AnyResult) -> str:
     """Return how deep and how far off the end is, in words."""
+    if isinstance(result, NetResult):
+        return f"net of {len(result.legs)} legs"
     if isinstance(result, Result):
         top = result.top
         offset = hypot(top.x, top.y)

@@ -10,10 +10,11 @@ import numpy as np
 from rich.text import Text
 
 from calm.case import Result
+from calm.case.net_result import AnyResult, NetResult
 from calm.checks.posture import reaches_the_surface
 from calm.checks.strength import allowable_load
 from calm.drawing.graph.scale import number
-from calm.drawing.line_picture import along_the_line, current_between, plan_of
+from calm.drawing.line_picture import along_the_line, current_between, lines_of, plan_of
 from calm.drawing.sketch.canvas import (
     ACROSS,
     AXIS,
@@ -134,17 +135,15 @@ _LEAST_SPAN = 1.0
 _MARGIN = 0.06
 
 
-def plan(
-    result: Result | TowResult, width: int, height: int, beside: Sequence[Shape] = ()
-) -> list[Text]:
+def plan(result: AnyResult, width: int, height: int, beside: Sequence[Shape] = ()) -> list[Text]:
     """A line from above with its anchor, or the ship, at zero, from 20 by 6 cells on.
 
     Shapes `beside` it, of other environments or designs, are dashed.
     """
-    shape = result.shape
+    shapes = [*(line.shape for line in lines_of(result)), *beside]
     rows = height - header_rows(height) - 2
-    west, east = _range([0.0, *_ends(each.x for each in (shape, *beside))])
-    south, north = _range([0.0, *_ends(each.y for each in (shape, *beside))])
+    west, east = _range([0.0, *_ends(each.x for each in shapes)])
+    south, north = _range([0.0, *_ends(each.y for each in shapes)])
     gutter = 1
     for _ in range(2):  # the numbers beside it take room, which changes them
         columns = width - gutter - 1
@@ -161,7 +160,9 @@ def plan(
     return frame.canvas.rows()
 
 
-def _said(result: Result | TowResult) -> str:
+def _said(result: AnyResult) -> str:
+    if isinstance(result, NetResult):
+        return f"net of {len(result.legs)} legs"
     if isinstance(result, Result):
         x, y, what = result.top.x, result.top.y, "top"
     else:

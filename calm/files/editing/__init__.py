@@ -1,8 +1,8 @@
 """Mooring and tow files as text that is edited: text in, text out. Nothing is computed here."""
 
 from calm.files.editing.changes import EditError
-from calm.files.editing.draft import LINE, Draft, History, clamps_of
-from calm.files.editing.items import LineItem
+from calm.files.editing.draft import Draft, History, clamps_of
+from calm.files.editing.items import LINE, LineItem
 from calm.files.editing.working_file import KeptWork, NotWritten, WorkingFile, state_folder
 from calm.files.editing.writing import Value
 

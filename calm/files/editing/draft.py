@@ -22,12 +22,9 @@ from calm.files.editing.changes import (
     has_control,
     with_value,
 )
-from calm.files.editing.items import LineItem, item_of, items_of, read_snippet
+from calm.files.editing.items import LINE, LineItem, LineLists, item_of, items_of, read_snippet
 from calm.files.editing.writing import Patch, Value, Worded, WritingStyle, patched
 from calm.files.yaml_document import Location
-
-LINE: Location = ("line",)
-"""Where the items of the line stand."""
 
 KEPT = "environment"
 VARIANTS = "environments"
@@ -100,14 +97,21 @@ class Draft:
     @cached_property
     def items(self) -> tuple[LineItem, ...]:
         """Return the items of `line` as written: not expanded, and whatever they say."""
-        node = self._line
-        if node is None or not node.children:
-            return ()
-        text = self._padded
-        taken = items_of(text, node)
-        lines = [slot.text for slot in taken.slots] if taken else [""] * len(node.children)
-        pairs = zip(node.children, lines, strict=True)
-        return tuple(item_of(child, text, lines=own) for child, own in pairs)
+        text, found = self._padded, []
+        for rows, _ in self.lists.all if self._root is not None else ():
+            node = self._page.node(rows)
+            if node is None or node.kind != "sequence" or not node.children:
+                continue
+            taken = items_of(text, node)
+            lines = [slot.text for slot in taken.slots] if taken else [""] * len(node.children)
+            pairs = zip(node.children, lines, strict=True)
+            found += [item_of(child, text, lines=own) for child, own in pairs]
+        return tuple(found)
+
+    @cached_property
+    def lists(self) -> LineLists:
+        """Return where the items of the line stand; an index in `LINE` counts through all legs."""
+        return LineLists.of(self._root.data if self._root is not None else None)
 
     @property
     def is_tow(self) -> bool:
@@ -116,7 +120,9 @@ class Draft:
 
     def value(self, location: Location) -> Any:
         """Return the text, mapping or list at a location; None without, or with `problems`."""
-        node = self._page.node(location) if self._root is not None else None
+        if self._root is None:
+            return None
+        node = self._page.node(self.lists.real(location))
         return node.data if node else None
 
     def text_at(self, location: Location) -> str:
@@ -124,26 +130,33 @@ class Draft:
         value = self.value(location)
         return value if isinstance(value, str) else ""
 
-    def insert(self, index: int, values: Mapping[str, Value], rows: Location = LINE) -> Draft:
-        """Put a new item above that of an index, or below the last.
+    def insert(
+        self, index: int, values: Mapping[str, Value], rows: Location = LINE, *, above: bool = False
+    ) -> Draft:
+        """Put a new item, of values by key, above that of an index, or below the last.
 
         Parameters
         ----------
-        index : of the new item
-        values : by key
         rows : the list meant, here and below: the line, `clamps_of` an item, or another list
+        above : between two legs, the first of the lower one is meant, not the last of the upper one
         """
         self._stands(rows)
-        return self._add(rows, index, [values])
+        return self._add(*self.lists.place_in(rows, index, above=above), [values])
 
     def delete(self, indices: Iterable[int], rows: Location = LINE) -> Draft:
         """Take some items out of a list."""
+        draft = self
+        for own, each in reversed([*self.lists.grouped(indices, rows)]):
+            draft = draft._without(each, own)
+        return draft
+
+    def _without(self, indices: Iterable[int], rows: Location) -> Draft:
         known = self._page.known(rows, indices)
         if not known:
             return self
         page = self._page
         data = [one for i, one in enumerate(self.value(rows)) if i not in known]
-        if not data and rows != LINE:
+        if not data and rows[-1:] != LINE:
             return self.put_at(rows, None)
         if not data:
             return self._changed(page.put(rows, []), rows, data)
@@ -160,7 +173,13 @@ class Draft:
         index : of the item
         to : its index then
         rows : the list
+
+        EditError: they are in two legs.
         """
+        places = [self.lists.place_in(rows, each, above=True) for each in (index, to)]
+        if places[0][0] != places[1][0]:
+            raise EditError("a piece stays in its leg: cut it and paste it into the other one")
+        (rows, index), (_, to) = places
         self._page.known(rows, [index, to])
         if index == to:
             return self
@@ -172,25 +191,24 @@ class Draft:
 
     def copy(self, indices: Iterable[int], rows: Location = LINE) -> tuple[str, ...]:
         """Return the text of items by themselves, with their comments."""
-        return self._page.copy(rows, indices)
+        lists = self.lists.grouped(indices, rows)
+        return tuple(text for own, each in lists for text in self._page.copy(own, each))
 
-    def paste(self, index: int, snippets: Iterable[str], rows: Location = LINE) -> Draft:
+    def paste(
+        self, index: int, snippets: Iterable[str], rows: Location = LINE, *, above: bool = False
+    ) -> Draft:
         """Put items as `copy` gives them above that of an index, or below the last.
 
         Parameters
         ----------
         index : of the first new item
         snippets : items as `copy` gives them
-        rows : the list
+        rows, above : as of `insert`
         """
         self._stands(rows)
         worded = _worded(snippets)
-        return self._add(rows, index, worded) if worded else self
-
-    def duplicate(self, indices: Iterable[int]) -> Draft:
-        """Put the same items of the line again, below the last of them."""
-        known = self._page.known(LINE, indices)
-        return self.paste(known[-1] + 1, self.copy(known)) if known else self
+        place = self.lists.place_in(rows, index, above=above)
+        return self._add(*place, worded) if worded else self
 
     def put(self, index: int, key: str, value: Value | None, rows: Location = LINE) -> Draft:
         """Give a value to a key of an item.
@@ -202,8 +220,9 @@ class Draft:
         value : None takes the key out
         rows : the list
         """
-        self._page.known(rows, [index])
-        return self.put_at((*rows, index, key), value)
+        own, number = self.lists.place_in(rows, index, above=True)
+        self._page.known(own, [number])
+        return self.put_at((*own, number, key), value)
 
     def put_at(self, location: Location, value: Value | None) -> Draft:
         """Put a value anywhere in the file, with the mappings that lead to it.
@@ -211,7 +230,7 @@ class Draft:
         None takes a key out, and a mapping that is empty then, but for `environment` and the
         named environments.
         """
-        page = self._page
+        page, location = self._page, self.lists.real(location)
         if value is not None:
             patches = page.put(location, value)
             return self._changed(patches, location, value)
@@ -257,16 +276,19 @@ class Draft:
 
     def assemble(self, indices: Iterable[int], id: str) -> Draft:
         """Make items of the line that follow one another an assembly, used in their place."""
-        known = self._page.known(LINE, indices)
-        if not known or known != list(range(known[0], known[-1] + 1)):
+        known = sorted(set(indices))
+        legs = {self.lists.place(index, above=True)[0] for index in known}
+        if len(legs) != 1 or known != list(range(known[0], known[-1] + 1)):
             raise EditError("an assembly is made of pieces that follow one another")
         parts = {"kind": "assembly", "parts": _worded(self.copy(known))}
-        return self.put_component(id, parts).delete(known).insert(known[0], {"use": id})
+        draft = self.put_component(id, parts).delete(known[1:])
+        return draft.insert(known[0], {"use": id}, above=True).delete([known[0] + 1])
 
     def _stands(self, rows: Location) -> None:
         """Raise where there is no item whose clamps a list is to be."""
         if rows[0] == LINE[0] and rows != LINE:
-            self._page.known(LINE, [int(rows[1])])
+            own, index = self.lists.place(int(rows[1]), above=True)
+            self._page.known(own, [index])
 
     def _add(self, location: Location, index: int, values: Sequence[Value]) -> Draft:
         """Put new items into a list that may not exist yet."""
@@ -309,11 +331,6 @@ class Draft:
     @property
     def _data(self) -> Any:
         return self._page.root.data
-
-    @property
-    def _line(self) -> Node | None:
-        node = self._page.node(LINE) if self._root is not None else None
-        return node if node is not None and node.kind == "sequence" else None
 
 
 def _worded(snippets: Iterable[str]) -> Worded:

@@ -8,9 +8,10 @@ pasted from one.
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from itertools import pairwise
-from typing import Literal, NamedTuple
+from itertools import groupby, pairwise
+from typing import Any, Literal, NamedTuple
 
 from calm.files.composition import Node, compose
 from calm.files.editing.writing import (
@@ -24,11 +25,84 @@ from calm.files.editing.writing import (
     own_end,
     own_start,
 )
+from calm.files.yaml_document import Location
+
+LINE: Location = ("line",)
+"""Where the items of the line stand."""
 
 _COMMA = re.compile(r"(?:\s|#[^\n]*\n)*,")
 _BEHIND = re.compile(r"[ \t]*(?:#[^\n]*)?(?:\r?\n|\Z)")
 """What may follow a value on its line: a comment."""
 _LINE_BREAK = re.compile(r"\r\n|\n")
+
+
+@dataclass(frozen=True)
+class LineLists:
+    """Say where the items of a line stand: in one list, those of a net in one for each leg.
+
+    An index in `LINE` counts through all of them.
+
+    Attributes
+    ----------
+    all : the location of each list, and the number of its items
+    """
+
+    all: tuple[tuple[Location, int], ...]
+
+    @classmethod
+    def of(cls, data: Any) -> LineLists:
+        """Return those of a file, as its data."""
+        data = data if isinstance(data, dict) else {}
+        legs = data.get("legs")
+        if "line" in data or not isinstance(legs, dict):
+            line = data.get("line")
+            return cls(((LINE, len(line) if isinstance(line, list) else 0),))
+        lines = {
+            ("legs", name, *LINE): leg.get("line")
+            for name, leg in legs.items()
+            if isinstance(leg, dict)
+        }
+        found = [(at, len(line)) for at, line in lines.items() if isinstance(line, list)]
+        return cls(tuple(found) or ((LINE, 0),))
+
+    @property
+    def legs(self) -> list[str]:
+        """Return the leg of each item; nothing of a line."""
+        names = [(str(rows[1]) if len(rows) > 1 else "", count) for rows, count in self.all]
+        return [name for name, count in names for _ in range(count)]
+
+    def real(self, location: Location) -> Location:
+        """Return the location in the text of one that counts through all lists."""
+        if location[:1] != LINE or len(location) == 1:
+            return location
+        rows, index = self.place(int(location[1]), above=True)
+        return (*rows, index, *location[2:])
+
+    def place(self, index: int, *, above: bool) -> tuple[Location, int]:
+        """Return the list that an index is in, and the index there.
+
+        Between two legs it is that of the lower one, `above` its first item, else the upper one's.
+        """
+        for rows, count in self.all[:-1]:
+            if index < count or (index == count and not above):
+                return rows, index
+            index -= count
+        return self.all[-1][0], index
+
+    def place_in(self, rows: Location, index: int, *, above: bool) -> tuple[Location, int]:
+        """Return the same of an index of the line, or of any other list."""
+        return self.place(index, above=above) if rows == LINE else (self.real(rows), index)
+
+    def grouped(
+        self, indices: Iterable[int], rows: Location
+    ) -> Iterator[tuple[Location, list[int]]]:
+        """Yield the lists that items of a list are in, in their order, with their indices there."""
+        if rows != LINE:
+            yield self.real(rows), [*indices]
+            return
+        places = [self.place(index, above=True) for index in sorted(indices)]
+        for own, group in groupby(places, key=lambda place: place[0]):
+            yield own, [index for _, index in group]
 
 
 @dataclass(frozen=True)

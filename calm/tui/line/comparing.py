@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
     from calm.case import Mooring, Result
+    from calm.case.net import Net
+    from calm.case.net_result import NetResult
     from calm.files.editing import Draft
     from calm.tui.advice import Offer
     from calm.tui.live import View
@@ -91,8 +93,9 @@ class Comparing:
     def _show(self, name: str, before: View, lines: list[str]) -> None:
         self._workspace.tell("")
         view = self._workspace.view
-        if before.result is not None and view and type(before.result) is type(view.result):
-            self._pictures.put_beside((name, before.result.shape))
+        shape = getattr(before.result, "shape", None)  # a net has one for each leg
+        if shape is not None and view and type(before.result) is type(view.result):
+            self._pictures.put_beside((name, shape))
         answers = [Answer("b", "back to the line")]
         choose(self._line.app, Question(f"Beside {name}", "\n".join(lines), answers))
 
@@ -117,13 +120,13 @@ class Papers:
 
     def offer(self) -> None:
         """Ask what is wanted."""
-        from calm.case import Result
+        from calm.case import TowResult
 
         view = self._workspace.view
         if not self._line.settle():
             return
         result = None if view is None else view.result
-        if not self._workspace.is_fresh or not isinstance(result, Result):
+        if not self._workspace.is_fresh or result is None or isinstance(result, TowResult):
             self._workspace.tell("Reports and sheets need a mooring that stands")
             return
 
@@ -170,14 +173,17 @@ class Papers:
         self._line.run_worker(work, thread=True, group="papers", exit_on_error=False)
 
 
-def _bill(result: Result) -> RenderableType:
+def _bill(result: Result | NetResult) -> RenderableType:
+    from calm.case.net_result import legs_of
     from calm.checks.inventory import inventory_of
+    from calm.files.mooring_file import STAND_IN
     from calm.quantities import QUANTITIES
     from calm.report.blocks import Pairs, ReportPart
     from calm.report.check_tables import inventory_table
     from calm.report.terminal import shown
 
-    items = inventory_of(result.mooring)
+    listed = [item for leg in legs_of(result) for item in inventory_of(leg.mooring)]
+    items = tuple(item for item in listed if item.use != STAND_IN)
     lengths = {
         kind: sum(each.cut_length or 0.0 for each in items if each.kind == kind)
         for kind in ("cable", "chain")
@@ -201,7 +207,7 @@ class Advising:
 
     def offer(self) -> None:
         """Ask which of the changes that would help is wanted."""
-        from calm.case import Result
+        from calm.case import Result, TowResult
         from calm.tui.advice import offers
 
         workspace, view = self._workspace, self._workspace.view
@@ -217,7 +223,7 @@ class Advising:
             for number, offer in enumerate(found, 1)
         ]
         result = view.result
-        if isinstance(result, Result):
+        if result is not None and not isinstance(result, TowResult):
             other = partial(self._ask_for_target, view, result.mooring)
             answers.append(Answer("o", "another target, as in `calm size`", other))
         text = "What it changes is shown before it is taken."
@@ -227,7 +233,7 @@ class Advising:
             text += " Launch, recovery, breaks and waves are still being judged."
         choose(self._line.app, Question("Advice", text, answers))
 
-    def _ask_for_target(self, view: View, mooring: Mooring) -> None:
+    def _ask_for_target(self, view: View, mooring: Mooring | Net) -> None:
         from calm.tui.advice import sized
 
         def take(texts: dict[str, str]) -> None:

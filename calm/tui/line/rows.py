@@ -32,8 +32,11 @@ def table_rows(
     found = _figures(draft, view, added)
     wrong = _wrong_items(draft, view)
     rows = []
+    before, legs = "", draft.lists.legs
     for number, item in enumerate(draft.items):
         row = _row(Place(number), item, found.get(Place(number), ()), index)
+        if legs[number] != before:  # the first row of a leg has its name
+            before = row.texts["leg"] = legs[number]
         rows.append(replace(row, state=State.FAIL) if number in wrong else row)
         for below, clamp in enumerate(item.clamps):
             spot = Place(number, clamp=below)

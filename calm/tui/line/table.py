@@ -77,7 +77,8 @@ class LineTable(TableCells, can_focus=True):
         """The columns as wide as they are now."""
         width = self.scrollable_content_region.width
         if self._arranged[0] != width:
-            longest = (self._longest(name) for name in ("component", "label", "length"))
+            names = ("component", "label", "length", "leg")
+            longest = (self._longest(name) for name in names)
             self._arranged = (width, layout_for(width, *longest))
         return self._arranged[1]
 
@@ -185,7 +186,7 @@ RIGHT_ALIGNED = frozenset({"count", "length", *FIGURES})
 
 _WIDTHS = {"count": 3, "length": 9, "depth": 8, "tension": 9, "tilt": 6, "margin": 7}
 _LEAST_TEXT, _WANTED_TEXT = 9, 12
-_MOST_COMPONENT, _MOST_LABEL, _MOST_LENGTH = 30, 40, 13
+_MOST_COMPONENT, _MOST_LABEL, _MOST_LENGTH, _MOST_LEG = 30, 40, 13, 10
 LEAD = 4
 """Cells before the first column: cursor, mark or state, sign, a blank."""
 
@@ -205,7 +206,11 @@ class TableRow:
 
 
 def layout_for(
-    width: int, component: int = _MOST_COMPONENT, label: int = _MOST_LABEL, length: int = 0
+    width: int,
+    component: int = _MOST_COMPONENT,
+    label: int = _MOST_LABEL,
+    length: int = 0,
+    leg: int = 0,
 ) -> tuple[TableColumn, ...]:
     """The columns of a table as wide as this, those least needed left out where it is narrow.
 
@@ -213,9 +218,11 @@ def layout_for(
     ----------
     component, label : cells of the longest text in these columns, which share what is left
     length : cells of the longest length
+    leg : cells of the longest name of a leg of a net; none of a line
     """
-    shown = [*EDITABLE, *FIGURES]
+    shown = [*(["leg"] if leg else []), *EDITABLE, *FIGURES]
     fixed = _WIDTHS | {"length": min(max(length, _WIDTHS["length"]), _MOST_LENGTH)}
+    fixed["leg"] = min(max(leg, 3), _MOST_LEG)
     fixed["tension"] = max(fixed["tension"], len(_heading("tension")))
     for name in ("margin", "tilt", "count", "tension", "depth"):
         if _text_room(shown, width, fixed) >= 2 * _WANTED_TEXT:

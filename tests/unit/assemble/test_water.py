@@ -50,7 +50,7 @@ def test_sea_water_is_teos_10_between_the_levels_too(sea: SeaWater, depth: float
     absolute = gsw.SA_from_SP(salinity, pressure, -5.2, 48.3)
     expected = gsw.rho(absolute, gsw.CT_from_t(absolute, temperature, pressure), pressure)
     # what `Water`, linear between its levels, is refined to
-    assert water.at(depths)[1] == pytest.approx(expected, rel=1e-5)
+    assert water.density_at(depths) == pytest.approx(expected, rel=1e-5)
     assert len(water.level) < 60
 
 
@@ -64,7 +64,7 @@ def test_density_where_the_table_has_ended(depth: float, printed: float) -> None
     # far inland, where sea water is taken to be of the reference composition
     inland = Position.model_validate({"latitude": "30 deg", "longitude": "80 deg"})
     water = assemble_water(environment(density=sea, depth=depth, position=inland))
-    assert water.at(np.array(depth))[1] == pytest.approx(printed, abs=5.1e-4)
+    assert water.density_at(np.array(depth)) == pytest.approx(printed, abs=5.1e-4)
 
 
 def test_a_constant_or_a_table_of_density_is_taken_as_it_is() -> None:
@@ -127,12 +127,12 @@ def test_wind_drives_the_surface_and_ever_less_the_water_below() -> None:
     driven = assemble_water(environment(density=density, wind=drift))
     assert driven.level.tolist() == [0, 80, 200, 500, 900]
     depths = np.array([0.0, 20.0, 40.0, 60.0, 80.0, 140.0, 700.0])
-    added = driven.at(depths)[0] - still.at(depths)[0]
+    added = driven.current_at(depths) - still.current_at(depths)
     # towards 30 degrees: sine to the east, cosine to the north; the differences round
     speed = 0.2 * np.array([1.0, 0.75, 0.5, 0.25, 0.0, 0.0, 0.0])
     expected = np.outer(speed, [0.5, np.sqrt(0.75), 0.0])
     assert added == pytest.approx(expected, abs=1e-15)
-    assert driven.density.tolist() == still.at(driven.level)[1].tolist()
+    assert driven.density.tolist() == still.density_at(driven.level).tolist()
 
 
 def test_drift_reaches_the_seabed_where_no_depth_is_given() -> None:
@@ -140,7 +140,7 @@ def test_drift_reaches_the_seabed_where_no_depth_is_given() -> None:
     driven = assemble_water(
         environment(current=calm_water, wind=wind("10 m/s", surface_drift=0.02))
     )
-    speed = np.hypot(*driven.at(np.array([0.0, 500.0, 1000.0]))[0][:, :2].T)
+    speed = np.hypot(*driven.current_at(np.array([0.0, 500.0, 1000.0]))[:, :2].T)
     assert speed == pytest.approx([0.2, 0.1, 0.0], abs=1e-15)
 
 

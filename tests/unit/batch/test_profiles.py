@@ -188,6 +188,11 @@ def test_a_dataset_has_labels_and_units(subsurface: Mooring) -> None:
     assert dataset.clamp_tension.dims == ("profile", "clamp")
     assert dataset.tension_top.attrs["units"] == "N"
     assert dataset.status.attrs["flag_meanings"].split()[0] == STATUSES[0]
+    frame = found.to_pandas()
+    assert len(frame) == found.status.size
+    assert frame["status", 0].tolist() == found.status.tolist()
+    label = found.component_label[0]
+    assert np.array_equal(frame["depth_top", label], found.depth_top[:, 0], equal_nan=True)
     square = solve_profiles(subsurface, u.reshape(2, 3, -1), v.reshape(2, 3, -1), depth).to_xarray()
     assert square.tilt.dims == ("profile_0", "profile_1", "component")
     one = calm.load(shipped_folder("lines") / "s1000.yaml").solve()

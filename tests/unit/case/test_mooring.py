@@ -114,6 +114,9 @@ def test_tables_as_records_and_data_frame(solve):
     assert frame.depth_top.to_numpy() == pytest.approx(result.components.depth_top)
     assert len(result.clamps.to_pandas()) == 1
     assert list(result.shape.to_pandas().depth) == list(result.shape.depth)
+    tension = result.components.to_xarray().tension.sel(label="thin 1")
+    assert (float(tension), tension.units) == (result.components["thin 1"].tension, "N")
+    assert result.shape.to_xarray().depth.values.tolist() == result.shape.depth.tolist()
     assert "<table" in result._repr_html_()
 
 

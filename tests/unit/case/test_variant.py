@@ -76,6 +76,29 @@ def test_mistakes_are_those_of_a_file(mooring):
         pickle.loads(pickle.dumps(mooring)).with_("upper", length="3 m")
 
 
+def test_a_tow_is_changed_as_a_mooring_is(tmp_path):
+    tow = FILE.replace("  - {use: block}", "tow: {speed: 2 m/s, toward: 0 deg}")
+    tow = tow.replace("ball, label: top", "logger, label: top").replace("still:", "ebb:")
+    (tmp_path / "t.yaml").write_text(
+        tow.replace("{speed: 0 m/s, toward: 90", "{speed: 1 m/s, toward: 180")
+    )
+    towed = calm.load(tmp_path / "t.yaml")
+    faster = towed.with_(tow={"speed": "3 m/s"}).solve()
+    assert (faster.speed, faster.body.layback) > (3.0 - 1e-9, towed.solve().body.layback)
+    assert towed.solve(environment="ebb").tow.file.environment.name == "ebb"
+
+
+def test_the_same_serial_number_twice_is_said(mooring):
+    clamps = [
+        {"use": "logger", "at": f"{at} m", "label": f"T{at}", "serial": "7"} for at in (20, 40)
+    ]
+    said = "T20 and T40 have the same serial number, 7."
+    assert said in mooring.with_("upper", clamps=clamps).solve().warnings
+    clamps[1]["serial"] = "8"
+    warnings = mooring.with_("upper", clamps=clamps).solve().warnings
+    assert not [warning for warning in warnings if "serial" in warning]
+
+
 def test_rows_are_found_by_label(mooring):
     result = mooring.solve()
     assert result.components["upper"] == result.components[1]

@@ -198,6 +198,32 @@ def test_mass_overridden_alone_is_noticed(read: Read) -> None:
     assert notice.startswith("line 10: `mass` of ball is overridden, its net force in water is not")
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        # 1000 kg of steel weigh 9807 N in air and 8526 N in water
+        ("{use: block}", "{use: block, weight: 9807 N}", "what it weighs in air"),
+        ("{use: block}", "{use: block, weight: 9000 N}", ""),
+        ("use: rope-12", "use: rope-12, material: steel", "steel` of rope-12, which is nylon"),
+        ("use: rope-12", "use: rope-12, material: polyester", ""),
+    ],
+)  # fmt: skip
+def test_what_an_override_makes_odd_is_said(read: Read, old: str, new: str, said: str) -> None:
+    own = """
+environment: {depth: 100 m, current: {speed: 0.1 m/s, toward: 90 deg}}
+line:
+  - {use: ball}
+  - {use: rope-12, length: 9 m}
+  - {use: block}
+components:
+  ball: {kind: sphere, diameter: 1 m, buoyancy: 3 kN}
+  rope-12: {kind: cable, diameter: 12 mm, weight: 0.1 N/m, material: nylon}
+  block: {kind: anchor, mass: 1000 kg, material: steel}
+"""
+    notices = " ".join(read(own.replace(old, new)).notices)
+    assert said in notices and bool(said) == ("block is" in notices or "rope-12, which" in notices)
+
+
 def test_a_nearer_definition_wins_and_says_so(read: Read, tmp_path: Path) -> None:
     mooring = read(GOOD + "components:\n  ball: {kind: sphere, diameter: 2 m, buoyancy: 9 kN}\n")
     assert mooring.pieces[0].length == 2.0

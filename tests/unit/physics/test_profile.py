@@ -20,7 +20,7 @@ WATER = Water(
 def test_agrees_with_linear_interpolation_wherever_the_search_starts(start):
     sea = Profile(WATER).sea
     for depth in (-5.0, 0.0, 10.0, 57.3, 200.0, 640.0, 900.0, 1000.0):
-        current, density = WATER.at(np.array(depth))
+        current, density = WATER.current_at(np.array(depth)), WATER.density_at(np.array(depth))
         *found, _ = water_at(sea, depth, start)
         assert found == pytest.approx((*current, density), rel=1e-14)
 

@@ -151,7 +151,7 @@ def relaxed(
         size = np.linalg.norm(chord, axis=1)
         axis = chord / size[:, None]
         if turn % 20 == 0:
-            current, _ = water.at(-0.5 * (at[first] + at[second])[:, 2])
+            current = water.current_at(-0.5 * (at[first] + at[second])[:, 2])
             flow = (current * axis).sum(axis=1)[:, None] * axis
             across = current - flow
             drag = normal[:, None] * np.linalg.norm(across, axis=1)[:, None] * across
@@ -162,7 +162,7 @@ def relaxed(
             np.add.at(loads, first, drag)
             np.add.at(loads, second, drag)
             for lump, lift, k in points:
-                current, _ = water.at(-at[lump, 2])
+                current = water.current_at(-at[lump, 2])
                 loads[lump] += k * np.linalg.norm(current) * current + [0.0, 0.0, lift]
         pull = (ea * np.maximum(size / length - 1.0, 0.0))[:, None] * axis
         force = loads.copy()

@@ -70,6 +70,20 @@ def test_on_a_taut_thread_the_forces_across_balance():
     assert y / x == pytest.approx(north / east, rel=1e-9)
 
 
+@pytest.mark.parametrize("density", [1000.0, 1025.0, 1100.0])
+def test_a_taut_line_in_still_water_of_any_density_pulls_as_its_stretch_asks(density):
+    """A rope of 100 m that must stretch by 1 m: EA strain = 50 N pull on the anchor.
+
+    The float's share in use is that of its force in this water, which in a lake is less.
+    """
+    buoy = rigid(0.0, 1000.0, volume=0.5)
+    taut = line(buoy, rigid(0.0, -400.0), rope(100.0, stiffness=5000.0))
+    solution = solve_mooring(taut, water(101.0, density=density))
+    pull = np.linalg.norm(solution.force, axis=1)
+    assert pull[1] == pytest.approx(450.0, abs=0.01)  # half a cm of depth is 0.25 N
+    assert pull[-1] == pytest.approx(50.0, abs=0.01)
+
+
 def test_wind_alone_tilts_the_line_in_still_water():
     """A line longer than the depth has no shape at rest; wind gives it one."""
     slack = moored(101.0, {"wind": (15.0, 0.0)}, weight=0.3)

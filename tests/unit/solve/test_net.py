@@ -278,13 +278,13 @@ def test_from_still_water_it_comes_to_the_same_rest(monkeypatch: pytest.MonkeyPa
     """Where the first start leads nowhere, the current is raised by steps from still water."""
     water = water_of(300.0, *SHEAR)
     straight = solve_net(y_net(), 1, water)
-    closed, shares = net_module._Net.closed, []
+    closed, shares = net_module.NetSearch.closed, []
 
     def lost(net: Any, x: Floats, step: float, enough: float) -> Floats | None:
         shares.append(float(np.abs(net.water.u).max()) / 0.6)
         return None if len(shares) == 1 else closed(net, x, step, enough)
 
-    monkeypatch.setattr(net_module._Net, "closed", lost)
+    monkeypatch.setattr(net_module.NetSearch, "closed", lost)
     stepped = solve_net(y_net(), 1, water)
     assert shares[:6] == pytest.approx([1.0, 0.0, 0.25, 0.5, 0.75, 1.0])
     assert stepped.nodes == pytest.approx(straight.nodes, abs=1e-6)

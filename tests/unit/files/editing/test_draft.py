@@ -116,7 +116,9 @@ def test_copy_and_paste_into_another_manner() -> None:
 
 
 def test_duplicate() -> None:
-    assert Draft(TEXT).duplicate([2]).text == edited("  - {use: dead}\n", "  - {use: dead}\n" * 2)
+    assert Draft(TEXT).paste(3, Draft(TEXT).copy([2])).text == edited(
+        "  - {use: dead}\n", "  - {use: dead}\n" * 2
+    )
 
 
 def test_put() -> None:
@@ -305,7 +307,7 @@ def test_a_copied_clamp_is_worded_as_the_one_it_was_copied_from() -> None:
 def test_a_copy_in_brackets_keeps_its_quotes_and_comments() -> None:
     text = "line: [\n  # one\n  {use: 'a', label: \"b\"},   # two\n  {use: c}\n]\n"
     item = "  # one\n  {use: 'a', label: \"b\"},   # two\n"
-    assert Draft(text).duplicate([0]).text == text.replace(item, item * 2)
+    assert Draft(text).paste(1, Draft(text).copy([0])).text == text.replace(item, item * 2)
 
 
 def test_a_value_of_a_text_with_mistakes_is_none() -> None:
@@ -325,3 +327,57 @@ def test_a_control_character_is_refused_as_what_it_is(label: str) -> None:
     with pytest.raises(EditError, match="a control character cannot be written"):
         Draft(TEXT).put(0, "label", label)
     assert Draft(TEXT).put(0, "label", "a\tb").items[0].values["label"] == "a\tb"
+
+
+NET = """\
+name: A net
+legs:
+  upper:   # hangs free
+    line:
+    - {use: ball}
+    - use: rope   # long
+      length: 10 m
+    bottom: {join: A}
+  stem:
+    top: {join: A}
+    line: [{use: wire, length: 5 m, clamps: [{use: log, at: 1 m}]}, {use: weight}]
+"""
+
+
+def test_the_items_of_a_net_count_through_its_legs():
+    draft = Draft(NET)
+    assert [item.values["use"] for item in draft.items] == ["ball", "rope", "wire", "weight"]
+    assert draft.lists.legs == ["upper", "upper", "stem", "stem"]
+    assert draft.put(2, "length", "6 m").text == NET.replace("5 m", "6 m")
+    assert draft.value((*clamps_of(2), 0, "at")) == "1 m"
+    assert draft.put_at((*clamps_of(2), 0, "at"), "2 m").text == NET.replace("at: 1 m", "at: 2 m")
+    without = NET.replace("    - use: rope   # long\n      length: 10 m\n", "")
+    assert draft.delete([1, 3]).text == without.replace(", {use: weight}", "")
+    assert draft.move(2, 3).lists.legs == draft.lists.legs
+    with pytest.raises(EditError, match="stays in its leg"):
+        draft.move(1, 2)
+
+
+@pytest.mark.parametrize(("above", "leg"), [(False, "upper"), (True, "stem")])
+def test_between_two_legs_an_item_is_put_where_it_is_meant(above, leg):
+    draft = Draft(NET).insert(2, {"use": "new"}, above=above)
+    assert draft.items[2].values == {"use": "new"}
+    assert draft.lists.legs[2] == leg
+    assert draft.delete([2]).text == NET
+
+
+def test_all_items_of_a_leg_can_be_taken_out_and_put_in_again():
+    draft = Draft(NET)
+    emptied = draft.delete([0, 1])
+    assert emptied.lists.legs == ["stem", "stem"]
+    assert "    line: []\n" in emptied.text
+    back = emptied.paste(0, draft.copy([0, 1]))
+    assert back.lists.legs == draft.lists.legs
+
+
+def test_an_assembly_is_made_of_a_whole_leg():
+    draft = Draft(NET).assemble([2, 3], "foot")
+    assert draft.lists.legs == ["upper", "upper", "stem"]
+    assert draft.items[2].values == {"use": "foot"}
+    with pytest.raises(EditError, match="follow one another"):
+        Draft(NET).assemble([1, 2], "both")

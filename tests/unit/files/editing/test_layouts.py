@@ -154,7 +154,7 @@ def edits(draft: Draft) -> Iterator[tuple[str, Draft]]:
     yield "an item below", draft.insert(count, {"use": "x"}).delete([count])
     if draft.value((*LINE, 0, "serial")) is None:
         yield "a key", draft.put(0, "serial", "17").put(0, "serial", None)
-    yield "the same twice", draft.duplicate([0]).delete([1])
+    yield "the same twice", draft.paste(1, draft.copy([0])).delete([1])
 
 
 @pytest.mark.parametrize("name", LAYOUTS)
