@@ -14,10 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from calm.assemble import assemble_water
 from calm.batch.net_profiles import NetProfiles
 from calm.batch.solving import (
-    HEAPED,
     LACKS_ROOM,
-    LEVELS_COINCIDE,
-    NO_CURRENT,
     OF_CLAMP,
     OF_ENDS,
     OF_PIECE,
@@ -25,7 +22,7 @@ from calm.batch.solving import (
     Results,
     solve_rows,
 )
-from calm.batch.statuses import STATUSES, implausible
+from calm.batch.statuses import STATUSES, implausible, status_of
 from calm.batch.threads import processors
 from calm.case import Mooring
 from calm.case.measure import clamps_of, components_of
@@ -38,7 +35,6 @@ from calm.physics.line import Floats, Integers, Water
 from calm.physics.profile import Interval
 from calm.solve import Status
 from calm.solve.audit import referee_of
-from calm.solve.finish import STATUS_OF
 from calm.solve.mooring import MORE_ROOM, AskedSearch, find_asked, search_of
 from calm.solve.problem import MANY_ROOM, problem_of
 from calm.solve.solution import FOUND
@@ -51,9 +47,7 @@ if TYPE_CHECKING:
 BLOCK = 1024
 """Profiles that a worker takes at a time."""
 
-_NO_CURRENT, _LEVELS_COINCIDE, _IMPLAUSIBLE = map(
-    STATUSES.index, ("no-current", "levels-coincide", "implausible-current")
-)
+_IMPLAUSIBLE = STATUSES.index("implausible-current")
 _ANCHOR_LIFTS = STATUSES.index(Status.ANCHOR_LIFTS.label)
 _STILL = CurrentTable((0.0,), (0.0,), (0.0,), (0.0,))
 
@@ -266,7 +260,7 @@ class Batch:
         endings = np.zeros(len(status), np.int64)
         self._solve_rows(mooring, (depth, u, v, w), rows, endings, MANY_ROOM)
         for ending in np.unique(endings).tolist():
-            status[endings == ending] = _status_of(mooring, ending)
+            status[endings == ending] = status_of(mooring, ending)
         lifts = (endings == FOUND) & (rows.ends[:, 1] > mooring.anchor_weight)
         status[lifts] = _ANCHOR_LIFTS
         status[false] = _IMPLAUSIBLE
@@ -289,7 +283,7 @@ class Batch:
             line, water, mooring.settings, compiled=True, rough=True, room=room,
             intervals=levels + 2,
         )  # fmt: skip
-        # a profile that is without current is told apart from the others
+        # a profile without current is told apart from the others
         problem = problem._replace(limits=problem.limits._replace(at_rest=False))
         search, referee = search_of(problem, True), referee_of(line, water, 0.0, True)
         if self._starts is None:
@@ -298,17 +292,16 @@ class Batch:
         known: Any = problem.starts
         known[:] = self._starts
         intervals: Any = np.zeros(levels + 2, record_type(Interval))
-        pieces = len(line.length)
-        chain = [piece.component.kind == "chain" for piece in mooring.file.pieces[:-1]]
+        pieces = mooring.file.pieces[:-1]
         paper = ProfileArrays(
             read=np.zeros((levels, 4)),
             joined=np.zeros((levels, 5)),
             levels=np.zeros(levels + 2),
             intervals=intervals,
             fixed=np.column_stack([water.level, water.u, water.v, water.density]),
-            first=np.zeros(pieces, np.int64),
-            last=np.zeros(pieces, np.int64),
-            may_lie=np.array(chain, np.int64),
+            first=np.zeros(len(pieces), np.int64),
+            last=np.zeros(len(pieces), np.int64),
+            may_lie=np.array([one.component.kind == "chain" for one in pieces], np.int64),
         )
         find = by_address(find_asked, AskedSearch(search, referee))
         given = (find, search, referee, paper, depth, *parts, rows, endings)
@@ -322,14 +315,6 @@ class Batch:
             endings[again] = ends
             for array, solved in zip(rows, found, strict=True):
                 array[again] = solved
-
-
-def _status_of(mooring: Mooring, ending: int) -> int:
-    """The index in `STATUSES` of how a profile ends."""
-    own = {NO_CURRENT: _NO_CURRENT, LEVELS_COINCIDE: _LEVELS_COINCIDE}
-    if ending == HEAPED:
-        return STATUSES.index(mooring.heaped("a piece").status)
-    return own[ending] if ending in own else STATUSES.index(STATUS_OF[ending].label)
 
 
 def _checked(

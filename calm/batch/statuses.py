@@ -9,11 +9,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from calm.batch.solving import HEAPED, LEVELS_COINCIDE, NO_CURRENT
 from calm.physics.line import Floats
 from calm.records.current_terms import DEEPEST, IMPOSSIBLE
 from calm.solve import Status
+from calm.solve.finish import STATUS_OF
 
 if TYPE_CHECKING:
+    from calm.case import Mooring
     from calm.records.record import Record
 
 
@@ -41,6 +44,16 @@ _ENDINGS = {
     "levels-coincide": Ending.NO_DATA,
     "implausible-current": Ending.NO_DATA,
 }
+
+
+_OWN = {NO_CURRENT: "no-current", LEVELS_COINCIDE: "levels-coincide"}
+
+
+def status_of(mooring: Mooring, ending: int) -> int:
+    """The index in `STATUSES` of how the solver ended with a profile of a mooring."""
+    if ending == HEAPED:
+        return STATUSES.index(mooring.heaped("a piece").status)
+    return STATUSES.index(_OWN[ending] if ending in _OWN else STATUS_OF[ending].label)
 
 
 def ending_of(status: str) -> Ending:

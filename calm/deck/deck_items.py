@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from itertools import groupby
-from math import inf, isnan
 from typing import TYPE_CHECKING, Protocol
 
 from calm.case.net_result import legs_of
@@ -21,7 +20,6 @@ if TYPE_CHECKING:
     from calm.case import Result
     from calm.case.net_result import NetResult
     from calm.case.result_tables import ComponentRow
-    from calm.checks.recovery import Recovery
     from calm.files import Clamp, Piece
     from calm.files.logbook import DeployedItem
 
@@ -343,25 +341,6 @@ class Order(StrEnum):
     ANCHOR_FIRST = "anchor-first"
 
 
-@dataclass(frozen=True)
-class RecoveredItem:
-    """A piece or clamp as it comes up.
-
-    Attributes
-    ----------
-    item : which
-    time : after the release [s]; None of what does not come up by itself
-    hangs_at : depth of the upper end of a piece, or of a clamp where it is on one, when all is up
-        that comes up [m]; None where not known
-    by_itself : whether it is buoyant enough to come up without what is above it
-    """
-
-    item: DeckItem
-    time: float | None
-    hangs_at: float | None
-    by_itself: bool
-
-
 def over_the_side(parts: Sequence[DeckItem], order: Order) -> tuple[DeckItem, ...]:
     """The pieces in the order in which they go over the side, each with its clamps after it.
 
@@ -371,37 +350,3 @@ def over_the_side(parts: Sequence[DeckItem], order: Order) -> tuple[DeckItem, ..
         return tuple(parts)
     groups = [[*group] for _, group in groupby(parts, key=lambda one: one.index)]
     return tuple(each for piece, *clamps in reversed(groups) for each in (piece, *reversed(clamps)))
-
-
-def surfacing(
-    parts: Sequence[DeckItem], pieces: Collection[int], recovery: Recovery | None
-) -> tuple[RecoveredItem, ...]:
-    """Return what comes up, the first first; what hangs below, and what stays, comes after it in
-    order.
-
-    Without a solved rise there are no times, and the order is that of the line.
-
-    Parameters
-    ----------
-    parts : down the line
-    pieces : indices of those that come up
-    """
-    rising = [one for one in parts if one.index in pieces]
-    if recovery is None:
-        return tuple(RecoveredItem(one, None, None, False) for one in rising)
-    found = [_surfacing(one, recovery) for one in rising]
-    times = [inf if one.time is None else one.time for one in found]
-    # stable: what comes up with a piece stays after it
-    return tuple(found[i] for i in sorted(range(len(found)), key=times.__getitem__))
-
-
-def _surfacing(one: DeckItem, recovery: Recovery) -> RecoveredItem:
-    time = float(recovery.arrival[one.index])
-    share = one.at / one.of_length if one.at is not None and one.of_length else 0.0
-    hangs_at = recovery.depth_at(one.index, share)
-    return RecoveredItem(
-        one,
-        None if isnan(time) else time,
-        None if isnan(hangs_at) else hangs_at,
-        one.index in recovery.order and one.on is None,
-    )

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
+from math import inf, isnan
 from typing import TYPE_CHECKING, TypeVar
 
 from calm.case import Mooring, Result
@@ -17,11 +18,9 @@ from calm.deck.deck_items import (
     DeckInstrument,
     DeckItem,
     Order,
-    RecoveredItem,
     deck_items_of,
     instruments_of,
     over_the_side,
-    surfacing,
 )
 from calm.deck.hardware import Cut, Stock, cuts_of, hardware_of
 from calm.deck.shipping import Lifts, ShippedComponent, lifts_of, shipped_of
@@ -43,6 +42,25 @@ FAINT = 0.1
 """Current in which a line is drawn that still water leaves slack [m/s]."""
 
 _Listed = TypeVar("_Listed")
+
+
+@dataclass(frozen=True)
+class RecoveredItem:
+    """A piece or clamp as it comes up.
+
+    Attributes
+    ----------
+    item : which
+    time : after the release [s]; None of what does not come up by itself
+    hangs_at : depth of the upper end of a piece, or of a clamp where it is on one, when all is up
+        that comes up [m]; None where not known
+    by_itself : whether it is buoyant enough to come up without what is above it
+    """
+
+    item: DeckItem
+    time: float | None
+    hangs_at: float | None
+    by_itself: bool
 
 
 @dataclass(frozen=True)
@@ -218,3 +236,37 @@ def _standing(mooring: Mooring | Net, notes: list[str]) -> Result | NetResult:
 
 def _name(mooring: Mooring | Net) -> str:
     return mooring.file.environment.name or OWN
+
+
+def surfacing(
+    parts: Sequence[DeckItem], pieces: Collection[int], recovery: Recovery | None
+) -> tuple[RecoveredItem, ...]:
+    """Return what comes up, the first first; what hangs below, and what stays, comes after it in
+    order.
+
+    Without a solved rise there are no times, and the order is that of the line.
+
+    Parameters
+    ----------
+    parts : down the line
+    pieces : indices of those that come up
+    """
+    rising = [one for one in parts if one.index in pieces]
+    if recovery is None:
+        return tuple(RecoveredItem(one, None, None, False) for one in rising)
+    found = [_surfacing(one, recovery) for one in rising]
+    times = [inf if one.time is None else one.time for one in found]
+    # stable: what comes up with a piece stays after it
+    return tuple(found[i] for i in sorted(range(len(found)), key=times.__getitem__))
+
+
+def _surfacing(one: DeckItem, recovery: Recovery) -> RecoveredItem:
+    time = float(recovery.arrival[one.index])
+    share = one.at / one.of_length if one.at is not None and one.of_length else 0.0
+    hangs_at = recovery.depth_at(one.index, share)
+    return RecoveredItem(
+        one,
+        None if isnan(time) else time,
+        None if isnan(hangs_at) else hangs_at,
+        one.index in recovery.order and one.on is None,
+    )

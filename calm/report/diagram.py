@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from itertools import count
+from string import ascii_uppercase
 
 from calm.case import Result
 from calm.case.net_result import legs_of
@@ -70,8 +71,7 @@ class Paper(StrEnum):
     @property
     def column_width(self) -> float:
         """Width of one [pt]."""
-        room = self.size[0] - 2 * _MARGIN - (self.columns - 1) * _BETWEEN
-        return room / self.columns
+        return (self.size[0] - 2 * _MARGIN - (self.columns - 1) * _BETWEEN) / self.columns
 
     def left(self, column: int) -> float:
         """Left edge of a column [pt]."""
@@ -95,8 +95,7 @@ class TitleBlock:
 
     def draw(self, page: Pen, left: float, top: float, width: float, sheet: str) -> None:
         """In a frame, its upper left corner at a point; `sheet` is such as 2 of 5."""
-        step = width / self.columns
-        y = top
+        step, y = width / self.columns, top
         for row in self.rows:
             height = _height(row)
             for number, (name, lines) in enumerate(one for one in row if one[0]):
@@ -197,7 +196,9 @@ def _pages(deck: Deck, paper: Paper) -> _Pages:
     foot = block.height
     even: _Stacks = ()
     while True:  # the last column takes over parts until it is about as long as the first
-        marks = _marks()
+        marks = (
+            letter + (str(turn) if turn else "") for turn in count() for letter in ascii_uppercase
+        )
         columns = _stacked(
             (
                 one
@@ -352,13 +353,6 @@ def _break(rest: Sequence[PlacedPart], fits: int, room: float) -> int:
             best = number, quality
         height -= rest[number - 1].height
     return best[0]
-
-
-def _marks() -> Iterator[str]:
-    """A, B … Z, A1, B1 …"""
-    for turn in count():
-        for number in range(26):
-            yield chr(ord("A") + number) + (str(turn) if turn else "")
 
 
 _FIELDS = (
