@@ -18,8 +18,10 @@ if TYPE_CHECKING:
     from calm.batch.profiles import Profiles, solve_profiles
     from calm.case import Mooring, Result, Tow, TowResult, load
     from calm.case.explain import explain
+    from calm.case.net import Net
+    from calm.case.net_result import AnyResult, NetResult
     from calm.case.size import size
-    from calm.checks.assess import check
+    from calm.checks.net_check import check
     from calm.drop.plan import drop_plan
     from calm.errors import CalmError, InputError, NoEquilibrium, UsageError
     from calm.motion.motion_estimate import MotionEstimate, estimate_motion
@@ -30,6 +32,8 @@ __all__ = [
     "InputError",
     "Mooring",
     "MotionEstimate",
+    "Net",
+    "NetResult",
     "NoEquilibrium",
     "Profiles",
     "Result",
@@ -48,8 +52,8 @@ __all__ = [
 ]
 
 _HOMES = {
-    "load": "calm.case",
-    "check": "calm.checks.assess",
+    "load": "calm.case.net",
+    "check": "calm.checks.net_check",
     "drop_plan": "calm.drop.plan",
     "estimate_motion": "calm.motion.motion_estimate",
     "explain": "calm.case.explain",
@@ -59,6 +63,8 @@ _HOMES = {
     "solve_profiles": "calm.batch.profiles",
     "Mooring": "calm.case",
     "MotionEstimate": "calm.motion.motion_estimate",
+    "Net": "calm.case.net",
+    "NetResult": "calm.case.net_result",
     "Result": "calm.case",
     "Tow": "calm.case",
     "TowResult": "calm.case",
@@ -75,7 +81,7 @@ def __getattr__(name: str) -> object:
     from importlib import import_module
 
     value = getattr(import_module(_HOMES[name]), name)
-    if _HOMES[name] == "calm.case":
+    if _HOMES[name].startswith("calm.case"):
         _give_results_their_forms()
     globals()[name] = value
     return value
@@ -83,21 +89,23 @@ def __getattr__(name: str) -> object:
 
 def _give_results_their_forms() -> None:
     """Tell results how a notebook shows them, and how they become a dataset."""
-    from calm.case.result import Solved
+    from calm.case.result import ResultForms
 
-    def html(result: Result | TowResult) -> str:
+    def html(result: AnyResult) -> str:
+        from calm.case.net_result import NetResult
         from calm.report.html import fragment
+        from calm.report.net_sheet import net_part
         from calm.report.sheet import result_part
 
-        return fragment(result_part(result))
+        return fragment(net_part(result) if isinstance(result, NetResult) else result_part(result))
 
-    def netcdf(result: Result | TowResult) -> bytes:
+    def netcdf(result: AnyResult) -> bytes:
         from calm.report.result_files import result_netcdf
 
         return result_netcdf(result)
 
-    Solved.notebook_form = staticmethod(html)
-    Solved.netcdf_form = staticmethod(netcdf)
+    ResultForms.notebook_form = staticmethod(html)
+    ResultForms.netcdf_form = staticmethod(netcdf)
 
 
 def __dir__() -> list[str]:

@@ -40,7 +40,7 @@ code is 1 when one is outside its tolerance. `calm verify cdms tension` selects 
 source or name contains both words; `--json -` gives every digit. The cases are in
 `calm/verification/`, and the tests run them.
 
-Agreement does not always prove the same, so every figure has a kind:
+How much agreement proves depends on where a figure comes from, so every figure has a kind:
 
 | kind | figures | meaning |
 | --- | ---: | --- |

@@ -179,12 +179,6 @@ class Branch:
             total = np.where(far, [straight, limit * straight], total)
         return total
 
-    def rates(self, parameter: ArrayLike) -> tuple[Floats, Floats]:
-        """ds′/dλ and cos ψ."""
-        signed = np.asarray(parameter, dtype=np.float64)
-        limit = np.where(signed < 0.0, -self.limit, self.limit)
-        return self._rates(limit, np.abs(signed))
-
     def _rates(self, limit: Floats | float, parameter: Floats) -> tuple[Floats, Floats]:
         """ds′/dλ and cos ψ on the side λ ≥ 0 whose cosine tends to `limit`."""
         sech = _sech(parameter)

@@ -231,7 +231,7 @@ def _lay_out(store: Store) -> None:
             filters=[Shuffle(kind.itemsize)] if in_blocks and kind.itemsize > 1 else None,
             compressors=Zlib(LEVEL) if in_blocks else None,
             fill_value=np.nan if kind.kind == "f" else None,
-            attributes={**variable.attributes, "_ARRAY_DIMENSIONS": list(variable.dimensions)},
+            attributes={**variable.described, "_ARRAY_DIMENSIONS": list(variable.dimensions)},
             config={"write_empty_chunks": True},
         )
         if values is not None:

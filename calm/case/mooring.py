@@ -1,26 +1,24 @@
-"""A mooring file ready to be solved, and the same with some of its values changed."""
+"""A mooring file ready to be solved."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from calm.assemble import assemble_floating, assemble_line, assemble_water
 from calm.case.measure import anchor_weight_of, result_of
 from calm.case.memory import Forgetful, Memory
-from calm.case.parts import naming_the_piece, parts_of
+from calm.case.origin import Origin, ReadFromFile, as_read
+from calm.case.parts import naming_the_piece
 from calm.case.profilers import profilers_of
 from calm.case.result import Result
-from calm.case.tow import FROM_NO_FILE, Tow
-from calm.errors import NoEquilibrium, UsageError, unknown
-from calm.files import MooringFile, read_mooring
-from calm.files.editing import LINE, Draft, clamps_of
-from calm.files.yaml_document import Location
+from calm.case.tow import Tow
+from calm.errors import NoEquilibrium
+from calm.files import MooringFile
 from calm.physics.drag import BLOCK_CD, area_drag
 from calm.physics.line import Line, Water
 from calm.physics.materials import STEEL_DENSITY
@@ -28,42 +26,30 @@ from calm.physics.seawater import REFERENCE_DENSITY
 from calm.solve import Settings, Solution, Status, fit_length, solve_mooring
 from calm.solve.problem import COARSE_STEP
 from calm.solve.solution import standing_lift, too_heavy
-from calm.whole_file import read_text
 
 
-def load(
+def load_line(
     path: str | Path,
     environment: str | Path | None = None,
     catalogs: Sequence[str | Path] = (),
     text: str | None = None,
 ) -> Mooring | Tow:
-    """Read the file of a mooring or a tow.
+    """Read the file of a mooring or a tow; the parameters are those of `calm.load`.
 
-    Parameters
-    ----------
-    path : the YAML file
-    environment : name of one of its `environments`, or an environment file
-    catalogs : catalogue files of your own, whose definitions come before the shipped ones
-    text : in place of the file's content; files that it names are still looked for beside the file
-
-    Raises
-    ------
-    InputError
-        With every mistake of the file, each with its line and column.
+    InputError: with every mistake of the file, each with its line and column; of a net, that it is
+    one.
     """
     origin = Origin(path, environment, tuple(Path(each) for each in catalogs), text)
-    return as_read(origin.read(), origin)
+    return line_of(origin.read(), origin)
 
 
-def as_read(file: MooringFile, origin: Origin) -> Mooring | Tow:
+def line_of(file: MooringFile, origin: Origin) -> Mooring | Tow:
     """Return the mooring or the tow of a file, which knows what it was read from."""
-    read = Mooring(file) if file.tow is None else Tow(file)
-    vars(read)["origin"] = origin
-    return read
+    return as_read(Mooring, file, origin) if file.tow is None else as_read(Tow, file, origin)
 
 
 @dataclass(frozen=True, init=False)
-class Mooring:
+class Mooring(ReadFromFile):
     """A mooring as read from its file; `line` and `water` are what the solver takes.
 
     They follow from the file where they are not given. `for_surface` says whether it is meant to
@@ -150,30 +136,6 @@ class Mooring:
             density = anchor.material_density or STEEL_DENSITY
             volume = self.anchor_weight / ((density - REFERENCE_DENSITY) * self.water.gravity)
         return area_drag(max(volume, 0.0) ** (2.0 / 3.0), BLOCK_CD)
-
-    def with_(
-        self, label: str | None = None, /, environment: str | Path | None = None, **keys: Any
-    ) -> Mooring:
-        """Return the same mooring with some values of its file changed, as `Origin.with_values`.
-
-        Parameters
-        ----------
-        label : of the piece or clamp that has the keys; the keys are the file's where it is not
-            given: ``mooring.with_("wire 1", length="480 m")``, ``mooring.with_(solver={…})``
-        environment : name of one of its `environments`, or an environment file
-
-        Raises
-        ------
-        InputError
-            With the mistakes that the values make.
-        UsageError
-            No piece has the label, or the mooring was not loaded from a file.
-        """
-        if self.origin is None:
-            raise UsageError(FROM_NO_FILE)
-        changed = self.origin.changed(self.file, label, environment, keys)
-        assert isinstance(changed, Mooring)
-        return changed
 
     def with_file(self, file: MooringFile) -> Mooring:
         """Return another line in the same water, meant for what this one is meant for."""
@@ -286,70 +248,3 @@ def refuse_in_the_slope(file: MooringFile, solution: Solution, depth: float) -> 
             f"{piece.label} comes {below[worst]:.2f} m below the sloping seabed.",
             advice="Raise it, or move it down the slope: a line lying on a slope is not solved.",
         )
-
-
-@dataclass(frozen=True)
-class Origin:
-    """Tell what a mooring was read from; the names are those of `load`."""
-
-    path: str | Path
-    environment: str | Path | None
-    catalogs: tuple[Path, ...]
-    text: str | None
-
-    def read(self, *, net: bool = False) -> MooringFile:
-        """Return the file with all it refers to, as `read_mooring` does."""
-        return read_mooring(
-            self.path,
-            environment=self.environment,
-            catalogs=self.catalogs,
-            text=self.text,
-            net=net,
-        )
-
-    def changed(
-        self,
-        file: MooringFile,
-        label: str | None,
-        environment: str | Path | None,
-        keys: Mapping[str, Any],
-    ) -> Mooring | Tow:
-        """Return what is read with other values, or in another environment."""
-        other = self.with_values(file, label, keys)
-        other = replace(other, environment=environment or self.environment)
-        return as_read(other.read(), other)
-
-    def with_values(self, file: MooringFile, label: str | None, keys: Mapping[str, Any]) -> Origin:
-        """Return the same with values put into the text.
-
-        Parameters
-        ----------
-        file : as it was read
-        label : of the piece or clamp that has the keys; None where they are those of the file
-        keys : names and values as the file writes them; None takes a key out; where the file has a
-            mapping under a name, its keys are changed one by one
-
-        Raises
-        ------
-        UsageError
-            No piece and no clamp has the label.
-        """
-        draft = Draft(read_text(Path(self.path)) if self.text is None else self.text)
-        place: Location = () if label is None else _place_of(file, label)
-        for name, value in keys.items():
-            inner = value if isinstance(value, Mapping) and label is None else {None: value}
-            for key, each in inner.items():
-                where = (*place, name) if key is None else (*place, name, key)
-                written = str(each) if isinstance(each, (int, float)) else each
-                draft = draft.put_at(where, written)
-        return replace(self, text=draft.text)
-
-
-def _place_of(file: MooringFile, label: str) -> Location:
-    places = {part.label: part.place for part in parts_of(file.pieces)}
-    if label not in places:
-        raise UsageError(unknown(f"no piece or clamp is labelled `{label}`", label, places))
-    place = places[label]
-    if place.part >= 0 and not place.is_clamp:
-        raise UsageError(f"`{label}` is a part of an assembly; change the assembly")
-    return (*clamps_of(place.item), place.clamp) if place.is_clamp else (*LINE, place.item)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from itertools import combinations, permutations, product
 from math import dist, inf, nan
@@ -14,8 +14,9 @@ import numpy as np
 
 from calm.assemble import assemble_water
 from calm.case.measure import result_of
-from calm.case.mooring import Mooring, Origin, as_read, refuse_in_the_slope
+from calm.case.mooring import Mooring, line_of, refuse_in_the_slope
 from calm.case.net_result import EndLoad, NetResult, NodePlace
+from calm.case.origin import Origin, ReadFromFile, as_read
 from calm.case.parts import naming_the_piece
 from calm.case.result import Accuracy, AnchorLoad, Result
 from calm.case.tow import Tow
@@ -38,10 +39,11 @@ Way = tuple[float, tuple[str, ...]]
 
 
 @dataclass(frozen=True)
-class Net:
+class Net(ReadFromFile):
     """A net of legs as read from its file."""
 
     file: MooringFile
+    origin: Origin | None = field(default=None, repr=False, compare=False)
 
     @cached_property
     def water(self) -> Water:
@@ -185,14 +187,16 @@ class Net:
                 )
         return None
 
-    def solve(self) -> NetResult:
-        """Find the static equilibrium.
+    def solve(self, environment: str | Path | None = None) -> NetResult:
+        """Find the static equilibrium, in another of its environments where one is given.
 
         Raises
         ------
         NoEquilibrium
             With status, message and advice, where there is none that passes every check.
         """
+        if environment is not None:
+            return self.with_(environment=environment).solve()
         solution = self.standing
         still: Sequence[Solution | None] = solution.legs
         if self.water.moving:
@@ -280,16 +284,26 @@ def _refuse_a_lifted_anchor(mooring: Mooring, solution: Solution) -> None:
         )
 
 
-def load_any(
+def load(
     path: str | Path,
     environment: str | Path | None = None,
     catalogs: Sequence[str | Path] = (),
     text: str | None = None,
 ) -> Mooring | Tow | Net:
-    """Read the file of a mooring, a tow or a net; the parameters are those of `load`.
+    """Read the file of a mooring, a tow or a net of legs.
 
-    InputError: with every mistake of the file, each with its line and column.
+    Parameters
+    ----------
+    path : the YAML file
+    environment : name of one of its `environments`, or an environment file
+    catalogs : catalogue files of your own, whose definitions come before the shipped ones
+    text : in place of the file's content; files that it names are still looked for beside the file
+
+    Raises
+    ------
+    InputError
+        With every mistake of the file, each with its line and column.
     """
     origin = Origin(path, environment, tuple(Path(each) for each in catalogs), text)
     file = origin.read(net=True)
-    return Net(file) if file.legs else as_read(file, origin)
+    return as_read(Net, file, origin) if file.legs else line_of(file, origin)

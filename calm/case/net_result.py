@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from calm.case.result import Accuracy, Result
+from calm.case.result import Accuracy, Result, ResultForms
 from calm.case.result_tables import Clamps, Components
 from calm.case.tow import TowResult
 from calm.files import MooringFile
@@ -53,8 +53,8 @@ class NodePlace:
     imbalance: float
 
 
-@dataclass(frozen=True, kw_only=True)
-class NetResult:
+@dataclass(frozen=True, kw_only=True, repr=False)
+class NetResult(ResultForms):
     """A converged net. Lengths and depths [m], forces [N], angles [degrees].
 
     x and y are east and north of the origin of the file's places. `miss` is the worst distance of a
@@ -77,6 +77,21 @@ class NetResult:
     anchors: tuple[EndLoad, ...]
     held: tuple[EndLoad, ...]
     warnings: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        """Return the nodes and the pulls on the anchors, in SI units and degrees."""
+        lines = [f"{self.name}: {self.type} of {len(self.legs)} legs, {self.status}"]
+        lines += [f"node {one.name}: depth {one.depth:.6g}" for one in self.nodes]
+        lines += [
+            f"{what} of leg {one.leg}: tension {one.tension:.6g}, angle {one.angle:.3g}"
+            for what, ends in (("anchor", self.anchors), ("held end", self.held))
+            for one in ends
+        ]
+        return "\n".join([*lines[:9], f"{len(self.warnings)} warnings"])
+
+    def to_pandas(self) -> Any:
+        """Return the components as a pandas data frame."""
+        return self.components.to_pandas()
 
     @property
     def file(self) -> MooringFile:

@@ -110,15 +110,39 @@ class AnchorLoad:
     grounded_length: float
 
 
+class ResultForms:
+    """The forms of a result in a notebook and for other libraries.
+
+    `notebook_form` makes HTML of a result, `netcdf_form` a file; the packages above set them.
+    """
+
+    notebook_form: ClassVar[Callable[[Any], str] | None] = None
+    netcdf_form: ClassVar[Callable[[Any], bytes] | None] = None
+
+    def to_xarray(self) -> Any:
+        """The dataset that `calm run --netcdf` writes: components, clamps and shape, with units."""
+        from io import BytesIO
+
+        from xarray import load_dataset
+
+        form = type(self).netcdf_form
+        assert form is not None, "a mooring is read by calm.load"
+        return load_dataset(BytesIO(form(self)))
+
+    def _repr_html_(self) -> str | None:
+        """The table of the line, for notebooks; None where nothing makes it."""
+        form = type(self).notebook_form
+        return None if form is None else form(self)
+
+
 @dataclass(frozen=True, kw_only=True, repr=False)
-class Solved:
+class Solved(ResultForms):
     """Hold what every result has, whatever was solved. Depths [m], forces [N].
 
     `iterations` counts marches, `segments` the cuts of the final one, `miss` is the height
     of the line's end above the anchor's top, `closure` the relative force residual recomputed
     from the final coordinates. `other_depth` is that of the free end in another equilibrium that
-    was found. `notebook_form` makes HTML of a result, `netcdf_form` a file; the rooms above set
-    them.
+    was found.
     """
 
     name: str
@@ -135,8 +159,6 @@ class Solved:
     shape: Shape
     other_depth: float | None = None
     warnings: tuple[str, ...] = ()
-    notebook_form: ClassVar[Callable[[Any], str] | None] = None
-    netcdf_form: ClassVar[Callable[[Any], bytes] | None] = None
 
     def __repr__(self) -> str:
         """Return the figures of both ends, in SI units and degrees."""
@@ -152,21 +174,6 @@ class Solved:
     def to_pandas(self) -> Any:
         """Return the components as a pandas data frame."""
         return self.components.to_pandas()
-
-    def to_xarray(self) -> Any:
-        """The dataset that `calm run --netcdf` writes: components, clamps and shape, with units."""
-        from io import BytesIO
-
-        from xarray import load_dataset
-
-        form = type(self).netcdf_form
-        assert form is not None, "a mooring is read by calm.load"
-        return load_dataset(BytesIO(form(self)))
-
-    def _repr_html_(self) -> str | None:
-        """The table of the line, for notebooks; None where nothing makes it."""
-        form = type(self).notebook_form
-        return None if form is None else form(self)
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)

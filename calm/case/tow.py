@@ -7,11 +7,12 @@ from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
 from math import atan2, degrees, hypot
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from calm.assemble import assemble_line, assemble_water
 from calm.case.measure import clamps_of, components_of, shape_of
 from calm.case.memory import Forgetful, Memory
+from calm.case.origin import Origin, ReadFromFile
 from calm.case.parts import cut_like, naming_the_piece
 from calm.case.result import Accuracy, Solved, document_of
 from calm.case.strumming import StrummingBand, strumming_of, tow_band
@@ -22,11 +23,6 @@ from calm.files.strumming_keys import BourgetMarichalKeys
 from calm.physics.line import Line, Water
 from calm.records.profile_tables import components
 from calm.solve import Settings, Solution, Status, Towing, fit_tow_length, solve_tow
-
-if TYPE_CHECKING:
-    from calm.case.mooring import Origin
-
-FROM_NO_FILE = "what was not loaded from a file has no values to change"
 
 
 @dataclass(frozen=True)
@@ -98,7 +94,7 @@ class TowResult(Solved):
 
 
 @dataclass(frozen=True, init=False)
-class Tow:
+class Tow(ReadFromFile):
     """A tow as read from its file; `line`, `water` and `towing` are what the solver takes.
 
     The line follows from the file where it is not given. `memory` keeps what was solved for other
@@ -175,23 +171,6 @@ class Tow:
         """
         keys = self.keys.model_copy(update={"speed": speed})
         return Tow(replace(self.file, tow=keys), line=self.line)
-
-    def with_(
-        self, label: str | None = None, /, environment: str | Path | None = None, **keys: Any
-    ) -> Tow:
-        """Return the same tow with some values of its file changed, as `Mooring.with_`:
-        ``tow.with_("cable", length="800 m")``, ``tow.with_(tow={"speed": "4 kn"})``.
-
-        Raises
-        ------
-        InputError, UsageError
-            As there.
-        """
-        if self.origin is None:
-            raise UsageError(FROM_NO_FILE)
-        changed = self.origin.changed(self.file, label, environment, keys)
-        assert isinstance(changed, Tow)
-        return changed
 
     def solve(self, environment: str | Path | None = None) -> TowResult:
         """Find the steady shape, in another of its environments where one is given.

@@ -49,7 +49,6 @@ from calm.checks.posture import left_out_of_a_leg, reaches_the_surface
 from calm.checks.recovery import breaks_of, losses_of, recovery_of
 from calm.checks.situations import (
     LEAST_CURRENT,
-    SOLVES,
     STILL_ONLY,
     STRUMMING,
     currents,
@@ -64,26 +63,13 @@ from calm.files.rule_texts import RULES as TEXTS
 from calm.solve import expect_many
 
 
-def check(mooring: Mooring, /, *others: Mooring, day: date | None = None) -> Assessment:
-    """Judge a mooring by every rule of the design check.
-
-    Parameters
-    ----------
-    mooring, others : the same one, loaded in each of the environments it is judged in
-    day : on which accepts count or have ended; today unless given
-    """
-    name, moorings = mooring.file.name, (mooring, *others)
-    expect_many(SOLVES * len(moorings))
-    return assessment_of(name, [stand_of(mooring, name, day) for mooring in moorings], day)
-
-
 def stand_of(mooring: Mooring, name: str, day: date | None = None) -> MooringInEnvironment:
     """Solve a mooring in its environment, in every situation, and judge it.
 
     Parameters
     ----------
     name : of the mooring in its findings
-    day : see `check`
+    day : on which accepts count or have ended; today unless given
 
     Findings as given are all there, of another situation those whose state is worse there. What
     fails only as the cables strum is a warning: they may not.
@@ -128,7 +114,7 @@ def assessment_of(
 
     Parameters
     ----------
-    day : see `check`
+    day : on which accepts count or have ended; today unless given
     """
     first = next((stand for stand in stands if stand.result is not None), stands[0])
     handling = _handled(first)
@@ -182,7 +168,7 @@ def findings_of(
     Parameters
     ----------
     mooring, environment : their names in the findings
-    day : see `check`
+    day : on which accepts count or have ended; today unless given
     """
     if situation.failure is not None:
         for verdict in equilibrium.judge(situation.failure):

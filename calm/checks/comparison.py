@@ -16,7 +16,7 @@ from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment
 from calm.checks.finding import State
 from calm.checks.inventory import total_of
-from calm.checks.net_check import check_any
+from calm.checks.net_check import check
 from calm.errors import NoEquilibrium, or_why_not
 from calm.files import Flexible
 from calm.files.file_differences import Change, Differences, differences
@@ -133,7 +133,7 @@ def _solved(line: Mooring | Tow | Net, day: date | None) -> _Design:
             return _Design(line.solve(), "", None)
         except NoEquilibrium as failure:
             return _Design(None, str(failure), None)
-    assessment = check_any(line, day=day)
+    assessment = check(line, day=day)
     if isinstance(line, Net):
         net = or_why_not(line.solve)
         if isinstance(net, NoEquilibrium):

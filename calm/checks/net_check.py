@@ -22,7 +22,13 @@ from calm.checks.arrangement import (
     release_present,
     swivel,
 )
-from calm.checks.assess import check, equilibrium, failed_stand, judged_stand
+from calm.checks.assess import (
+    assessment_of,
+    equilibrium,
+    failed_stand,
+    judged_stand,
+    stand_of,
+)
 from calm.checks.assessment import (
     Acceptance,
     Assessment,
@@ -41,6 +47,7 @@ from calm.checks.situations import (
     DEPLOYED,
     FOULED,
     LEAST_CURRENT,
+    SOLVES,
     STILL_ONLY,
     STRUMMING,
     currents,
@@ -54,7 +61,7 @@ from calm.files.legs import stand_in_anchor
 from calm.files.mooring_file import STAND_IN
 from calm.physics.line import Floats
 from calm.physics.seawater import REFERENCE_DENSITY
-from calm.solve import Status
+from calm.solve import Status, expect_many
 
 NOT_HANDLED = (
     "a net of legs: each leg is judged by the rules of a line; launch, recovery and "
@@ -63,14 +70,23 @@ NOT_HANDLED = (
 _NOT_SOLVED = Status.NOT_CONVERGED.because("The launch and the recovery of a net are not solved.")
 
 
-def check_any(*designs: Mooring | Net, day: date | None = None) -> Assessment:
-    """Judge a mooring, or a net, loaded in each of the environments it is judged in."""
-    nets = [each for each in designs if isinstance(each, Net)]
-    if not nets:
-        return check(*(each for each in designs if isinstance(each, Mooring)), day=day)
-    name = nets[0].file.name
-    stands = [one for net in nets for one in stands_of_net(net, name, day)]
-    return assessment_of_net(name, stands, day)
+def check(*designs: Mooring | Net, day: date | None = None) -> Assessment:
+    """Judge a mooring, or a net of legs, by every rule of the design check.
+
+    Parameters
+    ----------
+    designs : the same one, loaded in each of the environments it is judged in
+    day : on which accepts count or have ended; today unless given
+    """
+    name = designs[0].file.name
+    expect_many(SOLVES * len(designs))
+    stands: list[MooringInEnvironment] = []
+    for each in designs:
+        stands += (
+            stands_of_net(each, name, day) if isinstance(each, Net) else [stand_of(each, name, day)]
+        )
+    assess = assessment_of_net if isinstance(designs[0], Net) else assessment_of
+    return assess(name, stands, day)
 
 
 def stands_of_net(net: Net, name: str, day: date | None = None) -> list[MooringInEnvironment]:

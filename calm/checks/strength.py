@@ -19,6 +19,9 @@ from calm.quantities import say
 WEAK_LINK = 0.5
 """Share of the strength of the cables on both its sides below which a piece is a weak link."""
 
+WEIGHT_OF_A_HINGE = 0.5
+"""In water [N]; what has no length and weighs less is no hardware."""
+
 
 def allowable_load(component: Component, factors: SafetyFactors, surface: bool) -> float | None:
     """Load that a component may bear in use [N], None where neither of its loads is known.
@@ -43,8 +46,12 @@ def passes_load_on(file: MooringFile, index: int) -> bool:
     """Return whether the tension of the line goes through a piece.
 
     The top one, the anchor, and what hangs at the free end of a leg are pulled at one end only: the
-    shackle there bears what they do.
+    shackle there bears what they do. A hinge of another program's design, without length or weight,
+    is no piece of hardware.
     """
+    piece = file.pieces[index]
+    if piece.length == 0.0 and abs(piece.component.net_buoyancy) < WEIGHT_OF_A_HINGE:
+        return False
     first, last = 1, len(file.pieces) - 1
     if file.legs:
         first, last = int(file.legs[0].top.free), last - file.legs[0].bottom.free

@@ -81,7 +81,7 @@ def wave_slack(evidence: MooringInWaves) -> Iterator[Verdict]:
         if row.tension_std > 0.0 and piece.component.slack != "allowed":
             message = (
                 f"The least tension of {piece.label} is {say('tension', row.least)} in waves of "
-                f"Hs {state.sea.significant_height:.1f} m; below 0 it falls slack and snatches."
+                f"Hs {state.sea.significant_height:.1f} m; below 0 it goes slack and snatches."
             )
             remedy = "Add weight or stretch, or solve it in the time domain: `calm export`"
             yield _sure(waves, at_least(piece, row.least, 0.0, message, f"{remedy}."))

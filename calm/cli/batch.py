@@ -95,13 +95,13 @@ def batch(
         raise UsageError(f"--workers: {workers} is not 1 or more")
     from calm.batch.run import run_batch
     from calm.case import Tow
-    from calm.case.net import load_any
+    from calm.case.net import load
     from calm.records.current_file import open_record
     from calm.records.record import RULES, parse_period, parse_place
 
     period = None if time is None else parse_period(time)
     check_output(output, file, currents)
-    mooring = load_any(file, environment, catalog or [])
+    mooring = load(file, environment, catalog or [])
     if isinstance(mooring, Tow):
         raise UsageError(f"{file} is a tow; calm batch is for moorings")
     show_units(units, [mooring.file])

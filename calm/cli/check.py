@@ -129,7 +129,7 @@ def _read(
             files, environments, catalogs, workers, meanwhile=ready, nets=True
         ), None
     from calm.case import Tow
-    from calm.case.net import load_any
+    from calm.case.net import load
 
     problems: list[Problem] = []
     earlier: Mooring | Tow | Net | None = None
@@ -137,7 +137,7 @@ def _read(
     tows: list[Path] = []
     try:
         first = environments[0] if environments else None
-        earlier = load_any(against, first, catalogs)
+        earlier = load(against, first, catalogs)
     except InputError as error:
         problems += error.problems
     try:

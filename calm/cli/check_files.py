@@ -135,10 +135,10 @@ def _load(
 ) -> Mooring | Net | Tow | tuple[Problem, ...]:
     """What was read, or what is wrong with it."""
     import calm
-    from calm.case.net import load_any
+    from calm.case.net import load
 
     file, environment, catalogs, nets = task
-    load = load_any if nets else calm.load
+    load = load if nets else calm.load
     try:
         return load(file, environment=environment, catalogs=catalogs)
     except InputError as error:

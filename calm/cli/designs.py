@@ -59,9 +59,9 @@ def diff(
     """
     files = (before,) if after is None else (before, after)
     outputs = Outputs(files, json)
-    from calm.case.net import load_any
+    from calm.case.net import load
 
-    lines = read_all(load_any, files, environment, catalog or [])
+    lines = read_all(load, files, environment, catalog or [])
     for file, line in zip(files, lines, strict=True):
         for notice in line.file.notices:
             narrate(f"{file}: {notice}")
@@ -153,11 +153,11 @@ def size(
     """
     outputs = Outputs((file,), json)
     from calm.case import Tow
-    from calm.case.net import load_any
+    from calm.case.net import load
     from calm.case.size import size as sized
     from calm.report.explanation import refusal, sizing_part
 
-    mooring = load_any(file, environment, catalog or [])
+    mooring = load(file, environment, catalog or [])
     if isinstance(mooring, Tow):
         raise UsageError(f"{file} is a tow; calm size changes moorings")
     show_units(units, [mooring.file])

@@ -52,6 +52,7 @@ def motion(
     cross_validate: bool = False,
     correct: str | None = None,
     judge: str = "",
+    prior: Path | None = None,
     sea_level: Path | None = None,
     flags: str = "1,2",
     gap: str = "2 h",
@@ -103,6 +104,9 @@ def motion(
     judge
         Label of a suspicious sensor: it is hidden as with --hold-out, and whether its
         pressures fit the line is said, with the odds: yes, no, or cannot tell.
+    prior
+        A record of currents near the mooring, of any time, such as a hindcast: without
+        --currents the shapes of its profiles are taken, not their strength.
     sea_level
         Height of the sea surface over time: NetCDF, or CSV with time,level[m].
     flags
@@ -122,12 +126,12 @@ def motion(
     json
         Write the factors and how well depths agree as JSON, - to print it.
     """
-    import numpy as np
 
     from calm.batch.finished import open_result, readable
     from calm.batch.profiles import Batch
     from calm.batch.work import compile_solver
-    from calm.case import Tow, load
+    from calm.case import Tow
+    from calm.case.mooring import load_line
     from calm.motion.instrument_file import read_instruments
     from calm.motion.line_places import places_of
     from calm.motion.motion_estimate import MotionRequest, Recovery
@@ -145,7 +149,7 @@ def motion(
     currents = currents or []
     files = [split_label(text)[1] for text in (*currents, *pressures)]
     files += [path for path in (sea_level, onto) if path is not None]
-    check_output(output, file, *files)
+    check_output(output, file, *files, *filter(None, [prior]))
     copy = output
     if onto is not None:
         if onto.is_dir():
@@ -158,7 +162,7 @@ def motion(
         check_output(output, file, *files)
     elif replace_depth:
         raise UsageError("--replace needs --onto")
-    mooring = load(file, environment, catalog or [])
+    mooring = load_line(file, environment, catalog or [])
     if isinstance(mooring, Tow):
         raise UsageError(f"{file} is a tow; calm motion is for moorings")
     for notice in mooring.file.notices:
@@ -174,7 +178,7 @@ def motion(
     recovery = Recovery(
         MotionRequest(
             mooring, pressures, currents, match, _separated(fit), _separated(hold_out),
-            cross_validate, _separated(correct), judge, sea_level, flags, apart, turned,
+            cross_validate, _separated(correct), judge, sea_level, flags, apart, turned, prior,
         )
     )  # fmt: skip
     for note in recovery.notes:
@@ -194,15 +198,12 @@ def motion(
         with open_result(output) as result, readable(output):
             study = recovery.study(result, narrate, workers)
             series = series_of(mooring, recovery.measured, study.task.measured.label, result)
-            factor = None
-            if "current_factor" in result:
-                factor = np.asarray(result["current_factor"].values, np.float64)
             if onto is not None and instruments is not None:
                 inputs = [file, *files[:-1]]
                 write_copies(instruments, result, apart, copy, inputs, recovery.source)
     name = mooring.file.name or file.stem
     if report is not None:
-        said = motion_report(study, series, recovery.measured.time, factor, name, recovery.notes)
+        said = motion_report(study, series, recovery.measured.time, name, recovery.notes)
         write_report(report, {"motion.html": page(said).encode(), "motion.pdf": printed(said)})
     outputs.write_answer(lambda: motion_document(study, name), motion_part(study, name))
     return code

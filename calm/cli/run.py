@@ -99,9 +99,9 @@ def run(
     outputs = Outputs(tuple(files), json, csv, plot, html, pdf, netcdf)
     draws = draws_of(uncertainty, samples, seed)
     from calm.case import Tow
-    from calm.case.net import Net, load_any
+    from calm.case.net import Net, load
 
-    lines = read_all(load_any, files, environment, catalog or [])
+    lines = read_all(load, files, environment, catalog or [])
     show_units(units, [line.file for line in lines])
     drawn = {"--uncertainty": uncertainty}
     _refuse({"--explain": explain} | drawn, "moorings; these are tows", Tow, files, lines)

@@ -85,8 +85,8 @@ def waves(
         A folder for waves.html and waves.pdf, with pictures of the tension.
     """
     outputs = Outputs((file,), json)
-    import calm
     from calm.case import Tow
+    from calm.case.mooring import load_line
     from calm.cli.progress import progress
     from calm.records.sea_states import OF_HEIGHT
     from calm.report.folder import check_folder, printed, write_report
@@ -100,7 +100,7 @@ def waves(
         {"hs": hs, "tp": tp, "swell": swell, "swell-tp": swell_tp},
         spectrum, gamma, toward, scatter, duration,
     )  # fmt: skip
-    mooring = calm.load(file, environment=environment, catalogs=catalog or [])
+    mooring = load_line(file, environment=environment, catalogs=catalog or [])
     if isinstance(mooring, Tow):
         raise UsageError(f"{file} is a tow; calm waves judges moorings")
     given, seas = mooring.file.environment.waves, asked or mooring.file.environment.seas

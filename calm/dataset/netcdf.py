@@ -121,7 +121,7 @@ def _define(file: h5netcdf.File, layout: ResultLayout, variable: Variable, block
         h5py.string_dtype() if kind.kind == "U" else kind,
         **settings,
     )
-    for name, value in sorted(variable.attributes.items()):
+    for name, value in sorted(variable.described.items()):
         defined.attrs[name] = np.array(value, kind) if isinstance(value, list) else _text(value)
     if variable.values is not None:
         defined[...] = variable.values.astype(object) if kind.kind == "U" else variable.values
@@ -222,6 +222,18 @@ class Variable:
     dtype: str
     attributes: Attributes = field(default_factory=dict)
     values: NDArray[Any] | None = None
+
+    @property
+    def described(self) -> Attributes:
+        """Return the attributes with the kind of its contents by ACDD; names have none."""
+        if "units" not in self.attributes and "flag_meanings" not in self.attributes:
+            return self.attributes
+        content = "modelResult"
+        if "axis" in self.attributes or self.name in _PLACE:
+            content = "coordinate"
+        elif "flag_meanings" in self.attributes or self.name.endswith("_sd"):
+            content = "qualityInformation"
+        return {"coverage_content_type": content, **self.attributes}
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ from calm.case.net_result import legs_of
 from calm.case.result_tables import ClampRow, rows_by_place, rows_down
 from calm.files import Flexible
 from calm.files.legs import legs_down
+from calm.quantities import QUANTITIES
 
 if TYPE_CHECKING:
     from calm.case import Result
@@ -163,9 +164,9 @@ class DeckRow:
 
     @property
     def lengths(self) -> str:
-        """Cut length of a cable or chain, and how many there are of several [m]."""
+        """Cut length of a cable or chain as shown, and how many there are of several."""
         many = f"{len(self.items)} × " if len(self.items) > 1 else ""
-        return f"{many}{self.first.cut_length:.2f}"
+        return many + QUANTITIES["length"].format(self.first.cut_length)
 
     @property
     def joined(self) -> str:

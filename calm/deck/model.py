@@ -11,7 +11,7 @@ from calm.case import Mooring, Result
 from calm.case.net import Net
 from calm.case.net_result import NetResult, legs_of
 from calm.checks.finding import OWN
-from calm.checks.net_check import NetGraph, check_any
+from calm.checks.net_check import NetGraph, check
 from calm.checks.recovery import recovery_of
 from calm.deck.deck_items import (
     DeckInstrument,
@@ -136,7 +136,7 @@ def deck_of(
             continue
         results.append((_name(other), there))
     parts = deck_items_of(result)
-    assessment = check_any(*moorings)
+    assessment = check(*moorings)
     inventory, legs = assessment.inventory, legs_down(first.file)
     rise: Recovery | None = None
     plan: DropPlan | NoEquilibrium | None = None

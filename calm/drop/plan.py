@@ -30,7 +30,7 @@ from calm.drop.launch import (
     ship_of,
 )
 from calm.drop.motion import ChainState
-from calm.errors import NoEquilibrium
+from calm.errors import NoEquilibrium, UsageError
 from calm.files import Position
 from calm.physics.line import Floats
 from calm.positions import Frame
@@ -246,11 +246,14 @@ def drop_plan(
     Raises
     ------
     UsageError
-        A ship that makes no way through the water, or a distance that the line does not span.
+        A ship that makes no way through the water, or a distance that the line does not span; a tow
+        or a net.
     NoEquilibrium
         As `Mooring.solve`; ``anchor-lifts`` where the anchor does not draw the line down,
         ``not-converged`` where no step is found.
     """
+    if not isinstance(mooring, Mooring):
+        raise UsageError("a launch is planned for a mooring of one line, not for a tow or a net")
     if result is None:
         result = _equilibrium(mooring)
     course = course_into_current(mooring.water) if course is None else course % 360.0

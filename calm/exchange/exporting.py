@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from calm.case import Mooring, Result, Tow, TowResult
-from calm.case.net import Net, load_any
+from calm.case.net import Net, load
 from calm.errors import NoEquilibrium, UsageError, unknown
 from calm.exchange.cable_writer import cbl_file
 from calm.exchange.exported_parts import ExportedLine, ExportedPart, ExportedTow, Levels
@@ -62,7 +62,7 @@ def export_file(
         raise UsageError(
             unknown(f"--to: `{to}` is not a program that CALM writes for", to, WRITERS)
         )
-    read = load_any(path, environment, list(catalogs))
+    read = load(path, environment, list(catalogs))
     if isinstance(read, Net):
         if to != "moordyn":
             raise UsageError(f"{path} is a net of legs; `--to moordyn` takes it, {to} single lines")

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from calm.case import Tow
-from calm.case.net import Net, load_any
+from calm.case.net import Net, load
 from calm.case.net_result import EndLoad
 from calm.case.result import AnchorLoad
 from calm.errors import CalmError
@@ -66,7 +66,7 @@ def _pulls(
         anchor.figures = {**anchor.figures, "weight": _HOLDS}
         anchor.figures.pop("mass", None)
     try:
-        read = load_any(output, text=mooring_text(design, "", environment)[0])
+        read = load(output, text=mooring_text(design, "", environment)[0])
         assert not isinstance(read, Tow)
         loads: Sequence[AnchorLoad | EndLoad] = (
             read.solve().anchors if isinstance(read, Net) else (read.solve().anchor,)

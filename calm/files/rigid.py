@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import inf
 from typing import Annotated, Literal
 
 from pydantic import (
@@ -94,7 +95,7 @@ Hull = Annotated[
 def _frequencies_grow(rao: dict[str, tuple[float, float]] | None) -> object:
     for key in rao or {}:
         try:
-            right = float(key) > 0.0
+            right = 0.0 < float(key) < inf
         except ValueError:
             right = False
         if not right:
@@ -131,7 +132,7 @@ class Rigid(Definition):
         dict[
             str,
             tuple[
-                Annotated[float, QuantityField("number", at_least=0)],
+                Annotated[float, QuantityField("number", at_least=0, at_most=10)],
                 Annotated[float, QuantityField("angle")],
             ],
         ]

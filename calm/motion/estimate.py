@@ -1,6 +1,6 @@
 """The depths at each time, over all ways to read the currents and the sensors.
 
-What the pressures make of one way to read them is found by Gauss-Newton steps on the march.
+What the pressures make of one way is found by Gauss-Newton steps on the march.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from calm.motion import common_unknowns
 from calm.motion.common_unknowns import Common
 from calm.motion.line_response import Linear, LineResponse, ReadCurrents, between
 from calm.motion.measurements import MooringMeasurements
-from calm.physics.line import Floats
+from calm.physics.line import Floats, Integers
 
 NEGLIGIBLE = 0.02
 """An explanation is not tried that would not reach this share of the first one's weight if it left
@@ -157,7 +157,7 @@ def _tried(
 
 
 def _sets(groups: int) -> Iterator[Iterable[tuple[int, ...]]]:
-    """No group but all of them worse, one group or two, never all of them."""
+    """Yield no group, for all of them worse, one group or two, never all of them."""
     yield [()]
     for size in (1, 2):
         if size < groups:
@@ -323,10 +323,7 @@ def posterior(
     noise = np.where(known, common_unknowns.NOISE**2, UNMEASURED**2)
     if spike >= 0:
         noise[:, spike] = np.maximum(noise[:, spike], common_unknowns.SPIKE**2)
-    down = np.maximum(there - still, 0.0) * common.worst
-    length = 0.25 * np.ptp(still)
-    alike = np.exp(-np.abs(still[:, None] - still[one.point]) / max(length, 1.0))
-    bent = down[:, :, None] * alike * down[:, None, one.point]
+    bent = common.worst**2 * own_errors(there, still, one.point)
     spread_of = slope @ state
     turned = seen.transpose(0, 2, 1)
     beside = spread_of @ turned + bent
@@ -338,11 +335,10 @@ def posterior(
     logs = np.clip(gain[:, :g], -furthest, furthest)
     # what the state cannot take up is spread along the line as its own errors are
     depth = base + (beside @ solved[:, :, None])[:, :, 0]
-    whole = (spread_of * slope).sum(axis=2) + down**2
+    whole = (spread_of * slope).sum(axis=2) + (common.worst * np.maximum(there - still, 0.0)) ** 2
     taken = ((beside @ inverse) * beside).sum(axis=2)
     _, size = np.linalg.slogdet(expected)
     misfit = (innovation * solved).sum(axis=1)
-    even = np.full(g, 1.0 / max(g, 1))
     depth[lost] = np.nan
     return Posterior(
         logs,
@@ -352,8 +348,21 @@ def posterior(
         np.where(lost, -np.inf, -0.5 * (misfit + size)),
         innovation,
         expected,
-        logs @ even,
+        logs.sum(axis=1) / max(g, 1),
     )
+
+
+def own_errors(depth: Floats, still: Floats, point: Integers) -> Floats:
+    """Return (n, p, s) covariance of the errors of the line at points and sensors, of a share of 1.
+
+    Parameters
+    ----------
+    depth, still, point : (n, p), (p,) in still water [m]; (s,) of the sensors
+    """
+    down = np.maximum(depth - still, 0.0)
+    alike = np.exp(-np.abs(still[:, None] - still[point]) / max(0.25 * float(np.ptp(still)), 1.0))
+    errors: Floats = down[:, :, None] * alike * down[:, None, point]
+    return errors
 
 
 @dataclass(frozen=True)

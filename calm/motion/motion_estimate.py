@@ -15,11 +15,13 @@ from calm.batch.finished import open_result
 from calm.batch.run import BatchOutcome
 from calm.batch.work import Progress
 from calm.case import Mooring
+from calm.dataset.discovery import hashed
 from calm.errors import UsageError, unknown
 from calm.motion.correction import MeasuredRecord, Task, run_motion
 from calm.motion.diagnosis import diagnosed
 from calm.motion.line_response import FACTORS
 from calm.motion.matching import CORRECTABLE, GAP, read_measured
+from calm.motion.measurements import CurrentMeasurements, read_currents
 from calm.motion.remarks import Agreement, Fault
 from calm.motion.sensor_fit import SensorFit, fit_of
 from calm.motion.study import HeldOut, Study, cross_validated, judged, prepare, several
@@ -59,6 +61,7 @@ class MotionRequest:
     cross_validate : whether each used sensor is hidden in turn
     correct : of `CORRECTABLE`, what is taken off where nothing else is as likely
     judge : label of a sensor that is hidden, and of which is said whether it fits; empty of none
+    prior : a record of currents whose shapes are taken, where none were measured; None of none
     """
 
     mooring: Mooring
@@ -74,6 +77,7 @@ class MotionRequest:
     flags: str = "1,2"
     gap: np.timedelta64 = GAP
     declination: float | None = None
+    prior: Path | None = None
 
 
 class Recovery:
@@ -101,6 +105,15 @@ class Recovery:
         self.task: Task | None = None
         self._faults: tuple[Fault, ...] = ()
         self._read()
+        self.prior: list[CurrentMeasurements] = []
+        if asked.prior is not None:
+            if asked.currents:
+                raise UsageError("--prior is for pressures alone; here --currents are given")
+            file = asked.mooring.file
+            limit = file.environment.maximum_speed
+            depth = float(asked.mooring.water.depth)
+            self.prior = read_currents([asked.prior], depth, None, asked.declination, limit)
+            self.notes += [f"{one.source}: {note}" for one in self.prior for note in one.notes]
         if asked.judge and asked.judge not in self.measured.label:
             what = f"--judge: no sensor is called `{asked.judge}`"
             raise UsageError(unknown(what, asked.judge, self.measured.label))
@@ -113,6 +126,11 @@ class Recovery:
             asked.mooring, asked.pressures, asked.currents, asked.match, asked.flags, asked.gap,
             asked.sea_level, asked.declination, self._faults,
         )  # fmt: skip
+        if asked.prior is not None:
+            self.source["prior"] = hashed(asked.prior)
+
+    def _prepared(self, tell: Callable[[str], None]) -> Task:
+        return prepare(self.asked.mooring, self.measured, self.names, self.hidden, tell, self.prior)
 
     def estimate(
         self,
@@ -130,7 +148,7 @@ class Recovery:
         output, workers, progress, tell, stop : see `calm.motion.correction.run_motion`
         """
         asked = self.asked
-        self.task = prepare(asked.mooring, self.measured, self.names, self.hidden, tell)
+        self.task = self._prepared(tell)
         if asked.correct:
             wrong = [
                 one for one in diagnosed(self.task) if one.kind in asked.correct and one.certain
@@ -138,11 +156,12 @@ class Recovery:
             if wrong:
                 self._faults = tuple(replace(one, corrected=True) for one in wrong)
                 self._read()
-                self.task = prepare(asked.mooring, self.measured, self.names, self.hidden, tell)
+                self.task = self._prepared(tell)
         options = {
             "fit": sorted(self.names),
             "hold_out": sorted(self.hidden),
             "correct": self.source.get("corrected", ""),
+            "prior": self.source.get("prior", ""),
         }
         record = MeasuredRecord(self.measured, self.source, self.notes)
         return run_motion(
@@ -171,7 +190,7 @@ class Recovery:
             study = replace(study, judged=fit_of(task, self.measured, asked.judge))
         if asked.cross_validate:
             each = cross_validated(
-                asked.mooring, self.measured, self.names, self.hidden, tell, workers
+                asked.mooring, self.measured, self.names, self.hidden, tell, workers, self.prior
             )
             study = replace(study, held_out=(*study.held_out, *each))
         return study
@@ -260,6 +279,7 @@ def estimate_motion(
     declination: float | None = None,
     correct: Sequence[str] = (),
     judge: str = "",
+    prior: str | Path | None = None,
     workers: int | None = None,
 ) -> MotionEstimate:
     """Estimate the depth of every part of a mooring at every time, as ``calm motion`` does.
@@ -280,6 +300,7 @@ def estimate_motion(
     declination : added to the directions of the currents [degrees]
     correct : what is taken off where a sensor is wrong: `clock`, `gain`, `offset`, `drift`
     judge : label of a sensor that is hidden, and of which is said whether it fits the line
+    prior : a record of currents whose shapes are taken, without `currents`
     workers : threads; one for each processor that may be used where not given
 
     Raises
@@ -305,6 +326,7 @@ def estimate_motion(
             ",".join(map(str, flags)),
             GAP if gap is None else np.timedelta64(round(gap * 1e9), "ns"),
             declination,
+            None if prior is None else Path(prior),
         )
     )
     with TemporaryDirectory() as folder:

@@ -23,6 +23,8 @@ LIKELY = 20.0
 """Odds from which something is said to be wrong."""
 FAR_OFFSET = 2.5
 """Offset of all sensors that is named, in deviations of what is expected."""
+FAR_LENGTH = 5.0
+"""The same of a length where currents are not known: these take up much of it."""
 FAR_FACTOR = 3.0
 """Deviations from 1 beyond which a factor on a drag is something else."""
 WORST = 0.15
@@ -159,7 +161,7 @@ def alone_remarks(common: Common) -> list[str]:
     What is wrong with it they cannot tell: currents are found that agree with most lines.
     """
     length = common.factors.get("length", 1.0)
-    far = abs(float(np.log(length))) > FAR_OFFSET * common_unknowns.FACTORS["length"][1]
+    far = abs(float(np.log(length))) > FAR_LENGTH * common_unknowns.FACTORS["length"][1]
     if not far and common.worst < WORST:
         return []
     return [

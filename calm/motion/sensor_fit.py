@@ -8,12 +8,11 @@ import numpy as np
 
 from calm.motion.common_unknowns import MISPLACED, SPIKE
 from calm.motion.correction import Task
-from calm.motion.diagnosis import FEWEST, MOST, Diagnosis, Weighed, law_near
+from calm.motion.diagnosis import FEWEST, Diagnosis, law_near
 from calm.motion.matching import without
 from calm.motion.measurements import MooringMeasurements
 from calm.motion.remarks import LIKELY
-from calm.motion.suspects import Suspect
-from calm.motion.whole_record import LinearLaw
+from calm.motion.suspects import NO_TIME, Suspect
 
 FITS = 5.0
 """Odds from which it does. A zero known to a metre speaks 20 to 1 at most against one off by 20."""
@@ -72,13 +71,12 @@ def fit_of(task: Task, measured: MooringMeasurements, label: str) -> SensorFit:
     at, one, common = kept.label.index(label), task.measured, task.common
     level = one.level_sensor + (one.level_sensor >= at)
     with_it = replace(one, label=kept.label, point=kept.point, depth=kept.depth, level_sensor=level)
-    never = np.datetime64("NaT", "ns")
     common = replace(
         common,
         offset=np.insert(common.offset, at, 0.0),
         moved=np.insert(common.moved, at, 0.0),
-        since=np.insert(common.since, at, never),
-        until=None if common.until is None else np.insert(common.until, at, never),
+        since=np.insert(common.since, at, NO_TIME),
+        until=None if common.until is None else np.insert(common.until, at, NO_TIME),
         covariance=np.eye(len(common.value) + 2),
     )
     whole = Task(task.mooring, with_it, common)
@@ -87,44 +85,26 @@ def fit_of(task: Task, measured: MooringMeasurements, label: str) -> SensorFit:
         return SensorFit(label, None, 1.0, "")
     diagnosis = Diagnosis(whole, law, judged=label)
     taken: list[Suspect] = []
-    mine, others = _of_it(diagnosis, taken)
-    while len(taken) < MOST and others:
-        best = max(others, key=lambda one: one[1])
-        if best[1] < max(np.log(LIKELY), *(log for _, log in mine)):
+    while True:
+        both = diagnosis.weighed(taken)
+        mine = [one for one in both if label in (one[0].fault.label, one[0].fault.other)]
+        others = [one for one in both if label not in (one[0].fault.label, one[0].fault.other)]
+        best = max(others, key=lambda one: one[1], default=None)
+        if best is None or best[1] < max(np.log(LIKELY), *(log for _, log in mine)):
             break
         taken.append(best[0])
-        mine, others = _of_it(diagnosis, taken)
     against = [log - np.log(MISPLACED) * (one.fault.kind == "offset") for one, log in mine]
-    nothing = _says_nothing(diagnosis, Diagnosis(whole, _unrelated(law, at), judged=label), taken)
-    with_it = np.logaddexp.reduce([0.0, *(log for _, log in others)])
-    without_it = np.logaddexp.reduce([*against, nothing])
-    odds = float(np.exp(np.clip(with_it - without_it, -50.0, 50.0)))
+    wide = law.expected.copy()  # as of readings that say nothing of the line
+    wide[:, at, at] += np.where(law.known[:, at], SPIKE**2, 0.0)
+    nothing = Diagnosis(whole, replace(law, expected=wide)).fitted(taken, None, 1.0).log
+    nothing -= diagnosis.fitted(taken, None, 1.0).log
+    size = np.linalg.slogdet(wide)[1] - np.linalg.slogdet(law.expected)[1]
+    nothing -= 0.5 * float(size.sum())
+    for_it = np.logaddexp.reduce([0.0, *(log for _, log in others)])
+    against_it = np.logaddexp.reduce([*against, nothing])
+    odds = float(np.exp(np.clip(for_it - against_it, -50.0, 50.0)))
     fits = None if 1.0 / LIKELY < odds < FITS else odds > 1.0
     reason = ""
     if fits is False and max(against) > nothing:
         reason = mine[int(np.argmax(against))][0].fault.sentence()
     return SensorFit(label, fits, odds, reason)
-
-
-def _of_it(diagnosis: Diagnosis, taken: list[Suspect]) -> tuple[Weighed, Weighed]:
-    """Return what may be wrong with the sensor that is judged, and with all else."""
-    both = diagnosis.weighed(taken)
-    mine = [diagnosis.judged in (one.fault.label, one.fault.other) for one, _ in both]
-    return (
-        [one for one, its in zip(both, mine, strict=True) if its],
-        [one for one, its in zip(both, mine, strict=True) if not its],
-    )
-
-
-def _unrelated(law: LinearLaw, sensor: int) -> LinearLaw:
-    """Return the law of a record in which a sensor says nothing of the line."""
-    wide = law.expected.copy()
-    wide[:, sensor, sensor] += np.where(law.known[:, sensor], SPIKE**2, 0.0)
-    return replace(law, expected=wide)
-
-
-def _says_nothing(one: Diagnosis, other: Diagnosis, taken: list[Suspect]) -> float:
-    """Return the logarithm of the odds of a law against another, with what is taken for wrong."""
-    size = np.linalg.slogdet(other.law.expected)[1] - np.linalg.slogdet(one.law.expected)[1]
-    log = other.fitted(taken, None, 1.0).log - one.fitted(taken, None, 1.0).log
-    return log - 0.5 * float(size.sum())

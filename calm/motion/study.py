@@ -14,7 +14,7 @@ from calm.errors import UsageError, unknown
 from calm.motion.correction import Task, estimate_in_memory
 from calm.motion.line_response import Forward
 from calm.motion.matching import instruments_of, labels_of, without
-from calm.motion.measurements import MooringMeasurements, level_names
+from calm.motion.measurements import CurrentMeasurements, MooringMeasurements, level_names
 from calm.motion.remarks import (
     ALL,
     BAND,
@@ -101,6 +101,7 @@ def prepare(
     names: Sequence[str],
     hidden: Sequence[str],
     tell: Callable[[str], None] = lambda _: None,
+    prior: Sequence[CurrentMeasurements] = (),
 ) -> Task:
     """Estimate what is common to the record from the sensors that are not hidden.
 
@@ -110,7 +111,7 @@ def prepare(
     measured : with the sensors that are hidden
     names : of the factors that are estimated
     hidden : labels of sensors that are not used
-    tell : is told what is going on, where no current was measured
+    tell, prior : see `calm.motion.unknown_currents.learn_currents`, where no current was measured
 
     Raises
     ------
@@ -133,7 +134,7 @@ def prepare(
             "fewer"
         )
     used = with_knots(used, mooring)
-    return Task(mooring, used, learn_currents(mooring, used, names, tell))
+    return Task(mooring, used, learn_currents(mooring, used, names, tell, prior))
 
 
 def intervals(task: Task) -> dict[str, tuple[float, float, float]]:
@@ -268,12 +269,13 @@ def cross_validated(
     hidden: Sequence[str],
     tell: Callable[[str], None],
     workers: int | None = None,
+    prior: Sequence[CurrentMeasurements] = (),
 ) -> tuple[HeldOut, ...]:
     """Each used sensor hidden in turn, besides those that are hidden anyway.
 
     Parameters
     ----------
-    mooring, measured, names, hidden : as for `prepare`
+    mooring, measured, names, hidden, prior : as for `prepare`
     tell : is told what is going on
     workers : threads
 
@@ -286,7 +288,7 @@ def cross_validated(
     held = []
     for label in several(measured, hidden):
         tell(f"estimating without {label}")
-        task = prepare(mooring, measured, names, [*hidden, label])
+        task = prepare(mooring, measured, names, [*hidden, label], prior=prior)
         point = int(measured.point[measured.label.index(label)])
         depth, spread = estimate_in_memory(task, [point], workers)
         held.append(judge_hidden(measured, task.measured, label, depth[:, 0], spread[:, 0], still))

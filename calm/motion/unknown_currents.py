@@ -15,18 +15,20 @@ are nearest to its own, with the slopes there.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from calm.case import Mooring
+from calm.errors import UsageError
 from calm.motion import common_unknowns
 from calm.motion.common_unknowns import Common
 from calm.motion.estimate import CurrentsState, Posterior, posterior
 from calm.motion.line_response import STEP, Forward, Linear, LineResponse, ReadCurrents
-from calm.motion.measurements import FREE, MooringMeasurements
+from calm.motion.matching import labels_of
+from calm.motion.measurements import FREE, CurrentMeasurements, MooringMeasurements
 from calm.motion.whole_record import forwards_of, repeated
 from calm.physics.line import Floats, Integers
 
@@ -41,6 +43,11 @@ ALL, EACH, ALIKE = 0.7, 1.4, 0.5
 share of the knots over which these are alike."""
 PRIOR = 6.0
 """So many times are what is assumed worth beside those of the record."""
+SHAPED, OTHER, FEWEST_PROFILES = 60.0, 0.2, 20
+"""The same of shapes that were given; by how much each speed may differ from them, as a logarithm;
+and profiles that show a shape, at least."""
+APART = 25.0
+"""Beyond the levels of a profile its ends still hold [m]."""
 MOST_TIMES, TURNS, FIRST = 240, 12, 2
 """Times that the law is learnt from, turns, and those before the law is first changed."""
 STRONGER = 0.5
@@ -99,11 +106,55 @@ def assumed_law(measured: MooringMeasurements) -> tuple[Floats, Floats]:
     return mean, ALL**2 + EACH**2 * near
 
 
+def shaped_law(
+    measured: MooringMeasurements, record: Sequence[CurrentMeasurements], still: Mapping[str, float]
+) -> tuple[Floats, Floats]:
+    """Return the same with the shapes of the profiles of a record; how strong they are is not used.
+
+    Knots above or below all of its levels keep what is assumed of them.
+
+    Parameters
+    ----------
+    record : the currents, anywhere and at any time
+    still : depths of the parts that levels may hang at, by label [m]
+    """
+    knots, (mean, covariance) = measured.level_depth[0], assumed_law(measured)
+    rows = []
+    for one in record:
+        place = np.array([still.get(label, np.nan) for label in one.label])
+        depth, speed = np.where(np.isfinite(place), place, one.depth), np.hypot(one.u, one.v)
+        known = np.isfinite(depth) & np.isfinite(speed)
+        times = np.flatnonzero(known.sum(axis=1) >= 2)
+        for i in times[:: max(len(times) // MOST_TIMES, 1)]:
+            z, order = depth[i, known[i]], np.argsort(depth[i, known[i]], kind="stable")
+            row = np.interp(knots, z[order], speed[i, known[i]][order])
+            inside = (knots >= z.min() - APART) & (knots <= z.max() + APART)
+            rows.append(np.where(inside, np.log(np.maximum(row, LEAST)), np.nan))
+    logs = np.array(rows).reshape(-1, len(knots))
+    seen = np.isfinite(logs).sum(axis=0) >= FEWEST_PROFILES
+    if seen.sum() < 2:
+        raise UsageError(
+            "--prior: its profiles show no shape: two levels or more are needed, at twenty times, "
+            "at depths of the mooring"
+        )
+    whole = logs[np.isfinite(logs[:, seen]).all(axis=1)][:, seen]
+    shape = whole - whole.mean(axis=1, keepdims=True)
+    mean = mean.copy()
+    mean[seen] = mean[seen].mean() + shape.mean(axis=0)
+    part = np.ix_(seen, seen)
+    covariance = covariance.copy()
+    covariance[part] = ALL**2 + shape.T @ shape / len(shape) - np.outer(*[shape.mean(axis=0)] * 2)
+    covariance[part] += OTHER**2 * np.eye(int(seen.sum()))
+    covariance[np.ix_(seen, ~seen)] = covariance[np.ix_(~seen, seen)] = ALL**2
+    return mean, covariance
+
+
 def learn_currents(
     mooring: Mooring,
     measured: MooringMeasurements,
     names: Sequence[str],
     tell: Callable[[str], None] = lambda _: None,
+    prior: Sequence[CurrentMeasurements] = (),
 ) -> Common:
     """Learn the law of the speeds, and what is common to the record beside it.
 
@@ -113,9 +164,14 @@ def learn_currents(
     measured : with the knots as levels
     names : of the factors that are estimated
     tell : is told what is going on
+    prior : currents of another record, whose shapes are taken; none for what is assumed
     """
     part = measured.at(_chosen(measured))
     mean, covariance = assumed_law(part)
+    if prior:
+        labels = dict(zip(labels_of(mooring), Forward(mooring, {}).still.tolist(), strict=True))
+        mean, covariance = shaped_law(part, prior, labels)
+    worth = SHAPED if prior else PRIOR
     begun = _assumed(mooring, part, names)
     common, logs = begun, np.zeros((len(part.time), KNOTS))
     at = None
@@ -148,7 +204,7 @@ def learn_currents(
         left = covariance - taken @ np.linalg.solve(found.expected[used], taken.transpose(0, 2, 1))
         centre = mine.mean(axis=0)
         spread = np.einsum("nk,nl->kl", mine - centre, mine - centre) + left.sum(axis=0)
-        covariance = (spread + PRIOR * before) / (len(mine) + PRIOR)
+        covariance = (spread + worth * before) / (len(mine) + worth)
         mean, logs = mean + centre, logs - centre
     return replace(common, law=SpeedLaw(mean, covariance, _with_mean(fit, at)))
 

@@ -19,7 +19,7 @@ from calm.motion.common_unknowns import (
     hanging_sensors,
     moves,
 )
-from calm.motion.estimate import Posterior, best_state
+from calm.motion.estimate import Posterior, best_state, own_errors
 from calm.motion.line_response import STEP, Forward, Linear, LineResponse, gap_errors
 from calm.motion.measurements import MooringMeasurements
 from calm.physics.line import Floats, Integers
@@ -38,6 +38,10 @@ FURTHEST = 1.0
 """Of the logarithm of a factor, at most."""
 SCALES = (0.5, 2.5)
 """Least and greatest factor on the errors of the currents."""
+SHARES = (0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07, 0.085, 0.1)
+USUAL_SHARE, SHARE_KNOWN = 0.07, 0.3
+"""Errors of the line that are tried, as shares of the knockdown, the one that is assumed, and the
+standard deviation of its logarithm beforehand."""
 USUAL, MISSED = (0.8, 0.95), 1.5
 """Shares of the times, the first of which miss usually, and by so much more than is expected where
 bands are widened, by what the second share misses."""
@@ -109,6 +113,13 @@ def estimate_common(
         fixed, there, fall, share = found.fixed, found.known, found.fall, found.share
         evidence = _evidence(raw, left, fixed, expected, there)
         begun = replace(known, since=np.full(sensors, span[0]))
+        usual = expected + (USUAL_SHARE**2 - common.worst**2) * found.bent
+        scale, likely = _scale(left, usual, currents, common.scale)
+        worst = USUAL_SHARE
+        if _widened(left, usual + ((scale / common.scale) ** 2 - 1.0) * currents, there) == 1.0:
+            # of times that miss by more, most would be left to spikes and false currents
+            worst = _worst(left, expected, found.bent, common.worst)
+        expected = expected + (worst**2 - common.worst**2) * found.bent
         scale, likely = _scale(left, expected, currents, common.scale)
         beside, best = 0.0, 0.0
         for moved, rest, odds in fits(evidence, fall, share, *_unmoved(begun)):
@@ -124,7 +135,8 @@ def estimate_common(
         evidence = _evidence(raw, left, fixed, expected, there)
         alike = repeated(evidence.pulls(fixed, left)[:, 0]) if names else 1.0
         before = common.value
-        begun = replace(begun, scale=scale, widened=_widened(left, expected, there))
+        widened = _widened(left, expected, there)
+        begun = replace(begun, scale=scale, worst=worst, widened=widened)
         common = _placed(begun, evidence, fall, found.time, share, alike)
         deviation = np.sqrt(np.diag(common.covariance))
         if (np.abs(common.value - before) <= ENOUGH * deviation).all():
@@ -144,6 +156,7 @@ class LinearLaw:
     expected, currents : (n, s, s) covariance of `left`, and that part of it which is the currents'
     fixed : (n, s, q) slopes with factors, datum and offsets
     fall : (n, s) change of the depth of each sensor with how far it has moved throughout
+    bent : (n, s, s) covariance of the errors of the line itself, of a share of 1
     """
 
     time: NDArray[np.datetime64]
@@ -155,6 +168,7 @@ class LinearLaw:
     currents: Floats
     fixed: Floats
     fall: Floats
+    bent: Floats
 
 
 def linear_law(
@@ -205,6 +219,7 @@ def linear_law(
         currents,
         fixed,
         begun.fall(time, depth, still, part.point),
+        own_errors(depth, still, part.point)[:, part.point, :],
     )
 
 
@@ -318,12 +333,33 @@ def _scale(left: Floats, expected: Floats, currents: Floats, scale: float) -> tu
     likely = []
     for log in tried:
         covariance = expected + (np.exp(2.0 * log) / scale**2 - 1.0) * currents
-        misfit = (left * np.linalg.solve(covariance, left[:, :, None])[:, :, 0]).sum(axis=1)
-        fit = np.linalg.slogdet(covariance)[1]
-        fit += (ROBUST + left.shape[1]) * np.log1p(misfit / ROBUST)
-        likely.append(float(-0.5 * (fit.sum() + (log / SCALE_KNOWN) ** 2)))
+        likely.append(_student(left, covariance) - 0.5 * (log / SCALE_KNOWN) ** 2)
     best = int(np.argmax(likely))
     return float(np.exp(tried[best])), likely[best]
+
+
+def _worst(left: Floats, expected: Floats, bent: Floats, worst: float) -> float:
+    """Return the error of the line itself under which the pressures are most likely.
+
+    Parameters
+    ----------
+    expected : (n, s, s) covariance of what is left (n, s) [m]
+    bent : (n, s, s) of the errors of the line, of a share of 1
+    worst : the share that is in what is expected
+    """
+    likely = []
+    for share in SHARES:
+        log = -0.5 * (np.log(share / USUAL_SHARE) / SHARE_KNOWN) ** 2
+        likely.append(_student(left, expected + (share**2 - worst**2) * bent) + log)
+    return SHARES[int(np.argmax(likely))]
+
+
+def _student(left: Floats, covariance: Floats) -> float:
+    """Return the logarithm of how likely it is that so much is left, by Student's law."""
+    misfit = (left * np.linalg.solve(covariance, left[:, :, None])[:, :, 0]).sum(axis=1)
+    fit = np.linalg.slogdet(covariance)[1]
+    fit += (ROBUST + left.shape[1]) * np.log1p(misfit / ROBUST)
+    return float(-0.5 * fit.sum())
 
 
 def repeated(pull: Floats) -> float:

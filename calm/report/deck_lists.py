@@ -19,7 +19,7 @@ from calm.deck.shipping import total_of
 from calm.quantities import QUANTITIES, say
 from calm.report.blocks import Block, Cell, Column, Note, Prose, ReportPart, Table, table_of
 from calm.report.net_sheet import leg_titles
-from calm.report.sheet import figure_cell, quantity_column
+from calm.report.sheet import figure_cell, quantity_column, quantity_field
 
 _SHARE = f"{LENGTH_ERROR:.1%}".replace("%", " %")
 _SPARES = (
@@ -37,6 +37,7 @@ _IMPLIED = (
 def cutting_part(deck: Deck) -> ReportPart:
     """Lengths, marks, and how exactly they have to be."""
     rows: list[tuple[Cell, ...]] = []
+    length = QUANTITIES["length"]
     kinds = {one.label: one for one in deck.parts}
     clusters = {
         one.label: row.cluster for row in rows_on_paper(deck.parts) for one in row.items
@@ -50,35 +51,25 @@ def cutting_part(deck: Deck) -> ReportPart:
         rows += [(Cell(legs[leg], strong=True),)] if leg != above else []
         above = leg
         load = "" if cut.load == 0.0 else f"at {say('tension', cut.load)}"
-        effect = "-" if cut.effect is None else f"{cut.effect:+.2f}"
+        effect = "-" if cut.effect is None else f"{cut.effect * length.scale:+.2f}"
         label = label_of_run([one.item for one in cuts])
-        rows.append(
-            (
-                Cell(label, cut.item.name, strong=True, goes_on=True),
-                Cell(f"{many}{cut.length:.2f}", load),
-                Cell(f"± {cut.tolerance:.2f}"),
-                Cell(effect),
-                Cell(cut.termination or ""),
-                Cell("–".join(dict.fromkeys((str(cut.over), str(last.over))))),
-                Cell("–".join(dict.fromkeys((str(cut.onto), str(last.onto))))),
-                Cell(),
-                Cell("☐"),
-            )
+        over, onto = (
+            "–".join(dict.fromkeys((str(one), str(other))))
+            for one, other in ((cut.over, last.over), (cut.onto, last.onto))
         )
+        named = Cell(label, cut.item.name, strong=True, goes_on=True)
+        tolerance = f"± {length.format(cut.tolerance)}"
+        figures = (tolerance, effect, cut.termination or "", over, onto, "", "☐")
+        rows.append((named, Cell(many + length.format(cut.length), load), *map(Cell, figures)))
         rows += [
-            (
-                Cell(_marked(marks, kinds), indented=True),
-                Cell(),
-                *[Cell()] * 6,
-                Cell("☐"),
-            )
+            (Cell(_marked(marks, kinds), indented=True), *[Cell()] * 7, Cell("☐"))
             for marks in _alike(cut.marks, kinds)
         ]
     columns = (
         Column("wire or rope, marks below", share=2.4),
-        Column("length", "m", numeric=True),
-        Column("tolerance", "m", numeric=True),
-        Column("top deeper", "m", numeric=True),
+        quantity_column("length", "length"),
+        quantity_column("length", "tolerance"),
+        quantity_column("length", "top deeper"),
         Column("terminations", share=0.9),
         Column("over side", numeric=True),
         Column("onto drum", numeric=True),
@@ -104,23 +95,15 @@ def hardware_part(deck: Deck) -> ReportPart:
         if stock.kind != kind:
             kind = stock.kind
             rows.append((Cell(kind),))
-        length = "" if stock.length is None else f"{stock.length:.2f}"
-        rows.append(
-            (
-                Cell(stock.name, stock.basis and f"({stock.basis})", goes_on=True),
-                Cell(stock.use),
-                Cell(str(stock.count)),
-                Cell(length),
-                Cell(str(stock.spares)),
-                Cell(str(stock.total)),
-                Cell("☐"),
-            )
-        )
+        length = "" if stock.length is None else QUANTITIES["length"].format(stock.length)
+        figures = (stock.use, str(stock.count), length, str(stock.spares), str(stock.total), "☐")
+        named = Cell(stock.name, stock.basis and f"({stock.basis})", goes_on=True)
+        rows.append((named, *map(Cell, figures)))
     columns = (
         Column("hardware", share=2.4),
         Column("id", share=0.8),
         Column("in the line", numeric=True),
-        Column("length", "m", numeric=True),
+        quantity_column("length", "length"),
         Column("spares", numeric=True),
         Column("to bring", numeric=True),
         Column("packed", share=0.0),
@@ -141,8 +124,8 @@ def shipping_part(deck: Deck) -> ReportPart:
         (Column("id"), lambda one: one.use),
         (Column("pieces", numeric=True), lambda one: str(one.count)),
         (
-            Column("length", "m", numeric=True),
-            lambda one: "" if one.length is None else f"{one.length:.1f}",
+            quantity_column("length", "length"),
+            lambda one: "" if one.length is None else QUANTITIES["length"].format(one.length),
         ),
         (
             quantity_column("dry_mass", "mass in air"),
@@ -203,9 +186,10 @@ def lifts_part(deck: Deck) -> ReportPart:
 
 def _marked(marks: Sequence[Mark], items: Mapping[str, DeckItem]) -> str:
     """Return the places of some marks, and what is clamped there."""
-    places = ", ".join(f"{mark.at:.2f}" for mark in marks)
+    places = ", ".join(QUANTITIES["at"].format(mark.at) for mark in marks)
     marked = [items[mark.label] for mark in marks]
-    words = name_of_run(marked) if len(marked) > 1 else marked[0].label
+    floats = len(marked) > 1 and marked[0].role == "float"
+    words = name_of_run(marked) if floats else label_of_run(marked)
     return f"mark at {places}: {words}"
 
 
@@ -224,18 +208,9 @@ def _stages(deck: Deck) -> Table:
         *([(Column("leg"), lambda one: deck.leg(one.index))] if deck.file.legs else []),
         (Column("no.", numeric=True), lambda one: str(one.index)),
         (Column("at the rail", share=2.0), lambda one: one.label),
-        (
-            quantity_column("lift_mass", "lift in\nair"),
-            lambda one: figure_cell("lift_mass", one.mass),
-        ),
-        (
-            quantity_column("wet_weight", "lift in\nwater"),
-            lambda one: figure_cell("wet_weight", one.weight),
-        ),
-        (
-            quantity_column("wet_weight", "hangs at\ndeployment"),
-            lambda one: figure_cell("wet_weight", one.hanging),
-        ),
+        quantity_field("lift_mass", "mass", "lift in\nair"),
+        quantity_field("wet_weight", "weight", "lift in\nwater"),
+        quantity_field("wet_weight", "hanging", "hangs at\ndeployment"),
         (
             quantity_column("wet_weight", "hangs at\nrecovery"),
             lambda one: figure_cell("wet_weight", recovery.get(one.label)),

@@ -98,7 +98,7 @@ _EVENTS = (
     "On station", "First float seen, bearing", "All floats counted", "Hooked", "All on board",
 )  # fmt: skip
 _TESTED = ("tested in\nthe laboratory", "tested\nat depth", "armed,\non deck")
-_FIRED = ("enabled\nUTC", "range\nm", "command\nsent, UTC", "confirmed\nUTC")
+_FIRED = ("enabled\nUTC", "range", "command\nsent, UTC", "confirmed\nUTC")
 
 
 def _station(deck: Deck, day: str) -> Table:
@@ -144,7 +144,7 @@ def placed(items: Sequence[DeckItem], deck: Deck) -> str:
 
 
 def _span(values: Sequence[float]) -> str:
-    ends = dict.fromkeys((f"{values[0]:.2f}", f"{values[-1]:.2f}"))
+    ends = dict.fromkeys(map(QUANTITIES["at"].format, (values[0], values[-1])))
     return " to ".join(ends)
 
 
@@ -193,7 +193,7 @@ def _over_the_side(deck: Deck) -> list[Table]:
     fields: tuple[Field[DeckRow], ...] = (
         (Column("no.", numeric=True), lambda row: _numbers(row, order)),
         (Column("piece", share=3.2), _piece),
-        (Column("length,\nor place", "m", share=1.3), length),
+        (Column("length,\nor place", QUANTITIES["length"].display_unit, share=1.3), length),
         (Column("serial\nnumber", share=0.7), lambda row: row.first.serial or ""),
         (Column("over", "UTC", share=0.6), lambda row: ""),
         (Column("remarks"), lambda row: ""),
@@ -250,15 +250,16 @@ def _where_it_stands(deck: Deck) -> tuple[Cell, Cell]:
 
 
 def _soundings() -> Table:
+    unit = QUANTITIES["depth"].display_unit
     return table_of(
         "Soundings",
         range(1, _SOUNDINGS + 1),
         (Column("sounding", share=0.0), str),
         (Column("time", "UTC"), lambda one: ""),
         (Column("position", share=2.0), lambda one: ""),
-        (Column("uncorrected", "m"), lambda one: ""),
-        (Column("correction", "m"), lambda one: ""),
-        (Column("corrected", "m"), lambda one: ""),
+        (Column("uncorrected", unit), lambda one: ""),
+        (Column("correction", unit), lambda one: ""),
+        (Column("corrected", unit), lambda one: ""),
         by_hand=True,
     )
 

@@ -69,19 +69,21 @@ def _instructions(plan: DropPlan) -> Prose:
         )
     else:
         behind = "before" if plan.start.distance >= 0.0 else "beyond"
+        start = _distance(abs(plan.start.distance))
         said.append(
-            f"Put the float over the side {_metres(abs(plan.start.distance))} {behind} the target: "
+            f"Put the float over the side {start} {behind} the target: "
             f"the run takes some {duration(plan.start.time)}."
         )
     said.append(
-        f"Let the anchor go {_metres(abs(plan.tow_past))} {beyond} the target, with the float "
-        f"{_metres(plan.streamed)} behind it."
+        f"Let the anchor go {_distance(abs(plan.tow_past))} {beyond} the target, with the float "
+        f"{_distance(plan.streamed)} behind it."
     )
     return Prose(tuple(said))
 
 
 def _speed(speed: float) -> str:
-    return f"{say('speed', speed)} ({speed / KNOT:.1f} kn)"
+    said = say("speed", speed)
+    return said if QUANTITIES["speed"].display_unit == "kn" else f"{said} ({speed / KNOT:.1f} kn)"
 
 
 def _figures(plan: DropPlan) -> tuple[tuple[str, str], ...]:
@@ -101,16 +103,16 @@ def _figures(plan: DropPlan) -> tuple[tuple[str, str], ...]:
         ),
         (
             "Fall-back, towards the float",
-            f"{plan.fall_back:.0f} m ± {_error(plan.distance_error)} m; {near:.0f} to {far:.0f} m "
-            f"with the anchor's drag halved or doubled",
+            f"{_distance(plan.fall_back)} ± {_distance(max(ceil(plan.distance_error), 1))}; "
+            f"{_distance(near)} to {_distance(far)} with the anchor's drag halved or doubled",
         ),
         (
             "Lateral offset",
-            f"{abs(plan.aside):.0f} m to the {side}, seen from where it is let go",
+            f"{_distance(abs(plan.aside))} to the {side}, seen from where it is let go",
         ),
         (
             "Float behind the ship when let go",
-            f"{plan.streamed:.0f} m, towards {bearing_text(plan.astern)} true",
+            f"{_distance(plan.streamed)}, towards {bearing_text(plan.astern)} true",
         ),
         ("Let go, from the target", whereabouts(plan, plan.let_go)),
         (
@@ -119,7 +121,7 @@ def _figures(plan: DropPlan) -> tuple[tuple[str, str], ...]:
         ),
         ("Speed at touchdown", say("speed", plan.touchdown_speed)),
         ("Greatest tension in the fall", _greatest(plan)),
-        ("Drag of the anchor at 1 m/s", f"{plan.anchor_drag:.0f} N, {given}"),
+        ("Drag of the anchor at 1 m/s", f"{say('tension', plan.anchor_drag)}, {given}"),
     )
 
 
@@ -134,9 +136,12 @@ def _fall_table(plan: DropPlan) -> Table:
     deepest = np.maximum.accumulate(path.anchor_depth)
 
     def column(
-        heading: str, unit: str, values: Floats, decimals: int = 0, least: float = -np.inf
+        heading: str, name: str, values: Floats, decimals: int = 0, least: float = -np.inf
     ) -> Field[int]:
-        at = np.maximum(np.interp(depths, deepest, values), least)
+        unit, scale = name, 1.0
+        if name in QUANTITIES:
+            unit, scale = QUANTITIES[name].display_unit, QUANTITIES[name].scale
+        at = scale * np.maximum(np.interp(depths, deepest, values), least)
         return Column(heading, unit, numeric=True), lambda row: f"{at[row]:.{decimals}f}"
 
     def moving(field: Field[int]) -> Field[int]:
@@ -146,13 +151,13 @@ def _fall_table(plan: DropPlan) -> Table:
     return table_of(
         "The fall",
         range(_ROWS),
-        column("anchor depth", "m", deepest),
+        column("anchor depth", "depth", deepest),
         column("time", "s", path.time),
-        moving(column("speed", "m/s", path.anchor_speed, 2)),
-        column("towards float", "m", path.anchor_x),
-        moving(column("tension at anchor", "N", path.anchor_tension)),
-        column("float at", "m", path.float_x),
-        column("float depth", "m", path.float_depth, least=0.0),
+        moving(column("speed", "speed", path.anchor_speed, 2)),
+        column("towards float", "offset", path.anchor_x),
+        moving(column("tension at anchor", "tension", path.anchor_tension)),
+        column("float at", "offset", path.float_x),
+        column("float depth", "depth", path.float_depth, least=0.0),
         note="Distances are from where the anchor is let go, towards the float.",
     )
 
@@ -214,8 +219,9 @@ def _notes(plan: DropPlan) -> tuple[str, ...]:
     return tuple(notes)
 
 
-def _metres(distance: float) -> str:
-    return f"{distance:.0f} m"
+def _distance(distance: float) -> str:
+    one = QUANTITIES["offset"]
+    return f"{distance * one.scale:.0f} {one.display_unit}"
 
 
 def _error(value: float) -> str:
@@ -227,8 +233,8 @@ def whereabouts(plan: DropPlan, place: tuple[float, float]) -> str:
     east, north = place
     position = plan.position(place)
     return (
-        f"{abs(north):.0f} m {'north' if north >= 0.0 else 'south'}, "
-        f"{abs(east):.0f} m {'east' if east >= 0.0 else 'west'}"
+        f"{_distance(abs(north))} {'north' if north >= 0.0 else 'south'}, "
+        f"{_distance(abs(east))} {'east' if east >= 0.0 else 'west'}"
         + ("" if position is None else f"; {position_text(position)}")
     )
 

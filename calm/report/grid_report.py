@@ -32,8 +32,8 @@ MOST_DRAWN = 600
 _WIDTH, _HEIGHT, _SIZE = 7.4, 2.3, 7.0  # inches, inches, points of the letters
 _COLOURS = {"temperature": "RdYlBu_r", "salinity": "viridis", "u": "PuOr_r", "v": "PuOr_r"}
 _READ = (
-    "Lines: depths of the instruments. Pale: flagged as doubtful, beyond the "
-    "instruments or in a gap about which the record says little. White: no value."
+    "Lines are the depths of the instruments. Pale areas are flagged as doubtful: they lie beyond "
+    "the instruments, or in a gap that the record does not resolve. White means no value."
 )
 
 
@@ -81,17 +81,17 @@ def scales_table(fields: Mapping[str, GriddedQuantity]) -> Table:
         fields.items(),
         (Column("quantity"), lambda one: one[0]),
         (Column("instruments", numeric=True), lambda one: str(_used(one[1]))),
-        (Column("scale", "m", numeric=True), lambda one: f"{one[1].scales.depth:.3g}"),
-        (Column("scale", "h", numeric=True), lambda one: _hours(one[1])),
+        (Column("depth scale", "m", numeric=True), lambda one: f"{one[1].scales.depth:.3g}"),
+        (Column("time scale", "h", numeric=True), lambda one: _hours(one[1])),
         (
             Column("rest", "%", numeric=True),
             lambda one: f"{100.0 * one[1].scales.share:.2g}",
         ),
         (Column("widened", numeric=True), lambda one: _widened(one[1])),
-        note="Correlations fall to 0.48 over the scale along depth and to 0.37 over that in "
-        "time; the rest of the variance is uncorrelated. Widened: the factor on the "
-        "bands between instruments (the greatest) and beyond them, found by leaving out "
-        "each instrument in turn.",
+        note="Correlation falls to 0.48 over one depth scale and to 0.37 over one time scale; "
+        "the rest of the variance is uncorrelated. Widened: the factors that widen the bands "
+        "between instruments (the greatest one) and beyond them, found by leaving out each "
+        "instrument in turn.",
     )
 
 
@@ -102,7 +102,7 @@ def methods_text(
     from calm.version import __version__
 
     said = [
-        f"{', '.join(fields)} at the estimated depths of the instruments were put onto "
+        f"{', '.join(fields)} at the estimated depths of the instruments were mapped to "
         f"{len(levels)} levels between {levels[0]:g} and {levels[-1]:g} m by a Gaussian process "
         f"over depth and time about the mean profile of the record (CALM {__version__})."
     ]

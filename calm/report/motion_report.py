@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from calm.checks.finding import State
-from calm.drawing.picture import figure_svg
 from calm.motion.remarks import no_drag
-from calm.physics.line import Floats
+from calm.motion.study import knockdown
 from calm.report.blocks import (
     Block,
     Column,
@@ -26,11 +25,15 @@ from calm.report.blocks import (
     Table,
     table_of,
 )
+from calm.report.motion_figures import (
+    depth_figure,
+    false_figure,
+    overview_figure,
+)
 from calm.report.provenance import date
 from calm.report.result_files import members
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from numpy import datetime64
     from numpy.typing import NDArray
 
@@ -38,10 +41,17 @@ if TYPE_CHECKING:
     from calm.motion.study import HeldOut, SensorSeries, Study
 
 _BARE, _DEPTHS = "Instruments without a pressure", "Depths over time"
-_FALSE = "Times at which a current is more likely false than not"
+_FALSE = "Times when a current is probably wrong"
 _LEGEND = (
     "Black: measured. Blue: estimated, with its 95 % band. Orange: from the currents "
     "alone. Hidden sensors were not used."
+)
+_WHOLE = (
+    "Depths of all instruments, with bands of 95 %; hidden ones and those without pressure dashed"
+)
+_ASSUMED = (
+    "Assumed: floats, weights, lengths and places as in the mooring file; the drag of every part "
+    "within 15 % beforehand, the datum within 1 % of the water depth, each sensor within 1 m."
 )
 _NOTHING = "Nothing is clearly wrong: no clock, gain, offset, drift, slipped clamp or label."
 
@@ -50,18 +60,18 @@ def motion_report(
     study: Study,
     series: Sequence[SensorSeries],
     time: NDArray[datetime64],
-    factor: Floats | None,
     name: str,
     notes: Sequence[str],
 ) -> Report:
-    """Return the report: factors, agreement, what to doubt, depths and residuals.
+    """Return the report: one page of the whole deployment, and the details.
 
     Parameters
     ----------
     series : of the sensors
-    time, factor : (n,) the factor on the current over time; None of currents that are not known
+    time : (n,)
     notes : what was said of the input
     """
+    every = series
     bare = [one for one in series if not np.isfinite(one.measured).any()]
     bare = sorted(bare, key=lambda one: -float(np.nan_to_num(one.spread).mean()))
     bare = sorted(bare[:MOST_PANELS], key=lambda one: float(np.nan_to_num(one.estimated).mean()))
@@ -71,16 +81,25 @@ def motion_report(
     doubts = Prose(study.remarks, State.WARN) if study.remarks else Prose((_NOTHING,))
     marks = (Figure(_FALSE, false_figure(time, study.false)),) if study.false else ()
     held: tuple[Block, ...] = (held_out_table(study.held_out),) if study.held_out else ()
-    factors: list[Block] = [factors_table(study.factors, study.task.common.datum)]
-    if factor is not None:
-        factors.append(Figure("Over time", factor_figure(time, factor)))
     instruments = [Figure(_BARE, depth_figure(bare), tall=True)] if bare else []
     parts = (
-        ReportPart("Doubtful data", (*judged_prose(study), doubts, health_table(study), *marks)),
-        ReportPart("Factors", tuple(factors)),
+        ReportPart(
+            "The deployment",
+            (
+                Figure(_WHOLE, overview_figure([*series, *bare])),
+                *judged_prose(study),
+                doubts,
+                health_table(study),
+            ),
+        ),
+        ReportPart("For the methods of a cruise report", (Prose(methods_text(study, every)),)),
+        ReportPart(
+            "Factors",
+            (factors_table(study.factors, study.task.common.datum), Note((_ASSUMED,))),
+        ),
         ReportPart(
             "Measured against computed",
-            (sensors_table(study), *held, Note((PLAIN if study.plain else UNKNOWN,))),
+            (sensors_table(study), *held, Note((PLAIN if study.plain else UNKNOWN,)), *marks),
         ),
         ReportPart("Inputs", (Prose(tuple(notes) or ("Nothing was left out.",)),)),
         ReportPart(
@@ -91,93 +110,46 @@ def motion_report(
                 Note((_LEGEND,)),
             ),
         ),
-        ReportPart(
-            "Residuals", (Figure("Measured less estimated", residual_figure(shown), tall=True),)
-        ),
     )
     span = f"{str(time[0])[:16]} to {str(time[-1])[:16]}, {len(time)} times"
     return Report(f"{name}: where it was", span, (), (Section(name, parts),), date())
 
 
-_WIDTH = 7.4  # inches: an A4 page between its margins
-_FONT_SIZE = 7.0  # points
-_MEASURED: dict[str, Any] = {"color": "#111111", "linewidth": 0.8}
-_ESTIMATED: dict[str, Any] = {"color": "#0b3c5d", "linewidth": 0.9}
-_ALONE: dict[str, Any] = {"color": "#d55e00", "linewidth": 0.7, "linestyle": "--"}
 MOST_PANELS = 12
 """Sensors that are drawn; of more, those that are hidden come first."""
 
 
-def depth_figure(series: Sequence[SensorSeries]) -> str:
-    """Depths of each sensor over time: measured, estimated with its band, by the currents alone."""
-    figure, panels = _panels(series)
-    for axes, one in zip(panels, series, strict=True):
-        time = one.time.astype("datetime64[s]")
-        low, high = one.estimated - 1.96 * one.spread, one.estimated + 1.96 * one.spread
-        axes.fill_between(time, low, high, color="#9ecae1", linewidth=0.0)
-        if one.plain is not None:
-            axes.plot(time, one.plain, **_ALONE)
-        axes.plot(time, one.estimated, **_ESTIMATED)
-        axes.plot(time, one.measured, **_MEASURED)
-        axes.invert_yaxis()
-        _name(axes, one, "depth [m]")
-    return figure_svg(figure)
+def methods_text(study: Study, series: Sequence[SensorSeries]) -> tuple[str, ...]:
+    """Return sentences to paste into the methods of a cruise report."""
+    from calm.version import __version__
 
-
-def residual_figure(series: Sequence[SensorSeries]) -> str:
-    """Measured less estimated depths of each sensor over time."""
-    figure, panels = _panels(series)
-    for axes, one in zip(panels, series, strict=True):
-        axes.plot(one.time.astype("datetime64[s]"), one.measured - one.estimated, **_MEASURED)
-        axes.axhline(0.0, color="#999999", linewidth=0.5)
-        _name(axes, one, "residual [m]")
-    return figure_svg(figure)
-
-
-def factor_figure(time: Any, factor: Any) -> str:
-    """The factor on the current over time."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(_WIDTH, 1.6))
-    figure.subplots_adjust(0.1, 0.16, 0.99, 0.97)
-    axes = figure.subplots()
-    axes.plot(time.astype("datetime64[s]"), factor, **_ESTIMATED)
-    axes.axhline(1.0, color="#999999", linewidth=0.5)
-    axes.set_ylabel("factor on the current", fontsize=_FONT_SIZE)
-    axes.tick_params(labelsize=_FONT_SIZE)
-    return figure_svg(figure)
-
-
-def false_figure(time: Any, false: Mapping[str, Any]) -> str:
-    """A row of marks for each level whose current looks false at some of the times (n,)."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(_WIDTH, 0.2 * len(false) + 0.5))
-    figure.subplots_adjust(0.2, 0.3 / (0.2 * len(false) + 0.5), 0.99, 0.97)
-    axes = figure.subplots()
-    for row, when in enumerate(false.values()):
-        axes.plot(when.astype("datetime64[s]"), np.full(len(when), row), "|", color="#d55e00")
-    axes.set_yticks(range(len(false)), list(false), parse_math=False)
-    axes.set(xlim=tuple(time[[0, -1]].astype("datetime64[s]")), ylim=(len(false) - 0.5, -0.5))
-    axes.tick_params(labelsize=_FONT_SIZE)
-    return figure_svg(figure)
-
-
-def _panels(series: Sequence[SensorSeries]) -> tuple[Any, Any]:
-    from matplotlib.figure import Figure
-
-    count = len(series)
-    figure = Figure(figsize=(_WIDTH, 1.25 * count + 0.4))
-    figure.subplots_adjust(0.1, 0.25 / (1.25 * count + 0.4), 0.99, 0.98, hspace=0.25)
-    return figure, figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
-
-
-def _name(axes: Axes, one: SensorSeries, quantity: str) -> None:
-    title = f"{one.label}{', hidden' if one.hidden else ''}"
-    axes.set_title(title, fontsize=_FONT_SIZE, loc="left", pad=2, parse_math=False)
-    axes.set_ylabel(quantity, fontsize=_FONT_SIZE)
-    axes.tick_params(labelsize=_FONT_SIZE)
-    axes.grid(alpha=0.3)
+    used, common, time = study.task.measured, study.task.common, series[0].time
+    levels = used.u.shape[1]
+    by = f"the currents at {levels} levels" if study.plain else "no measured current"
+    down = knockdown(used)
+    down = down[np.isfinite(down)]
+    wide = np.concatenate([one.spread[np.isfinite(one.spread)] for one in series])
+    factors = "; ".join(
+        f"{TITLES[key]} {value:.2f} times that assumed (95 %: {low:.2f} to {high:.2f})"
+        for key, (value, low, high) in study.factors.items()
+    )
+    said = [
+        f"The depths of {len(series)} instruments between {str(time[0])[:16]} and "
+        f"{str(time[-1])[:16]} ({len(time)} times) were estimated from the static equilibrium of "
+        f"the line, the pressures of {', '.join(used.label)}, and {by} (CALM {__version__}).",
+        f"Estimated for the whole record: {factors}; a datum common to all pressures of "
+        f"{common.datum:+.1f} m.",
+        f"The uppermost pressure was up to {down.max():.0f} m below its least depth (median "
+        f"{np.median(down):.0f} m, 95th percentile {np.quantile(down, 0.95):.0f} m). The standard "
+        f"deviation of the depths is {np.median(wide):.1f} m in the median and "
+        f"{np.quantile(wide, 0.95):.1f} m in the 95th percentile.",
+    ]
+    for one in study.held_out:
+        said.append(
+            f"Hidden from the estimate, {one.label} was found with an rms of {one.rms:.1f} m "
+            f"(interpolated: {one.linear_rms:.1f} m)."
+        )
+    return (*said, *(f"{one.sentence()}." for one in study.diagnosis if one.corrected))
 
 
 TITLES = {
@@ -187,12 +159,10 @@ TITLES = {
     "length": "length of cables and chains",
 }
 
-_RMS = (
-    "rms: of the difference less its mean over the calm times, the tenth with the least knockdown."
-)
+_RMS = "rms: of the difference, less its mean in calm times, the tenth with the least knockdown."
 PLAIN = (
-    "Alone: from the currents with nothing fitted. Estimated: with the pressures of all sensors in "
-    f"use. {_RMS}"
+    "Alone: computed from the currents, with nothing fitted. Estimated: with the pressures of all "
+    f"sensors in use. {_RMS}"
 )
 UNKNOWN = f"The currents are not known: they are inferred from these pressures. {_RMS}"
 
@@ -246,7 +216,7 @@ def health_table(study: Study) -> Table:
             (column, lambda one, kind=kind: one[1].get(kind, "-"))
             for kind, column in _HEALTH.items()
         ),
-        note="A question mark: something else is not much less likely, see above.",
+        note="A question mark: another cause is nearly as likely; see above.",
     )
 
 

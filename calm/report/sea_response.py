@@ -26,12 +26,13 @@ from calm.waves.fatigue import PieceFatigue
 
 _NOTE = (
     "Tension at the upper end: mean, standard deviation, most probable greatest and least. "
-    "Tz: between upward crossings of the mean. Heave and tilt: standard deviations. "
-    "! the piece falls slack."
+    "Tz: mean time between upward crossings of the mean. Heave and tilt: standard deviations. "
+    "!: the piece goes slack."
 )
 _LIFE = (
-    "Life: years to a damage of 1 in these seas; low and high with deviations of tension 15 % "
-    "greater and less. Curves are quoted from other texts: compare them with the standard."
+    "Life: years until the damage is 1 in these seas; low and high, with standard deviations of "
+    "tension 15 % greater and smaller. Curves are quoted from secondary sources: compare them "
+    "with the standard."
 )
 
 
@@ -55,7 +56,7 @@ def sea_response_part(analysis: WaveAnalysis) -> ReportPart:
         blocks.append(table_of("", known, *_LIVES, note=_LIFE))
         unknown = [each.label for each in analysis.fatigue if each.unknown]
         if unknown:
-            blocks.append(Prose((f"Of unknown life: {', '.join(unknown)}.",)))
+            blocks.append(Prose((f"Life unknown: {', '.join(unknown)}.",)))
     if analysis.warnings:
         blocks.append(Prose(analysis.warnings, State.WARN))
     if analysis.status == SLACK:
@@ -129,13 +130,14 @@ def _told(analysis: WaveAnalysis, state: MooringInSea) -> list[str | tuple[Span,
     said: list[str | tuple[Span, ...]] = []
     if state.follower_std is not None:
         said.append(
-            "Below a float that followed every wave the standard deviation of tension would "
+            "If the float followed every wave, the standard deviation of tension below it would "
             f"be {say('tension', state.follower_std)}."
         )
     one = analysis.accuracy
     good = (
-        f"Doubling the elements changes deviations by {one.mesh:.1%}, doubling the frequencies by "
-        f"{one.frequencies:.1%}; a fifth less drag by {one.linearisation:.0%}."
+        f"Standard deviations change by {one.mesh:.1%} with twice the elements, by "
+        f"{one.frequencies:.1%} with twice the frequencies, by {one.linearisation:.0%} with a "
+        "fifth less drag."
     ).replace("%", " %")
     return [*said, (Span(good, quiet=True),)]
 

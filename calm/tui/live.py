@@ -21,7 +21,7 @@ from calm.case.parts import cut_like, parts_of
 from calm.checks.assess import findings_of
 from calm.checks.assessment import MooringInEnvironment, Situation
 from calm.checks.finding import AS_GIVEN, OWN, Finding, State
-from calm.checks.net_check import check_any
+from calm.checks.net_check import check
 from calm.checks.strength import strength
 from calm.errors import InputError, NoEquilibrium, Problem, internal_failure
 from calm.files import MooringFile, Piece, Place, read_mooring
@@ -147,7 +147,7 @@ def judge_fully(view: View, catalogs: Sequence[str | Path] = ()) -> View:
     started = time.perf_counter()
     file = view.result.file
     moorings, problems = _in_all_environments(view, view.result.mooring, catalogs)
-    assessment = check_any(*moorings)
+    assessment = check(*moorings)
     findings, tighter = tuple(assessment.all_findings()), tuple(assessment.tighter_findings())
     rows = tuple(rows_of(file, view.result, (*findings, *tighter)))
     return replace(

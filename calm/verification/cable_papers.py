@@ -129,19 +129,18 @@ BRACONNOT = Source(
 K = ρ Cx D V²/(2w); A is the lower end of the cable, B the upper, angles are to the current.
 
 His buoy, K = 2.4, w = 5 N/m, φ_B = 75°, T_B = 350 N, 20 m above A, he reads off the charts: 28.3 m
-of cable, 18.5 m, 22°, 250 N. The true K of that buoy is 2.7, and a chart of a nearby K is not
-harmless: L then is 30.71 m. His towed cable, K = 2.4, w = 0.5 N/m, φ_B = 140°, T_B = 100 N,
-L = 100 m, comes to a depth of 69.5 m in the paper, which takes H₀ from 1 + z′ = 2.4; the point lies
-at z′ = 2.27, and the depth is 73.20 m, 82.87 m at the K = 3.176 of its own knot. The other figures
-are integrals of T′ = w sin φ, φ′ = (w/T)(cos φ + K |sin φ| sin φ) to nine digits: a cable of the
-second branch, beyond the critical angle of 144.4°, and one that dips below its lower end through
-the apex. All are held against `calm.analytic.chart`, the buoy and the tow
-against the march as well.""",
+of cable, 18.5 m, 22°, 250 N. That buoy's true K is 2.7, and taking the chart of a nearby K matters:
+with 2.7, L is 30.71 m. His towed cable, K = 2.4, w = 0.5 N/m, φ_B = 140°, T_B = 100 N, L = 100 m,
+comes to a depth of 69.5 m in the paper, which takes H₀ from 1 + z′ = 2.4; the point lies at z′ =
+2.27, and the depth is 73.20 m, 82.87 m at the K = 3.176 of its own knot. The other figures are
+integrals of T′ = w sin φ, φ′ = (w/T)(cos φ + K |sin φ| sin φ) to nine digits: a cable of the second
+branch, beyond the critical angle of 144.4°, and one that dips below its lower end through the apex.
+All are compared with `calm.analytic.chart`, the buoy and the tow with the march as well.""",
     (
         *table(
             [_READ[name] for name in ("L", "D", "phi_a", "T_A")],
             [("buoy as read off the charts", partial(_buoy, _K), (28.3, 18.5, 22.0, 250.0))],
-            "2 % of the height or the tension and half a degree: how well a chart is read.",
+            "2 % of the height or the tension and half a degree: the accuracy of reading a chart.",
             Kind.PUBLISHED,
         ),
         *table(
@@ -302,7 +301,7 @@ The paper computes 3.56 Hz and measured 4.07 Hz; CALM's 3.559 Hz is the former, 
              Kind.BY_CONSTRUCTION),
         *(
             Case(f"bare cable, {speed} m/s: a/D", expected, "", 0.05,
-                 "Half a unit of the last digit the paper prints.",
+                 "Half a unit of the last digit that the paper prints.",
                  partial(_amplitude, speed), Kind.PUBLISHED)
             for speed, expected in ((0.6, 0.9), (2.0, 1.4))
         ),
@@ -334,8 +333,8 @@ def _cable(start: float, mean: float) -> Station:
 VILLAIN_GUILLOT = Source(
     "Villain-Guillot, figure 1",
     """S. Villain-Guillot's towed cable with a drag linear in each component of the velocity, equal
-along and across (D = 1, k_t = k_n): tan α_d = μg/(kV), ℓ = T₀/√((μg)² + (kV)²), with L = 1.25 and
-ℓ = 0.5 as in his figure 1; evaluated from the closed form in the paper and held against
+along and across (D = 1, k_t = k_n): tan α_d = μg/(kV), ℓ = T₀/√((μg)² + (kV)²), with L = 1.25 and ℓ
+= 0.5 as in his figure 1; evaluated from the closed form in the paper and compared with
 `calm.analytic.villain_guillot`. His formula for ρ(α) at D = 1 is printed upside down; s, T and the
 shape are right.""",
     table(

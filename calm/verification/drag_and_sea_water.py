@@ -68,11 +68,11 @@ DRAG_CURVES = Source(
     """Cn of a long smooth cylinder against Reynolds number (C23): Wieselsberger's measurements
 (NACA report 121) up to 1.61e5 and the recommendation of DNV-RP-C205, figure 6-6, from 2.1e5. In the
 drag crisis the two differ, by a roughness or a turbulence that nobody states; CALM takes DNV's
-curve there, the later and safer. Factors for finite length: DNV-RP-C205, table 6-2; flow against
-the end face: Kritzinger. Cx of a sphere: F. A. Morrison's correlation (Michigan Technological
-University, 2016). That the printed points come back guards against slips of copying; Cheng's fit
-(Journal of Hydraulic Engineering 139, 2013), which shares none of them, is held against some.
-Moorings take these curves only where a component is declared smooth.""",
+curve there: it is the more recent and the more conservative. Factors for finite length:
+DNV-RP-C205, table 6-2; flow against the end face: Kritzinger. Cx of a sphere: F. A. Morrison's
+correlation (Michigan Technological University, 2016). Recovering the printed points only guards
+against copying errors; Cheng's fit (Journal of Hydraulic Engineering 139, 2013), which uses none of
+them, is compared with some. These curves apply only to components declared smooth.""",
     (
         *(
             Case(f"C23 cylinder, Re {reynolds:g}, Wieselsberger", cn, "", _SHARE, _COPIED,
@@ -122,9 +122,9 @@ _AMPLITUDES = (0.3, 0.5, 0.9, 1.0, 1.4)
 
 STRUMMING_FACTORS = Source(
     "Strumming factors",
-    """Cn of a line that strums over Cn at rest, from its amplitude A/D: Vandiver (1983),
-1 + 1.043 (2 Y_rms/D)^0.65 with Y_rms = A/√2; Blevins (1990), 1 + 2.1 A/D; Skop, Griffin & Ramberg
-(1977), 1 + 1.16 (w_r − 1)^0.65 with w_r = 1 + 2 A/D. Beyond A/D = 1 CALM holds Blevins' line, which
+    """Cn of a line that strums over Cn at rest, from its amplitude A/D: Vandiver (1983), 1 + 1.043
+(2 Y_rms/D)^0.65 with Y_rms = A/√2; Blevins (1990), 1 + 2.1 A/D; Skop, Griffin & Ramberg (1977), 1 +
+1.16 (w_r − 1)^0.65 with w_r = 1 + 2 A/D. Beyond A/D = 1 CALM follows Blevins' line, which
 overshoots what Griffin et al. (1984) measured on cables at sea: Cn of 2.4 to 3.2, some 2.0 to 2.7
 times that at rest, the band of all three at A/D from 0.5 to 1.""",
     tuple(
@@ -248,7 +248,7 @@ a plate of that instrument's size bears out, so that K is 26.4 N/(m/s)².""",
         *(
             Case(f"viscosity, {temperature} °C, {salinity} g/kg", printed, "mPa s",
                  0.015 * printed,
-                 "1.5 %, the accuracy of Sharqawy's formula; the table is of other measurements.",
+                 "1.5 %, the accuracy of Sharqawy's formula; the table is from other measurements.",
                  partial(_viscosity_at, temperature, salinity), Kind.PUBLISHED)
             for salinity, row in _PAPER_VISCOSITY
             for temperature, printed in zip(_TEMPERATURES, row, strict=True)

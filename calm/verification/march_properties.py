@@ -224,16 +224,16 @@ _RODS = "The rods keep it to 1 − cos of half an angle step, 4e-7 at 0.1°."
 
 INVARIANTS = Source(
     "Invariants",
-    """What needs no reference (C20). A line with something of everything (a float, 300 m of wire
-with two clamps, an instrument that follows the line, 400 m of rope that stretches, four glass
-balls, a release, chain) stands in a current that veers, reverses and has an upward part, in water
-whose density grows with depth. Differences are the worst of all positions, as a share of the depth,
-and of all tensions, as a share of the greatest.
+    """Properties that hold without a reference (C20). A line with one of everything (a float, 300 m
+of wire with two clamps, an instrument that follows the line, 400 m of rope that stretches, four
+glass balls, a release, chain) stands in a current that veers, reverses and has an upward part, in
+water whose density grows with depth. Each difference is the largest over all positions, as a
+fraction of the depth, or over all tensions, as a fraction of the greatest.
 
-Where the current grows with depth there may be more than one equilibrium: a float of 500 N and
-100 N of drag at 1 m/s on 100 m of thread in a current of 0.2 m/s that rises to 3 m/s between 12 and
-30 m has three, the roots 10.0032, 21.0044 and 61.4357 m of d = 110 − 100/√(1 + (D(d)/B)²); CALM
-gives the highest and reports the lowest; the one between them does not stand.""",
+Where the current grows with depth there may be more than one equilibrium: a float of 500 N and 100
+N of drag at 1 m/s on 100 m of thread in a current of 0.2 m/s that rises to 3 m/s between 12 and 30
+m has three, the roots 10.0032, 21.0044 and 61.4357 m of d = 110 − 100/√(1 + (D(d)/B)²); CALM
+returns the highest and reports the lowest; the one between them is unstable.""",
     (
         _nothing("current turned by 37°: the line turns", 1e-8, _SAME, _turned),
         _nothing("current reversed: the line reverses", 1e-8, _SAME,
@@ -295,11 +295,11 @@ CONVERGENCE = Source(
     "Order of convergence",
     """The heavy line of C5 at 1 m/s, a current without shear, marched at angle steps from 4° to
 0.125°, against the closed form of `calm.analytic.uniform`, which shares nothing with the march. The
-march is of second order: half the step, a quarter of the error.""",
+march is of second order: halving the step divides the error by four.""",
     (
         *(
             Case(f"C20 order, {coarse:g}° to {fine:g}°", 2.0, "", 0.05,
-                 "Terms of fourth order and the rest piece at the end stir it.",
+                 "Disturbed by terms of fourth order and by the shorter last segment.",
                  partial(_order, coarse, fine), Kind.PROPERTY)
             for coarse, fine in ((2.0, 1.0), (1.0, 0.5), (0.5, 0.25))
         ),

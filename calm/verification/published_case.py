@@ -20,7 +20,7 @@ from calm.solve import Settings, Solution, Towing, solve_mooring, solve_tow
 
 Solved = TypeVar("Solved")
 
-PRINTED = "Half a unit of the last digit printed, and a tenth."
+PRINTED = "Half a unit of the last printed digit, plus a tenth."
 """The reason for a tolerance where CALM is exact beside the figure as printed."""
 
 
@@ -45,14 +45,14 @@ class Kind(StrEnum):
 
 
 _MEANINGS = {
-    Kind.PUBLISHED: "Someone printed it: a paper, a manual, a maker.",
+    Kind.PUBLISHED: "Printed in a paper, a manual or a maker's data sheet.",
     Kind.CLOSED_FORM: "The value of a formula or the root of one, evaluated without CALM.",
     Kind.INDEPENDENT: "From an integration that shares no code with CALM: a quadrature, a solver "
     "of the differential equations, another program.",
-    Kind.PROPERTY: "Must hold for any line; needs no reference.",
+    Kind.PROPERTY: "Holds for any line and needs no reference.",
     Kind.BY_CONSTRUCTION: "A point that CALM's curve is drawn through or fitted to, or a figure of "
-    "the library that CALM calls. It guards against slips of copying and counts as no "
-    "verification.",
+    "the library that CALM calls. Agreement guards only against copying errors and does not "
+    "count as verification.",
 }
 
 

@@ -79,10 +79,10 @@ _EXPECTED = DEPTH, OFFSET, TENSION, KNOCKDOWN
 S1000 = Source(
     "S1000",
     """The reference case of accuracy and speed, `lines/s1000.yaml`: a float of 4000 N and 0.6 m² of
-drag area on 1000 m of cable, 10 mm, 2 N/m, Cn 1.3, Ct 0.01, EA 4 MN, in 1100 m of water that flows
-at 1.0, 0.6, 0.2 and 0.05 m/s at 0, 200, 500 and 1100 m. Its figures come from an initial-value
-integration of the differential equations with bracketing; the tests hold a second independent
-integration against them.""",
+drag area on 1000 m of cable, 10 mm, 2 N/m, Cn 1.3, Ct 0.01, EA 4 MN, in 1100 m of water, in a
+current of 1.0, 0.6, 0.2 and 0.05 m/s at 0, 200, 500 and 1100 m. Its figures come from an
+initial-value integration of the differential equations with bracketing; the tests compare them with
+a second independent integration.""",
     (
         *table(
             _figures(5e-5 * 1100.0, 2e-4 * TENSION),
@@ -98,7 +98,7 @@ integration against them.""",
             Kind.INDEPENDENT,
         ),
         Case("S1000 order of convergence, 2° to 0.5°", 2.0, "", 0.25,
-             "Second order, stirred by cuts at the levels of the profile, which shift the "
+             "Second order, disturbed by the cuts at the profile's levels, which shift the "
              "segments.",
              lambda: _order(2.0, 0.5), Kind.PROPERTY),
     ),
@@ -220,7 +220,7 @@ PROGRAMS = {
 [kgf], as printed."""
 
 _PROGRAM = (
-    "Heights 1 m and tensions 2 %: the two programs carry 1 to 4 % of their own and disagree with "
+    "Heights 1 m and tensions 2 %: the two programs err by 1 to 4 % themselves and differ from "
     "each other by as much."
 )
 _RANGE = "The programs' range, with half a unit of their last digit."
@@ -262,13 +262,13 @@ drag and no tangential drag here; it agrees with the independent solution to 0.1
         *table(
             [replace(_HEIGHT, tolerance=0.1), _OFFSET, *_tensions(0.002)],
             [("C16 independent solution", solved_cdms_1, PROGRAMS["independent"])],
-            "Heights 0.1 m, offset 0.2 m, tensions 0.2 %: the figures printed for the mooring fix "
-            "it no better.",
+            "Heights 0.1 m, offset 0.2 m, tensions 0.2 %: the printed data define the mooring no "
+            "better.",
             Kind.INDEPENDENT,
         ),
         *(
             Case(f"C16 independent solution: {name}", kgf, "kgf", 0.002 * kgf,
-                 "0.2 %: the figures printed for the mooring fix it no better.", got,
+                 "0.2 %: the printed data define the mooring no better.", got,
                  Kind.INDEPENDENT)
             for name, kgf, got in (
                 ("anchor, horizontal", 131.6, lambda: solved_cdms_1().horizontal),
@@ -276,10 +276,10 @@ drag and no tangential drag here; it agrees with the independent solution to 0.1
             )
         ),
         Case("C16 printed: height of the first glass ball", 12.03, "m", 0.01,
-             "The centimetre it is printed to; the line below it hardly leans.",
+             "Printed to the centimetre; the line below it hardly leans.",
              lambda: float(solved_cdms_1().centre[_FIRST_GLASS, 1]), Kind.PUBLISHED),
         Case("C16 printed: 98 m of Kevlar under load", 98.24, "m", 0.011,
-             "The centimetre it is printed to, and 2 % of the stretch for its tension.",
+             "Printed to the centimetre, plus 2 % of the stretch for its tension.",
              lambda: float(solved_cdms_1().stretched[_FIRST_KEVLAR]), Kind.PUBLISHED),
     ),
     picture="verification-cdms-1",

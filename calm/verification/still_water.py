@@ -137,11 +137,11 @@ CATENARIES = Source(
     "Catenaries",
     """The elastic catenary of M. Irvine, *Cable Structures* (1981), on four sets of figures (C12 to
 C14): ends 400 m apart and 300 m above each other, 50 N/m, EA 5 MN, once 520 m long and once
-stretched from 490 m; a line that comes down on a seabed without friction (the inputs are the
-public example of the Python package *pycatenary*: 5.3 m by 2.65 m, 6.98 m of 1.036 N/m, EA
-560 kN); a level span of 300 m, 330 m of inextensible line, 20 N/m. The figures are roots of the
-closed forms with residuals below 1e-12. They are held against `calm.analytic.catenary` and, where
-the line can be moored, against the march.""",
+stretched from 490 m; a line that reaches a frictionless seabed (the inputs are the public example
+of the Python package *pycatenary*: 5.3 m by 2.65 m, 6.98 m of 1.036 N/m, EA 560 kN); a level span
+of 300 m, 330 m of inextensible line, 20 N/m. The figures are roots of the closed forms with
+residuals below 1e-12. They are compared with `calm.analytic.catenary` and, where the line can be
+moored, with the march.""",
     (
         *table(
             [*_pulls(5.5e-4), _LOWER_END],
@@ -191,7 +191,7 @@ the line can be moored, against the march.""",
 _LENGTH, _WEIGHT, _LOAD, _STIFFNESS = 1000.0, 0.3, 2000.0, 97_817.4
 
 _WHY = (
-    "Half a unit of the last digit printed, and a tenth. Tension falls linearly along a hanging "
+    "Half a unit of the last printed digit, plus a tenth. Tension falls linearly along a hanging "
     "rope, so the stretch of a segment at its mean tension is exact whatever the angle step."
 )
 
@@ -261,8 +261,8 @@ _SEA = Water(
 _DROPPED = FallingAnchor(weight=8896.0, drag=sphere_drag(0.81, 1.0))
 
 _INERTIA = (
-    "3 % of a time or a tension, 8 % of the fall-back: what leaving out inertia may cost. The "
-    "program's own method without it differs by 0.4 and 1.1 % from that with it."
+    "3 % of a time or a tension, 8 % of the fall-back: the error that neglecting inertia may "
+    "cause. The same program without inertia differs by 0.4 and 1.1 % from that with it."
 )
 
 
@@ -321,17 +321,17 @@ def _alone() -> float:
 
 
 _ALONE = sqrt(10_000.0 / (100.0 * _DENSITY / REFERENCE_DENSITY))
-_THREAD = "Drag of the thread and the cork, and the last of the line's straightening."
+_THREAD = "The drag of the thread and the cork, and the last bend of the line."
 
 ANCHOR_DROP = Source(
     "Anchor drop",
-    """The example of a deployment that comes with WHOI Cable (J. Gobat & M. Grosenbaugh): 1050 m
-of wire between a sphere of 1.5 m at the surface and an anchor of 8896 N in water, let go at 2 knots
-in 1000 m of still water. Expected is what a program with inertia and added mass finds when the end
-bodies are dragged by |V|V, as CALM's are; WHOI Cable 3.12 drags them axis by axis and finds 233
-to 234 s and 107.9 m, that program with that drag 232.6 s and 108.3 m. The distance streamed is that
-of WHOI Cable's own static solution. Then the terminal speed, against that of the steady fall, and
-√(W/K) of a heavy sphere.""",
+    """The deployment example of WHOI Cable (J. Gobat & M. Grosenbaugh): 1050 m of wire between a
+sphere of 1.5 m at the surface and an anchor of 8896 N in water, let go at 2 knots in 1000 m of
+still water. The expected figures come from a program with inertia and added mass, with drag on the
+end bodies by |V|V, as in CALM; WHOI Cable 3.12 takes their drag axis by axis and finds 233 to 234 s
+and 107.9 m, that program with that drag 232.6 s and 108.3 m. The distance streamed is that of WHOI
+Cable's own static solution. Then the terminal speed, against that of the steady fall, and √(W/K) of
+a heavy sphere.""",
     (
         Case("streamed behind the ship", 894.8, "m", 0.5, "The chain's bars are 10 m long.",
              lambda: float(-_start().node[0, 1]), Kind.INDEPENDENT),
@@ -345,7 +345,7 @@ of WHOI Cable's own static solution. Then the terminal speed, against that of th
         Case("greatest tension below the float", 7432.0, "N", 0.03 * 7432.0, _INERTIA,
              lambda: _pull(1, 0), Kind.INDEPENDENT),
         Case("terminal speed less that of the steady fall", 0.0, "m/s", 2e-3,
-             "Both are within 1e-4 of the speed; the line has had 2850 m to become plumb.",
+             "Both are within 1e-4 of the speed; the line has had 2850 m to straighten.",
              lambda: _deep_fall()[0] - _deep_fall()[1], Kind.PROPERTY),
         Case("speed of a heavy sphere", _ALONE, "m/s", 0.01, _THREAD, _alone, Kind.CLOSED_FORM),
     ),

@@ -45,7 +45,7 @@ _FLOAT = point(4905.0, sphere_drag(1.0, 0.65))
 _LENGTH = 1000.0
 _HEAVY = 2.0
 
-_PRINTED = "Half a unit of the last digit printed, and a tenth: one straight rod is exact."
+_PRINTED = "Half a unit of the last printed digit, plus a tenth: one straight rod is exact."
 _SEVEN_DIGITS = (
     "1e-6 of the line's length or of the tension, 6e-5° for an angle; the figures have seven "
     "digits, and the march errs by 4e-8 at an angle step of 0.1°."
@@ -122,12 +122,11 @@ on a thread, the check of the R package *mooring* by D. Kelley, in water of 1027
 float of C1 on 1000 m of line, 12.7 mm, Cn 1.3: neutral (C3), of 2 N/m (C4), and with Ct 0.01 on its
 surface besides (C5).
 
-C1 and C2 are elementary: tan θ = D/B, T² = B² + D². C3 is a catenary on its side,
-cot φ = cot φ₀ + R s/T at constant T. C4 and C5 follow from T′ = w sin φ + F, T φ′ = w cos φ −
-R sin² φ by quadrature (relative error 1e-10), without CALM. In C4 the tension differs between two
-points by w times their difference in height. C5 shows the sign of the tangential drag. All with
-g = 9.81 m/s² and, but for C2, ρ = 1025 kg/m³; the march of CALM at an angle step of 0.1° is held
-against them.""",
+C1 and C2 are elementary: tan θ = D/B, T² = B² + D². C3 is a catenary on its side, cot φ = cot φ₀ +
+R s/T at constant T. C4 and C5 follow from T′ = w sin φ + F, T φ′ = w cos φ − R sin² φ by quadrature
+(relative error 1e-10), without CALM. In C4 the tension differs between two points by w times their
+difference in height. C5 shows the sign of the tangential drag. All with g = 9.81 m/s² and, but for
+C2, ρ = 1025 kg/m³; CALM's march is compared with them at an angle step of 0.1°.""",
     (
         *table(
             _thread(100.0, 5.5e-5, 5.5e-6, 5.5e-6),
@@ -217,11 +216,11 @@ _AT_THE_SHIP = "angle at the ship"
 
 TOWED_CABLES = Source(
     "Towed cables",
-    """A cable of 10 mm, 2.5 N/m, Cn 1.5, towed bare (C7): it is straight at the critical angle,
-cos φc = √(1 + p²/4) − p/2 with p the weight over the normal drag square to the stream. And 300 m
-of it with a body of 2000 N in water and 0.05 m² of drag area (C8), friction
-½ρ 0.02 D V² cos² φ along the cable: by quadrature of the differential equations (relative error
-1e-10) without CALM. The march of CALM is held against them, at an angle step of 0.1° in C8.""",
+    """A cable of 10 mm, 2.5 N/m, Cn 1.5, towed bare (C7): it is straight at the critical angle, cos
+φc = √(1 + p²/4) − p/2 with p the weight over the normal drag square to the stream. In the second
+case (C8) 300 m of it tow a body of 2000 N in water and 0.05 m² of drag area, with a friction of ½ρ
+0.02 D V² cos² φ along the cable; it is solved by quadrature of the differential equations (relative
+error 1e-10) without CALM. CALM's march is compared with both, at an angle step of 0.1° in C8.""",
     (
         *table(
             [CaseColumn[Wake](_AT_THE_SHIP, "°", 5.5e-5, lambda wake: wake.angle)],
@@ -229,7 +228,7 @@ of it with a body of 2000 N in water and 0.05 m² of drag area (C8), friction
                 (f"C7 bare cable, {speed} m/s", partial(_bare, speed), (angle,))
                 for speed, angle in ((1.0, 31.7304), (2.0, 16.2243), (3.0, 10.8582), (5.0, 6.5277))
             ],
-            "Half a unit of the last digit printed, and a tenth: a straight cable is exact "
+            "Half a unit of the last printed digit, plus a tenth: a straight cable is exact "
             "whatever the angle step.",
             Kind.CLOSED_FORM,
         ),
@@ -335,10 +334,10 @@ PODE = Source(
     "Pode's cable functions",
     """L. Pode's functions of a heavy cable in a uniform stream (David Taylor Model Basin reports
 687 and 717, 1951), constant friction F = f R along it (C6): τ, σ, ξ, η between φ and 90°, as
-evaluated by quadrature to 1e-10 from his integrals, not copied from his tables. They are held
-against `calm.analytic.uniform` and τ − 1 = p η + f σ; those with friction against the march of a
-towed body, the tensions without against their closed form. The critical angle,
-cos φc = √(1 + p²/4) − p/2, is E. E. Zajac's, too (Bell System Technical Journal 36, 1957).""",
+evaluated by quadrature to 1e-10 from his integrals, not copied from his tables. They are compared
+with `calm.analytic.uniform` and τ − 1 = p η + f σ; those with friction also with the march of a
+towed body, the tensions without friction with their closed form. The critical angle, cos φc = √(1 +
+p²/4) − p/2, is also given by E. E. Zajac (Bell System Technical Journal 36, 1957).""",
     (
         *table(
             [
@@ -369,7 +368,7 @@ cos φc = √(1 + p²/4) − p/2, is E. E. Zajac's, too (Bell System Technical J
         ),
         *(_tension(critical, angle, tau) for critical, f, angle, tau, *_ in _TABLE if f == 0.0),
         Case("C6 all rows: greatest |τ − 1 − p η − f σ|", 0.0, "", 1e-11,
-             "Exact; the quadratures go on to 1e-12.", _identity_missed, Kind.PROPERTY),
+             "Exact; the quadratures are good to 1e-12.", _identity_missed, Kind.PROPERTY),
         *(
             Case(f"critical angle, p {ratio:g}", expected, "°", 5.5e-5, PRINTED,
                  partial(_critical_angle, ratio), Kind.CLOSED_FORM)

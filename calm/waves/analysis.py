@@ -305,9 +305,7 @@ def _in_sea(
     departs = np.array([_most(*each, duration) for each in zip(tension, period, strict=True)])
     deviations, periods = response.moments(line.upper_ends(response.pull))
     motion, _ = response.moments(response.motion)
-    turn = np.diff(response.motion, axis=1)
-    turn = turn - (turn * line.spring).sum(2, keepdims=True) * line.spring
-    lean, _ = response.moments(line.upper_ends(turn / line.span[:, None]))
+    lean, _ = response.moments(line.upper_ends(line.turned(response.motion)))
     rows: list[PieceInWaves] = []
     worst: list[tuple[float, Floats]] = []
     for piece in mooring.file.pieces[:-1]:

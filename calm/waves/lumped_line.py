@@ -82,6 +82,11 @@ class LumpedLine:
     top_pieces: int
     inextensible: tuple[str, ...]
 
+    def turned(self, motion: Complexes) -> Complexes:
+        """Return the turn (f, n-1, 3) of the springs, across them, by a motion (f, n, 3) [rad]."""
+        turn = np.diff(motion, axis=1) / self.span[:, None]
+        return np.asarray(turn - (turn * self.spring).sum(2, keepdims=True) * self.spring)
+
     def upper_ends(self, middle: Complexes) -> Complexes:
         """Return what of figures (f, n-1, …) in the middle of springs is at upper ends of pieces.
 

@@ -16,7 +16,7 @@ from scipy.optimize import fsolve
 
 from calm.case.adjustment import parse_change
 from calm.case.explain import explain
-from calm.case.net import load_any
+from calm.case.net import load
 from calm.checks.criterion import READINGS, pieces_of
 from calm.cli.main import main
 from calm.drawing.line_picture import LineKind, elevation_of, plan_of
@@ -110,7 +110,7 @@ def test_the_anchor_bears_all_that_floats_and_hangs(
     """Vertically the net is a sum of net forces, wherever it stands: currents are level here."""
     found = document(net, capsys)
     total = 0.0
-    case = load_any(net)
+    case = load(net)
     for leg in case.legs:
         total += float(leg.line.total_buoyancy.sum())
     # what drag lifts and presses is some newtons of the seven thousand
@@ -162,7 +162,7 @@ def test_a_net_goes_to_moordyn_and_back(
     there, back = tmp_path / "net.txt", tmp_path / "back.yaml"
     assert run("export", net, "--to", "moordyn", "-o", there) == 0
     assert run("import", there, "-o", back) == 0
-    given, found = load_any(net).solve(), load_any(back).solve()
+    given, found = load(net).solve(), load(back).solve()
     assert len(found.legs) == 4
     before, after = given.nodes[0], found.nodes[0]
     assert [after.x, after.y, after.depth] == pytest.approx(
@@ -269,7 +269,7 @@ environment: {{depth: 100 m, current: {{speed: 0.3 m/s, toward: 90 deg}}}}
 legs:
   one:{leg}  two:{leg}    bottom: {{anchor: {{at: [200 m, 0 m]}}}}
 """
-    one, two = load_any(tmp_path / "two.yaml", text=text).solve().legs
+    one, two = load(tmp_path / "two.yaml", text=text).solve().legs
     part = pieces_of(one.mooring)[0]
     offset = READINGS["offset"](one, part)
     assert offset == pytest.approx(one.top.x, rel=1e-12)
@@ -277,7 +277,7 @@ legs:
 
 
 def test_a_net_is_drawn_from_the_side_and_above(net: Path) -> None:
-    result = load_any(net).solve()
+    result = load(net).solve()
     side, above = elevation_of(result), plan_of(result)
     kinds = Counter(line.kind for line in side.lines)
     assert kinds == {LineKind.STILL: 4, LineKind.LINE: 4}
@@ -343,7 +343,7 @@ def test_mistakes_have_their_place(place: str, tmp_path: Path) -> None:
     right, expected = MISTAKES[place]
     assert place in NET
     with pytest.raises(InputError) as refused:
-        load_any(tmp_path / "bad.yaml", text=NET.replace(place, right, 1))
+        load(tmp_path / "bad.yaml", text=NET.replace(place, right, 1))
     told = [str(problem) for problem in refused.value.problems]
     hits = [each for each in told if expected in each]
     assert len(hits) == 1, told
@@ -354,14 +354,14 @@ def test_all_mistakes_come_at_once(tmp_path: Path) -> None:
     text = NET.replace("glass-17in", "glas-17in").replace("length: 10 m", "length: 10")
     text = text.replace("bottom: {join: A}\n  second", "bottom: {join: B}\n  second")
     with pytest.raises(InputError) as refused:
-        load_any(tmp_path / "bad.yaml", text=text)
+        load(tmp_path / "bad.yaml", text=text)
     assert len(refused.value.problems) == 3
 
 
 def test_what_nothing_holds_is_refused(tmp_path: Path) -> None:
     loose = NET[: NET.index("  stem:")]
     with pytest.raises(InputError, match="nothing holds leg `main`"):
-        load_any(tmp_path / "loose.yaml", text=loose)
+        load(tmp_path / "loose.yaml", text=loose)
 
 
 def test_ends_that_are_held_bear_what_pulls_them(
@@ -383,7 +383,7 @@ legs:
 """)
     found = document(file, capsys)
     hang, span = found["held"]
-    case = load_any(file)
+    case = load(file)
     weight = -float(case.legs[0].line.total_buoyancy.sum())
     assert hang["vertical"] == pytest.approx(-weight, rel=1e-9)
     assert hang["horizontal"] == pytest.approx(0.0, abs=1e-6)
@@ -487,7 +487,7 @@ legs:
 
 def test_anchors_stand_on_a_seabed_that_slopes_and_hold_less(tmp_path: Path) -> None:
     """Depths by the plane; the weight against that of which H pulls straight down the slope."""
-    result = load_any(tmp_path / "slope.yaml", text=SLOPE).solve()
+    result = load(tmp_path / "slope.yaml", text=SLOPE).solve()
     rise = 30.0 * np.tan(np.radians(10.0))
     west, east = (anchor.depth for anchor in result.anchors)
     assert (west, east) == pytest.approx((100.0 - rise - 0.7, 100.0 + rise - 0.7), abs=1e-6)
@@ -506,7 +506,7 @@ def test_an_anchor_that_slides_by_itself_is_a_mistake(tmp_path: Path) -> None:
     with pytest.raises(
         InputError, match=r"slides by itself .* it holds on slopes of less than 31°"
     ):
-        load_any(tmp_path / "slope.yaml", text=text)
+        load(tmp_path / "slope.yaml", text=text)
 
 
 def test_a_line_that_hangs_into_the_slope_is_refused(tmp_path: Path) -> None:
@@ -522,9 +522,9 @@ legs:
 """
     )
     with pytest.raises(NoEquilibrium, match=r"wire-jacketed-8 comes .* below the sloping seabed"):
-        load_any(tmp_path / "slope.yaml", text=text).solve()
+        load(tmp_path / "slope.yaml", text=text).solve()
     level = text.replace("slope: 25 deg", "slope: 0 deg")
-    assert load_any(tmp_path / "level.yaml", text=level).solve().status == "converged"
+    assert load(tmp_path / "level.yaml", text=level).solve().status == "converged"
 
 
 def test_the_anchor_of_a_line_is_judged_on_the_slope(
@@ -577,7 +577,7 @@ def test_the_deck_of_a_net_lists_it_leg_by_leg(
     # by how much the top of its leg is deeper where a wire is half a percent longer
     longer = tmp_path / "longer.yaml"
     longer.write_text(NET.replace("length: 150 m", "length: 150.75 m"))
-    before, after = (load_any(file).solve().components.depth_top[0] for file in (net, longer))
+    before, after = (load(file).solve().components.depth_top[0] for file in (net, longer))
     row = next(row for row in sheets["cutting"] if row["leg"] == "main")
     effect = float(row["top_deeper_by_half_percent[m]"])
     # both within the errors that they state, some millimetres
@@ -607,7 +607,7 @@ def test_a_net_of_one_line_cut_in_two_is_explained_as_the_line(tmp_path: Path) -
     one, two = tmp_path / "one.yaml", tmp_path / "two.yaml"
     one.write_text(ONE_LINE)
     two.write_text(text)
-    results = [load_any(file).solve() for file in (one, two)]
+    results = [load(file).solve() for file in (one, two)]
     for label in ("float", "sbe37", "lower"):
         line, net = (explain(result, label) for result in results)  # type: ignore[arg-type]
         assert line.causes is not None and net.causes is not None
@@ -648,7 +648,7 @@ def test_a_piece_of_a_net_is_sized(net: Path, capsys: pytest.CaptureFixture[str]
 
 
 def test_more_floats_in_one_leg_move_no_other(net: Path) -> None:
-    file = load_any(net).file
+    file = load(net).file
     four = parse_change("glass-17in.count", file)
     seven = four.to(7.0)
     assert [piece.label for piece in seven.pieces if piece.use == "glass-17in"][
@@ -721,8 +721,8 @@ def test_a_grid_of_a_plane_is_the_plane(tmp_path: Path, name: str, sign: float) 
     """A plane is exact between nodes; the grid lies on the ellipsoid, here taken as a sphere."""
     steep = np.tan(np.radians(10.0))
     gridded(tmp_path, lambda east, north: 90.0 + steep * east, name, sign)
-    plane = load_any(tmp_path / "slope.yaml", text=SLOPE).solve()
-    grid = load_any(tmp_path / "grid.yaml", text=GRIDDED).solve()
+    plane = load(tmp_path / "slope.yaml", text=SLOPE).solve()
+    grid = load(tmp_path / "grid.yaml", text=GRIDDED).solve()
     for ours, theirs in zip(grid.anchors, plane.anchors, strict=True):
         assert ours.depth == pytest.approx(theirs.depth, abs=0.03)  # 5 m by 0.4 %: the sphere
         assert ours.required_weight == pytest.approx(theirs.required_weight, rel=0.01)
@@ -736,7 +736,7 @@ def test_an_export_says_that_its_seabed_is_level(
     assert run("export", file, "--to", "moordyn", "-o", tmp_path / "slope.txt") == 0
     told = capsys.readouterr().err
     assert "lost: the slope of the seabed: it is level there" in told
-    depths = [anchor.depth for anchor in load_any(file).solve().anchors]
+    depths = [anchor.depth for anchor in load(file).solve().anchors]
     written = (tmp_path / "slope.txt").read_text()
     deepest = next(line for line in written.splitlines() if "WtrDpth" in line)
     assert float(deepest.split()[0]) == pytest.approx(max(depths) + 0.7, abs=1e-6)
@@ -759,7 +759,7 @@ legs:
             tmp_path,
             lambda e, n, h=height: 200.0 - h * np.exp(-((e - 60.0) ** 2 + n * n) / 900.0),
         )
-        net = load_any(tmp_path / "grid.yaml", text=text)
+        net = load(tmp_path / "grid.yaml", text=text)
         if stands:
             assert net.solve().status == "converged"
         else:
@@ -787,7 +787,7 @@ def test_a_grid_that_cannot_be_used_is_a_mistake(tmp_path: Path, text: str, told
     other = xarray.Dataset({"salinity": (("lat", "lon"), np.ones((3, 3)))})
     other.to_netcdf(tmp_path / "other.nc", engine="h5netcdf")
     with pytest.raises(InputError) as mistakes:
-        load_any(tmp_path / "grid.yaml", text=text)
+        load(tmp_path / "grid.yaml", text=text)
     assert told in str(mistakes.value)
 
 

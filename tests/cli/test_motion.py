@@ -404,7 +404,7 @@ def test_currents_that_look_false_are_named(calm, given, truth, folder):
         assert result["level_label"].values.tolist() == ["0.0 m", "150.0 m", "300.0 m"]
         doubt = result["current_doubt"].values
         assert (doubt[[15, 16, 40], 0] > 0.5).all() and np.median(doubt) < 0.05
-    assert "more likely false than not" in (folder / "r" / "motion.html").read_text()
+    assert "current is probably wrong" in (folder / "r" / "motion.html").read_text()
 
 
 def test_currents_that_cannot_be_are_left_out_and_named(calm, given, folder):

@@ -127,7 +127,7 @@ def test_a_buoy_that_follows_and_one_by_its_own_response(calm, buoy):
     filtered, follower = deviation("hull: cylinder")
     following, _ = deviation("heave: follows")
     given, _ = deviation('rao: {"0.1": [1, 0 deg], "12": [1, 0 deg]}')
-    # the drag is linearised to 2e-3, from another beginning
+    # the drag is linearised to 5e-3, from another beginning
     assert following == pytest.approx(follower, rel=5e-3)
     assert given == pytest.approx(following, rel=1e-6)
     assert filtered < following
@@ -142,6 +142,8 @@ def test_a_buoy_that_follows_and_one_by_its_own_response(calm, buoy):
         ('rao: {"fast": [1, 0 deg], "2": [1, 0 deg]}', "`fast` is no angular frequency"),
         ('rao: {"1": [1, 0 deg]}', "two frequencies or more"),
         ('rao: {"1": [-1, 0 deg], "2": [1, 0 deg]}', "at least 0"),
+        ('rao: {"1": [60, 0 deg], "2": [1, 0 deg]}', "at most 10"),
+        ('rao: {"inf": [1, 0 deg], "2": [1, 0 deg]}', "is no angular frequency"),
     ],
 )
 def test_a_response_that_cannot_be_is_refused(calm, buoy, hull, told):
@@ -194,7 +196,7 @@ def test_a_report_has_the_life_and_its_pictures(calm, buoy, tmp_path):
     shown = calm("waves", path, "--report", str(tmp_path / "report"))
     assert shown.code in (0, 3)
     assert "dnv-studless-chain" in shown.out
-    assert "Of unknown life: rope." in shown.out
+    assert "Life unknown: rope." in shown.out
     page = (tmp_path / "report" / "waves.html").read_text()
     assert page.count("<svg") == 1
     assert "Hs [m]" in page  # several seas: tension over height

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from calm.case.net import Net, load_any
+from calm.case.net import Net, load
 from calm.exchange.importing import import_file
 from tests.moordyn_text import moordyn
 
@@ -74,7 +74,7 @@ def solved(tmp_path: Path) -> Any:
     def solve(text: str) -> Any:
         path = tmp_path / "net.txt"
         path.write_text(text)
-        net = load_any(path, text=import_file(path, tmp_path / "net.yaml").text)
+        net = load(path, text=import_file(path, tmp_path / "net.yaml").text)
         assert isinstance(net, Net)
         return net.solve()
 
@@ -107,8 +107,8 @@ def test_a_bridle(solved: Any) -> None:
     assert [node.x, node.depth] == pytest.approx([30.92974, 54.00536], rel=1e-4)
     assert net.anchors[0].tension == pytest.approx(39059.525, rel=1e-4)
     assert net.anchors[0].grounded_length == pytest.approx(226.92660, rel=1e-4)
-    for load in net.held:
-        assert [load.horizontal, load.vertical] == pytest.approx([22562.128, -34680.191], rel=1e-4)
+    for end in net.held:
+        assert [end.horizontal, end.vertical] == pytest.approx([22562.128, -34680.191], rel=1e-4)
 
 
 def test_two_floats_that_share_a_line(solved: Any) -> None:

@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from calm.case.net import Net, load_any
+from calm.case.net import Net, load
 from calm.case.net_result import NetResult
 from calm.exchange.importing import import_file
 from calm.solve.net import solve_net
@@ -130,7 +130,7 @@ def imported(tmp_path: Path) -> Callable[[str, float, str], NetResult]:
     def solve(kind: str, depth: float, layout: str) -> NetResult:
         path = tmp_path / "net.cbl"
         path.write_text(HEAD.format(kind=kind, depth=depth) + layout + "End\n")
-        net = load_any(path, text=import_file(path, tmp_path / "net.yaml").text)
+        net = load(path, text=import_file(path, tmp_path / "net.yaml").text)
         assert isinstance(net, Net)
         return net.solve()
 

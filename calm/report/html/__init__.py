@@ -57,7 +57,9 @@ def _narrow(block: Block) -> Block:
     if not isinstance(block, Table):
         return block
     kept = [number for number, column in enumerate(block.columns) if column.narrow]
-    rows = (tuple(row[number] for number in kept) for row in block.rows)
+    rows = (  # a single cell heads the rows below it
+        tuple(row[number] for number in kept) if len(row) > 1 else row for row in block.rows
+    )
     return replace(block, columns=tuple(block.columns[n] for n in kept), rows=tuple(rows))
 
 

@@ -9,7 +9,7 @@ import pytest
 from calm.case import load
 from calm.case.profilers import PLACES
 from calm.checks.arrangement import profiler
-from calm.checks.assess import check
+from calm.checks.net_check import check
 from calm.errors import InputError
 from calm.physics.seawater import pressure_at
 

@@ -3,7 +3,7 @@
 import pytest
 
 import calm
-from calm.checks.assess import check
+from calm.checks.net_check import check
 
 FILE = """
 name: By hand

@@ -3,7 +3,7 @@
 import pytest
 
 import calm
-from calm.checks.assess import check
+from calm.checks.net_check import check
 from calm.checks.recovery import breaks_of, losses_of
 
 FILE = """

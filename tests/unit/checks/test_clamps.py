@@ -7,7 +7,7 @@ import pytest
 import calm
 from calm.assemble import axial_drag_of, with_axial_clamps
 from calm.checks.arrangement import clamp_grip
-from calm.checks.assess import check
+from calm.checks.net_check import check
 from calm.checks.recovery import recovery_of
 from calm.drop.launch import launch_of
 from calm.shipped import shipped_folder

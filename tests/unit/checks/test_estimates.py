@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 
 import calm
-from calm.checks.assess import check
 from calm.checks.assessment import Assessment
 from calm.checks.finding import State
+from calm.checks.net_check import check
 from calm.errors import InputError
 from calm.report.check_report import check_document
 

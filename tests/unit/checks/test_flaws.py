@@ -104,7 +104,7 @@ FLAWS = (
         "wave-slack",
         "floating rope",
         "fail",
-        "it falls slack and snatches",
+        "it goes slack and snatches",
     ),
     Flaw(
         "a life without a climate",

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from calm.case import Mooring, load
-from calm.case.net import Net, load_any
+from calm.case.net import Net
 from calm.checks.assess import assessment_of, stand_of
 from calm.checks.assessment import Assessment
 from calm.checks.finding import State
@@ -57,7 +57,7 @@ def judged(net: Net) -> Assessment:
 @pytest.mark.parametrize("text", [ONE_LEG, TWO_LEGS])
 def test_a_line_cut_into_legs_is_judged_as_the_line(text: str) -> None:
     """Every situation and rule; 1e-3 is what the stated errors of both allow of a tension."""
-    single, net = line(LINE), judged(load_any(Path("net.yaml"), text=text))
+    single, net = line(LINE), judged(load(Path("net.yaml"), text=text))
     whole = assessment_of("n", [stand_of(single, "n")])
     # what runs from piece to piece is seen within a leg alone
     of_neighbours = {"strength-steps", "swivel", "metals", "release-present"}
@@ -82,7 +82,7 @@ def test_a_line_cut_into_legs_is_judged_as_the_line(text: str) -> None:
 @pytest.mark.parametrize("text", [ONE_LEG, TWO_LEGS])
 def test_its_breaks_and_losses_are_those_of_the_line(text: str) -> None:
     """Lifts are taken where the line stands, not upright: a metre of depth is 1e-5 of them."""
-    single, net = line(LINE), judged(load_any(Path("net.yaml"), text=text))
+    single, net = line(LINE), judged(load(Path("net.yaml"), text=text))
     for mine, its in ((breaks_of(single), net.backup), (losses_of(single), net.losses)):
         assert [each.label for each in mine] == [each.label for each in its]
         for one, other in zip(mine, its, strict=True):
@@ -122,7 +122,7 @@ legs:
 
 @pytest.fixture(scope="module")
 def y() -> Assessment:
-    return judged(load_any(Path("y.yaml"), text=Y))
+    return judged(load(Path("y.yaml"), text=Y))
 
 
 def test_each_anchor_is_judged_by_its_own_rules(y: Assessment) -> None:
@@ -135,7 +135,7 @@ def test_each_anchor_is_judged_by_its_own_rules(y: Assessment) -> None:
 
 
 def test_a_break_of_any_leg_says_what_is_left_and_what_drifts(y: Assessment) -> None:
-    result = load_any(Path("y.yaml"), text=Y).solve()
+    result = load(Path("y.yaml"), text=Y).solve()
     graph = NetGraph(result.legs)
     lift = dict(zip([piece.label for piece in graph.pieces], graph.lifts.tolist(), strict=True))
     breaks = {each.label: each for each in y.backup}
@@ -155,7 +155,7 @@ def test_what_no_release_frees_is_unknown() -> None:
     text = Y.replace("      - {use: release-ar861, label: east release}\n", "")
     found = [
         each
-        for each in judged(load_any(Path("y.yaml"), text=text)).findings
+        for each in judged(load(Path("y.yaml"), text=text)).findings
         if each.rule == "release-present"
     ]
     assert [(each.state, each.component) for each in found] == [(State.UNKNOWN, "top")]
@@ -164,7 +164,7 @@ def test_what_no_release_frees_is_unknown() -> None:
 
 def test_a_net_that_does_not_stand_is_a_failure_with_its_reason() -> None:
     text = re.sub(r"length: 130 m, label: east", "length: 10 m, label: east", Y)
-    found = judged(load_any(Path("y.yaml"), text=text))
+    found = judged(load(Path("y.yaml"), text=text))
     assert [each.rule for each in found.stands[0].findings] == ["equilibrium"]
     assert found.state is State.FAIL
 
@@ -176,7 +176,7 @@ def test_a_hanging_instrument_bears_itself_alone() -> None:
         "  pennant:\n    line:\n      - {use: wire-jacketed-8, length: 5 m, slack: allowed}\n"
         "      - {use: rcm11}\n    top: {join: A}\n    bottom: free\n  west:\n",
     )
-    found = judged(load_any(Path("y.yaml"), text=text))
+    found = judged(load(Path("y.yaml"), text=text))
     assert not [
         each for each in found.all_findings()
         if each.rule == "strength" and each.component == "rcm11"

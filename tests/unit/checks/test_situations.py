@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 
 from calm.case import Mooring, Result, load
-from calm.checks.assess import check
 from calm.checks.assessment import Assessment
 from calm.checks.finding import State
+from calm.checks.net_check import check
 from calm.checks.posture import reaches_the_surface
 from calm.checks.situations import situations_of
 from calm.cli.check_files import read_designs

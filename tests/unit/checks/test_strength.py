@@ -6,7 +6,7 @@ import pytest
 
 import calm
 from calm.checks.finding import State
-from calm.checks.strength import allowable_load, lesser_load, strength_steps
+from calm.checks.strength import allowable_load, lesser_load, passes_load_on, strength_steps
 from calm.errors import InputError
 from calm.files import Cable, SafetyFactors
 
@@ -50,6 +50,23 @@ def test_a_weak_link_is_weak_beside_the_weaker_of_its_cables(
     assert isinstance(mooring, calm.Mooring)
     (verdict,) = strength_steps.judge(mooring.solve())
     assert (verdict.component, verdict.limit, verdict.state) == ("link", limit, state)
+
+
+@pytest.mark.parametrize(
+    ("length", "buoyancy", "asked"),
+    [("0 m", "-0.01 N", False), ("0 m", "-5 N", True), ("0.1 m", "-0.01 N", True)],
+)
+def test_a_hinge_of_another_programs_design_is_asked_no_load(
+    length: str, buoyancy: str, asked: bool, tmp_path: Path
+) -> None:
+    text = (
+        LINE.replace("UPPER", "60 kN").replace("LOWER", "60 kN").replace(", working_load: LINK", "")
+    )
+    text = text.replace("length: 0.1 m, buoyancy: -5 N", f"length: {length}, buoyancy: {buoyancy}")
+    (tmp_path / "m.yaml").write_text(text, encoding="utf-8")
+    mooring = calm.load(tmp_path / "m.yaml")
+    assert isinstance(mooring, calm.Mooring)
+    assert passes_load_on(mooring.file, 2) is asked
 
 
 @pytest.mark.parametrize(

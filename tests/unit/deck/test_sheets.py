@@ -9,6 +9,9 @@ from calm.deck import Deck, deck_of
 from calm.deck.deck_items import Order, rows_on_paper
 from calm.deck.hardware import Stock
 from calm.deck.shipping import total_of
+from calm.quantities import show_in
+from calm.report.deck_lists import cutting_part, hardware_part, shipping_part
+from calm.report.deck_logs import deployment_part
 
 MOORING = """\
 name: Sheets
@@ -229,3 +232,13 @@ def test_instruments_in_all_environments(moorings, deck):
     above = 1.0 + sum(one.stretched for one in deck.parts[1:4]) + 20.0
     assert high.still == pytest.approx(top + above, abs=0.1)
     assert [one.item.label for one in deck.instruments] == ["high", "low", "release"]
+
+
+def test_lists_and_logs_are_in_the_units_chosen(deck):
+    show_in({"length": "ft"})
+    parts = (cutting_part, deployment_part, hardware_part, shipping_part)
+    shown = repr([part(deck) for part in parts])
+    # the wire is 100 m long, its clamps at 20 and 60 m; the rope 50 m
+    for feet in ("328.0", "65.6", "196.8", "164.0"):
+        assert feet in shown
+    assert "'ft'" in shown and "'m'" not in shown

@@ -4,8 +4,7 @@ from math import pi
 
 import pytest
 
-from calm.case import load
-from calm.case.net import load_any
+from calm.case.net import load
 from calm.errors import InputError
 from calm.exchange.importing import import_file
 
@@ -162,7 +161,7 @@ NETS = {
 @pytest.mark.parametrize("case", NETS)
 def test_other_lines_are_nets(case, read, tmp_path):
     old, new, legs = NETS[case]
-    net = load_any(tmp_path / "m.yaml", text=read(V2.replace(old, new, 1)).text)
+    net = load(tmp_path / "m.yaml", text=read(V2.replace(old, new, 1)).text)
     assert len(net.file.legs) == legs
     # the weight at the joint is on one leg alone
     assert [piece.use for piece in net.file.pieces].count("point-2") == (case != "a held joint")

@@ -9,7 +9,7 @@ import pytest
 import calm.motion.whole_record as module
 from calm.motion import common_unknowns
 from calm.motion.measurements import MooringMeasurements
-from calm.motion.whole_record import _scale, estimate_common, repeated
+from calm.motion.whole_record import _scale, _widened, _worst, estimate_common, repeated
 
 STILL = np.array([50.0, 100.0, 180.0])  # of three points; the first and the last have sensors
 GAIN = np.array([[90.0, 60.0], [50.0, 45.0], [15.0, 20.0]])
@@ -63,14 +63,15 @@ def best(one, start=None):
     spread = currents + own[:, :, None] ** 2 * np.eye(2)
     apart = np.abs(STILL[SENSORS][:, None] - STILL[SENSORS])
     alike_down = np.exp(-apart / (0.25 * np.ptp(STILL)))
-    state, scale = np.zeros(len(prior_of)), 1.0
+    state, scale, worst = np.zeros(len(prior_of)), 1.0, 0.07
     for _ in range(12):
         factor = np.exp(state[0])
         down = factor * square @ GAIN[SENSORS].T
         slope = factor * (np.exp(0.1) - 1.0) / 0.05 * GAIN[SENSORS] * square[:, None, :]
         by_currents = scale**2 * slope @ spread @ slope.transpose(0, 2, 1)
         rest = common_unknowns.TIDE**2 + common_unknowns.NOISE**2 * np.eye(2)
-        rest = rest + (0.07 * down)[:, :, None] * alike_down * (0.07 * down)[:, None, :]
+        bent = down[:, :, None] * alike_down * down[:, None, :]
+        rest = rest + worst**2 * bent
         rest = rest + np.where(known, 0.0, 1e8)[:, :, None] * np.eye(2)
         bend = 0.5 * np.einsum("nss->ns", by_currents) / np.maximum(down, 1.0)
         left = one.depth - STILL[SENSORS] - down - state[1] - state[2:4] - bend
@@ -89,6 +90,12 @@ def best(one, start=None):
             seen = np.concatenate([seen, (fall[:, None] * [0.0, 1.0])[:, :, None]], axis=2)
             left = left - seen[:, :, 4] * state[4]
         left = np.where(known, left, 0.0)
+        usual = rest + (0.07**2 - worst**2) * bent + by_currents
+        tried, _ = _scale(left, usual, by_currents, scale)
+        usual = usual + ((tried / scale) ** 2 - 1.0) * by_currents
+        before, worst = worst, _worst(left, rest + by_currents, bent, worst)
+        worst = worst if _widened(left, usual, known) == 1.0 else 0.07
+        rest = rest + (worst**2 - before**2) * bent
         scale, _ = _scale(left, rest + by_currents, by_currents, scale)
         by_currents = scale**2 * slope @ spread @ slope.transpose(0, 2, 1)
         inverse = np.linalg.inv(rest + by_currents)

@@ -42,7 +42,16 @@ def diagnosis(change=lambda depth: depth, seed=3):
     expected += np.eye(3) * np.where(known, 0.0, 1e8)[:, :, None]
     raw = np.where(known, depth - PLACE - down, 0.0)
     law = LinearLaw(
-        TIME, SHARE, known, raw, raw, expected, 0.0 * expected, fixed, np.ones((TIMES, 3))
+        TIME,
+        SHARE,
+        known,
+        raw,
+        raw,
+        expected,
+        0.0 * expected,
+        fixed,
+        np.ones((TIMES, 3)),
+        0.0 * expected,
     )
     none, never = np.zeros(3), np.full(3, "NaT", "M8[ns]")
     common = Common({"cable_drag": 1.0}, 0.0, none, none, never, none, np.eye(8), 1.0, np.eye(1))

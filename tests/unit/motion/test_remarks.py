@@ -80,10 +80,10 @@ def test_a_fault_of_the_line_has_the_size_of_a_logarithm():
 
 
 def test_a_line_that_misses_pressures_alone_is_named():
-    known = replace(common((0.0,)), factors={"length": 1.003}, worst=0.07)
+    known = replace(common((0.0,)), factors={"length": 1.008}, worst=0.07)
     assert alone_remarks(known) == []
-    (said,) = alone_remarks(replace(known, factors={"length": 0.99}))
+    (said,) = alone_remarks(replace(known, factors={"length": 0.98}))
     assert said.startswith(
-        "the line: does not fit the pressures (its cables would be 1.0 % shorter"
+        "the line: does not fit the pressures (its cables would be 2.0 % shorter"
     )
     assert len(alone_remarks(replace(known, worst=0.15))) == 1

@@ -110,6 +110,8 @@ def test_the_swing_of_a_shipped_mooring_by_hand():
     mooring = load(f"{shipped_folder('lines')}/tidal-adcp.yaml")
     line = lumped_line(mooring, mooring.equilibrium(mooring.water), 1.0)
     water = 1025.0 * pi * 1.42**3 / 6.0
+    # half of the float is at its upper end, and half of its water goes with it in every direction
+    assert [line.added_along[0], line.added_across[0]] == pytest.approx([0.25 * water] * 2)
     foot, inertia, righting = 0.0, 0.0, 0.0
     for piece in reversed(mooring.file.pieces[:-1]):
         component, length = piece.component, piece.length
@@ -370,3 +372,29 @@ def test_a_float_displaces_what_it_weighs_and_what_pulls_it_down(tmp_path):
     mooring = load(tmp_path / "buoy.yaml")
     buoy = buoy_of(mooring, mooring.equilibrium(mooring.water), False)
     assert buoy.displaced == pytest.approx(1025.0 * pi * 0.8**2 * buoy.draft, rel=1e-3)
+
+
+def test_a_spring_turns_by_what_moves_it_sideways_alone():
+    """0.02 m across at the upper end of 4 m, and 0.03 m along it, which is no turn."""
+    line = plumb(8.0, 1.0, 1e6, 1e3, 2)
+    motion = np.zeros((1, 3, 3), complex)
+    motion[0, 0] = [0.02, 0.0, 0.03]
+    assert line.turned(motion)[0] == pytest.approx(np.array([[-0.005, 0.0, 0.0], [0.0] * 3]))
+
+
+def test_drag_goes_with_the_density_and_a_rope_that_floats_is_slackest_on_top(tmp_path):
+    floats = HEAVY.replace("weight: 0.3 N/m", "buoyancy: 5 N/m, cn: 1.2")
+    lines = []
+    for density in (1000.0, 1100.0):
+        text = floats.replace("depth: 80 m", f"depth: 80 m, density: {density} kg/m^3")
+        (tmp_path / "buoy.yaml").write_text(text)
+        mooring = load(tmp_path / "buoy.yaml")
+        lines.append(lumped_line(mooring, mooring.equilibrium(mooring.water), 1.0))
+    nylon = 0.5 * 1000.0 * 1.2 * 0.02 * 60.0
+    below = lines[0].piece_node[2] + 1
+    assert lines[0].across_drag[below:].sum() == pytest.approx(nylon, rel=0.02)
+    assert lines[1].across_drag[below:].sum() == pytest.approx(1.1 * nylon, rel=0.02)
+    sea = sea_states.spectrum_of("bretschneider", 0.5, 4.0, 3.3)
+    (state,) = analyse(mooring, [sea], 90.0).states
+    rope = state.components[2]
+    assert rope.least == rope.tension_min < rope.tension_mean
