@@ -188,7 +188,8 @@ def _marked(marks: Sequence[Mark], items: Mapping[str, DeckItem]) -> str:
     """Return the places of some marks, and what is clamped there."""
     places = ", ".join(QUANTITIES["at"].format(mark.at) for mark in marks)
     marked = [items[mark.label] for mark in marks]
-    words = name_of_run(marked) if len(marked) > 1 else marked[0].label
+    floats = len(marked) > 1 and marked[0].role == "float"
+    words = name_of_run(marked) if floats else label_of_run(marked)
     return f"mark at {places}: {words}"
 
 
