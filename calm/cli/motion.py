@@ -134,7 +134,7 @@ def motion(
     from calm.case.mooring import load_line
     from calm.motion.instrument_file import read_instruments
     from calm.motion.line_places import places_of
-    from calm.motion.motion_estimate import MotionRequest, Recovery
+    from calm.motion.motion_estimate import MotionRequest, RecoveredMooring
     from calm.motion.sensors import split_label
     from calm.motion.study import series_of
     from calm.report.folder import check_folder, printed, write_report
@@ -175,7 +175,7 @@ def motion(
         for line in matched:
             narrate(line)
 
-    recovery = Recovery(
+    recovery = RecoveredMooring(
         MotionRequest(
             mooring, pressures, currents, match, _separated(fit), _separated(hold_out),
             cross_validate, _separated(correct), judge, sea_level, flags, apart, turned, prior,

@@ -253,6 +253,8 @@ def _ends(
         refuse((), "`bottom` is missing: `{join: NODE}`, `free`, or an anchor as the last item")
     if len(anchors) == len(pieces) > 0:
         refuse(("line",), "nothing stands above the anchor")
+    if upper.join is not None and upper.join == lower.join:
+        refuse(("bottom",), f"both ends join at `{upper.join}`")
     if upper == lower == _FREE and (keys.bottom is not None or not stands):
         refuse(("bottom",), "both ends are free: join one to another leg, or hold it")
     for piece in pieces:

@@ -80,7 +80,7 @@ class MotionRequest:
     prior: Path | None = None
 
 
-class Recovery:
+class RecoveredMooring:
     """What was recovered: read, put right, estimated and judged, in this order.
 
     Attributes
@@ -311,7 +311,7 @@ def estimate_motion(
     if not isinstance(mooring, Mooring):
         kind = type(mooring).__name__
         raise TypeError(f"a Mooring is needed, as calm.load gives it, not a {kind}")
-    recovery = Recovery(
+    recovery = RecoveredMooring(
         MotionRequest(
             mooring,
             [str(path) for path in pressures],

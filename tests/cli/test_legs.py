@@ -789,3 +789,22 @@ def test_a_grid_that_cannot_be_used_is_a_mistake(tmp_path: Path, text: str, told
     with pytest.raises(InputError) as mistakes:
         load(tmp_path / "grid.yaml", text=text)
     assert told in str(mistakes.value)
+
+
+def test_a_leg_from_a_node_to_itself_is_a_mistake(tmp_path: Path) -> None:
+    text = NET.replace("  main:\n", "  main:\n    top: {join: A}\n")
+    with pytest.raises(InputError, match="both ends join at `A`"):
+        load(tmp_path / "net.yaml", text=text)
+
+
+def test_what_names_no_part_of_a_net_is_a_mistake(tmp_path: Path) -> None:
+    """As of a line: in `deployed:` and in what is accepted."""
+    text = NET + "deployed: {items: [{label: nobody, serial: '3'}]}\n"
+    text += (
+        "checks: {accept: [{rule: tilt, component: no one, reason: x, by: y, date: 2026-01-01}]}\n"
+    )
+    with pytest.raises(InputError) as mistakes:
+        load(tmp_path / "net.yaml", text=text)
+    told = str(mistakes.value)
+    assert "nobody" in told
+    assert "no one" in told
