@@ -77,7 +77,14 @@ def check(*designs: Mooring | Net, day: date | None = None) -> Assessment:
     ----------
     designs : the same one, loaded in each of the environments it is judged in
     day : on which accepts count or have ended; today unless given
+
+    Raises
+    ------
+    TypeError
+        It is a tow, or none of these.
     """
+    if kinds := [type(one).__name__ for one in designs if not isinstance(one, Mooring | Net)]:
+        raise TypeError(f"a Mooring or a Net is needed, as calm.load gives it, not a {kinds[0]}")
     name = designs[0].file.name
     expect_many(SOLVES * len(designs))
     stands: list[MooringInEnvironment] = []

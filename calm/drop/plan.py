@@ -30,7 +30,7 @@ from calm.drop.launch import (
     ship_of,
 )
 from calm.drop.motion import ChainState
-from calm.errors import NoEquilibrium, UsageError
+from calm.errors import NoEquilibrium
 from calm.files import Position
 from calm.physics.line import Floats
 from calm.positions import Frame
@@ -246,14 +246,16 @@ def drop_plan(
     Raises
     ------
     UsageError
-        A ship that makes no way through the water, or a distance that the line does not span; a tow
-        or a net.
+        A ship that makes no way through the water, or a distance that the line does not span.
+    TypeError
+        It is a tow or a net.
     NoEquilibrium
         As `Mooring.solve`; ``anchor-lifts`` where the anchor does not draw the line down,
         ``not-converged`` where no step is found.
     """
     if not isinstance(mooring, Mooring):
-        raise UsageError("a launch is planned for a mooring of one line, not for a tow or a net")
+        kind = type(mooring).__name__
+        raise TypeError(f"a Mooring is needed, as calm.load gives it, not a {kind}")
     if result is None:
         result = _equilibrium(mooring)
     course = course_into_current(mooring.water) if course is None else course % 360.0

@@ -3,6 +3,7 @@
 import pytest
 
 import calm
+from calm.shipped import shipped_folder
 
 NET = """\
 name: Y
@@ -54,5 +55,7 @@ def test_its_result_is_shown_in_a_few_lines_and_as_a_dataset(net):
 
 def test_it_is_judged_and_its_launch_is_refused(net):
     assert {stand.environment for stand in calm.check(net).stands} >= {"own: stem", "own: east"}
-    with pytest.raises(calm.UsageError, match="not for a tow or a net"):
+    with pytest.raises(TypeError, match=r"a Mooring is needed, .* not a Net"):
         calm.drop_plan(net)
+    with pytest.raises(TypeError, match="not a Tow"):
+        calm.check(calm.load(shipped_folder("lines") / "helicopter-bird.yaml"))
