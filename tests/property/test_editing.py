@@ -93,7 +93,7 @@ class Editor:
         chosen = sorted(set(self.some()))
         below = chosen[-1] + 1 if chosen else 0
         count = len(self.draft.items)
-        new = self.draft.duplicate(chosen)
+        new = self.draft.paste(below, self.draft.copy(chosen))
         assert [new.items[below + i].values for i in range(len(chosen))] == [
             self.draft.items[i].values for i in chosen
         ]
