@@ -6,7 +6,7 @@ from collections import Counter
 from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parents[2] / "calm"
-MOST_LINES = 91_000
+MOST_LINES = 91_010
 MOST_MODULES = 377
 MOST_IMPORTS = 0.105
 """Share of the lines of code that import something."""
