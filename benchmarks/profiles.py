@@ -66,7 +66,7 @@ def best(solve: Callable[[], object], runs: int = 5) -> float:
 def water_of(base: Water, depth: Floats, u: Floats, v: Floats, w: Floats) -> Water:
     """A water with a profile's current."""
     levels = np.union1d(base.level, depth)
-    current, density = base.at(levels)
+    current, density = base.current_at(levels), base.density_at(levels)
     parts = [np.interp(levels, depth, part) + current[:, i] for i, part in enumerate((u, v, w))]
     return replace(base, level=levels, u=parts[0], v=parts[1], w=parts[2], density=density)
 
