@@ -176,8 +176,9 @@ def lumped_line(mooring: Mooring, solution: Solution, longest: float) -> LumpedL
     tangent = np.vstack([spring[:1], spring[:-1] + spring[1:], spring[-1:]])
     tangent /= np.linalg.norm(tangent, axis=1)[:, None]
     water, depth = mooring.water, np.maximum(-where[:, 2], 0.0)
+    denser = water.density_at(depth) / REFERENCE_DENSITY
     for name in ("across_drag", "along_drag", "any_drag"):
-        node[name] *= water.density_at(depth) / REFERENCE_DENSITY
+        node[name] *= denser
     count = len(solution.line.length)
     piece_node = np.array([starts.get(piece, -1) for piece in range(count)])
     piece_spring = np.where(piece_node >= 0, np.minimum(piece_node, n - 2), -1)
