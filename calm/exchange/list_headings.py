@@ -30,7 +30,10 @@ WORDS = ("name", "label", "kind", "role")
 """Columns that hold words."""
 
 _WEIGHT = r"(weight|poids|gewicht|vekt|\bpeso|mass(e|a)?\b|\bmasa\b)"
-_WET = r"(water|\bwet|\beau\b|immerg|submer|immersed|\bsea|\bmer\b|wasser|vann|nass|agua|sumergid|mojad)"
+_WET = (
+    r"(water|\bwet|\beau\b|immerg|submer|immersed|\bsea|\bmer\b|wasser|vann|nass|agua|sumergid"
+    r"|mojad)"
+)
 _AIR = r"(\bair\b|luft|trocken|\baire\b|\bsec[oa]?\b|\bdry\b)"
 _PATTERNS: tuple[tuple[str, str], ...] = (
     ("count", r"^(qty|quantity|count|number|no\.? of|nb|nombre|qte|quantite)\b"),
