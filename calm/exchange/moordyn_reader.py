@@ -25,6 +25,7 @@ from calm.whole_file import read_text
 
 _FREE = ("free", "connect", "point")
 _CURRENTS = "current_profile.txt"
+_STEADY = ("1", "3")  # of `Currents`; the others vary in time
 _NEAR, _NEAR_AT_LEAST = 0.05, 2.0
 """Share of the depth, and metres: an upper end so near the surface hangs under a float."""
 
@@ -109,7 +110,8 @@ def read_moordyn(path: Path) -> Design:
             if name not in points:
                 raise line.refuse(f"its end `{name}` is not a point of the file")
             at.setdefault(name, []).append(line)
-    design = Design("MoorDyn", path.stem, [], _water(options, points, path), notes=[_NOTE])
+    design = Design("MoorDyn", path.stem, [], None, notes=[_NOTE])
+    design.water = _water(options, points, path, design.dropped)
     types = {row.words.get("name", ""): row for row in tables["types"]}
     file = MoorDynFile(points, types, lines, at, design)
     design.dropped.append(Remark("line types", "damping, bending stiffness, added mass"))
@@ -183,7 +185,9 @@ def is_held(point: SectionRow) -> bool:
     return not point.words.get("attachment", "").lower().startswith(_FREE)
 
 
-def _water(options: dict[str, str], points: dict[str, SectionRow], path: Path) -> ImportedWater:
+def _water(
+    options: dict[str, str], points: dict[str, SectionRow], path: Path, dropped: list[Remark]
+) -> ImportedWater:
     lowest = min(point.number("z") for point in points.values())
     depth = _option(options, "wtrdpth", "depth", default=-lowest)
     if depth <= 0.0:
@@ -191,9 +195,14 @@ def _water(options: dict[str, str], points: dict[str, SectionRow], path: Path) -
     water = ImportedWater(depth)
     water.density = _option(options, "wtrdnsty", "rhow", "rho", default=CATALOGUE_DENSITY)
     water.gravity = _option(options, "g", "gravity", default=STANDARD_GRAVITY)  # its own
-    beside = path.with_name(_CURRENTS)
-    if options.get("currents", "0") not in ("0", "none") and beside.is_file():
+    kind, beside = options.get("currents", "0"), path.with_name(_CURRENTS)
+    if kind in _STEADY and beside.is_file():
         water.current = _currents(beside)
+    elif kind not in ("0", "none"):
+        lacks = f"without {_CURRENTS} beside the file" if kind in _STEADY else "which vary in time"
+        dropped.append(Remark("current", f"`Currents` {kind}, {lacks}: the water is still"))
+    if options.get("wavekin", "0") not in ("0", "none"):
+        dropped.append(Remark("waves", f"`WaveKin` {options['wavekin']}"))
     return water
 
 
