@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
@@ -12,7 +11,7 @@ from calm.case import Mooring
 from calm.case.parts import clamps_down
 from calm.errors import UsageError, nearest
 from calm.motion.line_response import Forward
-from calm.motion.matching import labels_of
+from calm.motion.matching import aligned, labels_of
 from calm.physics.line import Floats
 from calm.records.instrument_series import Identity
 
@@ -130,7 +129,7 @@ def _by_place(
     few, many = (one, other) if len(one) <= len(other) else (other, one)
     if not len(few):
         return {}, [f"{series[i].named} is at no free place of the line" for i in rows]
-    best, second = _aligned(few, many)
+    best, second = aligned(few, many, 0.01, 1.0)
     if second is not None and second[0] - best[0] < CLEAR:
         differs = next(k for k in range(len(few)) if best[1][k] != second[1][k])
         row = differs if few is one else best[1][differs]
@@ -144,35 +143,3 @@ def _by_place(
     left = [i for i in rows if i not in found]
     return found, [f"{series[i].named}, nominally at {series[i].nominal:.0f} m, is at no place of "
                    f"{line.name}" for i in left]  # fmt: skip
-
-
-def _aligned(
-    few: Floats, many: Floats
-) -> tuple[tuple[float, list[int]], tuple[float, list[int]] | None]:
-    """Return the cheapest way to set few depths on many in their order, and the next best.
-
-    Its cost: the sum of how far each spacing between neighbours is off, and a hundredth of how far
-    the depths are, which tells apart what the spacings cannot [m].
-    """
-    count, places = len(few), len(many)
-
-    def solved(forbidden: tuple[int, int] | None) -> tuple[float, list[int]]:
-        off = 0.01 * np.abs(few[:, None] - many[None, :])
-        if forbidden is not None:
-            off[forbidden] = np.inf
-        cost, back = off[0].copy(), []
-        for i in range(1, count):
-            step = np.abs((few[i] - few[i - 1]) - (many[None, :] - many[:, None]))
-            whole = np.where(np.tri(places, dtype=bool), np.inf, cost[:, None] + step)
-            back.append(whole.argmin(axis=0))
-            cost = whole.min(axis=0) + off[i]
-        chosen = [int(cost.argmin())]
-        for table in reversed(back):
-            chosen.append(int(table[chosen[-1]]))
-        return float(cost.min()), chosen[::-1]
-
-    best = solved(None)
-    others = [solved((i, best[1][i])) for i in range(count)] if places > count or count > 1 else []
-    real = [one for one in others
-            if np.isfinite(one[0]) and all(a < b for a, b in pairwise(one[1]))]  # fmt: skip
-    return best, min(real, key=lambda one: one[0], default=None)

@@ -233,43 +233,51 @@ def matched_by_place(
         )
     order = np.argsort([one.nominal for one in sensors], kind="stable")
     down = sorted(places, key=lambda point: float(still[point]))
-    miss = np.abs(
-        np.array([sensors[i].nominal for i in order])[:, None] - still[np.array(down)][None, :]
-    )
-    chosen, whole = _cheapest(miss)
-    for row in range(len(order)):
-        without = miss.copy()
-        without[row, chosen[row]] = np.inf
-        other, cost = _cheapest(without)
-        if cost - whole < CERTAIN:
-            first, second = labels[down[chosen[row]]], labels[down[other[row]]]
-            sensor = sensors[order[row]]
-            raise UsageError(
-                f"--match: the sensor at {sensor.nominal:.1f} m ({sensor.label or sensor.source}) "
-                f"may be `{first}` or `{second}`; match by label, or give fewer sensors"
-            )
+    nominal = np.array([sensors[i].nominal for i in order])
+    (cost, chosen), second = aligned(nominal, still[down], 1.0, 0.0)
+    if second is not None and second[0] - cost < CERTAIN:
+        row = next(k for k in range(len(order)) if chosen[k] != second[1][k])
+        first, other = labels[down[chosen[row]]], labels[down[second[1][row]]]
+        sensor = sensors[order[row]]
+        raise UsageError(
+            f"--match: the sensor at {sensor.nominal:.1f} m ({sensor.label or sensor.source}) "
+            f"may be `{first}` or `{other}`; match by label, or give fewer sensors"
+        )
     return {int(i): down[j] for i, j in zip(order, chosen, strict=True)}
 
 
-def _cheapest(miss: Floats) -> tuple[list[int], float]:
-    """Return columns, rising, one for each row, whose sum is least, and that sum; infinite without
-    any.
+def aligned(
+    few: Floats, many: Floats, depths: float, spacings: float
+) -> tuple[tuple[float, list[int]], tuple[float, list[int]] | None]:
+    """Return the cheapest way to set few depths on many in their order, and the next best.
+
+    Parameters
+    ----------
+    few, many : rising [m]
+    depths, spacings : what a metre costs by which a depth is off, and a spacing between neighbours
     """
-    rows, columns = miss.shape
-    best = np.full((rows + 1, columns + 1), np.inf)
-    best[0] = 0.0
-    for i in range(rows):
-        for j in range(columns):
-            best[i + 1, j + 1] = min(best[i + 1, j], best[i, j] + miss[i, j])
-    if np.isinf(best[rows, columns]):
-        return [], float("inf")
-    chosen, j = [], columns
-    for i in range(rows, 0, -1):
-        while best[i, j - 1] == best[i, j]:
-            j -= 1
-        chosen.append(j - 1)
-        j -= 1
-    return chosen[::-1], float(best[rows, columns])
+    places = len(many)
+
+    def solved(forbidden: tuple[int, int] | None) -> tuple[float, list[int]]:
+        off = depths * np.abs(few[:, None] - many[None, :])
+        if forbidden is not None:
+            off[forbidden] = np.inf
+        cost, back = off[0].copy(), []
+        for i in range(1, len(few)):
+            step = np.abs((few[i] - few[i - 1]) - (many[None, :] - many[:, None]))
+            down = np.tri(places, dtype=bool)
+            whole = np.where(down, np.inf, cost[:, None] + spacings * step)
+            back.append(whole.argmin(axis=0))
+            cost = whole.min(axis=0) + off[i]
+        chosen = [int(cost.argmin())]
+        for table in reversed(back):
+            chosen.append(int(table[chosen[-1]]))
+        return float(cost.min()), chosen[::-1]
+
+    best = solved(None)
+    others = [solved(pair) for pair in enumerate(best[1])]
+    real = [one for one in others if np.isfinite(one[0])]
+    return best, min(real, key=lambda one: one[0], default=None)
 
 
 CONSTANT = 1e-6

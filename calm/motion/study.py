@@ -21,6 +21,7 @@ from calm.motion.remarks import (
     OF_LINE,
     Agreement,
     Fault,
+    SensorFit,
     agreement,
     alone_remarks,
     calm_times,
@@ -33,7 +34,6 @@ from calm.motion.remarks import (
     pchip,
     rms,
 )
-from calm.motion.sensor_fit import SensorFit
 from calm.motion.unknown_currents import learn_currents, with_knots
 from calm.motion.whole_record import estimate_common
 from calm.physics.line import Floats
@@ -154,7 +154,7 @@ def judged(
     Parameters
     ----------
     measured : with the sensors that were hidden
-    result : of `calm.motion.correction.run_motion`
+    result : of `calm motion`
     diagnosis : what is wrong
     """
     used = task.measured
@@ -334,7 +334,7 @@ def series_of(
     ----------
     measured : with the sensors that were hidden
     used : labels of those that were not
-    result : of `calm.motion.correction.run_motion`
+    result : of `calm motion`
     """
     found = []
     for j, label in enumerate(measured.label):
