@@ -12,8 +12,7 @@ import numpy as np
 from calm.assemble import assemble_floating, assemble_line, assemble_water
 from calm.case.measure import anchor_weight_of, result_of
 from calm.case.memory import Forgetful, Memory
-from calm.case.origin import Origin, ReadFromFile, as_read
-from calm.case.parts import naming_the_piece
+from calm.case.parts import Origin, ReadFromFile, as_read, naming_the_piece
 from calm.case.profilers import profilers_of
 from calm.case.result import Result
 from calm.case.tow import Tow

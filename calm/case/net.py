@@ -16,8 +16,7 @@ from calm.assemble import assemble_water
 from calm.case.measure import result_of
 from calm.case.mooring import Mooring, line_of, refuse_in_the_slope
 from calm.case.net_result import EndLoad, NetResult, NodePlace
-from calm.case.origin import Origin, ReadFromFile, as_read
-from calm.case.parts import naming_the_piece
+from calm.case.parts import Origin, ReadFromFile, as_read, naming_the_piece
 from calm.case.result import Accuracy, AnchorLoad, Result
 from calm.case.tow import Tow
 from calm.errors import NoEquilibrium

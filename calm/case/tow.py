@@ -12,8 +12,7 @@ from typing import Any
 from calm.assemble import assemble_line, assemble_water
 from calm.case.measure import clamps_of, components_of, shape_of
 from calm.case.memory import Forgetful, Memory
-from calm.case.origin import Origin, ReadFromFile
-from calm.case.parts import cut_like, naming_the_piece
+from calm.case.parts import Origin, ReadFromFile, cut_like, naming_the_piece
 from calm.case.result import Accuracy, Solved, document_of
 from calm.case.strumming import StrummingBand, strumming_of, tow_band
 from calm.case.warnings import warnings_of

@@ -13,7 +13,6 @@ from calm.case import Mooring
 from calm.case.parts import clamps_down
 from calm.dataset.discovery import hashed
 from calm.errors import UsageError, nearest, not_among
-from calm.files import Clamp, Piece
 from calm.motion.line_response import Forward
 from calm.motion.measurements import FREE, MooringMeasurements, joined, read_currents
 from calm.motion.remarks import ALL, Fault
@@ -155,18 +154,17 @@ def named_by_serial(sensors: Sequence[Sensor], mooring: Mooring) -> list[Sensor]
     One whose number is that of no part, or of several, is called by its number.
     """
     pieces = mooring.file.pieces
-    parts: list[Clamp | Piece] = [*clamps_down(pieces), *pieces]
-    labels: dict[str, list[str]] = {}
-    for part in parts:
-        if part.serial:
-            labels.setdefault(_plain(part.serial), []).append(part.label)
-    found = []
-    for sensor in sensors:
-        if not sensor.label and sensor.serial:
-            mine = labels.get(_plain(sensor.serial), [])
-            sensor = replace(sensor, label=mine[0] if len(mine) == 1 else sensor.serial)
-        found.append(sensor)
-    return found
+    parts = [(one.label, one.serial) for one in clamps_down(pieces)]
+    parts += [(one.label, one.serial) for one in pieces]
+
+    def called(number: str) -> str:
+        mine = [label for label, own in parts if own and _plain(own) == _plain(number)]
+        return mine[0] if len(mine) == 1 else number
+
+    return [
+        replace(one, label=called(one.serial)) if one.serial and not one.label else one
+        for one in sensors
+    ]
 
 
 def _plain(serial: str) -> str:
