@@ -110,7 +110,7 @@ class Net(ReadFromFile):
 
     def with_length(self, index: int, length: float) -> Net:
         """Return the net with another unstretched length [m] of a piece of the file."""
-        number = leg_numbers(self.file.legs)[index]
+        number = leg_numbers(self.file)[index]
         own = index - self.file.legs[number].first
         lines = [line.line for line in self.lines]
         lines[number] = lines[number].with_length(own, length)

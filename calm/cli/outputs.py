@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Protocol
+from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from calm.case.explain import Explanation
     from calm.case.net_result import AnyResult
     from calm.case.uncertain import Uncertain
+    from calm.cli.tow import TabulatedTow
     from calm.drawing.schematic.in_terminal import TerminalSchematic
     from calm.report.blocks import ReportPart
 
@@ -29,27 +30,6 @@ OutputPath = Annotated[Path | None, Parameter(allow_leading_hyphen=True)]
 
 STDOUT = Path("-")
 """What a path says that stands for the standard output."""
-
-
-class Shown(Protocol):
-    """What a command has to show of one file."""
-
-    @property
-    def file(self) -> Path:
-        """The file it was read from."""
-
-    @property
-    def warnings(self) -> tuple[str, ...]:
-        """What neither a CSV table nor an exit code can tell."""
-
-    def document(self) -> dict[str, Any]:
-        """The JSON object."""
-
-    def parts(self) -> list[Shows]:
-        """What a terminal shows; nothing where there is nothing to show."""
-
-    def rendered(self, suffix: str) -> bytes | None:
-        """A picture or a report, by a file's ending; None where there is nothing to show."""
 
 
 @dataclass(frozen=True)
@@ -235,13 +215,13 @@ class Outputs:
         if self.json is not None:
             write_file(self.json, text().encode())
 
-    def write(self, shown: Sequence[Shown], to_csv: Callable[[], str]) -> None:
+    def write(self, shown: Sequence[FileOutcome | TabulatedTow], to_csv: Callable[[], str]) -> None:
         """Write the files, then the standard output: what was asked for there, or the tables.
 
         Parameters
         ----------
-        shown : sequence of Shown
-            One for each of `files`, in order.
+        shown : sequence
+            What there is to show of each of `files`, in order.
         to_csv : callable
             Makes the CSV table of all of them; called only where it was asked for.
 
