@@ -135,8 +135,8 @@ def motion(
     from calm.motion.instrument_file import read_instruments
     from calm.motion.line_places import places_of
     from calm.motion.motion_estimate import RecoveredMooring
-    from calm.motion.sensors import split_label
     from calm.motion.study import series_of
+    from calm.records.instrument_series import split_label
     from calm.report.folder import check_folder, printed, write_report
     from calm.report.html import page
     from calm.report.motion_report import motion_document, motion_part, motion_report

@@ -10,8 +10,7 @@ import numpy as np
 from calm.case import Mooring
 from calm.case.parts import clamps_down
 from calm.errors import UsageError, nearest
-from calm.motion.line_response import Forward
-from calm.motion.matching import aligned, labels_of
+from calm.motion.line_response import Forward, labels_of
 from calm.physics.line import Floats
 from calm.records.instrument_series import Identity
 
@@ -143,3 +142,37 @@ def _by_place(
     left = [i for i in rows if i not in found]
     return found, [f"{series[i].named}, nominally at {series[i].nominal:.0f} m, is at no place of "
                    f"{line.name}" for i in left]  # fmt: skip
+
+
+def aligned(
+    few: Floats, many: Floats, depths: float, spacings: float
+) -> tuple[tuple[float, list[int]], tuple[float, list[int]] | None]:
+    """Return the cheapest way to set few depths on many in their order, and the next best.
+
+    Parameters
+    ----------
+    few, many : rising [m]
+    depths, spacings : what a metre costs by which a depth is off, and a spacing between neighbours
+    """
+    places = len(many)
+
+    def solved(forbidden: tuple[int, int] | None) -> tuple[float, list[int]]:
+        off = depths * np.abs(few[:, None] - many[None, :])
+        if forbidden is not None:
+            off[forbidden] = np.inf
+        cost, back = off[0].copy(), []
+        for i in range(1, len(few)):
+            step = np.abs((few[i] - few[i - 1]) - (many[None, :] - many[:, None]))
+            down = np.tri(places, dtype=bool)
+            whole = np.where(down, np.inf, cost[:, None] + spacings * step)
+            back.append(whole.argmin(axis=0))
+            cost = whole.min(axis=0) + off[i]
+        chosen = [int(cost.argmin())]
+        for table in reversed(back):
+            chosen.append(int(table[chosen[-1]]))
+        return float(cost.min()), chosen[::-1]
+
+    best = solved(None)
+    others = [solved(pair) for pair in enumerate(best[1])]
+    real = [one for one in others if np.isfinite(one[0])]
+    return best, min(real, key=lambda one: one[0], default=None)

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from calm.batch.profiles import Batch, Profiles
 from calm.case import Mooring
+from calm.case.parts import clamps_down
 from calm.motion import common_unknowns
 from calm.motion.common_unknowns import Common
 from calm.motion.measurements import FREE, MooringMeasurements
@@ -243,6 +244,23 @@ class Forward:
 def points(profiles: Profiles) -> Floats:
     """Return (n, p) depths of all points [m]."""
     return np.hstack([profiles.clamp_depth, profiles.depth_top])
+
+
+def labels_of(mooring: Mooring) -> tuple[str, ...]:
+    """Return the labels of all points, see `Forward`."""
+    pieces = mooring.file.pieces
+    return (
+        *(clamp.label for clamp in clamps_down(pieces)),
+        *(piece.label for piece in pieces),
+    )
+
+
+def instruments_of(mooring: Mooring) -> list[int]:
+    """Return the points that may be instruments: all clamps, and the pieces whose role it is."""
+    pieces = mooring.file.pieces
+    clamps = len(clamps_down(pieces))
+    inline = [clamps + i for i, piece in enumerate(pieces) if piece.component.role == "instrument"]
+    return [*range(clamps), *inline]
 
 
 FEWEST = 20

@@ -13,11 +13,13 @@ from calm.case import Mooring
 from calm.case.parts import clamps_down
 from calm.dataset.discovery import hashed
 from calm.errors import UsageError, nearest, not_among
-from calm.motion.line_response import Forward
+from calm.motion.line_places import aligned
+from calm.motion.line_response import Forward, instruments_of, labels_of
 from calm.motion.measurements import FREE, MooringMeasurements, joined, read_currents
 from calm.motion.remarks import ALL, Fault
-from calm.motion.sensors import Sensor, parse_flags, read_sea_level, read_sensors, split_label
+from calm.motion.sensors import Sensor, parse_flags, read_sea_level, read_sensors
 from calm.physics.line import Floats
+from calm.records.instrument_series import split_label
 
 _MATCHES = ("label", "height", "depth")
 GAP = np.timedelta64(2, "h")
@@ -131,23 +133,6 @@ CERTAIN = 2.0
 """An order of sensors counts as the only one where any other is off by so much more [m]."""
 
 
-def labels_of(mooring: Mooring) -> tuple[str, ...]:
-    """Labels of all points, see `calm.motion.line_response`."""
-    pieces = mooring.file.pieces
-    return (
-        *(clamp.label for clamp in clamps_down(pieces)),
-        *(piece.label for piece in pieces),
-    )
-
-
-def instruments_of(mooring: Mooring) -> list[int]:
-    """Return the points that may be instruments: all clamps, and the pieces whose role it is."""
-    pieces = mooring.file.pieces
-    clamps = len(clamps_down(pieces))
-    inline = [clamps + i for i, piece in enumerate(pieces) if piece.component.role == "instrument"]
-    return [*range(clamps), *inline]
-
-
 def named_by_serial(sensors: Sequence[Sensor], mooring: Mooring) -> list[Sensor]:
     """Return the sensors, each without a label called as the part that has its serial number.
 
@@ -242,40 +227,6 @@ def matched_by_place(
             f"may be `{first}` or `{other}`; match by label, or give fewer sensors"
         )
     return {int(i): down[j] for i, j in zip(order, chosen, strict=True)}
-
-
-def aligned(
-    few: Floats, many: Floats, depths: float, spacings: float
-) -> tuple[tuple[float, list[int]], tuple[float, list[int]] | None]:
-    """Return the cheapest way to set few depths on many in their order, and the next best.
-
-    Parameters
-    ----------
-    few, many : rising [m]
-    depths, spacings : what a metre costs by which a depth is off, and a spacing between neighbours
-    """
-    places = len(many)
-
-    def solved(forbidden: tuple[int, int] | None) -> tuple[float, list[int]]:
-        off = depths * np.abs(few[:, None] - many[None, :])
-        if forbidden is not None:
-            off[forbidden] = np.inf
-        cost, back = off[0].copy(), []
-        for i in range(1, len(few)):
-            step = np.abs((few[i] - few[i - 1]) - (many[None, :] - many[:, None]))
-            down = np.tri(places, dtype=bool)
-            whole = np.where(down, np.inf, cost[:, None] + spacings * step)
-            back.append(whole.argmin(axis=0))
-            cost = whole.min(axis=0) + off[i]
-        chosen = [int(cost.argmin())]
-        for table in reversed(back):
-            chosen.append(int(table[chosen[-1]]))
-        return float(cost.min()), chosen[::-1]
-
-    best = solved(None)
-    others = [solved(pair) for pair in enumerate(best[1])]
-    real = [one for one in others if np.isfinite(one[0])]
-    return best, min(real, key=lambda one: one[0], default=None)
 
 
 CONSTANT = 1e-6

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from calm.case import Mooring
 from calm.errors import UsageError, unknown
 from calm.motion.correction import Task, estimate_in_memory
-from calm.motion.line_response import Forward
-from calm.motion.matching import instruments_of, labels_of, without
+from calm.motion.line_response import Forward, instruments_of, labels_of
+from calm.motion.matching import without
 from calm.motion.measurements import CurrentMeasurements, MooringMeasurements, level_names
 from calm.motion.remarks import (
     ALL,

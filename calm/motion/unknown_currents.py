@@ -25,8 +25,7 @@ from calm.case import Mooring
 from calm.errors import UsageError
 from calm.motion.common_unknowns import Common
 from calm.motion.estimate import CurrentsState, Posterior, posterior
-from calm.motion.line_response import Forward, Linear, LineResponse, ReadCurrents
-from calm.motion.matching import labels_of
+from calm.motion.line_response import Forward, Linear, LineResponse, ReadCurrents, labels_of
 from calm.motion.measurements import FREE, CurrentMeasurements, MooringMeasurements
 from calm.motion.whole_record import common_beforehand, fixed_slopes, forwards_of, repeated
 from calm.physics.line import Floats, Integers
