@@ -262,10 +262,8 @@ def sweep(tow: Tow, speeds: Iterable[float]) -> list[TowResult | NoEquilibrium]:
 
     Parameters
     ----------
-    tow : Tow
-        Its own speed only decides the length of a cable that is fitted.
-    speeds : iterable of float
-        Of the ship [m/s], > 0; taken one at a time.
+    tow : its own speed only decides the length of a cable that is fitted
+    speeds : of the ship [m/s], > 0; taken one at a time
 
     Returns
     -------

@@ -256,8 +256,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     Parameters
     ----------
-    arguments : sequence of str, optional
-        The words after ``calm``; those of the process when absent.
+    arguments : the words after ``calm``; those of the process when absent
 
     Returns
     -------

@@ -123,12 +123,9 @@ class Outputs:
 
     Parameters
     ----------
-    files : tuple of Path
-        The files the outputs are made from; none where the question is in the options.
-    json, csv : Path or None
-        One JSON document, one CSV table.
-    plot, html, pdf, netcdf : Path or None
-        A picture, a page, a report, a dataset for each file.
+    files : the files the outputs are made from; none where the question is in the options
+    json, csv : one JSON document, one CSV table
+    plot, html, pdf, netcdf : a picture, a page, a report, a dataset for each file
     """
 
     files: tuple[Path, ...] = ()
@@ -192,9 +189,8 @@ class Outputs:
 
         Parameters
         ----------
-        document : callable
-            Makes the JSON object; called only where it was asked for. The version of CALM, and
-            with it the units, are added where it has none.
+        document : makes the JSON object; called only where it was asked for. The version of CALM,
+            and with it the units, are added where it has none
 
         Raises
         ------
@@ -220,10 +216,8 @@ class Outputs:
 
         Parameters
         ----------
-        shown : sequence
-            What there is to show of each of `files`, in order.
-        to_csv : callable
-            Makes the CSV table of all of them; called only where it was asked for.
+        shown : what there is to show of each of `files`, in order
+        to_csv : makes the CSV table of all of them; called only where it was asked for
 
         Raises
         ------

@@ -120,15 +120,12 @@ def read_mooring(
 
     Parameters
     ----------
-    path : path
-        The mooring file.
-    environment : str or path, optional
-        A variant named in the file, or an environment file; its keys replace those of the
-        file's own `environment`.
+    path : the mooring file
+    environment : a variant named in the file, or an environment file; its keys replace those of the
+        file's own `environment`
     catalogs : catalogue files that come before the user's own and the shipped ones, the last first
-    text : str, optional
-        In place of the file's content. The file need not exist; what the text refers to is looked
-        for beside it.
+    text : in place of the file's content. The file need not exist; what the text refers to is
+        looked for beside it
     stand_in : let a line that has no anchor yet stand on one that holds anything, of the id
         `STAND_IN`
     net : let the file have legs
