@@ -95,10 +95,7 @@ class Mooring(ReadFromFile):
     def line(self) -> Line:
         """The pieces above the anchor, a piece that is cut to fit at its cut length.
 
-        Raises
-        ------
-        NoEquilibrium
-            Where no length fits.
+        NoEquilibrium: where no length fits.
         """
         if self._line is not None:
             return self._line
@@ -143,10 +140,7 @@ class Mooring(ReadFromFile):
     def solve(self, environment: str | Path | None = None) -> Result:
         """Find the static equilibrium, in another of its environments where one is given.
 
-        Raises
-        ------
-        NoEquilibrium
-            With status, message and advice, where there is none that passes every check.
+        NoEquilibrium: with status, message and advice, where there is none that passes every check.
         """
         if environment is not None:
             return self.with_(environment=environment).solve()
@@ -157,10 +151,7 @@ class Mooring(ReadFromFile):
     def equilibrium(self, water: Water) -> Solution:
         """The line solved in some water, refused where the mooring is not meant to stand so.
 
-        Raises
-        ------
-        NoEquilibrium
-            As `solve` does.
+        NoEquilibrium: as `solve` does.
         """
         with naming_the_piece(self.file.pieces):
             solution = self.memory.of(solve_mooring, self.line, water, self.settings)

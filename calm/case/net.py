@@ -189,10 +189,7 @@ class Net(ReadFromFile):
     def solve(self, environment: str | Path | None = None) -> NetResult:
         """Find the static equilibrium, in another of its environments where one is given.
 
-        Raises
-        ------
-        NoEquilibrium
-            With status, message and advice, where there is none that passes every check.
+        NoEquilibrium: with status, message and advice, where there is none that passes every check.
         """
         if environment is not None:
             return self.with_(environment=environment).solve()

@@ -146,10 +146,7 @@ class Tow(ReadFromFile):
     def line(self) -> Line:
         """The pieces from the ship down; one that is paid out to reach a depth has its cut length.
 
-        Raises
-        ------
-        NoEquilibrium
-            Where no length reaches the depth.
+        NoEquilibrium: where no length reaches the depth.
         """
         if self._line is not None:
             return self._line
@@ -174,10 +171,7 @@ class Tow(ReadFromFile):
     def solve(self, environment: str | Path | None = None) -> TowResult:
         """Find the steady shape, in another of its environments where one is given.
 
-        Raises
-        ------
-        NoEquilibrium
-            With status, message and advice, where there is none that passes every check.
+        NoEquilibrium: with status, message and advice, where there is none that passes every check.
         """
         if environment is not None:
             return self.with_(environment=environment).solve()

@@ -61,10 +61,8 @@ def points_of(series: Sequence[Identity], line: LinePlaces) -> tuple[dict[int, i
     By its label; else by its serial number; else, where none of its file has either, by nominal
     depths, in their order down the line.
 
-    Raises
-    ------
-    UsageError
-        No series is of any point, or two are of the same, or their order is not the only one.
+    UsageError: no series is of any point, or two are of the same, or their order is not the only
+    one.
     """
     found: dict[int, int] = {}
     said, lost, placed = [], [], []

@@ -162,10 +162,8 @@ def matched_by_label(
 ) -> tuple[dict[int, int], list[str]]:
     """Return the point of each sensor whose label a part has, and what is said of the others.
 
-    Raises
-    ------
-    UsageError
-        A file does not say what its sensor is called; a label is that of two parts; none is of any.
+    UsageError: a file does not say what its sensor is called; a label is that of two parts; none is
+    of any.
     """
     points: dict[int, int] = {}
     lost: list[str] = []
@@ -281,10 +279,8 @@ def plausible(sensor: Sensor, place: float, seabed: float) -> tuple[Sensor, list
 def unusable(measured: MooringMeasurements, still: Floats) -> dict[str, str]:
     """Return why sensors cannot be used, by label; what cannot be right is refused.
 
-    Raises
-    ------
-    UsageError
-        A sensor is nowhere near its place on the line, so that its unit or its label is wrong.
+    UsageError: a sensor is nowhere near its place on the line, so that its unit or its label is
+    wrong.
     """
     reasons, complaints = {}, []
     least = np.array([_least(column) for column in measured.depth.T])

@@ -39,10 +39,7 @@ def fitted(asked: Sequence[str] = (), currents: bool = True) -> tuple[str, ...]:
     Without currents a factor on all drag is one on the currents: that of cables is none unless
     asked for, and the length is one of those that are estimated.
 
-    Raises
-    ------
-    UsageError
-        What is asked for cannot be estimated.
+    UsageError: what is asked for cannot be estimated.
     """
     for name in asked:
         if name not in FACTORS:

@@ -228,10 +228,7 @@ def _from_csv(path: Path, latitude: float) -> list[Sensor]:
 def parse_flags(text: str) -> frozenset[int]:
     """Return the flags of a text such as ``1,2``.
 
-    Raises
-    ------
-    UsageError
-        They are no flags, or 8 is among them: what was interpolated is no measurement.
+    UsageError: they are no flags, or 8 is among them: what was interpolated is no measurement.
     """
     try:
         flags = frozenset(int(part) for part in text.split(","))
@@ -259,10 +256,7 @@ _STANDARD = (
 def read_sea_level(path: Path) -> tuple[NDArray[np.datetime64], Floats]:
     """Return times, rising, and the height of the sea surface above a datum [m].
 
-    Raises
-    ------
-    InputError
-        The file cannot be read, or holds no height with its unit, or one that cannot be.
+    InputError: the file cannot be read, or holds no height with its unit, or one that cannot be.
     """
     if not path.exists():
         raise InputError([Problem(str(path), 0, 0, "no such file")])

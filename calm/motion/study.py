@@ -251,10 +251,7 @@ def judge_hidden(
 def several(measured: MooringMeasurements, hidden: Sequence[str]) -> list[str]:
     """Return the sensors that can be hidden in turn.
 
-    Raises
-    ------
-    UsageError
-        There is only one.
+    UsageError: there is only one.
     """
     rest = [label for label in measured.label if label not in hidden]
     if len(rest) < 2:

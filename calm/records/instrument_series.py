@@ -135,10 +135,7 @@ def read_series(
 def files_given(given: Sequence[str]) -> list[tuple[str, Path]]:
     """Return the files of some arguments, each with the label that is given for it, or ``""``.
 
-    Raises
-    ------
-    InputError
-        There is no such file, or a folder has no NetCDF files.
+    InputError: there is no such file, or a folder has no NetCDF files.
     """
     found: list[tuple[str, Path]] = []
     problems = []
