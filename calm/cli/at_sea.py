@@ -101,7 +101,7 @@ def deck(
             "deck_time": (deck_time, "time"),
         }
     )
-    designs, tows = read_designs(files, environment, catalog or [], None, "calm deck", nets=True)
+    designs, tows = read_designs(files, environment, catalog or [], None, "calm deck")
     if tows:
         narrate(f"not drawn, because they are tows: {', '.join(map(str, tows))}")
     show_units(units, [one.file for design in designs for one in design.moorings])

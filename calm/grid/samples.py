@@ -131,14 +131,6 @@ class Samples:
     deviation: Floats
     value: Floats
 
-    def without(self, labels: Sequence[str]) -> Samples:
-        """Return the samples but for some instruments."""
-        kept = [j for j, label in enumerate(self.label) if label not in labels]
-        return Samples(
-            self.time, tuple(self.label[j] for j in kept), self.depth[:, kept],
-            self.deviation[:, kept], self.value[:, kept],
-        )  # fmt: skip
-
 
 def common_times(
     depths: MooringDepths, series: Sequence[InstrumentSeries], step: np.timedelta64 | None
