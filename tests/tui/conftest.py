@@ -42,7 +42,7 @@ components:
 PAINT = Compositor.render_update
 PARSE = Stylesheet._parse_rules
 PARSED = {}
-"""The rules of every style sheet, by its text and variables: those of all applications are alike."""
+"""The rules of style sheets by text and variables, alike for all applications."""
 TERMINAL = {"TERM": "xterm-256color"}
 
 NAMES = {
