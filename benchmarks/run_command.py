@@ -32,7 +32,7 @@ COMMANDS = {
 
 
 def wall_times(arguments: list[str], repetitions: int) -> list[float]:
-    """Seconds of each whole process; the first, which fills the caches, is not counted but alone."""
+    """Seconds of each whole process; the first, which fills the caches, counts only alone."""
     times = []
     for _ in range(repetitions + 1):
         start = time.perf_counter()
