@@ -88,8 +88,7 @@ def quantities(given: Mapping[str, tuple[str | None, str]]) -> dict[str, float]:
 
     Parameters
     ----------
-    given : mapping
-        Of the parameter's name to its text (None where absent) and its dimension.
+    given : of the parameter's name to its text (None where absent) and its dimension
 
     Raises
     ------
