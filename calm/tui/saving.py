@@ -19,9 +19,9 @@ from calm.files.editing import KeptWork, state_folder
 from calm.files.editing.working_file import Keeper
 from calm.tui.checking import Reading
 from calm.tui.dialogs import Answer, Asked, InputSheet, Question, Then, ask, choose
-from calm.tui.messages import Workspace, place_of
 from calm.tui.screen import DraftScreen
 from calm.tui.session import Session
+from calm.tui.workspace import Workspace, place_of
 
 if TYPE_CHECKING:
     from calm.tui.app import BuildApp

@@ -4,7 +4,7 @@ import pytest
 
 from calm.checks.finding import State
 from calm.files.editing import Draft
-from calm.tui.line.missing_figures import filled, missing_figures
+from calm.tui.line.filling import filled, missing_figures
 from calm.tui.live import judge
 from tests.tui.conftest import MOORING
 

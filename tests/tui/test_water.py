@@ -7,8 +7,7 @@ from textual.events import Paste
 
 from calm.tui.field import Field
 from calm.tui.water.currents_to_begin import _existing, imported
-from calm.tui.water.grid import Grid
-from calm.tui.water.grid_cells import GridCells
+from calm.tui.water.grid import Grid, GridCells
 from calm.tui.water.water_screen import WaterScreen
 from tests.tui.conftest import MOORING
 

@@ -10,7 +10,7 @@ from math import ceil, isfinite
 from rich.cells import cell_len, set_cell_size
 from rich.text import Text
 
-from calm.drawing.graph.scale import number, round_numbers
+from calm.drawing.graph import number, round_numbers
 
 ACROSS, DOWN = 2, 4
 """Dots of a cell."""

@@ -11,7 +11,6 @@ from textual.events import DescendantFocus, Key
 
 from calm.files.components import KINDS
 from calm.files.editing import Draft
-from calm.tui import key_table
 from calm.tui.cell_editor import CellEditor
 from calm.tui.dialogs import InputSheet, ask, choose
 from calm.tui.key_table import bindings, hints
@@ -57,7 +56,7 @@ class BuilderScreen(LineScreen):
     def show_keys(self) -> None:
         """The keys of what has the focus."""
         focused = self.focused
-        place: key_table.Place = "line"
+        place = "line"
         if isinstance(focused, CellEditor):
             place = "cell"
         elif isinstance(focused, VerdictPane):
@@ -123,7 +122,7 @@ class BuilderScreen(LineScreen):
 
     def action_figures(self) -> None:
         """Fill in what is not known of the components."""
-        from calm.tui.line.missing_figures import Filling
+        from calm.tui.line.filling import Filling
 
         Filling(self.line).ask()
 

@@ -18,15 +18,14 @@ from calm.tui.cell_editor import CellEditor
 from calm.tui.checking import Reading
 from calm.tui.dialogs import Answer, Question, ask, choose
 from calm.tui.key_table import bindings
-from calm.tui.line.column_sheet import ask_column, ask_equipment, ask_times, rows_meant
-from calm.tui.line.line_cell import LineCell
+from calm.tui.line.filling import ask_column, ask_equipment, ask_times, rows_meant
 from calm.tui.line.mooring_sheet import naming
-from calm.tui.line.rows import table_rows
+from calm.tui.line.rows import LineCell, table_rows
 from calm.tui.line.table import EDITABLE, Column, Going, LineTable
-from calm.tui.messages import Workspace
 from calm.tui.names import Named, namings
 from calm.tui.table import EditableTable
 from calm.tui.verdict_text import Saying, why
+from calm.tui.workspace import Workspace
 
 _LEAST_WIDTHS: dict[Column, int] = {"length": 16}
 _LEAST_WIDTH = 6

@@ -10,10 +10,10 @@ from calm.files import Place
 from calm.tui.catalogue.catalogue_pane import CataloguePane, Purpose
 from calm.tui.line.line_pane import LinePane
 from calm.tui.line.table import LineTable
-from calm.tui.messages import Workspace
 from calm.tui.pictures import Pictures
 from calm.tui.screen import DraftScreen
 from calm.tui.verdict_pane import VerdictPane, state_word
+from calm.tui.workspace import Workspace
 
 
 class LineScreen(DraftScreen):

@@ -18,9 +18,9 @@ from calm.files import Place
 from calm.quantities import QUANTITIES
 from calm.tui.checking import needed
 from calm.tui.dialogs import Asked, InputSheet, ask
-from calm.tui.messages import Workspace
 from calm.tui.table import TableCells, TableColumn
 from calm.tui.theme import CURSOR, LOOKS, MARK
+from calm.tui.workspace import Workspace
 
 _TAIL = 4
 _EMPTY = (

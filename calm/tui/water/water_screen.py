@@ -21,7 +21,6 @@ from calm.tui.checking import needed
 from calm.tui.dialogs import Asked, InputSheet, ask
 from calm.tui.field import Field
 from calm.tui.key_table import bindings, hints
-from calm.tui.messages import Workspace, said
 from calm.tui.pictures import ProfilePicture
 from calm.tui.screen import DraftScreen, KeyBar
 from calm.tui.verdict_pane import state_word
@@ -35,8 +34,8 @@ from calm.tui.water.form import (
     WaterForm,
     fields_of_water,
 )
-from calm.tui.water.grid import Grid
-from calm.tui.water.grid_cells import GridCells
+from calm.tui.water.grid import Grid, GridCells
+from calm.tui.workspace import Workspace, said
 
 if TYPE_CHECKING:
     from calm.errors import Problem
