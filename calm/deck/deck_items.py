@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from itertools import groupby
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 from calm.case.net_result import legs_of
 from calm.case.result_tables import ClampRow, rows_by_place, rows_down
@@ -136,11 +136,6 @@ class DeckRow:
         return self.items[0]
 
     @property
-    def count(self) -> int:
-        """Return how many pieces and clamps share it."""
-        return len(self.items) + len(self.floats) + len(self.joints)
-
-    @property
     def label(self) -> str:
         """Label of the item, or those of the first and the last of several."""
         return label_of_run(self.items)
@@ -212,12 +207,7 @@ def _lies_on(run: tuple[DeckItem, ...], row: DeckRow, items: Sequence[DeckItem])
     return row.items[-1].label == first.on and len(every) == len(run)
 
 
-class _Labelled(Protocol):
-    @property
-    def label(self) -> str: ...
-
-
-def label_of_run(items: Sequence[_Labelled]) -> str:
+def label_of_run(items: Sequence[DeckItem]) -> str:
     """Return the label of an item, or those of the first and the last of several."""
     return items[0].label if len(items) == 1 else f"{items[0].label} – {items[-1].label}"
 

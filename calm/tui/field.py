@@ -26,7 +26,7 @@ def all_settled(fields: Iterable[Field]) -> bool:
     """
     wrong = [field for field in fields if not field.settle()]
     if wrong:
-        wrong[0].focus_input()
+        wrong[0].input.focus()
     return not wrong
 
 
@@ -119,10 +119,6 @@ class Field(Horizontal):
         with self.prevent(Input.Changed):
             self.input.value = text
         self._tell(Reading(text))
-
-    def focus_input(self) -> None:
-        """Type here."""
-        self.input.focus()
 
     def tell(self, note: str) -> None:
         """Show another note, as long as nothing is wrong."""

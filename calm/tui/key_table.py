@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Awaitable, Callable, Iterable, Iterator
+from collections.abc import Awaitable, Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
 
@@ -315,14 +315,10 @@ def all_keys() -> RenderableType:
         rows = [(action.keys, action.meaning) for action in ACTIONS[place]]
         parts += _listed(title, rows)
     for title, inherited in _OF_TEXTUAL.items():
-        parts += _listed(title, _told(inherited))
+        bound = [each for each in inherited if isinstance(each, Binding)]
+        told = [(each.key, f"{each.description.capitalize()}.") for each in bound]
+        parts += _listed(title, told)
     return Group(*parts)
-
-
-def _told(inherited: Iterable[BindingType]) -> Iterator[tuple[str, str]]:
-    for binding in inherited:
-        if isinstance(binding, Binding):
-            yield binding.key, f"{binding.description.capitalize()}."
 
 
 def _listed(title: str, rows: Iterable[tuple[str, str]]) -> list[RenderableType]:

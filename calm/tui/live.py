@@ -7,7 +7,6 @@ takes longer.
 from __future__ import annotations
 
 import os
-import time
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -49,7 +48,6 @@ class View:
     failure : why it could not
     findings : of the design check; none for a tow
     tighter : of each rule what another situation leaves less margin in, without being graver
-    seconds : that it took
     environments : the names of those that the file gives besides its own
     rows : down the file, clamps below their piece
     complete : whether the findings are all that `calm check` has, see `judge_fully`; a tow's, which
@@ -69,7 +67,6 @@ class View:
     failure: NoEquilibrium | None = None
     findings: tuple[Finding, ...] = ()
     tighter: tuple[Finding, ...] = ()
-    seconds: float = 0.0
     environments: tuple[str, ...] = ()
     rows: tuple[FoundRow, ...] = ()
     complete: bool = False
@@ -119,16 +116,14 @@ def judge(
     View : with the figures of `calm run` and the findings as given of `calm check`. Nothing that a
         person can write raises.
     """
-    started = time.perf_counter()
     memory = Memory() if keep is None else keep.memory
     view = View(text, _placed(path), environment, memory=memory)
     try:
-        view = _judged(view, catalogs)
+        return _judged(view, catalogs)
     except Exception as error:
         if os.environ.get("CALM_DEBUG") == "1":
             raise
-        view = replace(view, failure=internal_failure(error))
-    return replace(view, seconds=time.perf_counter() - started)
+        return replace(view, failure=internal_failure(error))
 
 
 def _placed(path: str | Path | None) -> Path:
@@ -144,7 +139,6 @@ def judge_fully(view: View, catalogs: Sequence[str | Path] = ()) -> View:
     """
     if view.complete or not view.anchored or not isinstance(view.result, Result | NetResult):
         return view
-    started = time.perf_counter()
     file = view.result.file
     moorings, problems = _in_all_environments(view, view.result.mooring, catalogs)
     assessment = check(*moorings)
@@ -152,8 +146,7 @@ def judge_fully(view: View, catalogs: Sequence[str | Path] = ()) -> View:
     rows = tuple(rows_of(file, view.result, (*findings, *tighter)))
     return replace(
         view, findings=findings, tighter=tighter, rows=rows, stands=assessment.stands,
-        elsewhere=tuple(problems), seconds=view.seconds + time.perf_counter() - started,
-        complete=True,
+        elsewhere=tuple(problems), complete=True,
     )  # fmt: skip
 
 

@@ -1,11 +1,11 @@
-"""What screens and workers tell the application, and where a mistake is for a person."""
+"""The file that is built as all screens have it: its mistakes, its view, and who judges it."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from textual.app import App
 from textual.content import Content
@@ -95,20 +95,14 @@ def mistakes(problems: Sequence[Problem], path: Path) -> str:
     return f"{count} mistake{'s' * (count != 1)} {where}"
 
 
-class Tell(Protocol):
-    """Says something in the last line of the screen, until the next key."""
-
-    def __call__(self, text: str, *, wrong: bool = False) -> None:
-        """Say it; `wrong` where something cannot be done."""
-
-
 class Workspace:
     """What all screens and their parts are handed.
 
     Parameters
     ----------
     session : the file that is built
-    tell : says something in the last line of the screen
+    tell : says something in the last line of the screen, until the next key; `wrong` where
+        something cannot be done
     edited : has the draft judged and kept, another one now
 
     Attributes
@@ -119,7 +113,9 @@ class Workspace:
     is_late : whether the view has been that of an earlier draft for some time
     """
 
-    def __init__(self, session: Session, tell: Tell, edited: Callable[[], object]) -> None:
+    def __init__(
+        self, session: Session, tell: Callable[..., object], edited: Callable[[], object]
+    ) -> None:
         self.session, self.tell, self.edited = session, tell, edited
         self.index: Index | None = None
         self.view: View | None = None

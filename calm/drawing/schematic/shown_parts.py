@@ -71,20 +71,13 @@ class Schematic:
 
     Attributes
     ----------
-    title, subtitle, note : str
-        Its name; water and place, or speed; how to read the figures.
-    columns : tuple of str
-        Those quantities of `HEADINGS` that are known.
-    parts : tuple of ShownPart
-        Clamped instruments after the piece they are on.
-    surface : bool
-        Whether the first part floats at the surface.
-    towed_by : TextRow or None
-        The text at the ship or the helicopter.
-    sea : TextRow or None
-        The text at the sea surface; None in air.
-    seabed : TextRow or None
-        The text at the seabed; None where its depth is unknown.
+    title, subtitle, note : its name; water and place, or speed; how to read the figures
+    columns : those quantities of `HEADINGS` that are known
+    parts : clamped instruments after the piece they are on
+    surface : whether the first part floats at the surface
+    towed_by : the text at the ship or the helicopter
+    sea : the text at the sea surface; None in air
+    seabed : the text at the seabed; None where its depth is unknown
     """
 
     title: str
@@ -99,15 +92,7 @@ class Schematic:
 
 
 def schematic_of(file: MooringFile, result: Result | TowResult | None = None) -> Schematic:
-    """Return what the schematic of a line shows.
-
-    Parameters
-    ----------
-    file : MooringFile
-        The line as read.
-    result : Result or TowResult, optional
-        Its solution, which shows depths under load and in the current.
-    """
+    """Return what the schematic of a line shows; as solved, where there is a result."""
     levels = levels_of(file, result)
     bottom = file.environment.depth
     cells = _Cells(bottom)
@@ -247,16 +232,11 @@ class Levels:
 
     Attributes
     ----------
-    lengths, depths : tuple of float
-        Cut length of each piece, and depth of its upper end [m].
-    clamps : mapping
-        Depth of each clamped instrument [m].
-    first : Piece
-        At the top of the line.
-    surface : bool
-        Whether that floats at the surface.
-    note : str
-        What the depths are.
+    lengths, depths : cut length of each piece, and depth of its upper end [m]
+    clamps : depth of each clamped instrument [m]
+    first : piece at the top of the line
+    surface : whether that floats at the surface
+    note : what the depths are
     """
 
     lengths: tuple[float, ...]

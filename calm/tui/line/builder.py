@@ -14,7 +14,13 @@ from calm.files.editing import Draft
 from calm.tui.cell_editor import CellEditor
 from calm.tui.dialogs import InputSheet, ask, choose
 from calm.tui.key_table import bindings, hints
-from calm.tui.line.comparing import Advising, Comparing
+from calm.tui.line.comparing import (
+    compare_with_file,
+    compare_with_saved,
+    offer_advice,
+    offer_papers,
+)
+from calm.tui.line.filling import ask_figures
 from calm.tui.line.line_pane import LinePane
 from calm.tui.line.line_screen import LineScreen
 from calm.tui.line.mooring_sheet import (
@@ -99,15 +105,15 @@ class BuilderScreen(LineScreen):
 
     def action_advise(self) -> None:
         """Offer changes that mend what was found."""
-        Advising(self.line).offer()
+        offer_advice(self.line)
 
     def action_compare(self) -> None:
         """Show what has changed since the file was saved."""
-        Comparing(self.line, self.pictures).with_saved()
+        compare_with_saved(self.line, self.pictures)
 
     def action_compare_file(self) -> None:
         """Show what is different in another file."""
-        Comparing(self.line, self.pictures).with_file()
+        compare_with_file(self.line, self.pictures)
 
     def action_overlay(self) -> None:
         """Draw the line in all its environments, or in its own alone."""
@@ -122,15 +128,11 @@ class BuilderScreen(LineScreen):
 
     def action_figures(self) -> None:
         """Fill in what is not known of the components."""
-        from calm.tui.line.filling import Filling
-
-        Filling(self.line).ask()
+        ask_figures(self.line)
 
     def action_papers(self) -> None:
         """Show the bill, or have report and sheets written."""
-        from calm.tui.line.comparing import Papers
-
-        Papers(self.line).offer()
+        offer_papers(self.line)
 
     def action_begin(self) -> None:
         """Begin an empty line with a mooring."""

@@ -1,4 +1,4 @@
-"""One column of several rows, entered one below the other or pasted as a list."""
+"""What is filled in for several rows at once: a column of them, or the figures that are missing."""
 
 from __future__ import annotations
 
@@ -19,7 +19,6 @@ from calm.tui.catalogue.component_screen import FormField, form_fields
 from calm.tui.checking import anything, count
 from calm.tui.dialogs import Answer, Asked, InputSheet, Question, ask, choose
 from calm.tui.field import Field
-from calm.tui.line.line_pane import LinePane
 from calm.tui.line.mooring_sheet import (
     RELEASES,
     entered,
@@ -31,11 +30,11 @@ from calm.tui.line.mooring_sheet import (
 )
 from calm.tui.line.rows import LineCell
 from calm.tui.line.table import Column, LineTable, location
-from calm.tui.live import View
 from calm.tui.workspace import Workspace
 
 if TYPE_CHECKING:
     from calm.tui.line.line_pane import LinePane
+    from calm.tui.live import View
 
 
 _TITLES = {"serial": "Serial numbers", "length": "Lengths", "label": "Labels", "codes": "Codes"}
@@ -55,7 +54,7 @@ class ColumnSheet(InputSheet):
         for each, text in zip(fields[first:], lines, strict=False):
             each.input.value = text
         last = min(first + len(lines), len(fields)) - 1
-        fields[last].focus_input()
+        fields[last].input.focus()
         if len(lines) > len(fields) - first:
             self.app.bell()
 
@@ -180,38 +179,32 @@ _ELSEWHERE = "part of an assembly of the catalogue: use its parts, or define it 
 _SOURCE = "data sheet, test certificate …"
 
 
-class Filling:
-    """Asks for all that is missing, and writes what was given."""
+def ask_figures(pane: LinePane) -> None:
+    """Ask for all that is missing, once the line is judged, and write what is given."""
+    workspace, session = pane.workspace, pane.session
+    if not pane.settle():
+        return
+    if workspace.view is None or not workspace.is_fresh:
+        workspace.tell("Missing figures are known once the line is judged")
+        return
+    missing = missing_figures(workspace.view, session.draft)
+    if not missing:
+        workspace.tell("No figure of a component is missing")
+        return
 
-    def __init__(self, line: LinePane) -> None:
-        self._line, self._workspace = line, line.workspace
+    def take(texts: dict[str, str]) -> None:
+        source = texts.pop("source", "")
+        figures = {asked: text for asked, text in texts.items() if text}
+        if figures:
+            count = f"{len(figures)} figure{'s' * (len(figures) != 1)} filled in"
+            pane.attempt(
+                lambda: session.do(
+                    filled(session.draft, missing, figures, source), "fill in figures"
+                ),
+                count,
+            )
 
-    def ask(self) -> None:
-        """Show the form, once the line is judged."""
-        workspace, session = self._workspace, self._workspace.session
-        if not self._line.settle():
-            return
-        if workspace.view is None or not workspace.is_fresh:
-            workspace.tell("Missing figures are known once the line is judged")
-            return
-        missing = missing_figures(workspace.view, session.draft)
-        if not missing:
-            workspace.tell("No figure of a component is missing")
-            return
-
-        def take(texts: dict[str, str]) -> None:
-            source = texts.pop("source", "")
-            figures = {_keys(asked): text for asked, text in texts.items() if text}
-            if figures:
-                count = len(figures)
-                self._line.attempt(
-                    lambda: session.do(
-                        filled(session.draft, missing, figures, source), "fill in figures"
-                    ),
-                    f"{count} figure{'s' * (count != 1)} filled in",
-                )
-
-        ask(self._line.app, figures_sheet(missing), take)
+    ask(pane.app, figures_sheet(missing), take)
 
 
 def figures_sheet(missing: Sequence[Missing]) -> InputSheet:
@@ -227,12 +220,6 @@ def figures_sheet(missing: Sequence[Missing]) -> InputSheet:
     count = len(missing)
     title = f"Figures missing of {count} component{'s' * (count != 1)}; any may stay empty"
     return InputSheet(title, "\n".join(elsewhere), asked)
-
-
-def _keys(asked: str) -> tuple[str, str]:
-    """Component and key of what is asked for."""
-    use, _, key = asked.rpartition(".")
-    return use, key
 
 
 @dataclass
@@ -292,13 +279,13 @@ def missing_figures(view: View, draft: Draft) -> list[Missing]:
 
 
 def filled(
-    draft: Draft, missing: Iterable[Missing], texts: Mapping[tuple[str, str], str], source: str
+    draft: Draft, missing: Iterable[Missing], texts: Mapping[str, str], source: str
 ) -> Draft:
     """The draft with figures filled in.
 
     Parameters
     ----------
-    texts : by component and key; what is empty stays unknown
+    texts : by ``component.key``; what is empty stays unknown
     source : of all of them; may be empty
 
     Raises
@@ -308,7 +295,7 @@ def filled(
     """
     for each in missing:
         for key, targets in each.targets.items():
-            text = texts.get((each.use, key), "")
+            text = texts.get(f"{each.use}.{key}", "")
             for target in targets if text else ():
                 draft = draft.put_at((*target, key), text)
                 if source:

@@ -21,9 +21,8 @@ from calm.tui.key_table import bindings
 from calm.tui.line.filling import ask_column, ask_equipment, ask_times, rows_meant
 from calm.tui.line.mooring_sheet import naming
 from calm.tui.line.rows import LineCell, table_rows
-from calm.tui.line.table import EDITABLE, Column, Going, LineTable
+from calm.tui.line.table import EDITABLE, Column, LineSearch, LineTable
 from calm.tui.names import Named, namings
-from calm.tui.table import EditableTable
 from calm.tui.verdict_text import Saying, why
 from calm.tui.workspace import Workspace
 
@@ -32,7 +31,7 @@ _LEAST_WIDTH = 6
 _MIXED = "Pieces are marked, and clamps of other pieces; mark pieces only, or clamps only"
 
 
-class LinePane(EditableTable):
+class LinePane(LineSearch):
     """Edit the line: its cells, its rows and their order."""
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings("line")]
@@ -58,7 +57,6 @@ class LinePane(EditableTable):
         super().__init__(self.table, editor_id="cell", id="line-pane")
         self.workspace, self.session = workspace, workspace.session
         self.came_from_verdict = False
-        self.going = Going(workspace, self.table)
         self._cell: LineCell | None = None  # what is edited, or was last
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
@@ -214,23 +212,6 @@ class LinePane(EditableTable):
             )
 
         ask(self.app, naming(self.session), take)
-
-    def action_find(self) -> None:
-        """Find words in the line."""
-        if self.settle():
-            self.going.ask()
-
-    def action_find_next(self, by: int) -> None:
-        """Go to the next row with these words, or the one before."""
-        self.going.to_words(by)
-
-    def action_alike(self, by: int) -> None:
-        """Go to the next row of the same kind, or the one before."""
-        self.going.to_alike(by)
-
-    def action_least(self, loads: int) -> None:
-        """Go to the least margin of the strength of pieces, or of all."""
-        self.going.to_least(loads=bool(loads))
 
     def action_column(self) -> None:
         """Fill a column of the rows that are meant."""

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
 from calm.case.parts import parts_of
-from calm.files import Flexible, MooringFile, Piece, Place
+from calm.files import Clamp, Flexible, MooringFile, Piece, Place
 from calm.files.definition import LENGTH, POSITIVE_LENGTH, QuantityField
 from calm.files.editing import Draft, EditError, Value
 from calm.files.yaml_document import Location
@@ -113,17 +113,7 @@ _ITEMS: Location = ("deployed", "items")
 RELEASES: Location = ("releases",)
 
 
-@dataclass(frozen=True)
-class DeployedRow:
-    """What hangs at a row, and is deployed once: its label and designed serial number."""
-
-    label: str
-    serial: str
-    is_cut: bool
-    is_release: bool
-
-
-def hung_at(file: MooringFile | None, spot: Place | None) -> DeployedRow | None:
+def hung_at(file: MooringFile | None, spot: Place | None) -> Piece | Clamp | None:
     """Return what hangs at a row of a line; None where that is several things, or not known."""
     if file is None or spot is None:
         return None
@@ -133,19 +123,10 @@ def hung_at(file: MooringFile | None, spot: Place | None) -> DeployedRow | None:
         for part in parts_of([piece])
         if (part.place.item, part.place.clamp) == (spot.item, spot.clamp)
     ]
-    if len(found) != 1:
-        return None
-    [part] = found
-    serial = part.equipment.serial
-    return DeployedRow(
-        part.label,
-        serial if isinstance(serial, str) else "",
-        isinstance(part, Piece) and isinstance(part.component, Flexible),
-        part.component.role == "release",
-    )
+    return found[0] if len(found) == 1 else None
 
 
-def deployed_sheet(draft: Draft, hung: DeployedRow | None) -> InputSheet:
+def deployed_sheet(draft: Draft, hung: Piece | Clamp | None) -> InputSheet:
     """Return when and where the mooring was deployed, and what hangs at a row, as the file has
     them.
     """
@@ -153,23 +134,23 @@ def deployed_sheet(draft: Draft, hung: DeployedRow | None) -> InputSheet:
     if hung is None:
         return InputSheet("As deployed", _COMPARED, asked)
     for key, title, check in _OF_A_ROW:
-        if key != "length" or hung.is_cut:
+        if key != "length" or isinstance(hung.component, Flexible):
             text = said(draft, _ITEMS, ("label", hung.label), key)
             asked.append(Asked(f"item {key}", title, text, check))
-    if hung.is_release:
+    if hung.component.role == "release":
         codes = said(draft, RELEASES, ("serial", _serial(draft, hung)), "codes")
         asked.append(Asked("codes", "Codes", codes, placeholder="arm 0A1B, release 0A55"))
     return InputSheet("As deployed", f"{_COMPARED} Below the depth: {hung.label}.", asked)
 
 
-def as_deployed(draft: Draft, hung: DeployedRow | None, texts: Mapping[str, str]) -> Draft:
+def as_deployed(draft: Draft, hung: Piece | Clamp | None, texts: Mapping[str, str]) -> Draft:
     """The file with what was entered."""
     draft = written(draft, {each.key: texts[each.key] for each in _WHOLE})
     if hung is None:
         return draft
     given = {key: texts[f"item {key}"] for key, _, _ in _OF_A_ROW if f"item {key}" in texts}
     draft = entered(draft, _ITEMS, ("label", hung.label), given)
-    if hung.is_release:
+    if hung.component.role == "release":
         called = "serial", _serial(draft, hung)
         if texts["codes"] and not called[1]:
             raise EditError(f"{hung.label} needs its serial number, by which its codes are known")
@@ -177,7 +158,7 @@ def as_deployed(draft: Draft, hung: DeployedRow | None, texts: Mapping[str, str]
     return draft
 
 
-def _serial(draft: Draft, hung: DeployedRow) -> str:
+def _serial(draft: Draft, hung: Piece | Clamp) -> str:
     """Of the release as designed, else as deployed."""
     return hung.serial or said(draft, _ITEMS, ("label", hung.label), "serial")
 

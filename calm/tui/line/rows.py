@@ -1,4 +1,4 @@
-"""The table of the line: what the file says beside what was found for it."""
+"""The rows of the line: what the file says beside what was found, and a value as it is edited."""
 
 from __future__ import annotations
 
@@ -119,27 +119,17 @@ def _length(values: Mapping[str, str], found: Sequence[FoundRow]) -> str:
 
 def _told(found: Sequence[FoundRow]) -> dict[str, str]:
     """The figures of the pieces of one item: where it begins, and the worst of them."""
-    depths = [row.depth for row in found if row.depth is not None]
-    tensions = [row.tension for row in found if row.tension is not None]
-    tilts = [row.tilt for row in found if row.tilt is not None]
-    margins = [row.margin for row in found if row.margin is not None]
     texts = {}
-    if depths:
-        texts["depth"] = QUANTITIES["depth"].format(depths[0])
-    if tensions:
-        texts["tension"] = QUANTITIES["tension"].format(max(tensions))
-    if tilts:
-        texts["tilt"] = QUANTITIES["tilt"].format(max(tilts))
+    for name in ("depth", "tension", "tilt"):
+        known = [figure for row in found if (figure := getattr(row, name)) is not None]
+        if known:
+            texts[name] = QUANTITIES[name].format(known[0] if name == "depth" else max(known))
+    margins = [row.margin for row in found if row.margin is not None]
     if any(row.lacks_strength for row in found):
         texts["margin"] = UNKNOWN_MARGIN
     elif margins:
-        texts["margin"] = _margin(min(margins))
+        texts["margin"] = f"{min(*margins, _MOST_MARGIN):+.0%}"
     return texts
-
-
-def _margin(margin: float) -> str:
-    """A share of the limit as a percentage with its sign."""
-    return f"{min(margin, _MOST_MARGIN):+.0%}"
 
 
 _NO_COUNT = "A clamp has no count; duplicate it instead"

@@ -54,9 +54,9 @@ class GridCells(TableCells, can_focus=True):
 
     @dataclass
     class Changed(Message):
-        """The rows are other ones."""
+        """The rows are other ones, and what was done to them."""
 
-        rows: Rows
+        cells: GridCells
         label: str
 
     def __init__(self) -> None:
@@ -70,6 +70,7 @@ class GridCells(TableCells, can_focus=True):
         self.headings = tuple(headings)
         self.set_reactive(TableCells.column, self.validate_column(self.column))
         self.take_rows(tuple(tuple(row) for row in rows))
+        self.styles.height = len(rows) + self.HEADING
 
     @property
     def columns(self) -> list[TableColumn]:
@@ -108,7 +109,7 @@ class GridCells(TableCells, can_focus=True):
 
     def change(self, rows: Sequence[tuple[str, ...]], label: str) -> None:
         """Other rows, and what was done to them."""
-        self.post_message(self.Changed(tuple(rows), label))
+        self.post_message(self.Changed(self, label))
         self.show(self.headings, rows)
 
     def go_on(self, by: int) -> bool:
@@ -224,14 +225,6 @@ class Grid(EditableTable):
     Grid GridCells { height: auto; min-height: 3; max-height: 16; }
     """
 
-    @dataclass
-    class Changed(Message):
-        """The rows are other ones."""
-
-        grid: Grid
-        rows: Rows
-        label: str
-
     def __init__(self, *, id: str | None = None) -> None:
         self.cells = GridCells()
         super().__init__(self.cells, id=id)
@@ -245,7 +238,6 @@ class Grid(EditableTable):
         """Show other rows; new ones are not proposed below the `seabed` [m]."""
         self.cells.seabed = seabed
         self.cells.show(columns, rows)
-        self.cells.styles.height = len(rows) + 1
 
     def settle(self) -> Reading:
         """Put what is typed into the rows, telling nobody; a bad value stays to be corrected."""
@@ -349,9 +341,3 @@ class Grid(EditableTable):
             self.cells.change(self._before, "a row less")
             self.cells.cursor -= 1
         self._new, self._before = -1, None
-
-    @on(GridCells.Changed)
-    def _changed(self, event: GridCells.Changed) -> None:
-        event.stop()
-        self.cells.styles.height = len(event.rows) + 1
-        self.post_message(self.Changed(self, event.rows, event.label))
