@@ -229,8 +229,8 @@ def deck_items_of(result: Result | NetResult) -> tuple[DeckItem, ...]:
     found: list[DeckItem] = []
     for row, clamps in rows_down(result):
         bottom = seabeds[own[row.index]]
-        found.append(_deck_item(row.part, row, row, items, bottom))
-        found += (_deck_item(clamp.part, row, clamp, items, bottom) for clamp in clamps)
+        found.append(_deck_item(row, row, items, bottom))
+        found += (_deck_item(row, clamp, items, bottom) for clamp in clamps)
     return tuple(found)
 
 
@@ -240,12 +240,12 @@ def depth_of(row: ComponentRow | ClampRow) -> float:
 
 
 def _deck_item(
-    part: Piece | Clamp,
     piece: ComponentRow,
     row: ComponentRow | ClampRow,
     items: Mapping[str, DeployedItem],
     bottom: float,
 ) -> DeckItem:
+    part = row.part
     item = items.get(part.label)
     clamp = row.part if isinstance(row, ClampRow) else None
     depth = depth_of(row)

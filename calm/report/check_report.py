@@ -30,13 +30,7 @@ from calm.report.blocks import (
     Section,
     Signatures,
 )
-from calm.report.check_facts import (
-    PAGE_ONE,
-    facts_of,
-    facts_part,
-    judged_section,
-    left_out,
-)
+from calm.report.check_facts import PAGE_ONE, facts_of, facts_part, judged_section, left_out
 from calm.report.check_summary import (
     limits_table,
     matrix_tables,

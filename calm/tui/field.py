@@ -192,13 +192,7 @@ class Cycle(Widget, can_focus=True):
     class Turned(Message):
         """Another word is chosen."""
 
-        cycle: Cycle
         word: str
-
-        @property
-        def control(self) -> Cycle:
-            """Return which of several it was."""
-            return self.cycle
 
     def __init__(
         self,
@@ -226,7 +220,7 @@ class Cycle(Widget, can_focus=True):
         """Go to the next word."""
         here = self.words.index(self.word) if self.word in self.words else 0
         self.show(self.words[(here + by) % len(self.words)])
-        self.post_message(self.Turned(self, self.word))
+        self.post_message(self.Turned(self.word))
 
     def on_click(self) -> None:
         """The mouse goes on, too."""

@@ -12,6 +12,7 @@ from rich.text import Text
 from textual.binding import Binding, BindingType
 from textual.command import CommandList, CommandPalette, DiscoveryHit, Hit, Hits, Provider
 from textual.containers import ScrollableContainer
+from textual.keys import key_to_character
 from textual.screen import Screen
 from textual.widgets import Input, TextArea
 
@@ -251,18 +252,7 @@ _KEYS = {
     "end": "End",
     "pageup": "PgUp",
     "pagedown": "PgDn",
-    "question_mark": "?",
     "slash": "/",
-    "plus": "+",
-    "minus": "-",
-    "equals_sign": "=",
-    "asterisk": "*",
-    "colon": ":",
-    "greater_than_sign": ">",
-    "less_than_sign": "<",
-    "left_square_bracket": "[",
-    "right_square_bracket": "]",
-    "number_sign": "#",
 }
 
 
@@ -272,7 +262,8 @@ def shown_key(key: str) -> str:
     if len(last) == 1:
         last = last.upper() if held else last
     else:
-        last = _KEYS.get(last, last.capitalize())
+        sign = _KEYS.get(last) or key_to_character(last) or ""
+        last = sign if sign and sign.isprintable() else last.capitalize()
     return "+".join([*(part.capitalize() for part in held), last])
 
 

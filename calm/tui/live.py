@@ -26,7 +26,7 @@ from calm.errors import InputError, NoEquilibrium, Problem, internal_failure
 from calm.files import MooringFile, Piece, Place, read_mooring
 from calm.files.editing import Draft, LineItem
 from calm.files.mooring_file import STAND_IN
-from calm.files.yaml_document import Document, compose
+from calm.files.yaml_document import compose
 from calm.quantities import show_in
 
 UNNAMED = "unnamed.yaml"
@@ -182,7 +182,8 @@ def _judged(view: View, catalogs: Sequence[str | Path]) -> View:
         document = compose(str(view.path), view.text)
     except InputError as error:
         return _wrong(view, error.problems)
-    view = replace(view, environments=_variants(document))
+    named = document.data.get("environments")
+    view = replace(view, environments=tuple(named) if isinstance(named, dict) else ())
     try:
         file = read_mooring(
             view.path, environment=view.environment, catalogs=catalogs, text=view.text,
@@ -217,25 +218,16 @@ def _solved(view: View, file: MooringFile) -> View:
         result, failure = line.solve(), None
     except NoEquilibrium as error:
         result, failure = None, error
-    findings = () if isinstance(result, TowResult) else tuple(_found(view, file, result, failure))
+    findings: list[Finding] = []
+    if not isinstance(result, TowResult) and file.tow is None:  # no rule is of a tow
+        for each in (None,) if result is None else legs_of(result):
+            situation = Situation(AS_GIVEN, each, failure)
+            findings += findings_of(situation, file.name, file.environment.name or OWN)
     rows = tuple(rows_of(file, result, findings))
     return replace(
-        view, result=result, failure=failure, findings=findings, rows=rows,
+        view, result=result, failure=failure, findings=tuple(findings), rows=rows,
         complete=isinstance(result, TowResult),
     )  # fmt: skip
-
-
-def _found(
-    view: View,
-    file: MooringFile,
-    result: Result | NetResult | None,
-    failure: NoEquilibrium | None,
-) -> Iterator[Finding]:
-    """Return what the rules of a standing line find; none of them is of a tow."""
-    if file.tow is None:
-        here = file.environment.name or OWN
-        for each in (None,) if result is None else legs_of(result):
-            yield from findings_of(Situation(AS_GIVEN, each, failure), file.name, here)
 
 
 def _wrong(view: View, problems: Sequence[Problem]) -> View:
@@ -245,15 +237,9 @@ def _wrong(view: View, problems: Sequence[Problem]) -> View:
     return replace(view, problems=wrong, missing=tuple(lacking))
 
 
-def _variants(document: Document) -> tuple[str, ...]:
-    named = document.data.get("environments")
-    return tuple(named) if isinstance(named, dict) else ()
-
-
 _Figures = tuple[float | None, float | None, float | None, float | None]
 _Said = tuple[float | None, State | None, bool]
 _NOTHING: _Said = (None, None, False)
-_GRAVITY = {state: state.severity for state in State}
 _STRENGTH = frozenset({strength.name})
 _LACKING = (State.UNKNOWN, State.ACCEPTED)
 """What is not known stays so where somebody has accepted it."""
@@ -322,7 +308,7 @@ def _said(findings: Iterable[Finding]) -> dict[Place, _Said]:
 def _of_one(own: list[Finding]) -> _Said:
     return (
         min((each.share for each in own if each.share is not None), default=None),
-        max((each.state for each in own), key=_GRAVITY.__getitem__),
+        max((each.state for each in own), key=lambda state: state.severity),
         any(
             each.rule in _STRENGTH and each.state in _LACKING and each.share is None for each in own
         ),

@@ -33,13 +33,7 @@ _READ_AGAIN = "Read again: another program has changed it"
 
 
 class Saving:
-    """Writes the file of a workspace, asks where something stands against it, and watches the disk.
-
-    Parameters
-    ----------
-    app : whose screens show the file
-    workspace : the file
-    """
+    """Writes the file of a workspace, asks where something stands against it, watches the disk."""
 
     def __init__(self, app: BuildApp, workspace: Workspace) -> None:
         self._app, self._workspace, self._session = app, workspace, workspace.session

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any, ClassVar
 
 from textual import on
@@ -11,8 +12,9 @@ from textual.events import DescendantFocus, Key
 
 from calm.files.components import KINDS
 from calm.files.editing import Draft
+from calm.templates import TEMPLATES, Template, template
 from calm.tui.cell_editor import CellEditor
-from calm.tui.dialogs import InputSheet, ask, choose
+from calm.tui.dialogs import Answer, InputSheet, Question, ask, choose
 from calm.tui.key_table import bindings, hints
 from calm.tui.line.comparing import (
     compare_with_file,
@@ -37,6 +39,9 @@ from calm.tui.pictures import Picture, Tab
 from calm.tui.screen import KeyBar
 from calm.tui.session import Location
 from calm.tui.verdict_pane import VerdictPane
+
+_MOST_STEPS = 9
+"""Of the history, offered at once."""
 
 
 class BuilderScreen(LineScreen):
@@ -136,9 +141,6 @@ class BuilderScreen(LineScreen):
 
     def action_begin(self) -> None:
         """Begin an empty line with a mooring."""
-        from calm.templates import Template, template
-        from calm.tui.line.mooring_sheet import beginning
-
         session = self.session
         if session.draft.items:
             self.tell("There is a line already; a new file can begin with a mooring")
@@ -147,12 +149,15 @@ class BuilderScreen(LineScreen):
         def begin(kind: Template) -> None:
             self.line.attempt(lambda: session.write(template(kind), f"begin with {kind}"))
 
-        choose(self.app, beginning(begin))
+        answers = [
+            Answer(str(number), f"{kind}: {meaning}", partial(begin, kind))
+            for number, (kind, meaning) in enumerate(TEMPLATES.items(), 1)
+        ]
+        text = "Each stands as given: change depth, current and pieces to yours."
+        choose(self.app, Question("Begin with", text, answers))
 
     def action_history(self) -> None:
         """Show what was done, and go back to before any of it."""
-        from calm.tui.line.mooring_sheet import history
-
         steps = self.session.history
         if not self.settle():
             return
@@ -163,7 +168,14 @@ class BuilderScreen(LineScreen):
         def undo(count: int) -> None:
             self._go("undone", lambda: [steps.undo() for _ in range(count)][-1])
 
-        choose(self.app, history(self.session, undo))
+        answers = [
+            Answer(str(number), f"before: {label}", partial(undo, number))
+            for number, label in enumerate(steps.steps[:_MOST_STEPS], 1)
+        ]
+        text = f"Go back to before one of the last {len(answers)} changes; U does them again."
+        if (more := len(steps.steps) - _MOST_STEPS) > 0:
+            text += f" {more} are older; u goes back one by one."
+        choose(self.app, Question("What was done", text, answers))
 
     def action_search(self) -> None:
         """Search the catalogue for a piece below."""

@@ -14,12 +14,12 @@ from textual.message import Message
 from calm.checks.finding import State
 from calm.files import Place
 from calm.tui.catalogue.catalogue_pane import Purpose
+from calm.tui.catalogue.component_screen import id_check
 from calm.tui.cell_editor import CellEditor
 from calm.tui.checking import Reading
-from calm.tui.dialogs import Answer, Question, ask, choose
+from calm.tui.dialogs import Answer, Asked, InputSheet, Question, ask, choose
 from calm.tui.key_table import bindings
 from calm.tui.line.filling import ask_column, ask_equipment, ask_times, rows_meant
-from calm.tui.line.mooring_sheet import naming
 from calm.tui.line.rows import LineCell, table_rows
 from calm.tui.line.table import EDITABLE, Column, LineSearch, LineTable
 from calm.tui.names import Named, namings
@@ -211,7 +211,11 @@ class LinePane(LineSearch):
                 f"{texts['id']} is defined in the file; add it again with a",
             )
 
-        ask(self.app, naming(self.session), take)
+        own = self.session.draft.value(("components",))
+        check = id_check(own if isinstance(own, dict) else ())
+        asked = [Asked("id", "Id", check=check, placeholder="e.g. glass-pack-own")]
+        text = "The pieces go into the file's components; `use` of this id stands for them."
+        ask(self.app, InputSheet("Make an assembly", text, asked), take)
 
     def action_column(self) -> None:
         """Fill a column of the rows that are meant."""

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from functools import partial
 from typing import Any
 
 from calm.case.parts import parts_of
@@ -12,10 +11,8 @@ from calm.files import Clamp, Flexible, MooringFile, Piece, Place
 from calm.files.definition import LENGTH, POSITIVE_LENGTH, QuantityField
 from calm.files.editing import Draft, EditError, Value
 from calm.files.yaml_document import Location
-from calm.templates import TEMPLATES, Template
 from calm.tui.checking import Reading, anything, day, moment, quantity
-from calm.tui.dialogs import Answer, Asked, InputSheet, Question
-from calm.tui.session import Session
+from calm.tui.dialogs import Asked, InputSheet
 
 _HISTORY: Location = ("document", "history")
 
@@ -256,40 +253,3 @@ def _index(draft: Draft, rows: Location, called: tuple[str, str]) -> int | None:
         if isinstance(entry, dict) and entry.get(key) == name:
             return index
     return None
-
-
-_MOST_STEPS = 9
-
-
-def beginning(begin: Callable[[Template], object]) -> Question:
-    """Ask with which of the `TEMPLATES` an empty line begins, and begin with that kind."""
-    answers = [
-        Answer(str(number), f"{kind}: {meaning}", partial(begin, kind))
-        for number, (kind, meaning) in enumerate(TEMPLATES.items(), 1)
-    ]
-    text = "Each stands as given: change depth, current and pieces to yours."
-    return Question("Begin with", text, answers)
-
-
-def history(session: Session, undo: Callable[[int], object]) -> Question:
-    """Ask how many steps to take back, the last ones listed, and `undo` as many."""
-    steps = session.history.steps
-    answers = [
-        Answer(str(number), f"before: {label}", partial(undo, number))
-        for number, label in enumerate(steps[:_MOST_STEPS], 1)
-    ]
-    more = len(steps) - _MOST_STEPS
-    text = f"Go back to before one of the last {len(answers)} changes; U does them again."
-    text += f" {more} are older; u goes back one by one." if more > 0 else ""
-    return Question("What was done", text, answers)
-
-
-def naming(session: Session) -> InputSheet:
-    """The id of an assembly that is made of marked pieces."""
-    from calm.tui.catalogue.component_screen import id_check
-
-    own = session.draft.value(("components",))
-    check = id_check(own if isinstance(own, dict) else ())
-    asked = [Asked("id", "Id", check=check, placeholder="e.g. glass-pack-own")]
-    text = "The pieces go into the file's components; `use` of this id stands for them."
-    return InputSheet("Make an assembly", text, asked)
