@@ -1,6 +1,6 @@
 """How soon the line builder shows what an edit does.
 
-    python benchmarks/build.py [REPETITIONS] [--smoke]
+    python benchmarks/build.py [REPETITIONS | --smoke]
 
 The deep current-meter mooring with shackles added up to 60 pieces is opened in a terminal of 80
 columns and 24 rows. Prints the wall time to the first picture, beside that of `calm run` and of a
@@ -10,7 +10,7 @@ a label. Then, in terminals of 80 columns and 24 rows and of 200 and 60, with 33
 of the line, what a key costs over a slow link: the bytes that are sent for it, the processor time
 it takes, and when the last byte of it has come. Last, the keys that a mooring of 4000 m takes from
 an empty file: a script of them is typed into a terminal, and what is saved is counted. Needs a
-system with pseudo-terminals; `--smoke` takes seconds.
+system with pseudo-terminals; `--smoke` takes one terminal, one line and one script.
 """
 
 import os
@@ -307,8 +307,10 @@ def edits(text: str, repetitions: int) -> Iterable[tuple[str, list[float], list[
 
 def main() -> None:
     """Print all figures."""
-    given = [word for word in sys.argv[1:] if word != "--smoke"]
-    repetitions = 1 if "--smoke" in sys.argv else int(given[0]) if given else 20
+    smoke = sys.argv[1:] == ["--smoke"]
+    repetitions = 1 if smoke else int(sys.argv[1]) if sys.argv[1:] else 20
+    sizes, counts = (SIZES[:1], (33,)) if smoke else (SIZES, (33, 200))
+    scripts = {"practised": PRACTISED} | ({} if smoke else {"the first time": FIRST_TIME})
     print(describe("calm-mooring", "textual", "rich", "numpy"))
     text = pieces(PIECES)
     with tempfile.TemporaryDirectory() as folder:
@@ -324,15 +326,15 @@ def main() -> None:
         for name, times in keys(file, repetitions).items():
             print(f"{name:32}{_pair(times)}")
         heads = "".join(f"{each:>11}" for each in ("most bytes", "median", "fastest", "processor"))
-        for columns, rows in SIZES:
+        for columns, rows in sizes:
             print(f"\n{f'{columns} x {rows}, over a link':32}{heads}")
-            for count in (33, 200):
+            for count in counts:
                 file.write_text(pieces(count), encoding="utf-8")
                 for name, sent, times, busy in links(file, repetitions, columns, rows):
                     told = f"{name}, {count} pieces"
                     print(f"{told:32}{sent:11}{_pair(times)}{1e3 * busy:8.1f} ms")
         print(f"\n{'a mooring of 4000 m, typed':52}{'keys':>7}")
-        for who, script in (("practised", PRACTISED), ("the first time", FIRST_TIME)):
+        for who, script in scripts.items():
             for part, count in typed(Path(folder) / f"{who}.yaml", script):
                 print(f"{f'{who}: {part}':52}{count:7}")
     print(f"\n{'edit to verdict':32}{'median':>11}{'fastest':>11}{'to one solve':>13}")

@@ -4,7 +4,7 @@
 
 Prints the median and the fastest wall time of whole processes, warm disk, the time of a bare
 `python -c pass` beside them, and the imports that cost most in `calm run`. `--smoke` starts each
-command twice only.
+command once.
 """
 
 import statistics
@@ -32,13 +32,13 @@ COMMANDS = {
 
 
 def wall_times(arguments: list[str], repetitions: int) -> list[float]:
-    """Seconds of each whole process; the first, which fills the caches, is not counted."""
+    """Seconds of each whole process; the first, which fills the caches, counts only alone."""
     times = []
     for _ in range(repetitions + 1):
         start = time.perf_counter()
         subprocess.run([sys.executable, *arguments], check=True, stdout=subprocess.DEVNULL)
         times.append(time.perf_counter() - start)
-    return times[1:]
+    return times[1:] or times
 
 
 def dearest_imports(arguments: list[str], count: int) -> list[tuple[float, str]]:
@@ -61,7 +61,7 @@ def dearest_imports(arguments: list[str], count: int) -> list[tuple[float, str]]
 def main() -> None:
     """Print all figures."""
     words = sys.argv[1:]
-    repetitions = 1 if words == ["--smoke"] else int(*words or [10])
+    repetitions = 0 if words == ["--smoke"] else int(*words or [10])
     print(describe("calm-mooring", "numpy", "pydantic", "cyclopts", "rich"))
     print(f"\n{'whole process, warm':40}{'median':>9}{'fastest':>9}")
     for name, arguments in COMMANDS.items():

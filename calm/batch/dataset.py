@@ -101,7 +101,7 @@ def layout_of(mooring: Mooring | Net, record: Record, shape: ShapeNodes | None) 
     along = ("time", "leg") if legs else ("time",)
     variables += numbers(along, OF_ENDS, where.strip())
     if legs:
-        sizes["leg"], own = len(legs), leg_numbers(legs)
+        sizes["leg"], own = len(legs), leg_numbers(mooring.file)
         of_clamps = [own[piece.index] for piece in pieces for _ in piece.clamps]
         variables = of_net(variables, [leg.name for leg in legs], own, of_clamps)
     variables.append(

@@ -112,13 +112,13 @@ def attribute(
     return Attribution(parts=parts, start=start, shares=scaled, miss=miss)
 
 
-def with_drag(line: Line, factor: float) -> Line:
-    """Return the same line with all its drags multiplied."""
+def with_drag(line: Line, pieces: float | Floats, clamps: float | Floats | None = None) -> Line:
+    """Return the same line with its drags multiplied, of clamps as of pieces unless given."""
     return replace(
         line,
-        normal_drag=factor * line.normal_drag,
-        tangential_drag=factor * line.tangential_drag,
-        clamp_drag=factor * line.clamp_drag,
+        normal_drag=pieces * line.normal_drag,
+        tangential_drag=pieces * line.tangential_drag,
+        clamp_drag=(pieces if clamps is None else clamps) * line.clamp_drag,
     )
 
 
@@ -131,17 +131,12 @@ def _parts_with_drag(line: Line) -> list[tuple[int, int]]:
 
 
 def _with_part(line: Line, piece: int, clamp: int, factor: float) -> Line:
+    pieces, clamps = np.ones(len(line.length)), np.ones(len(line.clamp_drag))
     if clamp >= 0:
-        factors = np.ones(len(line.clamp_drag))
-        factors[clamp] = factor
-        return replace(line, clamp_drag=factors * line.clamp_drag)
-    factors = np.ones(len(line.length))
-    factors[piece] = factor
-    return replace(
-        line,
-        normal_drag=factors * line.normal_drag,
-        tangential_drag=factors * line.tangential_drag,
-    )
+        clamps[clamp] = factor
+    else:
+        pieces[piece] = factor
+    return with_drag(line, pieces, clamps)
 
 
 def _integral(

@@ -18,7 +18,6 @@ from calm.case.mooring import Mooring
 from calm.errors import NoEquilibrium, UsageError
 from calm.files import Spread, Uncertainty
 from calm.physics.line import Floats, Line, Water
-from calm.physics.stretch import ElongationCurve
 from calm.physics.track import Track
 from calm.solve import Settings, Solution, solve_mooring
 from calm.solve.mooring import Nearby
@@ -65,12 +64,7 @@ def checked_samples(samples: int) -> int:
 
 
 def normals_of(samples: int, seed: int) -> Floats:
-    """(samples, causes) standard normals, of a scrambled Sobol' sequence.
-
-    Parameters
-    ----------
-    samples : a power of two
-    """
+    """(samples, causes) standard normals, of a scrambled Sobol' sequence of a power of two."""
     from scipy.special import ndtri
     from scipy.stats import qmc
 
@@ -126,17 +120,13 @@ def drawn_line(line: Line, draw: Draw) -> Line:
         tangential_drag=drag * line.tangential_drag,
         buoyancy=lift * line.buoyancy,
         compliance=line.compliance / draw.stiffness,
-        elongation=tuple(_stiffer(curve, draw.stiffness) for curve in line.elongation),
+        elongation=tuple(each and each.stiffer(draw.stiffness) for each in line.elongation),
         clamp_at=longer[on] * line.clamp_at if len(on) else line.clamp_at,
         clamp_drag=draw.rigid_drag * line.clamp_drag,
         clamp_buoyancy=np.where(line.clamp_buoyancy > 0.0, draw.buoyancy, 1.0)
         * line.clamp_buoyancy,
         floating=floating,
     )
-
-
-def _stiffer(curve: ElongationCurve | None, stiffness: float) -> ElongationCurve | None:
-    return None if curve is None else curve.stiffer(stiffness)
 
 
 def drawn_water(water: Water, draw: Draw) -> Water:

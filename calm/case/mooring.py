@@ -12,8 +12,7 @@ import numpy as np
 from calm.assemble import assemble_floating, assemble_line, assemble_water
 from calm.case.measure import anchor_weight_of, result_of
 from calm.case.memory import Forgetful, Memory
-from calm.case.origin import Origin, ReadFromFile, as_read
-from calm.case.parts import naming_the_piece
+from calm.case.parts import Origin, ReadFromFile, as_read, naming_the_piece
 from calm.case.profilers import profilers_of
 from calm.case.result import Result
 from calm.case.tow import Tow
@@ -96,10 +95,7 @@ class Mooring(ReadFromFile):
     def line(self) -> Line:
         """The pieces above the anchor, a piece that is cut to fit at its cut length.
 
-        Raises
-        ------
-        NoEquilibrium
-            Where no length fits.
+        NoEquilibrium: where no length fits.
         """
         if self._line is not None:
             return self._line
@@ -144,10 +140,7 @@ class Mooring(ReadFromFile):
     def solve(self, environment: str | Path | None = None) -> Result:
         """Find the static equilibrium, in another of its environments where one is given.
 
-        Raises
-        ------
-        NoEquilibrium
-            With status, message and advice, where there is none that passes every check.
+        NoEquilibrium: with status, message and advice, where there is none that passes every check.
         """
         if environment is not None:
             return self.with_(environment=environment).solve()
@@ -158,10 +151,7 @@ class Mooring(ReadFromFile):
     def equilibrium(self, water: Water) -> Solution:
         """The line solved in some water, refused where the mooring is not meant to stand so.
 
-        Raises
-        ------
-        NoEquilibrium
-            As `solve` does.
+        NoEquilibrium: as `solve` does.
         """
         with naming_the_piece(self.file.pieces):
             solution = self.memory.of(solve_mooring, self.line, water, self.settings)

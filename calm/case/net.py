@@ -16,8 +16,7 @@ from calm.assemble import assemble_water
 from calm.case.measure import result_of
 from calm.case.mooring import Mooring, line_of, refuse_in_the_slope
 from calm.case.net_result import EndLoad, NetResult, NodePlace
-from calm.case.origin import Origin, ReadFromFile, as_read
-from calm.case.parts import naming_the_piece
+from calm.case.parts import Origin, ReadFromFile, as_read, naming_the_piece
 from calm.case.result import Accuracy, AnchorLoad, Result
 from calm.case.tow import Tow
 from calm.errors import NoEquilibrium
@@ -111,7 +110,7 @@ class Net(ReadFromFile):
 
     def with_length(self, index: int, length: float) -> Net:
         """Return the net with another unstretched length [m] of a piece of the file."""
-        number = leg_numbers(self.file.legs)[index]
+        number = leg_numbers(self.file)[index]
         own = index - self.file.legs[number].first
         lines = [line.line for line in self.lines]
         lines[number] = lines[number].with_length(own, length)
@@ -190,10 +189,7 @@ class Net(ReadFromFile):
     def solve(self, environment: str | Path | None = None) -> NetResult:
         """Find the static equilibrium, in another of its environments where one is given.
 
-        Raises
-        ------
-        NoEquilibrium
-            With status, message and advice, where there is none that passes every check.
+        NoEquilibrium: with status, message and advice, where there is none that passes every check.
         """
         if environment is not None:
             return self.with_(environment=environment).solve()

@@ -89,10 +89,6 @@ class NetResult(ResultForms):
         ]
         return "\n".join([*lines[:9], f"{len(self.warnings)} warnings"])
 
-    def to_pandas(self) -> Any:
-        """Return the components as a pandas data frame."""
-        return self.components.to_pandas()
-
     @property
     def file(self) -> MooringFile:
         """The file as read."""
@@ -138,7 +134,7 @@ class NetResult(ResultForms):
         for component in components:
             for name in ("kind", "role", "tension", "least_tension"):
                 del component[name]
-        numbers = leg_numbers(self.file.legs)
+        numbers = leg_numbers(self.file)
         for row in (*components, *clamps):
             row["leg"] = self.legs[numbers[row["index"]]].name
         legs = [

@@ -119,6 +119,16 @@ class ResultForms:
     notebook_form: ClassVar[Callable[[Any], str] | None] = None
     netcdf_form: ClassVar[Callable[[Any], bytes] | None] = None
 
+    if TYPE_CHECKING:
+
+        @property
+        def components(self) -> Components:
+            """Return the pieces."""
+
+    def to_pandas(self) -> Any:
+        """Return the components as a pandas data frame."""
+        return self.components.to_pandas()
+
     def to_xarray(self) -> Any:
         """The dataset that `calm run --netcdf` writes: components, clamps and shape, with units."""
         from io import BytesIO
@@ -170,10 +180,6 @@ class Solved(ResultForms):
                 lines.append(f"{end}: {', '.join(known)}")
         tables = f"{len(self.components)} components, {len(self.clamps)} clamps"
         return "\n".join([*lines, f"{tables}, {len(self.warnings)} warnings"])
-
-    def to_pandas(self) -> Any:
-        """Return the components as a pandas data frame."""
-        return self.components.to_pandas()
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)

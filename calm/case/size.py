@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, field
+from functools import cache, partial
 from typing import Any
 
 from calm.case.adjustment import Adjustment, parse_change, parse_range
@@ -149,8 +151,8 @@ def size(
         Target, change or range cannot be understood; all their mistakes at once.
     """
     wanted, adjustment, limits = _understood(mooring, target, change, between)
-    trials = _Trials(wanted, adjustment)
-    before = trials.at(adjustment.now)
+    at = cache(partial(_trial, wanted, adjustment))
+    before = at(adjustment.now)
     if wanted.relation == "=" and before.measured is None:
         raise UsageError(
             f"{wanted.text}: the mooring as given has no such value to start "
@@ -158,16 +160,21 @@ def size(
         )
     first = 0.0 if before.measured is None else before.measured - wanted.limit
     sign = -1.0 if wanted.relation == ">=" or (wanted.relation == "=" and first < 0.0) else 1.0
+
+    def excess(value: float) -> float | None:
+        measured = at(value).measured
+        return None if measured is None else sign * (measured - wanted.limit)
+
     expect_many(SOLVES)
     search = LeastChange(
-        lambda value: trials.excess(value, sign),
+        excess,
         *limits,
         whole=adjustment.whole,
         exact=wanted.relation == "=",
         small=_EXACT * max(abs(wanted.limit), abs(first)),
     )
     found = search.find(adjustment.now)
-    message, advice = ("", "") if found is not None else _why_not(search, trials)
+    message, advice = ("", "") if found is not None else _why_not(search, wanted, adjustment, at)
     status = NOT_MET if found is None else MET_ALREADY if found == adjustment.now else MET
     return Sizing(
         target=wanted,
@@ -175,38 +182,22 @@ def size(
         range=limits,
         status=status,
         before=before,
-        after=None if found is None else trials.at(found),
+        after=None if found is None else at(found),
         message=message,
         advice=advice,
         steady=search.steady,
-        solves=len(trials.tried),
+        solves=at.cache_info().currsize,
     )
 
 
-class _Trials:
-    """The mooring solved for value after value, each once."""
-
-    def __init__(self, target: Target, change: Adjustment) -> None:
-        self.target, self.change = target, change
-        self.tried: dict[float, Trial] = {}
-
-    def at(self, value: float) -> Trial:
-        if value not in self.tried:
-            self.tried[value] = self._solved(value)
-        return self.tried[value]
-
-    def excess(self, value: float, sign: float) -> float | None:
-        measured = self.at(value).measured
-        return None if measured is None else sign * (measured - self.target.limit)
-
-    def _solved(self, value: float) -> Trial:
-        file = self.change.file if value == self.change.now else self.change.to(value)
-        try:
-            result = Net(file).solve() if file.legs else Mooring(file).solve()
-        except NoEquilibrium as failure:
-            return Trial(value, failure=failure)
-        place = self.target.place if file.legs else None
-        return Trial(value, self.target.value(result), result, place=place)
+def _trial(target: Target, change: Adjustment, value: float) -> Trial:
+    file = change.file if value == change.now else change.to(value)
+    try:
+        result = Net(file).solve() if file.legs else Mooring(file).solve()
+    except NoEquilibrium as failure:
+        return Trial(value, failure=failure)
+    place = target.place if file.legs else None
+    return Trial(value, target.value(result), result, place=place)
 
 
 def _understood(
@@ -236,13 +227,14 @@ def _understood(
     return wanted, adjustment, limits
 
 
-def _why_not(search: LeastChange, trials: _Trials) -> tuple[str, str]:
+def _why_not(
+    search: LeastChange, target: Target, change: Adjustment, at: Callable[[float], Trial]
+) -> tuple[str, str]:
     """Return why no value was found, and what to do."""
-    change, target = trials.change, trials.target
     least = search.least
     span = f"from {with_unit(search.low, change.unit)} to {with_unit(search.high, change.unit)}"
     if least is None:
-        failure = trials.at(change.now).failure
+        failure = at(change.now).failure
         if failure is None:
             message = (
                 "A float at the surface, or a line without a unique shape in still water, has no "
@@ -251,10 +243,10 @@ def _why_not(search: LeastChange, trials: _Trials) -> tuple[str, str]:
             return message, "Choose another quantity, such as the excursion."
         message = f"The mooring has no equilibrium for any {change.text} {span}. As it is:"
         return f"{message} {failure.status}: {failure.message}", failure.advice
-    best = trials.at(least)
+    best = at(least)
     assert best.measured is not None
     nearest, where = with_unit(best.measured, target.unit), with_unit(least, change.unit)
-    as_it_is = trials.at(change.now).measured
+    as_it_is = at(change.now).measured
     if as_it_is is not None and abs(best.measured - as_it_is) <= _NOTHING * abs(as_it_is):
         message = (
             f"The present value comes nearest, with {nearest}; {change.text} was tried {span}."
@@ -262,7 +254,7 @@ def _why_not(search: LeastChange, trials: _Trials) -> tuple[str, str]:
     else:
         message = f"The nearest is {nearest}, with {change.text} at {where}; tried {span}."
     for neighbour, side in zip(search.neighbours(least), ("Below", "Above"), strict=True):
-        failure = trials.at(neighbour).failure
+        failure = at(neighbour).failure
         if failure is not None:
             message += f" {side} that: {failure.status}: {failure.message}"
     return message, "Ask for less, change another part, or allow more with --between."

@@ -12,8 +12,7 @@ from typing import Any
 from calm.assemble import assemble_line, assemble_water
 from calm.case.measure import clamps_of, components_of, shape_of
 from calm.case.memory import Forgetful, Memory
-from calm.case.origin import Origin, ReadFromFile
-from calm.case.parts import cut_like, naming_the_piece
+from calm.case.parts import Origin, ReadFromFile, cut_like, naming_the_piece
 from calm.case.result import Accuracy, Solved, document_of
 from calm.case.strumming import StrummingBand, strumming_of, tow_band
 from calm.case.warnings import warnings_of
@@ -147,10 +146,7 @@ class Tow(ReadFromFile):
     def line(self) -> Line:
         """The pieces from the ship down; one that is paid out to reach a depth has its cut length.
 
-        Raises
-        ------
-        NoEquilibrium
-            Where no length reaches the depth.
+        NoEquilibrium: where no length reaches the depth.
         """
         if self._line is not None:
             return self._line
@@ -175,10 +171,7 @@ class Tow(ReadFromFile):
     def solve(self, environment: str | Path | None = None) -> TowResult:
         """Find the steady shape, in another of its environments where one is given.
 
-        Raises
-        ------
-        NoEquilibrium
-            With status, message and advice, where there is none that passes every check.
+        NoEquilibrium: with status, message and advice, where there is none that passes every check.
         """
         if environment is not None:
             return self.with_(environment=environment).solve()
@@ -259,43 +252,19 @@ class Variation:
 
 
 def sweep(tow: Tow, speeds: Iterable[float]) -> list[TowResult | NoEquilibrium]:
-    """Solve a tow at several speeds [m/s], one after the other.
+    """Return the result at each speed of the ship [m/s], > 0, or the reason why there is none.
 
-    Parameters
-    ----------
-    tow : Tow
-        Its own speed only decides the length of a cable that is fitted.
-    speeds : iterable of float
-        Of the ship [m/s], > 0; taken one at a time.
-
-    Returns
-    -------
-    list of TowResult or NoEquilibrium
-        One for each speed, in order: the result, or the reason why there is none.
-
-    Raises
-    ------
-    NoEquilibrium
-        Where no length of a cable to be fitted reaches its depth at the tow's own speed.
+    Speeds are taken one at a time; the tow's own only decides the length of a cable that is fitted.
+    NoEquilibrium: no length of that reaches its depth at the tow's own speed.
     """
     return [or_why_not(tow.at_speed(speed).solve) for speed in speeds]
 
 
 def sensitivity(tow: Tow) -> list[Variation]:
-    """Return how a tow answers to A₁, B₁ and C₁ of its strumming, each smaller and greater by
+    """Return a tow as it is, then with A₁, B₁ and C₁ of its strumming each smaller and greater by
     `CHANGE`.
 
-    Returns
-    -------
-    list of Variation
-        The tow as it is, then two for each coefficient.
-
-    Raises
-    ------
-    UsageError
-        The tow does not strum by Bourget & Marichal.
-    NoEquilibrium
-        As in `sweep`.
+    UsageError: the tow does not strum by Bourget & Marichal. NoEquilibrium: as in `sweep`.
     """
     keys = tow.file.solver.strumming
     if not isinstance(keys, BourgetMarichalKeys):

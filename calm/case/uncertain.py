@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from calm.case.draws import CAUSES, SAMPLES, Draw, checked_samples, drawn, draws_of, normals_of
-from calm.case.measure import anchor_load, measured
+from calm.case.measure import anchor_load, clamps_of, measured
 from calm.errors import NoEquilibrium
 from calm.physics.line import Floats
 from calm.solve import expect_many
@@ -55,6 +55,7 @@ class Uncertain:
     depth_top, knockdown, tilt, tension : (3, p) of the p pieces, the anchor last; knockdown is
         NaN where the line has no unique shape in still water [m], [m], [degrees], [N]
     offset : (3, p) of the top of each piece from the anchor, in the direction of the free end [m]
+    clamps : (3, 4, m) depth, knockdown, tilt and tension of the m clamps above the anchor, as those
     anchor_tension, required_weight : (3,) [N]
     contributions : to the top's knockdown, or afloat to its excursion; none where it does not vary
     unexplained : share of that variance that the fit of the indices does not explain
@@ -69,6 +70,7 @@ class Uncertain:
     tilt: Floats
     tension: Floats
     offset: Floats
+    clamps: Floats
     anchor_tension: Floats
     required_weight: Floats
     contributions: tuple[Contribution, ...]
@@ -79,9 +81,20 @@ class Uncertain:
         """Samples without equilibrium."""
         return sum(self.failures.values())
 
+    @property
+    def clamped(self) -> list[tuple[int, str]]:
+        """The component and the label of each clamp."""
+        given = self.result.clamps
+        return list(zip(given.index, given.label, strict=True))[: self.clamps.shape[2]]
+
     def to_dict(self) -> dict[str, Any]:
         """The object `uncertainty` of the result format: SI, null where a figure is unknown."""
         columns = ("depth_top", "knockdown", "tilt", "tension")
+        clamps = [
+            {"index": int(index), "label": label}
+            | dict(zip(("depth", *columns[1:]), map(_known, figures), strict=True))
+            for (index, label), figures in zip(self.clamped, self.clamps.T, strict=True)
+        ]
         components = [
             {"index": int(index)} | {name: _known(getattr(self, name)[:, row]) for name in columns}
             for row, index in enumerate(self.result.components.index)
@@ -91,6 +104,7 @@ class Uncertain:
             "seed": self.seed,
             "failed": self.failed,
             "components": components,
+            "clamps": clamps,
             "anchor": {
                 "tension": self.anchor_tension.tolist(),
                 "required_weight": self.required_weight.tolist(),
@@ -145,7 +159,8 @@ def uncertain(
     figures = [one for one in outcomes if not isinstance(one, NoEquilibrium)]
     pieces = np.percentile(np.stack([one[0] for one in figures]), LEVELS, axis=0)
     ends = np.percentile(np.stack([one[1] for one in figures]), LEVELS, axis=0)
-    depth_top, knockdown, tilt, tension, offset = np.moveaxis(pieces, 1, 0)
+    rows = len(result.components)
+    depth_top, knockdown, tilt, tension, offset = np.moveaxis(pieces[..., :rows], 1, 0)
     afloat = result.type == "surface" or bool(np.isnan(knockdown[:, 0]).any())
     quantity, row = ("excursion", 4) if afloat else ("knockdown", 1)
     tops = np.array([one[0][row, 0] for one in figures])
@@ -160,6 +175,7 @@ def uncertain(
         tilt=tilt,
         tension=tension,
         offset=offset,
+        clamps=pieces[:, :4, rows:],
         anchor_tension=ends[:, 0],
         required_weight=ends[:, 1],
         contributions=_contributions(quantity, indices),
@@ -170,7 +186,7 @@ def uncertain(
 def _figures(
     mooring: Mooring, draws: Sequence[Draw]
 ) -> list[tuple[Floats, tuple[float, float]] | NoEquilibrium]:
-    """Return (5, p) figures of the pieces and those of the anchor, draw by draw."""
+    """Return (5, p + m) figures of the pieces and clamps, and those of the anchor, draw by draw."""
     figures: list[tuple[Floats, tuple[float, float]] | NoEquilibrium] = []
     for one in drawn(mooring, draws):
         try:
@@ -182,14 +198,17 @@ def _figures(
 
 def _figures_of(mooring: Mooring) -> tuple[Floats, tuple[float, float]]:
     solution = mooring.equilibrium(mooring.water)
-    rows = measured(solution, mooring.still_beside(solution))
+    still = mooring.still_beside(solution)
+    rows = measured(solution, still)
     load = anchor_load(mooring, solution)
     x, y, z = rows.top.T
     excursion = hypot(x[0], y[0])
     offset = (x * x[0] + y * y[0]) / excursion if excursion else np.zeros(len(x))
     pieces = np.stack([-z, rows.knockdown, rows.tilt, rows.tension, offset])
     anchor = [-rows.bottom[-1, 2], 0.0, 0.0, load.tension, 0.0]
-    return np.column_stack([pieces, anchor]), (load.tension, load.required_weight)
+    held = clamps_of(mooring.file.pieces[:-1], solution, still)
+    clamps = np.stack([held.depth, held.knockdown, held.tilt, held.tension, 0.0 * held.depth])
+    return np.column_stack([pieces, anchor, clamps]), (load.tension, load.required_weight)
 
 
 def _contributions(quantity: str, indices: Indices | None) -> tuple[Contribution, ...]:

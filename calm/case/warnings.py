@@ -79,14 +79,13 @@ def _anchor_of_unknown_material(result: Result, _: Solution) -> Iterator[str]:
 
 
 def _tilted(result: Result | TowResult, _: Solution) -> Iterator[str]:
-    leaning = [(row.label, row.tilt, row.part.component) for row in result.components]
-    leaning += [(row.label, row.tilt, row.part.component) for row in result.clamps]
-    for label, tilt, component in leaning:
+    for row in (*result.components, *result.clamps):
+        component, leans = row.part.component, f"{row.label} leans {row.tilt:.1f} degrees"
         limit, warned = component.max_tilt, component.warn_tilt
-        if limit is not None and tilt > limit:
-            yield f"{label} leans {tilt:.1f} degrees, beyond its limit of {limit:g}."
-        elif warned is not None and tilt > warned:
-            yield f"{label} leans {tilt:.1f} degrees, above its warning limit of {warned:g}."
+        if limit is not None and row.tilt > limit:
+            yield f"{leans}, beyond its limit of {limit:g}."
+        elif warned is not None and row.tilt > warned:
+            yield f"{leans}, above its warning limit of {warned:g}."
 
 
 def _stiffness_unknown(result: Result | TowResult, _: Solution) -> Iterator[str]:

@@ -226,7 +226,7 @@ def unlike_metals(
     """Return what touches far apart in the galvanic series: base, noble, and how far [V]."""
     pairs: list[tuple[Piece | Clamp, Piece | Clamp]] = [*pairwise(pieces)]
     for piece in pieces:
-        if not _has(piece, _INSULATED):
+        if not _insulated(piece):
             pairs += [(piece, clamp) for clamp in piece.clamps]
     for one, other in pairs:
         first, second = (potential_of(part.component.material) for part in (one, other))
@@ -246,9 +246,9 @@ def _corrodes(base: Piece | Clamp, noble: Piece | Clamp, volts: float) -> Verdic
                       GREATEST_DIFFERENCE - volts)  # fmt: skip
 
 
-def _has(piece: Piece, words: Sequence[str]) -> bool:
+def _insulated(piece: Piece) -> bool:
     said = _words(piece.use, piece.component.name, piece.component.material)
-    return any(word in said for word in words)
+    return any(word in said for word in _INSULATED)
 
 
 def _words(*texts: str | None) -> str:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from datetime import date
 from math import hypot
 from typing import Any
 
@@ -96,20 +95,16 @@ _Figures = dict[str, tuple[str, str, Number | str]]
 
 
 def comparison_of(
-    names: tuple[str, str],
-    before: Mooring | Tow | Net,
-    after: Mooring | Tow | Net,
-    day: date | None = None,
+    names: tuple[str, str], before: Mooring | Tow | Net, after: Mooring | Tow | Net
 ) -> Comparison:
     """Solve and judge two moorings or nets, or two tows; one that does not stand is compared too.
 
     Parameters
     ----------
     names : what each is called
-    day : on which accepts count or have ended; today unless given
     """
     found = differences(before.file, after.file)
-    designs = _solved(before, day), _solved(after, day)
+    designs = _solved(before), _solved(after)
     sides = [_figures_of(each) for each in designs]
     figures = [
         Compared(name, title, quantity, sides[0].get(name, _NONE)[2], sides[1].get(name, _NONE)[2])
@@ -127,24 +122,17 @@ def comparison_of(
 _NONE = "", "", None
 
 
-def _solved(line: Mooring | Tow | Net, day: date | None) -> _Design:
-    if isinstance(line, Tow):
-        try:
-            return _Design(line.solve(), "", None)
-        except NoEquilibrium as failure:
-            return _Design(None, str(failure), None)
-    assessment = check(line, day=day)
-    if isinstance(line, Net):
-        net = or_why_not(line.solve)
-        if isinstance(net, NoEquilibrium):
-            return _Design(None, str(net), assessment)
-        return _Design(net, "", assessment)
-    situation = assessment.stands[0].situations[0]
-    return _Design(
-        situation.result,
-        "" if situation.failure is None else str(situation.failure),
-        assessment,
-    )
+def _solved(line: Mooring | Tow | Net) -> _Design:
+    assessment = None if isinstance(line, Tow) else check(line)
+    found: AnyResult | NoEquilibrium | None
+    if isinstance(line, Mooring) and assessment is not None:
+        given = assessment.stands[0].situations[0]
+        found = given.result or given.failure
+    else:
+        found = or_why_not(line.solve)
+    if isinstance(found, NoEquilibrium):
+        return _Design(None, str(found), assessment)
+    return _Design(found, "", assessment)
 
 
 def _figures_of(design: _Design) -> _Figures:

@@ -42,7 +42,7 @@ from calm.checks.finding import AS_GIVEN, OWN, State, Verdict, unknown, verdict_
 from calm.checks.growth import grown
 from calm.checks.handling import Handling, backup
 from calm.checks.inventory import inventory_of
-from calm.checks.recovery import Break, Loss, losses_among, required_margin
+from calm.checks.recovery import Break, Loss, lifts_of, losses_among, required_margin
 from calm.checks.situations import (
     DEPLOYED,
     FOULED,
@@ -60,7 +60,6 @@ from calm.files import Flexible, Piece
 from calm.files.legs import stand_in_anchor
 from calm.files.mooring_file import STAND_IN
 from calm.physics.line import Floats
-from calm.physics.seawater import REFERENCE_DENSITY
 from calm.solve import Status, expect_many
 
 NOT_HANDLED = (
@@ -238,7 +237,8 @@ class NetGraph:
                 chain[-2:] = [_SEABED]
             self.pieces += above
             self.chains.append(chain)
-            lifts.append(np.resize(_lifts(leg), len(above)))
+            force = lifts_of(leg.mooring.line, leg.mooring.water, leg)  # an anchor lifts nothing
+            lifts.append(np.append(force, 0.0)[: len(above)])
         self.lifts = np.concatenate(lifts) if lifts else np.zeros(0)
         self.opened = {
             (number, at)
@@ -367,12 +367,3 @@ class NetGraph:
             assert isinstance(one, int)
             told = "The releases free all that floats from its anchors."
             yield verdict_on(self.pieces[one], State.PASS, told)
-
-
-def _lifts(leg: Result) -> Floats:
-    """Net force of each piece of a leg with its clamps where it stands [N]; 0 of an anchor."""
-    line, water, rows = leg.mooring.line, leg.mooring.water, slice(len(leg.mooring.line.length))
-    depth = 0.5 * (leg.components.depth_top[rows] + leg.components.depth_bottom[rows])
-    density = water.density_at(np.maximum(depth, 0.0))
-    force = line.net_force((density - REFERENCE_DENSITY) * water.gravity)
-    return np.append(force, 0.0)

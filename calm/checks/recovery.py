@@ -128,7 +128,7 @@ def recovery_of(mooring: Mooring, result: Result, *, first_only: bool = False) -
     released = count - 1 if release is None else release
     whole = with_axial_clamps(mooring.line, mooring.file.pieces[:-1])
     line = part_of(whole, 0, released + 1)
-    lifts = _lifts(line, water, result)
+    lifts = lifts_of(line, water, result)
     none = np.full(count, nan)
     at_rest = Recovery(released, 0.0, float(lifts.sum()), None, none, none, none, (), ())
     if not lifts.sum() > 0.0:
@@ -165,11 +165,11 @@ def recovery_of(mooring: Mooring, result: Result, *, first_only: bool = False) -
     )
 
 
-def _lifts(line: Line, water: Water, result: Result) -> Floats:
+def lifts_of(line: Line, water: Water, result: Result) -> Floats:
     """(n,) net forces of the pieces with their clamps where they stand, + up [N]."""
     rows = slice(len(line.length))
     depth = 0.5 * (result.components.depth_top[rows] + result.components.depth_bottom[rows])
-    density = water.density_at(depth)
+    density = water.density_at(np.maximum(depth, 0.0))
     return line.net_force((density - REFERENCE_DENSITY) * water.gravity)
 
 

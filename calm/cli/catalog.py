@@ -78,7 +78,8 @@ def search(words: list[str], /, *, json: bool = False) -> ExitCode:
         narrate(f"no component has `{text}`; searched for `{spelt}`")
     found = index.search(spelt, first=[*remembered.favourites, *remembered.recent])
     if not found:
-        narrate(f"no component has {' and '.join(words)}")
+        wanted = " and ".join(words)
+        narrate(f"no component has {wanted}; `calm catalog add` makes one from a few figures")
     return _show(catalogue, {each.id: catalogue.get(each.id) for each in found}, json)
 
 

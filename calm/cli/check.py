@@ -124,10 +124,6 @@ def _read(
 
     `ready` is called while other processes read.
     """
-    if against is None:
-        return *read_designs(
-            files, environments, catalogs, workers, meanwhile=ready, nets=True
-        ), None
     from calm.case import Tow
     from calm.case.net import load
 
@@ -136,14 +132,14 @@ def _read(
     designs: list[DesignFile] = []
     tows: list[Path] = []
     try:
-        first = environments[0] if environments else None
-        earlier = load(against, first, catalogs)
+        designs, tows = read_designs(files, environments, catalogs, workers, meanwhile=ready)
     except InputError as error:
         problems += error.problems
     try:
-        designs, tows = read_designs(files, environments, catalogs, workers, nets=True)
+        first = environments[0] if environments else None
+        earlier = None if against is None else load(against, first, catalogs)
     except InputError as error:
-        problems = [*error.problems, *problems]
+        problems += error.problems
     if problems:
         raise InputError(list(dict.fromkeys(problems)))
     if isinstance(earlier, Tow):

@@ -32,8 +32,6 @@ def read_designs(
     workers: int | None,
     command: str = "calm check",
     meanwhile: Callable[[], object] | None = None,
-    *,
-    nets: bool = False,
 ) -> tuple[list[DesignFile], list[Path]]:
     """Every mooring in every environment, and which of the files are tows, which a command leaves.
 
@@ -42,7 +40,6 @@ def read_designs(
     environments : names or files of those to take; None for a file's own and all that it names
     workers : how many processes share the work
     meanwhile : what this process does while others read
-    nets : let files have legs
 
     Raises
     ------
@@ -57,13 +54,13 @@ def read_designs(
         raise UsageError(f"given twice: {', '.join(twice)}")
     names: Sequence[str | None] = environments or [None]
     asked = [(file, name) for file in files for name in names]
-    read, tows = _loaded(asked, catalogs, workers, meanwhile, nets=nets)
+    read, tows = _loaded(asked, catalogs, workers, meanwhile)
     moored = [file for file in files if file not in tows]
     if not moored:
         raise UsageError(f"{command} is for moorings; these are tows: {', '.join(map(str, tows))}")
     if environments is None:
         others = [(file, name) for file in moored for name in read[file, None].file.variants]
-        read |= _loaded(others, catalogs, workers, nets=nets)[0]
+        read |= _loaded(others, catalogs, workers)[0]
     stands = {file: [one for (path, _), one in read.items() if path == file] for file in moored}
     for its in stands.values():
         _refuse_one_name(its)
@@ -107,13 +104,11 @@ def _loaded(
     catalogs: Sequence[Path],
     workers: int | None,
     meanwhile: Callable[[], object] | None = None,
-    *,
-    nets: bool,
 ) -> tuple[dict[tuple[Path, str | None], Mooring | Net], list[Path]]:
     """The moorings, and which of the files are tows."""
     from calm.case import Tow
 
-    tasks = [(file, name, catalogs, nets) for file, name in asked]
+    tasks = [(file, name, catalogs) for file, name in asked]
     problems: dict[Problem, None] = {}
     moorings: dict[tuple[Path, str | None], Mooring | Net] = {}
     tows: dict[Path, None] = {}
@@ -131,16 +126,13 @@ def _loaded(
 
 
 def _load(
-    task: tuple[Path, str | None, Sequence[Path], bool],
+    task: tuple[Path, str | None, Sequence[Path]],
 ) -> Mooring | Net | Tow | tuple[Problem, ...]:
     """What was read, or what is wrong with it."""
-    import calm
     from calm.case.net import load
 
-    file, environment, catalogs, nets = task
-    load = load if nets else calm.load
     try:
-        return load(file, environment=environment, catalogs=catalogs)
+        return load(*task)
     except InputError as error:
         return error.problems
 

@@ -132,10 +132,7 @@ def fields_of(
 ) -> dict[str, GriddedQuantity]:
     """The field of each quantity; one that has too few instruments is left out, and said.
 
-    Raises
-    ------
-    UsageError
-        None is left; no time is common; no instrument is of the line.
+    UsageError: none is left; no time is common; no instrument is of the line.
     """
     import numpy as np
 

@@ -13,19 +13,26 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import App, CycloptsError, Group, Parameter, UnusedCliTokensError
 
+from calm.cli.at_sea import DECK_EXAMPLES, LOCATE_EXAMPLES, deck, locate
 from calm.cli.batch import BATCH_EXAMPLES, batch
-from calm.cli.build import BUILD_EXAMPLES, build
 from calm.cli.catalog import catalog
 from calm.cli.chart import chart
 from calm.cli.check import CHECK_EXAMPLES, check
-from calm.cli.deck import DECK_EXAMPLES, deck
 from calm.cli.designs import DIFF_EXAMPLES, SIZE_EXAMPLES, diff, size
 from calm.cli.exchange import EXPORT_EXAMPLES, IMPORT_EXAMPLES, export, import_
 from calm.cli.grid import GRID_EXAMPLES, grid
-from calm.cli.locate import LOCATE_EXAMPLES, locate
 from calm.cli.motion import MOTION_EXAMPLES, motion
 from calm.cli.run import RUN_EXAMPLES, run
-from calm.cli.starter import DOCS_EXAMPLES, NEW_EXAMPLES, SCHEMA_EXAMPLES, docs, new, schema
+from calm.cli.starter import (
+    BUILD_EXAMPLES,
+    DOCS_EXAMPLES,
+    NEW_EXAMPLES,
+    SCHEMA_EXAMPLES,
+    build,
+    docs,
+    new,
+    schema,
+)
 from calm.cli.streams import ExitCode, narrate, prepare, show
 from calm.cli.tow import STRUMMING_EXAMPLES, TOW_EXAMPLES, strumming, tow
 from calm.cli.verify import VERIFY_EXAMPLES, verify
@@ -249,8 +256,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     Parameters
     ----------
-    arguments : sequence of str, optional
-        The words after ``calm``; those of the process when absent.
+    arguments : the words after ``calm``; those of the process when absent
 
     Returns
     -------

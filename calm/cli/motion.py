@@ -134,9 +134,9 @@ def motion(
     from calm.case.mooring import load_line
     from calm.motion.instrument_file import read_instruments
     from calm.motion.line_places import places_of
-    from calm.motion.motion_estimate import MotionRequest, RecoveredMooring
-    from calm.motion.sensors import split_label
+    from calm.motion.motion_estimate import RecoveredMooring
     from calm.motion.study import series_of
+    from calm.records.instrument_series import split_label
     from calm.report.folder import check_folder, printed, write_report
     from calm.report.html import page
     from calm.report.motion_report import motion_document, motion_part, motion_report
@@ -176,10 +176,8 @@ def motion(
             narrate(line)
 
     recovery = RecoveredMooring(
-        MotionRequest(
-            mooring, pressures, currents, match, _separated(fit), _separated(hold_out),
-            cross_validate, _separated(correct), judge, sea_level, flags, apart, turned, prior,
-        )
+        mooring, pressures, currents, match, _separated(fit), _separated(hold_out),
+        cross_validate, _separated(correct), judge, sea_level, flags, apart, turned, prior,
     )  # fmt: skip
     for note in recovery.notes:
         narrate(note)

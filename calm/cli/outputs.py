@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Protocol
+from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from calm.case.explain import Explanation
     from calm.case.net_result import AnyResult
     from calm.case.uncertain import Uncertain
+    from calm.cli.tow import TabulatedTow
     from calm.drawing.schematic.in_terminal import TerminalSchematic
     from calm.report.blocks import ReportPart
 
@@ -29,27 +30,6 @@ OutputPath = Annotated[Path | None, Parameter(allow_leading_hyphen=True)]
 
 STDOUT = Path("-")
 """What a path says that stands for the standard output."""
-
-
-class Shown(Protocol):
-    """What a command has to show of one file."""
-
-    @property
-    def file(self) -> Path:
-        """The file it was read from."""
-
-    @property
-    def warnings(self) -> tuple[str, ...]:
-        """What neither a CSV table nor an exit code can tell."""
-
-    def document(self) -> dict[str, Any]:
-        """The JSON object."""
-
-    def parts(self) -> list[Shows]:
-        """What a terminal shows; nothing where there is nothing to show."""
-
-    def rendered(self, suffix: str) -> bytes | None:
-        """A picture or a report, by a file's ending; None where there is nothing to show."""
 
 
 @dataclass(frozen=True)
@@ -143,12 +123,9 @@ class Outputs:
 
     Parameters
     ----------
-    files : tuple of Path
-        The files the outputs are made from; none where the question is in the options.
-    json, csv : Path or None
-        One JSON document, one CSV table.
-    plot, html, pdf, netcdf : Path or None
-        A picture, a page, a report, a dataset for each file.
+    files : the files the outputs are made from; none where the question is in the options
+    json, csv : one JSON document, one CSV table
+    plot, html, pdf, netcdf : a picture, a page, a report, a dataset for each file
     """
 
     files: tuple[Path, ...] = ()
@@ -212,9 +189,8 @@ class Outputs:
 
         Parameters
         ----------
-        document : callable
-            Makes the JSON object; called only where it was asked for. The version of CALM, and
-            with it the units, are added where it has none.
+        document : makes the JSON object; called only where it was asked for. The version of CALM,
+            and with it the units, are added where it has none
 
         Raises
         ------
@@ -235,20 +211,11 @@ class Outputs:
         if self.json is not None:
             write_file(self.json, text().encode())
 
-    def write(self, shown: Sequence[Shown], to_csv: Callable[[], str]) -> None:
+    def write(self, shown: Sequence[FileOutcome | TabulatedTow], to_csv: Callable[[], str]) -> None:
         """Write the files, then the standard output: what was asked for there, or the tables.
 
-        Parameters
-        ----------
-        shown : sequence of Shown
-            One for each of `files`, in order.
-        to_csv : callable
-            Makes the CSV table of all of them; called only where it was asked for.
-
-        Raises
-        ------
-        UsageError
-            The system refuses to write.
+        There is something to show of each of `files`, in order; the CSV table of all of them is
+        made only where it was asked for. UsageError: the system refuses to write.
         """
         from calm.report.folder import write_file
         from calm.report.result_files import to_json

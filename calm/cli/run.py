@@ -163,12 +163,9 @@ def solve_and_show(
 
     Parameters
     ----------
-    explain, schematic : bool
-        Explain what was solved; draw each line for the terminal.
-    draws : pair of int, optional
-        Samples and seed by which to say how sure the figures are.
-    verbose : bool
-        Say how each solution was reached.
+    explain, schematic : explain what was solved; draw each line for the terminal
+    draws : samples and seed by which to say how sure the figures are
+    verbose : say how each solution was reached
     """
     from calm.case import Result
     from calm.case.net_result import NetResult

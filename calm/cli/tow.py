@@ -94,7 +94,7 @@ def tow(
 
 
 @dataclass(frozen=True)
-class _Tabulated:
+class TabulatedTow:
     """A tow solved many times."""
 
     file: Path
@@ -139,7 +139,7 @@ def _only_tows(files: list[Path], environment: str | None, catalogs: list[Path])
     return [line for line in read if isinstance(line, Tow)]
 
 
-def _sweep(file: Path, each: Tow, speeds: list[float]) -> _Tabulated:
+def _sweep(file: Path, each: Tow, speeds: list[float]) -> TabulatedTow:
     from calm.case.tow import SOLVES, sweep
     from calm.report.tabulation import by_speed
     from calm.solve import expect_many
@@ -157,21 +157,21 @@ def _sweep(file: Path, each: Tow, speeds: list[float]) -> _Tabulated:
             f"{file}: no equilibrium at {len(failed)} of {len(speeds)} speeds; "
             f"at {speed:.3g} m/s, {failure}"
         )
-    return _Tabulated(file, by_speed(each, speeds, outcomes))
+    return TabulatedTow(file, by_speed(each, speeds, outcomes))
 
 
-def _vary(file: Path, each: Tow) -> _Tabulated:
+def _vary(file: Path, each: Tow) -> TabulatedTow:
     from calm.case.tow import sensitivity
     from calm.report.tabulation import by_coefficient
 
-    return _Tabulated(file, by_coefficient(each, sensitivity(each)))
+    return TabulatedTow(file, by_coefficient(each, sensitivity(each)))
 
 
 def _tabulate(
-    tows: Sequence[Tow], outputs: Outputs, tabulate: Callable[[Path, Tow], _Tabulated]
+    tows: Sequence[Tow], outputs: Outputs, tabulate: Callable[[Path, Tow], TabulatedTow]
 ) -> ExitCode:
     """Solve each tow many times, and write the outputs."""
-    shown: list[_Tabulated | FileOutcome] = []
+    shown: list[TabulatedTow | FileOutcome] = []
     for file, each in zip(outputs.files, tows, strict=True):
         try:
             shown.append(tabulate(file, each))
@@ -182,7 +182,7 @@ def _tabulate(
     def to_csv() -> str:
         from calm.report.tabulation import to_csv
 
-        return to_csv([each.tabulation for each in shown if isinstance(each, _Tabulated)])
+        return to_csv([each.tabulation for each in shown if isinstance(each, TabulatedTow)])
 
     outputs.write(shown, to_csv)
     return gravest(each.code for each in shown)

@@ -141,10 +141,7 @@ def _asked(
 ) -> tuple[list[SeaState] | None, float | None, float]:
     """Return the seas, where they run [degrees], and how long they last [s]; None: not said.
 
-    Raises
-    ------
-    UsageError
-        With all that is wrong with the options.
+    UsageError: with all that is wrong with the options.
     """
     from calm.errors import nearest
     from calm.records import sea_states

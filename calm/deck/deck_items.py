@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from calm.case.net_result import legs_of
 from calm.case.result_tables import ClampRow, rows_by_place, rows_down
 from calm.files import Flexible
-from calm.files.legs import legs_down
+from calm.files.legs import leg_numbers
 from calm.quantities import QUANTITIES
 
 if TYPE_CHECKING:
@@ -225,7 +225,7 @@ def deck_items_of(result: Result | NetResult) -> tuple[DeckItem, ...]:
     deployed = result.file.deployed
     items = {item.label: item for item in deployed.items} if deployed else {}
     seabeds = [leg.mooring.water.depth for leg in legs_of(result)]
-    own = legs_down(result.file)
+    own = leg_numbers(result.file)
     found: list[DeckItem] = []
     for row, clamps in rows_down(result):
         bottom = seabeds[own[row.index]]

@@ -132,7 +132,7 @@ def _effect(result: Result | NetResult, index: int, length: float) -> float | No
     longer, mooring = length * (1.0 + LENGTH_ERROR), result.mooring
     try:
         if isinstance(mooring, Net):
-            number = leg_numbers(mooring.file.legs)[index]
+            number = leg_numbers(mooring.file)[index]
             leg = mooring.with_length(index, longer).standing.legs[number]
             upper = leg.position[-1 if leg.line.towed else 0]
             return -float(upper[2]) - legs_of(result)[number].top.depth

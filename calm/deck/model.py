@@ -28,7 +28,7 @@ from calm.drop import DropPlan, drop_plan
 from calm.drop.launch import SHIP_SPEED
 from calm.errors import NoEquilibrium
 from calm.files import CurrentTable
-from calm.files.legs import legs_down
+from calm.files.legs import leg_numbers
 from calm.solve import Status
 
 if TYPE_CHECKING:
@@ -106,7 +106,7 @@ class Deck:
 
     def leg(self, index: int) -> str:
         """Return the name of the leg that a piece is in; nothing of a single line."""
-        return self.file.legs[legs_down(self.file)[index]].name if self.file.legs else ""
+        return self.file.legs[leg_numbers(self.file)[index]].name if self.file.legs else ""
 
     def by_leg(
         self, items: Iterable[_Listed], index: Callable[[_Listed], int]
@@ -155,7 +155,7 @@ def deck_of(
         results.append((_name(other), there))
     parts = deck_items_of(result)
     assessment = check(*moorings)
-    inventory, legs = assessment.inventory, legs_down(first.file)
+    inventory, legs = assessment.inventory, leg_numbers(first.file)
     rise: Recovery | None = None
     plan: DropPlan | NoEquilibrium | None = None
     if isinstance(first, Net):

@@ -131,8 +131,7 @@ def end_tensions(mover: Mover, state: ChainState, *, within: bool = False) -> Fl
     if within:
         force = np.where(((on.place > 0.0) & (on.place < 1.0))[:, np.newaxis], force, 0.0)
     lower = on.place[:, np.newaxis]
-    above = np.zeros_like(pull)
-    below = np.zeros_like(pull)
+    above, below = np.zeros_like(pull), np.zeros_like(pull)
     np.add.at(above, on.bar, (1.0 - lower) * force)
     np.add.at(below, on.bar, lower * force)
     ends = np.linalg.norm(np.stack([pull + above, pull - below], axis=1), axis=2)

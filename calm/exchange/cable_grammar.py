@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -109,11 +109,8 @@ class CableSegment:
 
 
 @dataclass
-class CableTerminal:
+class CableTerminal(CableDefinition):
     """Represent an end of the line."""
-
-    token: Token
-    values: KeyValues
 
 
 @dataclass
@@ -334,13 +331,9 @@ def _connector(
         below.joint = _block(words)
         body = below.joint.get("body") or below.joint.get("connector")
         if body is not None:
-            below.connector = _renamed(body.token, body.text)
+            below.connector = replace(body.token, kind="name", text=body.text)
         return
-    below.connector = _renamed(key, _word(words, key))
-
-
-def _renamed(token: Token, text: str) -> Token:
-    return Token("name", text, token.path, token.line, token.column)
+    below.connector = replace(key, kind="name", text=_word(words, key))
 
 
 def _attachments(words: TokenStream, key: Token) -> list[tuple[Token, list[int]]]:

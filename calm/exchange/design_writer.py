@@ -1,10 +1,20 @@
-"""Write a design as a mooring file, with a comment for every guess in its line."""
+"""Write a design as a mooring file, with a comment for every guess in its line.
+
+Anchors have the weights that hold its line.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from textwrap import wrap
 
+from calm.case import Tow
+from calm.case.net import Net, load
+from calm.case.net_result import EndLoad
+from calm.case.result import AnchorLoad
+from calm.errors import CalmError
 from calm.exchange.design import (
     Design,
     FigureOrWord,
@@ -17,7 +27,10 @@ from calm.exchange.design import (
 )
 from calm.files import Catalogue
 from calm.files.components import FLEXIBLE_KINDS
+from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
 from calm.files.editing.writing import written
+from calm.physics.materials import STEEL_DENSITY
+from calm.quantities import rounded
 from calm.units import KILOGRAM_FORCE
 
 _WIDTH = 100
@@ -260,3 +273,69 @@ def figure_text(key: str, value: FigureOrWord, *, per_metre: bool, in_kilograms:
     if key == "diameter" and value < 0.1:
         value, unit = value * 1000.0, "mm"
     return f"{_number(value)} {unit}".rstrip()
+
+
+_HOLDS = 1e8  # N: holds whatever is tied to it
+_IN_WATER = (1.0 - CATALOGUE_DENSITY / STEEL_DENSITY) * STANDARD_GRAVITY  # N of a kilogram of steel
+_DIGITS = 2  # that a guessed weight keeps
+_LEAST = 100.0  # N of a guessed weight
+
+
+def secure_anchors(design: Design, environment: list[str] | None, output: Path) -> None:
+    """Give each anchor a weight where the file gives none, or one that the line would lift.
+
+    The shape of the line does not depend on it. The weight is what `calm check` asks for in this
+    current. A line without an equilibrium is left to `calm run`, which says so.
+
+    Parameters
+    ----------
+    design : whose anchors are changed
+    environment : lines in place of the water of the design
+    output : path of the mooring file to come
+    """
+    last = design.items if design.legs else design.items[-1:]
+    anchors = [item.component for item in last if item.component.kind == "anchor"]
+    if design.tow is not None or not anchors:
+        return
+    for anchor, pull, required in _pulls(design, anchors, environment, output):
+        mass, weight = anchor.figures.get("mass"), anchor.figures.get("weight")
+        given = weight if weight is not None or mass is None else _IN_WATER * float(mass)
+        if isinstance(given, float) and (pull is None or pull <= given):
+            continue
+        anchor.figures.pop("mass", None)
+        anchor.guesses.pop("mass", None)
+        reason = "the file gives no weight; 1.5 × (V + H/0.6) in this current"
+        anchor.figures["weight"] = rounded(max(required, _LEAST), _DIGITS, up=True)
+        if pull is None:
+            reason = "the file gives no weight; this holds anything"
+            anchor.figures["weight"] = _HOLDS
+        elif given is not None:
+            reason = (
+                f"the file's {given:.5g} N would be lifted: the line pulls up with {pull:.5g} N"
+            )
+        anchor.guesses["weight"] = reason
+
+
+def _pulls(
+    design: Design, anchors: list[ImportedComponent], environment: list[str] | None, output: Path
+) -> list[tuple[ImportedComponent, float | None, float]]:
+    """Return each anchor, the upward pull of the line on it and the weight that holds it [N]."""
+    figures = [anchor.figures for anchor in anchors]
+    for anchor in anchors:
+        anchor.figures = {**anchor.figures, "weight": _HOLDS}
+        anchor.figures.pop("mass", None)
+    try:
+        read = load(output, text=mooring_text(design, "", environment)[0])
+        assert not isinstance(read, Tow)
+        loads: Sequence[AnchorLoad | EndLoad] = (
+            read.solve().anchors if isinstance(read, Net) else (read.solve().anchor,)
+        )
+    except CalmError:
+        return [(anchor, None, 0.0) for anchor in anchors]
+    finally:
+        for anchor, before in zip(anchors, figures, strict=True):
+            anchor.figures = before
+    return [
+        (anchor, load.vertical, load.required_weight or 0.0)
+        for anchor, load in zip(anchors, loads, strict=True)
+    ]

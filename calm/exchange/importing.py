@@ -26,8 +26,7 @@ from calm.exchange.design import (
     one_line,
     refused,
 )
-from calm.exchange.design_writer import figure_text, mooring_text
-from calm.exchange.imported_anchors import secure_anchors
+from calm.exchange.design_writer import figure_text, mooring_text, secure_anchors
 from calm.exchange.list_cells import is_table
 from calm.exchange.list_reader import read_list
 from calm.exchange.mat_file import is_mat

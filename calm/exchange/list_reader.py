@@ -7,7 +7,6 @@ or workbook whose sheets have headings.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -242,17 +241,8 @@ _CENTIMETRE = 0.01
 _METRE = 100.0  # cm: the length of a line whose figures are those of a metre
 
 
-@dataclass(frozen=True)
-class LibraryElement:
-    """Hold an element of a library: its figures in SI, those of a line per metre."""
-
-    name: str
-    is_line: bool
-    figures: dict[str, float]
-
-
-Library = Mapping[str, LibraryElement]
-"""Elements by their name without capitals and blanks."""
+Library = Mapping[str, ListRow]
+"""Elements by their name without capitals and blanks; figures of a line are those of a metre."""
 
 
 def read_library(path: Path) -> Library:
@@ -263,7 +253,7 @@ def read_library(path: Path) -> Library:
     """
     content = read_content(path, largest=200_000_000)
     elements = _of_matrices(path) if is_mat(content) else _of_sheets(path)
-    library: dict[str, LibraryElement] = {}
+    library: dict[str, ListRow] = {}
     for element in elements:
         library.setdefault(key_of(element.name), element)
     return library
@@ -301,16 +291,16 @@ def complete_rows(rows: Iterable[ListRow], library: Library, source: str) -> Non
             elif "buoyancy" not in row.figures:
                 row.hint = f"; {source} has no element of that name"
             continue
-        row.line = element.is_line
+        row.line = element.line
         for what, value in element.figures.items():
-            if what in row.figures or (element.is_line and what == "length"):
+            if what in row.figures or (element.line and what == "length"):
                 continue
             row.figures[what] = value
-            if element.is_line:
+            if element.line:
                 row.metre.add(what)
 
 
-def _of_matrices(path: Path) -> list[LibraryElement]:
+def _of_matrices(path: Path) -> list[ListRow]:
     """Return the elements of character matrices, a row an element, as in `mdcodes.mat`."""
     variables = read_variables(path, [*GROUPS, "format"])
     entries = [
@@ -333,7 +323,7 @@ def _width(variables: Mapping[str, MatValue]) -> int:
     return int(columns[0, -1]) if columns.ndim == 2 and 0 < columns.size <= 100 else _NAME
 
 
-def _entry(text: str, group: str, end: int) -> LibraryElement | None:
+def _entry(text: str, group: str, end: int) -> ListRow | None:
     """Return an element of a row; None for a row that cannot be read."""
     content = text.encode()
     try:
@@ -344,10 +334,11 @@ def _entry(text: str, group: str, end: int) -> LibraryElement | None:
         return None
     length, width, diameter, cd, material = figures[-5:]
     sizes = {"length": length, "width": width, "diameter": diameter}
-    return LibraryElement(
+    return ListRow(
+        0,
         content[:end].decode("utf-8", "replace").strip(),
-        group in _LINES and length == _METRE,
-        {
+        line=group in _LINES and length == _METRE,
+        figures={
             "buoyancy": figures[0] * KILOGRAM_FORCE,
             **{name: size * _CENTIMETRE for name, size in sizes.items()},
             "cd": cd,
@@ -356,7 +347,7 @@ def _entry(text: str, group: str, end: int) -> LibraryElement | None:
     )
 
 
-def _of_sheets(path: Path) -> Iterable[LibraryElement]:
+def _of_sheets(path: Path) -> Iterable[ListRow]:
     found = False
     for title, cells in read_sheets(path).items():
         headings = headings_of(cells, {})
@@ -368,8 +359,9 @@ def _of_sheets(path: Path) -> Iterable[LibraryElement]:
         weights_as_buoyancy(rows, [])
         for row in rows:
             found = True
-            figures = {what: one for what, one in row.figures.items() if what not in _NOT_THEIRS}
-            yield LibraryElement(row.name, _is_line(row, title), figures)
+            row.line = _is_line(row, title)
+            row.figures = {k: one for k, one in row.figures.items() if k not in _NOT_THEIRS}
+            yield row
     if not found:
         raise refused(path, "holds no elements: no sheet has headings that CALM knows")
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections import defaultdict
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from calm.exchange.design import (
     Design,
     FigureOrWord,
     ImportedComponent,
+    ImportedLeg,
     ImportedPiece,
     ImportedWater,
     Remark,
@@ -54,29 +56,21 @@ _COLUMNS = {
 
 
 @dataclass(frozen=True)
-class MoorDynFile:
-    """Hold the tables of a file: points and line types by name, lines, and the design begun.
+class _File:
+    """Hold the tables of a file: points and line types by name, lines, those `at` each point.
 
-    Attributes
-    ----------
-    points, types, lines : rows
-    at : the lines that meet in each point
-    design : its water, and what is left out
+    With the depth [m] and gravity [m/s²] of the water, and the design begun.
     """
 
-    points: dict[str, SectionRow]
-    types: dict[str, SectionRow]
-    lines: list[SectionRow]
-    at: dict[str, list[SectionRow]]
+    points: dict[str, _Row]
+    types: dict[str, _Row]
+    lines: list[_Row]
+    at: dict[str, list[_Row]]
+    depth: float
+    gravity: float
     design: Design
 
-    @property
-    def water(self) -> ImportedWater:
-        """The water, whose depth and gravity are known."""
-        assert self.design.water is not None
-        return self.design.water
-
-    def piece(self, line: SectionRow) -> ImportedPiece:
+    def piece(self, line: _Row) -> ImportedPiece:
         """Return a line as a piece (InputError: it has no type, or no length)."""
         kind = self.types.get(line.words.get("type", ""))
         if kind is None:
@@ -84,8 +78,18 @@ class MoorDynFile:
         length = line.number("length")
         if length <= 0.0:
             raise line.refuse("a line has no length")
-        assert self.water.gravity is not None
-        return ImportedPiece(_cable(kind, self.water.gravity), length)
+        return ImportedPiece(_cable(kind, self.gravity), length)
+
+    def along(self, names: list[str], lines: list[_Row], told: set[str]) -> list[ImportedPiece]:
+        """Return lines, and what is at the points before and behind each that is not `told` yet."""
+        items: list[ImportedPiece] = []
+        for at, line in zip(names, [*lines, None], strict=True):
+            if not _is_held(self.points[at]) and at not in told:
+                there = _point_of(self.points[at])
+                items += [] if there is None else [there]
+            told.add(at)
+            items += [] if line is None else [self.piece(line)]
+        return items
 
 
 def read_moordyn(path: Path) -> Design:
@@ -103,62 +107,59 @@ def read_moordyn(path: Path) -> Design:
         raise refused(path, f"has {len(points)} points and {len(lines)} lines")
     if len(lines) > MOST_PIECES:
         raise refused(path, f"has {len(lines)} lines; more than {MOST_PIECES} are not read")
-    at: dict[str, list[SectionRow]] = {}
+    at: dict[str, list[_Row]] = {}
     for line in lines:
-        for name in ends_of(line):
+        for name in line.ends:
             if name not in points:
                 raise line.refuse(f"its end `{name}` is not a point of the file")
             at.setdefault(name, []).append(line)
-    design = Design("MoorDyn", path.stem, [], _water(options, points, path), notes=[_NOTE])
+    lowest = min(point.number("z") for point in points.values())
+    depth = _option(options, "wtrdpth", "depth", default=-lowest)
+    if depth <= 0.0:
+        raise refused(path, "gives no depth of the water (`WtrDpth`)")
+    density = _option(options, "wtrdnsty", "rhow", "rho", default=CATALOGUE_DENSITY)
+    gravity = _option(options, "g", "gravity", default=STANDARD_GRAVITY)  # its own
+    beside = path.with_name(_CURRENTS)
+    flows = options.get("currents", "0") not in ("0", "none") and beside.is_file()
+    water = ImportedWater(depth, density, gravity, _currents(beside) if flows else ())
+    design = Design("MoorDyn", path.stem, [], water, notes=[_NOTE])
     types = {row.words.get("name", ""): row for row in tables["types"]}
-    file = MoorDynFile(points, types, lines, at, design)
+    file = _File(points, types, lines, at, depth, gravity, design)
     design.dropped.append(Remark("line types", "damping, bending stiffness, added mass"))
-    chain = _from_the_anchor(file)
-    if chain is None:
-        from calm.exchange.moordyn_net import lay_net
-
-        lay_net(file, path)
+    single = _single_line(file)
+    if single is None:
+        _lay_net(file, path)
         return design
-    items = []
-    for name, line in chain:
-        if name != chain[0][0] and (there := point_of(points[name])) is not None:
-            items.append(there)
-        items.append(file.piece(line))
-    anchor = ImportedPiece(anchor_of(points[chain[0][0]], file.water))
-    top = points[other_end(chain[-1][1], chain[-1][0])]
-    design.items = [_upper_end(top), *items[::-1], anchor]
+    names, down = single
+    items = file.along(names, down, {names[0], names[-1]})
+    anchor = ImportedPiece(_anchor_of(points[names[-1]], depth))
+    design.items = [_upper_end(points[names[0]]), *items, anchor]
     return design
 
 
-def _from_the_anchor(file: MoorDynFile) -> list[tuple[str, SectionRow]] | None:
-    """Return the lines of a single line from its anchor up, each with the point at its lower end;
-    None where it is a net.
-    """
-    points = file.points
-    ends = [name for name, met in file.at.items() if len(met) == 1]
+def _single_line(file: _File) -> tuple[list[str], list[_Row]] | None:
+    """Return the points and the lines of a single line from its top down; None of a net."""
+    points, ends = file.points, [name for name, met in file.at.items() if len(met) == 1]
     if len(ends) != 2 or any(len(met) > 2 for met in file.at.values()):
         return None
     ends.sort(key=lambda name: points[name].number("z"))
-    lower, upper = (points[name] for name in ends)
-    joints = [points[name] for name in file.at if name not in ends]
-    if not is_held(lower) or any(is_held(joint) for joint in joints) or not _floats(upper, file):
+    held = [name for name, point in points.items() if name in file.at and _is_held(point)]
+    if ends[0] not in held or {*held} - {*ends} or not _floats(points[ends[1]], file):
         return None
-    chain: list[tuple[str, SectionRow]] = []
-    here, left = ends[0], list(file.lines)
-    while met := [each for each in left if here in ends_of(each)]:
-        chain.append((here, met[0]))
+    names, lines, left = [ends[1]], list[_Row](), list(file.lines)
+    while met := [each for each in left if names[-1] in each.ends]:
+        lines.append(met[0])
         left.remove(met[0])
-        here = other_end(met[0], here)
-    return None if left else chain
+        names.append(_other_end(met[0], names[-1]))
+    return None if left else (names, lines)
 
 
-def _floats(top: SectionRow, file: MoorDynFile) -> bool:
+def _floats(top: _Row, file: _File) -> bool:
     """Return whether an upper end is free, or a float that is held where it would float."""
-    if not is_held(top):
+    if not _is_held(top):
         return True
-    assert file.water.depth is not None
     depth, figures = 0.0 - top.number("z"), _figures(top)
-    near = -_ABOVE <= depth <= max(_NEAR * file.water.depth, _NEAR_AT_LEAST)
+    near = -_ABOVE <= depth <= max(_NEAR * file.depth, _NEAR_AT_LEAST)
     return near and _lift(figures) > 0.0
 
 
@@ -167,42 +168,21 @@ def _lift(figures: dict[str, FigureOrWord]) -> float:
     return CATALOGUE_DENSITY * float(figures["volume"]) - float(figures["mass"])
 
 
-def ends_of(line: SectionRow) -> tuple[str, str]:
-    """Return the names of the points at the ends of a line."""
-    return line.words.get("a", ""), line.words.get("b", "")
-
-
-def other_end(line: SectionRow, name: str) -> str:
+def _other_end(line: _Row, name: str) -> str:
     """Return the name of the point at the other end of a line."""
-    a, b = ends_of(line)
+    a, b = line.ends
     return b if a == name else a
 
 
-def is_held(point: SectionRow) -> bool:
+def _is_held(point: _Row) -> bool:
     """Return whether a point is fixed, or moves with a vessel."""
     return not point.words.get("attachment", "").lower().startswith(_FREE)
 
 
-def _water(options: dict[str, str], points: dict[str, SectionRow], path: Path) -> ImportedWater:
-    lowest = min(point.number("z") for point in points.values())
-    depth = _option(options, "wtrdpth", "depth", default=-lowest)
-    if depth <= 0.0:
-        raise refused(path, "gives no depth of the water (`WtrDpth`)")
-    water = ImportedWater(depth)
-    water.density = _option(options, "wtrdnsty", "rhow", "rho", default=CATALOGUE_DENSITY)
-    water.gravity = _option(options, "g", "gravity", default=STANDARD_GRAVITY)  # its own
-    beside = path.with_name(_CURRENTS)
-    if options.get("currents", "0") not in ("0", "none") and beside.is_file():
-        water.current = _currents(beside)
-    return water
-
-
 def _option(options: dict[str, str], *names: str, default: float) -> float:
     for name in names:
-        try:
+        with suppress(KeyError, ValueError):
             return abs(float(options[name]))
-        except (KeyError, ValueError):
-            continue
     return default
 
 
@@ -218,27 +198,25 @@ def _currents(path: Path) -> tuple[tuple[float, float, float, float], ...]:
     return tuple(sorted(rows))
 
 
-def _cable(kind: SectionRow, gravity: float) -> ImportedComponent:
+def _cable(kind: _Row, gravity: float) -> ImportedComponent:
     """Return a line type; its weight in water follows from its mass and the water it displaces."""
     across = kind.number("diameter")
     if across <= 0.0:
         raise kind.refuse("a line type has no diameter")
     mass = kind.number("mass")
-    volume = math.pi / 4.0 * across**2
-    wet = (mass - CATALOGUE_DENSITY * volume) * gravity
+    wet = (mass - CATALOGUE_DENSITY * (math.pi / 4.0 * across**2)) * gravity
     figures: dict[str, FigureOrWord] = {
         "diameter": across, "cn": kind.number("cd", 0.0), "ct": kind.number("cdt", 0.0),
     }  # fmt: skip
     name = kind.words["name"]
     component = ImportedComponent.of_line(name, wet, figures, chain=is_chain(name))
     component.figures["mass"] = mass
-    stiffness = kind.number("ea", 0.0)
-    if stiffness > 0.0:
+    if (stiffness := kind.number("ea", 0.0)) > 0.0:
         component.figures["stiffness"] = stiffness
     return component
 
 
-def point_of(point: SectionRow) -> ImportedPiece | None:
+def _point_of(point: _Row) -> ImportedPiece | None:
     """Return what is at a free point; None where it has neither weight nor drag."""
     figures = _figures(point)
     if not any(figures[key] for key in ("mass", "volume", "drag_area")):
@@ -247,7 +225,7 @@ def point_of(point: SectionRow) -> ImportedPiece | None:
     return ImportedPiece(ImportedComponent(f"point {point.words['id']}", "body", figures))
 
 
-def _figures(point: SectionRow) -> dict[str, FigureOrWord]:
+def _figures(point: _Row) -> dict[str, FigureOrWord]:
     for key in ("fx", "fy", "fz"):
         if point.number(key, 0.0) != 0.0:
             raise point.refuse(f"`{key}` pulls at the line from outside")
@@ -257,31 +235,35 @@ def _figures(point: SectionRow) -> dict[str, FigureOrWord]:
     }  # fmt: skip
 
 
-def _upper_end(top: SectionRow) -> ImportedPiece:
+def _upper_end(top: _Row) -> ImportedPiece:
     """Return the float: a free point, or one that is held at the surface and would float there."""
-    figures, guess = _figures(top), {}
+    figures = _figures(top)
     if _lift(figures) <= 0.0:
         raise top.refuse("the upper end is free, and does not float")
-    if is_held(top):
-        guess["volume"] = "the file holds the upper end; here a float of its point, free to move"
+    told = "the file holds the upper end; here a float of its point, free to move"
+    guess = {"volume": told} if _is_held(top) else {}
     name = f"point {top.words['id']}"
     return ImportedPiece(ImportedComponent(name, "body", {**figures, "role": "float"}, guess))
 
 
-def anchor_of(point: SectionRow, water: ImportedWater) -> ImportedComponent:
+def _anchor_of(point: _Row, depth: float) -> ImportedComponent:
     """Return an anchor as high as its point stands above the seabed."""
-    assert water.depth is not None
-    height = water.depth + point.number("z")
+    height = depth + point.number("z")
     return ImportedComponent("anchor", "anchor", {"length": height} if height > 1e-6 else {})
 
 
 @dataclass(frozen=True)
-class SectionRow:
+class _Row:
     """Hold a row of a table: its words by heading, and its place in the file."""
 
     path: str
     line: int
     words: dict[str, str]
+
+    @property
+    def ends(self) -> tuple[str, str]:
+        """The names of the points at the ends of a line."""
+        return self.words.get("a", ""), self.words.get("b", "")
 
     def number(self, key: str, default: float | None = None) -> float:
         """Return a word as a number (InputError: it is missing, or no number)."""
@@ -308,9 +290,9 @@ def is_moordyn(content: bytes) -> bool:
     return b"\0" not in content and {"types", "lines"} <= found
 
 
-def _read_sections(path: Path) -> tuple[dict[str, list[SectionRow]], dict[str, str]]:
+def _read_sections(path: Path) -> tuple[dict[str, list[_Row]], dict[str, str]]:
     """Return the tables of a file, none with a row of too few words, and its options."""
-    tables, options = defaultdict[str, list[SectionRow]](list), dict[str, str]()
+    tables, options = defaultdict[str, list[_Row]](list), dict[str, str]()
     current, headings, skip = "", list[str](), 0
     for number, text in enumerate(read_text(path).splitlines(), 1):
         line = text.split("#")[0] if not text.lstrip().startswith("(") else text
@@ -331,7 +313,7 @@ def _read_sections(path: Path) -> tuple[dict[str, list[SectionRow]], dict[str, s
             if len(words) < min(len(headings), 4):
                 raise refused_at(str(path), number, 1, f"the row has {len(words)} words")
             kept = dict(zip(headings, words, strict=False))
-            tables[current].append(SectionRow(str(path), number, kept))
+            tables[current].append(_Row(str(path), number, kept))
     return tables, options
 
 
@@ -345,3 +327,74 @@ def _heading(word: str, section: str) -> str:
     if section == "types" and plain in ("linetype", "type", "name", "typename"):
         return "name"
     return _COLUMNS.get(plain, plain)
+
+
+_ON_THE_BED = 0.05
+"""Share of the depth: a fixed point no higher above the seabed is an anchor."""
+
+
+def _lay_net(file: _File, path: Path) -> None:
+    """Lay the lines as legs between points that are held, end freely, or join three and more.
+
+    InputError: lines go round in a ring that nothing holds.
+    """
+    breaks = [name for name, met in file.at.items() if len(met) != 2 or _is_held(file.points[name])]
+    left, told = list(file.lines), set[str]()
+    for start in breaks:
+        while met := [line for line in file.at[start] if line in left]:
+            names, lines = [start], list[_Row]()
+            while met and (not lines or names[-1] not in breaks):
+                lines.append(met[0])
+                left.remove(met[0])
+                names.append(_other_end(met[0], names[-1]))
+                met = [line for line in file.at[names[-1]] if line in left]
+            anchored = [_is_anchor(file, names[end]) for end in (0, -1)]
+            rise = file.points[names[-1]].number("z") - file.points[names[0]].number("z")
+            if all(anchored):
+                if len(lines) == 1:
+                    raise lines[0].refuse("both ends are anchors: a leg has one, at its lower end")
+                top = max(names[1:-1], key=lambda name: file.points[name].number("z"))
+                k = names.index(top)
+                halves = [(names[k::-1], lines[:k][::-1]), (names[k:], lines[k:])]
+            elif anchored[0] or (not anchored[1] and rise > 0.0):  # it leads up
+                halves = [(names[::-1], lines[::-1])]
+            else:
+                halves = [(names, lines)]
+            for half in halves:
+                name = f"leg-{len(file.design.legs) + 1}"
+                file.design.legs.append(_leg(file, name, *half, told))
+    if left or not breaks:
+        raise refused(path, "lines go round in a ring that nothing holds")
+    file.design.items = [item for leg in file.design.legs for item in leg.items]
+
+
+def _is_anchor(file: _File, name: str) -> bool:
+    point = file.points[name]
+    fixed = _is_held(point) and point.words["attachment"].lower().startswith(("fix", "anchor"))
+    return fixed and point.number("z") <= -(1.0 - _ON_THE_BED) * file.depth
+
+
+def _leg(
+    file: _File, name: str, names: list[str], lines: list[_Row], told: set[str]
+) -> ImportedLeg:
+    """Return a leg from its upper end; what is at a point goes to the first leg that has it."""
+    items = file.along(names, lines, told)
+    upper, lower = (_end(file, at) for at in (names[0], names[-1]))
+    if _is_anchor(file, names[-1]):
+        point = file.points[names[-1]]
+        items.append(ImportedPiece(_anchor_of(point, file.depth)))
+        depth = 0.0 - point.number("z")
+        deeper = f", depth: {depth:.9g} m" if depth > file.depth else ""
+        lower = f"{{anchor: {{at: {_at(point)}{deeper}}}}}"
+    return ImportedLeg(name, items, upper, lower)
+
+
+def _end(file: _File, name: str) -> str:
+    point = file.points[name]
+    if _is_held(point):
+        return f"{{held: {{depth: {0.0 - point.number('z'):.9g} m, at: {_at(point)}}}}}"
+    return f"{{join: point-{name}}}" if len(file.at[name]) > 1 else "free"
+
+
+def _at(point: _Row) -> str:
+    return f"[{point.number('x'):.9g} m, {point.number('y'):.9g} m]"

@@ -279,8 +279,7 @@ def contradicted(kind: str, base: Set[str], override: Set[str]) -> frozenset[str
     Parameters
     ----------
     kind : of the definition
-    base, override : set of str
-        The keys that the definition and the override give.
+    base, override : the keys that the definition and the override give
 
     Notes
     -----

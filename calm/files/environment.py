@@ -69,32 +69,22 @@ class Environment:
 
     Attributes
     ----------
-    name : str or None
-        Of the variant or environment file in use.
+    name : of the variant or environment file in use
     fluid : "water" or "air"
         Air in a tow only.
-    depth : float or None
-        Water depth [m]; None in a tow that gives none.
-    density : float, DepthTable or SeaWater
-        Of the fluid [kg/m³], or the temperature and salinity that it follows from.
-    gravity : float or None
-        [m/s²], where the file gives it.
+    depth : water depth [m]; None in a tow that gives none
+    density : of the fluid [kg/m³], or the temperature and salinity that it follows from
+    gravity : [m/s²], where the file gives it
     current : CurrentTable
-    wind : Wind or None
-        Over the water.
+    wind : over the water
     position : Position or None
-    depth_range : pair of floats or None
-        Water depth at low and at high water [m].
-    fouling : Fouling or None
-        What grows on the cables.
-    maximum_speed : float
-        A faster current counts as a mistake of its source [m/s]; inf in a tow and in air.
-    seabed : SeabedKeys, SeabedGrid or None
-        How it slopes; level where it is not given.
-    waves : WaveKeys or None
-        As they are written.
-    seas : tuple of SeaState
-        Those of `waves`.
+    depth_range : water depth at low and at high water [m]
+    fouling : what grows on the cables
+    maximum_speed : a faster current counts as a mistake of its source [m/s]; inf in a tow and in
+        air
+    seabed : how it slopes; level where it is not given
+    waves : as they are written
+    seas : those of `waves`
     """
 
     name: str | None

@@ -11,7 +11,7 @@ from pydantic import BeforeValidator, Field
 
 from calm.errors import Problem, unknown
 from calm.files.components import Anchor
-from calm.files.definition import Model, QuantityField, Text
+from calm.files.definition import Model, QuantityField, Text, described, optional
 from calm.files.mooring_file import STAND_IN, MooringFile, Piece, Place, numbered
 from calm.files.rigid import Profiler
 from calm.files.yaml_document import SourceMapping, validate
@@ -46,21 +46,17 @@ class AnchoredKeys(Model):
     """Say where a leg is anchored."""
 
     at: _At = (0.0, 0.0)
-    depth: Annotated[float, QuantityField("length", above=0)] | None = Field(
-        default=None, description="of the seabed there, if not that of the water", examples=["44 m"]
+    depth: Annotated[float, QuantityField("length", above=0)] | None = optional(
+        "of the seabed there, if not that of the water", "44 m"
     )
 
 
 class EndKeys(Model):
     """Say what holds an end of a leg: one of these."""
 
-    join: Text | None = Field(default=None, description="a node where legs meet", examples=["A"])
-    anchor: AnchoredKeys | None = Field(
-        default=None, description="the seabed", examples=[{"at": ["30 m", "0 m"]}]
-    )
-    held: HeldKeys | None = Field(
-        default=None, description="a fixed place", examples=[{"depth": "2 m"}]
-    )
+    join: Text | None = optional("a node where legs meet", "A")
+    anchor: AnchoredKeys | None = optional("the seabed", {"at": ["30 m", "0 m"]})
+    held: HeldKeys | None = optional("a fixed place", {"depth": "2 m"})
 
     @property
     def free(self) -> bool:
@@ -88,9 +84,9 @@ _End = Annotated[
 class LegKeys(Model):
     """List the pieces of a leg from its upper to its lower end, and say what holds its ends."""
 
-    line: Annotated[tuple[Any, ...], Field(min_length=1)] = Field(
-        description="the pieces from the upper to the lower end",
-        examples=[[{"use": "wire-jacketed-8", "length": "150 m"}]],
+    line: Annotated[tuple[Any, ...], Field(min_length=1)] = described(
+        "the pieces from the upper to the lower end",
+        [{"use": "wire-jacketed-8", "length": "150 m"}],
     )
     top: _End = Field(
         default=_FREE, description="what holds its upper end", examples=["free", {"join": "A"}]
@@ -333,14 +329,10 @@ def _check_held(legs: Sequence[Leg], section: SourceMapping, problems: list[Prob
             problems.append(section.problem((leg.name,), message, key=True))
 
 
-def leg_numbers(legs: Sequence[Leg]) -> list[int]:
-    """Return the number of the leg that each piece of the file is in."""
-    return [number for number, leg in enumerate(legs) for _ in range(leg.first, leg.end)]
-
-
-def legs_down(file: MooringFile) -> list[int]:
-    """Return the same of any file: a single line is one leg."""
-    return leg_numbers(file.legs) or [0] * len(file.pieces)
+def leg_numbers(file: MooringFile) -> list[int]:
+    """Return the number of the leg that each piece of a file is in; a single line is one."""
+    numbers = [n for n, leg in enumerate(file.legs) for _ in range(leg.first, leg.end)]
+    return numbers or [0] * len(file.pieces)
 
 
 def nodes_of(legs: Sequence[Leg]) -> Mapping[str, int]:

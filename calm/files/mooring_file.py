@@ -163,26 +163,19 @@ class Piece:
 
     Attributes
     ----------
-    index : int
-        Position in the line, 0 at the top (in a tow, at the ship).
-    use, label : str
-        Id of the component; the label is unique in the line.
-    component : Component
-        Its definition with the overrides of the line applied.
-    length : float or None
-        Unstretched length [m]; None where it is to be cut to fit.
-    fit_top_depth : float or None
-        Depth wanted for the top of the line in still water [m], on the piece cut to fit.
+    index : position in the line, 0 at the top (in a tow, at the ship)
+    use, label : id of the component; the label is unique in the line
+    component : its definition with the overrides of the line applied
+    length : unstretched length [m]; None where it is to be cut to fit
+    fit_top_depth : depth wanted for the top of the line in still water [m], on the piece cut to fit
     clamps : tuple of Clamp
-    line, column : int
-        The item in the mooring file, counted from 1.
+    line, column : the item in the mooring file, counted from 1
     place : Place
-    fit_body_depth : float or None
-        Depth wanted for the lower end of the piece at the tow's speed [m], where it is cut to fit.
-    equipment : Equipment
-        What the file says of this individual piece.
-    measured_load : float
-        Load under which its length is measured [N], `length` being without load all the same.
+    fit_body_depth : depth wanted for the lower end of the piece at the tow's speed [m], where it is
+        cut to fit
+    equipment : what the file says of this individual piece
+    measured_load : load under which its length is measured [N], `length` being without load all the
+        same
     """
 
     index: int

@@ -5,7 +5,7 @@ found, or everything resolved.
 from __future__ import annotations
 
 import os.path
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -120,15 +120,12 @@ def read_mooring(
 
     Parameters
     ----------
-    path : path
-        The mooring file.
-    environment : str or path, optional
-        A variant named in the file, or an environment file; its keys replace those of the
-        file's own `environment`.
+    path : the mooring file
+    environment : a variant named in the file, or an environment file; its keys replace those of the
+        file's own `environment`
     catalogs : catalogue files that come before the user's own and the shipped ones, the last first
-    text : str, optional
-        In place of the file's content. The file need not exist; what the text refers to is looked
-        for beside it.
+    text : in place of the file's content. The file need not exist; what the text refers to is
+        looked for beside it
     stand_in : let a line that has no anchor yet stand on one that holds anything, of the id
         `STAND_IN`
     net : let the file have legs
@@ -311,7 +308,7 @@ def choose_environment(
     chosen : a variant named in the file, or an environment file; None for the file's own
     towed : a tow may be without an environment: in deep, still sea water
     """
-    own = top.child("environment") if _is_mapping(top, "environment") else None
+    own = _child(top, "environment")
     if own is None:
         if "environment" in top.data:
             return None
@@ -320,8 +317,9 @@ def choose_environment(
             problems.append(top.problem((), message, lacks="no environment"))
             return None
         own = SourceMapping.of(top.document, (), {})
-    variants = top.child("environments") if _is_mapping(top, "environments") else None
-    overlays = dict(_mappings(variants)) if variants else {}
+    variants = _child(top, "environments")
+    known = {} if variants is None else {key: _child(variants, key) for key in variants.data}
+    overlays = {key: overlay for key, overlay in known.items() if overlay is not None}
     for overlay in overlays.values():
         _check(overlay, problems, towed)
     if chosen is None:
@@ -355,16 +353,6 @@ def _check(section: SourceMapping, problems: list[Problem], towed: bool) -> None
     """Look for mistakes in keys that may stand over, or under, others: on any depth."""
     section = section.over(SourceMapping.of(section.document, (), {"depth": "1 m"}))
     read_environment(section, None, problems, [], open_files=False, towed=towed)
-
-
-def _mappings(section: SourceMapping) -> Iterator[tuple[str, SourceMapping]]:
-    for key in section.data:
-        if _is_mapping(section, key):
-            yield key, section.child(key)
-
-
-def _is_mapping(section: SourceMapping, key: str) -> bool:
-    return isinstance(section.data.get(key), dict)
 
 
 def _is_file_name(text: str) -> bool:

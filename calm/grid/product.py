@@ -38,10 +38,7 @@ MOST_LEVELS = 5000
 def parse_levels(text: str) -> NDArray[np.float64]:
     """Return the levels of a text: ``first:step:last``, or several separated by commas [m].
 
-    Raises
-    ------
-    UsageError
-        It is neither, they do not go down, or are too many.
+    UsageError: it is neither, they do not go down, or are too many.
     """
     parts = text.split(":")
     wanted = "write FIRST:STEP:LAST in metres, such as 0:20:1500, or 50,100,250"

@@ -66,10 +66,7 @@ class MooringDepths:
 def read_depths(path: Path) -> MooringDepths:
     """Return the depths of a result of `calm motion`.
 
-    Raises
-    ------
-    InputError
-        It is not such a result, or has no time at which a depth is known.
+    InputError: it is not such a result, or has no time at which a depth is known.
     """
     if not path.exists():
         raise InputError([Problem(str(path), 0, 0, "no such file")])
@@ -134,14 +131,6 @@ class Samples:
     deviation: Floats
     value: Floats
 
-    def without(self, labels: Sequence[str]) -> Samples:
-        """Return the samples but for some instruments."""
-        kept = [j for j, label in enumerate(self.label) if label not in labels]
-        return Samples(
-            self.time, tuple(self.label[j] for j in kept), self.depth[:, kept],
-            self.deviation[:, kept], self.value[:, kept],
-        )  # fmt: skip
-
 
 def common_times(
     depths: MooringDepths, series: Sequence[InstrumentSeries], step: np.timedelta64 | None
@@ -150,10 +139,7 @@ def common_times(
 
     They begin and end where both depths and values are known.
 
-    Raises
-    ------
-    UsageError
-        Depths and values have no time in common, or the step is longer than what they have.
+    UsageError: depths and values have no time in common, or the step is longer than what they have.
     """
     known = [one.time[np.isfinite(one.value)] for one in series]
     known = [one for one in known if len(one)]

@@ -3,31 +3,30 @@
 from __future__ import annotations
 
 import hashlib
+import os
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property
-from pathlib import Path
 from threading import Event
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from calm.batch.dataset import laid_out, layout_of
 from calm.batch.profiles import Batch, Profiles
-from calm.batch.run import BatchOutcome, run_kept
 from calm.batch.statuses import STATUSES
 from calm.batch.threads import processors
 from calm.batch.work import BatchWork, Progress
-from calm.batch.work_store import Store, identity_of, open_store, to_text
+from calm.batch.work_store import Store
 from calm.case import Mooring
+from calm.case.parts import clamps_down
+from calm.dataset.discovery import coverage, with_flags, written
 from calm.dataset.netcdf import Attributes, ResultLayout, down_the_line, labels, numbers
-from calm.motion.archived import archived, depth_flags
 from calm.motion.common_unknowns import Common
 from calm.motion.estimate import estimated
-from calm.motion.line_response import Forward, LineResponse, points
-from calm.motion.matching import labels_of
+from calm.motion.line_places import serials_of
+from calm.motion.line_response import Forward, LineResponse, labels_of, points
 from calm.motion.measurements import MooringMeasurements, by_neighbours, level_names
 from calm.motion.unknown_currents import unknown_state
 from calm.motion.whole_record import forwards_of
@@ -58,43 +57,17 @@ OF_MOTION: Mapping[str, tuple[tuple[str, ...], tuple[str, str, Attributes]]] = {
 """Dimensions besides time, unit, meaning and attributes of what a batch does not have."""
 OF_CURRENTS = frozenset({"current_factor", "current_doubt", "plain_depth"})
 """Those of them that need a measured current."""
-
-
-def run_motion(
-    task: Task,
-    record: MeasuredRecord,
-    output: Path,
-    options: Mapping[str, Any],
-    *,
-    workers: int | None = None,
-    progress: Callable[[Progress], None] | None = None,
-    tell: Callable[[str], None] = lambda _: None,
-    stop: Event | None = None,
-) -> BatchOutcome:
-    """Estimate every time, and write the result; see `calm.batch.run.run_batch`.
-
-    Parameters
-    ----------
-    options : what was asked for besides, by which the work is known again
-
-    Raises
-    ------
-    UsageError
-        The output is there already, from another input, or cannot be read.
-    """
-    stop = stop or Event()
-    layout = motion_layout(task, record)
-
-    def identify() -> str:
-        return to_text(identity_of(task.mooring, record, options, stop))
-
-    def begin(folder: Path, identity: str) -> MotionWork:
-        return MotionWork(task, record, open_store(folder, layout, BLOCK, identity), progress, stop)
-
-    def solve(work: MotionWork) -> None:
-        work.here(workers or processors())
-
-    return run_kept(output, identify, begin, solve, tell)
+MEASURED, ESTIMATED, MISSING = 1, 8, 9
+"""Flags of depths, of the table of OceanSITES."""
+FLAGGED = {"clamp_depth": ["clamp_depth_sd"], "depth_top": ["depth_sd"]}
+_OF_DOCUMENT = {
+    "institution": "institution", "author": "creator_name", "email": "creator_email",
+    "url": "creator_url", "license": "license", "project": "project", "site": "site_code",
+    "platform": "platform_code", "investigator": "principal_investigator",
+    "acknowledgement": "acknowledgement", "ship": "platform_deployment_ship_name",
+    "cruise": "platform_deployment_cruise_name",
+}  # fmt: skip
+"""Attributes of ACDD and OceanSITES, by the keys of `document:`."""
 
 
 class MotionWork(BatchWork):
@@ -146,6 +119,77 @@ def motion_layout(task: Task, record: MeasuredRecord) -> ResultLayout:
     attributes["history"] = attributes["history"].replace(" batch", " motion")
     whole = replace(layout, sizes=sizes, variables=tuple(variables), attributes=attributes)
     return archived(whole, task.mooring, task.measured, record.source)
+
+
+def about(mooring: Mooring) -> Attributes:
+    """Return what `document:` and `deployed:` of a mooring file say, as archives call it."""
+    file = mooring.file
+    said: Attributes = {}
+    if file.document is not None:
+        known = file.document.to_dict()
+        said = {name: str(known[key]) for key, name in _OF_DOCUMENT.items() if key in known}
+    for part in ("name", "email", "url"):  # who writes the file is who publishes it
+        if f"creator_{part}" in said:
+            said[f"publisher_{part}"] = said[f"creator_{part}"]
+    if "institution" in said:
+        said["creator_institution"] = said["institution"]
+    if file.deployed is not None and file.deployed.date is not None:
+        said["platform_deployment_date"] = str(file.deployed.date)
+    said["water_depth"] = float(mooring.water.depth)
+    return said
+
+
+def archived(
+    layout: ResultLayout, mooring: Mooring, measured: MooringMeasurements, source: Mapping[str, str]
+) -> ResultLayout:
+    """Return a layout of motion with flags of depths, serial numbers, and attributes.
+
+    Its date is that of SOURCE_DATE_EPOCH, and only that: the same input gives the same bytes.
+
+    Parameters
+    ----------
+    source : what the record is from
+    """
+    variables = list(layout.variables)
+    serials, clamps = serials_of(mooring), len(clamps_down(mooring.file.pieces))
+    for dimension, mine in (("clamp", serials[:clamps]), ("component", serials[clamps:])):
+        if any(mine):
+            variables.append(labels(f"{dimension}_serial", dimension, mine, "serial number"))
+    position = mooring.file.position
+    deployed = mooring.file.deployed
+    if deployed is not None and deployed.position is not None:
+        position = deployed.position
+    place = () if position is None else (position.latitude, position.longitude)
+    name = str(layout.attributes["title"]).partition(": ")[0]
+    inputs = "; ".join(filter(None, source.values()))
+    attributes: Attributes = {
+        **layout.attributes,
+        **coverage(measured.time, (0.0, float(mooring.water.depth)), place),
+        **about(mooring),
+        "id": f"OS_{''.join(c if c.isalnum() else '-' for c in name)}_"
+        f"{np.datetime_as_string(measured.time[0], 'M').replace('-', '')}_D_DEPTHS",
+        "keywords": "EARTH SCIENCE > OCEANS > OCEAN PRESSURE",
+        "processing_level": "Data interpolated",
+        "comment": "Depths of a mooring line, estimated from its statics; x, y from the anchor",
+        "instrument": ", ".join(measured.label),
+        "history": f"{layout.attributes['history']}: {inputs}",
+    }
+    if not attributes.get("summary"):
+        attributes["summary"] = f"Depths of every part of the mooring {name} over time"
+    if os.environ.get("SOURCE_DATE_EPOCH"):
+        attributes["date_created"] = attributes["date_modified"] = written()
+    return replace(layout, variables=with_flags(variables, FLAGGED), attributes=attributes)
+
+
+def depth_flags(one: MooringMeasurements, profiles: Profiles) -> dict[str, NDArray[np.int8]]:
+    """Return flags of depths: measured where a pressure of its own counts, else interpolated."""
+    clamps = profiles.clamp_depth.shape[1]
+    depth = np.hstack([profiles.clamp_depth, profiles.depth_top])
+    flag = np.where(np.isfinite(depth), ESTIMATED, MISSING).astype(np.int8)
+    for j, point in enumerate(one.point.tolist()):
+        own = np.isfinite(one.depth[:, j]) & (flag[:, point] == ESTIMATED)
+        flag[own, point] = MEASURED
+    return {"clamp_depth_qc": flag[:, :clamps], "depth_top_qc": flag[:, clamps:]}
 
 
 def estimate_in_memory(

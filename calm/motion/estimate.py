@@ -390,9 +390,7 @@ def best_state(moments: LineResponse, common: Common) -> CurrentsState:
     there = between(one, np.tile(still, (len(one.time), 1)), still)
     there = moments.depths(moments.way(moments.levels(there), common), none)
     way = moments.way(moments.levels(between(one, there, still)), common)
-    there = moments.depths(way, none)
-    slope = moments.slopes(way, none, there)
-    begin = at = Linear(none, there, slope, moments.common_slopes(way, there))
+    begin = at = moments.linear(way, none)
     before = found = posterior(one, at, way.spread, common, still)
     for _ in range(2):
         at = at.moved(found.logs, moments.depths(way, found.logs))

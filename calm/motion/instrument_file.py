@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from calm.dataset.discovery import FLAGS, written
 from calm.errors import InputError, Problem, UsageError
-from calm.motion.archived import ESTIMATED, MEASURED, MISSING
+from calm.motion.correction import ESTIMATED, MEASURED, MISSING
 from calm.motion.line_places import LinePlaces, points_of
 from calm.motion.measurements import interpolated
 from calm.motion.study import depths_at
@@ -174,7 +174,7 @@ def write_depths(
     Parameters
     ----------
     instruments : the file that is copied
-    result : of `calm.motion.correction.run_motion`
+    result : of `calm motion`
     gap : between neighbours of a depth, at most
     output : the copy
     inputs : names of the files that the depths are from, with their hashes

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
 from calm.case import Mooring
 from calm.case.parts import clamps_down
 from calm.errors import UsageError, nearest
-from calm.motion.line_response import Forward
-from calm.motion.matching import labels_of
+from calm.motion.line_response import Forward, labels_of
 from calm.physics.line import Floats
 from calm.records.instrument_series import Identity
 
@@ -63,10 +61,8 @@ def points_of(series: Sequence[Identity], line: LinePlaces) -> tuple[dict[int, i
     By its label; else by its serial number; else, where none of its file has either, by nominal
     depths, in their order down the line.
 
-    Raises
-    ------
-    UsageError
-        No series is of any point, or two are of the same, or their order is not the only one.
+    UsageError: no series is of any point, or two are of the same, or their order is not the only
+    one.
     """
     found: dict[int, int] = {}
     said, lost, placed = [], [], []
@@ -130,7 +126,7 @@ def _by_place(
     few, many = (one, other) if len(one) <= len(other) else (other, one)
     if not len(few):
         return {}, [f"{series[i].named} is at no free place of the line" for i in rows]
-    best, second = _aligned(few, many)
+    best, second = aligned(few, many, 0.01, 1.0)
     if second is not None and second[0] - best[0] < CLEAR:
         differs = next(k for k in range(len(few)) if best[1][k] != second[1][k])
         row = differs if few is one else best[1][differs]
@@ -146,24 +142,27 @@ def _by_place(
                    f"{line.name}" for i in left]  # fmt: skip
 
 
-def _aligned(
-    few: Floats, many: Floats
+def aligned(
+    few: Floats, many: Floats, depths: float, spacings: float
 ) -> tuple[tuple[float, list[int]], tuple[float, list[int]] | None]:
     """Return the cheapest way to set few depths on many in their order, and the next best.
 
-    Its cost: the sum of how far each spacing between neighbours is off, and a hundredth of how far
-    the depths are, which tells apart what the spacings cannot [m].
+    Parameters
+    ----------
+    few, many : rising [m]
+    depths, spacings : what a metre costs by which a depth is off, and a spacing between neighbours
     """
-    count, places = len(few), len(many)
+    places = len(many)
 
     def solved(forbidden: tuple[int, int] | None) -> tuple[float, list[int]]:
-        off = 0.01 * np.abs(few[:, None] - many[None, :])
+        off = depths * np.abs(few[:, None] - many[None, :])
         if forbidden is not None:
             off[forbidden] = np.inf
         cost, back = off[0].copy(), []
-        for i in range(1, count):
+        for i in range(1, len(few)):
             step = np.abs((few[i] - few[i - 1]) - (many[None, :] - many[:, None]))
-            whole = np.where(np.tri(places, dtype=bool), np.inf, cost[:, None] + step)
+            down = np.tri(places, dtype=bool)
+            whole = np.where(down, np.inf, cost[:, None] + spacings * step)
             back.append(whole.argmin(axis=0))
             cost = whole.min(axis=0) + off[i]
         chosen = [int(cost.argmin())]
@@ -172,7 +171,6 @@ def _aligned(
         return float(cost.min()), chosen[::-1]
 
     best = solved(None)
-    others = [solved((i, best[1][i])) for i in range(count)] if places > count or count > 1 else []
-    real = [one for one in others
-            if np.isfinite(one[0]) and all(a < b for a, b in pairwise(one[1]))]  # fmt: skip
+    others = [solved(pair) for pair in enumerate(best[1])]
+    real = [one for one in others if np.isfinite(one[0])]
     return best, min(real, key=lambda one: one[0], default=None)

@@ -7,7 +7,7 @@ covariance are given. A current that is missing at a level comes from its neighb
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from calm.batch.profiles import Batch, Profiles
 from calm.case import Mooring
+from calm.case.parts import clamps_down
 from calm.motion import common_unknowns
 from calm.motion.common_unknowns import Common
 from calm.motion.measurements import FREE, MooringMeasurements
@@ -106,9 +107,7 @@ class LineResponse:
     ) -> tuple[Floats, Floats, NDArray[np.bool_]]:
         """Return (n, k) u and v [m/s] at these levels, and whether each was measured.
 
-        Parameters
-        ----------
-        without : groups that are taken from the others, as is what was not measured
+        Groups that are left out are taken from the others, as is what was not measured.
         """
         one = self.measured
         known = np.isfinite(one.u) & np.isfinite(one.v) & np.isfinite(level)
@@ -156,29 +155,18 @@ class LineResponse:
         factor = np.exp(logs[:, self.group])
         return (forward or self.forward).depths(way.level, way.u * factor, way.v * factor)
 
-    def slopes(self, way: ReadCurrents, logs: Floats, there: Floats) -> Floats:
-        """Return (n, p, g) change of the depths with the logarithm of each group's factor [m].
+    def linear(self, way: ReadCurrents, logs: Floats) -> Linear:
+        """Return the line with factors on the currents, of logarithms (n, g), and its slopes."""
+        there = self.depths(way, logs)
+        own = [self.depths(way, logs + ahead) for ahead in STEP * np.eye(self.groups)]
+        common = [self.depths(way, logs, forward) for forward in self.shifted.values()]
+        return Linear(logs, there, _slopes(own, there), _slopes(common, there))
 
-        Parameters
-        ----------
-        way : the currents as they are read
-        logs : (n, g) logarithms of the factors on them
-        there : (n, p) depths at these [m]
-        """
-        columns = np.zeros((*there.shape, self.groups))
-        for g in range(self.groups):
-            ahead = logs.copy()
-            ahead[:, g] += STEP
-            columns[:, :, g] = (self.depths(way, ahead) - there) / STEP
-        return np.nan_to_num(columns)
 
-    def common_slopes(self, way: ReadCurrents, there: Floats) -> Floats:
-        """Return (n, p, f) change of the depths with the logarithm of each common factor [m]."""
-        none = np.zeros((len(there), self.groups))
-        columns = [
-            (self.depths(way, none, forward) - there) / STEP for forward in self.shifted.values()
-        ]
-        return np.nan_to_num(np.stack(columns, -1)) if columns else np.zeros((*there.shape, 0))
+def _slopes(ahead: Sequence[Floats], there: Floats) -> Floats:
+    """Return (n, p, m) slopes of depths (n, p) to those a step ahead in each direction [m]."""
+    columns = [(one - there) / STEP for one in ahead]
+    return np.nan_to_num(np.stack(columns, -1)) if columns else np.zeros((*there.shape, 0))
 
 
 FACTORS = ("cable_drag", "rigid_drag", "buoyancy", "length")
@@ -248,6 +236,23 @@ class Forward:
 def points(profiles: Profiles) -> Floats:
     """Return (n, p) depths of all points [m]."""
     return np.hstack([profiles.clamp_depth, profiles.depth_top])
+
+
+def labels_of(mooring: Mooring) -> tuple[str, ...]:
+    """Return the labels of all points, see `Forward`."""
+    pieces = mooring.file.pieces
+    return (
+        *(clamp.label for clamp in clamps_down(pieces)),
+        *(piece.label for piece in pieces),
+    )
+
+
+def instruments_of(mooring: Mooring) -> list[int]:
+    """Return the points that may be instruments: all clamps, and the pieces whose role it is."""
+    pieces = mooring.file.pieces
+    clamps = len(clamps_down(pieces))
+    inline = [clamps + i for i, piece in enumerate(pieces) if piece.component.role == "instrument"]
+    return [*range(clamps), *inline]
 
 
 FEWEST = 20

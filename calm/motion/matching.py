@@ -13,12 +13,13 @@ from calm.case import Mooring
 from calm.case.parts import clamps_down
 from calm.dataset.discovery import hashed
 from calm.errors import UsageError, nearest, not_among
-from calm.files import Clamp, Piece
-from calm.motion.line_response import Forward
+from calm.motion.line_places import aligned
+from calm.motion.line_response import Forward, instruments_of, labels_of
 from calm.motion.measurements import FREE, MooringMeasurements, joined, read_currents
 from calm.motion.remarks import ALL, Fault
-from calm.motion.sensors import Sensor, parse_flags, read_sea_level, read_sensors, split_label
+from calm.motion.sensors import Sensor, parse_flags, read_sea_level, read_sensors
 from calm.physics.line import Floats
+from calm.records.instrument_series import split_label
 
 _MATCHES = ("label", "height", "depth")
 GAP = np.timedelta64(2, "h")
@@ -132,41 +133,23 @@ CERTAIN = 2.0
 """An order of sensors counts as the only one where any other is off by so much more [m]."""
 
 
-def labels_of(mooring: Mooring) -> tuple[str, ...]:
-    """Labels of all points, see `calm.motion.line_response`."""
-    pieces = mooring.file.pieces
-    return (
-        *(clamp.label for clamp in clamps_down(pieces)),
-        *(piece.label for piece in pieces),
-    )
-
-
-def instruments_of(mooring: Mooring) -> list[int]:
-    """Return the points that may be instruments: all clamps, and the pieces whose role it is."""
-    pieces = mooring.file.pieces
-    clamps = len(clamps_down(pieces))
-    inline = [clamps + i for i, piece in enumerate(pieces) if piece.component.role == "instrument"]
-    return [*range(clamps), *inline]
-
-
 def named_by_serial(sensors: Sequence[Sensor], mooring: Mooring) -> list[Sensor]:
     """Return the sensors, each without a label called as the part that has its serial number.
 
     One whose number is that of no part, or of several, is called by its number.
     """
     pieces = mooring.file.pieces
-    parts: list[Clamp | Piece] = [*clamps_down(pieces), *pieces]
-    labels: dict[str, list[str]] = {}
-    for part in parts:
-        if part.serial:
-            labels.setdefault(_plain(part.serial), []).append(part.label)
-    found = []
-    for sensor in sensors:
-        if not sensor.label and sensor.serial:
-            mine = labels.get(_plain(sensor.serial), [])
-            sensor = replace(sensor, label=mine[0] if len(mine) == 1 else sensor.serial)
-        found.append(sensor)
-    return found
+    parts = [(one.label, one.serial) for one in clamps_down(pieces)]
+    parts += [(one.label, one.serial) for one in pieces]
+
+    def called(number: str) -> str:
+        mine = [label for label, own in parts if own and _plain(own) == _plain(number)]
+        return mine[0] if len(mine) == 1 else number
+
+    return [
+        replace(one, label=called(one.serial)) if one.serial and not one.label else one
+        for one in sensors
+    ]
 
 
 def _plain(serial: str) -> str:
@@ -179,10 +162,8 @@ def matched_by_label(
 ) -> tuple[dict[int, int], list[str]]:
     """Return the point of each sensor whose label a part has, and what is said of the others.
 
-    Raises
-    ------
-    UsageError
-        A file does not say what its sensor is called; a label is that of two parts; none is of any.
+    UsageError: a file does not say what its sensor is called; a label is that of two parts; none is
+    of any.
     """
     points: dict[int, int] = {}
     lost: list[str] = []
@@ -233,43 +214,17 @@ def matched_by_place(
         )
     order = np.argsort([one.nominal for one in sensors], kind="stable")
     down = sorted(places, key=lambda point: float(still[point]))
-    miss = np.abs(
-        np.array([sensors[i].nominal for i in order])[:, None] - still[np.array(down)][None, :]
-    )
-    chosen, whole = _cheapest(miss)
-    for row in range(len(order)):
-        without = miss.copy()
-        without[row, chosen[row]] = np.inf
-        other, cost = _cheapest(without)
-        if cost - whole < CERTAIN:
-            first, second = labels[down[chosen[row]]], labels[down[other[row]]]
-            sensor = sensors[order[row]]
-            raise UsageError(
-                f"--match: the sensor at {sensor.nominal:.1f} m ({sensor.label or sensor.source}) "
-                f"may be `{first}` or `{second}`; match by label, or give fewer sensors"
-            )
+    nominal = np.array([sensors[i].nominal for i in order])
+    (cost, chosen), second = aligned(nominal, still[down], 1.0, 0.0)
+    if second is not None and second[0] - cost < CERTAIN:
+        row = next(k for k in range(len(order)) if chosen[k] != second[1][k])
+        first, other = labels[down[chosen[row]]], labels[down[second[1][row]]]
+        sensor = sensors[order[row]]
+        raise UsageError(
+            f"--match: the sensor at {sensor.nominal:.1f} m ({sensor.label or sensor.source}) "
+            f"may be `{first}` or `{other}`; match by label, or give fewer sensors"
+        )
     return {int(i): down[j] for i, j in zip(order, chosen, strict=True)}
-
-
-def _cheapest(miss: Floats) -> tuple[list[int], float]:
-    """Return columns, rising, one for each row, whose sum is least, and that sum; infinite without
-    any.
-    """
-    rows, columns = miss.shape
-    best = np.full((rows + 1, columns + 1), np.inf)
-    best[0] = 0.0
-    for i in range(rows):
-        for j in range(columns):
-            best[i + 1, j + 1] = min(best[i + 1, j], best[i, j] + miss[i, j])
-    if np.isinf(best[rows, columns]):
-        return [], float("inf")
-    chosen, j = [], columns
-    for i in range(rows, 0, -1):
-        while best[i, j - 1] == best[i, j]:
-            j -= 1
-        chosen.append(j - 1)
-        j -= 1
-    return chosen[::-1], float(best[rows, columns])
 
 
 CONSTANT = 1e-6
@@ -324,10 +279,8 @@ def plausible(sensor: Sensor, place: float, seabed: float) -> tuple[Sensor, list
 def unusable(measured: MooringMeasurements, still: Floats) -> dict[str, str]:
     """Return why sensors cannot be used, by label; what cannot be right is refused.
 
-    Raises
-    ------
-    UsageError
-        A sensor is nowhere near its place on the line, so that its unit or its label is wrong.
+    UsageError: a sensor is nowhere near its place on the line, so that its unit or its label is
+    wrong.
     """
     reasons, complaints = {}, []
     least = np.array([_least(column) for column in measured.depth.T])

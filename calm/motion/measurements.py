@@ -16,9 +16,10 @@ from numpy.typing import NDArray
 from calm.batch.statuses import implausible
 from calm.errors import UsageError, unknown
 from calm.motion.common_unknowns import NOISE, NORMAL
-from calm.motion.sensors import Sensor, split_label
+from calm.motion.sensors import Sensor
 from calm.physics.line import Floats, Integers
 from calm.records.current_file import open_record
+from calm.records.instrument_series import split_label
 from calm.records.record import RULES
 from calm.records.velocity import MISSING
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from threading import Event
@@ -12,19 +12,22 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from calm.batch.finished import open_result
-from calm.batch.run import BatchOutcome
+from calm.batch.run import BatchOutcome, run_kept
+from calm.batch.threads import processors
 from calm.batch.work import Progress
+from calm.batch.work_store import identity_of, open_store, to_text
 from calm.case import Mooring
 from calm.dataset.discovery import hashed
 from calm.errors import UsageError, unknown
-from calm.motion.correction import MeasuredRecord, Task, run_motion
-from calm.motion.diagnosis import diagnosed
+from calm.motion.common_unknowns import MISPLACED, SPIKE
+from calm.motion.correction import BLOCK, MeasuredRecord, MotionWork, Task, motion_layout
+from calm.motion.diagnosis import FEWEST, Diagnosis, diagnosed, law_near
 from calm.motion.line_response import FACTORS
-from calm.motion.matching import CORRECTABLE, GAP, read_measured
-from calm.motion.measurements import CurrentMeasurements, read_currents
-from calm.motion.remarks import Agreement, Fault
-from calm.motion.sensor_fit import SensorFit, fit_of
+from calm.motion.matching import CORRECTABLE, GAP, read_measured, without
+from calm.motion.measurements import CurrentMeasurements, MooringMeasurements, read_currents
+from calm.motion.remarks import LIKELY, Agreement, Fault, SensorFit
 from calm.motion.study import HeldOut, Study, cross_validated, judged, prepare, several
+from calm.motion.suspects import NO_TIME, Suspect
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -36,10 +39,7 @@ def fitted(asked: Sequence[str] = (), currents: bool = True) -> tuple[str, ...]:
     Without currents a factor on all drag is one on the currents: that of cables is none unless
     asked for, and the length is one of those that are estimated.
 
-    Raises
-    ------
-    UsageError
-        What is asked for cannot be estimated.
+    UsageError: what is asked for cannot be estimated.
     """
     for name in asked:
         if name not in FACTORS:
@@ -48,9 +48,9 @@ def fitted(asked: Sequence[str] = (), currents: bool = True) -> tuple[str, ...]:
     return tuple(name for name in FACTORS if name in asked or name in usual)
 
 
-@dataclass(frozen=True)
-class MotionRequest:
-    """Hold a mooring that was recovered, the files of its sensors, and what is asked for.
+@dataclass
+class RecoveredMooring:
+    """A mooring that was recovered: read, put right, estimated and judged, in this order.
 
     Attributes
     ----------
@@ -62,6 +62,12 @@ class MotionRequest:
     correct : of `CORRECTABLE`, what is taken off where nothing else is as likely
     judge : label of a sensor that is hidden, and of which is said whether it fits; empty of none
     prior : a record of currents whose shapes are taken, where none were measured; None of none
+    measured, notes, source : what was read, see `read_measured`
+
+    Raises
+    ------
+    InputError, UsageError
+        A file cannot be read, or what is asked for cannot be done.
     """
 
     mooring: Mooring
@@ -78,59 +84,42 @@ class MotionRequest:
     gap: np.timedelta64 = GAP
     declination: float | None = None
     prior: Path | None = None
+    _faults: tuple[Fault, ...] = field(default=(), init=False)
 
-
-class RecoveredMooring:
-    """What was recovered: read, put right, estimated and judged, in this order.
-
-    Attributes
-    ----------
-    measured, notes, source : what was read, see `read_measured`
-    task : what is estimated; None before `estimate`
-
-    Raises
-    ------
-    InputError, UsageError
-        A file cannot be read, or what is asked for cannot be done.
-    """
-
-    def __init__(self, asked: MotionRequest) -> None:
-        for kind in asked.correct:
+    def __post_init__(self) -> None:
+        """Read the files."""
+        for kind in self.correct:
             if kind not in CORRECTABLE:
                 what = f"--correct: `{kind}` cannot be taken off"
                 raise UsageError(unknown(what, kind, CORRECTABLE))
-        self.asked, self.names = asked, fitted(asked.fit, bool(asked.currents))
-        judged_too = [asked.judge] if asked.judge and asked.judge not in asked.hold_out else []
-        self.hidden = [*asked.hold_out, *judged_too]
-        self.task: Task | None = None
-        self._faults: tuple[Fault, ...] = ()
+        self.names = fitted(self.fit, bool(self.currents))
+        judged_too = [self.judge] if self.judge and self.judge not in self.hold_out else []
+        self.hidden = [*self.hold_out, *judged_too]
         self._read()
-        self.prior: list[CurrentMeasurements] = []
-        if asked.prior is not None:
-            if asked.currents:
+        self.shapes: list[CurrentMeasurements] = []
+        if self.prior is not None:
+            if self.currents:
                 raise UsageError("--prior is for pressures alone; here --currents are given")
-            file = asked.mooring.file
-            limit = file.environment.maximum_speed
-            depth = float(asked.mooring.water.depth)
-            self.prior = read_currents([asked.prior], depth, None, asked.declination, limit)
-            self.notes += [f"{one.source}: {note}" for one in self.prior for note in one.notes]
-        if asked.judge and asked.judge not in self.measured.label:
-            what = f"--judge: no sensor is called `{asked.judge}`"
-            raise UsageError(unknown(what, asked.judge, self.measured.label))
-        if asked.cross_validate:
+            limit = self.mooring.file.environment.maximum_speed
+            depth = float(self.mooring.water.depth)
+            self.shapes = read_currents([self.prior], depth, None, self.declination, limit)
+            self.notes += [f"{one.source}: {note}" for one in self.shapes for note in one.notes]
+        if self.judge and self.judge not in self.measured.label:
+            what = f"--judge: no sensor is called `{self.judge}`"
+            raise UsageError(unknown(what, self.judge, self.measured.label))
+        if self.cross_validate:
             several(self.measured, self.hidden)
 
     def _read(self) -> None:
-        asked = self.asked
         self.measured, self.notes, self.source = read_measured(
-            asked.mooring, asked.pressures, asked.currents, asked.match, asked.flags, asked.gap,
-            asked.sea_level, asked.declination, self._faults,
+            self.mooring, self.pressures, self.currents, self.match, self.flags, self.gap,
+            self.sea_level, self.declination, self._faults,
         )  # fmt: skip
-        if asked.prior is not None:
-            self.source["prior"] = hashed(asked.prior)
+        if self.prior is not None:
+            self.source["prior"] = hashed(self.prior)
 
     def _prepared(self, tell: Callable[[str], None]) -> Task:
-        return prepare(self.asked.mooring, self.measured, self.names, self.hidden, tell, self.prior)
+        return prepare(self.mooring, self.measured, self.names, self.hidden, tell, self.shapes)
 
     def estimate(
         self,
@@ -145,18 +134,16 @@ class RecoveredMooring:
 
         Parameters
         ----------
-        output, workers, progress, tell, stop : see `calm.motion.correction.run_motion`
+        output, workers, progress, tell, stop : see `calm.batch.run.run_batch`
         """
-        asked = self.asked
-        self.task = self._prepared(tell)
-        if asked.correct:
-            wrong = [
-                one for one in diagnosed(self.task) if one.kind in asked.correct and one.certain
-            ]
-            if wrong:
-                self._faults = tuple(replace(one, corrected=True) for one in wrong)
-                self._read()
-                self.task = self._prepared(tell)
+        task = self._prepared(tell)
+        found = diagnosed(task) if self.correct else ()
+        wrong = [one for one in found if one.kind in self.correct and one.certain]
+        if wrong:
+            self._faults = tuple(replace(one, corrected=True) for one in wrong)
+            self._read()
+            task = self._prepared(tell)
+        self.task, stop = task, stop or Event()
         options = {
             "fit": sorted(self.names),
             "hold_out": sorted(self.hidden),
@@ -164,10 +151,18 @@ class RecoveredMooring:
             "prior": self.source.get("prior", ""),
         }
         record = MeasuredRecord(self.measured, self.source, self.notes)
-        return run_motion(
-            self.task, record, output, options,
-            workers=workers, progress=progress, tell=tell, stop=stop,
-        )  # fmt: skip
+
+        def identify() -> str:
+            return to_text(identity_of(self.mooring, record, options, stop))
+
+        def begin(folder: Path, identity: str) -> MotionWork:
+            store = open_store(folder, motion_layout(task, record), BLOCK, identity)
+            return MotionWork(task, record, store, progress, stop)
+
+        def solve(work: MotionWork) -> None:
+            work.here(workers or processors())
+
+        return run_kept(output, identify, begin, solve, tell)
 
     def study(
         self,
@@ -183,17 +178,78 @@ class RecoveredMooring:
         tell : is told what is going on
         workers : threads
         """
-        assert self.task is not None
-        asked, task = self.asked, self.task
-        study = judged(task, self.measured, result, (*self._faults, *diagnosed(task)))
-        if asked.judge:
-            study = replace(study, judged=fit_of(task, self.measured, asked.judge))
-        if asked.cross_validate:
+        faults = (*self._faults, *diagnosed(self.task))
+        study = judged(self.task, self.measured, result, faults)
+        if self.judge:
+            study = replace(study, judged=fit_of(self.task, self.measured, self.judge))
+        if self.cross_validate:
             each = cross_validated(
-                asked.mooring, self.measured, self.names, self.hidden, tell, workers, self.prior
+                self.mooring, self.measured, self.names, self.hidden, tell, workers, self.shapes
             )
             study = replace(study, held_out=(*study.held_out, *each))
         return study
+
+
+FITS = 5.0
+"""Odds from which it does. A zero known to a metre speaks 20 to 1 at most against one off by 20."""
+
+
+def fit_of(task: Task, measured: MooringMeasurements, label: str) -> SensorFit:
+    """Return whether the pressures of a sensor that was hidden fit the line.
+
+    That they do is weighed, at even odds, against a place or a zero that is wrong, and against
+    readings that say nothing of the line; other faults of it are as rare as those of any sensor.
+    The others may have faults as well.
+
+    Parameters
+    ----------
+    task : in which it is hidden
+    measured : with it
+    label : its name
+    """
+    kept = without(
+        measured, [one for one in measured.label if one not in (*task.measured.label, label)]
+    )
+    at, one, common = kept.label.index(label), task.measured, task.common
+    level = one.level_sensor + (one.level_sensor >= at)
+    with_it = replace(one, label=kept.label, point=kept.point, depth=kept.depth, level_sensor=level)
+    common = replace(
+        common,
+        offset=np.insert(common.offset, at, 0.0),
+        moved=np.insert(common.moved, at, 0.0),
+        since=np.insert(common.since, at, NO_TIME),
+        until=None if common.until is None else np.insert(common.until, at, NO_TIME),
+        covariance=np.eye(len(common.value) + 2),
+    )
+    whole = Task(task.mooring, with_it, common)
+    law, _ = law_near(task, whole)
+    if law is None or law.known[:, at].sum() < FEWEST:
+        return SensorFit(label, None, 1.0, "")
+    diagnosis = Diagnosis(whole, law, judged=label)
+    taken: list[Suspect] = []
+    while True:
+        both = diagnosis.weighed(taken)
+        mine = [one for one in both if label in (one[0].fault.label, one[0].fault.other)]
+        others = [one for one in both if label not in (one[0].fault.label, one[0].fault.other)]
+        best = max(others, key=lambda one: one[1], default=None)
+        if best is None or best[1] < max(np.log(LIKELY), *(log for _, log in mine)):
+            break
+        taken.append(best[0])
+    against = [log - np.log(MISPLACED) * (one.fault.kind == "offset") for one, log in mine]
+    wide = law.expected.copy()  # as of readings that say nothing of the line
+    wide[:, at, at] += np.where(law.known[:, at], SPIKE**2, 0.0)
+    nothing = Diagnosis(whole, replace(law, expected=wide)).fitted(taken, None, 1.0).log
+    nothing -= diagnosis.fitted(taken, None, 1.0).log
+    size = np.linalg.slogdet(wide)[1] - np.linalg.slogdet(law.expected)[1]
+    nothing -= 0.5 * float(size.sum())
+    for_it = np.logaddexp.reduce([0.0, *(log for _, log in others)])
+    against_it = np.logaddexp.reduce([*against, nothing])
+    odds = float(np.exp(np.clip(for_it - against_it, -50.0, 50.0)))
+    fits = None if 1.0 / LIKELY < odds < FITS else odds > 1.0
+    reason = ""
+    if fits is False and max(against) > nothing:
+        reason = mine[int(np.argmax(against))][0].fault.sentence()
+    return SensorFit(label, fits, odds, reason)
 
 
 @dataclass(frozen=True, repr=False)
@@ -312,22 +368,20 @@ def estimate_motion(
         kind = type(mooring).__name__
         raise TypeError(f"a Mooring is needed, as calm.load gives it, not a {kind}")
     recovery = RecoveredMooring(
-        MotionRequest(
-            mooring,
-            [str(path) for path in pressures],
-            [str(path) for path in currents],
-            match,
-            fit,
-            hold_out,
-            cross_validate,
-            correct,
-            judge,
-            None if sea_level is None else Path(sea_level),
-            ",".join(map(str, flags)),
-            GAP if gap is None else np.timedelta64(round(gap * 1e9), "ns"),
-            declination,
-            None if prior is None else Path(prior),
-        )
+        mooring,
+        [str(path) for path in pressures],
+        [str(path) for path in currents],
+        match,
+        fit,
+        hold_out,
+        cross_validate,
+        correct,
+        judge,
+        None if sea_level is None else Path(sea_level),
+        ",".join(map(str, flags)),
+        GAP if gap is None else np.timedelta64(round(gap * 1e9), "ns"),
+        declination,
+        None if prior is None else Path(prior),
     )
     with TemporaryDirectory() as folder:
         output = Path(folder) / "motion.nc"

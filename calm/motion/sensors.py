@@ -20,17 +20,21 @@ from calm.records.cf_files import (
     find_times,
     holdings,
     known_values,
-    labels_along,
     open_current,
-    places_along,
     read_times,
     reading,
-    serials_along,
 )
 from calm.records.current_file import holds_arrays
 from calm.records.headings import read_time_columns
+from calm.records.instrument_series import (
+    INTERPOLATED,
+    axes_of,
+    flagged_values,
+    split_label,
+    who_along,
+)
 from calm.records.instrument_text import read_instrument_text
-from calm.records.velocity import MISSING, flag_variable, flags_of, refuse_ragged
+from calm.records.velocity import MISSING, flag_variable, refuse_ragged
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -113,14 +117,6 @@ def read_sensors(
     return found
 
 
-def split_label(text: str) -> tuple[str, Path]:
-    """Return label and path of ``LABEL=PATH``; an empty label of a path alone."""
-    label, equals, path = text.partition("=")
-    if equals and not Path(text).exists():
-        return label.strip(), Path(path)
-    return "", Path(text)
-
-
 def depth_of(dbar: Floats, latitude: float) -> Floats:
     """Return depths [m] of pressures above that of the air [dbar], by TEOS-10; NaN of infinite
     ones.
@@ -148,19 +144,12 @@ def _understood(
     clock = find_times(dataset, name)
     if clock is None or dataset[clock].ndim != 1:
         raise UnreadableError(f"`{name}` has no times")
-    time = str(dataset[clock].dims[0])
-    single = [dim for dim, size in variable.sizes.items() if size == 1 and dim != time]
-    others = [str(dim) for dim in variable.dims if dim != time and dim not in single]
-    if len(others) > 1:
-        raise UnreadableError(f"`{name}` is not of times and instruments: {variable.dims}")
-    along = others[0] if others else None
-    if along is None:  # one instrument, which still may say what or where it is
-        along = next((str(dim) for dim in single if _tells(dataset, str(dim), seabed)), None)
+    time, along = axes_of(dataset, name, clock)
     refuse_ragged(dataset, name)
-    flagged = flag_variable(dataset, name)
     words, note = words_of(variable, "long_name", "comment"), ""
     if _NOT_MEASURED.search(words):
-        if along is None or flagged is None or not {time, along} <= set(flagged.dims):
+        flagged = flag_variable(dataset, name)
+        if flagged is None or not {time} < set(flagged.dims):
             raise UnreadableError(f"`{name}` is not a measurement by its attributes: {words[:120]}")
         # attributes of several instruments in one variable are those of any of them
         note = (
@@ -168,49 +157,22 @@ def _understood(
         )
     unit = "pressure" if is_pressure else "length"
     factor = factor_of(variable, unit) / (PASCALS_PER_DBAR if is_pressure else 1.0)
-    squeezed = [dim for dim in single if dim != along]
-
-    def rows(one: xr.DataArray) -> xr.DataArray:
-        flat = one.isel({dim: 0 for dim in squeezed if dim in one.dims})
-        return flat.transpose(time, ...)
-
-    values = known_values(rows(variable)) * factor
-    dropped = np.zeros(values.shape, bool)
-    if flagged is not None:
-        marks = np.broadcast_to(
-            flags_of(rows(flagged)).reshape(
-                values.shape if flagged.ndim == variable.ndim else (-1, *[1] * (values.ndim - 1))
-            ),
-            values.shape,
-        )
-        dropped = ~np.isin(marks, sorted(flags - {INTERPOLATED})) & np.isfinite(values)
-    values = np.where(dropped, np.nan, values).reshape(len(values), -1)
-    dropped = dropped.reshape(values.shape)
+    values, dropped = flagged_values(dataset, name, time, along, flags)
+    values = np.where(dropped, np.nan, values * factor)
     times = read_times(dataset, clock)
     order = np.argsort(times, kind="stable")
     depth = depth_of(values, latitude) if is_pressure else values
-    labels = None if along is None else labels_along(dataset, along)
-    places = places_along(dataset, along, seabed)
-    serials = serials_along(dataset, along)
     return [
         Sensor(
-            "" if labels is None else labels[j],
-            times[order],
-            depth[order, j],
-            path.name,
-            float("nan") if places is None else float(places[j]),
-            int(dropped[:, j].sum()),
-            note,
-            serials[j] if j < len(serials) else "",
+            **vars(who),
+            time=times[order],
+            depth=depth[order, j],
+            dropped=int(dropped[:, j].sum()),
+            note=note,
         )
-        for j in range(values.shape[1])
+        for j, who in enumerate(who_along(dataset, along, seabed, path.name))
         if not note or np.isfinite(depth[:, j]).any()
     ]
-
-
-def _tells(dataset: xr.Dataset, dimension: str, seabed: float) -> bool:
-    places = places_along(dataset, dimension, seabed)
-    return labels_along(dataset, dimension) is not None or places is not None
 
 
 def _find(dataset: xr.Dataset) -> tuple[str, bool]:
@@ -263,19 +225,10 @@ def _from_csv(path: Path, latitude: float) -> list[Sensor]:
     ]
 
 
-GOOD = frozenset({1, 2})
-"""Good and probably good: what is taken unless something else is asked for."""
-INTERPOLATED = 8
-"""Never a measurement."""
-
-
 def parse_flags(text: str) -> frozenset[int]:
     """Return the flags of a text such as ``1,2``.
 
-    Raises
-    ------
-    UsageError
-        They are no flags, or 8 is among them: what was interpolated is no measurement.
+    UsageError: they are no flags, or 8 is among them: what was interpolated is no measurement.
     """
     try:
         flags = frozenset(int(part) for part in text.split(","))
@@ -303,10 +256,7 @@ _STANDARD = (
 def read_sea_level(path: Path) -> tuple[NDArray[np.datetime64], Floats]:
     """Return times, rising, and the height of the sea surface above a datum [m].
 
-    Raises
-    ------
-    InputError
-        The file cannot be read, or holds no height with its unit, or one that cannot be.
+    InputError: the file cannot be read, or holds no height with its unit, or one that cannot be.
     """
     if not path.exists():
         raise InputError([Problem(str(path), 0, 0, "no such file")])

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from calm.case import Mooring
 from calm.errors import UsageError, unknown
 from calm.motion.correction import Task, estimate_in_memory
-from calm.motion.line_response import Forward
-from calm.motion.matching import instruments_of, labels_of, without
+from calm.motion.line_response import Forward, instruments_of, labels_of
+from calm.motion.matching import without
 from calm.motion.measurements import CurrentMeasurements, MooringMeasurements, level_names
 from calm.motion.remarks import (
     ALL,
@@ -21,6 +21,7 @@ from calm.motion.remarks import (
     OF_LINE,
     Agreement,
     Fault,
+    SensorFit,
     agreement,
     alone_remarks,
     calm_times,
@@ -33,7 +34,6 @@ from calm.motion.remarks import (
     pchip,
     rms,
 )
-from calm.motion.sensor_fit import SensorFit
 from calm.motion.unknown_currents import learn_currents, with_knots
 from calm.motion.whole_record import estimate_common
 from calm.physics.line import Floats
@@ -154,7 +154,7 @@ def judged(
     Parameters
     ----------
     measured : with the sensors that were hidden
-    result : of `calm.motion.correction.run_motion`
+    result : of `calm motion`
     diagnosis : what is wrong
     """
     used = task.measured
@@ -251,10 +251,7 @@ def judge_hidden(
 def several(measured: MooringMeasurements, hidden: Sequence[str]) -> list[str]:
     """Return the sensors that can be hidden in turn.
 
-    Raises
-    ------
-    UsageError
-        There is only one.
+    UsageError: there is only one.
     """
     rest = [label for label in measured.label if label not in hidden]
     if len(rest) < 2:
@@ -334,7 +331,7 @@ def series_of(
     ----------
     measured : with the sensors that were hidden
     used : labels of those that were not
-    result : of `calm.motion.correction.run_motion`
+    result : of `calm motion`
     """
     found = []
     for j, label in enumerate(measured.label):

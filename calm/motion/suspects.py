@@ -13,8 +13,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from calm.motion.correction import Task
-from calm.motion.line_response import FACTORS, STEP, Forward, Linear, LineResponse, ReadCurrents
-from calm.motion.matching import labels_of
+from calm.motion.line_response import (
+    FACTORS,
+    STEP,
+    Forward,
+    Linear,
+    LineResponse,
+    ReadCurrents,
+    labels_of,
+)
 from calm.motion.measurements import level_names
 from calm.motion.remarks import CURRENTS, LINE, Fault
 from calm.physics.line import Floats

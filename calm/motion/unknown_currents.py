@@ -23,13 +23,11 @@ from numpy.typing import NDArray
 
 from calm.case import Mooring
 from calm.errors import UsageError
-from calm.motion import common_unknowns
 from calm.motion.common_unknowns import Common
 from calm.motion.estimate import CurrentsState, Posterior, posterior
-from calm.motion.line_response import STEP, Forward, Linear, LineResponse, ReadCurrents
-from calm.motion.matching import labels_of
+from calm.motion.line_response import Forward, Linear, LineResponse, ReadCurrents, labels_of
 from calm.motion.measurements import FREE, CurrentMeasurements, MooringMeasurements
-from calm.motion.whole_record import forwards_of, repeated
+from calm.motion.whole_record import common_beforehand, fixed_slopes, forwards_of, repeated
 from calm.physics.line import Floats, Integers
 
 KNOTS, FINER = 6, 2.2
@@ -172,7 +170,10 @@ def learn_currents(
         labels = dict(zip(labels_of(mooring), Forward(mooring, {}).still.tolist(), strict=True))
         mean, covariance = shaped_law(part, prior, labels)
     worth = SHAPED if prior else PRIOR
-    begun = _assumed(mooring, part, names)
+    begun = common_beforehand(
+        dict.fromkeys(names, 1.0), SEABED * mooring.water.depth, part, np.zeros((KNOTS, KNOTS))
+    )
+    begun = replace(begun, worst=USUAL)
     common, logs = begun, np.zeros((len(part.time), KNOTS))
     at = None
     before = covariance.copy()
@@ -225,14 +226,7 @@ class _Fit:
 
     def linear(self, logs: Floats) -> Linear:
         """Return the line in these currents with its slopes there."""
-        there = self.moments.depths(self.way, logs)
-        slope = self.moments.slopes(self.way, logs, there)
-        columns = [
-            (self.moments.depths(self.way, logs, forward) - there) / STEP
-            for forward in self.moments.shifted.values()
-        ]
-        common = np.stack(columns, -1) if columns else np.zeros((*there.shape, 0))
-        return Linear(logs, there, slope, np.nan_to_num(common))
+        return self.moments.linear(self.way, logs)
 
     def moved(self, at: Linear, logs: Floats) -> Linear:
         """Return the same currents where law and line have changed little: the slopes stay."""
@@ -297,21 +291,6 @@ def _strong(part: MooringMeasurements) -> Integers:
     return np.flatnonzero(down >= np.quantile(down, 1.0 - STRONGER))
 
 
-def _assumed(mooring: Mooring, part: MooringMeasurements, names: Sequence[str]) -> Common:
-    sensors = len(part.label)
-    spread = [
-        *(common_unknowns.FACTORS[name][1] for name in names),
-        SEABED * mooring.water.depth,
-        *[common_unknowns.OFFSET] * sensors,
-        *[0.0] * sensors,
-    ]
-    none, never = np.zeros(sensors), np.full(sensors, "NaT", "M8[ns]")
-    return Common(
-        dict.fromkeys(names, 1.0), 0.0, none, none, never, none, np.diag(np.square(spread)), 1.0,
-        np.zeros((KNOTS, KNOTS)), worst=USUAL,
-    )  # fmt: skip
-
-
 def _worst(fit: _Fit, at: Linear, common: Common, used: Integers) -> Common:
     """Return the error of the line under which the pressures are most likely."""
     log = []
@@ -325,17 +304,8 @@ def _worst(fit: _Fit, at: Linear, common: Common, used: Integers) -> Common:
 
 def _placed(begun: Common, known: Common, fit: _Fit, at: Linear, found: Posterior) -> Common:
     """Return factors, datum and offsets after a step of Gauss and Newton, and their covariance."""
-    point, sensors = fit.moments.measured.point, len(begun.offset)
-    names, free = list(begun.factors), len(begun.value) - sensors
-    count = len(at.depth)
-    seen = np.concatenate(
-        [
-            at.common[:, point],
-            np.ones((count, sensors, 1)),
-            np.broadcast_to(np.eye(sensors), (count, sensors, sensors)),
-        ],
-        axis=2,
-    )
+    names, free = list(begun.factors), len(begun.value) - len(begun.offset)
+    seen = fixed_slopes(at.common[:, fit.moments.measured.point])
     inverse = np.linalg.inv(found.expected)
     pulls = np.einsum("nsq,nst,nt->nq", seen, inverse, found.innovation)
     alike = repeated(pulls[:, len(names)])

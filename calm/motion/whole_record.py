@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -69,17 +69,28 @@ def assumed(mooring: Mooring, measured: MooringMeasurements, names: Sequence[str
     measured : on common times
     names : of the factors that are estimated
     """
-    sensors = len(measured.label)
-    spread = [
-        *(common_unknowns.FACTORS[name][1] for name in names),
-        common_unknowns.DATUM * mooring.water.depth,
-        *[common_unknowns.OFFSET] * sensors,
-        *[0.0] * sensors,
-    ]
     factors = {name: float(np.exp(common_unknowns.FACTORS[name][0])) for name in names}
     moments = LineResponse(measured, Forward(mooring, factors), {})
     level = moments.levels(np.tile(moments.forward.still, (len(measured.time), 1)))
     gap = gap_errors(level, measured.u, measured.v, moments.group)
+    return common_beforehand(factors, common_unknowns.DATUM * mooring.water.depth, measured, gap)
+
+
+def common_beforehand(
+    factors: Mapping[str, float], datum: float, measured: MooringMeasurements, gap: Floats
+) -> Common:
+    """Return what is common where all sensors hang as the file says, with what is expected of it.
+
+    Parameters
+    ----------
+    factors : their values
+    datum : standard deviation of what is added to the depths of the line [m]
+    measured : by the sensors
+    gap : see `Common`
+    """
+    sensors = len(measured.label)
+    known = [common_unknowns.FACTORS[name][1] for name in factors]
+    spread = [*known, datum, *[common_unknowns.OFFSET] * sensors, *[0.0] * sensors]
     none, never = np.zeros(sensors), np.full(sensors, "NaT", "M8[ns]")
     return Common(factors, 0.0, none, none, never, none, np.diag(np.square(spread)), 1.0, gap)
 
@@ -198,14 +209,7 @@ def linear_law(
         bend = 0.5 * np.einsum("nss->ns", currents) / down
     there = np.isfinite(part.depth[good])
     left: Floats = np.where(there, found.innovation[good] - bend, 0.0)
-    fixed = np.concatenate(
-        [
-            at.common[good][:, part.point],
-            np.ones((*left.shape, 1)),
-            np.broadcast_to(np.eye(sensors), (*left.shape, sensors)),
-        ],
-        axis=2,
-    )
+    fixed = fixed_slopes(at.common[good][:, part.point])
     whole = fixed @ common.value[: fixed.shape[2]]
     whole += common.fall(time, depth, still, part.point) * common.moved
     begun = replace(common, since=np.full(sensors, span[0]), until=None)
@@ -221,6 +225,13 @@ def linear_law(
         begun.fall(time, depth, still, part.point),
         own_errors(depth, still, part.point)[:, part.point, :],
     )
+
+
+def fixed_slopes(common: Floats) -> Floats:
+    """Return (n, s, q) slopes with factors, datum and offsets by (n, s, f) those with factors."""
+    n, s, _ = common.shape
+    offsets = np.broadcast_to(np.eye(s), (n, s, s))
+    return np.concatenate([common, np.ones((n, s, 1)), offsets], axis=2)
 
 
 def _evidence(
@@ -311,11 +322,8 @@ def _until(
 
 
 def chosen_times(measured: MooringMeasurements, alone: bool = False) -> Integers:
-    """Return times that have a current and a pressure, evenly spread where they are many.
-
-    Parameters
-    ----------
-    alone : whether a pressure is enough
+    """Return times that have a current and a pressure, or a pressure alone, evenly spread where
+    they are many.
     """
     currents = (np.isfinite(measured.u) & np.isfinite(measured.v)) | alone
     used = np.flatnonzero(np.isfinite(measured.depth).any(axis=1) & currents.any(axis=1))

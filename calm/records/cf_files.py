@@ -37,7 +37,6 @@ _NORTH_NAMED = re.compile(
     r"(?i)[ _](true|t|magnetic)$|\s*\(?clockwise from ((true|magnetic) )?north\)?$"
 )
 _LABELS = ("instrument", "label", "instrument_label", "labels", "instruments")
-_SERIALS = ("serial", "serial_number", "instrument_serial_number", "sensor_serial_number")
 _HEIGHTS = ("hab", "height_above_bottom", "height_above_seabed", "DIST_SEABED")
 _DEPTHS = ("nominal_depth", "NOMINAL_DEPTH", "InstrDepth", "DEPTH", "depth", "instrument_depth")
 
@@ -210,18 +209,6 @@ def labels_along(dataset: xr.Dataset, dimension: str) -> tuple[str, ...] | None:
             texts = [one.decode() if isinstance(one, bytes) else str(one) for one in values]
             return tuple(text.strip() for text in texts)
     return None
-
-
-def serials_along(dataset: xr.Dataset, dimension: str | None) -> tuple[str, ...]:
-    """Return the serial numbers of what a dimension counts; of the one instrument without it."""
-    dims = () if dimension is None else (dimension,)
-    for name in first_present(dataset, _SERIALS):
-        if dataset[name].dims == dims and dataset[name].dtype.kind in "SUOi":
-            values = np.atleast_1d(dataset[name].values).tolist()
-            texts = (one.decode() if isinstance(one, bytes) else str(one) for one in values)
-            return tuple(text.strip() for text in texts)
-    told = next((dataset.attrs[name] for name in _SERIALS if name in dataset.attrs), "")
-    return (str(told).strip(),)
 
 
 def places_along(dataset: xr.Dataset, dimension: str | None, seabed: float) -> Floats | None:

@@ -51,8 +51,10 @@ if TYPE_CHECKING:
 INTERPOLATED = 8
 """The flag of what was interpolated, which is no measurement."""
 
-_SERIALS = ("serial", "serial_number", "SERIAL", "instrument_serial", "instrument_serial_number")
-_ONE_SERIAL = (*_SERIALS, "sensor_serial_number")
+_SERIALS = (
+    "serial", "serial_number", "SERIAL", "instrument_serial", "instrument_serial_number",
+    "sensor_serial_number",
+)  # fmt: skip
 _ONE_PLACE = ("instrument_nominal_depth", "nominal_depth", "sensor_depth")
 
 
@@ -133,27 +135,30 @@ def read_series(
 def files_given(given: Sequence[str]) -> list[tuple[str, Path]]:
     """Return the files of some arguments, each with the label that is given for it, or ``""``.
 
-    Raises
-    ------
-    InputError
-        There is no such file, or a folder has no NetCDF files.
+    InputError: there is no such file, or a folder has no NetCDF files.
     """
     found: list[tuple[str, Path]] = []
     problems = []
     for text in given:
-        label, equals, rest = text.partition("=")
-        named = bool(equals) and not Path(text).exists()
-        path = Path(rest) if named else Path(text)
+        label, path = split_label(text)
         inside = sorted(path.glob("*.nc")) if path.is_dir() and path.suffix != ".zarr" else [path]
         if not path.exists():
             problems.append(Problem(str(path), 0, 0, "no such file"))
         elif not inside:
             problems.append(Problem(str(path), 0, 0, "the folder has no .nc files"))
         else:
-            found += [(label.strip() if named else "", one) for one in inside]
+            found += [(label, one) for one in inside]
     if problems:
         raise InputError(problems)
     return found
+
+
+def split_label(text: str) -> tuple[str, Path]:
+    """Return label and path of ``LABEL=PATH``; an empty label of a path alone."""
+    label, equals, path = text.partition("=")
+    if equals and not Path(text).exists():
+        return label.strip(), Path(path)
+    return "", Path(text)
 
 
 def _of_file(
@@ -220,7 +225,7 @@ def _instruments(
     time, along = axes_of(dataset, first, clock)
     parts, dropped = [], None
     for one in variables:
-        values, left_out = _values(dataset, one, time, along, flags)
+        values, left_out = flagged_values(dataset, one, time, along, flags)
         parts.append(values)
         dropped = left_out if dropped is None else dropped | left_out
     assert dropped is not None
@@ -281,26 +286,26 @@ def who_along(dataset: xr.Dataset, along: str | None, seabed: float, source: str
         labels = next(filter(None, (labels_along(dataset, dim) for dim in single)), ("",))
         tried = (places_along(dataset, dim, seabed) for dim in (None, *single))
         place = next((float(one[0]) for one in tried if one is not None), _number(dataset.attrs))
-        return [Identity(labels[0], _texts(dataset, (), dataset.attrs)[0], place, source)]
+        known = (_serials(dataset, dims) for dims in ((), *((dim,) for dim in single)))
+        told = next((dataset.attrs[name] for name in _SERIALS if name in dataset.attrs), "")
+        serial = next(filter(None, known), [str(told).strip()])[0]
+        return [Identity(labels[0], serial, place, source)]
     count = dataset.sizes[along]
     labels = labels_along(dataset, along) or ("",) * count
-    serials = _texts(dataset, (along,), {}) * (1 if _has_serials(dataset, along) else count)
+    serials = _serials(dataset, (along,)) or [""] * count
     places = places_along(dataset, along, seabed)
     nominal = [float("nan")] * count if places is None else places.tolist()
     return [Identity(*one, source) for one in zip(labels, serials, nominal, strict=True)]
 
 
-def _has_serials(dataset: xr.Dataset, along: str) -> bool:
-    return any(n in dataset.variables and dataset[n].dims == (along,) for n in _SERIALS)
-
-
-def _texts(dataset: xr.Dataset, dims: tuple[str, ...], attributes: Any) -> list[str]:
-    for name in _SERIALS:
-        if name in dataset.variables and dataset[name].dims == dims:
+def _serials(dataset: xr.Dataset, dims: tuple[str, ...]) -> list[str]:
+    """Return the serial numbers over some dimensions; none where the file has none."""
+    for name in first_present(dataset, _SERIALS):
+        if dataset[name].dims == dims:
             values = np.atleast_1d(dataset[name].values).tolist()
             texts = [one.decode() if isinstance(one, bytes) else str(one) for one in values]
             return [text.strip().rstrip("*") for text in texts]
-    return [str(next((attributes[one] for one in _ONE_SERIAL if one in attributes), "")).strip()]
+    return []
 
 
 def _number(attributes: Any) -> float:
@@ -312,10 +317,17 @@ def _number(attributes: Any) -> float:
     return float("nan")
 
 
-def _values(
+def flagged_values(
     dataset: xr.Dataset, name: str, time: str, along: str | None, flags: frozenset[int]
 ) -> tuple[Floats, NDArray[np.bool_]]:
-    """Return (n, k) values as they stand, and which are left out for their flag."""
+    """Return (n, k) values as they stand, and which are left out for their flag.
+
+    Parameters
+    ----------
+    name : of the variable
+    time, along : as of `axes_of`
+    flags : of what counts as measured; 8 never does
+    """
 
     def table(one: xr.DataArray, values: NDArray[Any]) -> NDArray[Any]:
         axes = [str(dim) for dim in one.dims]

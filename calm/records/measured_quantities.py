@@ -61,10 +61,7 @@ QUANTITIES_MEASURED = {
 def chosen_quantities(text: str | None) -> tuple[str, ...]:
     """Return the names of a text such as ``temperature,salinity``; without one, all.
 
-    Raises
-    ------
-    UsageError
-        A name is none of `QUANTITIES_MEASURED`, neither there nor in the archive.
+    UsageError: a name is none of `QUANTITIES_MEASURED`, neither there nor in the archive.
     """
     archived = {one.archive: name for name, one in QUANTITIES_MEASURED.items()}
     wanted = [part.strip() for part in (text or ",".join(QUANTITIES_MEASURED)).split(",")]

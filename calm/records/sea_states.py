@@ -192,10 +192,7 @@ def with_swell(sea: SeaState, height: float, period: float) -> SeaState:
 
     The swell has the narrow form that Ochi and Hubble give it, λ of 3; variances add up.
 
-    Raises
-    ------
-    UsageError
-        The swell is higher, longer or steeper than there are, or shorter than the sea.
+    UsageError: the swell is higher, longer or steeper than there are, or shorter than the sea.
     """
     spectrum_of("bretschneider", height, period, 1.0)
     if period <= sea.peak_period:
@@ -221,10 +218,7 @@ def _most_probable(height: float) -> SeaState:
 
     The constants are as secondary texts print them; the paper was not read.
 
-    Raises
-    ------
-    UsageError
-        Waves higher than there are.
+    UsageError: waves higher than there are.
     """
     if height > HIGHEST:
         raise UsageError(f"waves of {height:g} m: no sea is higher than {HIGHEST:g} m")
@@ -241,10 +235,7 @@ def measured_spectrum(path: Path) -> SeaState:
 
     NetCDF as of NDBC or WAVEWATCH III, of one place; of several times that of the highest sea.
 
-    Raises
-    ------
-    InputError
-        It is no spectrum, or its frequencies do not grow.
+    InputError: it is no spectrum, or its frequencies do not grow.
     """
     if is_netcdf(path):
         return _sea_of(path, *_spectral_arrays(path))
@@ -325,10 +316,7 @@ def scatter_states(path: Path, kind: str, gamma: float) -> list[SeaState]:
 
     Its columns are ``significant_wave_height[m],peak_period[s],share``; shares may also be counts.
 
-    Raises
-    ------
-    InputError
-        It is no such table; every mistake with its line.
+    InputError: it is no such table; every mistake with its line.
     """
     rows = _figures(path, ("significant_wave_height[m]", "peak_period[s]", "share"))
     if kind == "ochi-hubble":

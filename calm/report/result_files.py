@@ -58,9 +58,9 @@ def to_csv(results: Sequence[AnyResult]) -> str:
 
 
 def _rows(result: AnyResult) -> Iterator[list[object]]:
-    own = leg_numbers(result.file.legs)
+    legs, own = result.file.legs, leg_numbers(result.file)
     for component, clamps in rows_down(result):
-        leg = [result.file.legs[own[component.index]].name] if own else []
+        leg = [legs[own[component.index]].name] if legs else []
         numbers = (getattr(component, name) for name in _NUMBERS)
         yield [*_words(result, "component", component), *numbers, *leg]
         for clamp in clamps:
@@ -129,7 +129,7 @@ def result_netcdf(result: AnyResult) -> bytes:
     along: tuple[str, ...] = ()
     if isinstance(result, NetResult):
         sizes["leg"], along = len(lines), ("leg",)
-        own = leg_numbers(file.legs)
+        own = leg_numbers(file)
         variables = of_net(
             variables, [line.name for line in lines], own, [own[row.index] for row in clamps],
             [n for n, line in enumerate(lines) for _ in line.shape.depth],

@@ -134,10 +134,17 @@ def _pieces(uncertain: Uncertain) -> Table:
                                  ("tension", "N", _ENDS[1:])):  # fmt: skip
         heads += [Column(f"{quantity}\n{end}", unit, numeric=True) for end in ends]
     rows = []
-    for row, label in enumerate(uncertain.result.components.label):
-        figures = [_figure(value, 1) for value in uncertain.depth_top[:, row]]
-        figures += [_figure(value, 1) for value in uncertain.tilt[1:, row]]
-        figures += [_figure(value, 0) for value in uncertain.tension[1:, row]]
+    held = zip(uncertain.clamped, uncertain.clamps.T, strict=True)
+    clamps = [
+        (index, f"  {label}", depth, tilt, tension)
+        for (index, label), (depth, _, tilt, tension) in held
+    ]
+    spreads = (uncertain.depth_top.T, uncertain.tilt.T, uncertain.tension.T)
+    components = uncertain.result.components
+    pieces = zip(components.index, components.label, *spreads, strict=True)
+    for _, label, depth, tilt, tension in sorted((*pieces, *clamps), key=lambda row: row[0]):
+        figures = [_figure(value, 1) for value in (*depth, *tilt[1:])]
+        figures += [_figure(value, 0) for value in tension[1:]]
         rows.append((Cell(label), *map(Cell, figures)))
     return Table("", tuple(heads), tuple(rows))
 

@@ -6,6 +6,7 @@ from contextlib import asynccontextmanager
 import pytest
 from textual._compositor import Compositor
 from textual._context import active_app
+from textual.css.stylesheet import Stylesheet
 from textual.pilot import Pilot
 
 from calm.tui.app import BuildApp
@@ -39,6 +40,9 @@ components:
 """
 
 PAINT = Compositor.render_update
+PARSE = Stylesheet._parse_rules
+PARSED = {}
+"""The rules of style sheets by text and variables, alike for all applications."""
 TERMINAL = {"TERM": "xterm-256color"}
 
 NAMES = {
@@ -80,6 +84,19 @@ def no_clock(monkeypatch):
     """Nothing is waited for by the clock."""
     monkeypatch.setattr("textual.pilot.wait_for_idle", at_rest)
     monkeypatch.setattr("textual.app.wait_for_idle", at_once)
+
+
+@pytest.fixture(autouse=True)
+def parsed_once(monkeypatch):
+    """A style sheet is parsed for the first application that has it."""
+
+    def parse(sheet, *source, **how):
+        key = (source, tuple(how.items()), tuple(sheet._variables.items()))
+        if key not in PARSED:
+            PARSED[key] = PARSE(sheet, *source, **how)
+        return PARSED[key]
+
+    monkeypatch.setattr(Stylesheet, "_parse_rules", parse)
 
 
 @pytest.fixture(autouse=True)

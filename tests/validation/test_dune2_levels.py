@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from calm.grid.field import estimate, field_of, posterior
-from calm.grid.samples import MooringDepths, gather
+from calm.grid.samples import MooringDepths, Samples, gather
 from calm.motion.line_places import points_of
 from calm.records.instrument_series import read_series
 
@@ -41,11 +41,13 @@ def hidden(measured, label):
     """What is estimated at a sensor without it and without its neighbour a metre away."""
     column = measured.label.index(label)
     depth = measured.depth[:, column]
-    near = [
-        one for j, one in enumerate(measured.label)
-        if abs(np.mean(measured.depth[:, j] - depth)) < 10.0
-    ]  # fmt: skip
-    field = field_of(measured.without(near), SENSOR)
+    far = np.abs(np.mean(measured.depth - depth[:, None], axis=0)) >= 10.0
+    others = Samples(
+        measured.time,
+        tuple(one for one, kept in zip(measured.label, far, strict=True) if kept),
+        *(table[:, far] for table in (measured.depth, measured.deviation, measured.value)),
+    )
+    field = field_of(others, SENSOR)
     mean, spread, _ = posterior(field, np.arange(len(depth)), depth[:, None])
     return mean[:, 0] - measured.value[:, column], spread[:, 0], field, depth
 

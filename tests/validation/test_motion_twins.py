@@ -14,10 +14,9 @@ import calm
 from calm.motion import common_unknowns
 from calm.motion.correction import Task
 from calm.motion.diagnosis import diagnosed
-from calm.motion.line_response import Forward, points
-from calm.motion.matching import labels_of
+from calm.motion.line_response import Forward, labels_of, points
 from calm.motion.measurements import MooringMeasurements
-from calm.motion.sensor_fit import fit_of
+from calm.motion.motion_estimate import fit_of
 from calm.motion.study import prepare
 from calm.motion.whole_record import estimate_common
 

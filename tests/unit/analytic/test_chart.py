@@ -123,13 +123,16 @@ def test_every_triple_gives_the_cable_it_was_taken_from(triple: tuple[str, ...],
 def integrated(k: float, weight: float, solution: ChartSolution) -> dict[str, float]:
     """The upper end, by integration of the equations from the lower one."""
 
+    drag = math.copysign(k, weight)
+
     def slope(_: float, state: np.ndarray) -> list[float]:
-        phi, tension = state[0], state[1]
-        normal = np.cos(phi) + k * np.sign(weight) * abs(np.sin(phi)) * np.sin(phi)
-        return [weight * normal / tension, weight * np.sin(phi), np.cos(phi), np.sin(phi)]
+        phi, tension, *_ = state.tolist()
+        sine, cosine = math.sin(phi), math.cos(phi)
+        return [weight * (cosine + drag * abs(sine) * sine) / tension, weight * sine, cosine, sine]
 
     begin = [solution.phi_a, solution.tension_a, 0.0, 0.0]
-    end = solve_ivp(slope, (0.0, solution.length), begin, rtol=1e-11, atol=1e-12).y[:, -1]
+    path = solve_ivp(slope, (0.0, solution.length), begin, method="DOP853", rtol=1e-11, atol=1e-12)
+    end = path.y[:, -1]
     return {
         "phi_b": float((end[0] + np.pi) % (2.0 * np.pi) - np.pi),
         "tension_b": float(end[1]),
@@ -153,7 +156,7 @@ def integrated(k: float, weight: float, solution: ChartSolution) -> dict[str, fl
 )
 def test_solutions_satisfy_the_equations_of_the_cable(triple: tuple[str, ...], sign: int) -> None:
     generator = np.random.default_rng(7)
-    for _ in range(6):
+    for _ in range(3):
         k, weight, cable = random_cable(generator, sign)
         answer = chart_solve(k, weight, **{name: cable[name] for name in triple})
         critical = float(critical_angle(k))

@@ -41,10 +41,10 @@ components:
 SURE = dict.fromkeys(CAUSES, "0")
 
 
-def plumb(**unsure):
+def plumb(text=PLUMB, **unsure):
     """A line in still water; nothing is unsure but what is named."""
     said = "{" + ", ".join(f"{name}: {value}" for name, value in (SURE | unsure).items()) + "}"
-    return calm.load("plumb.yaml", text=PLUMB.replace("{UNSURE}", said))
+    return calm.load("plumb.yaml", text=text.replace("{UNSURE}", said))
 
 
 def test_a_deviation_is_one_of_a_normal_and_a_pair_its_5_and_95_percent():
@@ -159,10 +159,17 @@ def test_an_unsure_depth_is_that_of_the_top():
 
 
 def test_an_unsure_length_is_that_of_the_cable():
-    found = uncertain(plumb(length="1 %").solve(), 1024)
+    dotted = PLUMB.replace("400 m}", "400 m, clamps: [{use: dot, label: dot, at: 300 m}]}")
+    dotted += "  dot: {kind: cylinder, diameter: 1 mm, length: 1 mm, buoyancy: 0 N}\n"
+    found = uncertain(plumb(dotted, length="1 %").solve(), 1024)
     spread = found.depth_top[2, 0] - found.depth_top[0, 0]
     # the stretch grows with the length: N/EA = (4000 - 200)/200 000 on the average
     assert spread == pytest.approx(2 * AT_95 * 4.0 * 1.019, rel=0.01)
+    (dot,) = found.to_dict()["clamps"]
+    # a quarter of the cable is below it, which pulls with 3600 to 3700 N
+    assert dot["depth"][2] - dot["depth"][0] == pytest.approx(2 * AT_95 * 1.01825, rel=0.01)
+    assert dot["tension"][1] == pytest.approx(3700.0, rel=1e-3)
+    assert (dot["index"], dot["label"]) == (1, "dot")
 
 
 def test_an_unsure_buoyancy_pulls_at_the_anchor():

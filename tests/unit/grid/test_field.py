@@ -92,7 +92,9 @@ def test_a_sensor_left_out_is_as_if_it_had_not_been_there():
                   Scales(90.0, 7200.0, 0.05), 0.1)  # fmt: skip
     miss, spread = left_out(whole, np.arange(5))
     for j in range(4):
-        rest = GriddedQuantity(whole.samples.without([f"s{j}"]), FLAT, whole.scales, 0.1)
+        others = np.arange(4) != j
+        rest = samples(depth[:, others], whole.samples.value[:, others])
+        rest = GriddedQuantity(rest, FLAT, whole.scales, 0.1)
         mean, deviation, _ = posterior(rest, np.arange(5), depth[:, [j]])
         assert whole.samples.value[:, j] - mean[:, 0] == pytest.approx(miss[:, j], abs=1e-9)
         assert np.sqrt(deviation[:, 0] ** 2 + 0.1**2) == pytest.approx(spread[:, j], abs=1e-9)

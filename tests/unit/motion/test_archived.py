@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 
 import calm
-from calm.motion.archived import about, depth_flags
+from calm.motion.correction import about, depth_flags
 
 MOORING = """\
 name: Twin
