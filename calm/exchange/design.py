@@ -242,7 +242,7 @@ def refused_at(path: object, line: int, column: int, message: str) -> InputError
 
 _RELEASE = re.compile(
     r"\brelease|\bacoustic rel|\blargu|\blargage|\bar[ -]?\d{3}|\bcdms ar\b|\b8242\b|\b866\b"
-    r"|ausl[öo]se|utl[øo]ser|\bliberador|\bsuelta",
+    r"|ausl[öo]se|utl[øo]se|\bliberador|\bsuelta",
     re.I,
 )
 _HEAVY = 20.0  # N: nothing that only joins weighs more, whatever it is called
