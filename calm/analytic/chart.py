@@ -13,15 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from calm.analytic.chart_branch import Branch, check_k
-from calm.analytic.chart_reasons import (
-    ChartRefusal,
-    contradiction,
-    family,
-    is_taut,
-    reason,
-    straight,
-)
+from calm.analytic.chart_branch import Branch, check_k, critical_angle
 from calm.analytic.chart_search import ChartSearch, LengthSearch, Piece, size_of
 from calm.errors import UsageError
 
@@ -119,18 +111,14 @@ def chart_solve(
     answer = _solve(float(k), over_weight, floats)
     if isinstance(answer, ChartRefusal):
         return ChartAnswer(answer.status, float(k), (), answer.message, answer.advice)
-    solutions = [_weighted(solution, abs(weight)) for solution in answer]
+    pull = abs(weight)
+    solutions = [
+        replace(one, tension_a=one.tension_a * pull, tension_b=one.tension_b * pull)
+        for one in answer
+    ]
     if floats:
         solutions = [ChartSolution(**mirrored(vars(solution))) for solution in solutions]
     return ChartAnswer("converged", float(k), tuple(solutions))
-
-
-def _weighted(solution: ChartSolution, weight: float) -> ChartSolution:
-    return replace(
-        solution,
-        tension_a=solution.tension_a * weight,
-        tension_b=solution.tension_b * weight,
-    )
 
 
 def _solve(k: float, known: dict[str, float], floats: bool) -> list[ChartSolution] | ChartRefusal:
@@ -145,12 +133,10 @@ def _solve(k: float, known: dict[str, float], floats: bool) -> list[ChartSolutio
         for sign in (1, -1):
             solutions += _on_branch(Branch(k, sign), ends, sizes)
     line = straight(k, known)
-    if line is not None:
-        figures = line.figures
-        if figures is not None:
-            solutions.append(ChartSolution(**figures))
-        elif not solutions:
-            return family("A straight cable at the critical angle has these at any other size.")
+    if isinstance(line, ChartSolution):
+        solutions.append(line)
+    elif line is not None and not solutions:
+        return line
     if not solutions:
         return reason(k, known, floats)
     return sorted(solutions, key=lambda solution: solution.phi_a < 0.0)
@@ -255,3 +241,138 @@ def mirrored(values: Mapping[str, float]) -> dict[str, float]:
         else:
             mirrored[name] = -value if name == "distance" else value
     return mirrored
+
+
+_ROUNDING = 1e-9
+_LEAST_SLACK = 1e-12
+
+
+@dataclass(frozen=True)
+class ChartRefusal:
+    """Describe why there is no answer: its status, what is wrong and what to change."""
+
+    status: str
+    message: str
+    advice: str
+
+
+def family(what: str) -> ChartRefusal:
+    """The refusal of quantities that leave one free."""
+    return ChartRefusal(
+        "one-parameter-family", what, "Give another quantity in place of one of these."
+    )
+
+
+def contradiction(known: Mapping[str, float]) -> ChartRefusal | None:
+    """Return what is wrong with the quantities of a sinking cable whatever K is, if anything.
+
+    Tensions are over w [m]. A cable that floats comes here upside down; messages hold for both.
+    """
+    below, above = known.get("tension_a"), known.get("tension_b")
+    height, distance = known.get("height", 0.0), known.get("distance", 0.0)
+    if below is not None and above is not None and "height" in known:
+        if abs(above - below - height) <= _ROUNDING * above:
+            return family("Two tensions and the height are not independent: T_B = T_A + w H.")
+        return _inconsistent(
+            "T_B = T_A + w H does not hold.", "Give two of these and one other quantity."
+        )
+    if above is not None and above <= (below or 0.0) + height:
+        least = "that at the other end" if below is not None else "w H" if height else "0"
+        return _inconsistent(
+            f"The tension at the upper end (the lower of a cable that floats) must exceed {least}.",
+            "Check which end is which, and the weight.",
+        )
+    chord = math.hypot(height, distance)
+    if "length" in known and chord > known["length"] * (1.0 + _ROUNDING):
+        return _inconsistent(
+            f"The cable, {known['length']:.6g} m, is shorter than the distance of {chord:.6g} m.",
+            "Lengthen the cable or bring its ends closer.",
+        )
+    return None
+
+
+def is_taut(known: Mapping[str, float]) -> bool:
+    """Return whether the cable is no longer than the straight way between its ends, to rounding."""
+    chord = math.hypot(known.get("height", 0.0), known.get("distance", 0.0))
+    return "length" in known and chord >= known["length"] * (1.0 - _LEAST_SLACK)
+
+
+def reason(k: float, known: Mapping[str, float], floats: bool) -> ChartRefusal:
+    """Return why no cable has quantities that do not contradict each other.
+
+    Parameters
+    ----------
+    k : K
+    known : the quantities, of a cable that floats turned upside down
+    floats : whether they were turned
+    """
+    critical = float(critical_angle(k))
+    shown = math.degrees(math.pi - critical if floats else critical)
+    angle = f"the critical angle, {shown:.6g}° at K = {k:g}"
+    start, end = known.get("phi_a"), known.get("phi_b")
+    if known.get("tension_a") == 0.0:
+        message = f"A cable without tension at one end is straight, at {angle}."
+        return _none(message, "Give a tension, or quantities of that straight cable.")
+    if is_taut(known):
+        message = (
+            "A cable no longer than the distance between its ends would need infinite tension."
+        )
+        return _none(message, "Lengthen the cable or bring its ends closer.")
+    if end is not None and not 0.0 < end < math.pi:
+        message = "The cable must rise at the end where its tension is greater."
+        return _none(message, "Give an angle between 0 and 180° there.")
+    if start is not None and end is not None:
+        lean = start + 2 * math.pi if start < critical - math.pi else start
+        if (lean - critical) * (end - critical) <= 0.0:
+            return _none(f"No cable reaches across {angle}.", "Give two angles on one side of it.")
+        return _none(
+            "Between these two angles no cable rises from A to B in that sense.",
+            "Check which end is which, and the sign of the distance if it is given.",
+        )
+    return _none(
+        f"No cable in a uniform current at K = {k:g} satisfies these three quantities.",
+        "Check K and the quantities; replace one of them to see what is possible.",
+    )
+
+
+def _inconsistent(message: str, advice: str) -> ChartRefusal:
+    return ChartRefusal("inconsistent", message, advice)
+
+
+def _none(message: str, advice: str) -> ChartRefusal:
+    return ChartRefusal("no-equilibrium", message, advice)
+
+
+def straight(k: float, known: Mapping[str, float]) -> ChartSolution | ChartRefusal | None:
+    """The straight cable at the critical angle, the only one that no branch of the curve holds.
+
+    It has three quantities [rad, m] to 1e-9, tensions over w; a refusal where they do not fix its
+    size; None where there is none.
+    """
+    angle = float(critical_angle(k))
+    sine, cosine = math.sin(angle), 0.0 if k == 0.0 else math.cos(angle)
+    if any(abs(known[name] - angle) > _ROUNDING for name in ("phi_a", "phi_b") if name in known):
+        return None
+    below, above, distance = (known.get(name) for name in ("tension_a", "tension_b", "distance"))
+    lengths = [known["length"]] if "length" in known else []
+    if "height" in known:
+        lengths.append(known["height"] / sine)
+    if below is not None and above is not None:
+        lengths.append((above - below) / sine)
+    if distance is not None and cosine != 0.0:
+        lengths.append(distance / cosine)
+    elif distance:
+        return None
+    if lengths and (min(lengths) <= 0.0 or max(lengths) > (1.0 + _ROUNDING) * min(lengths)):
+        return None
+    length = lengths[0] if lengths else None
+    if below is None and above is not None and length is not None:
+        below = above - length * sine
+        if below < -_ROUNDING * above:
+            return None
+        below = max(below, 0.0)
+    if below is None or length is None:
+        return family("A straight cable at the critical angle has these at any other size.")
+    rise = length * sine
+    distance = length * math.cos(angle)
+    return ChartSolution(angle, angle, below, below + rise, rise, distance, length, 0.0)

@@ -102,12 +102,7 @@ def assemble_line(
 
 
 def net_buoyancy(component: Component, gravity: float) -> float:
-    """Net force in reference water, + up [N, N/m]: as given, or from the masses under a gravity.
-
-    Parameters
-    ----------
-    gravity : [m/s²]
-    """
+    """Net force in reference water, + up [N, N/m]: given, or from masses under a gravity [m/s²]."""
     given = any(getattr(component, name, None) is not None for name in ("buoyancy", "weight"))
     return component.net_buoyancy * (1.0 if given else gravity / STANDARD_GRAVITY)
 
@@ -219,12 +214,7 @@ def axial_drag_of(component: Component) -> float:
 
 
 def with_axial_clamps(line: Line, pieces: Sequence[Piece]) -> Line:
-    """The line with its clamps in a flow along it, as in a fall and a rise.
-
-    Parameters
-    ----------
-    line : as assembled from the pieces
-    """
+    """The line of some pieces with its clamps in a flow along it, as in a fall and a rise."""
     clamps = [clamp.component for piece in pieces for clamp in piece.clamps]
     axial = [drag_of(each)[2] for each in clamps]
     curves = tuple(

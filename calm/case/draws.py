@@ -64,12 +64,7 @@ def checked_samples(samples: int) -> int:
 
 
 def normals_of(samples: int, seed: int) -> Floats:
-    """(samples, causes) standard normals, of a scrambled Sobol' sequence.
-
-    Parameters
-    ----------
-    samples : a power of two
-    """
+    """(samples, causes) standard normals, of a scrambled Sobol' sequence of a power of two."""
     from scipy.special import ndtri
     from scipy.stats import qmc
 

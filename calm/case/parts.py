@@ -102,12 +102,8 @@ def _listed(labels: Sequence[str]) -> str:
 
 @contextmanager
 def naming_the_piece(pieces: Sequence[Piece], *, towed: bool = False) -> Iterator[None]:
-    """Adds the label of a piece to what the solver reports of it.
-
-    Parameters
-    ----------
-    pieces : in the order of the file
-    towed : whether the solver counts them from the other end
+    """Adds the label of a piece to what the solver reports of it, which in a tow counts the pieces
+    from the other end.
     """
     try:
         yield

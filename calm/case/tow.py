@@ -252,41 +252,19 @@ class Variation:
 
 
 def sweep(tow: Tow, speeds: Iterable[float]) -> list[TowResult | NoEquilibrium]:
-    """Solve a tow at several speeds [m/s], one after the other.
+    """Return the result at each speed of the ship [m/s], > 0, or the reason why there is none.
 
-    Parameters
-    ----------
-    tow : its own speed only decides the length of a cable that is fitted
-    speeds : of the ship [m/s], > 0; taken one at a time
-
-    Returns
-    -------
-    list of TowResult or NoEquilibrium
-        One for each speed, in order: the result, or the reason why there is none.
-
-    Raises
-    ------
-    NoEquilibrium
-        Where no length of a cable to be fitted reaches its depth at the tow's own speed.
+    Speeds are taken one at a time; the tow's own only decides the length of a cable that is fitted.
+    NoEquilibrium: no length of that reaches its depth at the tow's own speed.
     """
     return [or_why_not(tow.at_speed(speed).solve) for speed in speeds]
 
 
 def sensitivity(tow: Tow) -> list[Variation]:
-    """Return how a tow answers to A₁, B₁ and C₁ of its strumming, each smaller and greater by
+    """Return a tow as it is, then with A₁, B₁ and C₁ of its strumming each smaller and greater by
     `CHANGE`.
 
-    Returns
-    -------
-    list of Variation
-        The tow as it is, then two for each coefficient.
-
-    Raises
-    ------
-    UsageError
-        The tow does not strum by Bourget & Marichal.
-    NoEquilibrium
-        As in `sweep`.
+    UsageError: the tow does not strum by Bourget & Marichal. NoEquilibrium: as in `sweep`.
     """
     keys = tow.file.solver.strumming
     if not isinstance(keys, BourgetMarichalKeys):

@@ -174,11 +174,8 @@ def limits_used(file: MooringFile, surface: bool) -> tuple[LimitKey, ...]:
     One that the design does not give has its default; one that has none and is not given is not
     used. The friction of an anchor that gives its own stands for `anchor_friction`. What the line
     lets a component bear beyond its own definition is a limit that departs from it; so is every
-    other setting that only flatters.
-
-    Parameters
-    ----------
-    surface : whether the mooring is meant for the surface: then no depth of its top is asked for
+    other setting that only flatters. Of a mooring meant for the surface no depth of its top is
+    asked for.
     """
     given = file.checks.minimum_top_depth is not None
     used = (

@@ -102,11 +102,8 @@ def _changed(mooring: Mooring, given: Result) -> Iterator[tuple[str, Mooring]]:
 
 
 def in_other_waters(file: MooringFile, water: Water) -> Iterator[tuple[str, MooringFile]]:
-    """Return a file in still water, at high and low water, and in still low water.
-
-    Parameters
-    ----------
-    water : of its own environment
+    """Return a file, of an environment with this water, in still water, at high and low water, and
+    in still low water.
     """
     environment, tide = file.environment, file.environment.depth_range
     if water.moving or environment.wind is not None:

@@ -153,14 +153,14 @@ def draw(
         The cables drawn: those whose angle at A is below 90° (the default), or
         above.
     """
-    from calm.drawing.picture import check_format
-    from calm.report.chart_page import CHART_FORMATS, chart_picture
+    from calm.drawing.picture import check_format, image
+    from calm.report.chart_page import CHART_FORMATS, draw_chart
     from calm.report.folder import check_destination, write_file
 
     check_format(output, CHART_FORMATS)
     check_destination(output)
     (drag_over_weight,) = quantities({"k": (k, "number")}).values()
-    write_file(output, chart_picture(drag_over_weight, lower_end, output.suffix))
+    write_file(output, image(draw_chart(drag_over_weight, lower_end), output.suffix))
     narrate(f"{output} written")
     return ExitCode.DONE
 

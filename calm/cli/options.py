@@ -86,14 +86,8 @@ def show_units(given: str | None, files: Iterable[MooringFile] = ()) -> None:
 def quantities(given: Mapping[str, tuple[str | None, str]]) -> dict[str, float]:
     """The quantities that were given, in SI and degrees; or all that is wrong with them.
 
-    Parameters
-    ----------
-    given : of the parameter's name to its text (None where absent) and its dimension
-
-    Raises
-    ------
-    UsageError
-        With every text that is no quantity of its dimension.
+    They are given as text (None where absent) and dimension by the name of the parameter.
+    UsageError: with every text that is no quantity of its dimension.
     """
     from calm.units import QuantityError, parse_quantity
 

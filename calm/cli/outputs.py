@@ -214,15 +214,8 @@ class Outputs:
     def write(self, shown: Sequence[FileOutcome | TabulatedTow], to_csv: Callable[[], str]) -> None:
         """Write the files, then the standard output: what was asked for there, or the tables.
 
-        Parameters
-        ----------
-        shown : what there is to show of each of `files`, in order
-        to_csv : makes the CSV table of all of them; called only where it was asked for
-
-        Raises
-        ------
-        UsageError
-            The system refuses to write.
+        There is something to show of each of `files`, in order; the CSV table of all of them is
+        made only where it was asked for. UsageError: the system refuses to write.
         """
         from calm.report.folder import write_file
         from calm.report.result_files import to_json

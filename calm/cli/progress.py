@@ -161,11 +161,8 @@ def begun(
 ) -> Callable[[], _Done]:
     """Let another process make something while this one goes on; what is returned hands it over.
 
-    On a machine of one core it is made here when it is called for.
-
-    Parameters
-    ----------
-    function : of a module, so that another process finds it
+    The function is of a module, so that another process finds it. On a machine of one core it is
+    made here when it is called for.
     """
     if (os.cpu_count() or 1) < 2:
         return partial(function, *given, **named)

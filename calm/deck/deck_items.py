@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from itertools import groupby
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 from calm.case.net_result import legs_of
 from calm.case.result_tables import ClampRow, rows_by_place, rows_down
@@ -136,11 +136,6 @@ class DeckRow:
         return self.items[0]
 
     @property
-    def count(self) -> int:
-        """Return how many pieces and clamps share it."""
-        return len(self.items) + len(self.floats) + len(self.joints)
-
-    @property
     def label(self) -> str:
         """Label of the item, or those of the first and the last of several."""
         return label_of_run(self.items)
@@ -212,12 +207,7 @@ def _lies_on(run: tuple[DeckItem, ...], row: DeckRow, items: Sequence[DeckItem])
     return row.items[-1].label == first.on and len(every) == len(run)
 
 
-class _Labelled(Protocol):
-    @property
-    def label(self) -> str: ...
-
-
-def label_of_run(items: Sequence[_Labelled]) -> str:
+def label_of_run(items: Sequence[DeckItem]) -> str:
     """Return the label of an item, or those of the first and the last of several."""
     return items[0].label if len(items) == 1 else f"{items[0].label} – {items[-1].label}"
 
@@ -239,8 +229,8 @@ def deck_items_of(result: Result | NetResult) -> tuple[DeckItem, ...]:
     found: list[DeckItem] = []
     for row, clamps in rows_down(result):
         bottom = seabeds[own[row.index]]
-        found.append(_deck_item(row.part, row, row, items, bottom))
-        found += (_deck_item(clamp.part, row, clamp, items, bottom) for clamp in clamps)
+        found.append(_deck_item(row, row, items, bottom))
+        found += (_deck_item(row, clamp, items, bottom) for clamp in clamps)
     return tuple(found)
 
 
@@ -250,12 +240,12 @@ def depth_of(row: ComponentRow | ClampRow) -> float:
 
 
 def _deck_item(
-    part: Piece | Clamp,
     piece: ComponentRow,
     row: ComponentRow | ClampRow,
     items: Mapping[str, DeployedItem],
     bottom: float,
 ) -> DeckItem:
+    part = row.part
     item = items.get(part.label)
     clamp = row.part if isinstance(row, ClampRow) else None
     depth = depth_of(row)

@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from calm.case import Result
     from calm.case.net_result import NetResult
     from calm.deck.deck_items import DeckItem
-    from calm.files import Component
 
 LENGTH_ERROR = 0.005
 """Error of a length, as a share of it: the tolerance, and the error whose effect is reported."""
@@ -115,19 +114,17 @@ def _cut(result: Result | NetResult, one: DeckItem, over: int, count: int) -> Cu
         length=length,
         load=piece.measured_load,
         unstretched=one.cut_length,
-        marks=tuple(_marks(piece, longer)),
+        marks=tuple(
+            Mark(clamp.label, clamp.at * longer)
+            for clamp in sorted(piece.clamps, key=lambda clamp: clamp.at)
+            if clamp.component.kind != "profiler"
+        ),
         termination=piece.equipment.termination,
         tolerance=max(LENGTH_ERROR * length, LEAST_TOLERANCE),
         effect=_effect(result, piece.index, one.cut_length),
         over=over,
         onto=count + 1 - over,
     )
-
-
-def _marks(piece: Piece, longer: float) -> Iterator[Mark]:
-    fixed = [clamp for clamp in piece.clamps if clamp.component.kind != "profiler"]
-    for clamp in sorted(fixed, key=lambda clamp: clamp.at):
-        yield Mark(clamp.label, clamp.at * longer)
 
 
 def _effect(result: Result | NetResult, index: int, length: float) -> float | None:
@@ -210,7 +207,10 @@ def hardware_of(legs: Sequence[Sequence[DeckItem]]) -> tuple[Stock, ...]:
         kind = _kind(one)
         if kind is not None:
             groups.setdefault((kind, one.part.use), []).append(one)
-    found = [_stock(kind, use, group) for (kind, use), group in groups.items()]
+    found = []
+    for (kind, use), group in groups.items():
+        length = sum(one.cut_length or 0.0 for one in group) if kind == _CHAIN else None
+        found.append(Stock(kind, use, group[0].name, len(group), length))
     found += _pins(groups)
     found += _thimbles(parts)
     found += _against_corrosion(legs)
@@ -235,28 +235,19 @@ def _kind(one: DeckItem) -> str | None:
     return kind if kind in ("anodes", "isolators", "thimbles", "cotter pins") else None
 
 
-def _stock(kind: str, use: str, group: Sequence[DeckItem]) -> Stock:
-    lengths = [one.cut_length for one in group if one.cut_length is not None]
-    length = sum(lengths) if kind == _CHAIN else None
-    return Stock(kind, use, group[0].name, len(group), length)
-
-
 def _pins(groups: dict[tuple[str, str], list[DeckItem]]) -> Iterator[Stock]:
     for (kind, use), group in groups.items():
         if kind != "shackles":
             continue
         component, count = group[0].part.component, len(group)
-        pin = "bolt and nut" if _is_bolted(component) else "screw pin"
+        bolted = "screw" not in f"{component.name or ''} {component.note or ''}".lower()
+        pin = "bolt and nut" if bolted else "screw pin"
         name = f"{pin} of {group[0].name}"
         yield Stock("pins", use, name, count, basis="one for each shackle")
-        if _is_bolted(component):
+        if bolted:
             name = f"cotter pin of {group[0].name}"
             basis = "one for each shackle with bolt"
             yield Stock("cotter pins", use, name, count, basis=basis)
-
-
-def _is_bolted(component: Component) -> bool:
-    return "screw" not in f"{component.name or ''} {component.note or ''}".lower()
 
 
 def _against_corrosion(legs: Sequence[Sequence[DeckItem]]) -> Iterator[Stock]:
@@ -276,12 +267,12 @@ def _against_corrosion(legs: Sequence[Sequence[DeckItem]]) -> Iterator[Stock]:
 
 
 def _thimbles(parts: Sequence[DeckItem]) -> Iterator[Stock]:
-    ends: dict[tuple[str, str], int] = {}
-    for one in parts:
-        part = one.part
-        made = part.equipment.termination or ""
-        if isinstance(part, Piece) and "thimble" in made.lower():
-            ends[part.use, one.name] = ends.get((part.use, one.name), 0) + 2
-    for (use, name), count in ends.items():
+    ends = Counter(
+        (one.part.use, one.name)
+        for one in parts
+        if isinstance(one.part, Piece)
+        and "thimble" in (one.part.equipment.termination or "").lower()
+    )
+    for (use, name), pieces in ends.items():
         basis = "two for each cable, by its termination"
-        yield Stock("thimbles", use, f"thimble for {name}", count, basis=basis)
+        yield Stock("thimbles", use, f"thimble for {name}", 2 * pieces, basis=basis)

@@ -199,16 +199,18 @@ def _widened(scale: Scale, extent: float) -> Scale:
 
 
 def _draw_breaks(graph: Graph, place: Place, backup: Sequence[Break]) -> None:
-    """Do what is left to lift after each break, and what is required; grey where it is not
-    judged.
-    """
+    """What is left to lift after each break, and what is required; grey where it is not judged."""
     number = np.array([each.break_after for each in backup], dtype=np.float64)
     required = np.array([each.required for each in backup])
     margins = np.array([each.margin for each in backup])
     axes = graph.axes(
         *place, covering(number - 0.5, number + 0.5), covering([0.0], margins, required)
     )
-    axes.bars(number, margins, 0.8, [_colour(each) for each in backup])
+    colours = [
+        _UNJUDGED if not each.judged else _ENOUGH if each.margin >= each.required else _SHORT
+        for each in backup
+    ]
+    axes.bars(number, margins, 0.8, colours)
     axes.lines([number - 0.5, number + 0.5], [required] * 2, _LIMIT)
     axes.level(0.0, Stroke("black", 0.6))
     axes.frame(
@@ -216,9 +218,3 @@ def _draw_breaks(graph: Graph, place: Place, backup: Sequence[Break]) -> None:
         numbers(axes.up.low, axes.up.high, 6),
         below="break below piece no.", beside="back-up buoyancy left [N]",
     )  # fmt: skip
-
-
-def _colour(one: Break) -> str:
-    if not one.judged:
-        return _UNJUDGED
-    return _ENOUGH if one.margin >= one.required else _SHORT

@@ -297,14 +297,12 @@ def names(parts: list[PictureMark], near: float) -> list[tuple[str, PictureMark]
     runs: list[list[PictureMark]] = []
     for part in parts:
         last = runs[-1][-1] if runs else None
-        if last and _is_next(last, part) and abs(part.depth - last.depth) <= near:
+        same = last and last.use == part.use and alike(last.text, part.text)
+        if last and same and abs(part.depth - last.depth) <= near:
             runs[-1].append(part)
         else:
             runs.append([part])
-    texts = []
-    for run in runs:
-        texts.append((together([part.text for part in run]), run[len(run) // 2]))
-    return texts
+    return [(together([part.text for part in run]), run[len(run) // 2]) for run in runs]
 
 
 def alike(label: str, other: str) -> bool:
@@ -335,11 +333,6 @@ def spread(wanted: list[float], gap: float, start: float, end: float) -> list[fl
     last = max(start, end - (len(wanted) - 1) * gap)
     reduced = [min(max(mean, start), last) for mean, count in pools for _ in range(count)]
     return [position + index * gap for index, position in enumerate(reduced)]
-
-
-def _is_next(part: PictureMark, other: PictureMark) -> bool:
-    """Return whether two parts are the same component under the same label, numbers apart."""
-    return part.use == other.use and alike(part.text, other.text)
 
 
 def _number(label: str) -> str:

@@ -38,10 +38,8 @@ def image(figure: Figure, suffix: str) -> bytes:
 
     Parameters
     ----------
-    figure : Figure
-        What was drawn.
-    suffix : str
-        ``.png``, ``.svg`` or ``.pdf``, in any case.
+    figure : what was drawn
+    suffix : ``.png``, ``.svg`` or ``.pdf``, in any case
     """
     import matplotlib
 

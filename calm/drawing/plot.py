@@ -207,11 +207,7 @@ def mark_parts(axes: Axes, marks: Sequence[PictureMark]) -> None:
             axes.plot(x, y, sign, label=role, color=colour, markersize=size)
 
 
-def write_names(
-    axes: Axes,
-    written: list[tuple[str, PictureMark]],
-    height: float,
-) -> None:
+def write_names(axes: Axes, written: list[tuple[str, PictureMark]], height: float) -> None:
     """Names in a column right of the line, each with a thin line to its part.
 
     Parameters

@@ -27,16 +27,9 @@ MOST_SECONDS = 120.0
 def read_apart(
     reader: Callable[_Given, _Found], *given: _Given.args, **named: _Given.kwargs
 ) -> _Found:
-    """Return what a reader makes of a file.
+    """Return what a reader, which is of a module so that another process finds it, makes of a file.
 
-    Parameters
-    ----------
-    reader : of a module, so that another process finds it
-
-    Raises
-    ------
-    ValueError
-        The reader failed, crashed, or took too much time or memory.
+    ValueError: the reader failed, crashed, or took too much time or memory.
     """
     from multiprocessing import Pipe, Process
 

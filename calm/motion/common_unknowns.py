@@ -163,10 +163,7 @@ def moves(first: Integers, fall: Floats, share: Floats) -> Floats:
 def chance_of(first: int, times: int) -> tuple[float, float]:
     """Return the logarithm of how likely a sensor moves or drifts so, and the deviation of it [m].
 
-    Parameters
-    ----------
-    first : of `first_time`
-    times : number of times at which a clamp may slip
+    `first` is of `first_time`; at so many times a clamp may slip.
     """
     if first in RAMPS:
         return float(np.log(DRIFTS / len(RAMPS))), DRIFT

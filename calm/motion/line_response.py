@@ -107,9 +107,7 @@ class LineResponse:
     ) -> tuple[Floats, Floats, NDArray[np.bool_]]:
         """Return (n, k) u and v [m/s] at these levels, and whether each was measured.
 
-        Parameters
-        ----------
-        without : groups that are taken from the others, as is what was not measured
+        Groups that are left out are taken from the others, as is what was not measured.
         """
         one = self.measured
         known = np.isfinite(one.u) & np.isfinite(one.v) & np.isfinite(level)
@@ -158,13 +156,7 @@ class LineResponse:
         return (forward or self.forward).depths(way.level, way.u * factor, way.v * factor)
 
     def linear(self, way: ReadCurrents, logs: Floats) -> Linear:
-        """Return the line with factors on the currents, and its slopes there.
-
-        Parameters
-        ----------
-        way : the currents as they are read
-        logs : (n, g) logarithms of the factors on them
-        """
+        """Return the line with factors on the currents, of logarithms (n, g), and its slopes."""
         there = self.depths(way, logs)
         own = [self.depths(way, logs + ahead) for ahead in STEP * np.eye(self.groups)]
         common = [self.depths(way, logs, forward) for forward in self.shifted.values()]

@@ -207,11 +207,8 @@ def alone_remarks(common: Common) -> list[str]:
 
 
 def datum_remarks(common: Common, seabed: float) -> list[str]:
-    """Return a sentence where all sensors are off alike: by the weight of the air, or by much.
-
-    Parameters
-    ----------
-    seabed : depth of the water [m]
+    """Return a sentence where all sensors are off alike: by the weight of the air, or by much of
+    the depth of the seabed [m].
     """
     at = len(common.factors)
     spread = float(np.sqrt(common.covariance[at, at]))

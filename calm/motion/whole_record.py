@@ -322,11 +322,8 @@ def _until(
 
 
 def chosen_times(measured: MooringMeasurements, alone: bool = False) -> Integers:
-    """Return times that have a current and a pressure, evenly spread where they are many.
-
-    Parameters
-    ----------
-    alone : whether a pressure is enough
+    """Return times that have a current and a pressure, or a pressure alone, evenly spread where
+    they are many.
     """
     currents = (np.isfinite(measured.u) & np.isfinite(measured.v)) | alone
     used = np.flatnonzero(np.isfinite(measured.depth).any(axis=1) & currents.any(axis=1))

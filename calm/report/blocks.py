@@ -265,10 +265,7 @@ def table_of(
     sortable, by_hand : as in `Table`
     """
     totals = list(sums)
-    rows = tuple(tuple(_cell(show(item)) for _, show in fields) for item in (*items, *totals))
+    shown = ([show(item) for _, show in fields] for item in (*items, *totals))
+    rows = tuple(tuple(Cell(c) if isinstance(c, str) else c for c in row) for row in shown)
     columns = tuple(column for column, _ in fields)
     return Table(title, columns, rows, note, len(totals), sortable=sortable, by_hand=by_hand)
-
-
-def _cell(shown: Cell | str) -> Cell:
-    return shown if isinstance(shown, Cell) else Cell(shown)

@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from calm.analytic.chart_branch import CurvePoints, critical_angle, curve
-from calm.drawing.picture import image
 from calm.errors import UsageError
 from calm.physics.line import Floats
 from calm.report.blocks import Cell, Column, Note, ReportPart, Table
@@ -57,17 +56,6 @@ _FAMILIES = (
     Family("T_A/(wH)", "#b3261e", (0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1, 1.25, 1.5, 2, 2.5, 3, 4, 6, 10,
                                    20, 30, 50, 100)),
 )  # fmt: skip
-
-
-def chart_picture(k: float, lower_end: str, suffix: str) -> bytes:
-    """The chart as a file.
-
-    Parameters
-    ----------
-    k, lower_end : as in `draw_chart`
-    suffix : one of `CHART_FORMATS`
-    """
-    return image(draw_chart(k, lower_end), suffix)
 
 
 def draw_chart(k: float, lower_end: str = "below-90") -> Figure:

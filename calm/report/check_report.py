@@ -30,14 +30,7 @@ from calm.report.blocks import (
     Section,
     Signatures,
 )
-from calm.report.check_facts import (
-    PAGE_ONE,
-    CheckFacts,
-    facts_of,
-    facts_part,
-    judged_section,
-    left_out,
-)
+from calm.report.check_facts import PAGE_ONE, facts_of, facts_part, judged_section, left_out
 from calm.report.check_summary import (
     limits_table,
     matrix_tables,
@@ -70,6 +63,8 @@ from calm.report.sheet import quality_of, summary_of, table_of_line
 
 if TYPE_CHECKING:
     from calm.checks.comparison import Comparison
+    from calm.checks.recovery import Recovery
+    from calm.drop.launch import Launch
 
 
 def mooring_section(assessment: Assessment, against: Comparison | None = None) -> Section:
@@ -86,7 +81,14 @@ def mooring_section(assessment: Assessment, against: Comparison | None = None) -
         ReportPart("Judgement", tuple(_judgement(assessment, judged))),
         ReportPart("The line", tuple(_line(assessment))),
         ReportPart("Shape, tension and breaks", tuple(_drawn(assessment))),
-        ReportPart("Checks", tuple(_checks(assessment, facts))),
+        ReportPart(
+            "Checks",
+            (
+                *checks_table(assessment.all_findings()),
+                *left_out(facts),
+                limits_table(assessment.limits),
+            ),
+        ),
         ReportPart("Launch, recovery, breaks", tuple(_on_the_way(assessment))),
         ReportPart(
             "Inventory",
@@ -166,12 +168,6 @@ def _drawn(assessment: Assessment) -> Iterator[Block]:
     title = "Elevation, current, tension, plan and breaks"
     yield Figure(title, check_figure(assessment))
     yield Prose((_FIGURE_NOTE,))
-
-
-def _checks(assessment: Assessment, facts: CheckFacts) -> Iterator[Block]:
-    yield from checks_table(assessment.all_findings())
-    yield from left_out(facts)
-    yield limits_table(assessment.limits)
 
 
 def _on_the_way(assessment: Assessment) -> Iterator[Block]:
@@ -260,8 +256,8 @@ def check_document(assessments: Sequence[Assessment]) -> dict[str, Any]:
             ]
             for each in assessments
         },
-        "launch": {each.name: _launch(each) for each in assessments},
-        "recovery": {each.name: _recovery(each) for each in assessments},
+        "launch": {each.name: _handled(each.launch, _OF_LAUNCH) for each in assessments},
+        "recovery": {each.name: _handled(each.recovery, _OF_RECOVERY) for each in assessments},
         "backup": {each.name: [asdict(one) for one in each.backup] for each in assessments},
         "losses": {each.name: [_loss(one) for one in each.losses] for each in assessments},
         "inventory": {each.name: [asdict(one) for one in each.inventory] for each in assessments},
@@ -313,23 +309,16 @@ def _situation(situation: Situation) -> dict[str, Any]:
     }
 
 
-def _launch(assessment: Assessment) -> dict[str, Any] | None:
-    launch = assessment.launch
-    if launch is None:
-        return None
-    names = (
-        "fall_speed", "fall_speed_band", "anchor_tension", "anchor_drag_known", "greatest_speed",
-        "drift",
-    )  # fmt: skip
-    return members(launch, *names) | {"components": launch.components()}
+_OF_LAUNCH = (
+    "fall_speed", "fall_speed_band", "anchor_tension", "anchor_drag_known", "greatest_speed",
+    "drift",
+)  # fmt: skip
+_OF_RECOVERY = ("released", "rise_speed", "time_to_surface", "net_buoyancy", "order")
 
 
-def _recovery(assessment: Assessment) -> dict[str, Any] | None:
-    recovery = assessment.recovery
-    if recovery is None:
-        return None
-    names = ("released", "rise_speed", "time_to_surface", "net_buoyancy", "order")
-    return members(recovery, *names) | {"components": recovery.components()}
+def _handled(way: Launch | Recovery | None, names: Sequence[str]) -> dict[str, Any] | None:
+    """What a launch or a recovery comes to; null where it is not known."""
+    return None if way is None else members(way, *names) | {"components": way.components()}
 
 
 _OF_FINDING = ("mooring", "environment", "situation", "rule", "component")

@@ -7,6 +7,7 @@ import re
 from collections import Counter
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from itertools import groupby
+from operator import attrgetter
 
 from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment
@@ -18,6 +19,7 @@ from calm.report.blocks import (
     ON_THE_WAY,
     Cell,
     Column,
+    Item,
     Prose,
     Section,
     Span,
@@ -30,8 +32,7 @@ _ABREAST = 5
 """Environments beside each other in a table; more of them take another table."""
 
 
-def _rank(finding: Finding) -> tuple[int, float]:
-    return finding.rank
+_rank = attrgetter("rank")
 
 
 def say_in_unit(finding: Finding, value: float | None) -> str:
@@ -77,8 +78,12 @@ def rules_tables(columns: Sequence[str], found: Sequence[Worst]) -> Iterator[Tab
         (rule.title, [each for each in found if each.finding.rule == rule.name])
         for rule in RULES.values()
     ]
-    title, note = "Rules by environment", "the least margin, its component, and what"
-    yield from _states(title, columns, rows, _of_rule, f"Under each state: {note} is unknown.")
+    note = "Under each state: the least margin, its component, and what is unknown."
+
+    def detail(one: Finding) -> str:
+        return f"{margin_of(one)} {one.component or ''}"
+
+    return _states("Rules by environment", columns, rows, detail, note)
 
 
 def matrix_tables(sections: Sequence[Section]) -> Iterator[Table]:
@@ -86,17 +91,12 @@ def matrix_tables(sections: Sequence[Section]) -> Iterator[Table]:
     every = dict.fromkeys(column for section in sections for column in section.columns)
     every.pop(ON_THE_WAY, None)
     rows = [(section.name, section.worst) for section in sections]
-    title, note = "Moorings by environment", "the rule that makes it, its least margin, and how"
-    columns = (*every, ON_THE_WAY)
-    yield from _states(title, columns, rows, _of_mooring, f"Under each state: {note} many unknown.")
+    note = "Under each state: the rule that makes it, its least margin, and how many unknown."
 
+    def detail(one: Finding) -> str:
+        return f"{RULES[one.rule].title} {margin_of(one)}"
 
-def _of_rule(finding: Finding) -> str:
-    return " ".join(filter(None, (margin_of(finding), finding.component)))
-
-
-def _of_mooring(finding: Finding) -> str:
-    return f"{RULES[finding.rule].title} {margin_of(finding)}".rstrip()
+    return _states("Moorings by environment", (*every, ON_THE_WAY), rows, detail, note)
 
 
 def _states(
@@ -116,7 +116,7 @@ def _states(
             return Cell("–")
         finding = min((each.finding for each in found), key=_rank)
         missing = sum(each.unknown for each in found)
-        texts = (detail(finding), f"{missing} unknown" if missing else "")
+        texts = (detail(finding).strip(), f"{missing} unknown" if missing else "")
         return Cell(finding.state.value, "; ".join(filter(None, texts)), finding.state)
 
     for beside in _abreast(columns):
@@ -151,7 +151,7 @@ def worst_table(sections: Sequence[Section]) -> Table:
         (Column("value", numeric=True), lambda row: say_in_unit(row[0], row[0].value)),
         (Column("limit", numeric=True), lambda row: say_in_unit(row[0], row[0].limit)),
         (Column("margin", numeric=True), lambda row: margin_of(row[0])),
-        (Column("unknown", numeric=True), lambda row: str(row[1] or "")),
+        (Column("unknown", numeric=True, short="?"), lambda row: str(row[1] or "")),
         *(
             (
                 Column(heading, numeric=True, narrow=False),
@@ -180,11 +180,11 @@ def _abreast(columns: Sequence[str]) -> Iterator[Sequence[str]]:
         yield columns[start : start + size]
 
 
-def grouped(findings: Iterable[Finding], key: Callable[[Finding], Hashable]) -> list[list[Finding]]:
-    """Return the findings of each key together, in the order in which the keys come."""
-    groups: dict[Hashable, list[Finding]] = {}
-    for finding in findings:
-        groups.setdefault(key(finding), []).append(finding)
+def grouped(items: Iterable[Item], key: Callable[[Item], Hashable]) -> list[list[Item]]:
+    """Return the items of each key together, in the order in which the keys come."""
+    groups: dict[Hashable, list[Item]] = {}
+    for item in items:
+        groups.setdefault(key(item), []).append(item)
     return list(groups.values())
 
 
@@ -266,10 +266,8 @@ def counted_states(findings: Iterable[Finding]) -> Counter[State]:
 
     A missing figure of a component is counted once.
     """
-    by_mooring: dict[str, list[Finding]] = {}
-    for finding in findings:
-        by_mooring.setdefault(finding.mooring, []).append(finding)
-    return Counter(one.state for each in by_mooring.values() for one in worst_by_part(each))
+    by_mooring = grouped(findings, attrgetter("mooring"))
+    return Counter(one.state for each in by_mooring for one in worst_by_part(each))
 
 
 def verdict_of(findings: Iterable[Finding]) -> tuple[State, str]:
@@ -277,7 +275,10 @@ def verdict_of(findings: Iterable[Finding]) -> tuple[State, str]:
     findings = list(findings)
     counts = counted_states(findings)
     unsigned = [one for one in findings if one.accept is not None and one.accept.by is None]
-    nobody, other = len(worst_by_part(unsigned)), "else " if _failing_accepted(findings) else ""
+    nobody = len(worst_by_part(unsigned))
+    # what is accepted may be a failure, and not only unknown
+    failing = any(one.accept is not None and (one.margin or 0.0) < 0.0 for one in findings)
+    other = "else " if failing else ""
     state = worst_state(counts)
     words = [
         _counted(counts[State.FAIL], "failure") if counts[State.FAIL] else f"nothing {other}fails",
@@ -288,11 +289,6 @@ def verdict_of(findings: Iterable[Finding]) -> tuple[State, str]:
         f"{nobody} of them by nobody" if nobody else "",
     ]
     return state, ", ".join(word for word in words if word)
-
-
-def _failing_accepted(findings: Iterable[Finding]) -> bool:
-    """Return whether what is accepted is a failure, and not only unknown."""
-    return any(one.accept is not None and (one.margin or 0.0) < 0.0 for one in findings)
 
 
 def verdict_prose(findings: Iterable[Finding]) -> Prose:

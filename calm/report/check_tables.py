@@ -39,6 +39,7 @@ from calm.report.blocks import (
 )
 from calm.report.check_facts import CheckFacts, judged_section, key_pairs, settled_tables
 from calm.report.check_summary import (
+    grouped,
     joined,
     margin_of,
     matrix_tables,
@@ -217,9 +218,6 @@ def deck_table(items: Sequence[InventoryItem]) -> Table:
 
 def inventory_table(items: Sequence[InventoryItem]) -> Table:
     """Return how many and how much of each component is needed, with room for the spares."""
-    groups: dict[str, list[InventoryItem]] = {}
-    for item in items:
-        groups.setdefault(item.use, []).append(item)
     note = "Cut lengths are of wires, ropes and chains. Spares are filled in by hand."
     if any(item.dry_mass is None for item in items):
         note += " ≥ marks a lower bound, because masses in air are missing: plan no lift on it."
@@ -229,7 +227,7 @@ def inventory_table(items: Sequence[InventoryItem]) -> Table:
 
     return table_of(
         "Inventory",
-        groups.values(),
+        grouped(items, lambda item: item.use),
         (Column("component"), named),
         (Column("id"), lambda group: "" if group is items else group[0].use),
         (Column("pieces", numeric=True), lambda group: str(len(group))),
@@ -299,13 +297,9 @@ def likelihood_tables(named: Iterable[tuple[str, Sequence[Finding]]]) -> Iterato
 
 
 def _share(finding: Finding) -> Cell:
-    share = finding.probability or 0.0
-    return Cell(_percent(share), strong=share >= 0.05)
-
-
-def _percent(probability: float) -> str:
-    percent = 100.0 * probability
-    return f"{percent:.0f}" if percent >= 9.5 else f"{percent:.1f}" if percent >= 0.05 else "<0.1"
+    percent = 100.0 * (finding.probability or 0.0)
+    text = f"{percent:.0f}" if percent >= 9.5 else f"{percent:.1f}" if percent >= 0.05 else "<0.1"
+    return Cell(text, strong=percent >= 5.0)
 
 
 def _likeliest(findings: Sequence[Finding]) -> list[Finding]:

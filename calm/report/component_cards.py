@@ -188,8 +188,8 @@ def _text(name: str, value: Any) -> str:
 
 def in_words(missing: MissingFigures) -> str:
     """Return what a component lacks, what was searched for in vain last."""
-    sought = [_missing_heading(name) for name in missing.figures if name in missing.searched]
-    open_yet = [_missing_heading(name) for name in missing.figures if name not in missing.searched]
+    sought = [_heading(name) for name in missing.figures if name in missing.searched]
+    open_yet = [_heading(name) for name in missing.figures if name not in missing.searched]
     parts = [f"gives no {', '.join(open_yet)}"] if open_yet else []
     parts += [f"searched for and not found: {', '.join(sought)}"] if sought else []
     return "; ".join(parts)
@@ -221,7 +221,3 @@ def to_objects(
         for each in missing
     ]
     return wrong + lacking
-
-
-def _missing_heading(name: str) -> str:
-    return QUANTITIES[name].heading if name in QUANTITIES else name

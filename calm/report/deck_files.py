@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from datetime import datetime
 from io import BytesIO
@@ -169,7 +169,17 @@ def deck_report(deck: Deck, paper: Paper, notes: tuple[str, ...] = ()) -> Report
     if isinstance(deck.result, NetResult):
         shape = Figure("The net from the side, the current, and from above", net_svg(deck))
         parts.append(ReportPart("The net", (shape, *net_part(deck.result).blocks[1:-1])))
-    parts += _sheets(deck)
+    parts += [
+        _last(deployment_part(deck)),
+        _last(recovery_part(deck)),
+        instruments_part(deck),
+        cutting_part(deck),
+        hardware_part(deck),
+        shipping_part(deck),
+        lifts_part(deck),
+    ]
+    if isinstance(deck.plan, DropPlan):
+        parts.append(drop_part(deck.plan))
     (made_by,) = (f"{name} {number}" for name, number in versions()[:1])
     return Report(
         deck.file.name,
@@ -200,19 +210,6 @@ def plates(deck: Deck, paper: Paper) -> tuple[Plate, ...]:
         Plate(f"Mooring diagram, {number} of {len(pages)}", svg)
         for number, svg in enumerate(pages, 1)
     )
-
-
-def _sheets(deck: Deck) -> Iterator[ReportPart]:
-    """Yield the logs on pages of their own, the lists and the drop plan one below the other."""
-    yield _last(deployment_part(deck))
-    yield _last(recovery_part(deck))
-    yield instruments_part(deck)
-    yield cutting_part(deck)
-    yield hardware_part(deck)
-    yield shipping_part(deck)
-    yield lifts_part(deck)
-    if isinstance(deck.plan, DropPlan):
-        yield drop_part(deck.plan)
 
 
 def _last(part: ReportPart) -> ReportPart:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from itertools import groupby
 
 from calm.deck import Deck
@@ -63,7 +63,7 @@ def cutting_part(deck: Deck) -> ReportPart:
         rows.append((named, Cell(many + length.format(cut.length), load), *map(Cell, figures)))
         rows += [
             (Cell(_marked(marks, kinds), indented=True), *[Cell()] * 7, Cell("☐"))
-            for marks in _alike(cut.marks, kinds)
+            for _, marks in groupby(cut.marks, key=lambda mark: kinds[mark.label].kind)
         ]
     columns = (
         Column("wire or rope, marks below", share=2.4),
@@ -184,18 +184,14 @@ def lifts_part(deck: Deck) -> ReportPart:
     return ReportPart("Lifts", (Prose(tuple(said)), _stages(deck), Note((note,))))
 
 
-def _marked(marks: Sequence[Mark], items: Mapping[str, DeckItem]) -> str:
-    """Return the places of some marks, and what is clamped there."""
+def _marked(alike: Iterable[Mark], items: Mapping[str, DeckItem]) -> str:
+    """Return the places of the marks of like clamps, and what is clamped there."""
+    marks = [*alike]
     places = ", ".join(QUANTITIES["at"].format(mark.at) for mark in marks)
     marked = [items[mark.label] for mark in marks]
     floats = len(marked) > 1 and marked[0].role == "float"
     words = name_of_run(marked) if floats else label_of_run(marked)
     return f"mark at {places}: {words}"
-
-
-def _alike(marks: Iterable[Mark], items: Mapping[str, DeckItem]) -> list[list[Mark]]:
-    """Return the marks of like clamps that follow one another."""
-    return [[*group] for _, group in groupby(marks, key=lambda mark: items[mark.label].kind)]
 
 
 def _stages(deck: Deck) -> Table:

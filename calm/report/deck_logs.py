@@ -10,17 +10,7 @@ from calm.deck.deck_items import DeckItem, DeckRow, Order, rows_on_paper
 from calm.deck.model import RecoveredItem
 from calm.drop import DropPlan
 from calm.quantities import QUANTITIES, say
-from calm.report.blocks import (
-    Block,
-    Cell,
-    Column,
-    Field,
-    Pairs,
-    Prose,
-    ReportPart,
-    Table,
-    table_of,
-)
+from calm.report.blocks import Block, Cell, Column, Field, Pairs, Prose, ReportPart, Table, table_of
 from calm.report.drop_sheet import whereabouts
 from calm.report.net_sheet import leg_titles
 from calm.report.provenance import position_text
@@ -36,9 +26,8 @@ _LEAST = 9.0
 def deployment_part(deck: Deck) -> ReportPart:
     """Return what is done before, the order over the side, and where the anchor went."""
     last = deck.order is Order.ANCHOR_LAST
-    deployed = deck.file.deployed
     blocks: tuple[Block, ...] = (
-        _station(deck, "" if deployed is None else deployed.date or ""),
+        _station(deck, _deployed(deck)[0]),
         Prose(
             (
                 ("Anchor last: the top" if last else "Anchor first: the lower end")
@@ -80,9 +69,11 @@ def recovery_part(deck: Deck) -> ReportPart:
             said.append("It may double back in the rise: the order may differ.")
         if rise.in_still_water:
             said.append("The rise is computed in still water.")
+    named = zip(("deployed", "position", "water depth"), _deployed(deck), strict=True)
+    known = tuple((name, text) for name, text in named if text)
     blocks: tuple[Block, ...] = (
         _station(deck, ""),
-        *_as_deployed(deck),
+        *([Pairs(known)] if known else []),
         Prose(tuple(said)),
         _releases(deck, _FIRED, ()),
         _events(),
@@ -117,17 +108,14 @@ def _station(deck: Deck, day: str) -> Table:
     return Table("", tuple(column for column, _ in fields), (row,), by_hand=True)
 
 
-def _as_deployed(deck: Deck) -> tuple[Pairs, ...]:
+def _deployed(deck: Deck) -> tuple[str, str, str]:
+    """Date, position and depth as deployed; empty where they are not known."""
     deployed = deck.file.deployed
     if deployed is None:
-        return ()
-    pairs = [
-        ("deployed", deployed.date or ""),
-        ("position", "" if deployed.position is None else position_text(deployed.position)),
-        ("water depth", "" if deployed.depth is None else say("depth", deployed.depth)),
-    ]
-    known = tuple((name, text) for name, text in pairs if text)
-    return (Pairs(known),) if known else ()
+        return "", "", ""
+    position = "" if deployed.position is None else position_text(deployed.position)
+    depth = "" if deployed.depth is None else say("depth", deployed.depth)
+    return deployed.date or "", position, depth
 
 
 def placed(items: Sequence[DeckItem], deck: Deck) -> str:
@@ -229,7 +217,7 @@ def _positions(deck: Deck) -> Table:
         (Cell("Fall-back target"), Cell(), Cell(), Cell(), Cell()),
         (Cell("First piece over"), Cell(start), Cell(), Cell(), Cell()),
         (Cell("Anchor let go"), Cell(let_go), Cell(), Cell(), Cell()),
-        (Cell("Anchor, ranged"), Cell(), *_where_it_stands(deck), Cell()),
+        (Cell("Anchor, ranged"), Cell(), *map(Cell, _deployed(deck)[1:]), Cell()),
     )
     columns = (
         Column(""),
@@ -239,15 +227,6 @@ def _positions(deck: Deck) -> Table:
         Column("time", "UTC", share=0.6),
     )
     return Table("Positions", columns, rows, by_hand=True)
-
-
-def _where_it_stands(deck: Deck) -> tuple[Cell, Cell]:
-    """Position and depth as deployed."""
-    deployed = deck.file.deployed
-    if deployed is None:
-        return Cell(), Cell()
-    position = "" if deployed.position is None else position_text(deployed.position)
-    return Cell(position), Cell("" if deployed.depth is None else say("depth", deployed.depth))
 
 
 def _soundings() -> Table:

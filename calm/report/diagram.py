@@ -11,8 +11,7 @@ from string import ascii_uppercase
 from calm.case import Result
 from calm.case.net_result import legs_of
 from calm.deck import Deck
-from calm.drawing.schematic.deck_parts import parts_of
-from calm.drawing.schematic.line_column import (
+from calm.drawing.schematic import (
     FONT,
     HEAD,
     LEADING,
@@ -27,6 +26,7 @@ from calm.drawing.schematic.line_column import (
     measured,
     placed,
 )
+from calm.drawing.schematic.deck_parts import parts_of
 from calm.drawing.schematic.pen import INK, SOFT, Pen, picture, svg_text, wrapped
 from calm.drawing.schematic.shown_parts import TextRow, one_line
 from calm.drawing.schematic.sign import LINES, WORDS, Sign

@@ -27,6 +27,7 @@ from calm.report.blocks import (
     Table,
     table_of,
 )
+from calm.report.check_summary import grouped
 from calm.report.provenance import position_text
 from calm.report.sheet import quantity_column
 from calm.units import KNOT
@@ -95,11 +96,12 @@ def _figures(plan: DropPlan) -> tuple[tuple[str, str], ...]:
         else "of a cube of its volume, since the file gives it no `kt`"
     )
     side = "right" if plan.aside >= 0.0 else "left"
+    pull = max(plan.pulls, key=lambda each: each.tension)
     return (
         (
             "Fall time",
-            f"{plan.fall_time:.0f} s ± {_error(plan.time_error)} s; {early:.0f} to {late:.0f} s "
-            f"with the anchor's drag halved or doubled",
+            f"{plan.fall_time:.0f} s ± {max(ceil(plan.time_error), 1)} s; {early:.0f} to "
+            f"{late:.0f} s with the anchor's drag halved or doubled",
         ),
         (
             "Fall-back, towards the float",
@@ -120,14 +122,12 @@ def _figures(plan: DropPlan) -> tuple[tuple[str, str], ...]:
             "unknown" if plan.start is None else whereabouts(plan, plan.start.place),
         ),
         ("Speed at touchdown", say("speed", plan.touchdown_speed)),
-        ("Greatest tension in the fall", _greatest(plan)),
+        (
+            "Greatest tension in the fall",
+            f"{say('tension', pull.tension)} in {pull.part.label}, after {pull.time:.0f} s",
+        ),
         ("Drag of the anchor at 1 m/s", f"{say('tension', plan.anchor_drag)}, {given}"),
     )
-
-
-def _greatest(plan: DropPlan) -> str:
-    pull = max(plan.pulls, key=lambda each: each.tension)
-    return f"{say('tension', pull.tension)} in {pull.part.label}, after {pull.time:.0f} s"
 
 
 def _fall_table(plan: DropPlan) -> Table:
@@ -173,8 +173,12 @@ def _depth_blocks(plan: DropPlan) -> list[Block]:
     depth = QUANTITIES["depth"]
     table = table_of(
         "Depths during the drop",
-        _by_component(listed),
-        (Column("piece or clamp, the deepest of its kind"), _named),
+        # components of one rating share a row; what sinks beyond it stands alone
+        grouped(listed, lambda one: one.label if one.beyond else (one.part.use, one.rating)),
+        (
+            Column("piece or clamp, the deepest of its kind"),
+            lambda run: _deepest(run).label + (f", of {len(run)}" if len(run) > 1 else ""),
+        ),
         (
             quantity_column("depth", "greatest depth"),
             lambda run: Cell(
@@ -187,18 +191,6 @@ def _depth_blocks(plan: DropPlan) -> list[Block]:
         (quantity_column("depth", "rated to"), lambda run: depth.format(run[0].rating)),
     )
     return [table]
-
-
-def _by_component(listed: Sequence[DepthReached]) -> list[list[DepthReached]]:
-    """Return what shares a row: components of one rating; what sinks beyond it stands alone."""
-    rows: dict[object, list[DepthReached]] = {}
-    for one in listed:
-        rows.setdefault(one.label if one.beyond else (one.part.use, one.rating), []).append(one)
-    return [*rows.values()]
-
-
-def _named(run: Sequence[DepthReached]) -> str:
-    return _deepest(run).label + (f", of {len(run)}" if len(run) > 1 else "")
 
 
 def _deepest(run: Sequence[DepthReached]) -> DepthReached:
@@ -222,10 +214,6 @@ def _notes(plan: DropPlan) -> tuple[str, ...]:
 def _distance(distance: float) -> str:
     one = QUANTITIES["offset"]
     return f"{distance * one.scale:.0f} {one.display_unit}"
-
-
-def _error(value: float) -> str:
-    return f"{max(ceil(value), 1)}"
 
 
 def whereabouts(plan: DropPlan, place: tuple[float, float]) -> str:

@@ -226,7 +226,9 @@ def sizing_part(sizing: Sizing) -> ReportPart:
     if sizing.before.failure is not None:
         lines.append((Span(f"As it is: {sizing.before.failure}", State.WARN),))
     lines += [(Span(f"! {text}", State.FAIL),) for text in _new_warnings(sizing)]
-    lines += [*sizing.notes, (Span(_effort(sizing), quiet=True),)]
+    effort = f"Found by {sizing.solves} solves, with the settings of the file."
+    effort = "Solved as it is." if sizing.solves == 1 else effort
+    lines += [*sizing.notes, (Span(effort, quiet=True),)]
     table = _comparison(sizing, sizing.before, sizing.after)
     title = f"{sizing.change.file.name}: {sizing.target.text}"
     return ReportPart(title, (Prose((_answer(sizing),)), table, Prose(tuple(lines))))
@@ -286,12 +288,6 @@ def _new_warnings(sizing: Sizing) -> list[str]:
     old = sizing.before.result.warnings if sizing.before.result is not None else ()
     new = sizing.after.result.warnings if sizing.after and sizing.after.result else ()
     return [warning for warning in new if warning not in old]
-
-
-def _effort(sizing: Sizing) -> str:
-    if sizing.solves == 1:
-        return "Solved as it is."
-    return f"Found by {sizing.solves} solves, with the settings of the file."
 
 
 def comparison_part(comparison: Comparison) -> ReportPart:

@@ -33,7 +33,10 @@ def located_part(located: Located, water_depth: float) -> ReportPart:
         lines = ", ".join(map(str, outliers))
         several = "lines" if len(outliers) > 1 else "line"
         blocks.append(Prose((f"Not used, they do not fit the others: {several} {lines}.",)))
-    blocks += [_residuals(located), Note(_notes(located))]
+    notes = ["Rays are taken as straight, and the sea surface as the ellipsoid WGS 84."]
+    if located.survey.timed:
+        notes.append("Times are taken as two-way, without a turn-around delay of the transponder.")
+    blocks += [_residuals(located), Note(tuple(notes))]
     return ReportPart("Place of the anchor", tuple(blocks))
 
 
@@ -84,15 +87,6 @@ def _residuals(located: Located) -> Table:
         (Column("", share=0.0), lambda i: "" if used[i] else "not used"),
         note="Residual: measured less computed.",
     )
-
-
-def _notes(located: Located) -> tuple[str, ...]:
-    notes = [
-        "Rays are taken as straight, and the sea surface as the ellipsoid WGS 84.",
-    ]
-    if located.survey.timed:
-        notes.append("Times are taken as two-way, without a turn-around delay of the transponder.")
-    return tuple(notes)
 
 
 def located_figure(located: Located) -> Figure:

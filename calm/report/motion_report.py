@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from calm.checks.finding import State
+from calm.drawing.picture import figure_svg
 from calm.motion.remarks import no_drag
 from calm.motion.study import knockdown
 from calm.report.blocks import (
@@ -25,20 +26,17 @@ from calm.report.blocks import (
     Table,
     table_of,
 )
-from calm.report.motion_figures import (
-    depth_figure,
-    false_figure,
-    overview_figure,
-)
 from calm.report.provenance import date
 from calm.report.result_files import members
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from numpy import datetime64
     from numpy.typing import NDArray
 
     from calm.motion.remarks import Agreement, Fault
     from calm.motion.study import HeldOut, SensorSeries, Study
+
 
 _BARE, _DEPTHS = "Instruments without a pressure", "Depths over time"
 _FALSE = "Times when a current is probably wrong"
@@ -71,45 +69,27 @@ def motion_report(
     time : (n,)
     notes : what was said of the input
     """
-    every = series
     bare = [one for one in series if not np.isfinite(one.measured).any()]
     bare = sorted(bare, key=lambda one: -float(np.nan_to_num(one.spread).mean()))
     bare = sorted(bare[:MOST_PANELS], key=lambda one: float(np.nan_to_num(one.estimated).mean()))
-    series = [one for one in series if np.isfinite(one.measured).any()]
-    shown = sorted(series, key=lambda one: not one.hidden)[:MOST_PANELS]
-    shown = [one for one in series if any(one is each for each in shown)]
+    sensors = [one for one in series if np.isfinite(one.measured).any()]
+    hidden_first = sorted(sensors, key=lambda one: not one.hidden)[:MOST_PANELS]
+    shown = [one for one in sensors if any(one is each for each in hidden_first)]
     doubts = Prose(study.remarks, State.WARN) if study.remarks else Prose((_NOTHING,))
     marks = (Figure(_FALSE, false_figure(time, study.false)),) if study.false else ()
-    held: tuple[Block, ...] = (held_out_table(study.held_out),) if study.held_out else ()
-    instruments = [Figure(_BARE, depth_figure(bare), tall=True)] if bare else []
+    whole = Figure(_WHOLE, overview_figure([*sensors, *bare]))
+    depths = [Figure(_BARE, depth_figure(bare), tall=True)] if bare else []
+    depths.append(Figure(_DEPTHS, depth_figure(shown), tall=True))
+    factors = factors_table(study.factors, study.task.common.datum)
+    held = [held_out_table(study.held_out)] if study.held_out else []
+    how = Note((PLAIN if study.plain else UNKNOWN,))
     parts = (
-        ReportPart(
-            "The deployment",
-            (
-                Figure(_WHOLE, overview_figure([*series, *bare])),
-                *judged_prose(study),
-                doubts,
-                health_table(study),
-            ),
-        ),
-        ReportPart("For the methods of a cruise report", (Prose(methods_text(study, every)),)),
-        ReportPart(
-            "Factors",
-            (factors_table(study.factors, study.task.common.datum), Note((_ASSUMED,))),
-        ),
-        ReportPart(
-            "Measured against computed",
-            (sensors_table(study), *held, Note((PLAIN if study.plain else UNKNOWN,)), *marks),
-        ),
+        ReportPart("The deployment", (whole, *judged_prose(study), doubts, health_table(study))),
+        ReportPart("For the methods of a cruise report", (Prose(methods_text(study, series)),)),
+        ReportPart("Factors", (factors, Note((_ASSUMED,)))),
+        ReportPart("Measured against computed", (sensors_table(study), *held, how, *marks)),
         ReportPart("Inputs", (Prose(tuple(notes) or ("Nothing was left out.",)),)),
-        ReportPart(
-            "Depths",
-            (
-                *instruments,
-                Figure(_DEPTHS, depth_figure(shown), tall=True),
-                Note((_LEGEND,)),
-            ),
-        ),
+        ReportPart("Depths", (*depths, Note((_LEGEND,)))),
     )
     span = f"{str(time[0])[:16]} to {str(time[-1])[:16]}, {len(time)} times"
     return Report(f"{name}: where it was", span, (), (Section(name, parts),), date())
@@ -226,10 +206,10 @@ def diagnosis_document(diagnosis: Sequence[Fault]) -> list[dict[str, Any]]:
     for one in diagnosis:
         unit = 3600.0 if one.kind == "clock" else 1.0
         row: dict[str, Any] = {"label": one.label, "kind": one.kind}
-        row |= {key: unit * getattr(one, key) for key in ("value", "low", "high")}
+        for key in ("value", "low", "high"):
+            row[key] = None if one.other else unit * getattr(one, key)
         row |= {"odds": one.odds, "corrected": one.corrected}
-        if one.other:
-            row |= {"value": None, "low": None, "high": None, "with": one.other}
+        row |= {"with": one.other} if one.other else {}
         row |= {
             key: str(getattr(one, key))[:19]
             for key in ("since", "until")
@@ -239,17 +219,17 @@ def diagnosis_document(diagnosis: Sequence[Fault]) -> list[dict[str, Any]]:
     return said
 
 
-def _factor_title(one: tuple[str, tuple[float, float, float]]) -> str:
-    far = no_drag(one[0], one[1][0])
-    return f"{TITLES[one[0]]}{': not drag, see below' if far else ''}"
-
-
 def factors_table(factors: Mapping[str, tuple[float, float, float]], datum: float) -> Table:
     """The common factors with their intervals."""
+
+    def title(one: tuple[str, tuple[float, float, float]]) -> str:
+        name, (value, *_) = one
+        return TITLES[name] + (": not drag, see below" if no_drag(name, value) else "")
+
     return table_of(
         "",
         factors.items(),
-        (Column("factor for the whole record"), _factor_title),
+        (Column("factor for the whole record"), title),
         (Column("value", numeric=True), lambda one: f"{one[1][0]:.3f}"),
         (Column("95 % interval", numeric=True), lambda one: f"{one[1][1]:.3f}–{one[1][2]:.3f}"),
         note=f"All depths are shifted by {datum:+.1f} m, the datum common to all pressures.",
@@ -259,10 +239,10 @@ def factors_table(factors: Mapping[str, tuple[float, float, float]], datum: floa
 def sensors_table(study: Study) -> Table:
     """Return how sensors in use agree with the currents alone, and with what is estimated."""
     alone = (
-        (Column("alone: bias", "m", numeric=True), lambda one: metres(one[1].bias)),
-        (Column("rms", "m", numeric=True), lambda one: metres(one[1].rms)),
-        (Column("r", numeric=True), lambda one: share(one[1].r)),
-        (Column("slope", numeric=True), lambda one: share(one[1].slope)),
+        (Column("alone: bias", "m", numeric=True), lambda one: _said(one[1].bias)),
+        (Column("rms", "m", numeric=True), lambda one: _said(one[1].rms)),
+        (Column("r", numeric=True), lambda one: _said(one[1].r, 3)),
+        (Column("slope", numeric=True), lambda one: _said(one[1].slope, 3)),
     )
     return table_of(
         "",
@@ -270,7 +250,7 @@ def sensors_table(study: Study) -> Table:
         (Column("sensor"), lambda one: one[0]),
         (Column("times", numeric=True), lambda one: str(one[1].count)),
         *(alone if study.plain else ()),
-        (Column("estimated: rms", "m", numeric=True), lambda one: metres(study.fit[one[0]].rms)),
+        (Column("estimated: rms", "m", numeric=True), lambda one: _said(study.fit[one[0]].rms)),
     )
 
 
@@ -281,25 +261,16 @@ def held_out_table(held_out: Sequence[HeldOut]) -> Table:
         held_out,
         (Column("hidden sensor"), lambda one: one.label),
         (Column("times", numeric=True), lambda one: str(one.count)),
-        (Column("bias", "m", numeric=True), lambda one: metres(one.bias)),
-        (Column("rms", "m", numeric=True), lambda one: metres(one.rms)),
-        (Column("interpolated: rms", "m", numeric=True), lambda one: metres(one.linear_rms)),
-        (Column("PCHIP: rms", "m", numeric=True), lambda one: metres(one.pchip_rms)),
-        (
-            Column("within 95 % band", "%", numeric=True),
-            lambda one: f"{100.0 * one.coverage:.0f}" if isfinite(one.coverage) else "-",
-        ),
+        (Column("bias", "m", numeric=True), lambda one: _said(one.bias)),
+        (Column("rms", "m", numeric=True), lambda one: _said(one.rms)),
+        (Column("interpolated: rms", "m", numeric=True), lambda one: _said(one.linear_rms)),
+        (Column("PCHIP: rms", "m", numeric=True), lambda one: _said(one.pchip_rms)),
+        (Column("within 95 % band", "%", numeric=True), lambda one: _said(100.0 * one.coverage, 0)),
     )
 
 
-def metres(value: float) -> str:
-    """A difference of depths."""
-    return f"{value:.2f}" if isfinite(value) else "-"
-
-
-def share(value: float) -> str:
-    """A correlation or a slope."""
-    return f"{value:.3f}" if isfinite(value) else "-"
+def _said(value: float, decimals: int = 2) -> str:
+    return f"{value:.{decimals}f}" if isfinite(value) else "-"
 
 
 def motion_document(study: Study, name: str) -> dict[str, Any]:
@@ -356,3 +327,73 @@ def held_out_document(held_out: Sequence[HeldOut]) -> list[dict[str, Any]]:
 def _agreement(one: Agreement) -> dict[str, Any]:
     said = asdict(one)
     return {"n": said.pop("count"), **said}
+
+
+_WIDTH = 7.4  # inches: an A4 page between its margins
+_FONT_SIZE = 7.0  # points
+_ESTIMATED = "#0b3c5d"
+
+
+def overview_figure(series: Sequence[SensorSeries]) -> str:
+    """Depths of all instruments over time, with their bands: where and when the line went down."""
+    from matplotlib import figure as drawing
+
+    figure = drawing.Figure(figsize=(_WIDTH, 3.6))
+    figure.subplots_adjust(0.1, 0.09, 0.99, 0.98)
+    axes = figure.subplots()
+    for one in series:
+        style = "--" if one.hidden else "-"
+        axes.plot(_band(axes, one), one.estimated, style, color=_ESTIMATED, linewidth=0.6)
+    _frame(axes)
+    return figure_svg(figure)
+
+
+def depth_figure(series: Sequence[SensorSeries]) -> str:
+    """Depths of each sensor over time: measured, estimated with its band, by the currents alone."""
+    from matplotlib import figure as drawing
+
+    height = 1.25 * len(series) + 0.4
+    figure = drawing.Figure(figsize=(_WIDTH, height))
+    figure.subplots_adjust(0.1, 0.25 / height, 0.99, 0.98, hspace=0.25)
+    panels = figure.subplots(len(series), 1, sharex=True, squeeze=False)[:, 0]
+    for axes, one in zip(panels, series, strict=True):
+        time = _band(axes, one)
+        if one.plain is not None:
+            axes.plot(time, one.plain, "--", color="#d55e00", linewidth=0.7)
+        axes.plot(time, one.estimated, color=_ESTIMATED, linewidth=0.9)
+        axes.plot(time, one.measured, color="#111111", linewidth=0.8)
+        title = f"{one.label}{', hidden' if one.hidden else ''}"
+        axes.set_title(title, fontsize=_FONT_SIZE, loc="left", pad=2, parse_math=False)
+        _frame(axes)
+    return figure_svg(figure)
+
+
+def _band(axes: Axes, one: SensorSeries) -> Any:
+    """Draw the band of what is estimated; the times of the sensor."""
+    time = one.time.astype("datetime64[s]")
+    low, high = one.estimated - 1.96 * one.spread, one.estimated + 1.96 * one.spread
+    axes.fill_between(time, low, high, color="#9ecae1", linewidth=0.0)
+    return time
+
+
+def _frame(axes: Axes) -> None:
+    axes.invert_yaxis()
+    axes.set_ylabel("depth [m]", fontsize=_FONT_SIZE)
+    axes.tick_params(labelsize=_FONT_SIZE)
+    axes.grid(alpha=0.3)
+
+
+def false_figure(time: Any, false: Mapping[str, Any]) -> str:
+    """A row of marks for each level whose current looks false at some of the times (n,)."""
+    from matplotlib import figure as drawing
+
+    height = 0.2 * len(false) + 0.5
+    figure = drawing.Figure(figsize=(_WIDTH, height))
+    figure.subplots_adjust(0.2, 0.3 / height, 0.99, 0.97)
+    axes = figure.subplots()
+    for row, when in enumerate(false.values()):
+        axes.plot(when.astype("datetime64[s]"), np.full(len(when), row), "|", color="#d55e00")
+    axes.set_yticks(range(len(false)), list(false), parse_math=False)
+    axes.set(xlim=tuple(time[[0, -1]].astype("datetime64[s]")), ylim=(len(false) - 0.5, -0.5))
+    axes.tick_params(labelsize=_FONT_SIZE)
+    return figure_svg(figure)

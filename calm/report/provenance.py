@@ -175,20 +175,6 @@ def current_listing(name: str, water: Water) -> Listing:
     return Listing(f"Current, {name}", "\n".join(lines))
 
 
-def file_listing(file: MooringFile) -> Listing:
-    """The mooring file as it stands."""
-    text = source_text(file)
-    return Listing(
-        "Mooring file", "The file could not be read again." if text is None else text.rstrip()
-    )
-
-
-def origin(files: Sequence[MooringFile]) -> Prose:
-    """The hash of the inputs of one mooring, and the versions that computed."""
-    made_by = ", ".join(f"{name} {number}" for name, number in versions())
-    return Prose((f"SHA-256 of the inputs: {input_hash(files)}", f"Computed with {made_by}"))
-
-
 def document_part(file: MooringFile) -> tuple[ReportPart, ...]:
     """The title block and the history of revisions; nothing where a file gives no document."""
     if file.document is None:
@@ -256,5 +242,9 @@ def inputs_part(
     names, waters : of these environments
     """
     table = environments_table(names, waters)
-    currents = map(current_listing, names, waters)
-    return ReportPart("Inputs", (table, file_listing(files[0]), *currents, origin(files)))
+    text = source_text(files[0])
+    said = "The file could not be read again." if text is None else text.rstrip()
+    made_by = ", ".join(f"{name} {number}" for name, number in versions())
+    origin = (f"SHA-256 of the inputs: {input_hash(files)}", f"Computed with {made_by}")
+    listed = (Listing("Mooring file", said), *map(current_listing, names, waters))
+    return ReportPart("Inputs", (table, *listed, Prose(origin)))

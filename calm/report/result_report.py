@@ -54,6 +54,10 @@ def result_report(result: AnyResult, uncertain: Uncertain | None = None) -> Repo
         )
     environment = file.environment.name or "own"
     drawing = figure_svg(draw(result, uncertain))
+    limits: tuple[ReportPart, ...] = ()
+    if isinstance(result, Result):  # a tow and a net have no margins in their tables
+        keys = limits_used(result.file, reaches_the_surface(result.mooring))
+        limits = (ReportPart("Limits", (limits_table(keys),)),)
     described = (Prose((file.description,)),) if file.description else ()
     parts = (
         *document_part(file),
@@ -61,20 +65,12 @@ def result_report(result: AnyResult, uncertain: Uncertain | None = None) -> Repo
         ReportPart("The line", line),
         ReportPart("Shape", (Figure("Elevation, current and plan", drawing),)),
         *(() if uncertain is None else (uncertainty_part(uncertain),)),
-        *_limits(result),
+        *limits,
         NOT_JUDGED,
         inputs_part([file], [environment], [water]),
     )
     subtitle = title.removeprefix(f"{result.name}: ")
     return Report(result.name, subtitle, (), (Section(result.name, parts),), date())
-
-
-def _limits(result: AnyResult) -> tuple[ReportPart, ...]:
-    """The limits of the margins in a mooring's table; a tow and a net have none."""
-    if not isinstance(result, Result):
-        return ()
-    keys = limits_used(result.file, reaches_the_surface(result.mooring))
-    return (ReportPart("Limits", (limits_table(keys),)),)
 
 
 _ENDS = ("5 %", "50 %", "95 %")

@@ -100,7 +100,10 @@ def _pieces(state: MooringInSea) -> Table:
         (_number(f"std\n{unit}"), lambda one: tension.format(one.tension_std)),
         (_number(f"max\n{unit}"), lambda one: tension.format(one.tension_max)),
         (_number(f"min\n{unit}"), lambda one: tension.format(one.tension_min)),
-        (_number("Tz\ns"), lambda one: _period(one.zero_crossing_period)),
+        (
+            _number("Tz\ns"),
+            lambda one: "-" if isnan(period := one.zero_crossing_period) else f"{period:.1f}",
+        ),
         (_number("slack\n%"), lambda one: _percent(one.slack_probability)),
         (_number("heave\nm"), lambda one: f"{one.heave_std:.2f}"),
         (_number("tilt\n°"), lambda one: f"{one.tilt_std:.1f}"),
@@ -110,10 +113,6 @@ def _pieces(state: MooringInSea) -> Table:
 
 def _percent(share: float) -> str:
     return f"{round(100.0 * share, 2):.3g}"
-
-
-def _period(period: float) -> str:
-    return "-" if isnan(period) else f"{period:.1f}"
 
 
 _SEAS: tuple[Field[MooringInSea], ...] = (

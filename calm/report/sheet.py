@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from enum import StrEnum
 from typing import Any
 
 from calm.case import Result, TowResult
@@ -134,14 +133,15 @@ def _mooring_summary(result: Result) -> tuple[Line, ...]:
         pull += f"; {say('grounded_length', anchor.grounded_length)} of line on the seabed"
     needed = say("required_weight", anchor.required_weight)
     weighs = f"{say('required_weight', anchor.weight)} in water, {needed} needed"
-    mark = FigureMark.BEYOND if anchor.weight < anchor.required_weight else FigureMark.NONE
+    if lifts := anchor.weight < anchor.required_weight:
+        weighs += " !"
     hull = f"Hull: draft {say('draft', top.draft)}, freeboard {say('freeboard', top.freeboard)}"
     return (
         f"Top {at}",
         *([hull] if top.draft is not None else []),
         *map(_travel, result.profilers),
         f"Anchor pulled by {pull}",
-        (Span(f"Anchor weighs {weighs} {mark}".rstrip(), mark.state),),
+        (Span(f"Anchor weighs {weighs}", State.FAIL if lifts else None),),
     )
 
 
@@ -211,20 +211,8 @@ _SHORT = {
 _MARKED = ("tilt", "safety_factor")
 
 
-class FigureMark(StrEnum):
-    """The sign after a figure: legible without colour."""
-
-    NONE = ""
-    NEAR = "~"
-    BEYOND = "!"
-
-    @property
-    def state(self) -> State | None:
-        """Return how it looks."""
-        return _STATES[self]
-
-
-_STATES = {FigureMark.NONE: None, FigureMark.NEAR: State.WARN, FigureMark.BEYOND: State.FAIL}
+_MARKS = {State.WARN: "~", State.FAIL: "!"}
+"""The sign after a figure that is near its limit or beyond it: legible without colour."""
 
 
 def line_table(
@@ -274,29 +262,29 @@ def quantity_column(name: str, heading: str | None = None) -> Column:
     )
 
 
-def figure_cell(name: str, value: float | None, mark: FigureMark = FigureMark.NONE) -> Cell:
+def figure_cell(name: str, value: float | None, state: State | None = None) -> Cell:
     """Return a value of a quantity as it stands under its `quantity_column`.
 
     Parameters
     ----------
     name : of the quantity
     value : SI, degrees; None where it is not known
-    mark : sign after the figure
+    state : warns or fails where the figure is near a limit or beyond it, and marks it so
     """
-    return Cell(QUANTITIES[name].format(value), state=mark.state, mark=mark)
+    return Cell(QUANTITIES[name].format(value), state=state, mark=_MARKS[state] if state else "")
 
 
-def tilt_mark(component: Component, tilt: float) -> FigureMark:
-    """Mark of a tilt [deg]: beyond `max_tilt` the component is not to be trusted."""
+def tilt_state(component: Component, tilt: float) -> State | None:
+    """How a tilt [deg] is marked: beyond `max_tilt` the component is not to be trusted."""
     if component.max_tilt is not None and tilt > component.max_tilt:
-        return FigureMark.BEYOND
+        return State.FAIL
     if component.warn_tilt is not None and tilt > component.warn_tilt:
-        return FigureMark.NEAR
-    return FigureMark.NONE
+        return State.WARN
+    return None
 
 
-def safety_mark(result: AnyResult, record: ComponentRow) -> FigureMark:
-    """Mark of a safety factor: too small, or the piece bears more than its working load.
+def safety_state(result: AnyResult, record: ComponentRow) -> State | None:
+    """How a safety factor is marked: too small, or the piece bears more than its working load.
 
     The factor asked on the breaking load is the file's `checks.safety_factor`, for a surface
     mooring, for a synthetic cable, or for steel. What is not known, NaN, is not marked.
@@ -305,7 +293,7 @@ def safety_mark(result: AnyResult, record: ComponentRow) -> FigureMark:
     surface = meant or result.type == "surface"
     least = safety_factor(record.part.component, result.file.checks.safety_factor, surface)
     beyond = record.safety_factor < least or record.utilisation > 1.0
-    return FigureMark.BEYOND if beyond else FigureMark.NONE
+    return State.FAIL if beyond else None
 
 
 def _rows(
@@ -315,19 +303,19 @@ def _rows(
         if piece.index in heads:
             yield (heads[piece.index],)
         where = _where(result, piece.depth_top, piece.x_top, piece.y_top)
-        marks = {
-            "tilt": tilt_mark(piece.part.component, piece.tilt),
-            "safety_factor": safety_mark(result, piece),
+        states = {
+            "tilt": tilt_state(piece.part.component, piece.tilt),
+            "safety_factor": safety_state(result, piece),
         }
         label = Cell(piece.label, strong=piece.role == "instrument")
-        yield Cell(str(number)), label, *_cells(names, piece, where, marks)
+        yield Cell(str(number)), label, *_cells(names, piece, where, states)
         for clamp in clamps:
             component = clamp.part.component
             where = _where(result, clamp.depth, clamp.x, clamp.y)
-            marks = {"tilt": tilt_mark(component, clamp.tilt)}
+            states = {"tilt": tilt_state(component, clamp.tilt)}
             strong = component.role == "instrument"
             label = Cell(clamp.label, indented=True, strong=strong)
-            cells = [*_cells(names, clamp, where, marks)]
+            cells = [*_cells(names, clamp, where, states)]
             if places:
                 cells[names.index("length")] = Cell(place_text(clamp.part.at))
             yield Cell(), label, *cells
@@ -350,8 +338,8 @@ def _cells(
     names: tuple[str, ...],
     row: ComponentRow | ClampRow,
     where: dict[str, float],
-    marks: dict[str, FigureMark],
+    states: Mapping[str, State | None],
 ) -> Iterator[Cell]:
     for name in names:
         value = where[name] if name in where else getattr(row, name, None)
-        yield figure_cell(name, value, marks.get(name, FigureMark.NONE))
+        yield figure_cell(name, value, states.get(name))

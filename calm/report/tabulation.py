@@ -125,7 +125,9 @@ def by_coefficient(tow: Tow, variations: Sequence[Variation]) -> Tabulation:
         rows=tuple(
             TabulationRow(
                 {"coefficient": variation.coefficient, "change": variation.change},
-                (_changed(variation),),
+                (f"{variation.coefficient.upper()} {variation.change:+.0%}",)
+                if variation.coefficient
+                else ("nothing",),
                 variation.outcome,
             )
             for variation in variations
@@ -166,12 +168,6 @@ def to_csv(tabulations: Sequence[Tabulation]) -> str:
             for row in tabulation.rows
         ),
     )
-
-
-def _changed(variation: Variation) -> str:
-    if not variation.coefficient:
-        return "nothing"
-    return f"{variation.coefficient.upper()} {variation.change:+.0%}"
 
 
 def _row_document(tabulation: Tabulation, row: TabulationRow) -> dict[str, Any]:

@@ -31,26 +31,19 @@ class BatchAccessor:
 
         UsageError: no part of the line is called so, here and below.
         """
-        prefix, index = place_of(self._dataset, label)
-        return self._named("clamp_depth" if prefix else "depth_top", prefix, index, "depth", label)
+        return self._of(label, "depth", "depth_top")
 
     def knockdown(self, label: str) -> xr.DataArray:
         """(time) how much deeper than in still water [m]."""
-        prefix, index = place_of(self._dataset, label)
-        return self._named(f"{prefix}knockdown", prefix, index, "knockdown", label)
+        return self._of(label, "knockdown", "knockdown")
 
     def tilt(self, label: str) -> xr.DataArray:
         """(time) of a component, or of the line at a clamp, from the vertical [degrees]."""
-        prefix, index = place_of(self._dataset, label)
-        return self._named(f"{prefix}tilt", prefix, index, "tilt", label)
+        return self._of(label, "tilt", "tilt")
 
     def tension(self, label: str) -> xr.DataArray:
         """(time) at a clamp, or the greater of those at both ends of a component [N]."""
-        prefix, index = place_of(self._dataset, label)
-        if prefix:
-            return self._named("clamp_tension", prefix, index, "tension", label)
-        upper = self._named("tension_top", prefix, index, "tension", label)
-        lower = self._named("tension_bottom", prefix, index, "tension", label)
+        upper, lower = (self._of(label, "tension", f"tension_{end}") for end in ("top", "bottom"))
         greater: xr.DataArray = upper.where(upper >= lower, lower)
         return greater
 
@@ -63,9 +56,10 @@ class BatchAccessor:
 
         return draw_shape(self._dataset, time)
 
-    def _named(
-        self, variable: str, prefix: str, index: int, quantity: str, label: str
-    ) -> xr.DataArray:
+    def _of(self, label: str, quantity: str, of_component: str) -> xr.DataArray:
+        """What a variable has for a component, or that of the same quantity for a clamp."""
+        prefix, index = place_of(self._dataset, label)
+        variable = f"{prefix}{quantity}" if prefix else of_component
         dimension = "clamp" if prefix else "component"
         column = self._dataset[variable].isel({dimension: index}, drop=True).rename(quantity)
         return column.assign_attrs(column.attrs | {"long_name": f"{quantity} of {label}"})

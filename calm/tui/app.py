@@ -21,17 +21,24 @@ from textual.timer import Timer
 from calm.errors import CalmError
 from calm.files.editing import KeptWork, WorkingFile
 from calm.tui import saving
-from calm.tui.dialogs import choose
-from calm.tui.help_screen import Actions, Commands
-from calm.tui.judging import Judging
+from calm.tui.dialogs import LongText, choose
+from calm.tui.key_table import Actions, Commands, all_keys
 from calm.tui.line.builder import BuilderScreen
-from calm.tui.messages import CatalogueRead, Edited, Judged, JudgingFailed, Told, Workspace
 from calm.tui.painted import Pace, Painted, PlainSigns, shows_all_signs
 from calm.tui.saving import Saving
 from calm.tui.screen import DraftScreen
 from calm.tui.session import Session
-from calm.tui.theme import PICTURE_DARK, PICTURE_LIGHT, choose_theme, legible, themes
+from calm.tui.theme import DARK, LIGHT, PICTURE_DARK, PICTURE_LIGHT, choose_theme, legible
 from calm.tui.turns import InTurn
+from calm.tui.workspace import (
+    CatalogueRead,
+    Edited,
+    Judged,
+    Judging,
+    JudgingFailed,
+    Told,
+    Workspace,
+)
 
 _AUTOSAVED_AFTER = 0.3  # seconds
 _LOOKED_AT_DISK = 2.0  # seconds between two looks
@@ -87,7 +94,7 @@ class BuildApp(InTurn):
         self._is_left = False
         self._lost: str | None = None
 
-        for theme in themes():
+        for theme in (DARK, LIGHT):
             self.register_theme(theme)
         self.ansi_theme_dark, self.ansi_theme_light = PICTURE_DARK, PICTURE_LIGHT
         self.theme = choose_theme(environ)
@@ -202,9 +209,6 @@ class BuildApp(InTurn):
 
     def action_help(self) -> None:
         """All keys."""
-        from calm.tui.dialogs import LongText
-        from calm.tui.help_screen import all_keys
-
         self.push_screen(LongText(all_keys()))
 
     # judging

@@ -119,26 +119,23 @@ class CellEditor(ScrolledEntry):
 
     def action_done(self, then: Then = "stay") -> None:
         """Take the text and go on."""
-        self._finish(then)
-
-    def action_right(self) -> None:
-        """Go on where something was typed up to here, as in a spreadsheet; else move the cursor."""
-        if self.is_typing and self.cursor_position == len(self.value) and self.selection.is_empty:
-            self._finish("right")
-        else:
-            self.action_cursor_right()
-
-    def action_abandon(self) -> None:
-        """Leave the value as it was."""
-        self.post_message(self.Abandoned())
-
-    def _finish(self, then: Then) -> None:
         reading = self._judge(self.value)
         if reading.is_good:
             self.post_message(self.Done(self.text, then))
         elif reading.offer:
             self.value = reading.offer
             self.cursor_position = len(self.value)
+
+    def action_right(self) -> None:
+        """Go on where something was typed up to here, as in a spreadsheet; else move the cursor."""
+        if self.is_typing and self.cursor_position == len(self.value) and self.selection.is_empty:
+            self.action_done("right")
+        else:
+            self.action_cursor_right()
+
+    def action_abandon(self) -> None:
+        """Leave the value as it was."""
+        self.post_message(self.Abandoned())
 
     def on_blur(self, event: events.Blur) -> None:
         """A press of the mouse elsewhere takes the value, if it is good."""
@@ -153,6 +150,6 @@ class CellEditor(ScrolledEntry):
         if not self.is_typing:
             self.post_message(self.Abandoned())
         elif reading.is_good:
-            self._finish("stay")
+            self.action_done()
         else:
             self.post_message(self.Abandoned(f"`{self.value}` is not taken: {reading.note}"))

@@ -170,7 +170,7 @@ class InputSheet(ModalScreen[dict[str, str] | None]):
     def on_mount(self) -> None:
         """Type at once."""
         first = self.query(Field).first()
-        first.focus_input()
+        first.input.focus()
         if first.input.value:
             self._tell(first, first.reading)
 
@@ -188,7 +188,7 @@ class InputSheet(ModalScreen[dict[str, str] | None]):
         fields = list(self.query(Field))
         number = fields.index(event.field)
         if number + 1 < len(fields):
-            fields[number + 1].focus_input()
+            fields[number + 1].input.focus()
         else:
             self.action_take()
 

@@ -26,7 +26,7 @@ def all_settled(fields: Iterable[Field]) -> bool:
     """
     wrong = [field for field in fields if not field.settle()]
     if wrong:
-        wrong[0].focus_input()
+        wrong[0].input.focus()
     return not wrong
 
 
@@ -120,10 +120,6 @@ class Field(Horizontal):
             self.input.value = text
         self._tell(Reading(text))
 
-    def focus_input(self) -> None:
-        """Type here."""
-        self.input.focus()
-
     def tell(self, note: str) -> None:
         """Show another note, as long as nothing is wrong."""
         self._note = note
@@ -196,13 +192,7 @@ class Cycle(Widget, can_focus=True):
     class Turned(Message):
         """Another word is chosen."""
 
-        cycle: Cycle
         word: str
-
-        @property
-        def control(self) -> Cycle:
-            """Return which of several it was."""
-            return self.cycle
 
     def __init__(
         self,
@@ -230,7 +220,7 @@ class Cycle(Widget, can_focus=True):
         """Go to the next word."""
         here = self.words.index(self.word) if self.word in self.words else 0
         self.show(self.words[(here + by) % len(self.words)])
-        self.post_message(self.Turned(self, self.word))
+        self.post_message(self.Turned(self.word))
 
     def on_click(self) -> None:
         """The mouse goes on, too."""

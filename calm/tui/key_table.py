@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Awaitable, Callable, Iterable
 from dataclasses import dataclass
-from typing import Literal, cast, get_args
+from functools import partial
 
-from textual.binding import Binding
+from rich.console import Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+from textual.binding import Binding, BindingType
+from textual.command import CommandList, CommandPalette, DiscoveryHit, Hit, Hits, Provider
+from textual.containers import ScrollableContainer
+from textual.keys import key_to_character
+from textual.screen import Screen
+from textual.widgets import Input, TextArea
 
-Place = Literal[
-    "anywhere", "line", "verdict", "catalogue", "cell", "water", "grid", "choice", "given", "text",
-    "area", "form", "sheet", "question", "help",
-]  # fmt: skip
-"""Where the keys of an action work: what has the focus, or the screen it is on."""
+from calm.tui.theme import LOOKS
 
 
 @dataclass(frozen=True)
@@ -21,7 +25,7 @@ class Action:
 
     Attributes
     ----------
-    place : where its keys work
+    place : where its keys work: what has the focus, or the screen it is on
     name : of the method, without ``action_``, with its arguments
     keys : as textual writes them, separated by commas; the first is the one that is shown
     title : two or three words, for the palette and the line of keys
@@ -30,7 +34,7 @@ class Action:
     palette : whether the command palette offers it, where it is of the line or works anywhere
     """
 
-    place: Place
+    place: str
     name: str
     keys: str
     title: str
@@ -40,7 +44,7 @@ class Action:
 
 
 _TABLE = """
-[line]
+[line] The line
 edit | enter,f2 | edit | 1 | Edit the value under the cursor in place; on the component, choose
   another one.
 add(1) | a,insert | add | 0 | Add a piece below, from the catalogue.
@@ -90,28 +94,7 @@ move_to_end(1) | end | bottom | - | To the bottom.
 move_column(-1) | left | left | - | To the column on the left.
 move_column(1) | right | right | - | To the one on the right.
 back | escape | back | - | Back to the line of the verdict that led here.
-[verdict]
-move(-1) | up | up |  | To the line above that leads to a row.
-move(1) | down | down |  | To the one below.
-go | enter | its row | 0 | To the row it is about; Esc leads back.
-leave | escape | line | 1 | To the line.
-[cell]
-done | enter | done | 0 | Accept the value.
-done('edit next') | tab | next | 1 | Accept it and edit the next value.
-done('up') | up | take, up |  | Accept it and go up.
-done('down') | down | take, down |  | Accept it and go down.
-right | right | take, right |  | At the end of the text: accept it and go to the right.
-abandon | escape | leave it | 2 | Leave the value as it was.
-[catalogue]
-choose(-1) | up | up |  | To the one above.
-choose(1) | down | down |  | To the one below.
-choose(-10) | pageup | page up |  | Ten up.
-choose(10) | pagedown | page down |  | Ten down.
-sort | f4 | sort | 1 | Sort by net force, loads, depth rating, drag or mass.
-mark | f3 | favourite | 2 | Make it a favourite, or not; favourites come first, in every file.
-take | enter | insert | 0 | Put it into the line.
-close | escape | close | 3 | Back to the line.
-[anywhere]
+[anywhere] Anywhere on the first screen
 undo | u | undo | 3 | Undo the last change, as often as there is one.
 suspend | ctrl+z | suspend |  | Suspend to the shell, `fg` returns; while a value is edited, and
   in a browser: undo.
@@ -154,7 +137,28 @@ app.help | question_mark,f1 | help | 2 | All keys.
 app.command_palette | ctrl+p,colon | commands | - | Find any of these by its name.
 app.repaint | ctrl+l | repaint |  | Redraw the whole screen.
 app.quit | q,ctrl+q | quit | 11 | Leave; unsaved work is asked about.
-[water]
+[verdict] The verdict, line by line
+move(-1) | up | up |  | To the line above that leads to a row.
+move(1) | down | down |  | To the one below.
+go | enter | its row | 0 | To the row it is about; Esc leads back.
+leave | escape | line | 1 | To the line.
+[cell] While a value is edited in place
+done | enter | done | 0 | Accept the value.
+done('edit next') | tab | next | 1 | Accept it and edit the next value.
+done('up') | up | take, up |  | Accept it and go up.
+done('down') | down | take, down |  | Accept it and go down.
+right | right | take, right |  | At the end of the text: accept it and go to the right.
+abandon | escape | leave it | 2 | Leave the value as it was.
+[catalogue] The catalogue
+choose(-1) | up | up |  | To the one above.
+choose(1) | down | down |  | To the one below.
+choose(-10) | pageup | page up |  | Ten up.
+choose(10) | pagedown | page down |  | Ten down.
+sort | f4 | sort | 1 | Sort by net force, loads, depth rating, drag or mass.
+mark | f3 | favourite | 2 | Make it a favourite, or not; favourites come first, in every file.
+take | enter | insert | 0 | Put it into the line.
+close | escape | close | 3 | Back to the line.
+[water] The water
 next_environment | f5 | environment | 3 | The next environment.
 new_environment | f6,ctrl+n | new environment | 4 | Add a named one.
 drop_environment | f7 | drop it |  | Remove the named environment.
@@ -167,7 +171,7 @@ redo | ctrl+y | redo |  | Do it again.
 app.save | ctrl+s | save |  | Save the file.
 app.help | f1 | help | 5 | All keys.
 back | escape | back | 0 | Back to the line.
-[grid]
+[grid] A table of the water
 move_row(-1) | up | up |  | To the row above; from the first one to what is before.
 move_row(1) | down | down |  | To the row below; from the last one on to what follows.
 move_cell(1) | tab | next cell |  | To the next value of the table.
@@ -178,60 +182,62 @@ edit | enter,f2 | edit | 0 | Edit the number; typing begins at once.
 add_row(1) | a,insert | add row | 1 | Add a row below.
 add_row(0) | A | add above |  | Add a row above.
 drop_row | delete,backspace | delete row | 2 | Delete the row.
-[text]
+[choice] One of some words between arrows
+turn(-1) | left | last |  | The word before.
+turn(1) | right,space | next |  | The next word.
+app.focus_next | enter | go on |  | To what is below.
+[given] The form in which density or current is given
+take | enter | take it |  | Choose the form shown, and go on.
+[text] The file as text
 app.save | ctrl+s | save | 1 | Save the file as it stands.
 find | ctrl+f | find | 4 | Find words in the text.
 find_next | f3,ctrl+g | find next | 5 | To where they are next.
 next_problem | f8 | next mistake | 2 | To the next mistake.
 back | escape | to the line | 0 | To the line, once the text can be read.
 app.help | f1 | help | 3 | All keys.
-[area]
+[area] While the text is typed
 end(-1) | ctrl+home | top |  | To the beginning of the text.
 end(1) | ctrl+end | bottom |  | To the end of the text.
 indent | tab | indent |  | Blanks to the next even column.
-[form]
+[form] A component of your own
 accept | ctrl+s | keep it | 0 | Write the component into the file.
 cancel | escape | leave | 1 | Leave without it.
 app.help | f1 | help | 2 | All keys.
 app.focus_next | down | next |  | To the next figure.
 app.focus_previous | up | last |  | To the one before.
-[choice]
-turn(-1) | left | last |  | The word before.
-turn(1) | right,space | next |  | The next word.
-app.focus_next | enter | go on |  | To what is below.
-[given]
-take | enter | take it |  | Choose the form shown, and go on.
-[sheet]
+[sheet] Some values asked for together
 take | ctrl+s | done |  | Accept all values.
 leave | escape | leave |  | Leave everything as it was.
 app.focus_next | down | next |  | To the next value.
 app.focus_previous | up | last |  | To the one before.
-[question]
+[question] A question, answered by the letter in front of each answer
 leave | escape | go back |  | Go back, where possible.
-[help]
+[help] This help
 dismiss | escape,q,enter,question_mark,f1 | close |  | Close it.
 """
-"""Below its place each action: name | keys | title | rank of its hint | meaning, which may go on in
-lines that begin with a blank. A ``-`` in place of the rank keeps it out of the palette."""
+"""Below its place, with the heading that this has in the help, each action: name | keys | title |
+rank of its hint | meaning, which may go on in lines that begin with a blank. A ``-`` in place of
+the rank keeps it out of the palette."""
 
 
-def _read(table: str) -> Iterator[Action]:
-    """The actions of a table in the order in which it has them."""
-    place = ""
-    for row in table.strip().replace("\n  ", " ").splitlines():
-        if row.startswith("["):
-            place = row.strip("[]")
-            assert place in get_args(Place), place
-            continue
-        name, keys, title, rank, meaning = row.split(" | ")
-        hint = int(rank) if rank.isdecimal() else None
-        yield Action(cast("Place", place), name, keys, title, meaning, hint, rank != "-")
+def _action(place: str, row: str) -> Action:
+    name, keys, title, rank, meaning = row.split(" | ")
+    hint = int(rank) if rank.isdecimal() else None
+    return Action(place, name, keys, title, meaning, hint, palette=rank != "-")
 
 
-ACTIONS: tuple[Action, ...] = (*_read(_TABLE),)
+PLACES: dict[str, str] = {}
+"""The headings of the help by their places, in its order."""
+ACTIONS: dict[str, list[Action]] = {}
+"""The actions of each place, in order."""
+
+for _section in _TABLE.strip("\n[").replace("\n  ", " ").split("\n["):
+    _head, *_rows = _section.splitlines()
+    _place, PLACES[_place] = _head.split("] ")
+    ACTIONS[_place] = [_action(_place, _row) for _row in _rows]
 
 
-_SIGNS = {
+_KEYS = {
     "up": "↑",
     "down": "↓",
     "left": "←",
@@ -246,18 +252,7 @@ _SIGNS = {
     "end": "End",
     "pageup": "PgUp",
     "pagedown": "PgDn",
-    "question_mark": "?",
     "slash": "/",
-    "plus": "+",
-    "minus": "-",
-    "equals_sign": "=",
-    "asterisk": "*",
-    "colon": ":",
-    "greater_than_sign": ">",
-    "less_than_sign": "<",
-    "left_square_bracket": "[",
-    "right_square_bracket": "]",
-    "number_sign": "#",
 }
 
 
@@ -267,7 +262,8 @@ def shown_key(key: str) -> str:
     if len(last) == 1:
         last = last.upper() if held else last
     else:
-        last = _SIGNS.get(last, last.capitalize())
+        sign = _KEYS.get(last) or key_to_character(last) or ""
+        last = sign if sign and sign.isprintable() else last.capitalize()
     return "+".join([*(part.capitalize() for part in held), last])
 
 
@@ -276,32 +272,95 @@ def shown_keys(keys: str) -> str:
     return "  ".join(map(shown_key, keys.split(",")))
 
 
-def actions_in(place: Place) -> Iterator[Action]:
-    """The actions of one place, in order."""
-    return (action for action in ACTIONS if action.place == place)
+def bindings(place: str) -> list[Binding]:
+    """The keys of a place for the widget or screen that has the methods."""
+    return [Binding(each.keys, each.name, each.title, show=False) for each in ACTIONS[place]]
 
 
-def bindings(place: Place, target: str = "") -> list[Binding]:
-    """The keys of a place for a widget or screen.
-
-    Parameters
-    ----------
-    target : the textual namespace that has the methods, such as ``screen.``; empty for its own
-    """
-    return [
-        Binding(
-            action.keys,
-            action.name if action.name.startswith("app.") else target + action.name,
-            action.title,
-            show=False,
-        )
-        for action in actions_in(place)
-    ]
-
-
-def hints(place: Place) -> list[Action]:
+def hints(place: str) -> list[Action]:
     """The actions shown while a place has the focus, the most used first."""
-    own = [action for action in actions_in(place) if action.hint is not None]
-    if place == "line":
-        own += [action for action in actions_in("anywhere") if action.hint is not None]
+    places = ("line", "anywhere") if place == "line" else (place,)
+    own = [each for where in places for each in ACTIONS[where] if each.hint is not None]
     return sorted(own, key=lambda action: action.hint or 0)
+
+
+_SIGNS = "Signs: " + ", ".join(f"{look.sign} {look.word}" for look in LOOKS.values())
+_GROUND = (
+    "Every change is solved and judged at once; until then the figures of the line before are "
+    "dimmed. A number without a unit takes the unit shown. With the mouse: press a cell to go "
+    "there, press it again to edit."
+)
+_OF_TEXTUAL: dict[str, Iterable[BindingType]] = {
+    "On every screen, with Ctrl+P and Ctrl+Q": Screen.BINDINGS,
+    "While a value is typed": Input.BINDINGS,
+    "While the text is typed, as well": TextArea.BINDINGS,
+    "Pictures, verdict and whatever is longer than the screen": ScrollableContainer.BINDINGS,
+}
+"""Keys that CALM leaves to the widgets it is made of; their meanings come from them."""
+
+
+def all_keys() -> RenderableType:
+    """Every key, by where it works."""
+    parts: list[RenderableType] = [Text("Keys", style="bold"), Text(_GROUND), Text(_SIGNS)]
+    for place, title in PLACES.items():
+        rows = [(action.keys, action.meaning) for action in ACTIONS[place]]
+        parts += _listed(title, rows)
+    for title, inherited in _OF_TEXTUAL.items():
+        bound = [each for each in inherited if isinstance(each, Binding)]
+        told = [(each.key, f"{each.description.capitalize()}.") for each in bound]
+        parts += _listed(title, told)
+    return Group(*parts)
+
+
+def _listed(title: str, rows: Iterable[tuple[str, str]]) -> list[RenderableType]:
+    table = Table.grid(padding=(0, 2, 0, 0))
+    table.add_column(width=20, overflow="fold")
+    table.add_column(overflow="fold")
+    for keys, meaning in rows:
+        table.add_row(Text(shown_keys(keys), style="bold"), Text(meaning))
+    return [Text(f"\n{title}", style="bold underline"), table]
+
+
+class Commands(CommandPalette):
+    """The palette of textual, in terminals of any height."""
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """A list without a line on the screen has no pages."""
+        is_page = action == "command_list" and str(parameters[0]).startswith("page")
+        return not is_page or self.query_one(CommandList).size.height > 0
+
+
+class Actions(Provider):
+    """The actions of the first screen."""
+
+    @property
+    def _offered(self) -> list[Action]:
+        from calm.tui.line.builder import BuilderScreen
+
+        if not isinstance(self.screen, BuilderScreen):
+            return []
+        return [each for each in (*ACTIONS["line"], *ACTIONS["anywhere"]) if each.palette]
+
+    async def discover(self) -> Hits:
+        """All of them, before a word is typed."""
+        for action in self._offered:
+            yield DiscoveryHit(_shown(action), self._run(action), help=action.meaning)
+
+    async def search(self, query: str) -> Hits:
+        """Return those whose name or meaning is like the words."""
+        matcher = self.matcher(query)
+        for action in self._offered:
+            score = max(matcher.match(action.title), 0.8 * matcher.match(action.meaning))
+            if score > 0:
+                title = matcher.highlight(_shown(action))
+                yield Hit(score, title, self._run(action), help=action.meaning)
+
+    def _run(self, action: Action) -> Callable[[], Awaitable[bool]]:
+        from calm.tui.line.line_pane import LinePane
+
+        owner = self.screen.query_one(LinePane) if action.place == "line" else self.screen
+        return partial(self.app.run_action, action.name, owner)
+
+
+def _shown(action: Action) -> str:
+    return f"{action.title}  ({shown_key(action.keys.split(',')[0])})"

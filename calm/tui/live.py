@@ -7,7 +7,6 @@ takes longer.
 from __future__ import annotations
 
 import os
-import time
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -27,7 +26,7 @@ from calm.errors import InputError, NoEquilibrium, Problem, internal_failure
 from calm.files import MooringFile, Piece, Place, read_mooring
 from calm.files.editing import Draft, LineItem
 from calm.files.mooring_file import STAND_IN
-from calm.files.yaml_document import Document, compose
+from calm.files.yaml_document import compose
 from calm.quantities import show_in
 
 UNNAMED = "unnamed.yaml"
@@ -49,7 +48,6 @@ class View:
     failure : why it could not
     findings : of the design check; none for a tow
     tighter : of each rule what another situation leaves less margin in, without being graver
-    seconds : that it took
     environments : the names of those that the file gives besides its own
     rows : down the file, clamps below their piece
     complete : whether the findings are all that `calm check` has, see `judge_fully`; a tow's, which
@@ -69,7 +67,6 @@ class View:
     failure: NoEquilibrium | None = None
     findings: tuple[Finding, ...] = ()
     tighter: tuple[Finding, ...] = ()
-    seconds: float = 0.0
     environments: tuple[str, ...] = ()
     rows: tuple[FoundRow, ...] = ()
     complete: bool = False
@@ -119,16 +116,14 @@ def judge(
     View : with the figures of `calm run` and the findings as given of `calm check`. Nothing that a
         person can write raises.
     """
-    started = time.perf_counter()
     memory = Memory() if keep is None else keep.memory
     view = View(text, _placed(path), environment, memory=memory)
     try:
-        view = _judged(view, catalogs)
+        return _judged(view, catalogs)
     except Exception as error:
         if os.environ.get("CALM_DEBUG") == "1":
             raise
-        view = replace(view, failure=internal_failure(error))
-    return replace(view, seconds=time.perf_counter() - started)
+        return replace(view, failure=internal_failure(error))
 
 
 def _placed(path: str | Path | None) -> Path:
@@ -144,7 +139,6 @@ def judge_fully(view: View, catalogs: Sequence[str | Path] = ()) -> View:
     """
     if view.complete or not view.anchored or not isinstance(view.result, Result | NetResult):
         return view
-    started = time.perf_counter()
     file = view.result.file
     moorings, problems = _in_all_environments(view, view.result.mooring, catalogs)
     assessment = check(*moorings)
@@ -152,8 +146,7 @@ def judge_fully(view: View, catalogs: Sequence[str | Path] = ()) -> View:
     rows = tuple(rows_of(file, view.result, (*findings, *tighter)))
     return replace(
         view, findings=findings, tighter=tighter, rows=rows, stands=assessment.stands,
-        elsewhere=tuple(problems), seconds=view.seconds + time.perf_counter() - started,
-        complete=True,
+        elsewhere=tuple(problems), complete=True,
     )  # fmt: skip
 
 
@@ -189,7 +182,8 @@ def _judged(view: View, catalogs: Sequence[str | Path]) -> View:
         document = compose(str(view.path), view.text)
     except InputError as error:
         return _wrong(view, error.problems)
-    view = replace(view, environments=_variants(document))
+    named = document.data.get("environments")
+    view = replace(view, environments=tuple(named) if isinstance(named, dict) else ())
     try:
         file = read_mooring(
             view.path, environment=view.environment, catalogs=catalogs, text=view.text,
@@ -224,25 +218,16 @@ def _solved(view: View, file: MooringFile) -> View:
         result, failure = line.solve(), None
     except NoEquilibrium as error:
         result, failure = None, error
-    findings = () if isinstance(result, TowResult) else tuple(_found(view, file, result, failure))
+    findings: list[Finding] = []
+    if not isinstance(result, TowResult) and file.tow is None:  # no rule is of a tow
+        for each in (None,) if result is None else legs_of(result):
+            situation = Situation(AS_GIVEN, each, failure)
+            findings += findings_of(situation, file.name, file.environment.name or OWN)
     rows = tuple(rows_of(file, result, findings))
     return replace(
-        view, result=result, failure=failure, findings=findings, rows=rows,
+        view, result=result, failure=failure, findings=tuple(findings), rows=rows,
         complete=isinstance(result, TowResult),
     )  # fmt: skip
-
-
-def _found(
-    view: View,
-    file: MooringFile,
-    result: Result | NetResult | None,
-    failure: NoEquilibrium | None,
-) -> Iterator[Finding]:
-    """Return what the rules of a standing line find; none of them is of a tow."""
-    if file.tow is None:
-        here = file.environment.name or OWN
-        for each in (None,) if result is None else legs_of(result):
-            yield from findings_of(Situation(AS_GIVEN, each, failure), file.name, here)
 
 
 def _wrong(view: View, problems: Sequence[Problem]) -> View:
@@ -252,15 +237,9 @@ def _wrong(view: View, problems: Sequence[Problem]) -> View:
     return replace(view, problems=wrong, missing=tuple(lacking))
 
 
-def _variants(document: Document) -> tuple[str, ...]:
-    named = document.data.get("environments")
-    return tuple(named) if isinstance(named, dict) else ()
-
-
 _Figures = tuple[float | None, float | None, float | None, float | None]
 _Said = tuple[float | None, State | None, bool]
 _NOTHING: _Said = (None, None, False)
-_GRAVITY = {state: state.severity for state in State}
 _STRENGTH = frozenset({strength.name})
 _LACKING = (State.UNKNOWN, State.ACCEPTED)
 """What is not known stays so where somebody has accepted it."""
@@ -329,7 +308,7 @@ def _said(findings: Iterable[Finding]) -> dict[Place, _Said]:
 def _of_one(own: list[Finding]) -> _Said:
     return (
         min((each.share for each in own if each.share is not None), default=None),
-        max((each.state for each in own), key=_GRAVITY.__getitem__),
+        max((each.state for each in own), key=lambda state: state.severity),
         any(
             each.rule in _STRENGTH and each.state in _LACKING and each.share is None for each in own
         ),

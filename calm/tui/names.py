@@ -5,6 +5,7 @@ from __future__ import annotations
 import os.path
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from itertools import chain
 from typing import Any
 
 from calm.errors import CalmError
@@ -92,7 +93,7 @@ def followed(before: Draft, after: Draft, moved: Mapping[Place, Place]) -> tuple
         for label, now in zip(labels, new.get(moved.get(place, place), ()), strict=False)
         if place in moved
     }
-    known, all_now = _flat(old), _flat(new)
+    known, all_now = ([*chain.from_iterable(each.values())] for each in (old, new))
     told = []
     for each in names:
         meant = set(matching(each.text, known))
@@ -137,10 +138,6 @@ def widened(draft: Draft, named: Iterable[Named]) -> Draft:
         if each.location[0] == "checks" and not each.text.endswith("*"):
             draft = draft.put_at(each.location, f"{each.text} *")
     return draft
-
-
-def _flat(labels: Mapping[Place, Iterable[str]]) -> list[str]:
-    return [label for found in labels.values() for label in found]
 
 
 class Standing:

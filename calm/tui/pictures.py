@@ -119,7 +119,7 @@ class Picture(DrawnRows, can_focus=True):
             return _words(self._view, size)
         from calm.drawing.line_picture import lines_of
         from calm.drawing.schematic.in_terminal import schematic_text
-        from calm.drawing.sketch import plan, tension
+        from calm.drawing.sketch.views import plan, tension
 
         if self.tab == "plan":
             return plan(result, *size, self._beside)
@@ -136,7 +136,7 @@ class Picture(DrawnRows, can_focus=True):
 
     def _elevation(self, result: AnyResult, size: Size) -> list[Text]:
         from calm.drawing.line_picture import water_of
-        from calm.drawing.sketch import current_profile, elevation
+        from calm.drawing.sketch.views import current_profile, elevation
 
         if size.width < _LEAST_BESIDE or result.file.environment.depth is None:
             return elevation(result, *size, self._beside)
@@ -266,7 +266,7 @@ class ProfilePicture(DrawnRows, can_focus=False):
         if width < _LEAST[0] or height < _LEAST[1] or self._view is None or self._view.file is None:
             return []
         from calm.assemble import assemble_water
-        from calm.drawing.sketch import current_profile
+        from calm.drawing.sketch.views import current_profile
 
         if self._view.file.environment.depth is None:
             return [Text("No depth is given: the water is deep.", style="dim")]

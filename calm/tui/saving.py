@@ -19,9 +19,9 @@ from calm.files.editing import KeptWork, state_folder
 from calm.files.editing.working_file import Keeper
 from calm.tui.checking import Reading
 from calm.tui.dialogs import Answer, Asked, InputSheet, Question, Then, ask, choose
-from calm.tui.messages import Workspace, place_of
 from calm.tui.screen import DraftScreen
 from calm.tui.session import Session
+from calm.tui.workspace import Workspace, place_of
 
 if TYPE_CHECKING:
     from calm.tui.app import BuildApp
@@ -33,13 +33,7 @@ _READ_AGAIN = "Read again: another program has changed it"
 
 
 class Saving:
-    """Writes the file of a workspace, asks where something stands against it, and watches the disk.
-
-    Parameters
-    ----------
-    app : whose screens show the file
-    workspace : the file
-    """
+    """Writes the file of a workspace, asks where something stands against it, watches the disk."""
 
     def __init__(self, app: BuildApp, workspace: Workspace) -> None:
         self._app, self._workspace, self._session = app, workspace, workspace.session

@@ -14,7 +14,7 @@ from textual.widget import Widget
 from textual.widgets import Static
 
 from calm.tui.key_table import Action, shown_key
-from calm.tui.messages import Workspace
+from calm.tui.workspace import Workspace
 
 
 class DraftScreen(Screen[None]):

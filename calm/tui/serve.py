@@ -199,8 +199,6 @@ def serve(
     try:
         Browser(words, port, tell, hosts=hosts, idle=idle).serve()
     except OSError as error:
-        raise UsageError(f"port {port} cannot be used ({_reason(error)}); try --port") from None
-
-
-def _reason(error: Any) -> str:
-    return str(error.strerror or error)
+        raise UsageError(
+            f"port {port} cannot be used ({error.strerror or error}); try --port"
+        ) from None

@@ -23,9 +23,9 @@ from textual.strip import Strip
 
 from calm.tui.cell_editor import CellEditor
 from calm.tui.checking import Check, Reading
-from calm.tui.messages import Told
 from calm.tui.scrolled import Scrolled
 from calm.tui.theme import ELLIPSIS
+from calm.tui.workspace import Told
 
 
 @dataclass(frozen=True)

@@ -17,8 +17,8 @@ from calm.errors import Problem
 from calm.files.editing.changes import retyped
 from calm.tui.dialogs import Asked, InputSheet, ask
 from calm.tui.key_table import bindings, hints
-from calm.tui.messages import Workspace, is_elsewhere, mistakes, said
 from calm.tui.screen import DraftScreen, KeyBar
+from calm.tui.workspace import Workspace, is_elsewhere, mistakes, said
 
 _INDENT = 2
 _LINE_BREAK = re.compile(r"\r\n?|\n")

@@ -76,11 +76,6 @@ PICTURE_LIGHT = _palette(
 """What the eight colours of the pictures and of the verdict are in these themes."""
 
 
-def themes() -> tuple[Theme, ...]:
-    """Return those of the application."""
-    return DARK, LIGHT
-
-
 def choose_theme(environ: Mapping[str, str]) -> str:
     """The name of the theme for a terminal.
 
@@ -121,15 +116,16 @@ class Legible(LineFilter):
     def apply(self, segments: list[Segment], background: Color) -> list[Segment]:
         """Return the same in colours that can be read."""
         ground = background.rich_color
+
+        def style(given: Style) -> Style:
+            return _of_sixteen(given, self._dark) if self._sixteen else _apart(given, ground)
+
         return [
             each
             if each.style is None or each.text.isspace()
-            else Segment(each.text, self._style(each.style, ground), each.control)
+            else Segment(each.text, style(each.style), each.control)
             for each in segments
         ]
-
-    def _style(self, style: Style, ground: Ink) -> Style:
-        return _of_sixteen(style, self._dark) if self._sixteen else _apart(style, ground)
 
 
 @lru_cache(4)

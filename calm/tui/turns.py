@@ -24,18 +24,16 @@ _MOST = 50
 
 
 class InTurn(App[int]):
-    """An application that handles keys, pastes and the mouse one after the other."""
+    """An application that handles keys, pastes and the mouse one after the other.
+
+    `has_keys_waiting` tells whether one is not handled yet.
+    """
 
     def __init__(self, *arguments: Any, **options: Any) -> None:
         super().__init__(*arguments, **options)
         self._waiting: deque[events.Event] = deque()
-        self._is_pressed = False
+        self.has_keys_waiting = False
         self._rounds = 0
-
-    @property
-    def has_keys_waiting(self) -> bool:
-        """Return whether a key is not handled yet."""
-        return self._is_pressed
 
     async def on_event(self, event: events.Event) -> None:
         """Let what a person does wait for what was done before."""
@@ -43,13 +41,13 @@ class InTurn(App[int]):
             await super().on_event(event)
             return
         self._waiting.append(event)
-        if not self._is_pressed:
+        if not self.has_keys_waiting:
             await self._press()
 
     async def _press(self) -> None:
         """Do what has waited longest."""
-        self._is_pressed = bool(self._waiting)
-        if self._is_pressed:
+        self.has_keys_waiting = bool(self._waiting)
+        if self.has_keys_waiting:
             before = self._listeners()
             await super().on_event(self._waiting.popleft())
             self._rounds = 0
@@ -80,7 +78,7 @@ class InTurn(App[int]):
         elif self._waiting:
             self.call_after_refresh(self._press)
         else:
-            self._is_pressed = False
+            self.has_keys_waiting = False
 
 
 def _is_done_by_a_person(event: events.Event) -> bool:

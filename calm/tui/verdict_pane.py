@@ -145,15 +145,11 @@ def _parts(view: View | None, note: str) -> Iterator[tuple[Saying, RenderableTyp
         table = Table.grid(padding=(0, 1, 0, 0), expand=True)
         table.add_column(width=1)
         table.add_column(overflow="fold", ratio=1)
-        table.add_row(_sign(saying), _text(saying))
+        style = "" if saying.pending or not saying.state else LOOKS[saying.state].style
+        table.add_row(Text(saying.sign, style), _text(saying))
         yield saying, table
     if note:
         yield Saying(note), Text(note, style="dim italic")
-
-
-def _sign(saying: Saying) -> Text:
-    plain = saying.state is None or saying.pending
-    return Text(saying.sign, style="" if plain or not saying.state else LOOKS[saying.state].style)
 
 
 def _text(saying: Saying) -> Text:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 from calm.checks.finding import AS_GIVEN, OWN, Finding, Rule, State
 from calm.quantities import QUANTITIES
-from calm.tui.messages import mistakes, place_of
 from calm.tui.theme import ELLIPSIS, LOOKS, worst
+from calm.tui.workspace import mistakes, place_of
 
 if TYPE_CHECKING:
     from calm.case import Result, TowResult

@@ -104,11 +104,9 @@ def _towed() -> Wake:
     return towed(line_of(cable, body), deep_water(), 1.0)
 
 
-def _figures(
-    place: float, angle: float, tension: float, length: float | None = None
-) -> dict[str, CaseColumn[ChartSolution]]:
+def _figures(place: float, angle: float, tension: float) -> dict[str, CaseColumn[ChartSolution]]:
     return {
-        "L": CaseColumn("length L", "m", length or place, lambda cable: cable.length),
+        "L": CaseColumn("length L", "m", place, lambda cable: cable.length),
         "D": CaseColumn("distance D", "m", place, lambda cable: cable.distance),
         "H": CaseColumn("depth H", "m", place, lambda cable: cable.height),
         "phi_a": CaseColumn("angle φ_A", "°", angle, lambda cable: degrees(cable.phi_a)),

@@ -17,7 +17,6 @@ from calm.physics.reynolds import (
     finite_length_factor_above,
     sphere_coefficient,
 )
-from calm.physics.seawater import dynamic_viscosity
 from calm.physics.strumming import blevins, skop_griffin, vandiver
 from calm.verification.published_case import PRINTED, Case, Kind, Source
 
@@ -233,11 +232,6 @@ _METER_DRAG = (1.03, 2.45, 4.98, 10.56, 20.60)
 """Drag of an Aanderaa RCM4 or RCM5 [kgf] at those speeds [m/s], the maker's figures."""
 
 
-def _viscosity_at(temperature: float, salinity: float) -> float:
-    """[mPa s]"""
-    return 1e3 * float(dynamic_viscosity(temperature, salinity))
-
-
 CALM_PAPER = Source(
     "The paper of the original CALM",
     """The original CALM's paper prints a table of dynamic viscosities (mPl, which is mPa s) and the
@@ -249,7 +243,7 @@ a plate of that instrument's size bears out, so that K is 26.4 N/(m/s)².""",
             Case(f"viscosity, {temperature} °C, {salinity} g/kg", printed, "mPa s",
                  0.015 * printed,
                  "1.5 %, the accuracy of Sharqawy's formula; the table is from other measurements.",
-                 partial(_viscosity_at, temperature, salinity), Kind.PUBLISHED)
+                 partial(_viscosity, temperature, salinity), Kind.PUBLISHED)
             for salinity, row in _PAPER_VISCOSITY
             for temperature, printed in zip(_TEMPERATURES, row, strict=True)
         ),

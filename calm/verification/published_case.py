@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cache
-from math import atan2, cos, degrees, hypot, inf, nan, pi, radians, sin
+from math import atan2, degrees, hypot, inf, nan, pi, radians
 from typing import Generic, TypeVar
 
 import numpy as np
@@ -274,41 +274,25 @@ def line_of(*pieces: LinePiece, anchor_height: float = 0.0) -> Line:
     )
 
 
-def stream(
-    depth: float, speed: float, density: float = REFERENCE_DENSITY, toward: float = 0.0
+def profile(
+    depth: float, rows: Sequence[tuple[float, float]], density: float = REFERENCE_DENSITY
 ) -> Water:
-    """Water with the same current everywhere, towards an angle counted from east [rad].
-
-    Parameters
-    ----------
-    depth : of the water [m]
-    speed : of the current [m/s]
-    density : of the water [kg/m³]
-    toward : angle of the current from east [rad]
-    """
-    u, v = speed * cos(toward), speed * sin(toward)
-    return Water(
-        depth=depth, level=np.array([0.0]), u=np.array([u]), v=np.array([v]), w=np.array([0.0]),
-        density=np.array([density]), gravity=GRAVITY,
-    )  # fmt: skip
-
-
-def profile(depth: float, rows: Sequence[tuple[float, float]]) -> Water:
-    """Water with an eastward current: rows of (depth [m], speed [m/s])."""
+    """Water of a depth [m] and density [kg/m³] with an eastward current: rows of depth, speed."""
     level, u = np.array(rows).T
     still = np.zeros_like(u)
     return Water(
-        depth=depth, level=level, u=u, v=still, w=still, density=still + REFERENCE_DENSITY,
-        gravity=GRAVITY,
-    )  # fmt: skip
+        depth=depth, level=level, u=u, v=still, w=still, density=still + density, gravity=GRAVITY
+    )
+
+
+def stream(depth: float, speed: float, density: float = REFERENCE_DENSITY) -> Water:
+    """Water with the same eastward current [m/s] everywhere."""
+    return profile(depth, [(0.0, speed)], density)
 
 
 def deep_water(density: float = REFERENCE_DENSITY) -> Water:
     """Still water without a seabed, for tows: the ship makes the current."""
-    zero = np.zeros(1)
-    return Water(
-        depth=inf, level=zero, u=zero, v=zero, w=zero, density=zero + density, gravity=GRAVITY
-    )
+    return stream(inf, 0.0, density)
 
 
 FINE = Settings(radians(0.1), tolerance=1e-9)

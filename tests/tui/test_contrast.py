@@ -6,7 +6,8 @@ from rich.color_triplet import ColorTriplet
 
 from calm.files.editing import Draft
 from calm.shipped import shipped_folder
-from calm.tui.theme import contrast, themes
+from calm.tui import theme
+from calm.tui.theme import contrast
 
 LEAST = 4.5
 """Of text, by WCAG 2.2, success criterion 1.4.3."""
@@ -83,7 +84,7 @@ def doubtful(folder):
     return path
 
 
-DARK, LIGHT = (each.name for each in themes())
+DARK, LIGHT = theme.DARK.name, theme.LIGHT.name
 OTHERS = (DARK, "dracula", "solarized-light")
 
 

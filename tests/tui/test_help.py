@@ -7,14 +7,13 @@ from calm.tui.catalogue.component_screen import ComponentScreen
 from calm.tui.cell_editor import CellEditor
 from calm.tui.dialogs import InputSheet, LongText, Question
 from calm.tui.field import Cycle
-from calm.tui.help_screen import PLACES
-from calm.tui.key_table import actions_in, shown_key, shown_keys
+from calm.tui.key_table import ACTIONS, PLACES, shown_key, shown_keys
 from calm.tui.line.builder import BuilderScreen
 from calm.tui.line.line_pane import LinePane
 from calm.tui.text_screen import TextScreen, YamlArea
 from calm.tui.verdict_pane import VerdictPane
 from calm.tui.water.form import FormChoice
-from calm.tui.water.grid_cells import GridCells
+from calm.tui.water.grid import GridCells
 from calm.tui.water.water_screen import WaterScreen
 
 OWNERS = {
@@ -39,7 +38,7 @@ OWNERS = {
 @pytest.mark.parametrize("place", PLACES)
 def test_every_action_is_there_and_no_key_has_two(place):
     taken = {}
-    for action in actions_in(place):
+    for action in ACTIONS[place]:
         name = action.name.partition("(")[0]
         if not name.startswith("app."):
             assert hasattr(OWNERS[place], f"action_{name}"), name
@@ -49,8 +48,8 @@ def test_every_action_is_there_and_no_key_has_two(place):
 
 
 def test_the_keys_of_the_line_and_of_its_screen_are_apart():
-    line = {key for action in actions_in("line") for key in action.keys.split(",")}
-    screen = {key for action in actions_in("anywhere") for key in action.keys.split(",")}
+    line = {key for action in ACTIONS["line"] for key in action.keys.split(",")}
+    screen = {key for action in ACTIONS["anywhere"] for key in action.keys.split(",")}
     assert not line & screen
 
 
@@ -95,7 +94,7 @@ def test_the_help_has_every_key_with_its_meaning(drive, small):
     async def story(driver):
         told = await help_of(driver)
         for place, heading in PLACES.items():
-            for action in actions_in(place):
+            for action in ACTIONS[place]:
                 first = shown_keys(action.keys)[:16].rstrip()
                 begin = action.meaning[:30].rstrip()
                 assert any(

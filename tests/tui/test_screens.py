@@ -216,7 +216,7 @@ def test_every_screen_at_every_size(drive, small, size):
 def test_a_component_of_ones_own(drive, small):
     async def fill(driver, key, text):
         field = next(f for f in driver.app.screen.query(Field) if f.key == key)
-        field.focus_input()
+        field.input.focus()
         await driver.pilot.pause()
         await driver.type(text)
 

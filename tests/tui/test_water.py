@@ -7,8 +7,7 @@ from textual.events import Paste
 
 from calm.tui.field import Field
 from calm.tui.water.currents_to_begin import _existing, imported
-from calm.tui.water.grid import Grid
-from calm.tui.water.grid_cells import GridCells
+from calm.tui.water.grid import Grid, GridCells
 from calm.tui.water.water_screen import WaterScreen
 from tests.tui.conftest import MOORING
 
@@ -21,7 +20,7 @@ def field(driver, id):
 
 async def enter(driver, id, text):
     chosen = field(driver, id)
-    chosen.focus_input()
+    chosen.input.focus()
     await driver.pilot.pause()
     chosen.input.action_select_all()
     await driver.press("delete")
@@ -390,7 +389,7 @@ def test_wind_needs_a_direction_and_goes_without_a_speed(drive, small):
         await driver.settle()
         assert value(driver, "wind") == {"speed": "12 m/s", "toward": "45 deg"}
         assert driver.view.file.environment.wind.toward == 45.0
-        field(driver, "wind-speed").focus_input()
+        field(driver, "wind-speed").input.focus()
         await driver.press("ctrl+u", "enter")
         assert driver.session.draft.value(("environment", "wind")) is None
 

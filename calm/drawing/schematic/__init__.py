@@ -1,35 +1,48 @@
-"""The schematic of a line: an SVG picture, in order from the top and not to scale."""
+"""The parts of a line one below the other: symbols, words that wrap, and figures beside them.
+
+The schematic is one such column, an SVG picture in order from the top and not to scale; the mooring
+diagram has as many as its pages hold. Lengths are in points (1/72 inch).
+"""
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from itertools import accumulate
+from math import isnan, log10
+from typing import TYPE_CHECKING, NamedTuple
 
-from calm.drawing.schematic.line_column import (
-    FONT,
-    HEAD,
-    LEADING,
-    SYMBOL_SCALE,
-    ColumnHead,
-    LineColumn,
-    PlacedPart,
-    column_of,
-    draw_ground,
-    draw_headings,
-    draw_parts,
-    draw_row,
-    draw_sea,
-    measured,
-    placed,
+from calm.drawing.schematic.pen import FAINT, INK, SOFT, Pen, picture, svg_text, text_width, wrapped
+from calm.drawing.schematic.shown_parts import HEADINGS, Schematic, ShownPart, TextRow, schematic_of
+from calm.drawing.schematic.sign import LINES
+from calm.drawing.schematic.symbols import (
+    SEABED_ROOM,
+    draw_cable,
+    draw_clamp,
+    draw_helicopter,
+    draw_seabed,
+    draw_ship,
+    draw_surface,
+    draw_water,
+    figure_of,
 )
-from calm.drawing.schematic.pen import INK, SOFT, Pen, picture, svg_text, wrapped
-from calm.drawing.schematic.shown_parts import HEADINGS, Schematic, schematic_of
-from calm.drawing.schematic.symbols import SEABED_ROOM, draw_helicopter, draw_ship
 from calm.quantities import QUANTITIES
 
 if TYPE_CHECKING:
     from calm.case import Result, TowResult
     from calm.files import MooringFile
+
+
+FONT = 8.0
+"""Size of the texts; nothing in a column is smaller."""
+LEADING = 10.0
+"""Distance of two lines of text."""
+SYMBOL_SCALE, CLAMP_SCALE = 0.6, 0.42
+HEAD = 38.0
+"""Height of the headings, from the top of the column."""
+_PAD, _GAP, _INDENT = 4.0, 6.0, 10.0
+_CLAMP_AT = 16.0
+_SHORTEST, _PER_DECADE = 18.0, 9.0
 
 # A4 leaves 180 by 267 mm; a long line is drawn smaller to fit its height, but no smaller than can
 # be read.
@@ -37,8 +50,8 @@ _WIDTH, _MARGIN = 508.0, 3.0
 _MILLIMETRE = 72.0 / 25.4
 _PRINTED_HEIGHT, _LEAST_SCALE = 267.0 * _MILLIMETRE, 0.67
 _TITLE, _TITLE_LEADING = 13.0, 16.0
-_SKY, _MAST, _SHIP, _HELICOPTER = 8.0, 26.0, 30.0, 28.0  # above the surface, or the hook
 _SHEAVE = 26.0 * SYMBOL_SCALE
+_SKY, _MAST, _SHIP, _HELICOPTER = 8.0, 26.0, 30.0, 28.0  # above the surface, or the hook
 _SUBMERGED, _BELOW_BODY = 12.0, 14.0
 _MOORED_AT, _TOWED_AT = 26.0, 46.0
 
@@ -51,11 +64,9 @@ def schematic_svg(file: MooringFile, result: Result | TowResult | None = None) -
 
     Parameters
     ----------
-    file : MooringFile
-        The line as read.
-    result : Result or TowResult, optional
-        Its solution, which shows depths under load and in the current. Without it depths are those
-        of the upright, unstretched line; unknown in a tow and of a float at the surface.
+    file : the line as read
+    result : its solution, which shows depths under load and in the current. Without it depths are
+        those of the upright, unstretched line; unknown in a tow and of a float at the surface.
     """
     shown = schematic_of(file, result)
     column = _column(shown)
@@ -123,3 +134,232 @@ def _draw_scene(
         else:
             draw_ship(pen.group(column.line_at, surface - _SHEAVE, SYMBOL_SCALE))
         draw_row(page, column, 0.0, surface - _SHEAVE, shown.towed_by)
+
+
+class ColumnHead(NamedTuple):
+    """The words over a column of figures, line by line, and the unit below them."""
+
+    words: tuple[str, ...]
+    unit: str
+
+
+@dataclass(frozen=True)
+class LineColumn:
+    """Where a line is drawn, and what stands beside it.
+
+    Attributes
+    ----------
+    width : of all
+    headings : over the figures
+    rights : right edges of the columns of figures
+    text : from where to where there is room for words
+    line_at : where the line hangs, from the left edge
+    """
+
+    width: float
+    headings: tuple[ColumnHead, ...]
+    rights: tuple[float, ...]
+    text: tuple[float, float]
+    line_at: float
+
+
+def column_of(
+    parts: Iterable[TextRow], headings: Sequence[ColumnHead], width: float, line_at: float = 26.0
+) -> LineColumn:
+    """A column of a width with room for its figures, as wide as the widest of them.
+
+    Parameters
+    ----------
+    parts : the rows beside the line
+    headings : over their figures
+    line_at : where the line hangs; the picture is twice as wide
+    """
+    cells = [[*heading.words, heading.unit] for heading in headings]
+    for row in parts:
+        for texts, text in zip(cells, row.cells, strict=False):
+            texts.append(text)
+    figures = [max(text_width(text, FONT) for text in texts) + _GAP for texts in cells]
+    lefts = [*accumulate(reversed(figures), lambda left, each: left - each, initial=width)]
+    rights = tuple(reversed(lefts[:-1]))
+    return LineColumn(width, tuple(headings), rights, (2.0 * line_at + 4.0, lefts[-1]), line_at)
+
+
+class TextLine(NamedTuple):
+    """A line of text beside a part, what stands `at` a distance in the same line, and figures."""
+
+    text: str
+    colour: str = INK
+    bold: bool = False
+    beside: str = ""
+    at: float = 0.0
+    cells: tuple[str, ...] = ()
+
+    @property
+    def width(self) -> float:
+        """How far it reaches."""
+        beside = self.at + text_width(self.beside, FONT) if self.beside else 0.0
+        return max(text_width(self.text, FONT, bold=self.bold), beside)
+
+
+@dataclass(frozen=True)
+class PlacedPart:
+    """A part from where to where, and its texts; `ends` are those of the line through it."""
+
+    part: ShownPart
+    top: float
+    height: float
+    lines: tuple[TextLine, ...]
+    ends: tuple[float, float] = (0.0, 0.0)
+
+    @property
+    def middle(self) -> float:
+        """Where its symbol is."""
+        return self.top + self.height / 2
+
+
+def measured(parts: Sequence[ShownPart], column: LineColumn) -> list[PlacedPart]:
+    """Each part with the height that it needs, not placed yet.
+
+    A long cable is seen to be long: its height, with what is clamped on it, grows with the
+    logarithm of its length.
+    """
+    found = [_measured(part, column) for part in parts]
+    for number, one in enumerate(found):
+        if one.part.cable is not None and not one.part.clamped and not isnan(one.part.length):
+            wanted = _SHORTEST + _PER_DECADE * log10(max(one.part.length, 1.0))
+            for other in found[number + 1 :]:
+                if not other.part.clamped:
+                    break
+                wanted -= other.height
+            found[number] = replace(one, height=max(one.height, wanted))
+    return found
+
+
+def _measured(part: ShownPart, column: LineColumn) -> PlacedPart:
+    left, right = column.text
+    room = right - left - _GAP - (_INDENT if part.clamped else 0.0)
+    lines = tuple(line for row in part.rows for line in _text_lines(row, room))
+    height = LEADING * len(lines) + _PAD
+    if part.sign.symbol in LINES:
+        height = max(height, _SHORTEST)
+    else:
+        scale = CLAMP_SCALE if part.clamped else SYMBOL_SCALE
+        height = max(height, scale * figure_of(part.sign).height + 3.0)
+    return PlacedPart(part, 0.0, height, lines)
+
+
+def _text_lines(row: TextRow, room: float) -> list[TextLine]:
+    """Label and name in one line where they fit; else they wrap, one below the other."""
+    at = text_width(row.label, FONT, bold=row.strong) + 6.0
+    if at + text_width(row.name, FONT) <= room and row.label.isascii():
+        return [TextLine(row.label, INK, row.strong, row.name, at, row.cells)]
+    lines = [
+        TextLine(text, INK, row.strong) for text in wrapped(row.label, room, FONT, bold=row.strong)
+    ]
+    lines += [TextLine(text, SOFT) for text in wrapped(row.name, room, FONT)]
+    return [lines[0]._replace(cells=row.cells), *lines[1:]] if lines else [TextLine("")]
+
+
+def placed(
+    parts: Sequence[PlacedPart], top: float, hung: float | None = None
+) -> tuple[PlacedPart, ...]:
+    """Parts one below the other from `top`; the line begins where it is `hung`, else at `top`."""
+    tops = accumulate((part.height for part in parts), initial=top)
+    found = [
+        replace(part, top=at, ends=(at, at + part.height))
+        for part, at in zip(parts, tops, strict=False)
+    ]
+    if hung is not None:
+        found[0] = replace(found[0], ends=(hung, found[0].ends[1]))
+    return tuple(found)
+
+
+def draw_headings(page: Pen, column: LineColumn, left: float, top: float) -> None:
+    """The words over the figures, their last lines at one level, and a rule below."""
+    for heading, right in zip(column.headings, column.rights, strict=True):
+        lines = (*heading.words, heading.unit)
+        for number, word in enumerate(reversed(lines)):
+            y = top + HEAD - 8.0 - 9.4 * number
+            page.letters(left + right, y, word, size=FONT, colour=SOFT, anchor="end")
+    page.line(left, top + HEAD - 2.0, left + column.width, top + HEAD - 2.0, stroke=FAINT)
+
+
+def draw_sea(
+    page: Pen, column: LineColumn, left: float, levels: tuple[float, float], row: TextRow | None
+) -> None:
+    """The water between its levels, and the surface with its text where it has one."""
+    pen = page.group(left, 0.0)
+    draw_water(pen, 2.0 * column.line_at, *levels)
+    draw_surface(pen, 2.0 * column.line_at, levels[0])
+    if row is not None:
+        draw_row(page, column, left, levels[0], row)
+
+
+def draw_ground(page: Pen, column: LineColumn, left: float, y: float, row: TextRow) -> None:
+    """The seabed with its text."""
+    draw_seabed(page.group(left, 0.0, stroke=INK), 2.0 * column.line_at, y)
+    draw_row(page, column, left, y + SEABED_ROOM / 2 + 1.0, row)
+
+
+def draw_row(page: Pen, column: LineColumn, left: float, y: float, row: TextRow) -> None:
+    """A text that stands for no part, with its figures."""
+    page.letters(left + column.text[0], y, row.label, size=FONT, colour=SOFT)
+    for text, right in zip(row.cells, column.rights, strict=False):
+        page.letters(left + right, y, text, size=FONT, colour=SOFT, anchor="end")
+
+
+def draw_parts(page: Pen, parts: Sequence[PlacedPart], column: LineColumn, left: float) -> None:
+    """The line with its symbols, and the texts beside it, `left` of the picture."""
+    pen = page.draw("g", stroke=INK, stroke_width=0.9, stroke_linejoin="round", fill=INK)
+    for part in parts:
+        _draw_symbol(pen.draw("g"), part, left + column.line_at)
+    for part in parts:
+        _draw_texts(page, part, column, left)
+
+
+def _draw_symbol(pen: Pen, one: PlacedPart, x: float) -> None:
+    """The line through a part, its symbol, or what is clamped on it."""
+    part = one.part
+    if part.labels:
+        pen.title(", ".join(part.labels))
+    if part.cable is not None:
+        draw_cable(pen, part.cable, x, *one.ends)
+    else:
+        pen.line(x, one.ends[0], x, one.ends[1])
+    beside = part.sign if part.clamped else part.floats
+    if beside is not None:
+        clamp = pen.group(x, one.middle)
+        draw_clamp(clamp, _CLAMP_AT)
+        figure_of(beside).draw(clamp.group(_CLAMP_AT, 0.0, CLAMP_SCALE))
+    elif part.sign.symbol not in LINES:
+        figure_of(part.sign).draw(pen.group(x, one.middle, SYMBOL_SCALE))
+
+
+def _draw_texts(page: Pen, one: PlacedPart, column: LineColumn, left: float) -> None:
+    """The texts of a part, with dots that lead the eye from its symbol on to its figures."""
+    start = left + column.text[0] + (_INDENT if one.part.clamped else 0.0)
+    levels = [
+        one.middle + LEADING * (number - (len(one.lines) - 1) / 2)
+        for number in range(len(one.lines))
+    ]
+    for line, y in zip(one.lines, levels, strict=True):
+        page.letters(start, y, line.text, size=FONT, colour=line.colour, bold=line.bold)
+        page.letters(start + line.at, y, line.beside, size=FONT, colour=SOFT)
+    for line, y in zip(one.lines, levels, strict=True):
+        for text, right in zip(line.cells, column.rights, strict=False):
+            page.letters(left + right, y, text, size=FONT, anchor="end")
+    near = (
+        line.width
+        for line, y in zip(one.lines, levels, strict=True)
+        if abs(y - one.middle) < LEADING
+    )
+    ends = start + max(near)
+    for begin, end in (
+        (left + column.line_at + 18.0, start - 3.0),
+        (ends + 3.0, left + column.text[1] - 3.0),
+    ):
+        if end - begin > 2.0:
+            page.line(
+                begin, one.middle, end, one.middle, stroke=SOFT, stroke_width=0.6,
+                stroke_dasharray="0.6 2.4",
+            )  # fmt: skip

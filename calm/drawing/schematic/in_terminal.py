@@ -72,14 +72,9 @@ def schematic_text(
 
     Parameters
     ----------
-    file : MooringFile
-        The line as read.
-    result : Result or TowResult, optional
-        Its solution, which shows depths under load and in the current; see `schematic_svg`.
-    width : int
-        Of the terminal [cells]; labels and names are cut to fit, from some 55 cells on.
-    ascii_only : bool
-        Draw with plain signs; labels keep their letters.
+    file, result : as of `schematic_svg`
+    width : of the terminal [cells]; labels and names are cut to fit, from some 55 cells on
+    ascii_only : draw with plain signs; labels keep their letters
     """
     schematic = schematic_of(file, result)
     lines = [
@@ -122,9 +117,10 @@ def _table(schematic: Schematic, width: int) -> Iterator[str]:
         words = (*HEADINGS[quantity], *(row.cells[number] for row in rows))
         figures.append(max(map(cell_len, words)))
     room = width - _ART - sum(figures) - 2 * len(figures) - 1
-    label, name = _shares(
-        max(cell_len(row.label) for row in rows), max(cell_len(row.name) for row in rows), room
-    )
+    # labels first, which tell parts apart
+    label, name = (max(cell_len(getattr(row, of)) for row in rows) for of in ("label", "name"))
+    label = min(label, max(room - min(name, _LEAST_NAME), _LEAST_LABEL))
+    name = max(min(name, room - label), 0)
 
     def line(art: str, row: TextRow) -> str:
         texts = f"{_padded(row.label, label)} {_padded(row.name, name)}"
@@ -136,12 +132,6 @@ def _table(schematic: Schematic, width: int) -> Iterator[str]:
         yield line("", TextRow("", "", words))
     for art, drawn_row in drawn:
         yield art if drawn_row is None else line(art, drawn_row)
-
-
-def _shares(label: int, name: int, room: int) -> tuple[int, int]:
-    """Widths of labels and names: what they need; labels first, which tell parts apart."""
-    label = min(label, max(room - min(name, _LEAST_NAME), _LEAST_LABEL))
-    return label, max(min(name, room - label), 0)
 
 
 def _drawn(schematic: Schematic) -> Iterator[tuple[str, TextRow | None]]:
@@ -159,7 +149,8 @@ def _drawn(schematic: Schematic) -> Iterator[tuple[str, TextRow | None]]:
             yield " " * _LINE_AT + _CLAMP + _art(part.sign).strip(), row
             continue
         afloat = schematic.surface and number == 0
-        art = (_at_sea if afloat else _on_line)(_art(part.sign))
+        art = _art(part.sign)
+        art = _at_sea(art) if afloat else art.center(2 * _LINE_AT + 1)
         yield art, part.rows[0]
         for row in part.rows[1:]:
             yield "", row
@@ -179,10 +170,6 @@ def _art(sign: Sign) -> str:
         return art
     middle = len(art) // 2
     return f"{art[:middle]}{_LOOKS[sign.up, sign.down]}{art[middle + 1 :]}"
-
-
-def _on_line(art: str) -> str:
-    return art.center(2 * _LINE_AT + 1)
 
 
 def _at_sea(art: str) -> str:

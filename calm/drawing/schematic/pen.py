@@ -16,13 +16,7 @@ FONTS = "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif"
 
 
 class Pen:
-    """Draws into an element of a picture.
-
-    Parameters
-    ----------
-    element : xml.etree.ElementTree.Element
-        What it draws is added to it.
-    """
+    """Draws into an element of a picture."""
 
     def __init__(self, element: ElementTree.Element) -> None:
         self.element = element
@@ -70,13 +64,11 @@ class Pen:
         width: float,
         *,
         size: float,
-        colour: str = INK,
         bold: bool = False,
-        anchor: str = "start",
     ) -> None:
         """A text in a width, its middle at `y`; one that is cut has the whole for its title."""
         shown = shortened(text, width, size, bold=bold)
-        pen = self.letters(x, y, shown, size=size, colour=colour, bold=bold, anchor=anchor)
+        pen = self.letters(x, y, shown, size=size, bold=bold)
         if shown != text:
             pen.element.text = None
             pen.title(text)

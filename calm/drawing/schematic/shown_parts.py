@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import accumulate
 from typing import TYPE_CHECKING
 
@@ -71,20 +72,13 @@ class Schematic:
 
     Attributes
     ----------
-    title, subtitle, note : str
-        Its name; water and place, or speed; how to read the figures.
-    columns : tuple of str
-        Those quantities of `HEADINGS` that are known.
-    parts : tuple of ShownPart
-        Clamped instruments after the piece they are on.
-    surface : bool
-        Whether the first part floats at the surface.
-    towed_by : TextRow or None
-        The text at the ship or the helicopter.
-    sea : TextRow or None
-        The text at the sea surface; None in air.
-    seabed : TextRow or None
-        The text at the seabed; None where its depth is unknown.
+    title, subtitle, note : its name; water and place, or speed; how to read the figures
+    columns : those quantities of `HEADINGS` that are known
+    parts : clamped instruments after the piece they are on
+    surface : whether the first part floats at the surface
+    towed_by : the text at the ship or the helicopter
+    sea : the text at the sea surface; None in air
+    seabed : the text at the seabed; None where its depth is unknown
     """
 
     title: str
@@ -99,31 +93,26 @@ class Schematic:
 
 
 def schematic_of(file: MooringFile, result: Result | TowResult | None = None) -> Schematic:
-    """Return what the schematic of a line shows.
-
-    Parameters
-    ----------
-    file : MooringFile
-        The line as read.
-    result : Result or TowResult, optional
-        Its solution, which shows depths under load and in the current.
-    """
+    """Return what the schematic of a line shows; as solved, where there is a result."""
     levels = levels_of(file, result)
     bottom = file.environment.depth
-    cells = _Cells(bottom)
+    cells = partial(_figures, bottom)
     stands = file.pieces[-1].use != STAND_IN
     pieces = file.pieces if stands else file.pieces[:-1]
-    sea = TextRow("sea surface", "", cells.at(0.0))
+    water = file.environment.fluid == "water"
+    towed_by = None
+    if file.tow is not None:
+        towed_by = TextRow("ship" if water else "helicopter", "", cells("", -file.tow.height))
     return Schematic(
         title=one_line(file.name),
         subtitle=_subtitle(file),
         note=levels.note,
-        columns=cells.columns,
+        columns=tuple(name for name in HEADINGS if name != "height" or bottom is not None),
         parts=tuple(_parts(pieces, cells, levels)),
         surface=levels.surface,
-        towed_by=_towed_by(file, cells),
-        sea=sea if file.environment.fluid == "water" else None,
-        seabed=None if bottom is None or not stands else TextRow("seabed", "", cells.at(bottom)),
+        towed_by=towed_by,
+        sea=TextRow("sea surface", "", cells("", 0.0)) if water else None,
+        seabed=None if bottom is None or not stands else TextRow("seabed", "", cells("", bottom)),
     )
 
 
@@ -132,29 +121,17 @@ def one_line(text: str) -> str:
     return printable(" ".join(text.split()))
 
 
-class _Cells:
-    """Writes the figures of a row; heights only where the depth of the seabed [m] is known."""
-
-    def __init__(self, bottom: float | None) -> None:
-        self._bottom = bottom
-        self.columns = tuple(name for name in HEADINGS if name != "height" or bottom is not None)
-
-    def at(self, depth: float) -> tuple[str, ...]:
-        """Of a place that has no length."""
-        return ("", *self.of(math.nan, depth)[1:])
-
-    def clamped(self, at: float, depth: float) -> tuple[str, ...]:
-        """Of a clamp: how far down its piece it sits, in place of a length."""
-        return (place_text(at), *self.of(math.nan, depth)[1:])
-
-    def of(self, length: float, depth: float) -> tuple[str, ...]:
-        """Of a piece."""
-        height = math.nan if self._bottom is None else self._bottom - depth
-        figures = {"cut_length": length, "depth": depth, "height": height}
-        return tuple(QUANTITIES[name].format(figures[name]) for name in self.columns)
+Cells = Callable[[str, float], tuple[str, ...]]
+"""The figures of a row, by its length, or its place in its stead, and its depth [m]."""
 
 
-def _parts(pieces: Sequence[Piece], cells: _Cells, levels: Levels) -> Iterator[ShownPart]:
+def _figures(bottom: float | None, length: str, depth: float) -> tuple[str, ...]:
+    """Length, depth, and the height where the depth of the seabed is known."""
+    heights = [] if bottom is None else [QUANTITIES["height"].format(bottom - depth)]
+    return length, QUANTITIES["depth"].format(depth), *heights
+
+
+def _parts(pieces: Sequence[Piece], cells: Cells, levels: Levels) -> Iterator[ShownPart]:
     """Yield the parts from the top; pieces that are drawn as one make one."""
     run: list[Piece] = []
     for piece in pieces:
@@ -185,14 +162,14 @@ def afloat(sign: Sign) -> Sign:
     return sign if sign.symbol is Symbol.SPHERE else replace(sign, symbol=Symbol.BUOY)
 
 
-def _part(run: list[Piece], cells: _Cells, levels: Levels) -> Iterator[ShownPart]:
+def _part(run: list[Piece], cells: Cells, levels: Levels) -> Iterator[ShownPart]:
     """Yield what is drawn of pieces that are alike, and what is clamped on a single one."""
     first, sign = run[0], _sign(run[0], levels)
     cable = sign.symbol if sign.symbol in LINES else None
     start = first.index - levels.first.index
     length = levels.lengths[start]
     rows = [
-        _row(each, cells.of(levels.lengths[at], levels.depths[at]))
+        _row(each, cells(QUANTITIES["cut_length"].format(levels.lengths[at]), levels.depths[at]))
         for at, each in enumerate(run, start)
     ]
     labels = tuple(row.label for row in rows)
@@ -205,7 +182,7 @@ def _part(run: list[Piece], cells: _Cells, levels: Levels) -> Iterator[ShownPart
         rows = [replace(rows[0], label=together([*labels]), cells=figures)]
     yield ShownPart(sign, tuple(rows), labels, cable, length)
     for clamp in sorted(first.clamps, key=lambda clamp: clamp.at):
-        row = _row(clamp, cells.clamped(clamp.at, levels.clamps[clamp.place]))
+        row = _row(clamp, cells(place_text(clamp.at), levels.clamps[clamp.place]))
         yield ShownPart(_sign(clamp, levels), (row,), (row.label,), cable, clamped=True)
 
 
@@ -228,13 +205,6 @@ def _subtitle(file: MooringFile) -> str:
     return " · ".join(said)
 
 
-def _towed_by(file: MooringFile, cells: _Cells) -> TextRow | None:
-    if file.tow is None:
-        return None
-    name = "ship" if file.environment.fluid == "water" else "helicopter"
-    return TextRow(name, "", cells.at(-file.tow.height))
-
-
 _NOT_TO_SCALE = "Not to scale. Depth and height: of the upper end,"
 _SOLVED = f"{_NOT_TO_SCALE} as solved in the current."
 _UPRIGHT = f"{_NOT_TO_SCALE} upright and unstretched."
@@ -247,16 +217,11 @@ class Levels:
 
     Attributes
     ----------
-    lengths, depths : tuple of float
-        Cut length of each piece, and depth of its upper end [m].
-    clamps : mapping
-        Depth of each clamped instrument [m].
-    first : Piece
-        At the top of the line.
-    surface : bool
-        Whether that floats at the surface.
-    note : str
-        What the depths are.
+    lengths, depths : cut length of each piece, and depth of its upper end [m]
+    clamps : depth of each clamped instrument [m]
+    first : piece at the top of the line
+    surface : whether that floats at the surface
+    note : what the depths are
     """
 
     lengths: tuple[float, ...]
@@ -283,7 +248,9 @@ def levels_of(file: MooringFile, result: Result | TowResult | None) -> Levels:
         )
     lengths = _cut_lengths(file)
     depths = _upright(file, lengths)
-    surface = file.tow is None and (depths[0] <= 0.0 or _has_a_hull(file))
+    top = file.pieces[0].component
+    hulled = isinstance(top, Rigid) and not (top.hull is None and top.wind_area is None)
+    surface = file.tow is None and (depths[0] <= 0.0 or hulled)
     if surface:
         depths = (math.nan,) * len(depths)
     clamps = {
@@ -311,12 +278,6 @@ def _upright(file: MooringFile, lengths: tuple[float, ...]) -> tuple[float, ...]
         return (math.nan,) * len(lengths)
     heights = list(accumulate(reversed(lengths)))
     return tuple(file.environment.depth - height for height in reversed(heights))
-
-
-def _has_a_hull(file: MooringFile) -> bool:
-    """Return whether the first piece is made to float at the surface."""
-    top = file.pieces[0].component
-    return isinstance(top, Rigid) and not (top.hull is None and top.wind_area is None)
 
 
 def place_text(at: float) -> str:

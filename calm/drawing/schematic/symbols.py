@@ -20,18 +20,9 @@ _BEAM = 11.0
 
 @dataclass(frozen=True)
 class SymbolFigure:
-    """A symbol as it is drawn.
-
-    Attributes
-    ----------
-    height, reach : float
-        Its height, and how far it reaches to the right of the line.
-    draw : callable
-        Draws it about the origin of a pen.
-    """
+    """A symbol as it is drawn: its height, and what draws it about the origin of a pen."""
 
     height: float
-    reach: float
     draw: Callable[[Pen], None]
 
 
@@ -62,7 +53,7 @@ def _sounding(figure: SymbolFigure, sign: Sign) -> SymbolFigure:
         for x in (-4.5, 0.0, 4.5):
             pen.circle(x, shift, 1.9, fill=_DARK, stroke="none")
 
-    return SymbolFigure(figure.height + _BEAM * (sign.up + sign.down), figure.reach, draw)
+    return SymbolFigure(figure.height + _BEAM * (sign.up + sign.down), draw)
 
 
 def _row(figure: SymbolFigure, count: int) -> SymbolFigure:
@@ -72,7 +63,7 @@ def _row(figure: SymbolFigure, count: int) -> SymbolFigure:
         for number in range(count):
             figure.draw(pen.group(0.0, (number - (count - 1) / 2) * figure.height))
 
-    return SymbolFigure(count * figure.height, figure.reach, draw)
+    return SymbolFigure(count * figure.height, draw)
 
 
 def _pack(sign: Sign) -> SymbolFigure:
@@ -89,8 +80,7 @@ def _pack(sign: Sign) -> SymbolFigure:
             if sign.symbol is Symbol.GLASS:
                 pen.line(x, y - _BALL, x, y + _BALL, stroke_width=0.7)
 
-    height = 2 * _BALL + (count - 1) * _BALL_PITCH + 3.0
-    return SymbolFigure(height, _BALL if count == 1 else _BALL + _BALL_ASIDE, draw)
+    return SymbolFigure(2 * _BALL + (count - 1) * _BALL_PITCH + 3.0, draw)
 
 
 def _wheels(count: int) -> SymbolFigure:
@@ -104,7 +94,7 @@ def _wheels(count: int) -> SymbolFigure:
             pen.box(0.0, y - 1.7, 28.0, 3.6, fill=_STEEL)
             pen.box(0.0, y + 1.7, 42.0, 3.6, fill=_STEEL, rx=1.0)
 
-    return SymbolFigure(height, 21.0, draw)
+    return SymbolFigure(height, draw)
 
 
 def _sphere(pen: Pen) -> None:
@@ -208,22 +198,22 @@ def _body(pen: Pen) -> None:
 
 _CONNECTORS = (Symbol.SHACKLE, Symbol.SWIVEL, Symbol.LINK)
 _FIGURES = {
-    Symbol.SPHERE: SymbolFigure(36.0, 17.0, _sphere),
-    Symbol.FOAM: SymbolFigure(34.0, 18.0, _foam),
-    Symbol.STREAMLINED: SymbolFigure(28.0, 27.0, _streamlined),
-    Symbol.BUOY: SymbolFigure(26.0, 32.0, _buoy),
-    Symbol.CURRENT_METER: SymbolFigure(29.0, 25.0, _current_meter),
-    Symbol.ADCP: SymbolFigure(32.0, 11.0, _adcp),
-    Symbol.CTD: SymbolFigure(30.0, 9.0, _ctd),
-    Symbol.TRAP: SymbolFigure(42.0, 19.0, _trap),
-    Symbol.INSTRUMENT: SymbolFigure(30.0, 6.5, _instrument),
-    Symbol.RELEASE: SymbolFigure(40.0, 6.0, _release),
-    Symbol.RELEASE_PAIR: SymbolFigure(40.0, 15.0, _release_pair),
-    Symbol.SHACKLE: SymbolFigure(12.0, 6.0, _shackle),
-    Symbol.SWIVEL: SymbolFigure(18.0, 5.5, _swivel),
-    Symbol.LINK: SymbolFigure(11.0, 3.6, _link),
-    Symbol.BLOCK: SymbolFigure(24.0, 19.0, _block),
-    Symbol.BODY: SymbolFigure(26.0, 14.0, _body),
+    Symbol.SPHERE: SymbolFigure(36.0, _sphere),
+    Symbol.FOAM: SymbolFigure(34.0, _foam),
+    Symbol.STREAMLINED: SymbolFigure(28.0, _streamlined),
+    Symbol.BUOY: SymbolFigure(26.0, _buoy),
+    Symbol.CURRENT_METER: SymbolFigure(29.0, _current_meter),
+    Symbol.ADCP: SymbolFigure(32.0, _adcp),
+    Symbol.CTD: SymbolFigure(30.0, _ctd),
+    Symbol.TRAP: SymbolFigure(42.0, _trap),
+    Symbol.INSTRUMENT: SymbolFigure(30.0, _instrument),
+    Symbol.RELEASE: SymbolFigure(40.0, _release),
+    Symbol.RELEASE_PAIR: SymbolFigure(40.0, _release_pair),
+    Symbol.SHACKLE: SymbolFigure(12.0, _shackle),
+    Symbol.SWIVEL: SymbolFigure(18.0, _swivel),
+    Symbol.LINK: SymbolFigure(11.0, _link),
+    Symbol.BLOCK: SymbolFigure(24.0, _block),
+    Symbol.BODY: SymbolFigure(26.0, _body),
 }
 
 

@@ -10,7 +10,7 @@ from math import ceil, isfinite
 from rich.cells import cell_len, set_cell_size
 from rich.text import Text
 
-from calm.drawing.graph.scale import number, round_numbers
+from calm.drawing.graph import number, round_numbers
 
 ACROSS, DOWN = 2, 4
 """Dots of a cell."""
@@ -84,16 +84,12 @@ class Canvas:
 
     def rows(self) -> list[Text]:
         """The picture, a text for each row of cells, all of the full width."""
-        return [self._row(row) for row in range(self.height)]
-
-    def _row(self, row: int) -> Text:
-        text = Text(no_wrap=True, end="")
-        for column in range(self.width):
-            sign, bits = self._signs[row][column], self._bits[row][column]
-            if sign is None:
-                sign = chr(_BRAILLE + bits) if bits else " "
-            text.append(sign, self._styles[row][column] or None)
-        return text
+        found = [Text(no_wrap=True, end="") for _ in range(self.height)]
+        for text, *cells in zip(found, self._signs, self._bits, self._styles, strict=True):
+            for sign, bits, style in zip(*cells, strict=True):
+                dots = chr(_BRAILLE + bits) if bits else " "
+                text.append(dots if sign is None else sign, style or None)
+        return found
 
 
 AXIS, SEABED = "white", "yellow"
@@ -132,37 +128,6 @@ class PlotFrame:
     rows: int
     across: CellScale
     down: CellScale
-
-    @classmethod
-    def within(
-        cls,
-        canvas: Canvas,
-        head: int,
-        gutter: int,
-        across: tuple[float, float],
-        down: tuple[float, float],
-        beside: int = 0,
-    ) -> PlotFrame:
-        """Return what of a canvas the scales leave, below and to the left, and what else stands
-        around it.
-
-        Parameters
-        ----------
-        head : rows above
-        gutter : columns of the numbers to the left
-        across, down : what is at the left and the right edge, at the upper and the lower one
-        beside : columns to the right
-        """
-        columns, rows = canvas.width - gutter - 1 - beside, canvas.height - head - 2
-        return cls(
-            canvas,
-            column=gutter + 1,
-            row=head,
-            columns=columns,
-            rows=rows,
-            across=CellScale(*across, columns * ACROSS),
-            down=CellScale(*down, rows * DOWN),
-        )
 
     def point(self, x: float, y: float) -> tuple[float, float]:
         """The dot of the canvas where two values are."""
@@ -277,7 +242,9 @@ def scaled_frame(
     values = levels(min(down), max(down), size[1] - head - 2)
     foot = "m" if seabed is None else number(seabed)
     gutter = max(map(len, [foot, *map(number, values)]))
-    frame = PlotFrame.within(canvas, head, gutter, across, down, beside)
+    columns, rows = size[0] - gutter - 1 - beside, size[1] - head - 2
+    scales = CellScale(*across, columns * ACROSS), CellScale(*down, rows * DOWN)
+    frame = PlotFrame(canvas, gutter + 1, head, columns, rows, *scales)
     sign, style, first = ("─", AXIS, -1) if seabed is None else ("▒", SEABED, 0)
     canvas.text(frame.column + first, size[1] - 2, sign * (frame.columns - first), style)
     frame.scale_down(values, gutter, foot)

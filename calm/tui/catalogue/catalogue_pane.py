@@ -20,8 +20,8 @@ from calm.tui.catalogue.component_list import ComponentList, Remembered
 from calm.tui.checking import distance, length
 from calm.tui.dialogs import Asked, InputSheet, ask
 from calm.tui.key_table import bindings
-from calm.tui.messages import Told
 from calm.tui.scrolled import ScrolledEntry, ScrolledText
+from calm.tui.workspace import Told
 
 Purpose = Literal["below", "above", "clamp", "replace"]
 """What the component is wanted for."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from itertools import zip_longest
 
 from rich.cells import cell_len
@@ -145,10 +146,8 @@ class Remembered:
     def take(self, id: str) -> None:
         """Note that one was taken; where it cannot be kept, for this session only."""
         self.recent = [id, *(each for each in self.recent if each != id)][:_MOST_RECENT]
-        try:
+        with suppress(OSError):
             self._keep()
-        except OSError:
-            return
 
     def mark(self, id: str) -> bool:
         """Mark a favourite, or unmark it; returns whether it is one now.

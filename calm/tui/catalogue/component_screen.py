@@ -82,7 +82,7 @@ class ComponentScreen(Screen[Defined | None]):
         self.query_one(TitleBar).show(f"{what}, kept in this file   * needed", "")
         self.query_one(KeyBar).show_keys(hints("form"))
         await self._show_fields()
-        self.query(Field).first().focus_input()
+        self.query(Field).first().input.focus()
 
     async def _show_fields(self) -> None:
         holder = self.query_one("#kind-fields", Vertical)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any, ClassVar
 
 from textual import on
@@ -11,11 +12,17 @@ from textual.events import DescendantFocus, Key
 
 from calm.files.components import KINDS
 from calm.files.editing import Draft
-from calm.tui import key_table
+from calm.templates import TEMPLATES, Template, template
 from calm.tui.cell_editor import CellEditor
-from calm.tui.dialogs import InputSheet, ask, choose
+from calm.tui.dialogs import Answer, InputSheet, Question, ask, choose
 from calm.tui.key_table import bindings, hints
-from calm.tui.line.comparing import Advising, Comparing
+from calm.tui.line.comparing import (
+    compare_with_file,
+    compare_with_saved,
+    offer_advice,
+    offer_papers,
+)
+from calm.tui.line.filling import ask_figures
 from calm.tui.line.line_pane import LinePane
 from calm.tui.line.line_screen import LineScreen
 from calm.tui.line.mooring_sheet import (
@@ -32,6 +39,9 @@ from calm.tui.pictures import Picture, Tab
 from calm.tui.screen import KeyBar
 from calm.tui.session import Location
 from calm.tui.verdict_pane import VerdictPane
+
+_MOST_STEPS = 9
+"""Of the history, offered at once."""
 
 
 class BuilderScreen(LineScreen):
@@ -57,7 +67,7 @@ class BuilderScreen(LineScreen):
     def show_keys(self) -> None:
         """The keys of what has the focus."""
         focused = self.focused
-        place: key_table.Place = "line"
+        place = "line"
         if isinstance(focused, CellEditor):
             place = "cell"
         elif isinstance(focused, VerdictPane):
@@ -100,15 +110,15 @@ class BuilderScreen(LineScreen):
 
     def action_advise(self) -> None:
         """Offer changes that mend what was found."""
-        Advising(self.line).offer()
+        offer_advice(self.line)
 
     def action_compare(self) -> None:
         """Show what has changed since the file was saved."""
-        Comparing(self.line, self.pictures).with_saved()
+        compare_with_saved(self.line, self.pictures)
 
     def action_compare_file(self) -> None:
         """Show what is different in another file."""
-        Comparing(self.line, self.pictures).with_file()
+        compare_with_file(self.line, self.pictures)
 
     def action_overlay(self) -> None:
         """Draw the line in all its environments, or in its own alone."""
@@ -123,21 +133,14 @@ class BuilderScreen(LineScreen):
 
     def action_figures(self) -> None:
         """Fill in what is not known of the components."""
-        from calm.tui.line.missing_figures import Filling
-
-        Filling(self.line).ask()
+        ask_figures(self.line)
 
     def action_papers(self) -> None:
         """Show the bill, or have report and sheets written."""
-        from calm.tui.line.comparing import Papers
-
-        Papers(self.line).offer()
+        offer_papers(self.line)
 
     def action_begin(self) -> None:
         """Begin an empty line with a mooring."""
-        from calm.templates import Template, template
-        from calm.tui.line.mooring_sheet import beginning
-
         session = self.session
         if session.draft.items:
             self.tell("There is a line already; a new file can begin with a mooring")
@@ -146,12 +149,15 @@ class BuilderScreen(LineScreen):
         def begin(kind: Template) -> None:
             self.line.attempt(lambda: session.write(template(kind), f"begin with {kind}"))
 
-        choose(self.app, beginning(begin))
+        answers = [
+            Answer(str(number), f"{kind}: {meaning}", partial(begin, kind))
+            for number, (kind, meaning) in enumerate(TEMPLATES.items(), 1)
+        ]
+        text = "Each stands as given: change depth, current and pieces to yours."
+        choose(self.app, Question("Begin with", text, answers))
 
     def action_history(self) -> None:
         """Show what was done, and go back to before any of it."""
-        from calm.tui.line.mooring_sheet import history
-
         steps = self.session.history
         if not self.settle():
             return
@@ -162,7 +168,14 @@ class BuilderScreen(LineScreen):
         def undo(count: int) -> None:
             self._go("undone", lambda: [steps.undo() for _ in range(count)][-1])
 
-        choose(self.app, history(self.session, undo))
+        answers = [
+            Answer(str(number), f"before: {label}", partial(undo, number))
+            for number, label in enumerate(steps.steps[:_MOST_STEPS], 1)
+        ]
+        text = f"Go back to before one of the last {len(answers)} changes; U does them again."
+        if (more := len(steps.steps) - _MOST_STEPS) > 0:
+            text += f" {more} are older; u goes back one by one."
+        choose(self.app, Question("What was done", text, answers))
 
     def action_search(self) -> None:
         """Search the catalogue for a piece below."""

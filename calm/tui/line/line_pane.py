@@ -14,26 +14,24 @@ from textual.message import Message
 from calm.checks.finding import State
 from calm.files import Place
 from calm.tui.catalogue.catalogue_pane import Purpose
+from calm.tui.catalogue.component_screen import id_check
 from calm.tui.cell_editor import CellEditor
 from calm.tui.checking import Reading
-from calm.tui.dialogs import Answer, Question, ask, choose
+from calm.tui.dialogs import Answer, Asked, InputSheet, Question, ask, choose
 from calm.tui.key_table import bindings
-from calm.tui.line.column_sheet import ask_column, ask_equipment, ask_times, rows_meant
-from calm.tui.line.line_cell import LineCell
-from calm.tui.line.mooring_sheet import naming
-from calm.tui.line.rows import table_rows
-from calm.tui.line.table import EDITABLE, Column, Going, LineTable
-from calm.tui.messages import Workspace
+from calm.tui.line.filling import ask_column, ask_equipment, ask_times, rows_meant
+from calm.tui.line.rows import LineCell, table_rows
+from calm.tui.line.table import EDITABLE, Column, LineSearch, LineTable
 from calm.tui.names import Named, namings
-from calm.tui.table import EditableTable
 from calm.tui.verdict_text import Saying, why
+from calm.tui.workspace import Workspace
 
 _LEAST_WIDTHS: dict[Column, int] = {"length": 16}
 _LEAST_WIDTH = 6
 _MIXED = "Pieces are marked, and clamps of other pieces; mark pieces only, or clamps only"
 
 
-class LinePane(EditableTable):
+class LinePane(LineSearch):
     """Edit the line: its cells, its rows and their order."""
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings("line")]
@@ -59,7 +57,6 @@ class LinePane(EditableTable):
         super().__init__(self.table, editor_id="cell", id="line-pane")
         self.workspace, self.session = workspace, workspace.session
         self.came_from_verdict = False
-        self.going = Going(workspace, self.table)
         self._cell: LineCell | None = None  # what is edited, or was last
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
@@ -214,24 +211,11 @@ class LinePane(EditableTable):
                 f"{texts['id']} is defined in the file; add it again with a",
             )
 
-        ask(self.app, naming(self.session), take)
-
-    def action_find(self) -> None:
-        """Find words in the line."""
-        if self.settle():
-            self.going.ask()
-
-    def action_find_next(self, by: int) -> None:
-        """Go to the next row with these words, or the one before."""
-        self.going.to_words(by)
-
-    def action_alike(self, by: int) -> None:
-        """Go to the next row of the same kind, or the one before."""
-        self.going.to_alike(by)
-
-    def action_least(self, loads: int) -> None:
-        """Go to the least margin of the strength of pieces, or of all."""
-        self.going.to_least(loads=bool(loads))
+        own = self.session.draft.value(("components",))
+        check = id_check(own if isinstance(own, dict) else ())
+        asked = [Asked("id", "Id", check=check, placeholder="e.g. glass-pack-own")]
+        text = "The pieces go into the file's components; `use` of this id stands for them."
+        ask(self.app, InputSheet("Make an assembly", text, asked), take)
 
     def action_column(self) -> None:
         """Fill a column of the rows that are meant."""

@@ -10,10 +10,10 @@ from calm.files import Place
 from calm.tui.catalogue.catalogue_pane import CataloguePane, Purpose
 from calm.tui.line.line_pane import LinePane
 from calm.tui.line.table import LineTable
-from calm.tui.messages import Workspace
 from calm.tui.pictures import Pictures
 from calm.tui.screen import DraftScreen
 from calm.tui.verdict_pane import VerdictPane, state_word
+from calm.tui.workspace import Workspace
 
 
 class LineScreen(DraftScreen):
@@ -100,13 +100,10 @@ class LineScreen(DraftScreen):
         self._show_beside()
 
     def _show_beside(self) -> None:
+        """Catalogue, picture and verdict of the last view, dimmed until they are of the draft."""
         index = self.workspace.index
         if index is not None and self.catalogue.index is not index:
             self.catalogue.take_index(index)
-        self._show_study()
-
-    def _show_study(self) -> None:
-        """The picture and the verdict of the last view, dimmed until they are of the draft."""
         view, fresh = self.workspace.view, self.workspace.is_fresh
         last = None if view is None or view.result is not None else self.workspace.good
         if fresh:
@@ -160,7 +157,8 @@ class LineScreen(DraftScreen):
             purpose == "replace" and spot is not None and spot.is_clamp
         )
         target, towed = self._target(purpose), self.session.draft.is_tow
-        used = self._used()
+        parts = [part for item in self.session.draft.items for part in (item, *item.clamps)]
+        used = [part.values.get("use", "") for part in reversed(parts)]
         role = self._role(purpose)
         self.catalogue.open(purpose, target, used, role, clampable=is_on_line, towed=towed)
 
@@ -178,12 +176,6 @@ class LineScreen(DraftScreen):
         roles = {each.role for each in listed_all if each}
         is_last = spot.item == len(items) - 1 and purpose == "below"
         return "anchor" if is_last and "release" in roles and "anchor" not in roles else ""
-
-    def _used(self) -> list[str]:
-        """Return what the line uses, from the bottom."""
-        items = self.session.draft.items
-        parts = [part for item in items for part in (item, *item.clamps)]
-        return [part.values.get("use", "") for part in reversed(parts)]
 
     def _target(self, purpose: Purpose) -> str:
         """Return what the row is called that the component is for."""

@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
-from functools import partial
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from typing import Any
 
 from calm.case.parts import parts_of
-from calm.files import Flexible, MooringFile, Piece, Place
+from calm.files import Clamp, Flexible, MooringFile, Piece, Place
 from calm.files.definition import LENGTH, POSITIVE_LENGTH, QuantityField
 from calm.files.editing import Draft, EditError, Value
 from calm.files.yaml_document import Location
-from calm.templates import TEMPLATES, Template
 from calm.tui.checking import Reading, anything, day, moment, quantity
-from calm.tui.dialogs import Answer, Asked, InputSheet, Question
-from calm.tui.session import Session
+from calm.tui.dialogs import Asked, InputSheet
 
 _HISTORY: Location = ("document", "history")
 
@@ -113,17 +110,7 @@ _ITEMS: Location = ("deployed", "items")
 RELEASES: Location = ("releases",)
 
 
-@dataclass(frozen=True)
-class DeployedRow:
-    """What hangs at a row, and is deployed once: its label and designed serial number."""
-
-    label: str
-    serial: str
-    is_cut: bool
-    is_release: bool
-
-
-def hung_at(file: MooringFile | None, spot: Place | None) -> DeployedRow | None:
+def hung_at(file: MooringFile | None, spot: Place | None) -> Piece | Clamp | None:
     """Return what hangs at a row of a line; None where that is several things, or not known."""
     if file is None or spot is None:
         return None
@@ -133,19 +120,10 @@ def hung_at(file: MooringFile | None, spot: Place | None) -> DeployedRow | None:
         for part in parts_of([piece])
         if (part.place.item, part.place.clamp) == (spot.item, spot.clamp)
     ]
-    if len(found) != 1:
-        return None
-    [part] = found
-    serial = part.equipment.serial
-    return DeployedRow(
-        part.label,
-        serial if isinstance(serial, str) else "",
-        isinstance(part, Piece) and isinstance(part.component, Flexible),
-        part.component.role == "release",
-    )
+    return found[0] if len(found) == 1 else None
 
 
-def deployed_sheet(draft: Draft, hung: DeployedRow | None) -> InputSheet:
+def deployed_sheet(draft: Draft, hung: Piece | Clamp | None) -> InputSheet:
     """Return when and where the mooring was deployed, and what hangs at a row, as the file has
     them.
     """
@@ -153,23 +131,23 @@ def deployed_sheet(draft: Draft, hung: DeployedRow | None) -> InputSheet:
     if hung is None:
         return InputSheet("As deployed", _COMPARED, asked)
     for key, title, check in _OF_A_ROW:
-        if key != "length" or hung.is_cut:
+        if key != "length" or isinstance(hung.component, Flexible):
             text = said(draft, _ITEMS, ("label", hung.label), key)
             asked.append(Asked(f"item {key}", title, text, check))
-    if hung.is_release:
+    if hung.component.role == "release":
         codes = said(draft, RELEASES, ("serial", _serial(draft, hung)), "codes")
         asked.append(Asked("codes", "Codes", codes, placeholder="arm 0A1B, release 0A55"))
     return InputSheet("As deployed", f"{_COMPARED} Below the depth: {hung.label}.", asked)
 
 
-def as_deployed(draft: Draft, hung: DeployedRow | None, texts: Mapping[str, str]) -> Draft:
+def as_deployed(draft: Draft, hung: Piece | Clamp | None, texts: Mapping[str, str]) -> Draft:
     """The file with what was entered."""
     draft = written(draft, {each.key: texts[each.key] for each in _WHOLE})
     if hung is None:
         return draft
     given = {key: texts[f"item {key}"] for key, _, _ in _OF_A_ROW if f"item {key}" in texts}
     draft = entered(draft, _ITEMS, ("label", hung.label), given)
-    if hung.is_release:
+    if hung.component.role == "release":
         called = "serial", _serial(draft, hung)
         if texts["codes"] and not called[1]:
             raise EditError(f"{hung.label} needs its serial number, by which its codes are known")
@@ -177,7 +155,7 @@ def as_deployed(draft: Draft, hung: DeployedRow | None, texts: Mapping[str, str]
     return draft
 
 
-def _serial(draft: Draft, hung: DeployedRow) -> str:
+def _serial(draft: Draft, hung: Piece | Clamp) -> str:
     """Of the release as designed, else as deployed."""
     return hung.serial or said(draft, _ITEMS, ("label", hung.label), "serial")
 
@@ -275,40 +253,3 @@ def _index(draft: Draft, rows: Location, called: tuple[str, str]) -> int | None:
         if isinstance(entry, dict) and entry.get(key) == name:
             return index
     return None
-
-
-_MOST_STEPS = 9
-
-
-def beginning(begin: Callable[[Template], object]) -> Question:
-    """Ask with which of the `TEMPLATES` an empty line begins, and begin with that kind."""
-    answers = [
-        Answer(str(number), f"{kind}: {meaning}", partial(begin, kind))
-        for number, (kind, meaning) in enumerate(TEMPLATES.items(), 1)
-    ]
-    text = "Each stands as given: change depth, current and pieces to yours."
-    return Question("Begin with", text, answers)
-
-
-def history(session: Session, undo: Callable[[int], object]) -> Question:
-    """Ask how many steps to take back, the last ones listed, and `undo` as many."""
-    steps = session.history.steps
-    answers = [
-        Answer(str(number), f"before: {label}", partial(undo, number))
-        for number, label in enumerate(steps[:_MOST_STEPS], 1)
-    ]
-    more = len(steps) - _MOST_STEPS
-    text = f"Go back to before one of the last {len(answers)} changes; U does them again."
-    text += f" {more} are older; u goes back one by one." if more > 0 else ""
-    return Question("What was done", text, answers)
-
-
-def naming(session: Session) -> InputSheet:
-    """The id of an assembly that is made of marked pieces."""
-    from calm.tui.catalogue.component_screen import id_check
-
-    own = session.draft.value(("components",))
-    check = id_check(own if isinstance(own, dict) else ())
-    asked = [Asked("id", "Id", check=check, placeholder="e.g. glass-pack-own")]
-    text = "The pieces go into the file's components; `use` of this id stands for them."
-    return InputSheet("Make an assembly", text, asked)

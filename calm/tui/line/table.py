@@ -18,9 +18,9 @@ from calm.files import Place
 from calm.quantities import QUANTITIES
 from calm.tui.checking import needed
 from calm.tui.dialogs import Asked, InputSheet, ask
-from calm.tui.messages import Workspace
-from calm.tui.table import TableCells, TableColumn
+from calm.tui.table import EditableTable, TableCells, TableColumn
 from calm.tui.theme import CURSOR, LOOKS, MARK
+from calm.tui.workspace import Workspace
 
 _TAIL = 4
 _EMPTY = (
@@ -252,42 +252,48 @@ def _text_room(shown: list[str], width: int, fixed: dict[str, int]) -> int:
     return width - LEAD - len(shown) - sum(fixed.get(name, 0) for name in shown)
 
 
-class Going:
-    """Moves the cursor of the table to what is looked for, and tells what it is."""
+class LineSearch(EditableTable):
+    """A table of the line whose cursor goes to what is looked for, and which tells what it is."""
 
-    def __init__(self, workspace: Workspace, table: LineTable) -> None:
-        self._workspace, self._table = workspace, table
-        self.words = ""
+    workspace: Workspace
+    table: LineTable
+    words = ""
 
-    def ask(self) -> None:
-        """Ask for the words, and go to the next row that has them."""
+    def settle(self) -> bool:
+        """Take what is typed in a cell; whether it was good."""
+        raise NotImplementedError
+
+    def action_find(self) -> None:
+        """Ask for words, and go to the next row that has them."""
 
         def take(texts: dict[str, str]) -> None:
             self.words = texts["words"]
-            self.to_words()
+            self.action_find_next(1)
 
-        asked = [Asked("words", "Words", self.words, needed("a word"), "id, label, serial, maker")]
-        ask(self._table.app, InputSheet("Find in the line", "", asked), take)
+        if self.settle():
+            takes = "id, label, serial, maker"
+            asked = [Asked("words", "Words", self.words, needed("a word"), takes)]
+            ask(self.app, InputSheet("Find in the line", "", asked), take)
 
-    def to_words(self, by: int = 1) -> None:
+    def action_find_next(self, by: int) -> None:
         """To the next row, or the one before, that has all words: id, label, serial, maker."""
         wanted = self.words.casefold().split()
         if not wanted:
-            self._workspace.tell("/ finds words in the line first")
+            self.workspace.tell("/ finds words in the line first")
             return
         self._to(by, lambda row: all(word in self._said(row) for word in wanted), self.words)
 
-    def to_alike(self, by: int) -> None:
+    def action_alike(self, by: int) -> None:
         """To the next row, or the one before, of the same kind of component."""
-        here = self._table.row
+        here = self.table.row
         if here is not None:
             self._to(by, lambda row: row.sign == here.sign, "of its kind")
 
-    def to_least(self, *, loads: bool) -> None:
+    def action_least(self, loads: int) -> None:
         """To the row with the least margin of all, or of the `loads` that pieces bear."""
-        view = self._workspace.view
-        if view is None or not self._workspace.is_fresh:
-            self._workspace.tell("The line is still being judged; ask again")
+        view = self.workspace.view
+        if view is None or not self.workspace.is_fresh:
+            self.workspace.tell("The line is still being judged; ask again")
             return
         found = [
             (each.share, each.place.row, each)
@@ -296,30 +302,30 @@ class Going:
             if not loads or each.rule == strength.name
         ]
         if not found:
-            self._workspace.tell("No margin is known")
+            self.workspace.tell("No margin is known")
             return
         share, place, finding = min(found, key=lambda each: each[0])
-        self._table.go_to(place)
+        self.table.go_to(place)
         what = "The weakest" if loads else "The lowest margin"
-        self._workspace.tell(f"{what}, {share:+.0%}: {finding.component}, {finding.message}")
+        self.workspace.tell(f"{what}, {share:+.0%}: {finding.component}, {finding.message}")
 
     def _to(self, by: int, is_wanted: Callable[[TableRow], bool], what: str) -> None:
-        rows: Sequence[TableRow] = self._table.rows
+        rows: Sequence[TableRow] = self.table.rows
         found = [number for number, row in enumerate(rows) if is_wanted(row)]
         if not found:
-            self._workspace.tell(f"Nothing in the line has `{what}`", wrong=True)
+            self.workspace.tell(f"Nothing in the line has `{what}`", wrong=True)
             return
-        here = self._table.cursor
+        here = self.table.cursor
         beyond = [each for each in found[::by] if (each - here) * by > 0]
         number = (beyond or found[::by])[0]
-        self._table.cursor = number
-        self._workspace.tell(f"{found.index(number) + 1} of {len(found)} {what}")
+        self.table.cursor = number
+        self.workspace.tell(f"{found.index(number) + 1} of {len(found)} {what}")
 
     def _said(self, row: TableRow) -> str:
         """What a row says, and the catalogue of its component."""
-        index, use = self._workspace.index, row.texts["component"].split()[-1:]
+        index, use = self.workspace.index, row.texts["component"].split()[-1:]
         listed = index.get(use[0]) if index and use else None
-        values = self._workspace.session.draft.value(location(row.spot))
+        values = self.workspace.session.draft.value(location(row.spot))
         serial = values.get("serial", "") if isinstance(values, dict) else ""
         own = f"{row.texts['component']} {row.texts.get('label', '')} {serial}".casefold()
         return f"{own} {listed.searched}" if listed else own

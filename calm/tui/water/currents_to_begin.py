@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from math import exp, isclose
 from pathlib import Path
@@ -13,7 +12,7 @@ from numpy import float32
 
 from calm.errors import CalmError, UsageError
 from calm.records.profile_tables import speed_and_direction
-from calm.tui.checking import Check, Reading, anything
+from calm.tui.checking import Check, Reading
 from calm.tui.dialogs import Answer, Asked, InputSheet, Question, choose
 from calm.tui.water.form import CURRENT_COLUMNS, USUAL_DEPTH
 
@@ -35,16 +34,6 @@ _PRESETS: Mapping[str, Callable[[float], float]] = {
 }  # fmt: skip
 """Profiles to begin with: the speed [m/s] at a share of the depth, 0 at the surface, 1 at the bed.
 """
-
-
-@dataclass(frozen=True)
-class _File:
-    """A file whose profile is read for an environment."""
-
-    variant: str | None
-    path: str
-    time: str
-    depth: float
 
 
 class Currents:
@@ -85,32 +74,38 @@ class Currents:
                 self._screen.change(lambda water: water.put_form(("current",), given), message)
                 return
             self._workspace.tell(f"Reading {path} …")
-            file = _File(water.variant, path, time, water.depth or USUAL_DEPTH)
-            self._screen.run_worker(lambda: self._read(file), thread=True, exit_on_error=False)
+            read = partial(self._read, water.variant, path, time, water.depth or USUAL_DEPTH)
+            self._screen.run_worker(read, thread=True, exit_on_error=False)
 
         if self._screen.settle():
             self._screen.app.push_screen(ImportSheet(self._folder), take)
 
-    def _read(self, file: _File) -> None:
-        """Read a file in a thread; what comes of it is taken by the form."""
+    def _read(self, variant: str | None, path: str, time: str, depth: float) -> None:
+        """Read a file for an environment in a thread; what comes of it is taken by the form."""
         tell, later = self._workspace.tell, self._screen.call_later
         try:
-            columns, rows = imported(self._folder / file.path, file.time, file.depth)
+            columns, rows = imported(self._folder / path, time, depth)
         except CalmError as error:
             later(tell, str(error).partition("\n")[0], wrong=True)
         except Exception as error:  # the libraries that read NetCDF raise whatever they like
             reason = f"{type(error).__name__}: {error}"
-            later(tell, f"{file.path} cannot be read: {reason}", wrong=True)
+            later(tell, f"{path} cannot be read: {reason}", wrong=True)
         else:
-            later(self._take, file, columns, rows)
+            later(self._take, variant, path, columns, rows)
 
-    def _take(self, file: _File, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
-        if file.variant != self._screen.water.variant:
-            message = f"{file.path} was read for another environment; read it again"
+    def _take(
+        self,
+        variant: str | None,
+        path: str,
+        columns: Sequence[str],
+        rows: Sequence[Sequence[str]],
+    ) -> None:
+        if variant != self._screen.water.variant:
+            message = f"{path} was read for another environment; read it again"
             self._workspace.tell(message, wrong=True)
         else:
-            self._screen.put_table(columns, rows, f"current of {file.path}")
-            self._workspace.tell(f"The current of {file.path} is in the table")
+            self._screen.put_table(columns, rows, f"current of {path}")
+            self._workspace.tell(f"The current of {path} is in the table")
 
     @property
     def _folder(self) -> Path:
@@ -132,12 +127,7 @@ class ImportSheet(InputSheet):
             "name in the mooring file; `copy` writes its profile as a table.",
             [
                 Asked("file", "File", check=_existing(folder), placeholder="e.g. adcp.nc"),
-                Asked(
-                    "time",
-                    "Time",
-                    check=anything,
-                    placeholder="e.g. 2026-03-01T06:00, if it is a record",
-                ),
+                Asked("time", "Time", placeholder="e.g. 2026-03-01T06:00, if it is a record"),
                 Asked("how", "refer or copy", "refer", _how),
             ],
         )

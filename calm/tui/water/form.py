@@ -143,8 +143,7 @@ class WaterForm:
         """A value; an empty one takes the key out. No speed is no wind."""
         if keys == ("wind", "speed") and not text:
             return self.draft.put_at(self.at("wind"), None)
-        draft = self._with_own(keys[0]) if len(keys) > 1 else self.draft
-        return draft.put_at(self.at(*keys), text or None)
+        return self.put_form(keys, text or None)
 
     def put_rows(
         self, keys: Sequence[str], columns: Iterable[str], rows: Iterable[Sequence[str]]
@@ -155,13 +154,11 @@ class WaterForm:
         old = given.get("rows") if isinstance(given, dict) and self.table(*keys)[0] else None
         known = {_filled(row, len(names)): row for row in old or ()}
         new = [known.get(tuple(row), [text or None for text in row]) for row in rows]
-        draft = self._with_own(keys[0]) if len(keys) > 1 else self.draft
-        return draft.put_table(self.at(*keys), names, new)
+        return self._with_own(keys).put_table(self.at(*keys), names, new)
 
     def put_form(self, keys: Sequence[str], value: Value | None) -> Draft:
         """The whole of the current or the density; None takes it out."""
-        draft = self._with_own(keys[0]) if len(keys) > 1 else self.draft
-        return draft.put_at(self.at(*keys), value)
+        return self._with_own(keys).put_at(self.at(*keys), value)
 
     def begun(self, keys: Place, form: str) -> Value | None:
         """Return what another form begins with: what is known, else something usual.
@@ -209,15 +206,15 @@ class WaterForm:
     def _down_to(self) -> str:
         return f"{self.depth or USUAL_DEPTH:g}"
 
-    def _with_own(self, key: str) -> Draft:
-        """The file with all that the file's own environment says under a key said here, too.
+    def _with_own(self, keys: Sequence[str]) -> Draft:
+        """The file with what its own environment says under the first key said here, too.
 
         A key of a named environment stands in place of the whole of it.
         """
-        inherited = self.value(key)
-        if self.is_own(key) or not isinstance(inherited, dict):
+        inherited = self.value(keys[0])
+        if len(keys) == 1 or self.is_own(keys[0]) or not isinstance(inherited, dict):
             return self.draft
-        return self.draft.put_at(self.at(key), inherited)
+        return self.draft.put_at(self.at(keys[0]), inherited)
 
 
 def _read(kind: QuantityRange, text: str) -> float | None:

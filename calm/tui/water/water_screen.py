@@ -11,6 +11,7 @@ from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.containers import Horizontal, Vertical, VerticalScroll
 from textual.content import Content
+from textual.dom import DOMNode
 from textual.events import DescendantFocus
 from textual.widget import Widget
 from textual.widgets import Static
@@ -21,7 +22,6 @@ from calm.tui.checking import needed
 from calm.tui.dialogs import Asked, InputSheet, ask
 from calm.tui.field import Field
 from calm.tui.key_table import bindings, hints
-from calm.tui.messages import Workspace, said
 from calm.tui.pictures import ProfilePicture
 from calm.tui.screen import DraftScreen, KeyBar
 from calm.tui.verdict_pane import state_word
@@ -35,8 +35,8 @@ from calm.tui.water.form import (
     WaterForm,
     fields_of_water,
 )
-from calm.tui.water.grid import Grid
-from calm.tui.water.grid_cells import GridCells
+from calm.tui.water.grid import Grid, GridCells
+from calm.tui.workspace import Workspace, said
 
 if TYPE_CHECKING:
     from calm.errors import Problem
@@ -89,7 +89,7 @@ class WaterScreen(DraftScreen):
     def on_mount(self) -> None:
         """Show what the file says."""
         self.show_draft()
-        self.query_one("#depth", Field).focus_input()
+        self.query_one("#depth", Field).input.focus()
 
     @property
     def water(self) -> WaterForm:
@@ -225,14 +225,14 @@ class WaterScreen(DraftScreen):
                 self.workspace.tell(f"Not taken yet: {reading.note}", wrong=True)
                 return False
             if typed:
-                self._take_rows(grid, "a value")
+                self._take_rows(grid.cells, "a value")
         for field in self.query(Field):
             if not field.is_typing:
                 continue
             reading = field.reading
             with field.prevent(Field.Committed):
                 if not field.settle():
-                    field.focus_input()
+                    field.input.focus()
                     self.workspace.tell(f"Not taken yet, {field.key}: {reading.note}", wrong=True)
                     return False
             self._take(field, reading.text)
@@ -257,12 +257,12 @@ class WaterScreen(DraftScreen):
     def _onward(self) -> None:
         self.focus_next()
 
-    @on(Grid.Changed)
-    def _commit_table(self, event: Grid.Changed) -> None:
-        self._take_rows(event.grid, event.label)
+    @on(GridCells.Changed)
+    def _commit_table(self, event: GridCells.Changed) -> None:
+        self._take_rows(event.cells, event.label)
 
-    def _take_rows(self, grid: Grid, label: str) -> None:
-        place, cells = _place(grid), grid.cells
+    def _take_rows(self, cells: GridCells, label: str) -> None:
+        place = _place(cells.parent)
         self.change(lambda water: water.put_rows(place, cells.headings, cells.rows), label)
 
     def on_paste(self, event: events.Paste) -> None:
@@ -375,6 +375,7 @@ class WaterScreen(DraftScreen):
         self.dismiss()  # not waited for: it ends the very loop that would wait
 
 
-def _place(part: Widget) -> Place:
+def _place(part: DOMNode | None) -> Place:
     """Return where in an environment the value of a part of the form is written."""
-    return tuple((part.id or "").removesuffix("-form").removesuffix("-table").split("-"))
+    name = part.id if part else None
+    return tuple((name or "").removesuffix("-form").removesuffix("-table").split("-"))

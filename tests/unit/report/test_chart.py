@@ -11,9 +11,9 @@ from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
 from calm.analytic.chart_branch import curve
-from calm.drawing.picture import check_format
+from calm.drawing.picture import check_format, image
 from calm.errors import UsageError
-from calm.report.chart_page import CHART_FORMATS, chart_picture, draw_chart
+from calm.report.chart_page import CHART_FORMATS, draw_chart
 
 PLATES = [(0.0, "below-90"), (0.15, "below-90"), (0.6, "below-90")]
 PLATES += [(2.4, "below-90"), (2.4, "above-90")]
@@ -113,14 +113,14 @@ def test_negative_ratios_carry_their_sign() -> None:
 @pytest.mark.parametrize(("suffix", "head"), [(".PNG", b"\x89PNG"), (".pdf", b"%PDF")])
 @pytest.mark.thorough
 def test_formats(suffix: str, head: bytes) -> None:
-    assert chart_picture(0.15, "below-90", suffix).startswith(head)
+    assert image(draw_chart(0.15), suffix).startswith(head)
 
 
 @pytest.mark.thorough
 def test_a_drawing_is_the_same_file_each_time_and_its_texts_are_texts() -> None:
-    drawing = chart_picture(0.6, "below-90", ".svg")
+    drawing = image(draw_chart(0.6), ".svg")
     assert re.search(r"<text[^>]*>45°</text>", drawing.decode())
-    assert drawing == chart_picture(0.6, "below-90", ".svg")
+    assert drawing == image(draw_chart(0.6), ".svg")
 
 
 def test_pictures_of_other_formats_are_refused() -> None:

@@ -5,7 +5,8 @@ import pytest
 from rich.console import Console
 
 from calm.case.strumming import Strumming, StrummingBand
-from calm.report.sheet import FigureMark, result_part, safety_mark, tilt_mark
+from calm.checks.finding import State
+from calm.report.sheet import result_part, safety_state, tilt_state
 from calm.report.terminal import shown
 
 GOLDEN = Path(__file__).parent / "golden"
@@ -69,22 +70,22 @@ def test_unknown_knockdown_is_told(make_result):
 
 def test_tilt_marks(result):
     meter = result.mooring.file.pieces[3].component
-    assert tilt_mark(meter, 27.0) is FigureMark.NONE
-    assert tilt_mark(meter, 27.1) is FigureMark.BEYOND
+    assert tilt_state(meter, 27.0) is None
+    assert tilt_state(meter, 27.1) is State.FAIL
 
 
 @pytest.mark.parametrize(
     ("index", "mooring_type", "factor", "utilisation", "mark"),
     [
-        (1, "subsurface", 2.9, None, FigureMark.BEYOND),  # steel: 3
-        (1, "subsurface", 3.1, None, FigureMark.NONE),
-        (6, "subsurface", 4.9, None, FigureMark.BEYOND),  # polyester: 5
-        (6, "subsurface", 5.1, None, FigureMark.NONE),
-        (1, "surface", 4.9, None, FigureMark.BEYOND),  # surface: 5
-        (1, "subsurface", 2.9, 0.9, FigureMark.BEYOND),  # either load may be too much
-        (1, "subsurface", 3.1, 0.9, FigureMark.NONE),
-        (1, "subsurface", 9.0, 1.1, FigureMark.BEYOND),
-        (1, "subsurface", None, None, FigureMark.NONE),
+        (1, "subsurface", 2.9, None, State.FAIL),  # steel: 3
+        (1, "subsurface", 3.1, None, None),
+        (6, "subsurface", 4.9, None, State.FAIL),  # polyester: 5
+        (6, "subsurface", 5.1, None, None),
+        (1, "surface", 4.9, None, State.FAIL),  # surface: 5
+        (1, "subsurface", 2.9, 0.9, State.FAIL),  # either load may be too much
+        (1, "subsurface", 3.1, 0.9, None),
+        (1, "subsurface", 9.0, 1.1, State.FAIL),
+        (1, "subsurface", None, None, None),
     ],
 )
 def test_safety_marks(make_result, index, mooring_type, factor, utilisation, mark):
@@ -92,7 +93,7 @@ def test_safety_marks(make_result, index, mooring_type, factor, utilisation, mar
     record = result.components[index]
     record.safety_factor = float("nan") if factor is None else factor
     record.utilisation = float("nan") if utilisation is None else utilisation
-    assert safety_mark(result, record) is mark
+    assert safety_state(result, record) is mark
 
 
 def test_draft_where_the_hull_is_known(make_result):

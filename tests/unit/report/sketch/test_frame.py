@@ -1,7 +1,7 @@
 import pytest
 
-from calm.drawing.graph.scale import number
-from calm.drawing.graph.scale import round_numbers as ticks
+from calm.drawing.graph import number
+from calm.drawing.graph import round_numbers as ticks
 from calm.drawing.sketch.canvas import Canvas, CellScale, PlotFrame, levels
 
 

@@ -1,19 +1,24 @@
-"""One column of several rows, entered one below the other or pasted as a list."""
+"""What is filled in for several rows at once: a column of them, or the figures that are missing."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING
 
 from textual.events import Paste
 
+from calm.case.parts import parts_of
+from calm.checks.finding import State
 from calm.files import Place
-from calm.files.editing import Value
+from calm.files.editing import Draft, Value
+from calm.files.rule_texts import RULES
+from calm.files.yaml_document import Location
+from calm.tui.catalogue.component_screen import FormField, form_fields
 from calm.tui.checking import anything, count
 from calm.tui.dialogs import Answer, Asked, InputSheet, Question, ask, choose
 from calm.tui.field import Field
-from calm.tui.line.line_cell import LineCell
 from calm.tui.line.mooring_sheet import (
     RELEASES,
     entered,
@@ -23,11 +28,14 @@ from calm.tui.line.mooring_sheet import (
     serial_of_equipment,
     texts_of_equipment,
 )
+from calm.tui.line.rows import LineCell
 from calm.tui.line.table import Column, LineTable, location
-from calm.tui.messages import Workspace
+from calm.tui.workspace import Workspace
 
 if TYPE_CHECKING:
     from calm.tui.line.line_pane import LinePane
+    from calm.tui.live import View
+
 
 _TITLES = {"serial": "Serial numbers", "length": "Lengths", "label": "Labels", "codes": "Codes"}
 
@@ -43,10 +51,10 @@ class ColumnSheet(InputSheet):
         if len(lines) < 2:
             return
         event.stop()
-        for field, text in zip(fields[first:], lines, strict=False):
-            field.input.value = text
+        for each, text in zip(fields[first:], lines, strict=False):
+            each.input.value = text
         last = min(first + len(lines), len(fields)) - 1
-        fields[last].focus_input()
+        fields[last].input.focus()
         if len(lines) > len(fields) - first:
             self.app.bell()
 
@@ -164,3 +172,132 @@ class ColumnFilling:
     def _written(self, key: str) -> dict[str, Value]:
         values = self._session.draft.value(location(self._spots[key]))
         return values if isinstance(values, dict) else {}
+
+
+_MOST_LABELS = 4
+_ELSEWHERE = "part of an assembly of the catalogue: use its parts, or define it in the file (o)"
+_SOURCE = "data sheet, test certificate …"
+
+
+def ask_figures(pane: LinePane) -> None:
+    """Ask for all that is missing, once the line is judged, and write what is given."""
+    workspace, session = pane.workspace, pane.session
+    if not pane.settle():
+        return
+    if workspace.view is None or not workspace.is_fresh:
+        workspace.tell("Missing figures are known once the line is judged")
+        return
+    missing = missing_figures(workspace.view, session.draft)
+    if not missing:
+        workspace.tell("No figure of a component is missing")
+        return
+
+    def take(texts: dict[str, str]) -> None:
+        source = texts.pop("source", "")
+        figures = {asked: text for asked, text in texts.items() if text}
+        if figures:
+            count = f"{len(figures)} figure{'s' * (len(figures) != 1)} filled in"
+            pane.attempt(
+                lambda: session.do(
+                    filled(session.draft, missing, figures, source), "fill in figures"
+                ),
+                count,
+            )
+
+    ask(pane.app, figures_sheet(missing), take)
+
+
+def figures_sheet(missing: Sequence[Missing]) -> InputSheet:
+    """Ask for all figures of each component, and for their source; any may stay empty."""
+    asked: list[Asked] = []
+    elsewhere = [f"{each.called}: {_ELSEWHERE}" for each in missing if not each.fields]
+    for each in missing:
+        for number, figure in enumerate(each.fields):
+            above = "" if number else each.called
+            key, title = f"{each.use}.{figure.key}", figure.key.replace("_", " ")
+            asked.append(Asked(key, title, "", figure.check, takes=figure.takes, above=above))
+    asked.append(Asked("source", "source", takes=_SOURCE, above="Of the figures"))
+    count = len(missing)
+    title = f"Figures missing of {count} component{'s' * (count != 1)}; any may stay empty"
+    return InputSheet(title, "\n".join(elsewhere), asked)
+
+
+@dataclass
+class Missing:
+    """What is not known of a component, once for all rows that use it.
+
+    Attributes
+    ----------
+    use, kind : of the component
+    labels : of the pieces and clamps that it is missing of, as the keys of a dict
+    targets : by key where in the file it is written: in the definition, where the file has it,
+        else in every row that lacks it; nowhere where that stands in an assembly
+    """
+
+    use: str
+    kind: str
+    labels: dict[str, None] = field(default_factory=dict)
+    targets: dict[str, dict[Location, None]] = field(default_factory=dict)
+
+    @property
+    def called(self) -> str:
+        """Return the component, with the labels of the first rows that lack a figure."""
+        labels = ", ".join(list(self.labels)[:_MOST_LABELS])
+        more = len(self.labels) - _MOST_LABELS
+        labels += f" and {more} more" if more > 0 else ""
+        return self.use if labels == self.use else f"{self.use}: {labels}"
+
+    @property
+    def fields(self) -> list[FormField]:
+        """Return what would do and can be filled in, as the form of a component has it."""
+        return [each for each in form_fields(self.kind) if self.targets.get(each.key)]
+
+
+def missing_figures(view: View, draft: Draft) -> list[Missing]:
+    """Return what the unknown findings of a line ask for, down the line."""
+    if view.file is None:
+        return []
+    wanted: dict[Place, dict[str, None]] = {}
+    for finding in view.findings:
+        if finding.state is State.UNKNOWN and finding.place and RULES[finding.rule].figures:
+            asked = wanted.setdefault(finding.place, {})
+            asked.update(dict.fromkeys(RULES[finding.rule].figures))
+    own = draft.value(("components",))
+    found: dict[str, Missing] = {}
+    for part in parts_of(view.file.pieces):
+        if part.place not in wanted:
+            continue
+        missing = found.setdefault(part.use, Missing(part.use, part.component.kind))
+        missing.labels[part.label] = None
+        for key in wanted[part.place]:
+            targets = missing.targets.setdefault(key, {})
+            if isinstance(own, dict) and part.use in own:
+                targets["components", part.use] = None
+            elif part.place.part < 0:
+                targets[location(part.place)] = None
+    return list(found.values())
+
+
+def filled(
+    draft: Draft, missing: Iterable[Missing], texts: Mapping[str, str], source: str
+) -> Draft:
+    """The draft with figures filled in.
+
+    Parameters
+    ----------
+    texts : by ``component.key``; what is empty stays unknown
+    source : of all of them; may be empty
+
+    Raises
+    ------
+    EditError
+        The file does not allow it.
+    """
+    for each in missing:
+        for key, targets in each.targets.items():
+            text = texts.get(f"{each.use}.{key}", "")
+            for target in targets if text else ():
+                draft = draft.put_at((*target, key), text)
+                if source:
+                    draft = draft.put_at((*target, "sources", key), source)
+    return draft
