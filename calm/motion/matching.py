@@ -297,9 +297,10 @@ def unusable(measured: MooringMeasurements, still: Floats) -> dict[str, str]:
         place = float(still[measured.point[j]])
         far = abs(least[j] - place) > MISPLACED and not 0.5 < least[j] / place < 2.0
         if (far or units) and not any(f"`{label}`" in one for one in complaints):
+            doubted = "sign" if least[j] < -MISPLACED else f"unit ({units or 'bar, kPa?'})"
             complaints.append(
                 f"`{label}` is at {least[j]:.1f} m at its least, where the line has it at "
-                f"{place:.1f} m: its unit ({units or 'bar, kPa?'}) or its label is wrong"
+                f"{place:.1f} m: its {doubted} or its label is wrong"
             )
     if complaints:
         raise UsageError("--pressures: " + "; ".join(complaints))
@@ -319,6 +320,7 @@ def _exchanged(labels: Sequence[str], least: Floats, place: Floats) -> list[str]
         "exchanged"
         for i, j in combinations(range(len(labels)), 2)
         if abs(place[j] - place[i]) > APART
+        and min(least[i], least[j]) > -MISPLACED
         and -1.5 < (least[j] - least[i]) / (place[j] - place[i]) < -0.6
     ]
 

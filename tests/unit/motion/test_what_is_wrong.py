@@ -41,6 +41,13 @@ def test_psi_and_dbar_are_told_apart(factor, unit, count):
     assert str(refused.value).count(f"its unit ({unit}") == count
 
 
+def test_pressures_that_count_down_have_the_wrong_sign():
+    with pytest.raises(UsageError) as refused:
+        unusable(measured(-knocked()), STILL)
+    said = str(refused.value)
+    assert said.count("its sign or its label is wrong") == 3 and "exchanged" not in said
+
+
 def test_exchanged_labels_are_refused_by_their_names():
     with pytest.raises(UsageError) as refused:
         unusable(measured(knocked()[:, [1, 0, 2]] + 8.0), STILL)
