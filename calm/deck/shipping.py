@@ -8,6 +8,7 @@ from itertools import groupby
 from math import pi
 from typing import TYPE_CHECKING
 
+from calm.case.parts import parts_of
 from calm.deck.deck_items import Order
 from calm.files import Cable, Chain, Cylinder, Sphere
 from calm.files.components import FLEXIBLE_KINDS
@@ -57,7 +58,7 @@ def shipped_of(
     components = {
         (piece.index, part.label): part.component
         for piece in file.pieces
-        for part in (piece, *piece.clamps)
+        for part in parts_of([piece])
     }
     groups: dict[str, list[InventoryItem]] = {}
     for item in inventory:
