@@ -154,7 +154,11 @@ _TWINS = _MASS_AND_FORCE | {force: mass for mass, force in _MASS_AND_FORCE.items
 
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,4}(?![\d.]))?")
 _FRACTION = re.compile(r"([+-]?)(?:(\d+)\s+)?(\d+)\s*/\s*(\d+)(?![\d.])")
-_COMMA = re.compile(r"([+-]?\d+),(\d+)(?=$|[^\d,])")
+_COMMA = re.compile(r"([+-]?\d+),(\d+)(?=$|[^\d,.])")
+_THOUSANDS = re.compile(  # `1,250,000`, `1,250.0` and `1.250,0`
+    r"([+-]?\d{1,3}(?:([,.])\d{3}(?:\2\d{3})+|(?:,\d{3})+(?=\.\d)|(?:\.\d{3})+(?=,\d)))"
+    r"(?:[.,](\d+))?(?![\d.,])"
+)
 # a word ends where no more of it follows: else the ways to part one double with every letter
 _UNIT = re.compile(r"(?:[A-Za-zµ°%][A-Za-z_µ°%]*(?![A-Za-z_µ°%])|[*/()]|\^-?[1-4](?!\d)|1(?=/))+")
 _SUPERSCRIPTS = str.maketrans("⁻¹²³⁴", "-1234")
@@ -310,6 +314,10 @@ def _split(text: str, wanted: Dimension) -> tuple[float, str]:
             raise QuantityError("is divided by zero")
         size = float(whole or 0) + float(numerator) / float(denominator)
         return (-size if sign == "-" else size), text[fraction.end() :].strip()
+    marked = _THOUSANDS.match(text)
+    if marked:
+        plain = re.sub("[.,]", "", marked[1]) + (f".{marked[3]}" if marked[3] else "")
+        raise QuantityError("has marks between thousands", plain + text[marked.end() :])
     comma = _COMMA.match(text)
     if comma:
         unit = text[comma.end() :]

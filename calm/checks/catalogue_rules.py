@@ -42,10 +42,17 @@ NOMINAL = 1.25
 """How much more a jacketed wire displaces than its nominal diameter, at most, by what is printed of
 its mass and its weight in water."""
 
-"""Density of lead [kg/m³]; nothing on a mooring is denser."""
+LOOSEST = 0.1
+"""Share of its section that a rope displaces at least; the loosest braids displace half."""
+
+LIGHTEST_FLOAT = 0.01
+"""Share of its lift that a float weighs at least: foam 0.02, inflated buoys 0.03."""
 
 STEEL_MODULUS = 210e9
 """Young's modulus of steel [Pa]; no cable is stiffer than a solid bar of it."""
+
+SOFTEST_WIRE = 0.05
+"""Share of a steel bar's stiffness that a wire has at least; those of the catalogue have 0.17."""
 
 GREATEST_STRENGTH = 4e9
 """Greatest tensile strength of any fibre or wire of a cable [Pa]."""
@@ -116,6 +123,11 @@ def impossible(component: Component) -> Iterator[str]:
     mass, volume, rating = component.mass, component.displaced_volume, component.depth_rating
     if mass is not None and volume is not None and mass > ROUNDING * LEAD_DENSITY * volume:
         yield f"has a mass of {mass:.4g} kg in {volume:.3g} m³, denser than lead"
+    net = component.net_buoyancy
+    if component.role == "float" and net < 0.0:
+        yield f"is a float (`role: float`) and weighs {-net:.4g} N in water"
+    if mass is not None and mass * STANDARD_GRAVITY < LIGHTEST_FLOAT * net:
+        yield f"weighs {mass:.4g} kg and lifts {net:.4g} N; no float is so light"
     if rating is not None and rating > DEEPEST_WATER:
         yield f"is rated to {rating:.5g} m; no water is deeper than {DEEPEST_WATER:g} m"
     if isinstance(component, Cable):
@@ -170,9 +182,18 @@ def _of_a_rope(rope: Cable) -> Iterator[str]:
             f"weighs {rope.mass:.4g} kg/m and has {net:.4g} N/m in water: with that it displaces "
             f"more than water of its diameter weighs, {lift / ROPE_ROUNDING:.4g} N/m"
         )
-    if rope.stiffness is not None and rope.stiffness > stiff:
+    elif rope.mass is not None and _displaced(rope, rope.mass) < LOOSEST * lift:
+        yield (
+            f"weighs {rope.mass:.4g} kg/m and has {net:.4g} N/m in water: with that it displaces a "
+            f"small part of what its diameter does, {lift / ROPE_ROUNDING:.4g} N/m"
+        )
+    if rope.stiffness is not None:
         stiffness = f"has a stiffness of {rope.stiffness:.4g} N"
-        yield f"{stiffness}; a steel bar of its diameter {stiff:.4g} N"
+        wire = {each.name for each in materials_in(rope.material)} <= {"steel", "stainless steel"}
+        if rope.stiffness > stiff:
+            yield f"{stiffness}; a steel bar of its diameter {stiff:.4g} N"
+        elif rope.material and wire and rope.stiffness < SOFTEST_WIRE * stiff:
+            yield f"{stiffness}; a wire of its diameter {SOFTEST_WIRE * stiff:.4g} N at least"
     if breaking is not None and breaking > strong:
         yield f"breaks at {breaking:.4g} N; no cable of its diameter at {strong:.4g}"
 

@@ -11,8 +11,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from math import isnan, pi, sqrt
+from math import pi, sqrt
 from typing import Any, assert_never
+
+import numpy as np
 
 from calm.assemble import drag_of, net_buoyancy
 from calm.case import Result
@@ -57,10 +59,10 @@ def grown(pieces: Sequence[Piece], given: Result, fouling: Fouling) -> tuple[Pie
 def _grown_pieces(
     pieces: Sequence[Piece], given: Result, fouling: Fouling, gravity: float
 ) -> Iterator[Piece]:
-    sunk = given.components.knockdown
-    for row, piece in zip(given.components, pieces, strict=True):
-        rise = 0.0 if isnan(sunk[0]) else row.knockdown
-        top, bottom = row.depth_top - rise, row.depth_bottom - rise
+    sunk = np.nan_to_num(given.components.knockdown)  # none where still water has no shape
+    below = np.append(sunk[1:], 0.0)
+    for row, piece, high, low in zip(given.components, pieces, sunk, below, strict=True):
+        top, bottom = row.depth_top - high, row.depth_bottom - low
         along = (bottom - top) / piece.length if piece.length else 0.0
         clamps = tuple(
             replace(clamp, component=grown_component(clamp.component, fouling, gravity))

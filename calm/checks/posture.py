@@ -41,13 +41,22 @@ JUDGED_ROLES = ("float", "instrument", "release")
 """What is made for a depth; of line and connectors only those that give a rating are judged."""
 
 
+AFLOAT_KEYS = ("hull", "k_surface", "wind_area", "heave")
+"""What is given of a float at the surface alone."""
+
+
 def reaches_the_surface(mooring: Mooring) -> bool:
     """Return whether a line is meant to have its float at the surface, as it has in still water.
 
-    A line that reaches it has no unique shape in still water where it is longer than that is deep.
+    A float with a figure that only one at the surface needs is meant for it, though it be too small
+    to come up. A line that reaches it has no unique shape in still water where it is longer than
+    that is deep.
     """
     if mooring.for_surface is not None:
         return mooring.for_surface
+    top = mooring.file.pieces[0].component
+    if any(getattr(top, key, None) is not None for key in AFLOAT_KEYS):
+        return True
     if mooring.at_rest is None:
         return float(mooring.line.length.sum()) >= mooring.water.depth
     return -float(mooring.at_rest.position[0, 2]) <= AT_SURFACE
@@ -304,7 +313,9 @@ def freeboard(result: Result) -> Iterator[Verdict]:
         top,
         height,
         0.0,
-        f"The float stands {say('freeboard', height)} out of the water.",
+        f"The float stands {say('freeboard', height)} out of the water."
+        if height >= 0.0
+        else f"The float is {say('depth', -height)} under water.",
         "Take a larger float.",
     )
 

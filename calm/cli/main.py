@@ -174,7 +174,7 @@ app = App(
     help_format="plaintext",
     help_formatter=HelpAtWidth(),
     version=_version,
-    default_parameter=Parameter(negative=(), show_default=False),
+    default_parameter=Parameter(negative=(), show_default=False, json_list=False, json_dict=False),
     suppress_keyboard_interrupt=False,
     result_action="return_value",
 )

@@ -242,11 +242,11 @@ def refused_at(path: object, line: int, column: int, message: str) -> InputError
 
 _RELEASE = re.compile(
     r"\brelease|\bacoustic rel|\blargu|\blargage|\bar[ -]?\d{3}|\bcdms ar\b|\b8242\b|\b866\b"
-    r"|ausl[öo]se|\bliberador|\bsuelta",
+    r"|ausl[öo]se|utl[øo]se|\bliberador|\bsuelta",
     re.I,
 )
 _HEAVY = 20.0  # N: nothing that only joins weighs more, whatever it is called
-_CHAIN = re.compile(r"chain|cha[iî]ne|\w*kette\b|\bcadena", re.I)
+_CHAIN = re.compile(r"chain|cha[iî]ne|\w*kette\b|\bkjetting|\bcadena", re.I)
 _CONNECTOR = re.compile(
     r"shackle|\bshac|swivel|sling|\blink|pear|\bring|ringlet|miller|manille|[ée]merillon|maillon"
     r"|anneau|sch[äa]kel|wirbel|\bgrillete|giratorio|anilla|thimble|kausch|guardacabo",
@@ -268,7 +268,7 @@ _LINE = re.compile(
     r"|leine\b|\btau\b|trosse|kabel|\bcabo\b|cuerda|estacha|tether|hawser|\bwarp\b|nilspin|jetstr"
     r"|kevlar|aramid|twaron|technora|vectran|nylon|polyamid|dacron|polyester|polyprop|polysteel|danline"
     r"|dyneema|spectra|uhmwpe|\bhmpe|amsteel|plasma|tenex|samson|colmega|dynex|steelite|phillystran"
-    r"|braid|strand|\b\d{1,2}x\d{1,2}\b|\bmanila\b|sisal|hemp\b|umbilical|\bcoax",
+    r"|braid|strand|\b\d{1,2}x\d{1,2}\b(?!.*(?:\bgla|\bball|verre|vidrio|\bin\b|[\"\u2033]))|\bmanila\b|sisal|hemp\b|umbilical|\bcoax",
     re.I,
 )
 _LONG, _SLENDER = 3.0, 60.0

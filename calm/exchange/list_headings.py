@@ -1,4 +1,4 @@
-"""Tell what the columns of a list hold, by headings in English, French, German or Spanish."""
+"""Tell what the columns of a list hold, by headings in five languages."""
 
 from __future__ import annotations
 
@@ -29,12 +29,15 @@ COLUMNS = (
 WORDS = ("name", "label", "kind", "role")
 """Columns that hold words."""
 
-_WEIGHT = r"(weight|poids|gewicht|\bpeso|mass(e|a)?\b|\bmasa\b)"
-_WET = r"(water|\bwet|\beau\b|immerg|submer|immersed|\bsea|\bmer\b|wasser|nass|agua|sumergid|mojad)"
+_WEIGHT = r"(weight|poids|gewicht|vekt|\bpeso|mass(e|a)?\b|\bmasa\b)"
+_WET = (
+    r"(water|\bwet|\beau\b|immerg|submer|immersed|\bsea|\bmer\b|wasser|vann|nass|agua|sumergid"
+    r"|mojad)"
+)
 _AIR = r"(\bair\b|luft|trocken|\baire\b|\bsec[oa]?\b|\bdry\b)"
 _PATTERNS: tuple[tuple[str, str], ...] = (
     ("count", r"^(qty|quantity|count|number|no\.? of|nb|nombre|qte|quantite)\b"),
-    ("count", r"^(anzahl|menge|stuck(zahl)?|stk|cant(idad)?)\b"),
+    ("count", r"^(anzahl|antall|menge|stuck(zahl)?|stk|cant(idad)?)\b"),
     ("at", r"clamped at|along|position sur|distance|geklemmt|abstand|distancia"),
     ("tangential_area", r"tangential cd x area"),
     ("drag_area", r"drag area|\bcd ?[x*.]? ?a(rea)?\b|\bcda\b"),
@@ -42,11 +45,11 @@ _PATTERNS: tuple[tuple[str, str], ...] = (
     ("cd", r"^(cd|cx|cw|c_?d|cn)\b|drag|trainee|widerstand|arrastre"),
     ("breaking_load", r"break|rupture|\bmbl\b|strength|resistance|bruch|rotura"),
     ("stiffness", r"^ea\b|stiff|raideur|steifigkeit|rigidez"),
-    ("buoyancy", r"buoy|flott|lift|portance|poussee|auftrieb|flotabilidad|empuje"),
+    ("buoyancy", r"buoy|flott|lift|portance|poussee|auftrieb|oppdrift|flotabilidad|empuje"),
     ("weight", f"{_WEIGHT}.*{_WET}|{_WET}.*{_WEIGHT}"),
     ("mass", rf"{_WEIGHT}.*{_AIR}|{_AIR}.*{_WEIGHT}|\bmass(e|a)?\b|\bmasa\b|\bdry\b"),
-    ("weight", r"^(weight|poids|gewicht|peso)\b"),
-    ("mass", r"^(weight|poids|gewicht|peso)\b"),
+    ("weight", r"^(weight|poids|gewicht|vekt|peso)\b"),
+    ("mass", r"^(weight|poids|gewicht|vekt|peso)\b"),
     ("diameter", r"diam|ø|durchmesser|^dia\b|^o\.?d\b"),
     ("width", r"width|largeur|breite|\banch(o|ura)\b"),
     (
@@ -55,7 +58,7 @@ _PATTERNS: tuple[tuple[str, str], ...] = (
     ),
     ("height", r"bottom_height|^altitude|^(height|hauteur|hohe|altura)\b"),
     ("length", r"^(length|longueur|lange|laenge|longitud|largo|long|len|l)\b"),
-    ("length", r"length|longueur|lange\b|laenge|longitud"),
+    ("length", r"length|longueur|lange\b|laenge|lengde|longitud"),
     ("material", r"^(material|materiau|werkstoff)\b"),
     ("role", r"^(role|fonction|function|funktion|funcion)\b"),
     ("kind", r"^(kind|type?|art|tipo|categor(y|ie|ia)|kategorie|famille|family)\b"),
@@ -63,7 +66,7 @@ _PATTERNS: tuple[tuple[str, str], ...] = (
 )
 _NAMES = (
     r"name|^nom\b|element|description|designation|component|composant|materiel|bezeichnung"
-    r"|benennung|beschreibung|descripcion|komponente|bauteil",
+    r"|benennung|beschreibung|descripcion|komponente?|bauteil",
     r"^(item|article|artikel|teil)\b|equip|instrument|piece|pieza|part|gerat",
 )
 _NUMBERED = re.compile(

@@ -27,7 +27,11 @@ from calm.exchange.mdd_elements import MODULI
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.units import KILOGRAM_FORCE
 
-_TOTAL = re.compile(r"^(sub-?)?(total|totaux|sum|somme|ensemble)\b", re.I)
+_TOTAL = re.compile(
+    r"^(sub-?)?(totals?|totaux|gesamt\w*|summ?[ae]?|somme|ensemble|i alt|tilsammans)\b", re.I
+)
+_DITTO = re.compile(r"^(ditt?o|do|idem|id|dto|[\"'\u2033\u201d\u201e\u3003]+)\.?$", re.I)
+_COUNTED = re.compile(r"^\(?([2-9]|[1-9]\d)\s?[x\u00d7]\s?(?=\S)", re.I)  # 10x glass, 6 x 17 in
 _ANCHOR_KINDS = re.compile(r"\banchors?\b|\bancre|\blest\b", re.I)
 _ENOUGH = {"length", "buoyancy", "weight"}  # one of them makes a piece
 _MOST = 1000  # of one row's count
@@ -112,7 +116,13 @@ def rows_of(
         guessed.append(Remark("numbers", said))
     for place, each in enumerate(cells[headings.row + 1 :], headings.row + 2):
         name = cell_of(each, known["name"])
+        if _DITTO.match(name) and rows:
+            guessed.append(Remark(f"row {place}", f"`{name}` read as `{rows[-1].name}`"))
+            name = rows[-1].name
         if not name:
+            held = [cell_of(each, column) for what, column in known.items() if what in _ENOUGH]
+            if any(re.search(r"\d", cell) for cell in held):
+                dropped.append(Remark(f"row {place}", "it has figures and no name"))
             continue
         if _TOTAL.match(name):
             dropped.append(Remark(f"row {place}", f"`{name}`, a sum"))
@@ -128,6 +138,10 @@ def rows_of(
         if not fixed and is_long(name, row.figures.get("length", 0.0), size):
             row.line = True
             guessed.append(Remark(row.where, "taken as a rope, since it is long and thin"))
+        several = _COUNTED.match(name)
+        if several and row.count == 1 and not row.is_line:
+            said = f"read as one piece with the figures of its row, not as {several[1]} of them"
+            guessed.append(Remark(row.where, said))
         rows.append(row)
     return rows
 

@@ -27,6 +27,7 @@ from calm.whole_file import read_text
 
 _FREE = ("free", "connect", "point")
 _CURRENTS = "current_profile.txt"
+_STEADY = ("1", "3")  # of `Currents`; the others vary in time
 _NEAR, _NEAR_AT_LEAST = 0.05, 2.0
 """Share of the depth, and metres: an upper end so near the surface hangs under a float."""
 
@@ -119,10 +120,15 @@ def read_moordyn(path: Path) -> Design:
         raise refused(path, "gives no depth of the water (`WtrDpth`)")
     density = _option(options, "wtrdnsty", "rhow", "rho", default=CATALOGUE_DENSITY)
     gravity = _option(options, "g", "gravity", default=STANDARD_GRAVITY)  # its own
-    beside = path.with_name(_CURRENTS)
-    flows = options.get("currents", "0") not in ("0", "none") and beside.is_file()
-    water = ImportedWater(depth, density, gravity, _currents(beside) if flows else ())
+    kind, beside = options.get("currents", "0"), path.with_name(_CURRENTS)
+    current = _currents(beside) if kind in _STEADY and beside.is_file() else ()
+    water = ImportedWater(depth, density, gravity, current)
     design = Design("MoorDyn", path.stem, [], water, notes=[_NOTE])
+    if kind not in ("0", "none") and not current:
+        lacks = f"without {_CURRENTS} beside the file" if kind in _STEADY else "which vary in time"
+        design.dropped.append(Remark("current", f"`Currents` {kind}, {lacks}: the water is still"))
+    if options.get("wavekin", "0") not in ("0", "none"):
+        design.dropped.append(Remark("waves", f"`WaveKin` {options['wavekin']}"))
     types = {row.words.get("name", ""): row for row in tables["types"]}
     file = _File(points, types, lines, at, depth, gravity, design)
     design.dropped.append(Remark("line types", "damping, bending stiffness, added mass"))

@@ -29,6 +29,8 @@ OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "_nrt": False}
 """Nothing is allocated by a compiled law, so that arrays need not be counted when they are passed
 on: that takes as long as a segment. No law divides by zero, and none raises."""
 
+NEWEST = (0, 68)
+"""Of numba, whose parts are known to be as `_linked_compiler` uses them."""
 
 Fn = TypeVar("Fn", bound=Law)
 
@@ -121,9 +123,12 @@ def _linked_compiler() -> Any:
     """The compiler of the laws that others call, of which no machine code is made by themselves.
 
     Each is linked into the law that is called from Python, and optimised in it once; numba itself
-    optimises and translates every law again on each level of the calls.
+    optimises and translates every law again on each level of the calls, which takes longer. That is
+    left as it is in a numba newer than `NEWEST`.
     """
     numba: Any = __import__("numba")
+    if numba.version_info.short > NEWEST:
+        return numba.core.compiler.Compiler
     core, make_function = numba.core, numba._dynfunc.make_function
     library: Any = core.codegen.JITCodeLibrary
     lowering: Any = core.typed_passes.NativeLowering

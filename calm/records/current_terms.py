@@ -131,6 +131,8 @@ _MOST = 0.5  # share of profiles like the one before that is said
 _ZEROS = 0.25  # share of zeros that is said
 _TURN = 2.0 * pi  # in radians; no current stays within so many degrees of north
 _ALIKE = 0.9  # share of values that are the same in both components
+_BEYOND = 1.5  # times all other values: what recurs there is none
+_VARIED = 20  # other values of which that is said
 _WEAK = 0.01  # m/s that no sea stays below for many profiles
 _UNCOVERED = 0.1  # share of the depth that a profile may leave out at either end
 _FEW = 25.0  # m of that
@@ -188,6 +190,8 @@ def current_notices(
                 f"all {moving.sum()} currents flow towards {towards.min():.2g} to "
                 f"{towards.max():.2g} degrees: radians read as degrees?"
             )
+        yield from _recurring(u[moving], "east")
+        yield from _recurring(v[moving], "north")
         if moving.sum() > _MANY and not (u[moving].any() and v[moving].any()):
             yield f"all {moving.sum()} currents are along one axis, their other component 0"
         strongest = float(np.hypot(u[moving], v[moving]).max())
@@ -196,6 +200,19 @@ def current_notices(
                 f"the strongest of {count} currents is {strongest:.2g} m/s: cm/s or another unit "
                 "read as m/s?"
             )
+
+
+def _recurring(values: Floats, side: str) -> Iterator[str]:
+    """Yield that one value recurs beyond all others, as what fills a gap does [m/s]."""
+    largest = np.abs(values).max()
+    filled = np.abs(values) == largest
+    others = values[~filled]
+    beyond = largest > _BEYOND * np.abs(others).max(initial=0.0)
+    if beyond and filled.sum() >= _FEWEST and np.unique(others).size >= _VARIED:
+        yield (
+            f"{filled.sum()} of {values.size} currents to the {side} are "
+            f"{values[filled][0]:.5g} m/s, far beyond all others: a fill value?"
+        )
 
 
 def _stuck_levels(u: Floats, v: Floats) -> Iterator[str]:

@@ -151,7 +151,7 @@ def worst_table(sections: Sequence[Section]) -> Table:
         (Column("value", numeric=True), lambda row: say_in_unit(row[0], row[0].value)),
         (Column("limit", numeric=True), lambda row: say_in_unit(row[0], row[0].limit)),
         (Column("margin", numeric=True), lambda row: margin_of(row[0])),
-        (Column("unknown", numeric=True), lambda row: str(row[1] or "")),
+        (Column("unknown", numeric=True, short="?"), lambda row: str(row[1] or "")),
         *(
             (
                 Column(heading, numeric=True, narrow=False),

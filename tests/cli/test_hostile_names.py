@@ -106,6 +106,7 @@ def test_names_are_printed_as_they_are(command, folder, capsys):
     [
         (["run", "m.yaml", "--environment", "[/w]"], "[/w]"),
         (["run", "m.yaml", "[/none].yaml"], "[/none].yaml"),
+        (["run", "[none].yaml"], "[none].yaml: no such file"),
         (["size", "m.yaml", "--target", "tilt([/no]) <= 1 deg", "--change", "x.count"], "[/no]"),
         (["catalog", "show", "[/c]"], "[/c]"),
         (["catalog", "search", "[/none]"], "[/none]"),

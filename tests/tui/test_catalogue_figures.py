@@ -1,15 +1,20 @@
 """The catalogue as a table: figures, limits in the search, synonyms, what was used lately."""
 
+from functools import cache
+
 import pytest
 
 from calm.assemble.catalogue_search import COLUMNS, Index, wanted
 from calm.files import Catalogue
 
-INDEX = Index(Catalogue.load())
+
+@cache
+def index():
+    return Index(Catalogue.shipped())
 
 
 def found(text, **how):
-    return [each.id for each in INDEX.search(text, **how)]
+    return [each.id for each in index().search(text, **how)]
 
 
 @pytest.mark.parametrize(
@@ -36,7 +41,7 @@ def test_a_word_may_be_a_limit(word, key, limit):
 def test_limits_are_kept_by_all_that_are_found():
     ids = found("shackle breaking>100kN")
     assert ids and len(ids) < len(found("shackle"))
-    assert all(INDEX.figures(id)["breaking"] > 100e3 for id in ids)
+    assert all(index().figures(id)["breaking"] > 100e3 for id in ids)
     assert not [id for id in ids if "shackle" not in id]
 
 
@@ -56,7 +61,7 @@ def test_words_of_the_trade_find_what_is_called_otherwise(words, id):
 
 
 def test_the_greatest_comes_first_and_what_is_unknown_last():
-    loads = [INDEX.figures(id)["breaking"] for id in found("wire", by="breaking")]
+    loads = [index().figures(id)["breaking"] for id in found("wire", by="breaking")]
     known = [load for load in loads if load is not None]
     assert known == sorted(known, reverse=True) and loads[: len(known)] == known
 
@@ -69,8 +74,8 @@ def test_favourites_and_what_was_used_lately_come_first():
 
 
 def test_figures_are_those_of_the_component():
-    wire = INDEX.catalogue.get("wire-jacketed-8")
-    figures = INDEX.figures("wire-jacketed-8")
+    wire = index().catalogue.get("wire-jacketed-8")
+    figures = index().figures("wire-jacketed-8")
     assert figures["net"] == wire.net_buoyancy and figures["breaking"] == wire.breaking_load
     shown = {each.key: each.shown(figures[each.key]) for each in COLUMNS}
     assert shown["breaking"] == f"{wire.breaking_load / 1e3:.1f}"
@@ -90,7 +95,7 @@ def test_the_list_shows_figures_and_is_sorted_by_key(drive, small):
         assert "sorted by breaking" in driver.screen
         by_load = [each.id for each in rows.rows]
         assert by_load != first and sorted(by_load) == sorted(first)
-        load = [INDEX.figures(id)["breaking"] or 0.0 for id in by_load]
+        load = [index().figures(id)["breaking"] or 0.0 for id in by_load]
         assert load == sorted(load, reverse=True)
 
     drive(story, small, size=(160, 40))

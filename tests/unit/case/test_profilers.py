@@ -146,14 +146,15 @@ def test_time_and_number_of_profiles(tmp_path):
 
 
 def test_drag_along_a_leaning_wire(tmp_path):
-    """½ρ cd A (speed + U sin tilt)², against the figures that the result has at the place."""
-    weak = ("drive_force: 50 N", "drive_force: 1 N")
+    """½ρ cd A (speed + U sin tilt)² and the weight along the wire, at the tilt of the result."""
+    figures = "buoyancy: {} N, drag_area: 0.45 m^2, cd: 0.6,\n        drive_force: {} N"
+    weak = (figures.format(0, 50), figures.format(-3, 1))
     result = mooring(tmp_path, "{speed: 0.5 m/s, toward: 90 deg}", change=weak).solve()
     tilt = np.radians(result.profilers[0].upper.tilt)
     past = 0.25 + 0.5 * np.sin(tilt)
     drag = 0.5 * 1025.0 * 0.6 * 0.45 * past**2
     needed = [each.limit for each in profiler.judge(result) if "its drive gives" in each.message]
-    assert needed == [pytest.approx(drag, rel=1e-6)]
+    assert needed == [pytest.approx(drag + 3.0 * np.cos(tilt), rel=1e-6)]
 
 
 def test_each_rule_is_judged_at_both_stops_and_where_the_wire_leans_most(tmp_path):

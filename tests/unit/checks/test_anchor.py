@@ -64,3 +64,13 @@ def test_an_anchor_is_judged_where_what_it_weighs_in_water_is_known(load, figure
         assert found["anchor-sliding"].limit == pytest.approx(
             0.6 * (weight / 1.5 - anchor.vertical)
         )
+
+
+@pytest.mark.parametrize(("share", "state"), [(0.999, "fail"), (1.001, "pass")])
+def test_an_anchor_slides_below_the_weight_that_holds_both_pulls(load, share, state):
+    """Dewey's rule: 1.5 (V + H / 0.6) in water, H and V the pulls on the anchor."""
+    pulls = load(", weight: 5000 N").solve().anchor
+    needed = 1.5 * (pulls.vertical + pulls.horizontal / 0.6)
+    stands = check(load(f", weight: {share * needed} N")).stands[0]
+    found = {one.rule: one for one in stands.findings if one.situation == "as given"}
+    assert found["anchor-sliding"].state == found["anchor-weight"].state == state

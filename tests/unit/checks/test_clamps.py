@@ -1,12 +1,13 @@
 """The pull of what is clamped on a line, and its drag in the fall and the rise, by hand."""
 
 from math import hypot, pi
+from types import SimpleNamespace
 
 import pytest
 
 import calm
 from calm.assemble import axial_drag_of, with_axial_clamps
-from calm.checks.arrangement import clamp_grip
+from calm.checks.arrangement import clamp_grip, clamp_place
 from calm.checks.net_check import check
 from calm.checks.recovery import recovery_of
 from calm.drop.launch import launch_of
@@ -54,6 +55,20 @@ def test_the_pull_is_that_of_weight_and_drag(load):
     assert (found["a"].state, found["a"].limit) == ("pass", None)  # reported, not judged
     assert found["b"].value == pytest.approx(hypot(7.5, 40.0), rel=1e-9)
     assert (found["b"].state, found["b"].limit) == ("pass", 41.0)
+
+
+def test_the_drag_of_a_clamp_is_that_of_the_water_there(load):
+    heavy = {"depth: 500 m": "depth: 500 m\n  density: 1200 kg/m^3"}
+    (found,) = clamp_grip.judge(load("{use: logger, at: 50 m}", **heavy).solve())
+    drag = 0.5 * 1200.0 * 1.2 * 0.1 * 0.5 * 0.25
+    assert found.value == pytest.approx(hypot(drag, 40.0), rel=1e-9)
+
+
+@pytest.mark.parametrize(("at", "fails"), [(0.0, False), (0.1, True), (0.3, False)])
+def test_half_of_what_is_clamped_at_an_end_may_stick_out(load, at, fails):
+    """A logger of 0.5 m at the very end of a wire hangs beside what is above it."""
+    handling = SimpleNamespace(mooring=load(f"{{use: logger, at: {at} m}}"))
+    assert any(one.state == "fail" for one in clamp_place.judge(handling)) == fails
 
 
 @pytest.mark.parametrize(

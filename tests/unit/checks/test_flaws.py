@@ -386,13 +386,27 @@ FLAWS = (
         "under water: 0 % is left",
     ),
     Flaw(
+        "a buoy too small to come up",
+        NYLON,
+        (
+            (
+                "use: buoy-toroid-8ft",
+                "use: sphere-steel-1250, mass: 100 kg, diameter: 1 m, length: 1 m, buoyancy: 4 kN",
+            ),
+        ),
+        "reserve",
+        "buoy",
+        "fail",
+        "under water: 0 % is left",
+    ),
+    Flaw(
         "a buoy without freeboard",
         NYLON,
         UNDER,
         "freeboard",
         "buoy",
         "fail",
-        "out of the water",
+        "m under water",
     ),
     Flaw(
         "a line that does not rise",

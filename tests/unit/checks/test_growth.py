@@ -4,8 +4,9 @@ from math import pi
 
 import pytest
 
+import calm
 from calm.assemble import drag_of, net_buoyancy
-from calm.checks.growth import grown_component
+from calm.checks.growth import grown, grown_component
 from calm.files import Anchor, Body, Cable, Chain, Cylinder, Fouling, Sphere
 
 G = 9.80665
@@ -102,3 +103,31 @@ def test_a_body_without_drag_has_no_size_to_grow():
          "inclination": "insensitive"}
     )  # fmt: skip
     assert drag_of(grown_component(bare, growth(1325), G))[0] == 0.0
+
+
+FOULED = """
+environment: {depth: 120 m, current: {speed: 0.8 m/s, toward: 90 deg}}
+line:
+  - {use: ball}
+  - {use: thin, length: 100 m, clamps: [{use: cell, at: 10 m}, {use: cell, at: 40 m}]}
+  - {use: block}
+components:
+  ball: {kind: sphere, diameter: 1 m, buoyancy: 2000 N}
+  thin: {kind: cable, diameter: 8 mm, weight: 1 N/m}
+  cell: {kind: cylinder, diameter: 10 cm, length: 50 cm, buoyancy: -20 N}
+  block: {kind: anchor, weight: 20 kN}
+"""
+
+
+def test_growth_reaches_down_to_a_depth_in_still_water(tmp_path):
+    """The wire hangs from 20 m there, whatever the current does: 30 m of it are above 50 m."""
+    (tmp_path / "m.yaml").write_text(FOULED)
+    result = calm.load(tmp_path / "m.yaml").solve()
+    assert result.top.knockdown > 1.0
+    ball, upper, lower, block = grown(result.file.pieces, result, growth())
+    assert (upper.length, lower.length) == (pytest.approx(30.0), pytest.approx(70.0))
+    assert (upper.component.diameter, lower.component.diameter) == (0.048, 0.008)
+    (high,), (low,) = upper.clamps, lower.clamps
+    assert (high.at, low.at) == (10.0, pytest.approx(10.0))
+    assert (high.component.cn or 0.0) > 0.0 and low.component.cn is None
+    assert ball.component.cx > 0.5 and block.component.kind == "anchor"

@@ -1,11 +1,13 @@
 """The rise of a line by hand, and the order in which its floats come up."""
 
 from math import nan, sqrt
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import calm
+from calm.checks.handling import _hauled_in
 from calm.checks.recovery import Recovery, recovery_of
 from calm.shipped import shipped_folder
 from calm.solve import Status, solve_rise
@@ -186,3 +188,9 @@ def test_the_first_float_alone_rises_as_with_the_others(tmp_path, recovered):
         assert first.rise_speed == whole.rise_speed
         assert first.time_to_surface == whole.time_to_surface
         assert first.order == whole.order[:1]
+
+
+def test_minutes_until_what_is_hauled_in_comes_up():
+    lowest = SimpleNamespace(label="releases", place=None)
+    found = _hauled_in(lowest, 600.0, SimpleNamespace(rise_speed=1.0))
+    assert "releases comes up after 10 minutes" in found.message

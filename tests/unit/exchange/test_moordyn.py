@@ -78,12 +78,28 @@ z (m), ux (m/s), uy (m/s), uz (m/s)
 @pytest.fixture
 def read(tmp_path):
     def read(text, current=CURRENT):
-        (tmp_path / "current_profile.txt").write_text(current)
+        if current is not None:
+            (tmp_path / "current_profile.txt").write_text(current)
         path = tmp_path / "line.txt"
         path.write_text(text)
         return import_file(path, tmp_path / "m.yaml")
 
     return read
+
+
+@pytest.mark.parametrize(
+    ("kind", "current", "told"),
+    [("3", CURRENT, None), ("2", CURRENT, "vary in time"), ("5", CURRENT, "vary in time"),
+     ("1", None, "without current_profile.txt")],
+)  # fmt: skip
+def test_a_current_that_is_not_read_is_told(kind, current, told, read, tmp_path):
+    """`Currents` as MoorDyn 2 numbers them: 1 and 3 are steady, the others have other files."""
+    text = V2.replace("1       Currents", f"2  WaveKin\n{kind}  Currents")
+    made = read(text, current)
+    assert ("columns: [depth m, u m/s, v m/s]" in made.text) == (told is None)
+    said = [str(each) for each in made.dropped]
+    assert any("`WaveKin` 2" in each for each in said)
+    assert [told in each for each in said if "Currents" in each] == [True] * bool(told)
 
 
 @pytest.mark.parametrize("text", [V2, V1], ids=["version 2", "version 1"])

@@ -541,15 +541,35 @@ def test_one_decimal_sign_holds_for_the_file(read, tmp_path):
 LANGUAGES = {
     "German": "Bezeichnung;Länge [m];Durchmesser [mm];Gewicht im Wasser [kg];cw;Anzahl",
     "French": "Désignation;Longueur (m);Diamètre (mm);Poids dans l'eau (kg);Traînée;Nombre",
+    "Norwegian": "Komponent;Lengde (m);Diameter (mm);Vekt i vann (kg);cw;Antall",
     "Spanish": "Nombre;Longitud (m);Diámetro (mm);Peso en agua (kg);Arrastre;Cantidad",
 }  # fmt: skip
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
-def test_headings_of_four_languages(language, read, tmp_path):
+def test_headings_of_five_languages(language, read, tmp_path):
     rows = ENGLISH.replace(",", ";").split("\n", 1)[1]
     made = read(LANGUAGES[language] + "\n" + rows)
     assert made.text.partition("\n")[2] == read(ENGLISH).text.partition("\n")[2]
+
+
+def test_no_piece_is_lost_without_a_word(read, tmp_path):
+    """A row without a name is told, marks of repetition repeat, and sums are no piece."""
+    ball = "17 in glass,0.5,432,-25,0.5,1\n"
+    rows = [ball, ball.replace("17 in glass", ""), ball.replace("17 in glass", "ditto")]
+    rows += [ball.replace("17 in glass", "do."), ball.replace("17 in glass", "3x17 in glass")]
+    text = ENGLISH.replace("AR861", "".join(rows) + "AR861").replace("Total,", "TOTALS,")
+    made = read(text)
+    labels = [piece.component.name for piece in pieces(made, tmp_path)]
+    assert labels.count("17 in glass") == 3
+    guessed, dropped = ([str(each) for each in side] for side in (made.guessed, made.dropped))
+    assert any("row 6" in each and "figures and no name" in each for each in dropped)
+    assert any("`TOTALS`, a sum" in each for each in dropped)
+    assert any("row 7: `ditto` read as `17 in glass`" in each for each in guessed)
+    assert made.text.count("kind: cable") == read(ENGLISH).text.count("kind: cable")
+    assert any("not as 3 of them" in each for each in guessed)
+    german = read(ENGLISH.replace("Total,", "Summe,"))
+    assert len(pieces(german, tmp_path)) == len(labels) - 4
 
 
 ROPES = (

@@ -2,9 +2,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from jsonschema import Draft202012Validator
+from jsonschema.protocols import Validator
 
 from calm.errors import InputError
-from calm.files import MooringFile, read_mooring
+from calm.files import MooringFile, mooring_schema, read_mooring
 
 CATALOGUE = """\
 ball:
@@ -51,6 +53,12 @@ Place = tuple[int, int, str]
 @pytest.fixture(autouse=True)
 def no_catalogue_of_the_user(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("CALM_CATALOG_DIR", str(tmp_path / "none"))
+
+
+@pytest.fixture(scope="session")
+def schema() -> Validator:
+    """The schema of a mooring file, as editors use it."""
+    return Draft202012Validator(mooring_schema())
 
 
 @pytest.fixture

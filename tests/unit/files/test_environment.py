@@ -3,11 +3,11 @@
 from collections.abc import Callable
 from pathlib import Path
 
-import jsonschema
 import pytest
+from jsonschema.protocols import Validator
 
 from calm.errors import Problem
-from calm.files import DepthTable, Environment, MooringFile, SeaWater, mooring_schema
+from calm.files import DepthTable, Environment, MooringFile, SeaWater
 from calm.files.environment import read_environment
 from calm.files.yaml_document import SourceMapping, read_document
 from tests.core_yaml import loaded
@@ -17,8 +17,6 @@ from .conftest import GOOD, Place
 Read = Callable[..., MooringFile]
 Towed = Callable[[str], tuple[Environment | None, list[str]]]
 Mistakes = Callable[..., list[Place]]
-
-SCHEMA = jsonschema.Draft202012Validator(mooring_schema())
 
 
 def with_keys(*lines: str) -> str:
@@ -75,13 +73,13 @@ TEN_AND_35 = SeaWater(DepthTable((0.0,), (10.0,)), DepthTable((0.0,), (35.0,)))
     ],
     ids=["constants", "other units", "mass fraction", "one table", "one of two", "the other"],
 )
-def test_sea_water(read: Read, lines: list[str], sea: SeaWater) -> None:
+def test_sea_water(read: Read, schema: Validator, lines: list[str], sea: SeaWater) -> None:
     text = with_keys(*lines)
     mooring = read(text)
     assert mooring.environment.density == sea
     [notice] = mooring.notices
     assert notice.startswith("Density from temperature and salinity without a `position`")
-    SCHEMA.validate(loaded(text))
+    schema.validate(loaded(text))
 
 
 def test_sea_water_at_a_position(read: Read) -> None:

@@ -5,6 +5,7 @@ from typing import Any
 
 import jsonschema
 import pytest
+from jsonschema.protocols import Validator
 
 from calm.files import MooringFile, mooring_schema
 from tests.core_yaml import loaded
@@ -12,8 +13,6 @@ from tests.core_yaml import loaded
 from . import test_strumming, test_tow
 from .conftest import GOOD, TOW
 from .test_bad_input import ONE_MISTAKE
-
-VALIDATOR = jsonschema.Draft202012Validator(mooring_schema())
 
 EVERYTHING = """\
 name: 2026
@@ -84,13 +83,13 @@ def test_schema_is_one() -> None:
 
 
 @pytest.mark.parametrize("text", [GOOD, EVERYTHING, TOW, TOWED, test_tow.HELICOPTER])
-def test_good_files(text: str) -> None:
-    VALIDATOR.validate(loaded(text))
+def test_good_files(schema: Validator, text: str) -> None:
+    schema.validate(loaded(text))
 
 
 @pytest.mark.parametrize("strumming", ["none", "vandiver", "{factor: 1.5}", "{cn: 1.85}"])
-def test_ways_of_strumming(strumming: str) -> None:
-    VALIDATOR.validate(loaded(GOOD + f"solver: {{strumming: {strumming}}}\n"))
+def test_ways_of_strumming(schema: Validator, strumming: str) -> None:
+    schema.validate(loaded(GOOD + f"solver: {{strumming: {strumming}}}\n"))
 
 
 def test_the_reader_takes_everything_too(read: Callable[..., MooringFile], tmp_path: Any) -> None:
@@ -120,8 +119,8 @@ KNOWN_TO_THE_SCHEMA = [
 
 
 @pytest.mark.parametrize("mistake", KNOWN_TO_THE_SCHEMA)
-def test_mistakes_the_schema_knows(mistake: str) -> None:
-    assert not VALIDATOR.is_valid(loaded(ONE_MISTAKE[mistake][0]))
+def test_mistakes_the_schema_knows(schema: Validator, mistake: str) -> None:
+    assert not schema.is_valid(loaded(ONE_MISTAKE[mistake][0]))
 
 
 KNOWN_OF_TOWS = [
@@ -139,21 +138,21 @@ KNOWN_OF_TOWS = [
 
 
 @pytest.mark.parametrize("mistake", KNOWN_OF_TOWS)
-def test_mistakes_of_tows_the_schema_knows(mistake: str) -> None:
-    assert not VALIDATOR.is_valid(loaded(test_tow.ONE_MISTAKE[mistake][0]))
+def test_mistakes_of_tows_the_schema_knows(schema: Validator, mistake: str) -> None:
+    assert not schema.is_valid(loaded(test_tow.ONE_MISTAKE[mistake][0]))
 
 
 @pytest.mark.parametrize("strumming", test_strumming.KNOWN_TO_THE_SCHEMA)
-def test_mistakes_of_strumming_the_schema_knows(strumming: str) -> None:
-    assert not VALIDATOR.is_valid(loaded(TOW + f"solver: {{strumming: {strumming}}}\n"))
+def test_mistakes_of_strumming_the_schema_knows(schema: Validator, strumming: str) -> None:
+    assert not schema.is_valid(loaded(TOW + f"solver: {{strumming: {strumming}}}\n"))
 
 
-def test_only_a_mooring_needs_a_depth() -> None:
+def test_only_a_mooring_needs_a_depth(schema: Validator) -> None:
     line = GOOD[GOOD.index("line:") :]
     tow = "tow: {speed: 1 m/s, toward: 0}\n"
     for environment in ("", "environment: {}\n"):
-        assert not VALIDATOR.is_valid(loaded(environment + line))
-        assert VALIDATOR.is_valid(loaded(tow + environment + line))
+        assert not schema.is_valid(loaded(environment + line))
+        assert schema.is_valid(loaded(tow + environment + line))
 
 
 def test_fields_are_described() -> None:

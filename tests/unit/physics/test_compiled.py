@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from calm.physics import compiled
+from calm.physics.drag import drag_share
 
 
 def test_a_folder_that_cannot_be_written_is_done_without(
@@ -36,3 +37,21 @@ def test_rows_of_a_list_are_set() -> None:
     rows = [(1.0, 2.0), (3.0, 4.0)]
     compiled.set_row(rows, 1, (5.0, 6.0))
     assert rows == [(1.0, 2.0), (5.0, 6.0)]
+
+
+@pytest.mark.parametrize("newest", [compiled.NEWEST, (0, 0)])
+def test_laws_linked_into_a_law_give_its_digits(
+    newest: tuple[int, int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By parts of numba that are not for everyone, and by those that are."""
+    monkeypatch.setattr(compiled, "NEWEST", newest)
+    monkeypatch.setattr(compiled, "cache_folder", lambda: None)
+    stores = (compiled.compiled, compiled.called, compiled._linked_compiler)
+    for store in stores:
+        store.cache_clear()
+    arguments = (0.3, -0.1, 0.9, 0.7, 0.5, -0.2, 0.1)
+    try:
+        assert compiled.compiled(drag_share)(*arguments) == drag_share(*arguments)
+    finally:
+        for store in stores:
+            store.cache_clear()

@@ -117,6 +117,7 @@ ZONE = "all 720 times are taken as they stand, in UTC"
     (of_attribute("u", "units", "kn"), "have different units, `kn` and `m s-1`"),
     (lambda one: one.where(one["depth"] != 40.0, 0.1), "levels have the same current throughout"),
     (lambda one: one.where(one["time"].values[:, None] % 3 > 0, 0.0), "2400 of 7200 currents are"),
+    (lambda one: one.where(one["time"].values[:, None] % 9 > 0, -2.0), "800 of 7200 currents to"),
     (lambda one: one.isel(depth=[0, 1, 2]), "is not given below 24.0 m: the value of the"),
     (lambda one: one.isel(depth=[5, 9]), "is not given above 90.0 m: the value of the near"),
 ])  # fmt: skip
