@@ -8,6 +8,7 @@ from itertools import groupby
 from math import pi
 from typing import TYPE_CHECKING
 
+from calm.case.parts import parts_of
 from calm.deck.deck_items import Order
 from calm.files import Cable, Chain, Cylinder, Sphere
 from calm.files.components import FLEXIBLE_KINDS
@@ -54,7 +55,11 @@ def shipped_of(
     file: MooringFile, inventory: Sequence[InventoryItem]
 ) -> tuple[ShippedComponent, ...]:
     """A row for each component, in the order of the line."""
-    components = _components(file)
+    components = {
+        (piece.index, part.label): part.component
+        for piece in file.pieces
+        for part in parts_of([piece])
+    }
     groups: dict[str, list[InventoryItem]] = {}
     for item in inventory:
         groups.setdefault(item.use, []).append(item)
@@ -88,15 +93,6 @@ def volume_of(component: Component, length: float | None) -> float | None:
         displaced = component.displaced_volume
         return None if displaced is None or length is None else displaced * length
     return component.displaced_volume
-
-
-def _components(file: MooringFile) -> dict[tuple[int, str], Component]:
-    """Return the components by index of the piece and label."""
-    found: dict[tuple[int, str], Component] = {}
-    for piece in file.pieces:
-        found[piece.index, piece.label] = piece.component
-        found |= {(piece.index, clamp.label): clamp.component for clamp in piece.clamps}
-    return found
 
 
 def _shipped_component(

@@ -13,7 +13,6 @@ from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment, Situation
 from calm.checks.finding import Finding, State, worst_state
 from calm.checks.inventory import total_of
-from calm.checks.recovery import Loss
 from calm.drawing.check_figures import check_figure
 from calm.files.check_limits import LimitKey
 from calm.quantities import QUANTITIES
@@ -259,7 +258,9 @@ def check_document(assessments: Sequence[Assessment]) -> dict[str, Any]:
         "launch": {each.name: _handled(each.launch, _OF_LAUNCH) for each in assessments},
         "recovery": {each.name: _handled(each.recovery, _OF_RECOVERY) for each in assessments},
         "backup": {each.name: [asdict(one) for one in each.backup] for each in assessments},
-        "losses": {each.name: [_loss(one) for one in each.losses] for each in assessments},
+        "losses": {
+            each.name: [members(one, *_OF_LOSS) for one in each.losses] for each in assessments
+        },
         "inventory": {each.name: [asdict(one) for one in each.inventory] for each in assessments},
         "totals": {each.name: asdict(total_of(each.inventory)) for each in assessments},
     }
@@ -282,12 +283,6 @@ def _accepted(mooring: str, finding: Finding) -> dict[str, Any]:
         **members(finding, "rule", "component"),
         **members(finding.accept, "reason", "by", "date", "until"),
     }
-
-
-def _loss(loss: Loss) -> dict[str, Any]:
-    values = asdict(loss)
-    del values["place"]
-    return values
 
 
 def _situation(situation: Situation) -> dict[str, Any]:
@@ -313,6 +308,7 @@ _OF_LAUNCH = (
     "fall_speed", "fall_speed_band", "anchor_tension", "anchor_drag_known", "greatest_speed",
     "drift",
 )  # fmt: skip
+_OF_LOSS = ("index", "label", "margin", "weight_lifted", "required")
 _OF_RECOVERY = ("released", "rise_speed", "time_to_surface", "net_buoyancy", "order")
 
 

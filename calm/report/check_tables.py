@@ -231,7 +231,10 @@ def inventory_table(items: Sequence[InventoryItem]) -> Table:
         (Column("component"), named),
         (Column("id"), lambda group: "" if group is items else group[0].use),
         (Column("pieces", numeric=True), lambda group: str(len(group))),
-        (quantity_column("cut_length"), _cut_length),
+        (
+            quantity_column("cut_length"),
+            lambda group: _sum("cut_length", [e for e in group if e.kind in FLEXIBLE_KINDS]),
+        ),
         (quantity_column("dry_mass"), lambda group: _sum("dry_mass", group)),
         (quantity_column("wet_weight"), lambda group: _sum("wet_weight", group)),
         (Column("spares"), lambda group: ""),
@@ -239,11 +242,6 @@ def inventory_table(items: Sequence[InventoryItem]) -> Table:
         sums=[items],
         by_hand=True,
     )
-
-
-def _cut_length(items: Sequence[InventoryItem]) -> Cell:
-    lines = [item for item in items if item.kind in FLEXIBLE_KINDS]
-    return _sum("cut_length", lines) if lines else Cell("-")
 
 
 def _sum(name: str, items: Sequence[InventoryItem]) -> Cell:

@@ -7,6 +7,7 @@ takes longer.
 from __future__ import annotations
 
 import os
+from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -238,9 +239,6 @@ def _wrong(view: View, problems: Sequence[Problem]) -> View:
 
 
 _Figures = tuple[float | None, float | None, float | None, float | None]
-_Said = tuple[float | None, State | None, bool]
-_NOTHING: _Said = (None, None, False)
-_STRENGTH = frozenset({strength.name})
 _LACKING = (State.UNKNOWN, State.ACCEPTED)
 """What is not known stays so where somebody has accepted it."""
 
@@ -252,7 +250,7 @@ class FoundRow:
     Attributes
     ----------
     place : in the line as read
-    use, label : as in results
+    label : as in results
     length : as cut [m]; None of a clamp, and of one to be cut to fit until it is solved
     depth : of the upper end [m], None like all below where nothing is solved
     tension : the greatest [N]
@@ -263,7 +261,6 @@ class FoundRow:
     """
 
     place: Place
-    use: str
     label: str
     length: float | None
     depth: float | None = None
@@ -284,32 +281,23 @@ def rows_of(
             figures[clamp.place] = (None, clamp.depth, clamp.tension, clamp.tilt)
         for row in result.components:
             figures[row.place] = (row.cut_length, row.depth_top, row.tension, row.tilt)
-    said = _said(findings)
+    found: defaultdict[Place | None, list[Finding]] = defaultdict(list)
+    for finding in findings:
+        found[finding.place].append(finding)
     for piece in file.pieces:
         if piece.use == STAND_IN:
             continue
         for part in parts_of([piece]):
-            length = part.length if isinstance(part, Piece) else None
-            solved = figures.get(part.place, (length, None, None, None))
+            own, length = found[part.place], part.length if isinstance(part, Piece) else None
+            gravest = max(own, key=lambda each: each.state.severity, default=None)
             yield FoundRow(
-                part.place, part.use, part.label, *solved, *said.get(part.place, _NOTHING)
+                part.place,
+                part.label,
+                *figures.get(part.place, (length, None, None, None)),
+                margin=min((each.share for each in own if each.share is not None), default=None),
+                state=gravest.state if gravest else None,
+                lacks_strength=any(
+                    each.rule == strength.name and each.state in _LACKING and each.share is None
+                    for each in own
+                ),
             )
-
-
-def _said(findings: Iterable[Finding]) -> dict[Place, _Said]:
-    """By place the least margin, as a share of its limit, the gravest state, what is lacking."""
-    found: dict[Place, list[Finding]] = {}
-    for finding in findings:
-        if finding.place is not None:
-            found.setdefault(finding.place, []).append(finding)
-    return {place: _of_one(own) for place, own in found.items()}
-
-
-def _of_one(own: list[Finding]) -> _Said:
-    return (
-        min((each.share for each in own if each.share is not None), default=None),
-        max((each.state for each in own), key=lambda state: state.severity),
-        any(
-            each.rule in _STRENGTH and each.state in _LACKING and each.share is None for each in own
-        ),
-    )

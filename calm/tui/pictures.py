@@ -7,7 +7,7 @@ from textwrap import wrap
 from typing import TYPE_CHECKING, Literal
 
 from rich.text import Text
-from textual import events
+from textual import events, on
 from textual.app import ComposeResult
 from textual.containers import Vertical
 from textual.geometry import Size
@@ -227,13 +227,10 @@ class Pictures(Vertical):
         caption.display = bool(named) and self.tab in ("elevation", "plan")
         picture.show(self._view, self.tab, shapes)
 
-    def on_descendant_focus(self) -> None:
-        """Say that the keys go to the picture."""
-        self.query_one(Tabs).show(self.tab, self._note, focused=True)
-
-    def on_descendant_blur(self) -> None:
-        """Say that they go elsewhere."""
-        self.query_one(Tabs).show(self.tab, self._note)
+    @on(events.DescendantFocus)
+    @on(events.DescendantBlur)
+    def _say_where_keys_go(self) -> None:
+        self.query_one(Tabs).show(self.tab, self._note, focused=self.query_one(Picture).has_focus)
 
     def on_click(self, event: events.Click) -> None:
         """Give the picture the focus."""

@@ -36,8 +36,9 @@ class InTurn(App[int]):
         self._rounds = 0
 
     async def on_event(self, event: events.Event) -> None:
-        """Let what a person does wait for what was done before."""
-        if not _is_done_by_a_person(event):
+        """Let what a person does wait for what was done before, but for the mouse that moves."""
+        is_done = isinstance(event, events.InputEvent | events.Paste)
+        if not is_done or event.is_forwarded or isinstance(event, events.MouseMove):
             await super().on_event(event)
             return
         self._waiting.append(event)
@@ -79,10 +80,3 @@ class InTurn(App[int]):
             self.call_after_refresh(self._press)
         else:
             self.has_keys_waiting = False
-
-
-def _is_done_by_a_person(event: events.Event) -> bool:
-    """Return what is forwarded has had its turn; the mouse may move meanwhile."""
-    if event.is_forwarded or isinstance(event, events.MouseMove):
-        return False
-    return isinstance(event, events.InputEvent | events.Paste)

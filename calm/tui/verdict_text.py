@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from calm.checks.finding import AS_GIVEN, OWN, Finding, Rule, State
-from calm.quantities import QUANTITIES
+from calm.quantities import say
 from calm.tui.theme import ELLIPSIS, LOOKS, worst
 from calm.tui.workspace import mistakes, place_of
 
@@ -58,7 +58,7 @@ def headline(view: View | None) -> Saying:
     if view.elsewhere:
         return Saying("environments that cannot be read", state=State.FAIL)
     said = _judged(view.findings)
-    if view.complete or view.missing:
+    if view.complete:
         return said
     outcome = said.text if said.state in (State.FAIL, State.WARN) else "nothing fails"
     return Saying(f"{outcome} so far", pending=True)
@@ -136,9 +136,9 @@ def _stand(stand: MooringInEnvironment) -> Saying:
     said, result = _judged(stand.findings), stand.result
     figures = ""
     if result is not None and result.type != "surface":
-        figures = f"top at {_say('depth', result.top.depth)}, "
+        figures = f"top at {say('depth', result.top.depth)}, "
     elif result is not None:
-        figures = f"{_say('reserve', result.top.reserve)} in reserve, "
+        figures = f"{say('reserve', result.top.reserve)} in reserve, "
     return Saying(f"{figures}{said.text}", f"In {_environment(stand.environment)}", said.state)
 
 
@@ -150,10 +150,6 @@ def _mistakes(view: View) -> Iterator[Saying]:
     if more > 0:
         yield Saying(f"and {more} more", faint=True)
     yield Saying("t shows the text with its mistakes", faint=True)
-
-
-def _say(name: str, value: float | None) -> str:
-    return QUANTITIES[name].say(value)
 
 
 def _figures(
@@ -177,7 +173,7 @@ def _mooring(result: Result, findings: Sequence[Finding], pending: bool) -> Iter
     from calm.checks.strength import anchor_weight
 
     anchor, top = result.anchor, result.top
-    pull = f"{_say('tension', anchor.tension)}, {_say('angle', anchor.angle)} off the vertical"
+    pull = f"{say('tension', anchor.tension)}, {say('angle', anchor.angle)} off the vertical"
     yield Saying(pull, heading="Anchor")
     yield _holds(result, _worst(findings, anchor_weight), pending)
     if result.type == "surface":
@@ -185,25 +181,25 @@ def _mooring(result: Result, findings: Sequence[Finding], pending: bool) -> Iter
         worst = _worst(findings, reserve)
         if worst is not None and worst.value is not None:
             used += _at_worst(worst, f"{1.0 - worst.value:.0%}")
-        text = f"{_say('reserve', top.reserve)}; {used}"
+        text = f"{say('reserve', top.reserve)}; {used}"
         yield Saying(text, "Reserve", _gravity(worst), places=_places([worst]))
     else:
-        depth = f"top at {_say('depth', top.depth)}"
+        depth = f"top at {say('depth', top.depth)}"
         worst = _worst(findings, knockdown)
         if worst is not None:
-            depth += _at_worst(worst, _say("knockdown", worst.value))
-        text = f"{_say('knockdown', top.knockdown)}, {depth}"
+            depth += _at_worst(worst, say("knockdown", worst.value))
+        text = f"{say('knockdown', top.knockdown)}, {depth}"
         yield Saying(text, "Knockdown", _gravity(worst), places=_places([worst]))
     if anchor.grounded_length > 0.0:
-        yield Saying(f"{_say('grounded_length', anchor.grounded_length)} of line", heading="Lies")
+        yield Saying(f"{say('grounded_length', anchor.grounded_length)} of line", heading="Lies")
 
 
 def _holds(result: Result, worst: Finding | None, pending: bool) -> Saying:
     """Return what the anchor is to weigh, and weighs; of a line without one the first alone."""
     if worst is None:
-        return Saying(f"needs {_say('required_weight', result.anchor.required_weight)} in water")
-    needs = f"needs {_say('required_weight', worst.limit)}{_situation(worst)}"
-    has = f"has {_say('required_weight', worst.value)} in water"
+        return Saying(f"needs {say('required_weight', result.anchor.required_weight)} in water")
+    needs = f"needs {say('required_weight', worst.limit)}{_situation(worst)}"
+    has = f"has {say('required_weight', worst.value)} in water"
     unsure = pending and worst.state is State.PASS
     return Saying(f"{needs}, {has}", state=worst.state, pending=unsure, places=_places([worst]))
 
@@ -232,21 +228,21 @@ def _net(result: NetResult) -> Iterator[Saying]:
     """What the anchors and held ends of a net bear, and where its nodes are."""
     for end in (*result.anchors, *result.held):
         needs = end.required_weight
-        said = "" if needs is None else f", needs {_say('required_weight', needs)} in water"
+        said = "" if needs is None else f", needs {say('required_weight', needs)} in water"
         heading = f"{'Held end' if needs is None else 'Anchor'} of {end.leg}"
-        yield Saying(f"{_say('tension', end.tension)}{said}", heading)
+        yield Saying(f"{say('tension', end.tension)}{said}", heading)
     for node in result.nodes:
-        yield Saying(f"{_say('depth', node.depth)} deep", f"Node {node.name}")
+        yield Saying(f"{say('depth', node.depth)} deep", f"Node {node.name}")
 
 
 def _tow(result: TowResult) -> Iterator[Saying]:
     point, body = result.tow_point, result.body
     yield Saying(
-        f"{_say('tension', point.tension)}, {_say('angle', point.angle)} below the horizontal",
+        f"{say('tension', point.tension)}, {say('angle', point.angle)} below the horizontal",
         heading="Tow point",
     )
     yield Saying(
-        f"{_say('depth', body.depth)} deep, {_say('layback', body.layback)} behind", heading="Body"
+        f"{say('depth', body.depth)} deep, {say('layback', body.layback)} behind", heading="Body"
     )
 
 
@@ -257,9 +253,7 @@ def _found(findings: Sequence[Finding], *, pending: bool) -> Iterator[Saying]:
     """
     for finding in sorted(findings, key=lambda each: each.rank):
         if finding.state in (State.FAIL, State.WARN):
-            text = finding.message + (f" {finding.remedy}" if finding.remedy else "")
-            heading = f"{_title(finding)}{_situation(finding)}"
-            yield Saying(text, heading, finding.state, places=_places([finding]))
+            yield _told(finding)
     yield from _unknown([each for each in findings if each.state is State.UNKNOWN])
     passed = dict.fromkeys(_title(each) for each in findings if each.state is State.PASS)
     other = {_title(each) for each in findings if _graver(each) or each.state is State.UNKNOWN}
@@ -273,14 +267,13 @@ def why(view: View, row: Place) -> list[Saying]:
     """All that was found of a row of the file, the gravest first, with what would mend it."""
     found = [_placed(each, view) for each in (*view.findings, *view.tighter)]
     own = [each for each in found if each.place is not None and each.place.row == row]
-    return [
-        Saying(
-            f"{each.message} {each.remedy or ''}".rstrip(),
-            f"{_title(each)}{_situation(each)}",
-            each.state,
-        )
-        for each in sorted(own, key=lambda each: each.rank)
-    ]
+    return [_told(each) for each in sorted(own, key=lambda each: each.rank)]
+
+
+def _told(finding: Finding) -> Saying:
+    text = f"{finding.message} {finding.remedy or ''}".rstrip()
+    heading = f"{_title(finding)}{_situation(finding)}"
+    return Saying(text, heading, finding.state, places=_places([finding]))
 
 
 def _places(findings: Iterable[Finding | None]) -> tuple[Place, ...]:

@@ -152,25 +152,6 @@ class CaseColumn(Generic[Solved]):
     of: Callable[[Solved], float]
     relative: bool = False
 
-    def case(
-        self, row: str, expected: float, why: str, solve: Callable[[], Solved], kind: Kind
-    ) -> Case:
-        """Return the case of one cell of the table.
-
-        Parameters
-        ----------
-        row : name of the row
-        expected : the printed figure [unit]
-        why : the reason for the tolerance
-        solve : finds CALM's answer
-        kind : where the figure comes from
-        """
-        share = abs(expected) if self.relative else 1.0
-        return Case(
-            f"{row}: {self.name}", expected, self.unit, self.tolerance * share, why,
-            lambda: self.of(solve()), kind,
-        )  # fmt: skip
-
 
 def table(
     figures: Sequence[CaseColumn[Solved]],
@@ -187,9 +168,17 @@ def table(
     why : the reason for the tolerances
     kind : where the figures come from
     """
+
+    def case(
+        row: str, solve: Callable[[], Solved], figure: CaseColumn[Solved], value: float
+    ) -> Case:
+        tolerance = figure.tolerance * (abs(value) if figure.relative else 1.0)
+        name = f"{row}: {figure.name}"
+        return Case(name, value, figure.unit, tolerance, why, lambda: figure.of(solve()), kind)
+
     return tuple(
-        figure.case(name, value, why, solve, kind)
-        for name, solve, values in rows
+        case(row, solve, figure, value)
+        for row, solve, values in rows
         for figure, value in zip(figures, values, strict=True)
     )
 

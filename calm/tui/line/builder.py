@@ -245,11 +245,11 @@ class BuilderScreen(LineScreen):
 
     def action_mooring(self) -> None:
         """Ask for name, description and position."""
-        self._ask(mooring_sheet(self._draft), "name and place", written)
+        self._ask(mooring_sheet(self.session.draft), "name and place", written)
 
     def action_document(self) -> None:
         """Ask for what the title block of the drawings says, and what the revision changed."""
-        self._ask(document_sheet(self._draft), "the document", documented)
+        self._ask(document_sheet(self.session.draft), "the document", documented)
 
     def action_deployed(self) -> None:
         """Ask when and where the mooring was deployed, and what of it hangs at the row."""
@@ -259,15 +259,11 @@ class BuilderScreen(LineScreen):
         def deployed(draft: Draft, texts: Mapping[str, str]) -> Draft:
             return as_deployed(draft, hung, texts)
 
-        self._ask(deployed_sheet(self._draft, hung), "the deployment", deployed)
+        self._ask(deployed_sheet(self.session.draft, hung), "the deployment", deployed)
 
     def action_tow(self) -> None:
         """Ask for speed and course of a tow; a mooring becomes one."""
-        self._ask(tow_sheet(self._draft), "the tow", written)
-
-    @property
-    def _draft(self) -> Draft:
-        return self.session.draft
+        self._ask(tow_sheet(self.session.draft), "the tow", written)
 
     def _ask(
         self, sheet: InputSheet, label: str, changed: Callable[[Draft, Mapping[str, str]], Draft]

@@ -248,8 +248,5 @@ def entered(
 
 def _index(draft: Draft, rows: Location, called: tuple[str, str]) -> int | None:
     listed: Any = draft.value(rows)
-    key, name = called
-    for index, entry in enumerate(listed if isinstance(listed, list) else ()):
-        if isinstance(entry, dict) and entry.get(key) == name:
-            return index
-    return None
+    entries = enumerate(listed if isinstance(listed, list) else ())
+    return next((i for i, one in entries if isinstance(one, dict) and called in one.items()), None)

@@ -78,7 +78,7 @@ class Currents:
             self._screen.run_worker(read, thread=True, exit_on_error=False)
 
         if self._screen.settle():
-            self._screen.app.push_screen(ImportSheet(self._folder), take)
+            self._screen.app.push_screen(import_sheet(self._folder), take)
 
     def _read(self, variant: str | None, path: str, time: str, depth: float) -> None:
         """Read a file for an environment in a thread; what comes of it is taken by the form."""
@@ -117,20 +117,18 @@ _SPEEDS = ("depth m", "u m/s", "v m/s", "w m/s")
 _NOISE = 1e-12  # of computing a speed and a direction in doubles, and then some
 
 
-class ImportSheet(InputSheet):
-    """File, time, and how it is to stand in the mooring file."""
-
-    def __init__(self, folder: Path) -> None:
-        super().__init__(
-            "A current from a file",
-            f"CSV or CF NetCDF, from {folder} unless another is named. `refer` keeps the file's "
-            "name in the mooring file; `copy` writes its profile as a table.",
-            [
-                Asked("file", "File", check=_existing(folder), placeholder="e.g. adcp.nc"),
-                Asked("time", "Time", placeholder="e.g. 2026-03-01T06:00, if it is a record"),
-                Asked("how", "refer or copy", "refer", _how),
-            ],
-        )
+def import_sheet(folder: Path) -> InputSheet:
+    """Ask for a file, a time, and how it is to stand in the mooring file."""
+    return InputSheet(
+        "A current from a file",
+        f"CSV or CF NetCDF, from {folder} unless another is named. `refer` keeps the file's "
+        "name in the mooring file; `copy` writes its profile as a table.",
+        [
+            Asked("file", "File", check=_existing(folder), placeholder="e.g. adcp.nc"),
+            Asked("time", "Time", placeholder="e.g. 2026-03-01T06:00, if it is a record"),
+            Asked("how", "refer or copy", "refer", _how),
+        ],
+    )
 
 
 def imported(path: Path, time: str, depth: float) -> tuple[Sequence[str], Sequence[Sequence[str]]]:
