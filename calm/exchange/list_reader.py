@@ -6,6 +6,7 @@ or workbook whose sheets have headings.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
@@ -26,10 +27,10 @@ from calm.exchange.design import (
 from calm.exchange.list_cells import SheetRows, number, read_sheets
 from calm.exchange.list_headings import ListHeadings, check_given, headings_of
 from calm.exchange.list_rows import (
+    TOTAL,
     ListRow,
     component_of,
     count_lines,
-    names_in,
     rows_of,
     weights_as_buoyancy,
 )
@@ -130,7 +131,7 @@ def _names(
     The first is the name of the mooring where the library has no such element.
     """
     longest = max(sheets.values(), key=len, default=[])
-    rows = names_in(longest)
+    rows = _names_in(longest)
     filled = sum(bool(cell) for row in longest for cell in row)
     if len(rows) < _NAMES or 2 * len(rows) < filled:
         raise refused(
@@ -147,6 +148,20 @@ def _names(
             design.name = rows[0].name
         rows = rows[1:]
     return rows
+
+
+def _names_in(cells: SheetRows) -> list[ListRow]:
+    """Return the rows of a sheet that holds names alone: the words of the column that has most."""
+    counts: dict[int, int] = {}
+    for row in cells:
+        for index, cell in enumerate(row):
+            counts[index] = counts.get(index, 0) + bool(re.search(r"[^\W\d]{2}", cell))
+    best = max(counts, key=lambda index: counts[index], default=0)
+    return [
+        ListRow(place, row[best])
+        for place, row in enumerate(cells, 1)
+        if best < len(row) and row[best] and not TOTAL.match(row[best])
+    ]
 
 
 def _water(sheets: Mapping[str, SheetRows], design: Design, path: Path) -> ImportedWater | None:

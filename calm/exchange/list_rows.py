@@ -27,7 +27,7 @@ from calm.exchange.mdd_elements import MODULI
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.units import KILOGRAM_FORCE
 
-_TOTAL = re.compile(
+TOTAL = re.compile(
     r"^(sub-?)?(totals?|totaux|gesamt\w*|summ?[ae]?|somme|ensemble|i alt|tilsammans)\b", re.I
 )
 _DITTO = re.compile(r"^(ditt?o|do|idem|id|dto|[\"'\u2033\u201d\u201e\u3003]+)\.?$", re.I)
@@ -124,7 +124,7 @@ def rows_of(
             if any(re.search(r"\d", cell) for cell in held):
                 dropped.append(Remark(f"row {place}", "it has figures and no name"))
             continue
-        if _TOTAL.match(name):
+        if TOTAL.match(name):
             dropped.append(Remark(f"row {place}", f"`{name}`, a sum"))
             continue
         mistakes: list[str] = []
@@ -144,20 +144,6 @@ def rows_of(
             guessed.append(Remark(row.where, said))
         rows.append(row)
     return rows
-
-
-def names_in(cells: SheetRows) -> list[ListRow]:
-    """Return the rows of a sheet that holds names alone: the words of the column that has most."""
-    counts: dict[int, int] = {}
-    for row in cells:
-        for index, cell in enumerate(row):
-            counts[index] = counts.get(index, 0) + bool(re.search(r"[^\W\d]{2}", cell))
-    best = max(counts, key=lambda index: counts[index], default=0)
-    return [
-        ListRow(place, row[best])
-        for place, row in enumerate(cells, 1)
-        if best < len(row) and row[best] and not _TOTAL.match(row[best])
-    ]
 
 
 def _row(

@@ -150,7 +150,10 @@ def _single_line(file: _File) -> tuple[list[str], list[_Row]] | None:
         return None
     ends.sort(key=lambda name: points[name].number("z"))
     held = [name for name, point in points.items() if name in file.at and _is_held(point)]
-    if ends[0] not in held or {*held} - {*ends} or not _floats(points[ends[1]], file):
+    top = points[ends[1]]
+    near = -_ABOVE <= 0.0 - top.number("z") <= max(_NEAR * file.depth, _NEAR_AT_LEAST)
+    floats = not _is_held(top) or (near and _lift(_figures(top)) > 0.0)
+    if ends[0] not in held or {*held} - {*ends} or not floats:
         return None
     names, lines, left = [ends[1]], list[_Row](), list(file.lines)
     while met := [each for each in left if names[-1] in each.ends]:
@@ -158,15 +161,6 @@ def _single_line(file: _File) -> tuple[list[str], list[_Row]] | None:
         left.remove(met[0])
         names.append(_other_end(met[0], names[-1]))
     return None if left else (names, lines)
-
-
-def _floats(top: _Row, file: _File) -> bool:
-    """Return whether an upper end is free, or a float that is held where it would float."""
-    if not _is_held(top):
-        return True
-    depth, figures = 0.0 - top.number("z"), _figures(top)
-    near = -_ABOVE <= depth <= max(_NEAR * file.depth, _NEAR_AT_LEAST)
-    return near and _lift(figures) > 0.0
 
 
 def _lift(figures: dict[str, FigureOrWord]) -> float:
