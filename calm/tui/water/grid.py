@@ -109,7 +109,8 @@ class GridCells(TableCells, can_focus=True):
 
     def change(self, rows: Sequence[tuple[str, ...]], label: str) -> None:
         """Other rows, and what was done to them."""
-        self.post_message(self.Changed(self, label))
+        # a sheet answers in the name of the grid: a message sent so would go no further than that
+        self.post_message(self.Changed(self, label).set_sender(self))
         self.show(self.headings, rows)
 
     def go_on(self, by: int) -> bool:
