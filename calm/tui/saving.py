@@ -148,9 +148,9 @@ class Saving:
 
     def look_at_disk(self) -> None:
         """Take a file that another program has changed; tell of it where that would lose work."""
-        session, screen = self._session, self._app.screen
+        session, screen = self._session, next(reversed(self._app.screen_stack), None)
         if not isinstance(screen, DraftScreen):
-            return  # a question is open: later
+            return  # a question is open: later; or the application ends
         if not session.file.changed_on_disk():
             self._told = None
             return
