@@ -145,6 +145,9 @@ def clamps_of(pieces: Sequence[Piece], solution: Solution, still: Solution | Non
     pull = solution.force[elements] + solution.force[elements + 1]
     towed = solution.line.towed
     cable = solution.line.flexible[solution.element_piece[elements]]
+    tilt = _tilt(-pull if towed else pull)
+    if not cable.all():
+        tilt = np.where(cable, tilt, measured(solution).tilt[index])
     clamps = [order[m] for m in which]
     return Clamps(
         part=clamps,
@@ -155,7 +158,7 @@ def clamps_of(pieces: Sequence[Piece], solution: Solution, still: Solution | Non
         x=position[:, 0],
         y=position[:, 1],
         tension=np.maximum(solution.tension[elements], solution.tension[elements + 1]),
-        tilt=np.where(cable, _tilt(-pull if towed else pull), measured(solution).tilt[index]),
+        tilt=tilt,
         knockdown=knockdown,
     )
 
