@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from calm.physics.compiled import record_type
+from calm.physics.compiled import packed
 from calm.physics.line import Line
-from calm.physics.stretch import Knot
+from calm.physics.stretch import ElongationCurve, Knot
 from calm.physics.strumming import AT_REST, Vibration
 
 if TYPE_CHECKING:
@@ -114,43 +114,58 @@ class Course(NamedTuple):
 
 @dataclass(frozen=True)
 class Track:
-    """A `Line` laid out for the march, from the free end to the anchor.
+    """A `Line` laid out for the march, from the free end to the anchor: rows of plain numbers.
 
     Attributes
     ----------
-    packed : as compiled laws take it
+    stages, loads, cables, knots : of a `Stage`, a `Load`, a `CableStretch` and a `Knot` each
+    vibration : the law by which the cables strum
     """
 
-    packed: Course
+    stages: list[tuple[Any, ...]]
+    loads: list[tuple[Any, ...]]
+    cables: list[tuple[Any, ...]]
+    knots: list[Knot]
+    vibration: Vibration = AT_REST
 
     @cached_property
     def course(self) -> Course:
-        """The same as CPython takes it."""
-        given: Any = self.packed
-        return Course(
-            [Stage(*row) for row in given.stages.tolist()],
-            [Load(*row) for row in given.loads.tolist()],
-            [CableStretch(*row) for row in given.cables.tolist()],
-            [Knot(*row) for row in given.knots.tolist()],
-            given.vibration,
-            given.landing,
-        )
+        """As the march takes it."""
+        stages, cables = map(Stage._make, self.stages), map(CableStretch._make, self.cables)
+        loads = list(map(Load._make, self.loads))
+        return Course(list(stages), loads, list(cables), self.knots, self.vibration, self.landing)
+
+    @cached_property
+    def packed(self) -> Course:
+        """Return the same as compiled laws take it."""
+        rows: Any = (self.stages, self.loads, self.cables, self.knots)
+        course: Course = packed(Course._make([*rows, self.vibration, self.landing]))
+        return course
+
+    @property
+    def landing(self) -> int:
+        """The first stage that may come down on the seabed: none below it is buoyant."""
+        for i in range(len(self.stages), 0, -1):
+            kind, first, size, _ = self.stages[i - 1]
+            if kind == CABLE:
+                rises = CableStretch._make(self.cables[first]).buoyancy > 0.0
+            else:
+                rises = any(
+                    Load._make(load).buoyancy > 0.0 for load in self.loads[first : first + size]
+                )
+            if rises:
+                return i
+        return 0
 
     def first_pieces(self, count: int) -> Track:
         """The track as far as the first pieces go."""
-        given: Any = self.packed
-        hung = given.loads["piece"], given.cables["piece"]
+        cables = [row for row in self.cables if row[0] < count]
         stages = [
-            stage for stage in given.stages.tolist() if hung[stage[0] == CABLE][stage[1]] < count
+            row
+            for row in self.stages
+            if (self.cables if row[0] == CABLE else self.loads)[row[1]][0] < count
         ]
-        cables = given.cables[hung[1] < count]
-        return Track(
-            given._replace(
-                stages=given.stages[: len(stages)],
-                cables=cables,
-                landing=_landing(stages, given.loads, cables),
-            )
-        )
+        return replace(self, stages=stages, cables=cables)
 
     @staticmethod
     def of(line: Line, frequency: float = 0.0) -> Track:
@@ -158,47 +173,50 @@ class Track:
 
         `frequency` is that of the cables that strum [Hz].
         """
-        stages, hung, stretches = _places(line)
-        piece, clamp, at, lever, length = _columns(hung, 5)
-        row = np.where(clamp < 0.0, len(line.clamp_at) + piece, clamp).astype(np.int64)
-        nothing = np.zeros(len(line.clamp_at))
-
-        def of_both(clamps: Any, pieces: Any) -> Any:
-            return np.concatenate([clamps, pieces])[row]
-
-        loads = _records(
-            Load, piece, clamp, at, lever, length,
-            of_both(line.clamp_buoyancy, line.buoyancy), of_both(line.clamp_volume, line.volume),
-            of_both(line.clamp_drag, line.normal_drag), of_both(nothing, line.tangential_drag),
-            of_both(nothing, line.directional), of_both(line.clamp_lift, line.lift), 0.0, 0.0,
-            *map(of_both, _followed(line.clamp_drag_curve, len(nothing)),
-                 _followed(line.drag_curve, len(line.length))),
-        )  # fmt: skip
-        piece, length = _columns(stretches, 2)
-        on = piece.astype(np.int64)
-        curves = [() if curve is None else curve.knots for curve in line.elongation]
-        ends = np.cumsum([0, *(map(len, curves) if curves else [0] * len(line.length))])
-        cables = _records(
-            CableStretch, piece, length, line.buoyancy[on], line.volume[on],
-            line.normal_drag[on], line.tangential_drag[on], line.compliance[on],
-            line.thinning[on], line.friction.law, ends[on], ends[on + 1],
-            frequency * line.diameter[on] * (line.strumming is not None),
-        )  # fmt: skip
-        knots: Any = np.array([knot for curve in curves for knot in curve], record_type(Knot))
         vibration = AT_REST if line.strumming is None else line.strumming.vibration(0.0)
-        landing = _landing(stages, loads, cables)
-        rows = _records(Stage, *_columns(stages, 4))
-        return Track(Course(rows, loads, cables, knots, vibration, landing))
+        track = Track([], [], [], [], vibration)
+        rows, head = _Rows(line, frequency), head_count(line)
+        if head:
+            track._add_rod(rows, range(head))
+        for piece, flexible in enumerate(line.flexible.tolist()[head:], head):
+            if flexible:
+                track._add_cable(rows, piece, line.elongation[piece] if line.elongation else None)
+            else:
+                track._add_rod(rows, range(piece, piece + 1))
+        return track
 
+    def _add_rod(self, rows: _Rows, pieces: range) -> None:
+        first, top, total = len(self.loads), 0.0, sum([rows.length[piece] for piece in pieces])
+        for piece in pieces:
+            length = rows.length[piece]
+            at = top + 0.5 * length
+            lever = 1.0 - at / total if total > 0.0 else 0.5
+            self.loads.append((piece, -1, at, lever, length, *rows.rigid[piece]))
+            for clamp in rows.clamps.get(piece, ()):
+                at = top + rows.clamp_at[clamp]
+                lever = 1.0 - at / total if total > 0.0 else 0.5
+                self.loads.append((piece, clamp, at, lever, 0.0, *rows.clamp[clamp]))
+            top += length
+        self.stages.append((ROD, first, len(self.loads) - first, total))
 
-def _landing(stages: Sequence[Any], loads: Any, cables: Any) -> int:
-    """The first stage that may come down on the seabed: none below it is buoyant."""
-    rises = [(loads["buoyancy"] > 0.0).tolist(), (cables["buoyancy"] > 0.0).tolist()]
-    for i in range(len(stages), 0, -1):
-        kind, first, size, _ = stages[i - 1]
-        if any(rises[kind == CABLE][first : first + size]):
-            return i
-    return 0
+    def _add_cable(self, rows: _Rows, piece: int, curve: ElongationCurve | None) -> None:
+        start, end, first = 0.0, rows.length[piece], len(self.knots)
+        self.knots.extend(() if curve is None else curve.knots)
+        figures = (*rows.cable[piece], first, len(self.knots), rows.beat[piece])
+        rounding = 1e-12 * end  # a clamp so near to an end, or to another, is there
+        for clamp in rows.clamps.get(piece, ()):
+            at = rows.clamp_at[clamp]
+            if at - start > rounding:
+                self._add_stretch((piece, at - start, *figures))
+                start = at
+            self.stages.append((CLAMP, len(self.loads), 1, 0.0))
+            self.loads.append((piece, clamp, 0.0, 0.5, 0.0, *rows.clamp[clamp]))
+        if end - start > rounding or end == 0.0:
+            self._add_stretch((piece, end - start, *figures))
+
+    def _add_stretch(self, cable: tuple[Any, ...]) -> None:
+        self.stages.append((CABLE, len(self.cables), 1, cable[1]))
+        self.cables.append(cable)
 
 
 def head_count(line: Line) -> int:
@@ -218,78 +236,55 @@ def head_count(line: Line) -> int:
     return 0
 
 
-def _places(line: Line) -> tuple[list[Any], list[Any], list[Any]]:
-    """Return what stands where along a line.
+class _Rows:
+    """A line by rows of plain numbers, which are looked up far faster than arrays one by one.
 
-    These are the rows of its stages, the first five columns of its loads, and the piece and length
-    of its stretches of cable.
+    Attributes
+    ----------
+    length, clamp_at : as in `Line`
+    rigid, clamp : of each piece, and of each clamp, what comes after the length in a `Load`
+    cable : of each piece, what comes between the length and the knots in a `CableStretch`
+    beat : of each piece, as in `CableStretch`
+    clamps : of each piece, from its top
     """
-    stages: list[tuple[int, int, int, float]] = []
-    loads: list[tuple[int, int, float, float, float]] = []
-    stretches: list[tuple[int, float]] = []
-    lengths: list[float] = line.length.tolist()
-    from_top: list[float] = line.clamp_at.tolist()
-    on: list[int] = line.clamp_piece.tolist()
-    clamps: dict[int, list[int]] = {}
-    for clamp in np.argsort(line.clamp_at, kind="stable").tolist():
-        clamps.setdefault(on[clamp], []).append(clamp)
 
-    def rod(pieces: range) -> None:
-        first, top, total = len(loads), 0.0, sum([lengths[piece] for piece in pieces])
-        for piece in pieces:
-            length = lengths[piece]
-            hung = [(clamp, from_top[clamp], 0.0) for clamp in clamps.get(piece, ())]
-            for clamp, down, high in [(-1, 0.5 * length, length), *hung]:
-                at = top + down
-                loads.append((piece, clamp, at, 1.0 - at / total if total > 0.0 else 0.5, high))
-            top += length
-        stages.append((ROD, first, len(loads) - first, total))
-
-    def cable(piece: int) -> None:
-        start, end = 0.0, lengths[piece]
-        rounding = 1e-12 * end  # a clamp so near to an end, or to another, is there
-
-        def stretch(length: float) -> None:
-            stages.append((CABLE, len(stretches), 1, length))
-            stretches.append((piece, length))
-
-        for clamp in clamps.get(piece, ()):
-            at = from_top[clamp]
-            if at - start > rounding:
-                stretch(at - start)
-                start = at
-            stages.append((CLAMP, len(loads), 1, 0.0))
-            loads.append((piece, clamp, 0.0, 0.5, 0.0))
-        if end - start > rounding or end == 0.0:
-            stretch(end - start)
-
-    head = head_count(line)
-    if head:
-        rod(range(head))
-    for piece, flexible in enumerate(line.flexible.tolist()[head:], head):
-        if flexible:
-            cable(piece)
-        else:
-            rod(range(piece, piece + 1))
-    return stages, loads, stretches
+    def __init__(self, line: Line, frequency: float) -> None:
+        pieces, clamps = len(line.length), len(line.clamp_at)
+        self.length: list[float] = line.length.tolist()
+        self.clamp_at: list[float] = line.clamp_at.tolist()
+        self.rigid = _rows(
+            pieces, line.buoyancy, line.volume, line.normal_drag, line.tangential_drag,
+            line.directional, line.lift, 0.0, 0.0, *_followed(line.drag_curve),
+        )  # fmt: skip
+        self.clamp = _rows(
+            clamps, line.clamp_buoyancy, line.clamp_volume, line.clamp_drag, 0.0,
+            False, line.clamp_lift, 0.0, 0.0, *_followed(line.clamp_drag_curve),
+        )  # fmt: skip
+        self.cable = _rows(
+            pieces, line.buoyancy, line.volume, line.normal_drag, line.tangential_drag,
+            line.compliance, line.thinning, line.friction.law,
+        )  # fmt: skip
+        strums = line.strumming is not None
+        self.beat: list[float] = (frequency * line.diameter * strums).tolist()
+        self.clamps: dict[int, list[int]] = {}
+        on = line.clamp_piece.tolist()
+        for clamp in np.argsort(line.clamp_at, kind="stable").tolist():
+            self.clamps.setdefault(on[clamp], []).append(clamp)
 
 
-def _columns(rows: Sequence[Any], count: int) -> Any:
-    return np.array(rows, float).reshape(-1, count).T
+def _rows(count: int, *columns: Any) -> list[tuple[Any, ...]]:
+    """Columns, or single values throughout, row by row."""
+    values = (
+        column.tolist() if isinstance(column, np.ndarray) else [column] * count
+        for column in columns
+    )
+    return list(zip(*values, strict=True))
 
 
-def _records(named: type, first: Any, *others: Any) -> Any:
-    """Return an array of a named tuple's records from its columns, or values that all share."""
-    rows = np.empty(len(first), record_type(named))
-    for name, column in zip(rows.dtype.names or (), (first, *others), strict=True):
-        rows[name] = column
-    return rows
-
-
-def _followed(curves: Sequence[DragCurve | None], count: int) -> tuple[Any, Any]:
+def _followed(curves: Sequence[DragCurve | None]) -> tuple[Any, Any]:
     """The columns `diameter` and `lengthening` of loads that follow a curve, or 0 for none."""
     if not curves:
-        return np.zeros(count), np.zeros(count)
+        return 0.0, 0.0
     return (
         np.array([0.0 if curve is None else curve.diameter for curve in curves]),
         np.array([0.0 if curve is None else curve.lengthening for curve in curves]),

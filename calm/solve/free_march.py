@@ -225,7 +225,7 @@ class Rising(Moving):
         record: bool = False,
     ) -> Meeting:
         above, below = self._tracks
-        cables = len(above.packed.cables)
+        cables = len(above.cables)
         upper = None if cuts is None else cuts.first(cables)
         lower = None if cuts is None else cuts.after(cables)
         down = self._run(above, flow, self.top, angle_step, upper, record)

@@ -360,24 +360,22 @@ def _surfacing(line: Line, water: Water, track: Track, lift: Floats) -> list[Buo
     """The rigid buoyant pieces of a line, from the top down."""
     at_surface = surface_lift(line, water).tolist()
     upto, carried = np.cumsum(line.length).tolist(), np.cumsum(lift)
-    course: Any = track.packed
-    buoyant = (course.loads["clamp"] < 0) & (line.buoyancy > 0.0)[course.loads["piece"]]
     found = []
-    for number, (kind, first, size, _) in enumerate(course.stages.tolist()):
+    for number, (kind, first, size, _) in enumerate(track.stages):
         if kind != ROD:
             continue
         for place in range(first, first + size):
-            if not buoyant[place]:
+            load = Load._make(track.loads[place])
+            piece = load.piece
+            if load.clamp >= 0 or not load.buoyancy > 0.0:
                 continue
-            load = course.loads[place]
-            piece, length = int(load["piece"]), float(load["length"])
             found.append(
                 BuoyantPiece(
                     piece=piece,
                     load=place,
                     stage=number,
-                    length=length,
-                    rigid_above=float(load["at"]) - 0.5 * length,
+                    length=load.length,
+                    rigid_above=load.at - 0.5 * load.length,
                     upto=upto[piece],
                     surface_lift=at_surface[piece],
                     least=1.0 - float(carried[piece:].min()) / at_surface[piece]
