@@ -275,7 +275,8 @@ def _settled(
 def _carried(line: LumpedLine, finer: LumpedLine, flow: Floats) -> Floats:
     """Return the flow past the nodes of a line at those of a finer one of the same shape."""
     along, at = (np.concatenate([[0.0], each.span.cumsum()]) for each in (line, finer))
-    return np.column_stack([np.interp(at, along, values) for values in flow.T])
+    nodes = np.column_stack([np.interp(at, along, values) for values in flow[:-1].T])
+    return np.vstack([nodes, flow[-1:]])
 
 
 def _change(before: Floats, after: Floats) -> float:
