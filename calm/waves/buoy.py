@@ -84,7 +84,7 @@ class Buoy:
     panels : (12, f) of a panel method: frequency [rad/s]; added mass, radiation, and what pushes
         per metre of elevation, of heave; the same of surge, of surge with pitch and of pitch about
         the surface, with what pushes as it surges and pitches; None by the formulas of a disc
-    pitching : None where its pitch is not known
+    pitching, pitch_unknown : None where its pitch is not known, and then what it would take
     """
 
     mass: float
@@ -97,6 +97,7 @@ class Buoy:
     follows: bool = False
     panels: Complexes | None = None
     pitching: PitchingHull | None = None
+    pitch_unknown: str | None = None
 
     @property
     def edge(self) -> float:
@@ -280,6 +281,7 @@ def buoy_of(mooring: Mooring, solution: Solution, follows: bool) -> Buoy | None:
     centre, gyration = component.centre_of_mass, component.radius_of_gyration
     if centre is None and given and len(given[0]) > 3:
         centre, gyration = draft, 0.0
+    missing = "the `hull`" if profile is None else "`centre_of_mass` and `radius_of_gyration`"
     if profile is not None and centre is not None and gyration is not None:
         pitching = PitchingHull(profile, centre - draft, gyration, (component.bail or 0.0) - draft)
     lift = float(solution.force[int(solution.piece_nodes[index, 1]), 2])
@@ -295,6 +297,7 @@ def buoy_of(mooring: Mooring, solution: Solution, follows: bool) -> Buoy | None:
         follows=follows,
         panels=panels,
         pitching=pitching,
+        pitch_unknown=None if pitching else f"give {missing} of {piece.label}",
     )
     if pitching is not None and gyration:
         righted = buoy.righting(pitching, float(density), mooring.water.gravity)
