@@ -152,10 +152,11 @@ class Rigid(Definition):
     centre_of_mass: Annotated[float | None, _REACH] = optional(
         "of a float and all it carries, above the keel; for its pitch in waves", "0.8 m"
     )
-    radius_of_gyration: Annotated[
-        float | None, QuantityField("length", above=0, at_most=20)
-    ] = optional(
-        "of a float and all it carries, about a horizontal axis through `centre_of_mass`", "0.9 m"
+    radius_of_gyration: Annotated[float | None, QuantityField("length", above=0, at_most=20)] = (
+        optional(
+            "of a float and all it carries, about a horizontal axis through `centre_of_mass`",
+            "0.9 m",
+        )
     )
     bail: Annotated[float | None, _REACH] = optional(
         "height above the keel at which the line pulls a float; negative below it", "-0.5 m"

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
-from math import pi, sqrt
+from math import pi
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from calm.errors import UsageError
-from calm.files import Cylinder, Sphere
-from calm.files.rigid import Displacement, Rigid
+from calm.files.rigid import Rigid
+from calm.physics.hull import SPAR, TABULATED, Hull
 from calm.physics.line import Floats
 from calm.waves.lumped_line import Complexes
 
@@ -83,7 +82,8 @@ class Buoy:
     follows : whether it heaves, and pitches, as the water does
     panels : (12, f) of a panel method: frequency [rad/s]; added mass, radiation, and what pushes
         per metre of elevation, of heave; the same of surge, of surge with pitch and of pitch about
-        the surface, with what pushes as it surges and pitches; None by the formulas of a disc
+        the surface, and what pushes as it surges and pitches over ω², with which it grows; None by
+        the formulas of a disc
     pitching, pitch_unknown : None where its pitch is not known, and then what it would take
     """
 
@@ -98,16 +98,6 @@ class Buoy:
     panels: Complexes | None = None
     pitching: PitchingHull | None = None
     pitch_unknown: str | None = None
-
-    @property
-    def edge(self) -> float:
-        """Return the radius, at which the turn of the float has a speed [m]."""
-        return self.radius or 1.0
-
-    @property
-    def turning_drag(self) -> float:
-        """Return K of the moment of its bottom as it turns [N m/(rad/s)²]: ∫|x|³ of a disc."""
-        return self.heave_drag * 8.0 * self.radius**3 / (15.0 * pi)
 
     def heave(
         self, omega: Floats, number: Floats, density: float, gravity: float
@@ -162,10 +152,10 @@ class Buoy:
         else:
             rows = [np.interp(omega, self.panels[0].real, one) for one in self.panels[4:]]
             added, radiated = np.real(rows[0:6:2]), np.real(rows[1:6:2])
-            pushing = np.array(rows[6:])
+            pushing = omega**2 * np.array(rows[6:])
         second = hull.centre**2 + hull.gyration**2
         inertia = self.mass * np.array([[1.0], [hull.centre], [second]])
-        held = 1j * omega * radiated - omega**2 * (inertia + added)
+        held = np.asarray(1j * omega * radiated - omega**2 * (inertia + added), complex)
         held[2] += self.righting(hull, density, gravity)
         given = None
         if self.follows:
@@ -263,20 +253,20 @@ def buoy_of(mooring: Mooring, solution: Solution, follows: bool) -> Buoy | None:
     given = component.given_response
     follows = follows or component.heave == "follows"
     draft = 0.0 if riding is None or np.isnan(riding.draft) else riding.draft
-    radius = _waterplane_radius(component, draft)
-    if radius is None and not (follows or given):
+    floating = mooring.line.floating
+    hull = _round_hull(None if floating is None else floating.hull, draft)
+    if hull is None and not follows and (component.heave == "panels" or not given):
         raise UsageError(
             f"{piece.label} has no hull, which decides how it heaves: give its `hull`, or "
             "`heave: follows`"
         )
+    radius, profile = (0.0, None) if hull is None else hull
     masses = [each.component.mass for each in above]
     if any(mass is None for mass in masses):
         raise UsageError(f"{piece.label} gives no `mass`, which decides how it heaves")
     density = mooring.water.density_at(np.array(0.0))
-    profile, panels, pitching = _profile(component, draft), None, None
-    if component.heave == "panels" and not follows:
-        if profile is None:
-            raise UsageError(f"{piece.label} has no hull to panel: give its `hull`")
+    panels = pitching = None
+    if component.heave == "panels" and profile is not None and not follows:
         panels = panel_response(profile[::5], float(density), mooring.water.gravity)
     centre, gyration = component.centre_of_mass, component.radius_of_gyration
     if centre is None and given and len(given[0]) > 3:
@@ -289,10 +279,10 @@ def buoy_of(mooring: Mooring, solution: Solution, follows: bool) -> Buoy | None:
     buoy = Buoy(
         mass=mass,
         displaced=max(mass + lift / mooring.water.gravity, 0.0),
-        radius=radius or 0.0,
+        radius=radius,
         draft=draft,
         drag=float(solution.carried.normal_drag[index]) * float(density) / 1025.0,
-        heave_drag=0.5 * float(density) * DISC_CD * pi * (radius or 0.0) ** 2,
+        heave_drag=0.5 * float(density) * DISC_CD * pi * radius**2,
         rao=given,
         follows=follows,
         panels=panels,
@@ -303,47 +293,29 @@ def buoy_of(mooring: Mooring, solution: Solution, follows: bool) -> Buoy | None:
         righted = buoy.righting(pitching, float(density), mooring.water.gravity)
         if righted <= 0.0:
             raise UsageError(
-                f"{piece.label} does not float upright: with its `centre_of_mass` {centre:g} m above "
-                f"the keel, at a draft of {draft:.2f} m, a moment of {-righted:.0f} N m per radian "
-                "turns it over"
+                f"{piece.label} does not float upright: its `centre_of_mass` is {centre:g} m above "
+                f"the keel, its draft {draft:.2f} m; {-righted:.0f} N m per radian turn it over"
             )
     return buoy
 
 
-def _waterplane_radius(component: object, draft: float) -> float | None:
-    """Return the radius of a disc as large as the hull's waterplane [m]; None where unknown."""
-    hull = getattr(component, "hull", None)
-    if isinstance(hull, Displacement):
-        rows = hull.displacement
-        if draft <= 0.0:
-            return None
-        for (low, below, _), (high, above, _) in pairwise(rows):
-            if draft <= high:
-                return sqrt((above - below) / (high - low) / pi)
+def _round_hull(hull: Hull | None, draft: float) -> tuple[float, Floats] | None:
+    """Return the radius of a hull's waterplane [m], and radius and height above the surface of its
+    sections, (s, 2), the keel first [m]; None where they are not known."""
+    if hull is None or (draft <= 0.0 and hull.form != SPAR):
         return None
-    diameter = getattr(component, "diameter", None)
-    if isinstance(component, Sphere) and draft > 0.0 and diameter:
-        return sqrt(max(draft * (diameter - draft), 0.0))
-    if isinstance(component, Cylinder) and diameter:
-        return float(diameter) / 2.0
-    return None
-
-
-def _profile(component: object, draft: float) -> Floats | None:
-    """Return (n, 2) radius and height over the surface of a round hull, its keel first [m]."""
-    hull, diameter = getattr(component, "hull", None), getattr(component, "diameter", None)
-    heights = np.linspace(-draft, 0.0, SECTIONS)
-    if isinstance(hull, Displacement):
-        rows = np.array(hull.displacement)
-        between = 0.5 * (rows[1:, 0] + rows[:-1, 0])
-        radii = np.sqrt(np.diff(rows[:, 1]) / np.diff(rows[:, 0]) / pi)
-        return np.column_stack([np.interp(heights + draft, between, radii), heights])
-    if isinstance(component, Sphere) and diameter:
-        up = heights + draft
-        return np.column_stack([np.sqrt(np.maximum(up * (diameter - up), 0.0)), heights])
-    if isinstance(component, Cylinder) and diameter:
-        return np.column_stack([np.full(SECTIONS, 0.5 * float(diameter)), heights])
-    return None
+    up = np.linspace(0.0, draft, SECTIONS)
+    radii = np.sqrt(np.maximum(up * (hull.height - up), 0.0))
+    plane = float(radii[-1])
+    if hull.form == SPAR:
+        plane = 0.5 * hull.area / hull.height
+        radii = np.full(SECTIONS, plane)
+    elif hull.form == TABULATED:
+        drafts, volumes, _ = np.array(hull.rows).T
+        wide = np.sqrt(np.diff(volumes) / np.diff(drafts) / pi)
+        radii = np.interp(up, 0.5 * (drafts[1:] + drafts[:-1]), wide)
+        plane = float(wide[min(int(np.searchsorted(drafts, draft)), len(wide)) - 1])
+    return plane, np.column_stack([radii, up - draft])
 
 
 def panel_response(profile: Floats, density: float, gravity: float) -> Complexes:
@@ -383,23 +355,17 @@ def panel_response(profile: Floats, density: float, gravity: float) -> Complexes
     solver, found = capytaine.BEMSolver(), []
     for omega in PANEL_FREQUENCIES:
         given = {"body": body, "omega": omega, "rho": density, "g": gravity}
-        moved = {
-            way: solver.solve(capytaine.RadiationProblem(radiating_dof=way, **given))
-            for way in ("Heave", "Surge", "Pitch")
-        }
+        row = [omega + 0j]
         waves = capytaine.DiffractionProblem(wave_direction=0.0, **given)
         bent, straight = solver.solve(waves).forces, froude_krylov_force(waves)
-        pushed = {way: np.conj(bent[way] + straight[way]) for way in moved}
-        coupled = [
-            figure[other]
-            for way, other in (("Surge", "Surge"), ("Pitch", "Surge"), ("Pitch", "Pitch"))
-            for figure in (moved[way].added_masses, moved[way].radiation_dampings)
-        ]
-        heave = moved["Heave"]
-        found.append(
-            (
-                omega, heave.added_masses["Heave"], heave.radiation_dampings["Heave"],
-                pushed["Heave"], *coupled, pushed["Surge"], pushed["Pitch"],
-            )
-        )  # fmt: skip
+        for way, other in (("Heave", "Heave"), *_COUPLED):
+            moved = solver.solve(capytaine.RadiationProblem(radiating_dof=way, **given))
+            row += [moved.added_masses[other], moved.radiation_dampings[other]]
+            if way == "Heave":
+                row.append(np.conj(bent[way] + straight[way]))
+        row += [np.conj(bent[way] + straight[way]) / omega**2 for way in ("Surge", "Pitch")]
+        found.append(row)
     return np.array(found, complex).T
+
+
+_COUPLED = ("Surge", "Surge"), ("Pitch", "Surge"), ("Pitch", "Pitch")

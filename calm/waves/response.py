@@ -110,46 +110,47 @@ class _Afloat:
     """What holds a float and what pushes it, by its bail's three ways and its pitch.
 
     `held` (f, 4, 4) and `pushed` (f, 4) per metre of elevation, without drag. Drag acts where
-    `ways` (p, 3, 4) says how that moves, in water of these velocities (f, p, 3), and on its turn
-    beside the `slope` (f,) of the waves.
+    `ways` (p, 3, 4) says how that moves, in water of these velocities (f, p, 3), and by `turning`,
+    K of its bottom, on its turn beside the `slope` (f,) of the waves.
     """
 
     held: Complexes
     pushed: Complexes
     ways: Floats
     water: Complexes
+    turning: float
     slope: Complexes
 
     @classmethod
-    def of(cls, line: LumpedLine, buoy: Buoy, waves: Waves) -> _Afloat:
-        omega, number, ahead = waves.omega, waves.number, waves.ahead
+    def of(cls, place: Floats, buoy: Buoy, waves: Waves) -> _Afloat:
+        omega, number, ahead, hull = waves.omega, waves.number, waves.ahead, buoy.pitching
         medium = (omega, number, waves.density, waves.gravity)
-        held = np.zeros((len(omega), 4, 4), complex)
-        pushed = np.zeros((len(omega), 4), complex)
-        elevation = np.exp(-1j * number * float(line.position[0] @ ahead))
-        held[:, 2, 2], pushed[:, 2] = buoy.heave(*medium)
-        hull, place, arms = buoy.pitching, line.position[0], np.zeros(1)
-        at = place[None]
         if hull is None:
+            deep, heights, both, turning = 0.0, place[2:], 0.0, 0.0
             moved = (1.0 + SIDEWAYS_ADDED) * buoy.displaced
-            held[:, 0, 0] = held[:, 1, 1] = -(omega**2) * (moved + buoy.mass - buoy.displaced)
-            held[:, 3, 3] = 1.0
-            surface = waves.velocity(np.array([[0.0, 0.0, -0.5 * buoy.draft]]))[:, 0]
-            pushed[:, :2] = 1j * omega[:, None] * moved * surface[:, :2]
+            surge, turn = -(omega**2) * (moved + buoy.mass - buoy.displaced), 1.0
+            middle = waves.velocity(np.array([[0.0, 0.0, -0.5 * buoy.draft]]))[:, 0]
+            pushing = 1j * omega * moved * (middle @ ahead)
         else:
-            (surge, both, turn), (ahead_of, turning) = buoy.pitch(hull, *medium)
-            deep = -hull.bail
-            held[:, 0, 0] = held[:, 1, 1] = surge
+            (surge, both, turn), (pushing, turning) = buoy.pitch(hull, *medium)
+            # two points stand for a drag that is the same all over the draft
+            deep, heights = -hull.bail, buoy.draft * (-0.5 + np.array([-1.0, 1.0]) / sqrt(12.0))
+        held = np.zeros((len(omega), 4, 4), complex)
+        pushed = pushing[:, None] * np.array([*ahead, deep], complex)
+        held[:, 2, 2], pushed[:, 2] = buoy.heave(*medium)
+        held[:, 0, 0] = held[:, 1, 1] = surge
+        if hull is not None:
             held[:, :3, 3] = held[:, 3, :3] = (both + deep * surge)[:, None] * ahead
-            held[:, 3, 3] = turn + 2.0 * deep * both + deep**2 * surge
-            pushed += ahead_of[:, None] * [*ahead, deep]
-            pushed[:, 3] += turning
-            # two points that stand for a drag that is the same all over the draft
-            heights = buoy.draft * (-0.5 + np.array([-1.0, 1.0]) / sqrt(12.0))
-            arms, at = heights + deep, np.column_stack([np.tile(place[:2], (2, 1)), heights])
+        held[:, 3, 3] = turn + 2.0 * deep * both + deep**2 * surge
+        pushed[:, 3] += turning
+        at = np.column_stack([np.tile(place[:2], (len(heights), 1)), heights])
+        arms = heights + deep if hull else np.zeros(1)
         ways = np.stack([np.column_stack([np.eye(3), arm * ahead]) for arm in arms])
+        elevation = np.exp(-1j * number * float(place @ ahead))
+        # of the bottom: the drag of its heave, by the third power of the distance from the axis
+        drag = 0.0 if hull is None else buoy.heave_drag * 8.0 * buoy.radius**3 / (15.0 * pi)
         slope = 1j * number * np.exp(-number * buoy.draft) * elevation
-        return cls(held, pushed * elevation[:, None], ways, waves.velocity(at), slope)
+        return cls(held, pushed * elevation[:, None], ways, waves.velocity(at), drag, slope)
 
     def dragged(self, omega: Floats, drag: Floats, turning: float) -> tuple[Complexes, Complexes]:
         """Return what holds and what pushes with the linear drag (3, 3) and that of its turn."""
@@ -193,15 +194,15 @@ def respond(
     forced = _inertia_force(line, waves, water)
     still = np.sqrt((np.abs(water) ** 2 * weight[:, None, None]).sum(0)) + STILL
     flow = np.vstack([still, still[:1]]) if first is None else first
-    afloat = None if buoy is None else _Afloat.of(line, buoy, waves)
+    afloat = None if buoy is None else _Afloat.of(line.position[0], buoy, waves)
     axes, rate = _axes(line), 1j * omega[:, None, None]
     pitch, held = np.zeros(len(omega), complex), None
     iterations = 0
     while iterations < MOST_ITERATIONS:
         iterations += 1
         damping = drag_factor * _linearised(line, buoy, flow[:-1])
-        if buoy is not None and afloat is not None:
-            turning = drag_factor * buoy.turning_drag * _slope(0.0, flow[-1, 0] / buoy.edge)
+        if afloat is not None:
+            turning = drag_factor * afloat.turning * _slope(0.0, flow[-1, 0])
             whole, pushed = afloat.dragged(omega, damping[0], turning)
             damping[0] = 0.0
             lever = whole[:, :3, 3] / whole[:, 3, 3, None]
@@ -210,7 +211,7 @@ def respond(
         motion = _solved(line, held, waves, water, forced, damping)
         found = np.zeros_like(flow)
         found[:-1] = _deviations(axes, water - rate * motion, weight)
-        if buoy is not None and afloat is not None:
+        if afloat is not None:
             rest = pushed[:, 3] - (whole[:, 3, :3] * motion[:, 0]).sum(1)
             pitch = rest / whole[:, 3, 3]
             moved = np.column_stack([motion[:, 0], pitch])
@@ -218,7 +219,7 @@ def respond(
             own = _deviations(np.repeat(axes[:1], len(afloat.ways), 0), past, weight)
             found[0] = np.sqrt((own**2).mean(0))
             turned = np.abs(omega * (afloat.slope - pitch)) ** 2 * weight
-            found[-1] = buoy.edge * sqrt(float(turned.sum())) + STILL
+            found[-1] = sqrt(float(turned.sum())) + STILL
         change = np.abs(found - flow).max() / max(float(found.max()), 1e-12)
         if once or change < SETTLED:
             break
