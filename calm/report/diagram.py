@@ -30,7 +30,7 @@ from calm.drawing.schematic.deck_parts import parts_of
 from calm.drawing.schematic.pen import INK, SOFT, Pen, picture, svg_text, wrapped
 from calm.drawing.schematic.shown_parts import TextRow, one_line
 from calm.drawing.schematic.sign import LINES, WORDS, Sign
-from calm.drawing.schematic.symbols import SEABED_ROOM, draw_cable, figure_of
+from calm.drawing.schematic.symbols import draw_cable, figure_of
 from calm.quantities import QUANTITIES, say
 from calm.report.check_summary import short_verdict
 from calm.report.net_sheet import ends_told, leg_title
@@ -192,30 +192,40 @@ def _pages(deck: Deck, paper: Paper) -> _Pages:
     column = column_of(rows, headings, paper.column_width)
     legend = tuple({part.sign.symbol: part.sign for part in parts}.values())
     need = _GROUND + LEADING - (-len(legend) // _LEGEND_COLUMNS) * _LEGEND_ROW
-    bottom = paper.size[1] - _MARGIN - block.height
-    foot = block.height
+    sets = (  # long cables are drawn shorter where that saves a page
+        [(line, measured(leg, column, growth)) for line, leg in zip(lines, legs, strict=True)]
+        for growth in (1.0, 0.5, 0.0)
+    )
+    columns = min((_even(each, paper, block.height, need) for each in sets), key=len)
+    return _Pages(one_line(deck.file.name), paper, block, column, columns, legend)
+
+
+def _even(
+    legs: Sequence[tuple[Result, Sequence[PlacedPart]]], paper: Paper, block: float, need: float
+) -> _Stacks:
+    """The columns of all legs; the last takes over parts until it is about as long as the first.
+
+    Parameters
+    ----------
+    block : height of the title block [pt]
+    need : height of the seabed and the legend below the last part [pt]
+    """
+    bottom, foot = paper.size[1] - _MARGIN - block, block
     even: _Stacks = ()
-    while True:  # the last column takes over parts until it is about as long as the first
+    while True:
         marks = (
             letter + (str(turn) if turn else "") for turn in count() for letter in ascii_uppercase
         )
-        columns = _stacked(
-            (
-                one
-                for line, leg in zip(lines, legs, strict=True)
-                for one in _columns(line, measured(leg, column), paper, foot, marks)
-            ),
-            bottom,
-        )
+        every = (one for line, leg in legs for one in _columns(line, leg, paper, foot, marks))
+        columns = _stacked(every, bottom)
         if even and len(columns) > len(even):
-            break
+            return even
         first, last = (down + one.end for down, one in (columns[0][-1], columns[-1][-1]))
         if len(columns) % paper.columns or last + need <= bottom:
             even = columns
             if len(columns) == 1 or len(legs) > 1 or last >= _EVEN * first:
-                break
+                return even
         foot += 2 * LEADING
-    return _Pages(one_line(deck.file.name), paper, block, column, even, legend)
 
 
 _TOP = _MARGIN + _TITLE_ROOM + HEAD
@@ -233,7 +243,7 @@ def _columns(
     """
     afloat, (top, bottom) = line.type == "surface", ends_told(line)
     sea = _MAST - parts[0].height / 2 if afloat else _SKY + _SUBMERGED
-    room = paper.size[1] - foot - _MARGIN - _TOP - 2 * _CONTINUED - sea - SEABED_ROOM
+    room = paper.size[1] - foot - _MARGIN - _TOP - _CONTINUED - max(sea, _CONTINUED)
     above = top
     for group in _broken(parts, room):
         mark = "" if group[-1] is parts[-1] else next(marks)
