@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from itertools import count
+from itertools import accumulate, count
 from string import ascii_uppercase
 
 from calm.case import Result
@@ -205,10 +206,7 @@ def _even(
 ) -> _Stacks:
     """The columns of all legs; the last takes over parts until it is about as long as the first.
 
-    Parameters
-    ----------
-    block : height of the title block [pt]
-    need : height of the seabed and the legend below the last part [pt]
+    Below the last part there is `need` for the seabed and the legend, above the title `block` [pt].
     """
     bottom, foot = paper.size[1] - _MARGIN - block, block
     even: _Stacks = ()
@@ -340,29 +338,20 @@ def _broken(parts: Sequence[PlacedPart], room: float) -> Iterator[list[PlacedPar
     """Groups that fit a column, parted at a junction near its end where there is one."""
     rest = [*parts]
     while rest:
-        height, fits = 0.0, 0
-        while fits < len(rest) and (fits == 0 or height + rest[fits].height <= room):
-            height += rest[fits].height
-            fits += 1
+        heights = [*accumulate(one.height for one in rest)]
+        fits = max(bisect_right(heights, room), 1)
         if fits < len(rest):
-            fits = _break(rest, fits, room)
+            fits = _break(rest, heights, fits, room)
         yield rest[:fits]
         rest = rest[fits:]
 
 
-def _break(rest: Sequence[PlacedPart], fits: int, room: float) -> int:
+def _break(rest: Sequence[PlacedPart], heights: Sequence[float], fits: int, room: float) -> int:
     """Before which part to part: a junction, else a piece, else a clamp, as low as can be."""
-    height = sum(one.height for one in rest[:fits])
-    best = fits, 3
-    for number in range(fits, 0, -1):
-        part = rest[number].part
-        quality = 0 if part.junction else 2 if part.clamped else 1
-        if height < (1.0 - _NEAR_THE_END) * room and best[1] < 3:
-            break
-        if quality < best[1]:
-            best = number, quality
-        height -= rest[number - 1].height
-    return best[0]
+    least = (1.0 - _NEAR_THE_END) * room
+    near = [each for each in range(fits, 0, -1) if each == fits or heights[each - 1] >= least]
+    parts = {each: rest[each].part for each in near}
+    return min(near, key=lambda each: (not parts[each].junction, parts[each].clamped))
 
 
 _FIELDS = (
