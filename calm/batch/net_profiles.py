@@ -1,25 +1,249 @@
-"""Many current profiles of a net of legs, each sought from where the net is in still water."""
+"""Many current profiles of a net of legs, by the compiled search of `calm.solve.net_march`.
+
+Each is sought from the net in the even current of a table that is nearest to it. Where that leads
+to nothing that stands, or the seabed slopes, the profile is solved as `calm run` does.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import inf
-from typing import Any
+from itertools import product
+from math import inf, sqrt
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.batch.solving import read_profile
+from calm.batch.solving import lay_profile, read_profile
 from calm.batch.statuses import STATUSES
+from calm.case.measure import leaning_of
 from calm.case.net import Net, net_result
 from calm.case.net_result import NetResult
+from calm.case.parts import clamps_down
 from calm.dataset.netcdf import OF_CLAMP, OF_COMPONENT, OF_ENDS
 from calm.errors import NoEquilibrium
 from calm.files import CurrentTable
-from calm.physics.line import Floats
+from calm.files.legs import nodes_of
+from calm.physics.compiled import by_address, entry, record_type
+from calm.physics.line import Floats, Water
+from calm.physics.profile import Interval, Sea
+from calm.physics.track import head_count
 from calm.solve import expect_many
-from calm.solve.net import NetSolution
+from calm.solve.net import LacksRoom, NetSearch, NetSolution
+from calm.solve.net_march import (
+    CAME_OUT,
+    CLOSE,
+    COUNT,
+    DEPTH_ERROR,
+    HUNG,
+    LANDS,
+    MARCH,
+    NEAR,
+    PULLED,
+    SETTLE,
+    SHARE,
+    SLOPES,
+    STANDING,
+    AskedNet,
+    Marching,
+    NetProblem,
+    ask_net,
+    end_of_leg,
+    keep,
+)
+from calm.solve.problem import CHOSEN, FINE
+
+SPEEDS = (0.0, 0.1, 0.2, 0.4, 0.8, 1.6)
+"""Of the even currents of the table, to the east and west, north and south [m/s]."""
+BLOCK = 256
+"""Profiles that a thread takes at a time."""
+NO_PROFILE, COINCIDING, TO_SOLVE = -1, -2, 1
+"""How a profile ends that has no current, or two at a level, and one that is to be solved alone."""
+
+
+class NetRows(NamedTuple):
+    """What is found of n profiles.
+
+    Attributes
+    ----------
+    pieces : (n, p, 12) place [m] and force [N] at the upper and at the lower end of each
+    clamps : (n, c, 7) place, sum of the forces above and below, and the greater one
+    shares : (n, l) of the buoyancy of the float at the upper end of each leg
+    """
+
+    pieces: Floats
+    clamps: Floats
+    shares: Floats
+
+
+class NetPaper(NamedTuple):
+    """What profiles are laid out on, and from where they are sought.
+
+    Attributes
+    ----------
+    read, joined, levels, intervals, fixed : as in `ProfileArrays`
+    strata, gravity : as in `Sea`
+    air : thickness of the skin in which water turns into air, where ends are above it; else 0 [m]
+    velocity, starts, slopes, lands : (k, 2) even currents [m/s], and (k, ·) the unknowns, slopes
+        and legs on the seabed of the net in each
+    x : room for the unknowns
+    piece, clamp : first of each leg in the rows
+    weight : of the anchor of each leg, inf where it has none [N]
+    """
+
+    read: Floats
+    joined: Floats
+    levels: Any
+    intervals: Any
+    fixed: Floats
+    strata: Any
+    gravity: float
+    air: float
+    velocity: Floats
+    starts: Any
+    slopes: Any
+    lands: Floats
+    x: Any
+    piece: Any
+    clamp: Any
+    weight: Floats
+
+
+def solve_net_rows(
+    ask: Callable[[AskedNet, float], float],
+    net: NetProblem,
+    step: float,
+    paper: NetPaper,
+    depth: Floats,
+    u: Floats,
+    v: Floats,
+    w: Floats,
+    rows: NetRows,
+    endings: Any,
+) -> None:
+    """Solve profiles; what they lead to goes to their rows.
+
+    Parameters
+    ----------
+    step : angle step [rad]
+    depth : (1 or n, k) of the levels [m]
+    u, v, w : (n, k) current [m/s]; NaN where there is none
+    endings : (n,) those not 0 are left alone; then how each ends
+    """
+    for case in range(endings.size):
+        if endings[case] != 0:
+            continue
+        levels_at = depth[case if depth.shape[0] > 1 else 0]
+        found = read_profile(levels_at, u[case], v[case], w[case], paper.read)
+        if found <= 0:
+            endings[case] = NO_PROFILE if found == 0 else COINCIDING
+            continue
+        if paper.air > 0.0:
+            found = still_above(paper.read, found, paper.air)
+        total = lay_profile(
+            paper.read, found, paper.fixed, paper.levels, paper.intervals, paper.joined
+        )
+        sea = Sea(
+            paper.levels[: total + 2], paper.intervals[: total + 1], paper.gravity, paper.strata
+        )
+        begin_near(net, paper, total)
+        how = Marching(sea, 4.0 * step, CHOSEN, False, FINE)
+        ending = ask(AskedNet(CLOSE, net, paper.x, how, NEAR, True), 0.0)
+        if ending == CAME_OUT:
+            how = Marching(sea, step, CHOSEN, False, FINE)
+            ending = ask(AskedNet(SETTLE, net, paper.x, how, 0.0, True), 0.0)
+        endings[case] = TO_SOLVE
+        if ending == CAME_OUT and stands(net, paper):
+            endings[case] = 0
+            tell_net(net, paper, rows, case)
+
+
+def still_above(read: Floats, count: int, skin: float) -> int:
+    """Put still air above a profile; returns how many levels that makes."""
+    more = 1 if read[0, 0] == 0.0 else 2
+    for k in range(count - 1, -1, -1):
+        for c in range(4):
+            read[k + more, c] = read[k, c]
+    for c in range(1, 4):
+        read[0, c], read[1, c] = 0.0, read[more, c]
+    read[0, 0], read[1, 0] = -skin, 0.0
+    return count + more
+
+
+def begin_near(net: NetProblem, paper: NetPaper, total: int) -> None:
+    """Begin where the net is in the even current that is nearest to the mean of the profile."""
+    joined, best, nearest = paper.joined, inf, 0
+    u, v, thick = joined[0, 1], joined[0, 2], 0.0
+    for k in range(1, total):
+        upper, lower = max(joined[k - 1, 0], 0.0), min(joined[k, 0], net.depth)
+        if lower > upper:
+            share = (lower - upper) / (thick + lower - upper)
+            u += share * (0.5 * (joined[k - 1, 1] + joined[k, 1]) - u)
+            v += share * (0.5 * (joined[k - 1, 2] + joined[k, 2]) - v)
+            thick += lower - upper
+    for k in range(len(paper.velocity)):
+        du, dv = paper.velocity[k, 0] - u, paper.velocity[k, 1] - v
+        off = du * du + dv * dv
+        if off < best:
+            best, nearest = off, k
+    keep(paper.starts[nearest], paper.x)
+    for k in range(len(paper.x)):
+        keep(paper.slopes[nearest, k], net.slopes[k])
+    for i in range(len(net.legs)):
+        net.state[i][LANDS] = paper.lands[nearest, i]
+
+
+def stands(net: NetProblem, paper: NetPaper) -> bool:
+    """Whether no leg is out of the water or in the seabed, and no anchor is lifted."""
+    near = net.errors[DEPTH_ERROR] + 1e-9 * net.length + 1e-6 * net.depth
+    for i in range(len(net.legs)):
+        leg, state, record = net.legs[i], net.state[i], net.work.records[i][FINE]
+        count, first = int(state[COUNT]), 0
+        bed = leg.seabed if leg.seabed > -inf else -net.depth
+        if leg.kind == STANDING and state[SHARE] < 1.0:
+            if state[SHARE] < 0.0:
+                return False
+            first = net.last[i][net.surfacing[i][0].piece] + 1
+        for n in range(count):
+            if n < state[HUNG] and record[2][n] < bed - near:
+                return False
+            if n >= first and record[2][n] > near + leg.highest:
+                return False
+        if record[5][count - 1] > paper.weight[i]:
+            return False
+    return True
+
+
+def tell_net(net: NetProblem, paper: NetPaper, rows: NetRows, case: int) -> None:
+    """Write what is found of a profile to its row."""
+    for i in range(len(net.legs)):
+        leg, record, count = net.legs[i], net.work.records[i][FINE], int(net.state[i][COUNT])
+        east, north, _ = end_of_leg(net, i, paper.x)
+        dx, dy = east - record[0][count - 1], north - record[1][count - 1]
+        rows.shares[case, i] = net.state[i][SHARE]
+        own = 1 if leg.kind == PULLED else 0
+        for p in range(own, leg.pieces):
+            row = rows.pieces[case, paper.piece[i] + p - own]
+            for side in range(2):
+                n = net.first[i][p] if side == 0 else net.last[i][p]
+                for k in range(6):
+                    row[6 * side + k] = record[k][n]
+                row[6 * side] += dx
+                row[6 * side + 1] += dy
+        for n in range(1, count):
+            if record[7][n] < 0.0:
+                continue
+            row = rows.clamps[case, paper.clamp[i] + int(record[7][n])]
+            row[0], row[1], row[2] = record[0][n - 1] + dx, record[1][n - 1] + dy, record[2][n - 1]
+            above = below = 0.0
+            for k in range(3, 6):
+                row[k] = record[k][n - 1] + record[k][n]
+                above += record[k][n - 1] * record[k][n - 1]
+                below += record[k][n] * record[k][n]
+            row[6] = sqrt(max(above, below))
 
 
 @dataclass(frozen=True)
@@ -27,6 +251,12 @@ class NetProfiles:
     """A net made ready for many profiles."""
 
     net: Net
+
+    def water(self, *current: tuple[float, ...]) -> Water:
+        """Its water with another current: depth, u, v and w of its levels."""
+        depth, u, v, w = current
+        environment = replace(self.net.file.environment, current=CurrentTable(depth, u, v, w))
+        return self.net.water_of(environment)
 
     @cached_property
     def still(self) -> NetSolution | None:
@@ -37,7 +267,50 @@ class NetProfiles:
         except NoEquilibrium:
             return None
 
-    def solve(self, current: tuple[Floats, ...], status: NDArray[np.int8]) -> dict[str, Floats]:
+    @cached_property
+    def at_rest(self) -> NetResult | None:
+        """What is measured of it there; None where a check of it fails."""
+        try:
+            if self.still is not None:
+                return net_result(self.net, self.still, self.still.legs)
+        except NoEquilibrium:
+            pass
+        return None
+
+    @cached_property
+    def table(self) -> tuple[list[Floats], ...]:
+        """Velocity, unknowns, slopes and legs on the seabed of the net in even currents."""
+        found: list[tuple[Floats, ...]] = []
+        if self.still is None or self.at_rest is None or self.net.file.environment.seabed:
+            return ()
+        search = self.search()
+        each_way = sorted({*SPEEDS, *(-speed for speed in SPEEDS)})
+        for u, v in product(each_way, each_way):
+            search.put_in(self.water((0.0,), (u,), (v,), (0.0,)))
+            search.lie_as(self.still.lands)
+            try:
+                x = search.closed(self.still.unknowns, 4.0 * search.settings.angle_step, NEAR)
+                if x is None:
+                    continue
+                x = search.settled(x)
+            except (NoEquilibrium, LacksRoom):
+                continue
+            step = 4.0 * search.settings.angle_step
+            search.asked(MARCH, x, search.marching(step, CHOSEN, FINE, given=False))
+            search.asked(SLOPES, x, search.marching(step, CHOSEN, FINE, given=True))
+            slopes = np.array(search.net.slopes)
+            found.append((np.array([u, v]), x, slopes, np.array(search.lands, float)))
+        return tuple(list(column) for column in zip(*found, strict=True))
+
+    def search(self) -> NetSearch:
+        """The search for it, compiled."""
+        settings = replace(self.net.settings, compiled=True)
+        nodes = len(nodes_of(self.net.file.legs))
+        return NetSearch(self.net.legs, nodes, self.water(*[(0.0,)] * 4), settings)
+
+    def solve(
+        self, current: tuple[Floats, ...], status: NDArray[np.int8], workers: int
+    ) -> dict[str, Floats]:
         """The columns of profiles, by name; how each ends goes to `status` where that is 0.
 
         Parameters
@@ -45,36 +318,163 @@ class NetProfiles:
         current : depth (1 or n, k) of levels [m], and u, v, w (n, k) there [m/s]
         status : (n,) index in `STATUSES`
         """
-        net, (depth, u, v, w), still = self.net, current, self.still
-        pieces, legs = net.file.pieces, len(net.file.legs)
-        clamps = sum(len(piece.clamps) for piece in pieces)
-        sizes = dict.fromkeys(OF_COMPONENT, len(pieces)) | dict.fromkeys(OF_CLAMP, clamps)
-        sizes |= dict.fromkeys(OF_ENDS, legs)
-        columns = {name: np.full((len(status), size), np.nan) for name, size in sizes.items()}
-        read = np.zeros((depth.shape[1], 4))
-        for case in np.flatnonzero(status == 0).tolist():
-            levels = depth[case if len(depth) > 1 else 0]
-            count = read_profile(levels, u[case], v[case], w[case], read)
-            if count <= 0:
-                status[case] = STATUSES.index("no-current" if count == 0 else "levels-coincide")
-                continue
-            table = CurrentTable(*(tuple(column) for column in read[:count].T.tolist()))
-            water = net.water_of(replace(net.file.environment, current=table))
-            try:
-                solution = net.equilibrium(water, still)
-                before: Any = [None] * legs if still is None else still.legs
-                result = net_result(net, solution, before)
-            except NoEquilibrium as failure:
-                status[case] = STATUSES.index(failure.status)
-                continue
-            for name, column in _columns(result).items():
-                columns[name][case] = column
+        net, count = self.net, len(status)
+        pieces, legs = net.file.pieces, net.file.legs
+        clamps = clamps_down(pieces)
+        rows = NetRows(
+            np.full((count, len(pieces), 12), np.nan), np.full((count, len(clamps), 7), np.nan),
+            np.full((count, len(legs)), np.nan),
+        )  # fmt: skip
+        endings = np.where(status == 0, 0, 99)
+        if self.table:
+
+            def solve(block: slice) -> None:
+                depth, *parts = (np.array(array, np.float64, order="C") for array in current)
+                levels = depth if len(depth) == 1 else depth[block]
+                mine = levels, *(part[block] for part in parts)
+                self._solve_rows(mine, NetRows(*(row[block] for row in rows)), endings[block])
+
+            solve(slice(0, 0))  # compiles where need be
+            with ThreadPoolExecutor(workers) as pool:
+                for _ in pool.map(solve, [slice(at, at + BLOCK) for at in range(0, count, BLOCK)]):
+                    pass
+        else:
+            endings[endings == 0] = TO_SOLVE
+        status[endings == NO_PROFILE] = STATUSES.index("no-current")
+        status[endings == COINCIDING] = STATUSES.index("levels-coincide")
+        columns = self._columns(rows)
+        for name in columns:
+            columns[name][endings != 0] = np.nan
+        for case in np.flatnonzero(endings == TO_SOLVE).tolist():
+            self._solve_alone(current, case, columns, status)
         return columns
 
+    def _solve_rows(
+        self, current: tuple[Floats, ...], rows: NetRows, endings: NDArray[np.int64]
+    ) -> None:
+        search, water = self.search(), self.water(*[(0.0,)] * 4)
+        levels = current[0].shape[1] + len(water.level) + 2
+        sea: Any = search.sea
+        velocity, starts, slopes, lands = map(np.array, self.table)
+        of_legs = self.net.file.legs
+        held = [leg.bottom.anchor is not None for leg in of_legs]
+        clamped = [len(piece.clamps) for piece in self.net.file.pieces]
+        paper = NetPaper(
+            read=np.zeros((levels, 4)),
+            joined=np.zeros((levels + 2, 5)),
+            levels=np.zeros(levels + 2),
+            intervals=np.zeros(levels + 2, record_type(Interval)),
+            fixed=np.column_stack([water.level, water.u, water.v, water.density]),
+            strata=sea.strata,
+            gravity=water.gravity,
+            air=max(-float(water.level[0]), 0.0),
+            velocity=velocity,
+            starts=starts,
+            slopes=slopes,
+            lands=lands,
+            x=np.zeros(starts.shape[1]),
+            piece=np.array([leg.first for leg in of_legs]),
+            clamp=np.array([sum(clamped[: leg.first]) for leg in of_legs]),
+            weight=np.array(
+                [
+                    line.anchor_weight if anchored else inf
+                    for line, anchored in zip(self.net.lines, held, strict=True)
+                ]
+            ),
+        )
+        step = float(search.settings.angle_step)
+        how = search.marching(step, CHOSEN, FINE, given=False)
+        ask = by_address(ask_net, AskedNet(CLOSE, search.net, paper.x, how, 0.0, True))
+        given = (ask, search.net, step, paper, *current, rows, endings)
+        entry(solve_net_rows, *given)(*given)
 
-def _columns(result: NetResult) -> dict[str, Any]:
-    return {
-        **{name: getattr(result.components, name) for name in OF_COMPONENT},
-        **{name: getattr(result.clamps, name.removeprefix("clamp_")) for name in OF_CLAMP},
-        **result.ends,
-    }
+    def _columns(self, rows: NetRows) -> dict[str, Floats]:
+        """The columns that the rows lead to."""
+        file, count = self.net.file, len(rows.shares)
+        pieces, clamps, legs = (row.shape[1] for row in rows)
+        place, tilt = np.zeros((count, pieces, 3)), np.zeros((count, pieces))
+        above, below = np.zeros((count, pieces)), np.zeros((count, pieces))
+        columns = {name: np.full((count, legs), np.nan) for name in OF_ENDS}
+        of_clamps, leans, held = rows.clamps.copy(), np.zeros((count, clamps)), 0
+        for i, (leg, line) in enumerate(zip(file.legs, self.net.legs, strict=True)):
+            own = slice(leg.first, leg.first + len(line.line.length))
+            upper, lower = rows.pieces[:, own, :6], rows.pieces[:, own, 6:]
+            hangs = line.lower.free and not line.upper.free
+            if hangs:  # listed from its lower end
+                upper, lower = lower[:, ::-1], upper[:, ::-1]
+            chord, pull = upper[..., :3] - lower[..., :3], upper[..., 3:] + lower[..., 3:]
+            if line.upper.free and (head := head_count(line.line)):
+                chord[:, :head] = (upper[:, :1] - lower[:, head - 1 : head])[..., :3]
+            upright = chord.any(-1, keepdims=True)
+            tilt[:, own] = leaning_of(np.where(upright, chord, -pull if hangs else pull))
+            place[:, own] = upper[..., :3]
+            above[:, own] = np.linalg.norm(upper[..., 3:], axis=-1)
+            below[:, own] = np.linalg.norm(lower[..., 3:], axis=-1)
+            anchor = leg.end - 1 if leg.bottom.anchor is not None else -1
+            if anchor >= 0:
+                place[:, anchor], force = lower[:, -1, :3], lower[:, -1, 3:]
+                above[:, anchor] = below[:, anchor] = below[:, anchor - 1]
+                columns["anchor_vertical"][:, i] = force[:, 2]
+                columns["anchor_horizontal"][:, i] = np.hypot(force[:, 0], force[:, 1])
+            if line.upper.free:
+                columns["top_depth"][:, i] = -upper[:, 0, 2]
+                columns["used_buoyancy"][:, i] = rows.shares[:, i]
+            for piece in file.pieces[leg.first : leg.end]:
+                p, ways = piece.index, -1.0 if hangs else 1.0
+                for clamp in piece.clamps:
+                    row = of_clamps[:, held]
+                    leans[:, held] = tilt[:, p]
+                    if p == anchor:
+                        row[:, :3], row[:, 6] = place[:, p] - [0.0, 0.0, clamp.at], above[:, p]
+                    elif line.line.flexible[p - leg.first]:
+                        leans[:, held] = leaning_of(ways * row[:, 3:6])
+                    held += 1
+        on = [(piece.index, clamp.at) for piece in file.pieces for clamp in piece.clamps]
+        order = sorted(range(clamps), key=on.__getitem__)
+        of_clamps, leans = of_clamps[:, order], leans[:, order]
+        still = self.at_rest
+        known = (
+            (np.nan, np.nan) if still is None else (still.components.depth_top, still.clamps.depth)
+        )
+        return columns | {
+            "depth_top": -place[..., 2],
+            "x_top": place[..., 0],
+            "y_top": place[..., 1],
+            "tension_top": above,
+            "tension_bottom": below,
+            "tilt": tilt,
+            "knockdown": -place[..., 2] - known[0],
+            "clamp_depth": -of_clamps[..., 2],
+            "clamp_x": of_clamps[..., 0],
+            "clamp_y": of_clamps[..., 1],
+            "clamp_tension": of_clamps[..., 6],
+            "clamp_tilt": leans,
+            "clamp_knockdown": -of_clamps[..., 2] - known[1],
+        }
+
+    def _solve_alone(
+        self, current: tuple[Floats, ...], case: int, columns: dict[str, Floats],
+        status: NDArray[np.int8],
+    ) -> None:  # fmt: skip
+        """Solve a profile as `calm run` does."""
+        depth, u, v, w = current
+        read, still = np.zeros((depth.shape[1], 4)), self.still
+        levels = depth[case if len(depth) > 1 else 0]
+        count = read_profile(levels, u[case], v[case], w[case], read)
+        if count <= 0:
+            status[case] = STATUSES.index("no-current" if count == 0 else "levels-coincide")
+            return
+        water = self.water(*(tuple(column) for column in read[:count].T.tolist()))
+        try:
+            solution = self.net.equilibrium(water, still)
+            before: Any = [None] * len(solution.legs) if still is None else still.legs
+            result = net_result(self.net, solution, before)
+        except NoEquilibrium as failure:
+            status[case] = STATUSES.index(failure.status)
+            return
+        for name in OF_COMPONENT:
+            columns[name][case] = getattr(result.components, name)
+        for name in OF_CLAMP:
+            columns[name][case] = getattr(result.clamps, name.removeprefix("clamp_"))
+        for name, column in result.ends.items():
+            columns[name][case] = column

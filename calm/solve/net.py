@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from calm.physics.compiled import entry
+from calm.physics.compiled import by_address, entry
 from calm.physics.line import FAILURES, GOES_ON, Floats, Line, Trace, Water
 from calm.physics.profile import Profile
 from calm.solve.finish import refuse_unbalanced
@@ -29,22 +29,26 @@ from calm.solve.net_leg import (
 )
 from calm.solve.net_march import (
     CAME_OUT,
+    CLOSE,
     CLOSED,
     COUNT,
     DEPTH_ERROR,
     HANGING_DOWN,
     LANDS,
+    MARCH,
     MARCHES,
     NEAR,
     NEEDS_ROOM,
     PULLED,
+    SETTLE,
     SHARE,
+    SLOPES,
     TENSION_ERROR,
     TO_AND_FRO,
+    AskedNet,
     Marching,
-    close_net,
-    left_over,
-    settle,
+    ask_net,
+    ask_now,
 )
 from calm.solve.net_start import NetStart, start_of
 from calm.solve.problem import CHOSEN, FINE, ROOM
@@ -124,12 +128,18 @@ class NetSearch:
         for state, lies in zip(self.net.state, lands, strict=True):
             state[LANDS] = float(lies)
 
-    def asked(self, law: Any, x: Floats, *given: Any) -> tuple[int, Floats]:
-        """Ask a law about unknowns; how it ended, and the unknowns then."""
+    def asked(
+        self, task: int, x: Floats, how: Marching, enough: float = 0.0, *, known: bool = False
+    ) -> tuple[int, Floats]:
+        """Ask about unknowns, see `AskedNet`; how it ended, and the unknowns then."""
         own: Any = x.copy() if self.compiled else x.tolist()
-        asked = (self.net, *((self.sea,) if law is settle else ()), own, *given)
-        ending = (entry(law, *asked) if self.compiled else law)(*asked)
-        if ending == NEEDS_ROOM:
+        asked = AskedNet(task, self.net, own, how, enough, known)
+        if self.compiled:
+            ask = by_address(ask_net, asked)
+            ending = entry(ask_now, ask, asked)(ask, asked)
+        else:
+            ending = ask_net(asked, 0.0)
+        if task >= CLOSE and ending == NEEDS_ROOM:
             raise LacksRoom
         return int(ending), np.array(own)
 
@@ -140,7 +150,7 @@ class NetSearch:
     def closed(self, x: Floats, step: float, enough: float) -> Floats | None:
         """Newton's method; None where it leads nowhere."""
         how = self.marching(step, CHOSEN, FINE, given=False)
-        ending, found = self.asked(close_net, x, how, enough, False)
+        ending, found = self.asked(CLOSE, x, how, enough)
         return found if ending == CAME_OUT else None
 
     def settled(self, x: Floats) -> Floats:
@@ -148,7 +158,8 @@ class NetSearch:
 
         NoEquilibrium: they cannot be.
         """
-        ending, found = self.asked(settle, x, float(self.settings.angle_step))
+        how = self.marching(self.settings.angle_step, CHOSEN, FINE, given=False)
+        ending, found = self.asked(SETTLE, x, how)
         if ending == TO_AND_FRO:
             raise unsettled("a leg alternately lies on the seabed and lifts off")
         if ending != CAME_OUT:
@@ -286,11 +297,11 @@ class NearbyNet:
         step = settings.angle_step
         self._how = net.marching(step, CHOSEN, FINE, given=True)
         chosen = net.marching(step, CHOSEN, FINE, given=False)
-        _, x = net.asked(left_over, about(net, near), chosen, False)
-        ending, self._x = net.asked(close_net, x, self._how, CLOSED, False)
+        _, x = net.asked(MARCH, about(net, near), chosen)
+        ending, self._x = net.asked(CLOSE, x, self._how, CLOSED)
         if ending != CAME_OUT:
             raise unsettled("its legs do not come together to the last digits")
-        net.asked(left_over, self._x, self._how, True)
+        net.asked(SLOPES, self._x, self._how)
         self._slopes = np.array(net.net.slopes)
 
     def node(self, leg: int, piece: int, clamp: int = -1) -> int:
@@ -321,10 +332,10 @@ class NearbyNet:
         for i in range(len(legs)):
             mine.chosen[i][:], mine.counts[i][:] = its.chosen[i], its.counts[i]
         for _ in range(2):
-            other.asked(left_over, x, self._how, False)
+            other.asked(MARCH, x, self._how)
             left = np.array(other.net.found)
             x = x - np.linalg.lstsq(self._slopes, left, rcond=1e-14)[0] * np.array(net.net.scale)
-        failure, _ = other.asked(left_over, x, self._how, False)
+        failure, _ = other.asked(MARCH, x, self._how)
         if failure != GOES_ON:
             raise unsettled(FAILURES[failure])
         return other.shape(leg, x).position, float(other.net.state[leg][SHARE])

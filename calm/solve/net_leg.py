@@ -12,7 +12,7 @@ import numpy as np
 from calm.errors import NoEquilibrium
 from calm.physics.compiled import entry, record_type
 from calm.physics.hull import HullRow, SurfaceFloat
-from calm.physics.line import Floats, Line, Trace, Water
+from calm.physics.line import Line, Trace, Water
 from calm.physics.referee import RefereeShape
 from calm.physics.stretch import Knot
 from calm.physics.strumming import AT_REST
@@ -147,17 +147,18 @@ def lay_net(
         if each.kind == PULLED:
             scale[first : first + 3] = force
 
-    def zeros(*shape: int, of: type = float) -> Any:
-        array = np.zeros(shape, of)
+    stack: Any = np.stack if compiled else list
+
+    def taken(array: Any) -> Any:
         return array if compiled else array.tolist()
 
-    def taken(array: Floats) -> Any:
-        return array if compiled else array.tolist()
+    def zeros(*shape: int, of: type = float) -> Any:
+        return taken(np.zeros(shape, of))
 
     def stacked(kind: type, given: list[Any]) -> Any:
         if not compiled:
             return [list(row) for row in given]
-        array = np.zeros((len(given), max(map(len, given))), record_type(kind))
+        array: Any = np.zeros((len(given), max(map(len, given))), record_type(kind))
         for mine, row in zip(array, given, strict=True):
             mine[: len(row)] = [tuple(each) for each in row]
         return array
@@ -170,7 +171,7 @@ def lay_net(
         **{name: max((getattr(each, name) for each in courses), key=len)
            for name in ("stages", "loads", "cables")}
     )  # fmt: skip
-    works = [work_for(most, 1, room, compiled) for _ in laid]
+    works: Any = zip(*[work_for(most, 1, room, compiled) for _ in laid], strict=True)
     vibrations = [each.vibration for each in courses if each.vibration != AT_REST]
     return NetProblem(
         legs=listed(LegRow, [e.row(at, water.depth) for at, e in zip(firsts, laid, strict=False)]),
@@ -182,7 +183,7 @@ def lay_net(
         surfacing=stacked(BuoyantPiece, [each.surfacing for each in problems]),
         afloat=listed(SurfaceFloat, [each.afloat for each in problems]),
         hull=stacked(HullRow, [each.hull for each in problems]),
-        work=SearchArrays(*map(np.stack if compiled else list, zip(*works, strict=True))),
+        work=SearchArrays(*(stack(own) for own in works)),
         state=zeros(count, OF_LEG),
         passed=zeros(count, 6),
         first=zeros(count, pieces, of=int),

@@ -7,7 +7,7 @@ and Broyden's while these lead on.
 
 from __future__ import annotations
 
-from collections.abc import MutableSequence, Sequence
+from collections.abc import Callable, MutableSequence, Sequence
 from math import degrees, inf, sqrt
 from typing import Any, NamedTuple
 
@@ -420,7 +420,7 @@ def greatest_of(values: Sequence[float]) -> float:
     return most
 
 
-def keep(values: Sequence[float], kept: MutableSequence[float]) -> None:
+def keep(values: Sequence[Any], kept: MutableSequence[Any]) -> None:
     """Copy values."""
     for k in range(len(values)):
         kept[k] = values[k]
@@ -581,3 +581,38 @@ def keep_halves(leg: Any) -> bool:
     for n in range(count):
         work.chosen[n] = work.halved[n]
     return True
+
+
+class AskedNet(NamedTuple):
+    """What `ask_net` is asked: to march a net, with the slopes or without, to close it or to settle
+    it, from unknowns that it changes.
+
+    Attributes
+    ----------
+    enough, known : as of `close_net`
+    """
+
+    task: int
+    net: NetProblem
+    x: MutableSequence[float]
+    how: Marching
+    enough: float
+    known: bool
+
+
+MARCH, SLOPES, CLOSE, SETTLE = range(4)
+
+
+def ask_net(asked: AskedNet, _: float) -> float:
+    """Do what is asked; how it ended."""
+    net, x, how = asked.net, asked.x, asked.how
+    if asked.task == SETTLE:
+        return float(settle(net, how.sea, x, how.step))
+    if asked.task == CLOSE:
+        return float(close_net(net, x, how, asked.enough, asked.known))
+    return float(left_over(net, x, how, asked.task == SLOPES))
+
+
+def ask_now(ask: Callable[[AskedNet, float], float], asked: AskedNet) -> float:
+    """Call `ask_net` by its address."""
+    return ask(asked, 0.0)
