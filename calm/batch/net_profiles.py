@@ -1,7 +1,7 @@
 """Many current profiles of a net of legs, by the compiled search of `calm.solve.net_march`.
 
-Each is sought from the net in the even current of a table that is nearest to it. Where that leads
-to nothing that stands, or the seabed slopes, the profile is solved as `calm run` does.
+Each is sought from where the net is in still water. Where that leads to nothing that stands, the
+seabed slopes, or an end is held above the water, the profile is solved as `calm run` does.
 """
 
 from __future__ import annotations
@@ -10,7 +10,6 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import product
 from math import inf, sqrt
 from typing import Any, NamedTuple
 
@@ -31,33 +30,12 @@ from calm.physics.compiled import by_address, entry, record_type
 from calm.physics.line import Floats, Water
 from calm.physics.profile import Interval, Sea
 from calm.physics.track import head_count
-from calm.solve import expect_many
-from calm.solve.net import LacksRoom, NetSearch, NetSolution
-from calm.solve.net_march import (
-    CAME_OUT,
-    CLOSE,
-    COUNT,
-    DEPTH_ERROR,
-    HUNG,
-    LANDS,
-    MARCH,
-    NEAR,
-    PULLED,
-    SETTLE,
-    SHARE,
-    SLOPES,
-    STANDING,
-    AskedNet,
-    Marching,
-    NetProblem,
-    ask_net,
-    end_of_leg,
-    keep,
-)
+from calm.solve import expect_many, net_closing, net_march
+from calm.solve.net import NetSearch, NetSolution
+from calm.solve.net_closing import AskedNet, ask_net, keep
+from calm.solve.net_march import Marching, NetProblem, place_of
 from calm.solve.problem import CHOSEN, FINE
 
-SPEEDS = (0.0, 0.1, 0.2, 0.4, 0.8, 1.6)
-"""Of the even currents of the table, to the east and west, north and south [m/s]."""
 BLOCK = 256
 """Profiles that a thread takes at a time."""
 NO_PROFILE, COINCIDING, TO_SOLVE = -1, -2, 1
@@ -86,9 +64,7 @@ class NetPaper(NamedTuple):
     ----------
     read, joined, levels, intervals, fixed : as in `ProfileArrays`
     strata, gravity : as in `Sea`
-    air : thickness of the skin in which water turns into air, where ends are above it; else 0 [m]
-    velocity, starts, slopes, lands : (k, 2) even currents [m/s], and (k, ·) the unknowns, slopes
-        and legs on the seabed of the net in each
+    start, slopes, lands : the unknowns, slopes and legs on the seabed of the net in still water
     x : room for the unknowns
     piece, clamp : first of each leg in the rows
     weight : of the anchor of each leg, inf where it has none [N]
@@ -101,9 +77,7 @@ class NetPaper(NamedTuple):
     fixed: Floats
     strata: Any
     gravity: float
-    air: float
-    velocity: Floats
-    starts: Any
+    start: Any
     slopes: Any
     lands: Floats
     x: Any
@@ -141,74 +115,41 @@ def solve_net_rows(
         if found <= 0:
             endings[case] = NO_PROFILE if found == 0 else COINCIDING
             continue
-        if paper.air > 0.0:
-            found = still_above(paper.read, found, paper.air)
         total = lay_profile(
             paper.read, found, paper.fixed, paper.levels, paper.intervals, paper.joined
         )
         sea = Sea(
             paper.levels[: total + 2], paper.intervals[: total + 1], paper.gravity, paper.strata
         )
-        begin_near(net, paper, total)
+        keep(paper.start, paper.x)
+        for k in range(len(paper.x)):
+            keep(paper.slopes[k], net.slopes[k])
+        for i in range(len(net.legs)):
+            net.state[i][net_march.LANDS] = paper.lands[i]
         how = Marching(sea, 4.0 * step, CHOSEN, False, FINE)
-        ending = ask(AskedNet(CLOSE, net, paper.x, how, NEAR, True), 0.0)
-        if ending == CAME_OUT:
+        ending = ask(AskedNet(net_closing.CLOSE, net, paper.x, how, net_closing.NEAR, True), 0.0)
+        if ending == net_closing.CAME_OUT:
             how = Marching(sea, step, CHOSEN, False, FINE)
-            ending = ask(AskedNet(SETTLE, net, paper.x, how, 0.0, True), 0.0)
+            ending = ask(AskedNet(net_closing.SETTLE, net, paper.x, how, 0.0, True), 0.0)
         endings[case] = TO_SOLVE
-        if ending == CAME_OUT and stands(net, paper):
+        if ending == net_closing.CAME_OUT and stands(net, paper):
             endings[case] = 0
             tell_net(net, paper, rows, case)
 
 
-def still_above(read: Floats, count: int, skin: float) -> int:
-    """Put still air above a profile; returns how many levels that makes."""
-    more = 1 if read[0, 0] == 0.0 else 2
-    for k in range(count - 1, -1, -1):
-        for c in range(4):
-            read[k + more, c] = read[k, c]
-    for c in range(1, 4):
-        read[0, c], read[1, c] = 0.0, read[more, c]
-    read[0, 0], read[1, 0] = -skin, 0.0
-    return count + more
-
-
-def begin_near(net: NetProblem, paper: NetPaper, total: int) -> None:
-    """Begin where the net is in the even current that is nearest to the mean of the profile."""
-    joined, best, nearest = paper.joined, inf, 0
-    u, v, thick = joined[0, 1], joined[0, 2], 0.0
-    for k in range(1, total):
-        upper, lower = max(joined[k - 1, 0], 0.0), min(joined[k, 0], net.depth)
-        if lower > upper:
-            share = (lower - upper) / (thick + lower - upper)
-            u += share * (0.5 * (joined[k - 1, 1] + joined[k, 1]) - u)
-            v += share * (0.5 * (joined[k - 1, 2] + joined[k, 2]) - v)
-            thick += lower - upper
-    for k in range(len(paper.velocity)):
-        du, dv = paper.velocity[k, 0] - u, paper.velocity[k, 1] - v
-        off = du * du + dv * dv
-        if off < best:
-            best, nearest = off, k
-    keep(paper.starts[nearest], paper.x)
-    for k in range(len(paper.x)):
-        keep(paper.slopes[nearest, k], net.slopes[k])
-    for i in range(len(net.legs)):
-        net.state[i][LANDS] = paper.lands[nearest, i]
-
-
 def stands(net: NetProblem, paper: NetPaper) -> bool:
     """Whether no leg is out of the water or in the seabed, and no anchor is lifted."""
-    near = net.errors[DEPTH_ERROR] + 1e-9 * net.length + 1e-6 * net.depth
+    near = net.errors[net_closing.DEPTH_ERROR] + 1e-9 * net.length + 1e-6 * net.lines.limits.depth
     for i in range(len(net.legs)):
-        leg, state, record = net.legs[i], net.state[i], net.work.records[i][FINE]
-        count, first = int(state[COUNT]), 0
-        bed = leg.seabed if leg.seabed > -inf else -net.depth
-        if leg.kind == STANDING and state[SHARE] < 1.0:
-            if state[SHARE] < 0.0:
+        leg, state, record = net.legs[i], net.state[i], net.lines.work.records[i][FINE]
+        count, first = int(state[net_march.COUNT]), 0
+        bed = leg.seabed if leg.seabed > -inf else -net.lines.limits.depth
+        if leg.kind == net_march.STANDING and state[net_march.SHARE] < 1.0:
+            if state[net_march.SHARE] < 0.0:
                 return False
-            first = net.last[i][net.surfacing[i][0].piece] + 1
+            first = net.last[i][net.lines.surfacing[i][0].piece] + 1
         for n in range(count):
-            if n < state[HUNG] and record[2][n] < bed - near:
+            if n < state[net_march.HUNG] and record[2][n] < bed - near:
                 return False
             if n >= first and record[2][n] > near + leg.highest:
                 return False
@@ -220,11 +161,12 @@ def stands(net: NetProblem, paper: NetPaper) -> bool:
 def tell_net(net: NetProblem, paper: NetPaper, rows: NetRows, case: int) -> None:
     """Write what is found of a profile to its row."""
     for i in range(len(net.legs)):
-        leg, record, count = net.legs[i], net.work.records[i][FINE], int(net.state[i][COUNT])
-        east, north, _ = end_of_leg(net, i, paper.x)
+        leg, record = net.legs[i], net.lines.work.records[i][FINE]
+        count = int(net.state[i][net_march.COUNT])
+        east, north, _ = place_of(net, i, paper.x, 1)
         dx, dy = east - record[0][count - 1], north - record[1][count - 1]
-        rows.shares[case, i] = net.state[i][SHARE]
-        own = 1 if leg.kind == PULLED else 0
+        rows.shares[case, i] = net.state[i][net_march.SHARE]
+        own = 1 if leg.kind == net_march.PULLED else 0
         for p in range(own, leg.pieces):
             row = rows.pieces[case, paper.piece[i] + p - own]
             for side in range(2):
@@ -278,35 +220,29 @@ class NetProfiles:
         return None
 
     @cached_property
-    def table(self) -> tuple[list[Floats], ...]:
-        """Velocity, unknowns, slopes and legs on the seabed of the net in even currents."""
-        found: list[tuple[Floats, ...]] = []
+    def slopes(self) -> Floats | None:
+        """Slopes of the net in still water; None where profiles are to be solved alone."""
         if self.still is None or self.at_rest is None or self.net.file.environment.seabed:
-            return ()
-        search = self.search()
-        each_way = sorted({*SPEEDS, *(-speed for speed in SPEEDS)})
-        for u, v in product(each_way, each_way):
-            search.put_in(self.water((0.0,), (u,), (v,), (0.0,)))
-            search.lie_as(self.still.lands)
-            try:
-                x = search.closed(self.still.unknowns, 4.0 * search.settings.angle_step, NEAR)
-                if x is None:
-                    continue
-                x = search.settled(x)
-            except (NoEquilibrium, LacksRoom):
-                continue
-            step = 4.0 * search.settings.angle_step
-            search.asked(MARCH, x, search.marching(step, CHOSEN, FINE, given=False))
-            search.asked(SLOPES, x, search.marching(step, CHOSEN, FINE, given=True))
-            slopes = np.array(search.net.slopes)
-            found.append((np.array([u, v]), x, slopes, np.array(search.lands, float)))
-        return tuple(list(column) for column in zip(*found, strict=True))
+            return None
+        search, step = self.search(), 4.0 * self.net.settings.angle_step
+        if search.water.level[0] < 0.0:
+            return None
+        search.asked(
+            net_closing.MARCH, self.still.unknowns, search.marching(step, CHOSEN, FINE, given=False)
+        )
+        search.asked(
+            net_closing.SLOPES, self.still.unknowns, search.marching(step, CHOSEN, FINE, given=True)
+        )
+        return np.array(search.net.slopes)
 
     def search(self) -> NetSearch:
         """The search for it, compiled."""
         settings = replace(self.net.settings, compiled=True)
         nodes = len(nodes_of(self.net.file.legs))
-        return NetSearch(self.net.legs, nodes, self.water(*[(0.0,)] * 4), settings)
+        search = NetSearch(self.net.legs, nodes, self.water(*[(0.0,)] * 4), settings)
+        if self.still is not None:
+            search.lie_as(self.still.lands)
+        return search
 
     def solve(
         self, current: tuple[Floats, ...], status: NDArray[np.int8], workers: int
@@ -326,7 +262,7 @@ class NetProfiles:
             np.full((count, len(legs)), np.nan),
         )  # fmt: skip
         endings = np.where(status == 0, 0, 99)
-        if self.table:
+        if self.slopes is not None:
 
             def solve(block: slice) -> None:
                 depth, *parts = (np.array(array, np.float64, order="C") for array in current)
@@ -355,7 +291,7 @@ class NetProfiles:
         search, water = self.search(), self.water(*[(0.0,)] * 4)
         levels = current[0].shape[1] + len(water.level) + 2
         sea: Any = search.sea
-        velocity, starts, slopes, lands = map(np.array, self.table)
+        assert self.still is not None
         of_legs = self.net.file.legs
         held = [leg.bottom.anchor is not None for leg in of_legs]
         clamped = [len(piece.clamps) for piece in self.net.file.pieces]
@@ -367,12 +303,10 @@ class NetProfiles:
             fixed=np.column_stack([water.level, water.u, water.v, water.density]),
             strata=sea.strata,
             gravity=water.gravity,
-            air=max(-float(water.level[0]), 0.0),
-            velocity=velocity,
-            starts=starts,
-            slopes=slopes,
-            lands=lands,
-            x=np.zeros(starts.shape[1]),
+            start=self.still.unknowns,
+            slopes=self.slopes,
+            lands=np.array(search.lands, float),
+            x=np.zeros(len(self.still.unknowns)),
             piece=np.array([leg.first for leg in of_legs]),
             clamp=np.array([sum(clamped[: leg.first]) for leg in of_legs]),
             weight=np.array(
@@ -384,7 +318,7 @@ class NetProfiles:
         )
         step = float(search.settings.angle_step)
         how = search.marching(step, CHOSEN, FINE, given=False)
-        ask = by_address(ask_net, AskedNet(CLOSE, search.net, paper.x, how, 0.0, True))
+        ask = by_address(ask_net, AskedNet(net_closing.CLOSE, search.net, paper.x, how, 0.0, True))
         given = (ask, search.net, step, paper, *current, rows, endings)
         entry(solve_net_rows, *given)(*given)
 

@@ -18,7 +18,9 @@ import numpy as np
 from calm.physics.compiled import by_address, entry
 from calm.physics.line import FAILURES, GOES_ON, Floats, Line, Trace, Water
 from calm.physics.profile import Profile
+from calm.solve import net_closing, net_march
 from calm.solve.finish import refuse_unbalanced
+from calm.solve.net_closing import AskedNet, ask_net, ask_now
 from calm.solve.net_leg import (
     LaidLeg,
     NetLeg,
@@ -27,29 +29,7 @@ from calm.solve.net_leg import (
     refuse_misplaced,
     unsettled,
 )
-from calm.solve.net_march import (
-    CAME_OUT,
-    CLOSE,
-    CLOSED,
-    COUNT,
-    DEPTH_ERROR,
-    HANGING_DOWN,
-    LANDS,
-    MARCH,
-    MARCHES,
-    NEAR,
-    NEEDS_ROOM,
-    PULLED,
-    SETTLE,
-    SHARE,
-    SLOPES,
-    TENSION_ERROR,
-    TO_AND_FRO,
-    AskedNet,
-    Marching,
-    ask_net,
-    ask_now,
-)
+from calm.solve.net_march import Marching
 from calm.solve.net_start import NetStart, start_of
 from calm.solve.problem import CHOSEN, FINE, ROOM
 from calm.solve.solution import Settings, Solution, expect_many, runs_compiled
@@ -98,7 +78,7 @@ class NetSearch:
         self.compiled, self.settings = runs_compiled(settings), settings
         self.laid = [LaidLeg.of(leg, water, settings) for leg in legs]
         self.nodes, self.room = nodes, room
-        self.net = lay_net(self.laid, nodes, water, self.compiled, room)
+        self.net = lay_net(self.laid, nodes, self.compiled, room)
         self.put_in(water)
 
     def put_in(self, water: Water) -> None:
@@ -111,22 +91,24 @@ class NetSearch:
         x, first = np.zeros(len(self.net.found)), 0
         x[self.net.nodes_at :] = start.nodes.ravel()
         for i, each in enumerate(self.laid):
-            free = start.lower[i] if each.kind == HANGING_DOWN else start.first[i]
-            x[first : first + each.unknowns] = start.pull[i] if each.kind == PULLED else -free[2]
+            free = start.lower[i] if each.kind == net_march.HANGING_DOWN else start.first[i]
+            x[first : first + each.unknowns] = (
+                start.pull[i] if each.kind == net_march.PULLED else -free[2]
+            )
             first += each.unknowns
-            anchored = isfinite(each.leg.lower.seabed) and each.kind != HANGING_DOWN
-            self.net.state[i][LANDS] = float(anchored and start.lies[i])
+            anchored = isfinite(each.leg.lower.seabed) and each.kind != net_march.HANGING_DOWN
+            self.net.state[i][net_march.LANDS] = float(anchored and start.lies[i])
         return x
 
     @property
     def lands(self) -> tuple[bool, ...]:
         """Which legs are taken to lie on the seabed."""
-        return tuple(bool(state[LANDS]) for state in self.net.state)
+        return tuple(bool(state[net_march.LANDS]) for state in self.net.state)
 
     def lie_as(self, lands: Sequence[bool]) -> None:
         """Take legs to lie on the seabed or not."""
         for state, lies in zip(self.net.state, lands, strict=True):
-            state[LANDS] = float(lies)
+            state[net_march.LANDS] = float(lies)
 
     def asked(
         self, task: int, x: Floats, how: Marching, enough: float = 0.0, *, known: bool = False
@@ -139,7 +121,7 @@ class NetSearch:
             ending = entry(ask_now, ask, asked)(ask, asked)
         else:
             ending = ask_net(asked, 0.0)
-        if task >= CLOSE and ending == NEEDS_ROOM:
+        if task >= net_closing.CLOSE and ending == net_closing.NEEDS_ROOM:
             raise LacksRoom
         return int(ending), np.array(own)
 
@@ -150,8 +132,8 @@ class NetSearch:
     def closed(self, x: Floats, step: float, enough: float) -> Floats | None:
         """Newton's method; None where it leads nowhere."""
         how = self.marching(step, CHOSEN, FINE, given=False)
-        ending, found = self.asked(CLOSE, x, how, enough)
-        return found if ending == CAME_OUT else None
+        ending, found = self.asked(net_closing.CLOSE, x, how, enough)
+        return found if ending == net_closing.CAME_OUT else None
 
     def settled(self, x: Floats) -> Floats:
         """The unknowns closed to the last digits, on segments that are short enough.
@@ -159,16 +141,18 @@ class NetSearch:
         NoEquilibrium: they cannot be.
         """
         how = self.marching(self.settings.angle_step, CHOSEN, FINE, given=False)
-        ending, found = self.asked(SETTLE, x, how)
-        if ending == TO_AND_FRO:
+        ending, found = self.asked(net_closing.SETTLE, x, how)
+        if ending == net_closing.TO_AND_FRO:
             raise unsettled("a leg alternately lies on the seabed and lifts off")
-        if ending != CAME_OUT:
+        if ending != net_closing.CAME_OUT:
             raise unsettled("its legs do not come together to the last digits")
         return found
 
     def shape(self, i: int, x: Floats) -> Trace:
         """The shape of a leg as it was marched last, where it is."""
-        trace = Trace.of(self.net.work.records[i][FINE], int(self.net.state[i][COUNT]))
+        trace = Trace.of(
+            self.net.lines.work.records[i][FINE], int(self.net.state[i][net_march.COUNT])
+        )
         end, first = self.laid[i].ends[1], self.net.nodes_at
         place = end.place or x[first + 3 * end.node :]
         trace.position[:, :2] += np.array(place[:2]) - trace.position[-1, :2]
@@ -182,12 +166,12 @@ class NetSearch:
         net, legs, before = self.net, [], 0
         left = np.abs(np.array(net.found) * np.array(net.rows))
         miss = float(left[: net.nodes_at].max())
-        if miss > self.settings.tolerance * net.depth:
+        if miss > self.settings.tolerance * self.water.depth:
             raise unsettled(f"a leg misses its end by {miss:.2g} m")
         imbalance = np.linalg.norm(left[net.nodes_at :].reshape(-1, 3), axis=1)
         errors = (
-            float(net.errors[DEPTH_ERROR]) + miss + 1e-9 * net.length,
-            float(net.errors[TENSION_ERROR]) + 1e-8 * net.force,
+            float(net.errors[net_closing.DEPTH_ERROR]) + miss + 1e-9 * net.length,
+            float(net.errors[net_closing.TENSION_ERROR]) + 1e-8 * net.force,
         )
         for i, each in enumerate(self.laid):
             trace = self.shape(i, x)
@@ -203,7 +187,7 @@ class NetSearch:
             before += len(each.leg.line.length)
         return NetSolution(
             tuple(legs), x[net.nodes_at :].reshape(-1, 3).copy(), imbalance, miss, *errors,
-            int(sum(state[MARCHES] for state in net.state)), x, self.lands,
+            int(sum(state[net_march.MARCHES] for state in net.state)), x, self.lands,
         )  # fmt: skip
 
 
@@ -251,14 +235,14 @@ def about(net: NetSearch, near: NetSolution | None) -> Floats:
     legs = tuple(each.leg for each in net.laid)
     if near is not None:
         net.lie_as(near.lands)
-        if (x := net.closed(near.unknowns, step, NEAR)) is not None:
+        if (x := net.closed(near.unknowns, step, net_closing.NEAR)) is not None:
             return x
-    x = net.closed(net.begin(start_of(legs, net.nodes, water)), step, NEAR)
+    x = net.closed(net.begin(start_of(legs, net.nodes, water)), step, net_closing.NEAR)
     if x is not None:
         return x
     still = water.still()
     net.put_in(still)
-    x = net.closed(net.begin(start_of(legs, net.nodes, still)), step, NEAR)
+    x = net.closed(net.begin(start_of(legs, net.nodes, still)), step, net_closing.NEAR)
     if x is None:
         raise unsettled("not even in still water do its legs come together")
     way, stride = 0.0, 0.25
@@ -266,7 +250,7 @@ def about(net: NetSearch, near: NetSolution | None) -> Floats:
         following = min(way + stride, 1.0)
         moving = replace(water, u=following * water.u, v=following * water.v, w=following * water.w)
         net.put_in(moving if following < 1.0 else water)
-        closer = net.closed(x, step, NEAR)
+        closer = net.closed(x, step, net_closing.NEAR)
         if closer is None:
             stride *= 0.5
             if stride < 0.01:
@@ -297,11 +281,11 @@ class NearbyNet:
         step = settings.angle_step
         self._how = net.marching(step, CHOSEN, FINE, given=True)
         chosen = net.marching(step, CHOSEN, FINE, given=False)
-        _, x = net.asked(MARCH, about(net, near), chosen)
-        ending, self._x = net.asked(CLOSE, x, self._how, CLOSED)
-        if ending != CAME_OUT:
+        _, x = net.asked(net_closing.MARCH, about(net, near), chosen)
+        ending, self._x = net.asked(net_closing.CLOSE, x, self._how, net_closing.CLOSED)
+        if ending != net_closing.CAME_OUT:
             raise unsettled("its legs do not come together to the last digits")
-        net.asked(SLOPES, self._x, self._how)
+        net.asked(net_closing.SLOPES, self._x, self._how)
         self._slopes = np.array(net.net.slopes)
 
     def node(self, leg: int, piece: int, clamp: int = -1) -> int:
@@ -309,10 +293,10 @@ class NearbyNet:
         each, trace = self._net.laid[leg], self._net.shape(leg, self._x)
         if clamp >= 0:
             return int(np.argmax(trace.clamp == clamp))
-        if each.kind == HANGING_DOWN:  # listed from its lower end
+        if each.kind == net_march.HANGING_DOWN:  # listed from its lower end
             own = len(each.leg.line.length) - 1 - piece
             return int(np.flatnonzero(trace.piece == own)[-1]) + 1
-        return int(np.argmax(trace.piece == piece + int(each.kind == PULLED)))
+        return int(np.argmax(trace.piece == piece + int(each.kind == net_march.PULLED)))
 
     def shape(self, number: int, line: Line, leg: int) -> tuple[Floats, float]:
         """Nodes of a leg where that of a number has another line, and its buoyancy in use.
@@ -328,14 +312,14 @@ class NearbyNet:
         legs[number] = replace(legs[number], line=line)
         other = NetSearch(legs, net.nodes, net.water, net.settings, net.room)
         other.lie_as(net.lands)
-        mine, its = other.net.work, net.net.work
+        mine, its = other.net.lines.work, net.net.lines.work
         for i in range(len(legs)):
             mine.chosen[i][:], mine.counts[i][:] = its.chosen[i], its.counts[i]
         for _ in range(2):
-            other.asked(MARCH, x, self._how)
+            other.asked(net_closing.MARCH, x, self._how)
             left = np.array(other.net.found)
             x = x - np.linalg.lstsq(self._slopes, left, rcond=1e-14)[0] * np.array(net.net.scale)
-        failure, _ = other.asked(MARCH, x, self._how)
+        failure, _ = other.asked(net_closing.MARCH, x, self._how)
         if failure != GOES_ON:
             raise unsettled(FAILURES[failure])
-        return other.shape(leg, x).position, float(other.net.state[leg][SHARE])
+        return other.shape(leg, x).position, float(other.net.state[leg][net_march.SHARE])

@@ -16,23 +16,11 @@ from calm.physics.line import Line, Trace, Water
 from calm.physics.referee import RefereeShape
 from calm.physics.stretch import Knot
 from calm.physics.strumming import AT_REST
-from calm.physics.track import CableStretch, Load, Stage
+from calm.physics.track import CableStretch, Course, Load, Stage
+from calm.solve import net_march
 from calm.solve.audit import referee_of
 from calm.solve.finish import risen, touching
-from calm.solve.net_march import (
-    COUNT,
-    GROUNDED,
-    HANGING_DOWN,
-    HUNG,
-    MARCHES,
-    OF_LEG,
-    PULLED,
-    SHARE,
-    STAGE,
-    STANDING,
-    LegRow,
-    NetProblem,
-)
+from calm.solve.net_march import LegRow, NetProblem
 from calm.solve.problem import (
     CHANGED,
     FINE,
@@ -93,47 +81,43 @@ class LaidLeg:
     def ends(self) -> tuple[LegEnd, LegEnd]:
         """Where its march begins and ends."""
         upper, lower = self.leg.upper, self.leg.lower
-        return (lower, upper) if self.kind == HANGING_DOWN else (upper, lower)
+        return (lower, upper) if self.kind == net_march.HANGING_DOWN else (upper, lower)
 
     @property
     def unknowns(self) -> int:
-        return 3 if self.kind == PULLED else 1
+        return 3 if self.kind == net_march.PULLED else 1
 
     @staticmethod
     def of(leg: NetLeg, water: Water, settings: Settings) -> LaidLeg:
         """Lay out a leg."""
         line = leg.line
         if leg.upper.free:
-            kind = STANDING
+            kind = net_march.STANDING
         elif leg.lower.free:
-            kind, line = HANGING_DOWN, replace(line.reversed(), towed=True)
+            kind, line = net_march.HANGING_DOWN, replace(line.reversed(), towed=True)
         else:
-            kind, line = PULLED, replace(pulled(line, (0.0, 0.0, 0.0)), towed=True)
+            kind, line = net_march.PULLED, replace(pulled(line, (0.0, 0.0, 0.0)), towed=True)
         return LaidLeg(leg, line, kind, problem_of(line, water, settings, compiled=False, room=1))
 
-    def row(self, first: int, depth: float) -> LegRow:
+    def row(self, first: int) -> LegRow:
         """The leg in numbers; `first` is the first of its unknowns."""
-        (start, end), course, length = self.ends, self.problem.course, self.leg.line.length
-        held = [each.place for each in (start, end) if each.place is not None]
+        (start, end), (course, limits) = self.ends, (self.problem.course, self.problem.limits)
+        length, counted = self.leg.line.length, (len(course.stages), course.landing)
         return LegRow(
-            self.kind, first, self.unknowns, start.node, end.node,
-            *(start.place or (0.0, 0.0, 0.0)), *(end.place or (0.0, 0.0, 0.0)),
-            seabed=self.leg.lower.seabed,
-            longest=max(float(length.sum()) * 0.01, min(0.01 * depth, 50.0) * 0.1),
-            stands=max(float(self.line.length[0]), 0.5) if len(length) else 0.5,
-            highest=max(0.0, *(place[2] for place in held), 0.0),
-            stages=len(course.stages), landing=course.landing, cables=len(course.cables),
-            surfacing=len(self.problem.surfacing), rows=len(self.problem.hull),
-            pieces=len(self.line.length),
-            rides=int(self.problem.limits.rides),
-            excess=self.problem.limits.excess,
-            friction=self.problem.limits.friction,
+            self.kind, first, start.node, end.node, self.leg.lower.seabed,
+            max(float(length.sum()) * 0.01, min(0.01 * limits.depth, 50.0) * 0.1),
+            max(float(self.line.length[0]), 0.5) if len(length) else 0.5, self.highest,
+            int(limits.rides), *counted, len(course.cables), len(self.problem.surfacing),
+            len(self.problem.hull), len(self.line.length),
         )  # fmt: skip
 
+    @property
+    def highest(self) -> float:
+        """How high it may come [m]: to the surface, or where an end is held above it."""
+        return max(0.0, *(each.place[2] for each in self.ends if each.place is not None), 0.0)
 
-def lay_net(
-    laid: Sequence[LaidLeg], nodes: int, water: Water, compiled: bool, room: int
-) -> NetProblem:
+
+def lay_net(laid: Sequence[LaidLeg], nodes: int, compiled: bool, room: int) -> NetProblem:
     """Lay out a net, with room for so many segments in each of its legs."""
     firsts = [0, *np.cumsum([each.unknowns for each in laid]).tolist()]
     size, problems = firsts[-1] + 3 * nodes, [each.problem for each in laid]
@@ -144,10 +128,11 @@ def lay_net(
     scale, rows = np.full(size, length), np.full(size, length)
     rows[firsts[-1] :] = force
     for first, each in zip(firsts, laid, strict=False):
-        if each.kind == PULLED:
+        if each.kind == net_march.PULLED:
             scale[first : first + 3] = force
 
     stack: Any = np.stack if compiled else list
+    no_sea: Any = None
 
     def taken(array: Any) -> Any:
         return array if compiled else array.tolist()
@@ -173,38 +158,30 @@ def lay_net(
     )  # fmt: skip
     works: Any = zip(*[work_for(most, 1, room, compiled) for _ in laid], strict=True)
     vibrations = [each.vibration for each in courses if each.vibration != AT_REST]
-    return NetProblem(
-        legs=listed(LegRow, [e.row(at, water.depth) for at, e in zip(firsts, laid, strict=False)]),
-        stages=stacked(Stage, [each.stages for each in courses]),
-        loads=stacked(Load, [each.loads for each in courses]),
-        given=stacked(Load, [each.loads for each in problems]),
-        cables=stacked(CableStretch, [each.cables for each in courses]),
-        knots=stacked(Knot, [each.knots for each in courses]),
+    course = Course(
+        stacked(Stage, [each.stages for each in courses]),
+        stacked(Load, [each.loads for each in courses]),
+        stacked(CableStretch, [each.cables for each in courses]),
+        stacked(Knot, [each.knots for each in courses]),
+        vibrations[0] if vibrations else AT_REST, 0,
+    )  # fmt: skip
+    lines = problems[0]._replace(
+        course=course, loads=stacked(Load, [each.loads for each in problems]),
         surfacing=stacked(BuoyantPiece, [each.surfacing for each in problems]),
         afloat=listed(SurfaceFloat, [each.afloat for each in problems]),
         hull=stacked(HullRow, [each.hull for each in problems]),
+        flexible=zeros(1, of=int), starts=zeros(count, 1), sea=no_sea,
         work=SearchArrays(*(stack(own) for own in works)),
-        state=zeros(count, OF_LEG),
-        passed=zeros(count, 6),
-        first=zeros(count, pieces, of=int),
-        last=zeros(count, pieces, of=int),
-        ends=zeros(count, pieces + 1, 4),
-        found=zeros(size),
-        kept=zeros(size),
-        slopes=zeros(size, size),
-        way=zeros(size),
-        trial=zeros(size),
-        paper=zeros(size, size + 1),
-        order=zeros(size, of=int),
-        scale=taken(scale),
-        rows=taken(rows),
-        errors=zeros(2),
-        vibration=vibrations[0] if vibrations else AT_REST,
-        nodes_at=firsts[-1],
-        depth=float(water.depth),
-        length=length,
-        force=force,
-    )
+    )  # fmt: skip
+    places = [[*(end.place or (0.0, 0.0, 0.0))] for each in laid for end in each.ends]
+    return NetProblem(
+        listed(LegRow, [each.row(at) for at, each in zip(firsts, laid, strict=False)]), lines,
+        taken(np.array(places).reshape(-1, 6)), zeros(count, net_march.OF_LEG), zeros(count, 6),
+        zeros(count, pieces, of=int), zeros(count, pieces, of=int), zeros(count, pieces + 1, 4),
+        zeros(size), zeros(size), zeros(size, size), zeros(size), zeros(size),
+        zeros(size, size + 1), zeros(size, of=int), taken(scale), taken(rows), zeros(2),
+        firsts[-1], length, force,
+    )  # fmt: skip
 
 
 def pulled(line: Line, force: tuple[float, float, float]) -> Line:
@@ -246,22 +223,23 @@ def leg_found(
     trace : its shape, where it is
     errors : of depths [m] and of tensions [N]
     """
-    state, work, problem = net.state[i], net.work, laid.problem
-    record, nodes, share = work.records[i][FINE], int(state[COUNT]), float(state[SHARE])
+    state, work, problem = net.state[i], net.lines.work, laid.problem
+    record, nodes = work.records[i][FINE], int(state[net_march.COUNT])
+    share, landed = float(state[net_march.SHARE]), bool(state[net_march.STAGE] >= 0.0)
     line = laid.line
     # loads as they were marched: a float at the surface by what is in the water, the pull
-    changed = 1 if laid.kind == PULLED else int(work.left[i][CHANGED])
-    carried = _carried(line, net.loads[i][:changed])
+    changed = 1 if laid.kind == net_march.PULLED else int(work.left[i][CHANGED])
+    carried = _carried(line, net.lines.course.loads[i][:changed])
     referee = referee_of(carried, water, 0.0, compiled)
-    shape = RefereeShape(record, nodes, int(state[HUNG]) - 1, referee.first, referee.last)
+    shape = RefereeShape(record, nodes, int(state[net_march.HUNG]) - 1, referee.first, referee.last)
     loads: Any = np.zeros((3, nodes))
     asked = (
-        referee.moored, shape, loads if compiled else loads.tolist(), bool(state[STAGE] >= 0.0),
+        referee.moored, shape, loads if compiled else loads.tolist(), landed,
         problem.limits,
     )  # fmt: skip
     closure, moment = (entry(residuals, *asked) if compiled else residuals)(*asked)
-    first = int(laid.kind == PULLED)
-    afloat = laid.kind == STANDING and share < 1.0 and bool(problem.surfacing)
+    first = int(laid.kind == net_march.PULLED)
+    afloat = laid.kind == net_march.STANDING and share < 1.0 and bool(problem.surfacing)
     floating = line.floating
     if first:
         line = carried = laid.leg.line
@@ -273,9 +251,9 @@ def leg_found(
         force=trace.force[first:],
         element_piece=trace.piece[first:] - first,
         element_clamp=trace.clamp[first:],
-        landed=bool(state[STAGE] >= 0.0),
-        hanging=int(state[HUNG]) - 1 - first,
-        grounded_length=float(state[GROUNDED]),
+        landed=landed,
+        hanging=int(state[net_march.HUNG]) - 1 - first,
+        grounded_length=float(state[net_march.GROUNDED]),
         cut=trace.cut[first:],
         strain=trace.strain[first:],
         afloat=(int(problem.surfacing[0].piece),) if afloat else (),
@@ -283,7 +261,7 @@ def leg_found(
         reserve=(1.0 - share) * problem.surfacing[0].surface_lift if afloat else 0.0,
         carried=carried,
         riding=floating.riding(share) if afloat and floating is not None else None,
-        marches=int(state[MARCHES]),
+        marches=int(state[net_march.MARCHES]),
         segments=int(sum(work.counts[i][HALVED])),
         miss=0.0,
         depth_error=errors[0],
@@ -325,7 +303,7 @@ def refuse_misplaced(laid: LaidLeg, leg: Solution, near: float, before: int) -> 
 
     def piece(node: int) -> int:
         own = leg.piece_at(node)
-        return before + (pieces - 1 - own if laid.kind == HANGING_DOWN else own)
+        return before + (pieces - 1 - own if laid.kind == net_march.HANGING_DOWN else own)
 
     if hung[worst] < bed - near:
         raise touching(piece(worst), float(bed - hung[worst]))
@@ -337,7 +315,7 @@ def refuse_misplaced(laid: LaidLeg, leg: Solution, near: float, before: int) -> 
                 piece(0),
             )
     highest = int(np.argmax(height))
-    if height[highest] > near + laid.row(0, depth).highest:
+    if height[highest] > near + laid.highest:
         raise risen(piece(highest), float(height[highest]))
 
 
