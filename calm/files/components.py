@@ -270,7 +270,7 @@ RIGID_KINDS = frozenset(kind for kind, model in KINDS.items() if issubclass(mode
 """Those of a fixed length, which may be clamped on a line too."""
 
 
-_DRAG_KEYS = frozenset(key for form in DRAG_FORMS for key in form) | {"kt"}
+DRAG_KEYS = frozenset(key for form in DRAG_FORMS for key in form) | {"kt"}
 
 
 def contradicted(kind: str, base: Set[str], override: Set[str]) -> frozenset[str]:
@@ -303,7 +303,7 @@ def contradicted(kind: str, base: Set[str], override: Set[str]) -> frozenset[str
     if kind in ("body", "profiler"):
         for form in DRAG_FORMS:
             if override & set(form) and not base & set(form):
-                void = set(_DRAG_KEYS)
+                void = set(DRAG_KEYS)
     if kind in RIGID_KINDS:
         if "buoyancy" in override:
             void.add("volume")

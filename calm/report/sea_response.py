@@ -132,6 +132,10 @@ def _told(analysis: WaveAnalysis, state: MooringInSea) -> list[str | tuple[Span,
             "If the float followed every wave, the standard deviation of tension below it would "
             f"be {say('tension', state.follower_std)}."
         )
+    if state.pitch_std is not None:
+        said.append(f"The float pitches by {state.pitch_std:.1f}° (standard deviation).")
+    elif analysis.pitch_unknown is not None:
+        said.append(f"The pitch of the float is not computed: {analysis.pitch_unknown}.")
     one = analysis.accuracy
     good = (
         f"Standard deviations change by {one.mesh:.1%} with twice the elements, by "

@@ -34,8 +34,8 @@ as the root mean square height)."""
 CONVERGED, SLACK = "converged", "slack-in-waves"
 
 SETTLED = 0.01
-"""Change of the standard deviations of tension with twice the elements or the frequencies below
-which there are enough of them."""
+"""Change of the standard deviations of tension and pitch with twice the elements or frequencies
+below which there are enough of them."""
 
 COARSEST, FEWEST, MOST_HALVINGS = 1.0 / 50.0, 32, 4
 """Elements as a share of the depth, frequencies, and how often both are refined."""
@@ -74,13 +74,15 @@ class MooringInSea:
     is pulled about most. `spectrum` is that of the tension at the top, N² s/rad at rad/s, and
     `along` the depth [m], mean, standard deviation and greatest tension down the line.
     `follower_std` is the deviation of the tension below a float that follows every wave [N], of
-    the highest of several seas alone; None of a line below the surface.
+    the highest of several seas alone; None of a line below the surface. `pitch_std` is that of the
+    pitch of the float [degrees]; None where it is not known.
     """
 
     sea: SeaState
     components: tuple[PieceInWaves, ...]
     slack: tuple[str, ...]
     follower_std: float | None
+    pitch_std: float | None
     worst: tuple[tuple[float, Floats], ...]
     spectrum: tuple[Floats, Floats]
     along: tuple[Floats, Floats, Floats, Floats]
@@ -88,7 +90,7 @@ class MooringInSea:
 
 @dataclass(frozen=True)
 class WaveAccuracy:
-    """Hold how much the deviations of tension change, as shares.
+    """Hold how much the deviations of tension, and of the float's pitch, change, as shares.
 
     `mesh` and `frequencies`: with twice as many elements or frequencies. `linearisation`: with a
     fifth less of the linearised drag, of which they are a measure of the share.
@@ -110,6 +112,7 @@ class WaveAnalysis:
     accuracy : in the highest and in the shortest of them
     fatigue : of each piece, by the shares of the seas; a single one lasts all the year
     warnings : what rests on assumptions
+    pitch_unknown : what would have to be given for the pitch of the float; None where it is known
     """
 
     name: str
@@ -117,6 +120,7 @@ class WaveAnalysis:
     fatigue: tuple[PieceFatigue, ...]
     accuracy: WaveAccuracy
     warnings: tuple[str, ...]
+    pitch_unknown: str | None
 
     @property
     def status(self) -> str:
@@ -139,12 +143,14 @@ class WaveAnalysis:
                     "components": [asdict(one) for one in state.components],
                     "slack": list(state.slack),
                     "follower_std": state.follower_std,
+                    "pitch_std": state.pitch_std,
                 }
                 for state in self.states
             ],
             "fatigue": [asdict(one) for one in self.fatigue],
             "accuracy": asdict(self.accuracy),
             "warnings": list(self.warnings),
+            "pitch_unknown": self.pitch_unknown,
         }
 
 
@@ -169,11 +175,15 @@ class _Setting:
 
     def deviations(
         self, seas: Sequence[SeaState], first: Sequence[Floats | None], **how: Any
-    ) -> tuple[Floats, list[Floats]]:
-        """Return the deviations of tension (seas, pieces) [N], 0 on the seabed, and the flows."""
+    ) -> tuple[tuple[Floats, Floats], list[Floats]]:
+        """Return the deviations of tension (seas, pieces) [N], 0 on the seabed, and the flows.
+
+        Beside those of tension stand those of the float's pitch (seas, 1), 0 where it is not known.
+        """
         found = [self.respond(sea, flow, **how) for sea, flow in zip(seas, first, strict=True)]
-        deviations = [_by_piece(self.line, response) for response, _ in found]
-        return np.array(deviations), [flow for _, flow in found]
+        tensions = np.array([_by_piece(self.line, response) for response, _ in found])
+        pitches = np.array([[response.moments(response.pitch)[0]] for response, _ in found])
+        return (tensions, pitches), [flow for _, flow in found]
 
 
 def analyse(
@@ -236,7 +246,10 @@ def analyse(
         )
         for index in range(setting.line.top_pieces, len(mooring.file.pieces) - 1)
     )  # fmt: skip
-    return WaveAnalysis(mooring.file.name, tuple(states), fatigue, accuracy, tuple(warnings))
+    missing = None if setting.buoy is None else setting.buoy.pitch_unknown
+    return WaveAnalysis(
+        mooring.file.name, tuple(states), fatigue, accuracy, tuple(warnings), missing
+    )
 
 
 def _settled(
@@ -275,12 +288,16 @@ def _settled(
 def _carried(line: LumpedLine, finer: LumpedLine, flow: Floats) -> Floats:
     """Return the flow past the nodes of a line at those of a finer one of the same shape."""
     along, at = (np.concatenate([[0.0], each.span.cumsum()]) for each in (line, finer))
-    return np.column_stack([np.interp(at, along, values) for values in flow.T])
+    nodes = np.column_stack([np.interp(at, along, values) for values in flow[:-1].T])
+    return np.vstack([nodes, flow[-1:]])
 
 
-def _change(before: Floats, after: Floats) -> float:
-    counted = after > SMALL * after.max(1, initial=0.0, keepdims=True)
-    return float(np.abs(before[counted] / after[counted] - 1.0).max(initial=0.0))
+def _change(before: tuple[Floats, Floats], after: tuple[Floats, Floats]) -> float:
+    changes = []
+    for one, other in zip(before, after, strict=True):
+        counted = other > SMALL * other.max(1, initial=0.0, keepdims=True)
+        changes.append(float(np.abs(one[counted] / other[counted] - 1.0).max(initial=0.0)))
+    return max(changes)
 
 
 def _by_piece(line: LumpedLine, response: WaveResponse) -> Floats:
@@ -306,6 +323,9 @@ def _in_sea(
     deviations, periods = response.moments(line.upper_ends(response.pull))
     motion, _ = response.moments(response.motion)
     lean, _ = response.moments(line.upper_ends(line.turned(response.motion)))
+    pitch = None
+    if setting.buoy is not None and setting.buoy.pitching is not None:
+        pitch = degrees(float(response.moments(response.pitch)[0]))
     rows: list[PieceInWaves] = []
     worst: list[tuple[float, Floats]] = []
     for piece in mooring.file.pieces[:-1]:
@@ -335,7 +355,9 @@ def _in_sea(
                 zero_crossing_period=apart,
                 slack_probability=passing_probability(mean, deviation, apart, duration),
                 heave_std=float(motion[node, 2]),
-                tilt_std=degrees(float(np.linalg.norm(lean[piece.index]))),
+                tilt_std=degrees(float(np.linalg.norm(lean[piece.index])))
+                if pitch is None or piece.index >= line.top_pieces
+                else pitch,
                 greatest=max(mean + most, float((line.tension + departs)[own].max())),
                 least=min(mean - most, float((line.tension - departs)[own].min())),
             )
@@ -351,6 +373,7 @@ def _in_sea(
         tuple(rows),
         slack,
         follower,
+        pitch,
         worst=tuple(worst),
         spectrum=(response.omega, np.abs(response.pull[:, 0]) ** 2 * sea.density(response.omega)),
         along=(depth, line.tension, tension, line.tension + departs),
