@@ -36,6 +36,8 @@ from calm.solve.net_closing import AskedNet, ask_net, keep
 from calm.solve.net_march import Marching, NetProblem, place_of
 from calm.solve.problem import CHOSEN, FINE
 
+ROUGHLY = 1e-6
+"""What may be left of lengths and forces, in shares: a run leaves less, which takes longer."""
 BLOCK = 256
 """Profiles that a thread takes at a time."""
 NO_PROFILE, COINCIDING, TO_SOLVE = -1, -2, 1
@@ -130,7 +132,7 @@ def solve_net_rows(
         ending = ask(AskedNet(net_closing.CLOSE, net, paper.x, how, net_closing.NEAR, True), 0.0)
         if ending == net_closing.CAME_OUT:
             how = Marching(sea, step, CHOSEN, False, FINE)
-            ending = ask(AskedNet(net_closing.SETTLE, net, paper.x, how, 0.0, True), 0.0)
+            ending = ask(AskedNet(net_closing.SETTLE, net, paper.x, how, ROUGHLY, True), 0.0)
         endings[case] = TO_SOLVE
         if ending == net_closing.CAME_OUT and stands(net, paper):
             endings[case] = 0

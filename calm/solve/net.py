@@ -141,7 +141,7 @@ class NetSearch:
         NoEquilibrium: they cannot be.
         """
         how = self.marching(self.settings.angle_step, CHOSEN, FINE, given=False)
-        ending, found = self.asked(net_closing.SETTLE, x, how)
+        ending, found = self.asked(net_closing.SETTLE, x, how, net_closing.CLOSED)
         if ending == net_closing.TO_AND_FRO:
             raise unsettled("a leg alternately lies on the seabed and lifts off")
         if ending != net_closing.CAME_OUT:

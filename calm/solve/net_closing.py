@@ -26,7 +26,7 @@ WORTH = 5e-5
 """Errors, as shares of the water depth and of the greatest tension, above which segments are
 halved once more, `MOST_HALVINGS` times."""
 MOST_HALVINGS = 3
-LEADS_ON = 0.04
+LEADS_ON = 0.25
 """What a step leaves of the sum of squares, at most, for slopes to be kept."""
 SINGULAR = 1e-14
 """Slope, in shares, below which an unknown is left as it is."""
@@ -195,13 +195,13 @@ def moved_ends(net: NetProblem, x: Sequence[float], record: int) -> float:
     return greatest
 
 
-def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float) -> int:
+def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float) -> int:
     """Close a net that about is to the last digits, on segments that are short enough."""
     for _ in range(MOST_HALVINGS):
         for left in range(len(net.legs), -1, -1):
             left_over(net, x, Marching(sea, 2.0 * step, CHOSEN, False, COARSE), False)
             coarse = Marching(sea, 2.0 * step, CHOSEN, True, COARSE)
-            ending = close_net(net, x, coarse, CLOSED, True)
+            ending = close_net(net, x, coarse, enough, True)
             if ending != CAME_OUT:
                 return ending
             if not lies_otherwise(net, sea, COARSE):
@@ -212,7 +212,7 @@ def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float) ->
         moved_ends(net, x, COARSE)
         for i in range(len(net.legs)):
             halve(leg_of(net, sea, i))
-        ending = close_net(net, x, Marching(sea, step, HALVED, True, FINE), CLOSED, True)
+        ending = close_net(net, x, Marching(sea, step, HALVED, True, FINE), enough, True)
         if ending != CAME_OUT:
             return ending
         tension = WORTH * moved_ends(net, x, FINE)
@@ -249,7 +249,7 @@ def ask_net(asked: AskedNet, _: float) -> float:
     """Do what is asked; how it ended."""
     net, x, how = asked.net, asked.x, asked.how
     if asked.task == SETTLE:
-        return float(settle(net, how.sea, x, how.step))
+        return float(settle(net, how.sea, x, how.step, asked.enough))
     if asked.task == CLOSE:
         return float(close_net(net, x, how, asked.enough, asked.known))
     return float(left_over(net, x, how, asked.task == SLOPES))
