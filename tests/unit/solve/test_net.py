@@ -299,7 +299,7 @@ def test_the_audit_sees_a_moved_node(monkeypatch: pytest.MonkeyPatch) -> None:
 
     def spoilt(net: Any, i: int, x: Any, how: Any) -> int:
         ending = marched(net, i, x, how)
-        net.work.records[i][how.record][0][int(net.state[i][net_march.COUNT]) // 2] += 1e-3
+        net.lines.work.records[i][how.record][0][int(net.state[i][net_march.COUNT]) // 2] += 1e-3
         return ending
 
     monkeypatch.setattr(net_march, "march_leg", spoilt)
