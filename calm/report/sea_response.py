@@ -7,6 +7,7 @@ from math import isnan
 from calm.checks.finding import State
 from calm.drawing.picture import figure_svg
 from calm.quantities import QUANTITIES, say
+from calm.records.sea_states import doubted
 from calm.report.blocks import (
     Block,
     Column,
@@ -57,11 +58,12 @@ def sea_response_part(analysis: WaveAnalysis) -> ReportPart:
         unknown = [each.label for each in analysis.fatigue if each.unknown]
         if unknown:
             blocks.append(Prose((f"Life unknown: {', '.join(unknown)}.",)))
-    if analysis.warnings:
-        blocks.append(Prose(analysis.warnings, State.WARN))
+    doubts = [doubt for each in states if (doubt := doubted(each.sea)) is not None]
+    if said := (*analysis.warnings, *doubts[:1]):
+        blocks.append(Prose(said, State.WARN))
     if analysis.status == SLACK:
-        said = f"Slack: {', '.join(highest.slack)}. Linear tensions are not valid there."
-        blocks.append(Prose((said,), State.FAIL))
+        slack = f"Slack: {', '.join(highest.slack)}. Linear tensions are not valid there."
+        blocks.append(Prose((slack,), State.FAIL))
     sea = highest.sea
     title = f"{analysis.name}: Hs {sea.significant_height:.1f} m, Tp {sea.peak_period:.1f} s"
     return ReportPart(title, tuple(blocks))

@@ -246,7 +246,11 @@ def analyse(
         )
         for index in range(setting.line.top_pieces, len(mooring.file.pieces) - 1)
     )  # fmt: skip
-    missing = None if setting.buoy is None else setting.buoy.pitch_unknown
+    missing, top = None, mooring.file.pieces[0].component
+    if setting.buoy is not None:
+        missing = setting.buoy.pitch_unknown
+    elif getattr(top, "centre_of_mass", None) is not None:
+        missing = "it stands below the surface"
     return WaveAnalysis(
         mooring.file.name, tuple(states), fatigue, accuracy, tuple(warnings), missing
     )

@@ -404,6 +404,27 @@ def test_a_following_float_heaves_with_the_water():
     assert np.abs(free.motion[0, 0, 2]) == pytest.approx(1.0, rel=0.3)
 
 
+def test_a_spectrum_over_radians_per_second(tmp_path):
+    """Frequencies of a dataset in rad/s are told by their unit; the sea is the same."""
+    sea = sea_states.spectrum_of("bretschneider", 0.5, 14.0, 3.3)
+    given = dataset(lambda f: sea.density(2.0 * pi * f))
+    turning = {"units": "rad s-1"}
+    given = given.assign_coords(
+        frequency=("frequency", 2.0 * pi * given["frequency"].data, turning)
+    )
+    given.to_netcdf(tmp_path / "sea.nc", engine="scipy")
+    read = sea_states.measured_spectrum(tmp_path / "sea.nc")
+    assert read.significant_height == pytest.approx(0.5, rel=5e-3)
+    assert read.peak_period == pytest.approx(14.0, rel=0.03)
+
+
+def test_a_spectrum_that_ends_at_its_peak_is_refused(tmp_path):
+    rows = "".join(f"{f:.3f},{25.0 * f:.3f}\n" for f in np.linspace(0.05, 0.15, 11))
+    (tmp_path / "cut.csv").write_text(f"frequency[Hz],density[m^2/Hz]\n{rows}")
+    with pytest.raises(InputError, match="is cut off"):
+        sea_states.measured_spectrum(tmp_path / "cut.csv")
+
+
 def dataset(density, directions=0, units="m2 Hz-1"):
     """A spectrum of NDBC, or with directions of WAVEWATCH III, of two times."""
     import xarray as xr
