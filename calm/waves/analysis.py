@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass, replace
-from math import degrees, isnan
+from math import degrees
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -323,7 +323,7 @@ def _in_sea(
     spectral = np.abs(response.pull) ** 2 * response.weight[:, None]
     moments = moments_of(response.omega, spectral)
     tension, period = response.moments(response.pull)
-    departs = np.array([_most(*each, duration) for each in zip(tension, period, strict=True)])
+    departs = np.array([greatest_of(*each, duration) for each in zip(tension, period, strict=True)])
     deviations, periods = response.moments(line.upper_ends(response.pull))
     motion, _ = response.moments(response.motion)
     lean, _ = response.moments(line.upper_ends(line.turned(response.motion)))
@@ -347,7 +347,7 @@ def _in_sea(
         at = spring + int(tension[own].argmax())
         worst.append((float(line.tension[at]), moments[:, at]))
         deviation, apart = float(deviations[piece.index]), float(periods[piece.index])
-        most = _most(deviation, apart, duration)
+        most = greatest_of(deviation, apart, duration)
         rows.append(
             PieceInWaves(
                 index=piece.index,
@@ -382,8 +382,3 @@ def _in_sea(
         spectrum=(response.omega, np.abs(response.pull[:, 0]) ** 2 * sea.density(response.omega)),
         along=(depth, line.tension, tension, line.tension + departs),
     )
-
-
-def _most(deviation: float, period: float, duration: float) -> float:
-    moves = deviation > 0.0 and not isnan(period)
-    return greatest_of(deviation, period, duration) if moves else 0.0

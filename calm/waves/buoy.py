@@ -80,10 +80,9 @@ class Buoy:
     rao : heave over the elevation by angular frequency [rad/s]: amplitude [-], phase [degrees]; and
         pitch [degrees/m], phase [degrees]
     follows : whether it heaves, and pitches, as the water does
-    panels : (12, f) of a panel method: frequency [rad/s]; added mass, radiation, and what pushes
-        per metre of elevation, of heave; the same of surge, of surge with pitch and of pitch about
-        the surface, and what pushes as it surges and pitches over ω², with which it grows; None by
-        the formulas of a disc
+    panels : (12, f) of a panel method: frequency [rad/s]; added mass and radiation of heave, surge,
+        surge with pitch and pitch about the surface; what pushes per metre of elevation as it
+        heaves, and over ω², with which it grows, as it surges and pitches; None by the formulas
     pitching, pitch_unknown : None where its pitch is not known, and then what it would take
     """
 
@@ -118,15 +117,12 @@ class Buoy:
         if self.follows:
             return np.full(omega.shape, FOLLOWING + 0j), np.full(omega.shape, FOLLOWING + 0j)
         if self.rao:
-            at, amplitude, phase = np.array(self.rao).T[:3]
-            given = _given(omega, at, amplitude, phase)
-            return np.full(omega.shape, FOLLOWING + 0j), FOLLOWING * given
+            return np.full(omega.shape, FOLLOWING + 0j), FOLLOWING * self._given(omega, 1)
         spring = density * gravity * pi * self.radius**2
         if self.panels is not None:
-            at = self.panels[0].real
-            added, radiated, lifting = (np.interp(omega, at, one) for one in self.panels[1:4])
-            inertia = self.mass + added.real
-            return spring - omega**2 * inertia + 1j * omega * radiated.real, lifting
+            rows = [np.interp(omega, self.panels[0].real, one) for one in self.panels]
+            inertia = self.mass + rows[1].real
+            return spring - omega**2 * inertia + 1j * omega * rows[2].real, rows[9]
         added = DISC_ADDED * density * self.radius**3
         across = number * self.radius
         smith = np.exp(-number * self.draft) * 2.0 * j1(across) / np.maximum(across, 1e-12)
@@ -150,23 +146,24 @@ class Buoy:
         if self.panels is None:
             added, radiated, pushing = self._of_sections(hull, omega, number, density, gravity)
         else:
-            rows = [np.interp(omega, self.panels[0].real, one) for one in self.panels[4:]]
-            added, radiated = np.real(rows[0:6:2]), np.real(rows[1:6:2])
-            pushing = omega**2 * np.array(rows[6:])
+            rows = [np.interp(omega, self.panels[0].real, one) for one in self.panels]
+            added, radiated = np.real(rows[3:9:2]), np.real(rows[4:9:2])
+            pushing = omega**2 * np.array(rows[10:])
         second = hull.centre**2 + hull.gyration**2
         inertia = self.mass * np.array([[1.0], [hull.centre], [second]])
         held = np.asarray(1j * omega * radiated - omega**2 * (inertia + added), complex)
         held[2] += self.righting(hull, density, gravity)
-        given = None
-        if self.follows:
-            given = 1j * number
-        elif self.rao and len(self.rao[0]) > 3:
-            at, _, _, amplitude, phase = np.array(self.rao).T
-            given = _given(omega, at, np.radians(amplitude), phase)
-        if given is not None:
+        if self.follows or (self.rao and len(self.rao[0]) > 3):
+            given = 1j * number if self.follows else self._given(omega, 3) * pi / 180.0
             held[2] += FOLLOWING
             pushing[1] += FOLLOWING * given
         return held, pushing
+
+    def _given(self, omega: Floats, column: int) -> Complexes:
+        """Return the response of `rao` with its amplitude in a column, its phase in the next."""
+        at, amplitude, phase = np.array(self.rao).T[[0, column, column + 1]]
+        turned = np.interp(omega, at, np.unwrap(np.radians(phase)))
+        return np.asarray(np.interp(omega, at, amplitude) * np.exp(1j * turned))
 
     def righting(self, hull: PitchingHull, density: float, gravity: float) -> float:
         """Return the moment that rights the float, per radian of pitch [N m].
@@ -224,12 +221,6 @@ class Buoy:
         return added, radiated, pushing
 
 
-def _given(omega: Floats, at: Floats, amplitude: Floats, phase: Floats) -> Complexes:
-    """Return a response given by amplitude and phase [degrees] at frequencies."""
-    turned = np.interp(omega, at, np.unwrap(np.radians(phase)))
-    return np.asarray(np.interp(omega, at, amplitude) * np.exp(1j * turned))
-
-
 def buoy_of(mooring: Mooring, solution: Solution, follows: bool) -> Buoy | None:
     """Return the float at the surface; None of a line below it.
 
@@ -254,13 +245,13 @@ def buoy_of(mooring: Mooring, solution: Solution, follows: bool) -> Buoy | None:
     follows = follows or component.heave == "follows"
     draft = 0.0 if riding is None or np.isnan(riding.draft) else riding.draft
     floating = mooring.line.floating
-    hull = _round_hull(None if floating is None else floating.hull, draft)
-    if hull is None and not follows and (component.heave == "panels" or not given):
+    radius, profile = _round_hull(None if floating is None else floating.hull, draft)
+    known = radius > 0.0 if component.heave != "panels" else profile is not None
+    if not (known or follows or (given and component.heave != "panels")):
         raise UsageError(
             f"{piece.label} has no hull, which decides how it heaves: give its `hull`, or "
             "`heave: follows`"
         )
-    radius, profile = (0.0, None) if hull is None else hull
     masses = [each.component.mass for each in above]
     if any(mass is None for mass in masses):
         raise UsageError(f"{piece.label} gives no `mass`, which decides how it heaves")
@@ -299,11 +290,11 @@ def buoy_of(mooring: Mooring, solution: Solution, follows: bool) -> Buoy | None:
     return buoy
 
 
-def _round_hull(hull: Hull | None, draft: float) -> tuple[float, Floats] | None:
-    """Return the radius of a hull's waterplane [m], and radius and height above the surface of its
-    sections, (s, 2), the keel first [m]; None where they are not known."""
-    if hull is None or (draft <= 0.0 and hull.form != SPAR):
-        return None
+def _round_hull(hull: Hull | None, draft: float) -> tuple[float, Floats | None]:
+    """Return the radius of a hull's waterplane [m], and (s, 2) radius and height above the surface
+    of its sections [m], the keel first; 0 and None where they are not known."""
+    if hull is None or draft <= 0.0:
+        return (0.5 * hull.area / hull.height if hull and hull.form == SPAR else 0.0), None
     up = np.linspace(0.0, draft, SECTIONS)
     radii = np.sqrt(np.maximum(up * (hull.height - up), 0.0))
     plane = float(radii[-1])
@@ -356,16 +347,14 @@ def panel_response(profile: Floats, density: float, gravity: float) -> Complexes
     for omega in PANEL_FREQUENCIES:
         given = {"body": body, "omega": omega, "rho": density, "g": gravity}
         row = [omega + 0j]
-        waves = capytaine.DiffractionProblem(wave_direction=0.0, **given)
-        bent, straight = solver.solve(waves).forces, froude_krylov_force(waves)
-        for way, other in (("Heave", "Heave"), *_COUPLED):
+        for way, other in _WAYS:
             moved = solver.solve(capytaine.RadiationProblem(radiating_dof=way, **given))
             row += [moved.added_masses[other], moved.radiation_dampings[other]]
-            if way == "Heave":
-                row.append(np.conj(bent[way] + straight[way]))
-        row += [np.conj(bent[way] + straight[way]) / omega**2 for way in ("Surge", "Pitch")]
-        found.append(row)
+        waves = capytaine.DiffractionProblem(wave_direction=0.0, **given)
+        bent, straight = solver.solve(waves).forces, froude_krylov_force(waves)
+        pushing = [np.conj(bent[way] + straight[way]) for way in ("Heave", "Surge", "Pitch")]
+        found.append([*row, pushing[0], pushing[1] / omega**2, pushing[2] / omega**2])
     return np.array(found, complex).T
 
 
-_COUPLED = ("Surge", "Surge"), ("Pitch", "Surge"), ("Pitch", "Pitch")
+_WAYS = ("Heave", "Heave"), ("Surge", "Surge"), ("Pitch", "Surge"), ("Pitch", "Pitch")

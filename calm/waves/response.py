@@ -39,7 +39,6 @@ class WaveResponse:
     motion : (f, n, 3) of the nodes [m/m]
     pull : (f, n-1) tension in the springs [N/m]
     pitch : (f,) of the float, toward where the waves run [rad/m]
-    iterations : of the linearisation
     """
 
     omega: Floats
@@ -47,7 +46,6 @@ class WaveResponse:
     motion: Complexes
     pull: Complexes
     pitch: Complexes
-    iterations: int
 
     def moments(self, transfer: Complexes) -> tuple[Floats, Floats]:
         """Return standard deviation and zero-crossing period [s] of transfers (f, …)."""
@@ -197,9 +195,7 @@ def respond(
     afloat = None if buoy is None else _Afloat.of(line.position[0], buoy, waves)
     axes, rate = _axes(line), 1j * omega[:, None, None]
     pitch, held = np.zeros(len(omega), complex), None
-    iterations = 0
-    while iterations < MOST_ITERATIONS:
-        iterations += 1
+    for _ in range(MOST_ITERATIONS):
         damping = drag_factor * _linearised(line, buoy, flow[:-1])
         if afloat is not None:
             turning = drag_factor * afloat.turning * _slope(0.0, flow[-1, 0])
@@ -225,7 +221,7 @@ def respond(
             break
         flow = flow + RELAXATION * (found - flow)
     pull = _pull(line, motion)
-    return WaveResponse(omega, weight, motion, pull, pitch, iterations), flow
+    return WaveResponse(omega, weight, motion, pull, pitch), flow
 
 
 def _axes(line: LumpedLine) -> Floats:
