@@ -49,24 +49,6 @@ FOLLOWING = 1e10
 
 
 @dataclass(frozen=True)
-class PitchingHull:
-    """Hold what the pitch of a float follows from; heights are above the surface [m].
-
-    Attributes
-    ----------
-    profile : (s, 2) radius and height of a round hull, its keel first [m]
-    centre : height of the centre of mass, of the float and all it carries
-    gyration : radius of gyration about a horizontal axis through that [m]
-    bail : height at which the line pulls
-    """
-
-    profile: Floats
-    centre: float
-    gyration: float
-    bail: float
-
-
-@dataclass(frozen=True)
 class Buoy:
     """Hold a hull afloat.
 
@@ -83,7 +65,11 @@ class Buoy:
     panels : (12, f) of a panel method: frequency [rad/s]; added mass and radiation of heave, surge,
         surge with pitch and pitch about the surface; what pushes per metre of elevation as it
         heaves, and over ω², with which it grows, as it surges and pitches; None by the formulas
-    pitching, pitch_unknown : None where its pitch is not known, and then what it would take
+    profile : (s, 2) radius and height above the surface of its sections [m], the keel first; None
+        where its pitch is not known
+    centre, bail : heights above the surface of the centre of mass, of the float and all it carries,
+        and of where the line pulls [m]
+    gyration : radius of gyration about a horizontal axis through the centre of mass [m]
     """
 
     mass: float
@@ -95,8 +81,10 @@ class Buoy:
     rao: tuple[tuple[float, ...], ...] = ()
     follows: bool = False
     panels: Complexes | None = None
-    pitching: PitchingHull | None = None
-    pitch_unknown: str | None = None
+    profile: Floats | None = None
+    centre: float = 0.0
+    bail: float = 0.0
+    gyration: float = 0.0
 
     def heave(
         self, omega: Floats, number: Floats, density: float, gravity: float
@@ -132,7 +120,7 @@ class Buoy:
         return resisting, lifting + 1j * omega * radiated * smith
 
     def pitch(
-        self, hull: PitchingHull, omega: Floats, number: Floats, density: float, gravity: float
+        self, profile: Floats, omega: Floats, number: Floats, density: float, gravity: float
     ) -> tuple[Complexes, Complexes]:
         """Return what resists surge and pitch and what pushes, per metre of them and of elevation.
 
@@ -141,18 +129,19 @@ class Buoy:
 
         Parameters
         ----------
+        profile : as above
         omega, number, density, gravity : as in `heave`
         """
         if self.panels is None:
-            added, radiated, pushing = self._of_sections(hull, omega, number, density, gravity)
+            added, radiated, pushing = self._of_sections(profile, omega, number, density, gravity)
         else:
             rows = [np.interp(omega, self.panels[0].real, one) for one in self.panels]
             added, radiated = np.real(rows[3:9:2]), np.real(rows[4:9:2])
             pushing = omega**2 * np.array(rows[10:])
-        second = hull.centre**2 + hull.gyration**2
-        inertia = self.mass * np.array([[1.0], [hull.centre], [second]])
+        second = self.centre**2 + self.gyration**2
+        inertia = self.mass * np.array([[1.0], [self.centre], [second]])
         held = np.asarray(1j * omega * radiated - omega**2 * (inertia + added), complex)
-        held[2] += self.righting(hull, density, gravity)
+        held[2] += self.righting(profile, density, gravity)
         if self.follows or (self.rao and len(self.rao[0]) > 3):
             given = 1j * number if self.follows else self._given(omega, 3) * pi / 180.0
             held[2] += FOLLOWING
@@ -165,21 +154,21 @@ class Buoy:
         turned = np.interp(omega, at, np.unwrap(np.radians(phase)))
         return np.asarray(np.interp(omega, at, amplitude) * np.exp(1j * turned))
 
-    def righting(self, hull: PitchingHull, density: float, gravity: float) -> float:
+    def righting(self, profile: Floats, density: float, gravity: float) -> float:
         """Return the moment that rights the float, per radian of pitch [N m].
 
         That of waterplane, centre of buoyancy and weight, which of a free float is its weight times
         the metacentric height, and of the line, which pulls down at the bail.
         """
-        radius, height = hull.profile.T
+        radius, height = profile.T
         buoyancy = float(np.trapezoid(radius**2 * height) / np.trapezoid(radius**2))
         plane = 0.25 * density * pi * self.radius**4
-        pulled = (self.displaced - self.mass) * hull.bail
-        moment = plane + self.displaced * buoyancy - self.mass * hull.centre - pulled
+        pulled = (self.displaced - self.mass) * self.bail
+        moment = plane + self.displaced * buoyancy - self.mass * self.centre - pulled
         return gravity * moment
 
     def _of_sections(
-        self, hull: PitchingHull, omega: Floats, number: Floats, density: float, gravity: float
+        self, profile: Floats, omega: Floats, number: Floats, density: float, gravity: float
     ) -> tuple[Floats, Floats, Complexes]:
         """Return added mass (3, f), radiation (3, f) and what pushes (2, f), as `pitch` has them.
 
@@ -189,7 +178,7 @@ class Buoy:
         """
         from scipy.special import j1, jv
 
-        radius, height = hull.profile.T
+        radius, height = profile.T
         area = pi * radius**2
         area *= self.displaced / (density * np.trapezoid(area, height))
         share = 1.0 - np.exp((height[0] - height) / (END_LOSS * self.radius))
@@ -256,15 +245,12 @@ def buoy_of(mooring: Mooring, solution: Solution, follows: bool) -> Buoy | None:
     if any(mass is None for mass in masses):
         raise UsageError(f"{piece.label} gives no `mass`, which decides how it heaves")
     density = mooring.water.density_at(np.array(0.0))
-    panels = pitching = None
+    panels = None
     if component.heave == "panels" and profile is not None and not follows:
         panels = panel_response(profile[::5], float(density), mooring.water.gravity)
     centre, gyration = component.centre_of_mass, component.radius_of_gyration
     if centre is None and given and len(given[0]) > 3:
         centre, gyration = draft, 0.0
-    missing = "the `hull`" if profile is None else "`centre_of_mass` and `radius_of_gyration`"
-    if profile is not None and centre is not None and gyration is not None:
-        pitching = PitchingHull(profile, centre - draft, gyration, (component.bail or 0.0) - draft)
     lift = float(solution.force[int(solution.piece_nodes[index, 1]), 2])
     mass = float(sum(mass or 0.0 for mass in masses))
     buoy = Buoy(
@@ -277,11 +263,13 @@ def buoy_of(mooring: Mooring, solution: Solution, follows: bool) -> Buoy | None:
         rao=given,
         follows=follows,
         panels=panels,
-        pitching=pitching,
-        pitch_unknown=None if pitching else f"give {missing} of {piece.label}",
+        profile=None if centre is None else profile,
+        centre=(centre or 0.0) - draft,
+        bail=(component.bail or 0.0) - draft,
+        gyration=gyration or 0.0,
     )
-    if pitching is not None and gyration:
-        righted = buoy.righting(pitching, float(density), mooring.water.gravity)
+    if buoy.profile is not None and gyration:
+        righted = buoy.righting(buoy.profile, float(density), mooring.water.gravity)
         if righted <= 0.0:
             raise UsageError(
                 f"{piece.label} does not float upright: its `centre_of_mass` is {centre:g} m above "

@@ -121,7 +121,7 @@ class _Afloat:
 
     @classmethod
     def of(cls, place: Floats, buoy: Buoy, waves: Waves) -> _Afloat:
-        omega, number, ahead, hull = waves.omega, waves.number, waves.ahead, buoy.pitching
+        omega, number, ahead, hull = waves.omega, waves.number, waves.ahead, buoy.profile
         medium = (omega, number, waves.density, waves.gravity)
         if hull is None:
             deep, heights, both, turning = 0.0, place[2:], 0.0, 0.0
@@ -132,7 +132,7 @@ class _Afloat:
         else:
             (surge, both, turn), (pushing, turning) = buoy.pitch(hull, *medium)
             # two points stand for a drag that is the same all over the draft
-            deep, heights = -hull.bail, buoy.draft * (-0.5 + np.array([-1.0, 1.0]) / sqrt(12.0))
+            deep, heights = -buoy.bail, buoy.draft * (-0.5 + np.array([-1.0, 1.0]) / sqrt(12.0))
         held = np.zeros((len(omega), 4, 4), complex)
         pushed = pushing[:, None] * np.array([*ahead, deep], complex)
         held[:, 2, 2], pushed[:, 2] = buoy.heave(*medium)
@@ -142,7 +142,7 @@ class _Afloat:
         held[:, 3, 3] = turn + 2.0 * deep * both + deep**2 * surge
         pushed[:, 3] += turning
         at = np.column_stack([np.tile(place[:2], (len(heights), 1)), heights])
-        arms = heights + deep if hull else np.zeros(1)
+        arms = np.zeros(1) if hull is None else heights + deep
         ways = np.stack([np.column_stack([np.eye(3), arm * ahead]) for arm in arms])
         elevation = np.exp(-1j * number * float(place @ ahead))
         # of the bottom: the drag of its heave, by the third power of the distance from the axis
