@@ -20,7 +20,8 @@ legs:
   left:
     line:
       - {use: sphere-steel-1250}
-      - {use: wire-jacketed-8, length: 170 m, clamps: [{use: sbe37, at: 20 m}, {use: rcm11, at: 5 m}]}
+      - {use: wire-jacketed-8, length: 170 m,
+         clamps: [{use: sbe37, at: 20 m}, {use: rcm11, at: 5 m}]}
     bottom: {join: A}
   pennant:
     line:
@@ -39,7 +40,7 @@ legs:
       - {use: anchor-wheels-4}
     top: {join: A}
     bottom: {anchor: {at: [100 m, 20 m], depth: 310 m}}
-"""  # noqa: E501
+"""
 
 
 def test_profiles_of_a_net_are_what_each_is_alone(tmp_path: Path) -> None:
