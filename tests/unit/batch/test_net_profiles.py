@@ -45,7 +45,8 @@ legs:
 
 def test_profiles_of_a_net_are_what_each_is_alone(tmp_path: Path) -> None:
     """By the compiled search from still water and by the solver of `calm run`, audited: to the
-    1e-6 of 200 m and of 6 kN that the former leaves, or some times that. Neither order nor threads change a bit.
+    1e-6 of 200 m and of 6 kN that the former leaves, or some times that.
+    Neither order nor threads change a bit.
     """
     net = load(tmp_path / "net.yaml", text=NET)
     assert isinstance(net, Net)
