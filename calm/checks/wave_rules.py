@@ -129,7 +129,7 @@ def _sure(waves: WaveAnalysis, verdict: Verdict) -> Verdict:
 
 
 def _years(count: float) -> str:
-    return "more than 1000 years" if count > 1000.0 else f"{count:.2g} years"
+    return "more than 1000 years" if count > 1000.0 else f"{float(f'{count:.2g}'):g} years"
 
 
 IN_WAVES = (wave_strength, wave_slack, fatigue)
