@@ -249,7 +249,7 @@ def net_result(net: Net, found: NetSolution, still: Sequence[Solution | None]) -
             *net.file.notices,
             *(said for leg in legs for said in leg.warnings),
             *(said for leg in legs if (said := _upside_down(leg))),
-        ),  # fmt: skip
+        ),
     )
 
 
