@@ -58,9 +58,7 @@ Surface = Annotated[
     described("`smooth` may follow the drag curves; `painted` keeps the constant", "smooth"),
 ]
 SphereCoefficient = Annotated[
-    float | None,
-    COEFFICIENT,
-    described("drag coefficient of a sphere", 0.5),
+    float | None, COEFFICIENT, described("drag coefficient of a sphere", 0.5)
 ]
 
 
