@@ -16,7 +16,7 @@ from calm.assemble import assemble_water
 from calm.case.measure import result_of
 from calm.case.mooring import Mooring, line_of, refuse_in_the_slope
 from calm.case.net_result import EndLoad, NetResult, NodePlace
-from calm.case.parts import Origin, ReadFromFile, as_read, naming_the_piece
+from calm.case.parts import Origin, OtherEnvironment, ReadFromFile, as_read, naming_the_piece
 from calm.case.result import Accuracy, AnchorLoad, Result
 from calm.case.tow import Tow
 from calm.errors import NoEquilibrium
@@ -193,7 +193,7 @@ class Net(ReadFromFile):
                 )
         return None
 
-    def solve(self, environment: str | Path | None = None) -> NetResult:
+    def solve(self, environment: OtherEnvironment | None = None) -> NetResult:
         """Find the static equilibrium, in another of its environments where one is given.
 
         NoEquilibrium: with status, message and advice, where there is none that passes every check.

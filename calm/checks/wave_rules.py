@@ -97,9 +97,7 @@ def fatigue(evidence: MooringInWaves) -> Iterator[Verdict]:
     if given is None or given.scatter is None:
         message = "Its fatigue life is not known: one sea is not a wave climate."
         yield unknown(
-            None,
-            message,
-            "Give `waves: {scatter: FILE}`, seas with their shares of the time.",
+            None, message, "Give `waves: {scatter: FILE}`, seas with their shares of the time."
         )
         return
     limit = checks.fatigue_factor * checks.service_time
