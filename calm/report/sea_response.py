@@ -50,17 +50,15 @@ def sea_response_report(analysis: WaveAnalysis) -> Report:
 def sea_response_part(analysis: WaveAnalysis) -> ReportPart:
     """Return the pieces in the sea, or in the highest of several seas with a line of each."""
     states, highest = analysis.states, _highest(analysis)
-    sea = highest.sea
-    shown = f"Hs {sea.significant_height:.1f} m, Tp {sea.peak_period:.1f} s"
-    title, blocks = shown, list[Block]()
-    if len(states) > 1:
-        title, shown = f"{len(states)} seas", f"In the highest sea, {shown}"
-        blocks.append(table_of("", states, *_SEAS))
-    blocks += [
-        _pieces(highest, shown if len(states) > 1 else ""),
-        Prose(tuple(_told(analysis, highest))),
+    title = f"Hs {highest.sea.significant_height:.1f} m, Tp {highest.sea.peak_period:.1f} s"
+    told, several = Prose(tuple(_told(analysis, highest))), len(states) > 1
+    blocks: list[Block] = [
+        _pieces(highest, f"In the highest sea, {title}" if several else ""),
+        told,
     ]
-    if len(states) > 1:
+    if several:
+        blocks.insert(0, table_of("", states, *_SEAS))
+        title = f"{len(states)} seas"
         known = [each for each in analysis.fatigue if each.life]
         blocks.append(table_of("Fatigue over all seas", known, *_LIVES, note=_LIFE))
         unknown = [each.label for each in analysis.fatigue if each.unknown]
@@ -70,8 +68,8 @@ def sea_response_part(analysis: WaveAnalysis) -> ReportPart:
     if said := (*analysis.warnings, *doubts[:1]):
         blocks.append(Prose(said, State.WARN))
     if analysis.status == SLACK:
-        slack = f"Slack: {', '.join(highest.slack)}. Linear tensions are not valid there."
-        blocks.append(Prose((slack,), State.FAIL))
+        slack = ", ".join(dict.fromkeys(label for each in states for label in each.slack))
+        blocks.append(Prose((f"Slack: {slack}. Linear tensions are not valid there.",), State.FAIL))
     return ReportPart(f"{analysis.name}: {title}", tuple(blocks))
 
 

@@ -59,8 +59,8 @@ class Buoy:
     radius : of its waterplane [m]
     draft : [m]
     drag, heave_drag : K of its drag in the current, and as it heaves [N/(m/s)²]
-    rao : heave over the elevation by angular frequency [rad/s]: amplitude [-], phase [degrees]; and
-        pitch [degrees/m], phase [degrees]
+    rao : angular frequency [rad/s], and of the heave over the elevation amplitude [-] and phase
+        [degrees]; where it is given, of the pitch amplitude [degrees/m] and phase [degrees]
     follows : whether it heaves, and pitches, as the water does
     panels : (12, f) of a panel method: frequency [rad/s]; added mass and radiation of heave, surge,
         surge with pitch and pitch about the surface; what pushes per metre of elevation as it
@@ -230,7 +230,7 @@ def buoy_of(mooring: Mooring, solution: Solution, follows: bool) -> Buoy | None:
     riding, component = solution.riding, piece.component
     if not isinstance(component, Rigid):
         raise UsageError(f"{piece.label}, a {component.kind}, floats at the surface, and no float")
-    given = component.given_response
+    given = component.rao or ()
     follows = follows or component.heave == "follows"
     draft = 0.0 if riding is None or np.isnan(riding.draft) else riding.draft
     floating = mooring.line.floating

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import erf, exp, pi, radians, sqrt
+from typing import NamedTuple
 
 import numpy as np
 
@@ -103,8 +104,7 @@ class Waves:
         return np.asarray(along[:, :, None] * ahead + up[:, :, None] * np.array([0.0, 0.0, 1.0]))
 
 
-@dataclass(frozen=True)
-class _Afloat:
+class _Afloat(NamedTuple):
     """What holds a float and what pushes it, by its bail's three ways and its pitch.
 
     `held` (f, 4, 4) and `pushed` (f, 4) per metre of elevation, without drag. Drag acts where
@@ -153,9 +153,8 @@ class _Afloat:
     def dragged(self, omega: Floats, drag: Floats, turning: float) -> tuple[Complexes, Complexes]:
         """Return what holds and what pushes with the linear drag (3, 3) and that of its turn."""
         each = drag / len(self.ways)
-        held = self.held + 1j * omega[:, None, None] * np.einsum(
-            "pca,cd,pdb->ab", self.ways, each, self.ways
-        )
+        whole = np.einsum("pca,cd,pdb->ab", self.ways, each, self.ways)
+        held = self.held + 1j * omega[:, None, None] * whole
         held[:, 3, 3] += 1j * omega * turning
         pushed = self.pushed + np.einsum("pca,cd,fpd->fa", self.ways, each, self.water)
         pushed[:, 3] += 1j * omega * turning * self.slope

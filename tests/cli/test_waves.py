@@ -168,7 +168,10 @@ def test_a_sea_steeper_than_seas_are_is_doubted(calm, buoy):
         ("heave: floats", "`heave: floats` must be one of filtered, follows"),
         ('rao: {"fast": [1, 0 deg], "2": [1, 0 deg]}', "`fast` is no angular frequency"),
         ('rao: {"1": [1, 0 deg]}', "two frequencies or more"),
-        ('rao: {"1": [1, 0 deg], "2": [1, 0 deg, 5 deg, 0 deg]}', "every frequency, or at none"),
+        (
+            'rao: {"1": [1, 0 deg], "2": [1, 0 deg, 5 deg, 0 deg]}',
+            "with the pitch at all or at none",
+        ),
         ('rao: {"1": [1, 0 deg, 5 deg], "2": [1, 0 deg]}', "four with the pitch"),
         ("centre_of_mass: 0.4 m", "needs both its `centre_of_mass` and `radius_of_gyration`"),
         ("bail: 0 m", "needs both its `centre_of_mass`"),
