@@ -13,7 +13,8 @@ from functools import cache, cached_property
 from math import inf
 
 from calm.errors import CalmError, InputError
-from calm.files.catalogue import FAMILY_ROLES, Catalogue, CatalogueEntry, lacking
+from calm.files.catalogue import FAMILY_ROLES, Catalogue, CatalogueEntry
+from calm.files.components import lacking
 from calm.files.yaml_document import SourceMapping, compose
 from calm.shipped import shipped_folder
 from calm.units import QuantityError, parse_quantity

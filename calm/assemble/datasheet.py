@@ -8,7 +8,8 @@ from typing import Any
 
 from calm.assemble.line_arrays import drag_of
 from calm.files import Anchor, Catalogue, Component, Flexible
-from calm.files.catalogue import Defined, Outline
+from calm.files.catalogue import Defined
+from calm.files.components import Outline
 from calm.files.definition import CATALOGUE_DENSITY
 from calm.units import QuantityError, parse_quantity
 

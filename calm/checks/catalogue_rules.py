@@ -18,8 +18,8 @@ from calm.checks.finding import State, Verdict, rule, unknown, verdict_on
 from calm.checks.posture import JUDGED_ROLES
 from calm.errors import nearest
 from calm.files import Anchor, Cable, Chain, Component, Cylinder, Flexible, Sphere
-from calm.files.catalogue import Assembly, Defined, Outline
-from calm.files.components import KINDS
+from calm.files.catalogue import Assembly, Defined
+from calm.files.components import KINDS, Outline
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
 from calm.physics.materials import (
     LEAD_DENSITY,

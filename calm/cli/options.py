@@ -65,7 +65,7 @@ def show_units(given: str | None, files: Iterable[MooringFile] = ()) -> None:
     UsageError: of a text that names no such dimension or unit.
     """
     from calm.errors import nearest
-    from calm.files.mooring_file import unit_meant
+    from calm.files.logbook import unit_meant
     from calm.quantities import SHOWN_UNITS, show_in
 
     if given is None:

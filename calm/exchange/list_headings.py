@@ -10,13 +10,7 @@ from pathlib import Path
 
 from calm.errors import unknown
 from calm.exchange.design import refused
-from calm.exchange.list_cells import (
-    SheetRows,
-    decimal_sign,
-    number,
-    unit_called,
-    unit_of_heading,
-)
+from calm.exchange.list_cells import SheetRows, decimal_sign, number, unit_called, unit_of_heading
 from calm.units import KILOGRAM_FORCE
 
 COLUMNS = (
@@ -105,10 +99,13 @@ class ListColumn:
     wrong: str = ""
     twin: ListColumn | None = None
 
-    def of(self, row: list[str], *, line: bool) -> ListColumn:
-        """Return this column or its twin, whichever has a row's figure; of a line per metre."""
+    def of(self, row: list[str], *, line: bool) -> tuple[ListColumn, str]:
+        """Return this column or its twin, whichever has a row's figure (of a line per metre), and
+        the cell.
+        """
         both = [each for each in (self, self.twin) if each and cell_of(row, each)]
-        return min(both, key=lambda each: each.per_metre != line, default=self)
+        column = min(both, key=lambda each: each.per_metre != line, default=self)
+        return column, cell_of(row, column)
 
 
 @dataclass(frozen=True)

@@ -14,19 +14,12 @@ from itertools import islice, zip_longest
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
-from pydantic import ConfigDict, Field, model_validator
+from pydantic import Field
 
 from calm.errors import InputError, Problem, UsageError, nearest, shown, unknown
-from calm.files.components import DRAG_KEYS, KINDS, Component
-from calm.files.definition import Definition, described, quantity_of
-from calm.files.yaml_document import (
-    Document,
-    SourceMapping,
-    compose,
-    read_document,
-    unknown_key,
-    validate,
-)
+from calm.files.components import KINDS, Component, Outline, lacking
+from calm.files.definition import Definition, described
+from calm.files.yaml_document import Document, SourceMapping, compose, read_document, validate
 from calm.shipped import shipped_folder
 from calm.whole_file import FileCache, read_text
 
@@ -53,51 +46,6 @@ class Assembly(Definition):
         "pieces as in `line`, from the top",
         [{"use": "glass-17in", "count": 2}, {"use": "chain-13", "length": "1 m"}],
     )
-
-
-_ESSENTIAL = {
-    "length": {"length"},
-    "diameter": {"diameter"},
-    "buoyancy": {"buoyancy", "volume"},
-    "weight": {"weight", "buoyancy", "density"},
-    "drag_area": DRAG_KEYS,
-}
-"""Figures that a component cannot do without, and the keys that give each."""
-
-
-class Outline(Definition):
-    """A product of which no source prints figures that its kind needs: those under `searched`.
-
-    It is found and shown like any other. A line that uses it gives these figures itself.
-    """
-
-    model_config = ConfigDict(extra="allow")
-
-    kind: str
-
-    @model_validator(mode="before")
-    @classmethod
-    def _of_its_kind(cls, data: dict[str, Any]) -> dict[str, Any]:
-        fields = KINDS[data["kind"]].model_fields
-        if strange := next((key for key in data if key not in fields), None):
-            raise ValueError(unknown_key(strange, [*fields], f" for kind {data['kind']}"))
-        more = ((key, quantity_of(fields[key])) for key in data.keys() - cls.model_fields.keys())
-        return data | {key: quantity.read(data[key]) for key, quantity in more if quantity}
-
-    @property
-    def lacks(self) -> list[str]:
-        """Return the keys that a line has to give."""
-        return lacking(self.model_dump(exclude_none=True))
-
-
-def lacking(fields: Mapping[str, Any]) -> list[str]:
-    """Return the keys under `searched` that a component needs, and that it does not give."""
-    sought = fields.get("searched")
-    return [
-        key
-        for key, ways in _ESSENTIAL.items()
-        if isinstance(sought, list | tuple) and key in sought and not fields.keys() & ways
-    ]
 
 
 Defined = Component | Assembly | Outline

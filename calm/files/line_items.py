@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from calm.errors import Problem, about_quantity, shown, unknown
-from calm.files.catalogue import Assembly, Catalogue, CatalogueEntry, Defined, Outline, define
+from calm.files.catalogue import Assembly, Catalogue, CatalogueEntry, Defined, define
 from calm.files.check_limits import GREATER_FLATTERS, LESSER_FLATTERS, LimitKey
 from calm.files.components import (
     FLEXIBLE_KINDS,
@@ -15,6 +15,7 @@ from calm.files.components import (
     Anchor,
     Component,
     Flexible,
+    Outline,
     contradicted,
     odd_overrides,
 )  # fmt: skip
@@ -221,8 +222,7 @@ class LineReader:
             notice = (
                 f"{use}: no mass is known; its net force in water is taken as its weight in air"
             )
-            if notice not in self._notices:
-                self._notices.append(notice)
+            self._notices += [notice] * (notice not in self._notices)
 
     def _clamps(self, item: SourceMapping, length: float | None) -> tuple[Clamp, ...]:
         """Return the clamps of an item, none beyond its length where that is known."""
@@ -287,8 +287,7 @@ class LineReader:
         hidden = self._catalogue.hidden(use)
         if hidden:
             notice = f"{use}: defined in {entry.place}, which hides that of {hidden.place}"
-            if notice not in self._notices:
-                self._notices.append(notice)
+            self._notices += [notice] * (notice not in self._notices)
         return entry
 
     def _definition(
@@ -319,12 +318,7 @@ class LineReader:
         hinted = item_keys if definition.kind == "cable" else item_keys - {"termination"}
         component = self._define(entry, section, also_allowed=hinted)
         if isinstance(component, Outline):
-            keys = ", ".join(f"`{key}`" for key in component.lacks)
-            message = (
-                f"no source prints {keys} of `{entry.id}`: measure or ask the maker, and give it "
-                f"here with its unit (the rest is from: {component.source})"
-            )
-            self._refuse(item, ("use",), message)
+            self._refuse(item, ("use",), component.asks(entry.id))
         if not isinstance(component, Component):
             return None
         self._keep_looser_limits(entry, item, definition, component)

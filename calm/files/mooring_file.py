@@ -8,11 +8,10 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Protocol
 
-from pydantic import AfterValidator, model_validator
+from pydantic import AfterValidator
 
 from calm.errors import Problem, unknown
 from calm.files.check_limits import Accept, Checks, LimitKey
@@ -24,8 +23,6 @@ from calm.files.rigid import Profiler
 from calm.files.strumming_keys import Strumming
 from calm.files.uncertainty import Uncertainty
 from calm.files.yaml_document import SourceMapping
-from calm.quantities import SHOWN_UNITS
-from calm.units import QuantityError, parse_quantity
 
 if TYPE_CHECKING:
     from calm.files.legs import Leg
@@ -47,42 +44,6 @@ class TowKeys(Model):
     height: Annotated[float, LENGTH] = described(
         "of the tow point above the water, e.g. 4 m", "4 m", default=0.0
     )
-
-
-class OutputUnits(Model):
-    """Say in which units people read tables, papers and the builder; files for programs are SI."""
-
-    force: Literal["N", "kN", "kgf", "lbf"] | None = optional(
-        "of tensions, weights and loads", "kgf"
-    )
-    length: Literal["m", "ft"] | None = optional("of lengths and depths", "m")
-    speed: Literal["m/s", "cm/s", "kn"] | None = optional("of currents and ships", "kn")
-    mass: Literal["kg", "lb"] | None = optional("of masses in air", "kg")
-
-    @model_validator(mode="before")
-    @classmethod
-    def _by_dimension(cls, data: object) -> object:
-        texts = data.replace(",", " ").split() if isinstance(data, str) else data
-        listed = [*texts] if isinstance(texts, list | tuple | dict) else []
-        meant = [unit_meant(str(text)) for text in listed if text not in cls.model_fields]
-        if found := [f"{each[0]}: {each[1]}" for each in meant if each]:
-            raise ValueError(f"write `units: {{{', '.join(found)}}}`")
-        return data
-
-    @property
-    def chosen(self) -> dict[str, str]:
-        """Return the units that are given, by dimension."""
-        return self.model_dump(exclude_none=True)
-
-
-def unit_meant(text: str) -> tuple[str, str] | None:
-    """Return the dimension and the unit to show that a text names, as `knots`; None of no such."""
-    for dimension, units in SHOWN_UNITS.items():
-        with suppress(QuantityError):
-            value = parse_quantity(f"1 {text}", dimension)
-            alike = (unit for unit, one in units.items() if math.isclose(one, value))
-            return next(((dimension, unit) for unit in alike), None)
-    return None
 
 
 class Solver(Model):
@@ -295,9 +256,7 @@ def placed(piece: Piece, place: Place) -> Piece:
     """Put a piece, with its clamps and the serial numbers there, at a place of the line."""
     clamps = tuple(
         replace(
-            clamp,
-            place=replace(place, clamp=number),
-            equipment=clamp.equipment.of(place.repeat),
+            clamp, place=replace(place, clamp=number), equipment=clamp.equipment.of(place.repeat)
         )
         for number, clamp in enumerate(piece.clamps)
     )
@@ -386,11 +345,7 @@ def travelling(
 
 
 def _travelling(
-    clamp: Clamp,
-    piece: Piece,
-    pieces: Sequence[Piece],
-    top: SourceMapping,
-    problems: list[Problem],
+    clamp: Clamp, piece: Piece, pieces: Sequence[Piece], top: SourceMapping, problems: list[Problem]
 ) -> Clamp:
     stops = {each.label: 0.0 if each.index < piece.index else math.inf for each in pieces}
     del stops[piece.label]

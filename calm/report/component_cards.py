@@ -12,8 +12,8 @@ from pydantic import BaseModel
 
 from calm.assemble.datasheet import Datasheet, datasheet
 from calm.files import Catalogue
-from calm.files.catalogue import Defined, Outline
-from calm.files.components import FLEXIBLE_KINDS
+from calm.files.catalogue import Defined
+from calm.files.components import FLEXIBLE_KINDS, Outline
 from calm.files.definition import EstimatedFigure
 from calm.quantities import QUANTITIES
 from calm.report.blocks import Cell, Column, Heading, Pairs, ReportPart, Table

@@ -17,7 +17,7 @@ from calm.deck.deck_items import (
 from calm.deck.hardware import LENGTH_ERROR, Mark
 from calm.deck.shipping import total_of
 from calm.quantities import QUANTITIES, say
-from calm.report.blocks import Block, Cell, Column, Note, Prose, ReportPart, Table, table_of
+from calm.report.blocks import Cell, Column, Note, Prose, ReportPart, Table, table_of
 from calm.report.net_sheet import leg_titles
 from calm.report.sheet import figure_cell, quantity_column, quantity_field
 
@@ -27,10 +27,10 @@ _SPARES = (
     "default of this program."
 )
 _IMPLIED = (
-    "A shackle is taken to have a bolt, nut and cotter pin unless its name or note says screw "
-    "pin; a termination with a thimble to have one at each end. Where metals touch that corrode "
-    "each other (those of which calm check warns), there is an isolator at each contact and an "
-    "anode on each piece of the baser metal. Nothing else is counted unless the line lists it."
+    "Each shackle is counted with a bolt, nut and cotter pin unless its name or note says screw "
+    "pin, and a termination that names a thimble with one at each end. Where metals touch that "
+    "corrode each other (calm check warns of them), an isolator is counted for each contact and an "
+    "anode for each piece of the baser metal. Nothing else is counted unless the line lists it."
 )
 
 
@@ -109,10 +109,7 @@ def hardware_part(deck: Deck) -> ReportPart:
         Column("packed", share=0.0),
     )
     table = Table("", columns, tuple(rows), _SPARES)
-    blocks: tuple[Block, ...] = (table,)
-    if not deck.hardware:
-        blocks = (Prose(("The line lists no hardware.",)),)
-    return ReportPart("Hardware bill", (*blocks, Note((_IMPLIED,))))
+    return ReportPart("Hardware bill", (table, Note((_IMPLIED,))))
 
 
 def shipping_part(deck: Deck) -> ReportPart:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass, replace
-from math import degrees, isnan
+from math import degrees
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -112,7 +112,7 @@ class WaveAnalysis:
     accuracy : in the highest and in the shortest of them
     fatigue : of each piece, by the shares of the seas; a single one lasts all the year
     warnings : what rests on assumptions
-    pitch_unknown : what would have to be given for the pitch of the float; None where it is known
+    pitch_unknown : why the pitch of the float is not computed; None where it is
     """
 
     name: str
@@ -229,11 +229,8 @@ def analyse(
         near = flow * (sea.significant_height / before.significant_height)
         response, flow = setting.respond(sea, near)
         before = sea
-        states.append(
-            _in_sea(
-                mooring, solution, setting, sea, response, flow, duration, beside=sea is highest
-            )
-        )
+        beside = sea is highest
+        states.append(_in_sea(mooring, solution, setting, sea, response, flow, duration, beside))
     warnings = [
         f"{label} gives no `stiffness` and is taken as inextensible: its tensions are "
         "overestimated."
@@ -246,7 +243,11 @@ def analyse(
         )
         for index in range(setting.line.top_pieces, len(mooring.file.pieces) - 1)
     )  # fmt: skip
-    missing = None if setting.buoy is None else setting.buoy.pitch_unknown
+    missing = None
+    if setting.buoy is not None and setting.buoy.profile is None:
+        missing = "it takes its `hull`, `centre_of_mass` and `radius_of_gyration`"
+    elif getattr(mooring.file.pieces[0].component, "centre_of_mass", None) and not setting.buoy:
+        missing = "it stands below the surface"
     return WaveAnalysis(
         mooring.file.name, tuple(states), fatigue, accuracy, tuple(warnings), missing
     )
@@ -312,19 +313,18 @@ def _in_sea(
     response: WaveResponse,
     flow: Floats,
     duration: float,
-    *,
     beside: bool,
 ) -> MooringInSea:
     line = setting.line
     spectral = np.abs(response.pull) ** 2 * response.weight[:, None]
     moments = moments_of(response.omega, spectral)
     tension, period = response.moments(response.pull)
-    departs = np.array([_most(*each, duration) for each in zip(tension, period, strict=True)])
+    departs = np.array([greatest_of(*each, duration) for each in zip(tension, period, strict=True)])
     deviations, periods = response.moments(line.upper_ends(response.pull))
     motion, _ = response.moments(response.motion)
     lean, _ = response.moments(line.upper_ends(line.turned(response.motion)))
     pitch = None
-    if setting.buoy is not None and setting.buoy.pitching is not None:
+    if setting.buoy is not None and setting.buoy.profile is not None:
         pitch = degrees(float(response.moments(response.pitch)[0]))
     rows: list[PieceInWaves] = []
     worst: list[tuple[float, Floats]] = []
@@ -333,17 +333,15 @@ def _in_sea(
         mean = float(solution.tension[int(solution.piece_nodes[piece.index, 0])])
         if piece.index < line.top_pieces:  # nothing pulls at the upper end of what floats on top
             mean = float(solution.tension[int(solution.piece_nodes[line.top_pieces - 1, 1])])
-        if spring < 0:  # on the seabed
-            still = (mean, 0.0, mean, mean, np.nan, 0.0, 0.0, 0.0, mean, mean)
-            rows.append(PieceInWaves(piece.index, piece.label, *still))
-            worst.append((mean, np.zeros(4)))
-            continue
-        below = line.piece_spring[line.piece_spring > spring]
-        own = slice(spring, int(below.min()) if len(below) else len(tension))
-        at = spring + int(tension[own].argmax())
-        worst.append((float(line.tension[at]), moments[:, at]))
+        own, most_moved = slice(0), (mean, np.zeros(4))  # on the seabed
+        if spring >= 0:
+            below = line.piece_spring[line.piece_spring > spring]
+            own = slice(spring, int(below.min()) if len(below) else len(tension))
+            at = spring + int(tension[own].argmax())
+            most_moved = float(line.tension[at]), moments[:, at]
+        worst.append(most_moved)
         deviation, apart = float(deviations[piece.index]), float(periods[piece.index])
-        most = _most(deviation, apart, duration)
+        most = greatest_of(deviation, apart, duration)
         rows.append(
             PieceInWaves(
                 index=piece.index,
@@ -358,8 +356,8 @@ def _in_sea(
                 tilt_std=degrees(float(np.linalg.norm(lean[piece.index])))
                 if pitch is None or piece.index >= line.top_pieces
                 else pitch,
-                greatest=max(mean + most, float((line.tension + departs)[own].max())),
-                least=min(mean - most, float((line.tension - departs)[own].min())),
+                greatest=float((line.tension + departs)[own].max(initial=mean + most)),
+                least=float((line.tension - departs)[own].min(initial=mean - most)),
             )
         )
     follower = None
@@ -378,8 +376,3 @@ def _in_sea(
         spectrum=(response.omega, np.abs(response.pull[:, 0]) ** 2 * sea.density(response.omega)),
         along=(depth, line.tension, tension, line.tension + departs),
     )
-
-
-def _most(deviation: float, period: float, duration: float) -> float:
-    moves = deviation > 0.0 and not isnan(period)
-    return greatest_of(deviation, period, duration) if moves else 0.0

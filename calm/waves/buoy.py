@@ -49,24 +49,6 @@ FOLLOWING = 1e10
 
 
 @dataclass(frozen=True)
-class PitchingHull:
-    """Hold what the pitch of a float follows from; heights are above the surface [m].
-
-    Attributes
-    ----------
-    profile : (s, 2) radius and height of a round hull, its keel first [m]
-    centre : height of the centre of mass, of the float and all it carries
-    gyration : radius of gyration about a horizontal axis through that [m]
-    bail : height at which the line pulls
-    """
-
-    profile: Floats
-    centre: float
-    gyration: float
-    bail: float
-
-
-@dataclass(frozen=True)
 class Buoy:
     """Hold a hull afloat.
 
@@ -77,14 +59,17 @@ class Buoy:
     radius : of its waterplane [m]
     draft : [m]
     drag, heave_drag : K of its drag in the current, and as it heaves [N/(m/s)²]
-    rao : heave over the elevation by angular frequency [rad/s]: amplitude [-], phase [degrees]; and
-        pitch [degrees/m], phase [degrees]
+    rao : angular frequency [rad/s], and of the heave over the elevation amplitude [-] and phase
+        [degrees]; where it is given, of the pitch amplitude [degrees/m] and phase [degrees]
     follows : whether it heaves, and pitches, as the water does
-    panels : (12, f) of a panel method: frequency [rad/s]; added mass, radiation, and what pushes
-        per metre of elevation, of heave; the same of surge, of surge with pitch and of pitch about
-        the surface, and what pushes as it surges and pitches over ω², with which it grows; None by
-        the formulas of a disc
-    pitching, pitch_unknown : None where its pitch is not known, and then what it would take
+    panels : (12, f) of a panel method: frequency [rad/s]; added mass and radiation of heave, surge,
+        surge with pitch and pitch about the surface; what pushes per metre of elevation as it
+        heaves, and over ω², with which it grows, as it surges and pitches; None by the formulas
+    profile : (s, 2) radius and height above the surface of its sections [m], the keel first; None
+        where its pitch is not known
+    centre, bail : heights above the surface of the centre of mass, of the float and all it carries,
+        and of where the line pulls [m]
+    gyration : radius of gyration about a horizontal axis through the centre of mass [m]
     """
 
     mass: float
@@ -96,8 +81,10 @@ class Buoy:
     rao: tuple[tuple[float, ...], ...] = ()
     follows: bool = False
     panels: Complexes | None = None
-    pitching: PitchingHull | None = None
-    pitch_unknown: str | None = None
+    profile: Floats | None = None
+    centre: float = 0.0
+    bail: float = 0.0
+    gyration: float = 0.0
 
     def heave(
         self, omega: Floats, number: Floats, density: float, gravity: float
@@ -118,15 +105,12 @@ class Buoy:
         if self.follows:
             return np.full(omega.shape, FOLLOWING + 0j), np.full(omega.shape, FOLLOWING + 0j)
         if self.rao:
-            at, amplitude, phase = np.array(self.rao).T[:3]
-            given = _given(omega, at, amplitude, phase)
-            return np.full(omega.shape, FOLLOWING + 0j), FOLLOWING * given
+            return np.full(omega.shape, FOLLOWING + 0j), FOLLOWING * self._given(omega, 1)
         spring = density * gravity * pi * self.radius**2
         if self.panels is not None:
-            at = self.panels[0].real
-            added, radiated, lifting = (np.interp(omega, at, one) for one in self.panels[1:4])
-            inertia = self.mass + added.real
-            return spring - omega**2 * inertia + 1j * omega * radiated.real, lifting
+            rows = [np.interp(omega, self.panels[0].real, one) for one in self.panels]
+            inertia = self.mass + rows[1].real
+            return spring - omega**2 * inertia + 1j * omega * rows[2].real, rows[9]
         added = DISC_ADDED * density * self.radius**3
         across = number * self.radius
         smith = np.exp(-number * self.draft) * 2.0 * j1(across) / np.maximum(across, 1e-12)
@@ -136,7 +120,7 @@ class Buoy:
         return resisting, lifting + 1j * omega * radiated * smith
 
     def pitch(
-        self, hull: PitchingHull, omega: Floats, number: Floats, density: float, gravity: float
+        self, profile: Floats, omega: Floats, number: Floats, density: float, gravity: float
     ) -> tuple[Complexes, Complexes]:
         """Return what resists surge and pitch and what pushes, per metre of them and of elevation.
 
@@ -145,44 +129,46 @@ class Buoy:
 
         Parameters
         ----------
+        profile : as above
         omega, number, density, gravity : as in `heave`
         """
         if self.panels is None:
-            added, radiated, pushing = self._of_sections(hull, omega, number, density, gravity)
+            added, radiated, pushing = self._of_sections(profile, omega, number, density, gravity)
         else:
-            rows = [np.interp(omega, self.panels[0].real, one) for one in self.panels[4:]]
-            added, radiated = np.real(rows[0:6:2]), np.real(rows[1:6:2])
-            pushing = omega**2 * np.array(rows[6:])
-        second = hull.centre**2 + hull.gyration**2
-        inertia = self.mass * np.array([[1.0], [hull.centre], [second]])
+            rows = [np.interp(omega, self.panels[0].real, one) for one in self.panels]
+            added, radiated = np.real(rows[3:9:2]), np.real(rows[4:9:2])
+            pushing = omega**2 * np.array(rows[10:])
+        second = self.centre**2 + self.gyration**2
+        inertia = self.mass * np.array([[1.0], [self.centre], [second]])
         held = np.asarray(1j * omega * radiated - omega**2 * (inertia + added), complex)
-        held[2] += self.righting(hull, density, gravity)
-        given = None
-        if self.follows:
-            given = 1j * number
-        elif self.rao and len(self.rao[0]) > 3:
-            at, _, _, amplitude, phase = np.array(self.rao).T
-            given = _given(omega, at, np.radians(amplitude), phase)
-        if given is not None:
+        held[2] += self.righting(profile, density, gravity)
+        if self.follows or (self.rao and len(self.rao[0]) > 3):
+            given = 1j * number if self.follows else self._given(omega, 3) * pi / 180.0
             held[2] += FOLLOWING
             pushing[1] += FOLLOWING * given
         return held, pushing
 
-    def righting(self, hull: PitchingHull, density: float, gravity: float) -> float:
+    def _given(self, omega: Floats, column: int) -> Complexes:
+        """Return the response of `rao` with its amplitude in a column, its phase in the next."""
+        at, amplitude, phase = np.array(self.rao).T[[0, column, column + 1]]
+        turned = np.interp(omega, at, np.unwrap(np.radians(phase)))
+        return np.asarray(np.interp(omega, at, amplitude) * np.exp(1j * turned))
+
+    def righting(self, profile: Floats, density: float, gravity: float) -> float:
         """Return the moment that rights the float, per radian of pitch [N m].
 
         That of waterplane, centre of buoyancy and weight, which of a free float is its weight times
         the metacentric height, and of the line, which pulls down at the bail.
         """
-        radius, height = hull.profile.T
+        radius, height = profile.T
         buoyancy = float(np.trapezoid(radius**2 * height) / np.trapezoid(radius**2))
         plane = 0.25 * density * pi * self.radius**4
-        pulled = (self.displaced - self.mass) * hull.bail
-        moment = plane + self.displaced * buoyancy - self.mass * hull.centre - pulled
+        pulled = (self.displaced - self.mass) * self.bail
+        moment = plane + self.displaced * buoyancy - self.mass * self.centre - pulled
         return gravity * moment
 
     def _of_sections(
-        self, hull: PitchingHull, omega: Floats, number: Floats, density: float, gravity: float
+        self, profile: Floats, omega: Floats, number: Floats, density: float, gravity: float
     ) -> tuple[Floats, Floats, Complexes]:
         """Return added mass (3, f), radiation (3, f) and what pushes (2, f), as `pitch` has them.
 
@@ -192,7 +178,7 @@ class Buoy:
         """
         from scipy.special import j1, jv
 
-        radius, height = hull.profile.T
+        radius, height = profile.T
         area = pi * radius**2
         area *= self.displaced / (density * np.trapezoid(area, height))
         share = 1.0 - np.exp((height[0] - height) / (END_LOSS * self.radius))
@@ -224,12 +210,6 @@ class Buoy:
         return added, radiated, pushing
 
 
-def _given(omega: Floats, at: Floats, amplitude: Floats, phase: Floats) -> Complexes:
-    """Return a response given by amplitude and phase [degrees] at frequencies."""
-    turned = np.interp(omega, at, np.unwrap(np.radians(phase)))
-    return np.asarray(np.interp(omega, at, amplitude) * np.exp(1j * turned))
-
-
 def buoy_of(mooring: Mooring, solution: Solution, follows: bool) -> Buoy | None:
     """Return the float at the surface; None of a line below it.
 
@@ -250,30 +230,27 @@ def buoy_of(mooring: Mooring, solution: Solution, follows: bool) -> Buoy | None:
     riding, component = solution.riding, piece.component
     if not isinstance(component, Rigid):
         raise UsageError(f"{piece.label}, a {component.kind}, floats at the surface, and no float")
-    given = component.given_response
+    given = component.rao or ()
     follows = follows or component.heave == "follows"
     draft = 0.0 if riding is None or np.isnan(riding.draft) else riding.draft
     floating = mooring.line.floating
-    hull = _round_hull(None if floating is None else floating.hull, draft)
-    if hull is None and not follows and (component.heave == "panels" or not given):
+    radius, profile = _round_hull(None if floating is None else floating.hull, draft)
+    known = radius > 0.0 if component.heave != "panels" else profile is not None
+    if not (known or follows or (given and component.heave != "panels")):
         raise UsageError(
             f"{piece.label} has no hull, which decides how it heaves: give its `hull`, or "
             "`heave: follows`"
         )
-    radius, profile = (0.0, None) if hull is None else hull
     masses = [each.component.mass for each in above]
     if any(mass is None for mass in masses):
         raise UsageError(f"{piece.label} gives no `mass`, which decides how it heaves")
     density = mooring.water.density_at(np.array(0.0))
-    panels = pitching = None
+    panels = None
     if component.heave == "panels" and profile is not None and not follows:
         panels = panel_response(profile[::5], float(density), mooring.water.gravity)
     centre, gyration = component.centre_of_mass, component.radius_of_gyration
     if centre is None and given and len(given[0]) > 3:
         centre, gyration = draft, 0.0
-    missing = "the `hull`" if profile is None else "`centre_of_mass` and `radius_of_gyration`"
-    if profile is not None and centre is not None and gyration is not None:
-        pitching = PitchingHull(profile, centre - draft, gyration, (component.bail or 0.0) - draft)
     lift = float(solution.force[int(solution.piece_nodes[index, 1]), 2])
     mass = float(sum(mass or 0.0 for mass in masses))
     buoy = Buoy(
@@ -286,11 +263,13 @@ def buoy_of(mooring: Mooring, solution: Solution, follows: bool) -> Buoy | None:
         rao=given,
         follows=follows,
         panels=panels,
-        pitching=pitching,
-        pitch_unknown=None if pitching else f"give {missing} of {piece.label}",
+        profile=None if centre is None else profile,
+        centre=(centre or 0.0) - draft,
+        bail=(component.bail or 0.0) - draft,
+        gyration=gyration or 0.0,
     )
-    if pitching is not None and gyration:
-        righted = buoy.righting(pitching, float(density), mooring.water.gravity)
+    if buoy.profile is not None and gyration:
+        righted = buoy.righting(buoy.profile, float(density), mooring.water.gravity)
         if righted <= 0.0:
             raise UsageError(
                 f"{piece.label} does not float upright: its `centre_of_mass` is {centre:g} m above "
@@ -299,11 +278,11 @@ def buoy_of(mooring: Mooring, solution: Solution, follows: bool) -> Buoy | None:
     return buoy
 
 
-def _round_hull(hull: Hull | None, draft: float) -> tuple[float, Floats] | None:
-    """Return the radius of a hull's waterplane [m], and radius and height above the surface of its
-    sections, (s, 2), the keel first [m]; None where they are not known."""
-    if hull is None or (draft <= 0.0 and hull.form != SPAR):
-        return None
+def _round_hull(hull: Hull | None, draft: float) -> tuple[float, Floats | None]:
+    """Return the radius of a hull's waterplane [m], and (s, 2) radius and height above the surface
+    of its sections [m], the keel first; 0 and None where they are not known."""
+    if hull is None or draft <= 0.0:
+        return (0.5 * hull.area / hull.height if hull and hull.form == SPAR else 0.0), None
     up = np.linspace(0.0, draft, SECTIONS)
     radii = np.sqrt(np.maximum(up * (hull.height - up), 0.0))
     plane = float(radii[-1])
@@ -356,16 +335,14 @@ def panel_response(profile: Floats, density: float, gravity: float) -> Complexes
     for omega in PANEL_FREQUENCIES:
         given = {"body": body, "omega": omega, "rho": density, "g": gravity}
         row = [omega + 0j]
-        waves = capytaine.DiffractionProblem(wave_direction=0.0, **given)
-        bent, straight = solver.solve(waves).forces, froude_krylov_force(waves)
-        for way, other in (("Heave", "Heave"), *_COUPLED):
+        for way, other in _WAYS:
             moved = solver.solve(capytaine.RadiationProblem(radiating_dof=way, **given))
             row += [moved.added_masses[other], moved.radiation_dampings[other]]
-            if way == "Heave":
-                row.append(np.conj(bent[way] + straight[way]))
-        row += [np.conj(bent[way] + straight[way]) / omega**2 for way in ("Surge", "Pitch")]
-        found.append(row)
+        waves = capytaine.DiffractionProblem(wave_direction=0.0, **given)
+        bent, straight = solver.solve(waves).forces, froude_krylov_force(waves)
+        pushing = [np.conj(bent[way] + straight[way]) for way in ("Heave", "Surge", "Pitch")]
+        found.append([*row, pushing[0], pushing[1] / omega**2, pushing[2] / omega**2])
     return np.array(found, complex).T
 
 
-_COUPLED = ("Surge", "Surge"), ("Pitch", "Surge"), ("Pitch", "Pitch")
+_WAYS = ("Heave", "Heave"), ("Surge", "Surge"), ("Pitch", "Surge"), ("Pitch", "Pitch")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import erf, exp, pi, radians, sqrt
+from typing import NamedTuple
 
 import numpy as np
 
@@ -39,7 +40,6 @@ class WaveResponse:
     motion : (f, n, 3) of the nodes [m/m]
     pull : (f, n-1) tension in the springs [N/m]
     pitch : (f,) of the float, toward where the waves run [rad/m]
-    iterations : of the linearisation
     """
 
     omega: Floats
@@ -47,7 +47,6 @@ class WaveResponse:
     motion: Complexes
     pull: Complexes
     pitch: Complexes
-    iterations: int
 
     def moments(self, transfer: Complexes) -> tuple[Floats, Floats]:
         """Return standard deviation and zero-crossing period [s] of transfers (f, …)."""
@@ -105,8 +104,7 @@ class Waves:
         return np.asarray(along[:, :, None] * ahead + up[:, :, None] * np.array([0.0, 0.0, 1.0]))
 
 
-@dataclass(frozen=True)
-class _Afloat:
+class _Afloat(NamedTuple):
     """What holds a float and what pushes it, by its bail's three ways and its pitch.
 
     `held` (f, 4, 4) and `pushed` (f, 4) per metre of elevation, without drag. Drag acts where
@@ -123,7 +121,7 @@ class _Afloat:
 
     @classmethod
     def of(cls, place: Floats, buoy: Buoy, waves: Waves) -> _Afloat:
-        omega, number, ahead, hull = waves.omega, waves.number, waves.ahead, buoy.pitching
+        omega, number, ahead, hull = waves.omega, waves.number, waves.ahead, buoy.profile
         medium = (omega, number, waves.density, waves.gravity)
         if hull is None:
             deep, heights, both, turning = 0.0, place[2:], 0.0, 0.0
@@ -134,7 +132,7 @@ class _Afloat:
         else:
             (surge, both, turn), (pushing, turning) = buoy.pitch(hull, *medium)
             # two points stand for a drag that is the same all over the draft
-            deep, heights = -hull.bail, buoy.draft * (-0.5 + np.array([-1.0, 1.0]) / sqrt(12.0))
+            deep, heights = -buoy.bail, buoy.draft * (-0.5 + np.array([-1.0, 1.0]) / sqrt(12.0))
         held = np.zeros((len(omega), 4, 4), complex)
         pushed = pushing[:, None] * np.array([*ahead, deep], complex)
         held[:, 2, 2], pushed[:, 2] = buoy.heave(*medium)
@@ -144,7 +142,7 @@ class _Afloat:
         held[:, 3, 3] = turn + 2.0 * deep * both + deep**2 * surge
         pushed[:, 3] += turning
         at = np.column_stack([np.tile(place[:2], (len(heights), 1)), heights])
-        arms = heights + deep if hull else np.zeros(1)
+        arms = np.zeros(1) if hull is None else heights + deep
         ways = np.stack([np.column_stack([np.eye(3), arm * ahead]) for arm in arms])
         elevation = np.exp(-1j * number * float(place @ ahead))
         # of the bottom: the drag of its heave, by the third power of the distance from the axis
@@ -155,9 +153,8 @@ class _Afloat:
     def dragged(self, omega: Floats, drag: Floats, turning: float) -> tuple[Complexes, Complexes]:
         """Return what holds and what pushes with the linear drag (3, 3) and that of its turn."""
         each = drag / len(self.ways)
-        held = self.held + 1j * omega[:, None, None] * np.einsum(
-            "pca,cd,pdb->ab", self.ways, each, self.ways
-        )
+        whole = np.einsum("pca,cd,pdb->ab", self.ways, each, self.ways)
+        held = self.held + 1j * omega[:, None, None] * whole
         held[:, 3, 3] += 1j * omega * turning
         pushed = self.pushed + np.einsum("pca,cd,fpd->fa", self.ways, each, self.water)
         pushed[:, 3] += 1j * omega * turning * self.slope
@@ -197,9 +194,7 @@ def respond(
     afloat = None if buoy is None else _Afloat.of(line.position[0], buoy, waves)
     axes, rate = _axes(line), 1j * omega[:, None, None]
     pitch, held = np.zeros(len(omega), complex), None
-    iterations = 0
-    while iterations < MOST_ITERATIONS:
-        iterations += 1
+    for _ in range(MOST_ITERATIONS):
         damping = drag_factor * _linearised(line, buoy, flow[:-1])
         if afloat is not None:
             turning = drag_factor * afloat.turning * _slope(0.0, flow[-1, 0])
@@ -225,7 +220,7 @@ def respond(
             break
         flow = flow + RELAXATION * (found - flow)
     pull = _pull(line, motion)
-    return WaveResponse(omega, weight, motion, pull, pitch, iterations), flow
+    return WaveResponse(omega, weight, motion, pull, pitch), flow
 
 
 def _axes(line: LumpedLine) -> Floats:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from calm.waves.buoy import Buoy, PitchingHull, panel_response
+from calm.waves.buoy import Buoy, panel_response
 
 pytestmark = pytest.mark.peers
 
@@ -58,13 +58,14 @@ def test_pitch_by_formulas_and_by_panels(radius, draft, centre, gyration, bail, 
     outline = np.column_stack([np.full(46, radius), np.linspace(-draft, 0.0, 46)])
     panels = panel_response(outline[::5], DENSITY, GRAVITY)
     displaced = DENSITY * np.pi * radius**2 * draft
-    hull, mass = PitchingHull(outline, centre, gyration, bail), displaced - pull / GRAVITY
+    given = {"profile": outline, "centre": centre, "gyration": gyration, "bail": bail}
     omega = np.array([0.3, 0.5, 0.7, 1.0, 1.25, 1.5, 2.0, 2.5])
     omega = omega[(np.abs(omega / beside - 1.0) > 0.2) & (omega**2 * radius < 0.8 * GRAVITY)]
     found = []
-    for given in (None, panels):
-        buoy = Buoy(mass, displaced, radius, draft, 0.0, 0.0, panels=given, pitching=hull)
-        held, pushing = buoy.pitch(hull, omega, omega**2 / GRAVITY, DENSITY, GRAVITY)
+    for way in (None, panels):
+        mass = displaced - pull / GRAVITY
+        buoy = Buoy(mass, displaced, radius, draft, 0.0, 0.0, panels=way, **given)
+        held, pushing = buoy.pitch(outline, omega, omega**2 / GRAVITY, DENSITY, GRAVITY)
         whole = held[[[0, 1], [1, 2]]].transpose(2, 0, 1)
         moved = np.linalg.solve(whole, pushing.T[:, :, None])[:, :, 0]
         found.append(np.abs(moved[:, 1]) / (omega**2 / GRAVITY))

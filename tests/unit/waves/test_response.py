@@ -12,7 +12,7 @@ from calm.errors import InputError
 from calm.records import sea_states
 from calm.shipped import shipped_folder
 from calm.waves.analysis import analyse
-from calm.waves.buoy import END_LOSS, Buoy, PitchingHull, buoy_of
+from calm.waves.buoy import END_LOSS, Buoy, buoy_of
 from calm.waves.fatigue import greatest_of, passing_probability
 from calm.waves.lumped_line import LumpedLine, lumped_line
 from calm.waves.response import Waves, _linearised, _slope, _solved, respond, wave_numbers
@@ -241,10 +241,13 @@ def test_a_disc_without_mass_follows_the_water_below_it():
 def upright(radius, draft, centre, gyration, bail=0.0, pull=0.0, **more):
     """A cylinder afloat, its centre of mass above the surface and its bail below it [m], and K."""
     height = np.linspace(-draft, 0.0, 400)
-    hull = PitchingHull(np.column_stack([np.full(400, radius), height]), centre, gyration, bail)
+    hull = np.column_stack([np.full(400, radius), height])
     displaced = DENSITY * pi * radius**2 * draft
     mass = displaced - pull / GRAVITY
-    return Buoy(mass, displaced, radius, draft, 0.0, 0.0, pitching=hull, **more)
+    return Buoy(
+        mass, displaced, radius, draft, 0.0, 0.0, profile=hull, centre=centre, bail=bail,
+        gyration=gyration, **more,
+    )  # fmt: skip
 
 
 DISC, SPAR = (1.37, 0.875, -0.4, 1.0), (0.5, 5.0, -3.2, 2.0)
@@ -253,7 +256,7 @@ DISC, SPAR = (1.37, 0.875, -0.4, 1.0), (0.5, 5.0, -3.2, 2.0)
 def over_slope(buoy, omega):
     """Pitch of a free float over the slope of the waves."""
     number = omega**2 / GRAVITY
-    held, pushing = buoy.pitch(buoy.pitching, omega, number, DENSITY, GRAVITY)
+    held, pushing = buoy.pitch(buoy.profile, omega, number, DENSITY, GRAVITY)
     whole = held[[[0, 1], [1, 2]]].transpose(2, 0, 1)
     return np.linalg.solve(whole, pushing.T[:, :, None])[:, 1, 0] / (1j * number)
 
@@ -335,7 +338,7 @@ def test_what_rights_a_float_by_the_energy_of_a_heeled_one(pull, bail):
 
     step = 0.02
     expected = (energy(step) - 2.0 * energy(0.0) + energy(-step)) / step**2
-    found = buoy.righting(buoy.pitching, DENSITY, GRAVITY)
+    found = buoy.righting(buoy.profile, DENSITY, GRAVITY)
     assert found == pytest.approx(expected, rel=2e-3)
 
 
@@ -344,7 +347,7 @@ def test_a_pitching_hull_gives_no_energy():
     omega = np.array([0.5, 1.0, 2.0])
     for figures in (DISC, SPAR):
         buoy = upright(*figures)
-        held, _ = buoy.pitch(buoy.pitching, omega, omega**2 / GRAVITY, DENSITY, GRAVITY)
+        held, _ = buoy.pitch(buoy.profile, omega, omega**2 / GRAVITY, DENSITY, GRAVITY)
         lost = held.imag[[[0, 1], [1, 2]]].transpose(2, 0, 1)
         assert np.linalg.eigvalsh(lost).min() > -1e-6 * np.abs(lost).max()
 
@@ -402,6 +405,27 @@ def test_a_following_float_heaves_with_the_water():
     assert np.abs(response.motion[:, 0, 2]) == pytest.approx(1.0, rel=1e-4)
     free, _ = respond(line, replace(FOLLOWER, follows=False), waves([0.05]), sea)
     assert np.abs(free.motion[0, 0, 2]) == pytest.approx(1.0, rel=0.3)
+
+
+def test_a_spectrum_over_radians_per_second(tmp_path):
+    """Frequencies of a dataset in rad/s are told by their unit; the sea is the same."""
+    sea = sea_states.spectrum_of("bretschneider", 0.5, 14.0, 3.3)
+    given = dataset(lambda f: sea.density(2.0 * pi * f))
+    turning = {"units": "rad s-1"}
+    given = given.assign_coords(
+        frequency=("frequency", 2.0 * pi * given["frequency"].data, turning)
+    )
+    given.to_netcdf(tmp_path / "sea.nc", engine="scipy")
+    read = sea_states.measured_spectrum(tmp_path / "sea.nc")
+    assert read.significant_height == pytest.approx(0.5, rel=5e-3)
+    assert read.peak_period == pytest.approx(14.0, rel=0.03)
+
+
+def test_a_spectrum_that_ends_at_its_peak_is_refused(tmp_path):
+    rows = "".join(f"{f:.3f},{25.0 * f:.3f}\n" for f in np.linspace(0.05, 0.15, 11))
+    (tmp_path / "cut.csv").write_text(f"frequency[Hz],density[m^2/Hz]\n{rows}")
+    with pytest.raises(InputError, match="is cut off"):
+        sea_states.measured_spectrum(tmp_path / "cut.csv")
 
 
 def dataset(density, directions=0, units="m2 Hz-1"):
