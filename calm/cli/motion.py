@@ -227,7 +227,8 @@ def write_copies(
         if all(point is None for point in one.point):
             narrate(f"{one.path}: no part of the line; it is not written")
             continue
-        target = output / one.path.name if folder else output
+        name = one.path.name if one.path.suffix == ".nc" else f"{one.path.name}.nc"
+        target = output / name if folder else output
         for label in write_depths(one, result, gap, target, told):
             narrate(f"{one.path}: `{label}` is not a part of the line; its depth is NaN")
 

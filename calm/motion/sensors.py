@@ -33,7 +33,6 @@ from calm.records.instrument_series import (
     split_label,
     who_along,
 )
-from calm.records.instrument_text import read_instrument_text
 from calm.records.velocity import MISSING, flag_variable, refuse_ragged
 
 if TYPE_CHECKING:
@@ -203,25 +202,17 @@ def _find(dataset: xr.Dataset) -> tuple[str, bool]:
 
 def _from_csv(path: Path, latitude: float) -> list[Sensor]:
     """Return a table ``time,LABEL[dbar],…``; a label may come with a unit of length instead."""
-    instrument = read_instrument_text(path)
-    if instrument is not None:
-        lines = instrument.lines(("pressure",))
-        table = read_time_columns(path, ("pressure",), "pressure[dbar]", lines)
-    else:
-        table = read_time_columns(path, ("pressure", "length"), "LABEL[dbar]")
-    time, values = table.time, table.values
+    table = read_time_columns(path, ("pressure", "length"), "LABEL[dbar]")
     return [
         Sensor(
-            label if instrument is None else "",
-            time,
-            depth_of(values[:, j] / PASCALS_PER_DBAR, latitude)
-            if dimension == "pressure"
-            else values[:, j],
+            label,
+            table.time,
+            depth_of(values / PASCALS_PER_DBAR, latitude) if dimension == "pressure" else values,
             path.name,
-            float("nan") if instrument is None else instrument.nominal,
-            serial="" if instrument is None else instrument.serial,
         )
-        for j, (label, dimension) in enumerate(zip(table.names, table.dimensions, strict=True))
+        for label, dimension, values in zip(
+            table.names, table.dimensions, table.values.T, strict=True
+        )
     ]
 
 

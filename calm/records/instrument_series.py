@@ -22,7 +22,7 @@ from calm.records.cf_files import (
     find_times,
     first_present,
     holdings,
-    is_netcdf,
+    is_dataset,
     known_values,
     labels_along,
     open_current,
@@ -30,6 +30,7 @@ from calm.records.cf_files import (
     read_times,
     reading,
 )
+from calm.records.level_depths import find_levels
 from calm.records.measured_quantities import (
     QUANTITIES_MEASURED,
     celsius_zero,
@@ -47,6 +48,9 @@ if TYPE_CHECKING:
     import xarray as xr
 
     Floats = NDArray[np.float64]
+
+_ENDINGS = (".nc", ".cnv", ".use", ".microcat", ".rcm")
+_SAID = ", ".join(_ENDINGS)
 
 INTERPOLATED = 8
 """The flag of what was interpolated, which is no measurement."""
@@ -75,6 +79,11 @@ class Identity:
     source: str
 
     @property
+    def known(self) -> bool:
+        """Whether its file says anything of it."""
+        return bool(self.label or self.serial) or np.isfinite(self.nominal)
+
+    @property
     def named(self) -> str:
         """What a person calls it."""
         return self.label or self.serial or self.source
@@ -89,11 +98,13 @@ class InstrumentSeries(Identity):
     time : (n,) to the nanosecond, rising
     value : (n,) in the unit of its quantity; NaN where not measured, or the flag is not wanted
     dropped : readings that were left out for their flag
+    below : depth of what is measured below the instrument, a profiler's [m]
     """
 
     time: NDArray[np.datetime64]
     value: Floats
     dropped: int
+    below: float = 0.0
 
 
 def read_series(
@@ -124,7 +135,7 @@ def read_series(
             problems += error.problems
             continue
         for name, series in mine.items():
-            if label and len(series) > 1:
+            if label and len(series) > len({one.below for one in series}):
                 raise UsageError(f"{path} holds {len(series)} instruments; `{label}=` names one")
             found[name] += [replace(one, label=label or one.label) for one in series]
     if problems:
@@ -141,11 +152,13 @@ def files_given(given: Sequence[str]) -> list[tuple[str, Path]]:
     problems = []
     for text in given:
         label, path = split_label(text)
-        inside = sorted(path.glob("*.nc")) if path.is_dir() and path.suffix != ".zarr" else [path]
+        inside = [path]
+        if path.is_dir() and path.suffix != ".zarr":
+            inside = sorted(one for one in path.iterdir() if one.suffix in _ENDINGS)
         if not path.exists():
             problems.append(Problem(str(path), 0, 0, "no such file"))
         elif not inside:
-            problems.append(Problem(str(path), 0, 0, "the folder has no .nc files"))
+            problems.append(Problem(str(path), 0, 0, f"the folder has no files in {_SAID}"))
         else:
             found += [(label, one) for one in inside]
     if problems:
@@ -164,8 +177,8 @@ def split_label(text: str) -> tuple[str, Path]:
 def _of_file(
     path: Path, names: Sequence[str], flags: frozenset[int], seabed: float
 ) -> dict[str, list[InstrumentSeries]]:
-    if not path.is_dir() and not is_netcdf(path):
-        raise InputError([Problem(str(path), 0, 0, "is not a NetCDF file")])
+    if not path.is_dir() and not is_dataset(path):
+        raise InputError([Problem(str(path), 0, 0, "is not NetCDF, RODB or .cnv")])
     with reading(path), open_current(path) as dataset:
         try:
             whole = with_components(dataset)
@@ -241,15 +254,28 @@ def _instruments(
     times = read_times(dataset, clock)
     order = np.argsort(times, kind="stable")
     who = who_along(dataset, along, seabed, path.name)
+    below = np.zeros(len(who))
+    if along is not None and not any(one.known for one in who):
+        below = _bins(dataset, along, time, seabed)
+        who = who_along(dataset, None, seabed, path.name) * len(who)
     return [
         InstrumentSeries(
             **vars(who[j]),
             time=times[order],
             value=value[order, j],
             dropped=int(dropped[:, j].sum()),
+            below=float(below[j]),
         )
         for j in range(value.shape[1])
     ]
+
+
+def _bins(dataset: xr.Dataset, along: str, time: str, seabed: float) -> Floats:
+    """Return how far the bins of a profiler are below it [m]; nowhere else are they known."""
+    levels = find_levels(dataset, along, time, seabed)
+    if levels.instrument is None or time in levels.variable.dims:
+        raise UnreadableError(f"`{along}` counts neither instruments nor bins of a profiler")
+    return np.asarray(known_values(levels.variable) * levels.factor)
 
 
 def axes_of(dataset: xr.Dataset, name: str, clock: str) -> tuple[str, str | None]:

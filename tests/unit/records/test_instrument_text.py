@@ -9,7 +9,7 @@ from calm.errors import InputError
 from calm.motion.sensors import depth_of, read_sensors
 from calm.records.current_file import open_record, read_current_file
 from calm.records.current_terms import Terms
-from calm.records.instrument_text import read_instrument_text
+from calm.records.instrument_text import is_instrument_text, read_instrument_text
 
 HEAD = """Mooring              = wb1_12_2015
 SerialNumber         = 6123
@@ -109,7 +109,7 @@ def test_mistakes_have_their_line(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="has no times"):
         read_instrument_text(path)
     path.write_text(USE.replace("T:C:P", "T:C:X"))
-    with pytest.raises(InputError, match="holds no pressure; it has temperature, conductivity"):
+    with pytest.raises(InputError, match="holds no pressures: .* it holds TIME .* TEMP .* CNDC"):
         read_sensors([f"CTD={path}"], frozenset({1}), 26.5, 1401.0)
     path.write_text("time,a[dbar]\n2026-03-01,5\n")
-    assert read_instrument_text(path) is None
+    assert not is_instrument_text(path)
