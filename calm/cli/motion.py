@@ -100,7 +100,8 @@ def motion(
         Hide each sensor in turn, and compare.
     correct
         What to correct where a sensor is found wrong, separated by commas: clock,
-        gain, offset, drift. The history of the output says what was corrected.
+        gain, offset, drift; air, where pressures are absolute. The history of the
+        output says what was corrected.
     judge
         Label of a suspicious sensor: it is hidden as with --hold-out, and whether its
         pressures fit the line is said, with the odds: yes, no, or cannot tell.

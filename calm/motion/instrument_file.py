@@ -106,7 +106,7 @@ def read_instruments(
 
 def _read(path: Path, seabed: float, replacing: bool) -> Instruments:
     if not path.is_file() or not is_dataset(path):
-        raise InputError([Problem(str(path), 0, 0, "is not NetCDF, RODB or .cnv")])
+        raise InputError([Problem(str(path), 0, 0, "is not NetCDF, RODB, .cnv or RBR's table")])
     with reading(path), open_current(path) as dataset:
         if groups := groups_of(path):
             raise UnreadableError(

@@ -29,8 +29,6 @@ FAR_FACTOR = 3.0
 """Deviations from 1 beyond which a factor on a drag is something else."""
 WORST = 0.15
 """Share of the knockdown from which the error of the line itself is named."""
-AIR = 10.1
-"""What the weight of the air adds to depths by pressure [m]: 1013 hPa."""
 
 
 @dataclass(frozen=True)
@@ -207,18 +205,13 @@ def alone_remarks(common: Common) -> list[str]:
 
 
 def datum_remarks(common: Common, seabed: float) -> list[str]:
-    """Return a sentence where all sensors are off alike: by the weight of the air, or by much of
-    the depth of the seabed [m].
-    """
-    at = len(common.factors)
-    spread = float(np.sqrt(common.covariance[at, at]))
-    alike = common.datum + float(common.offset.mean())
-    said = f"all sensors: {common.datum:+.1f} m off alike"
-    if common.datum > 2.0 * spread and abs(alike - AIR) < 2.0 * max(spread, common_unknowns.NOISE):
-        return [f"{said}: as if the pressures included that of the air, 10.13 dbar; take it off"]
-    if abs(common.datum) > FAR_OFFSET * common_unknowns.DATUM * seabed:
-        return [f"{said}: the depth of the water, a length, or the zero of the pressures is wrong"]
-    return []
+    """Return a sentence where all sensors are off alike, by much of the depth of the seabed [m]."""
+    if abs(common.datum) <= FAR_OFFSET * common_unknowns.DATUM * seabed:
+        return []
+    return [
+        f"all sensors: {common.datum:+.1f} m off alike: the depth of the water, a length, or the "
+        "zero of the pressures is wrong"
+    ]
 
 
 CALM = 0.1

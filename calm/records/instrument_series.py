@@ -178,7 +178,7 @@ def _of_file(
     path: Path, names: Sequence[str], flags: frozenset[int], seabed: float
 ) -> dict[str, list[InstrumentSeries]]:
     if not path.is_dir() and not is_dataset(path):
-        raise InputError([Problem(str(path), 0, 0, "is not NetCDF, RODB or .cnv")])
+        raise InputError([Problem(str(path), 0, 0, "is not NetCDF, RODB, .cnv or RBR's table")])
     with reading(path), open_current(path) as dataset:
         try:
             whole = with_components(dataset)

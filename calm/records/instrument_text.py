@@ -1,7 +1,8 @@
 """Text files of one instrument, as datasets like those of archives.
 
 RODB files, `.use`, `.microcat` and `.rcm` of RAPID and OSNAP, have lines ``Name = value`` above
-columns in known units. Sea-Bird's `.cnv` files name each column, with its unit, in their head.
+columns in known units. Sea-Bird's `.cnv` files name each column, with its unit, in their head, and
+so do the tables of RBR's own library.
 """
 
 from __future__ import annotations
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
 LARGEST = 500_000_000
 """Largest file that is read [bytes]."""
 
+AIR = 10.1325
+"""Pressure of the air [dbar]."""
 _HEAD = 100_000  # bytes in which a head ends
 _WHAT = {
     "temperature": ("TEMP", "sea_water_temperature"),
@@ -84,6 +87,8 @@ def _reader(path: Path) -> Callable[[Path], xr.Dataset] | None:
         head = file.read(_HEAD).decode("latin-1")
     if head.startswith("* Sea-Bird") or re.search(r"(?m)^# nquan\s*=", head):
         return _cnv
+    if head.startswith("// Creator: RBR"):
+        return _rbr
     return _rodb if re.search(r"(?mi)^\s*columns\s*=\s*\w+(:\w+)+\s*$", head) else None
 
 
@@ -193,6 +198,30 @@ def _cnv(path: Path) -> xr.Dataset:
             epoch, seconds = epoch.astype("M8[Y]").astype("M8[us]"), seconds - 86_400.0
     time = epoch + np.rint(seconds * 1e3).astype("m8[ms]")
     serial = re.search(r"(?m)^\* (?:Temperature|Conductivity) SN = (\S+)", head)
+    return _dataset(path, time, columns, serial=serial[1] if serial else "")
+
+
+def _rbr(path: Path) -> xr.Dataset:
+    """Return a table of RSKtools, whose `pressure` holds that of the air."""
+    lines = _lines(path)
+    first = sum(1 for line in lines if line.startswith("//") or not line.strip())
+    head = next((line for line in lines[:first][::-1] if line.startswith("// timestamp")), "")
+    told = [re.fullmatch(r"\s*(\w+?)\((.*)\)\s*", name) for name in head.split(",")[1:]]
+    moments = [line.partition(",")[0].strip() for line in lines[first:]]
+    values = _numbers(path, [line.partition(",")[2] for line in lines], first, len(told))
+    try:
+        time = np.array(moments, "M8[us]")
+    except ValueError:
+        raise _refused(path, first + 1, "has a row without a time") from None
+    of = {one[1]: (one[2], values[:, j]) for j, one in enumerate(told) if one}
+    if "sea_pressure" in of or "pressure" in of:
+        of["pressure"] = of.get("sea_pressure") or ("dbar", of["pressure"][1] - AIR)
+    columns = {
+        (name, {"PSU": "1"}.get(unit, "degC" if unit.endswith("°C") else unit)): one
+        for name, (unit, one) in of.items()
+        if name in ("temperature", "conductivity", "salinity", "pressure")
+    }
+    serial = re.search(r"(?m)serialID: .* (\d+)$", "\n".join(lines[:first]))
     return _dataset(path, time, columns, serial=serial[1] if serial else "")
 
 

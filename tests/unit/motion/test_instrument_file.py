@@ -106,7 +106,7 @@ def text(path):
     ("file", "replace", "said"),
     [
         (lambda path: path, False, "no such file"),
-        (text, False, "is not NetCDF, RODB or .cnv"),
+        (text, False, "is not NetCDF, RODB, .cnv or RBR's table"),
         (without_times, False, "has no times"),
         (without_labels, False, "has no labels of instruments"),
         (grouped, False, "has groups, which a copy would lack: extra"),
