@@ -104,7 +104,8 @@ class Fault:
         )
         text = {
             "currents": f"they read {share} of the current",
-            "speed": f"its speeds are {share} of the current",
+            "speed": f"its speeds are {share} of the current"
+            + ": its direction or its unit is wrong" * (not 0.25 < self.value < 4.0),
             "slows": f"its speeds change to {share} of the current by the end: a rotor that slows",
             "buoyancy": f"the net force of its floats is {share} of that in the file: one that is "
             "missing, flooded or not as listed",
@@ -112,7 +113,9 @@ class Fault:
             f"{'longer' if self.value > 1.0 else 'shorter'} than in the file",
             "drag": f"its drag is {share} of that assumed",
             "fouling": f"its drag changes to {share} of itself by the end: fouling",
-            "clock": f"{clock} {abs(self.value):.2f} h {way} {band}",
+            "clock": f"{clock} {abs(self.value):.2f} h {way} {band}"
+            + f", or those of the currents {'early' if self.value > 0.0 else 'late'}"
+            * (self.label == ALL),
             "gain": f"reads {self.value:.3f} times the depth ({self.low:.3f} to {self.high:.3f}): "
             "the gain of the pressures, or their unit, is wrong",
             "offset": f"{self.value:+.1f} m off throughout: its zero, or a length or a place on "
