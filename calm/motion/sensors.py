@@ -28,12 +28,11 @@ from calm.records.current_file import holds_arrays
 from calm.records.headings import read_time_columns
 from calm.records.instrument_series import (
     INTERPOLATED,
-    axes_of,
-    flagged_values,
+    readings,
     split_label,
     who_along,
 )
-from calm.records.velocity import MISSING, flag_variable, refuse_ragged
+from calm.records.velocity import MISSING, flag_variable
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -140,15 +139,11 @@ def _understood(
 ) -> list[Sensor]:
     name, is_pressure = _find(dataset)
     variable = dataset[name]
-    clock = find_times(dataset, name)
-    if clock is None or dataset[clock].ndim != 1:
-        raise UnreadableError(f"`{name}` has no times")
-    time, along = axes_of(dataset, name, clock)
-    refuse_ragged(dataset, name)
+    found = readings(dataset, [name], flags)
     words, note = words_of(variable, "long_name", "comment"), ""
     if _NOT_MEASURED.search(words):
         flagged = flag_variable(dataset, name)
-        if flagged is None or not {time} < set(flagged.dims):
+        if flagged is None or not {found.axis} < set(flagged.dims):
             raise UnreadableError(f"`{name}` is not a measurement by its attributes: {words[:120]}")
         # attributes of several instruments in one variable are those of any of them
         note = (
@@ -156,20 +151,17 @@ def _understood(
         )
     unit = "pressure" if is_pressure else "length"
     factor = factor_of(variable, unit) / (PASCALS_PER_DBAR if is_pressure else 1.0)
-    values, dropped = flagged_values(dataset, name, time, along, flags)
-    values = np.where(dropped, np.nan, values * factor)
-    times = read_times(dataset, clock)
-    order = np.argsort(times, kind="stable")
+    values = np.where(found.dropped, np.nan, found.values[0] * factor)
     depth = depth_of(values, latitude) if is_pressure else values
     return [
         Sensor(
             **vars(who),
-            time=times[order],
-            depth=depth[order, j],
-            dropped=int(dropped[:, j].sum()),
+            time=found.time,
+            depth=depth[:, j],
+            dropped=int(found.dropped[:, j].sum()),
             note=note,
         )
-        for j, who in enumerate(who_along(dataset, along, seabed, path.name))
+        for j, who in enumerate(who_along(dataset, found.along, seabed, path.name))
         if not note or np.isfinite(depth[:, j]).any()
     ]
 

@@ -231,17 +231,8 @@ def _instruments(
     seabed: float,
 ) -> list[InstrumentSeries]:
     quantity, first = QUANTITIES_MEASURED[name], variables[0]
-    clock = find_times(dataset, first)
-    if clock is None or dataset[clock].ndim != 1:
-        raise UnreadableError(f"`{first}` has no times")
-    refuse_ragged(dataset, first)
-    time, along = axes_of(dataset, first, clock)
-    parts, dropped = [], None
-    for one in variables:
-        values, left_out = flagged_values(dataset, one, time, along, flags)
-        parts.append(values)
-        dropped = left_out if dropped is None else dropped | left_out
-    assert dropped is not None
+    found = readings(dataset, variables, flags)
+    parts, dropped, along = found.values, found.dropped, found.along
     if quantity.dimension == "speed":
         value = _velocity(dataset, variables, parts, name)
     elif quantity.dimension == "temperature":
@@ -251,18 +242,16 @@ def _instruments(
     else:
         value = parts[0] * factor_of(dataset[first], quantity.dimension)
     value = np.where(dropped, np.nan, value)
-    times = read_times(dataset, clock)
-    order = np.argsort(times, kind="stable")
     who = who_along(dataset, along, seabed, path.name)
     below = np.zeros(len(who))
     if along is not None and not any(one.known for one in who):
-        below = _bins(dataset, along, time, seabed)
+        below = _bins(dataset, along, found.axis, seabed)
         who = who_along(dataset, None, seabed, path.name) * len(who)
     return [
         InstrumentSeries(
             **vars(who[j]),
-            time=times[order],
-            value=value[order, j],
+            time=found.time,
+            value=value[:, j],
             dropped=int(dropped[:, j].sum()),
             below=float(below[j]),
         )
@@ -278,24 +267,65 @@ def _bins(dataset: xr.Dataset, along: str, time: str, seabed: float) -> Floats:
     return np.asarray(known_values(levels.variable) * levels.factor)
 
 
-def axes_of(dataset: xr.Dataset, name: str, clock: str) -> tuple[str, str | None]:
-    """Return the dimension of the times of a variable, and that of its instruments.
+@dataclass(frozen=True)
+class Readings:
+    """Hold what variables say of k instruments at n times.
+
+    Attributes
+    ----------
+    time : (n,) rising
+    axis, along : dimension of the times, and of the instruments; None of a single one
+    values : (n, k) of each variable, as they stand
+    dropped : (n, k) which are left out for the flag of any
+    """
+
+    time: NDArray[np.datetime64]
+    axis: str
+    along: str | None
+    values: list[Floats]
+    dropped: NDArray[np.bool_]
+
+
+def readings(dataset: xr.Dataset, names: Sequence[str], flags: frozenset[int]) -> Readings:
+    """Return the readings of some variables of the same dimensions.
 
     Parameters
     ----------
-    name : of the variable
-    clock : the variable of its times
+    names : of the variables
+    flags : of what counts as measured; 8 never does
 
     Raises
     ------
     UnreadableError
-        It is not of times and instruments alone.
+        They have no times, or are not of times and instruments alone.
     """
-    time = str(dataset[clock].dims[0]) if dataset[clock].dims else ""
-    others = [str(dim) for dim, size in dataset[name].sizes.items() if dim != time and size > 1]
-    if len(others) > 1 or time not in dataset[name].dims:
-        raise UnreadableError(f"`{name}` is not of times and instruments: {dataset[name].dims}")
-    return time, others[0] if others else None
+    first = dataset[names[0]]
+    clock = find_times(dataset, names[0])
+    if clock is None or dataset[clock].ndim != 1:
+        raise UnreadableError(f"`{first.name}` has no times")
+    refuse_ragged(dataset, names[0])
+    time = str(dataset[clock].dims[0])
+    others = [str(dim) for dim, size in first.sizes.items() if dim != time and size > 1]
+    if len(others) > 1 or time not in first.dims:
+        raise UnreadableError(f"`{first.name}` is not of times and instruments: {first.dims}")
+    along = others[0] if others else None
+    times = read_times(dataset, clock)
+    order = np.argsort(times, kind="stable")
+
+    def table(one: xr.DataArray, values: NDArray[Any]) -> NDArray[Any]:
+        axes = [str(dim) for dim in one.dims]
+        kept = [axis for axis in (time, along) if axis in axes]
+        moved = values.transpose(*(axes.index(a) for a in kept),
+                                 *(i for i, a in enumerate(axes) if a not in kept))  # fmt: skip
+        return moved.reshape(len(moved), -1)[order]
+
+    parts = [table(dataset[name], known_values(dataset[name])) for name in names]
+    dropped = np.zeros(parts[0].shape, bool)
+    for name, values in zip(names, parts, strict=True):
+        if (marks := flag_variable(dataset, name)) is not None:
+            given = np.broadcast_to(table(marks, flags_of(marks)), values.shape)
+            dropped |= ~np.isin(given, sorted(flags - {INTERPOLATED})) & np.isfinite(values)
+    return Readings(times[order], time, along, parts, dropped)
 
 
 def who_along(dataset: xr.Dataset, along: str | None, seabed: float, source: str) -> list[Identity]:
@@ -341,35 +371,6 @@ def _number(attributes: Any) -> float:
         except (KeyError, TypeError, ValueError):
             continue
     return float("nan")
-
-
-def flagged_values(
-    dataset: xr.Dataset, name: str, time: str, along: str | None, flags: frozenset[int]
-) -> tuple[Floats, NDArray[np.bool_]]:
-    """Return (n, k) values as they stand, and which are left out for their flag.
-
-    Parameters
-    ----------
-    name : of the variable
-    time, along : as of `axes_of`
-    flags : of what counts as measured; 8 never does
-    """
-
-    def table(one: xr.DataArray, values: NDArray[Any]) -> NDArray[Any]:
-        axes = [str(dim) for dim in one.dims]
-        kept = [axis for axis in (time, along) if axis in axes]
-        moved = values.transpose(*(axes.index(a) for a in kept),
-                                 *(i for i, a in enumerate(axes) if a not in kept))  # fmt: skip
-        return moved.reshape(len(moved), -1)
-
-    variable = dataset[name]
-    values = table(variable, known_values(variable))
-    marks = flag_variable(dataset, name)
-    dropped = np.zeros(values.shape, bool)
-    if marks is not None:
-        given = np.broadcast_to(table(marks, flags_of(marks)), values.shape)
-        dropped = ~np.isin(given, sorted(flags - {INTERPOLATED})) & np.isfinite(values)
-    return values, dropped
 
 
 def _velocity(
