@@ -14,6 +14,7 @@ from math import inf
 
 from calm.errors import CalmError, InputError
 from calm.files.catalogue import FAMILY_ROLES, Catalogue, CatalogueEntry
+from calm.files.components import lacking
 from calm.files.yaml_document import SourceMapping, compose
 from calm.shipped import shipped_folder
 from calm.units import QuantityError, parse_quantity
@@ -23,8 +24,10 @@ _ELSEWHERE = 4
 """The rank of a component whose id does not have all words."""
 _BETWEEN = re.compile(r"[\s_-]+")
 _SIZE = re.compile(
-    r"(?<![\w.,/])((?:\d+[ -])?\d+/\d+|\d+(?:[.,]\d+)?)[ -]?(mm|cm|inch(?:es)?|in|\"|″)(?!\w)"
+    r"(?<![\w.,/])((?:\d+[ -])?\d+/\d+|\d+(?:[.,]\d+)?)[ -]?"
+    r"(mm|cm|inch(?:es)?|in|\"|″|(?<=/\d)|(?<=/\d\d))(?!\w)"
 )
+"""A number with its unit; a fraction without one is of inches."""
 _OF_A_SIZE = 0.02
 """Share by which sizes differ that are the same in millimetres and inches, rounded."""
 _USED = re.compile(r"\buse: *([\w-]+)")
@@ -44,19 +47,22 @@ class Listed:
     kind: str
     role: str
     own: bool
-    more: str
+    material: str
+    source: str
     diameter: float | None
+    second: bool
 
     @cached_property
     def own_words(self) -> str:
         """What is written of it, hyphens as they are and as nothing."""
-        own = " ".join((self.id, self.name, self.maker, self.kind, self.role, self.more)).casefold()
+        every = (self.id, self.name, self.maker, self.kind, self.role, self.material)
+        own = " ".join(every).casefold()
         return f"{own} {own.replace('-', '')}"
 
     @cached_property
     def searched(self) -> str:
         """The text in which words are looked for."""
-        return f"{with_synonyms(self.own_words.replace('-', ' '))} {self.own_words}"
+        return f"{with_synonyms(self.own_words.replace('-', ' '))} {self.own_words} {self.source}"
 
     @cached_property
     def sizes(self) -> tuple[float, ...]:
@@ -117,8 +123,9 @@ class Index:
         ``breaking>50kN``.
 
         Hyphens part words as blanks do: makers, catalogues and people set them differently. A size
-        as ``8mm`` or ``17 in`` is looked for in either unit. Of components that fit alike, those
-        that the shipped lines use most come first.
+        as ``8mm`` or ``17 in`` is looked for in either unit. What is complete comes before an
+        outline, and what has the words itself before what has them as synonyms or in its source; of
+        components that fit alike, those that the shipped lines use most come first.
 
         Parameters
         ----------
@@ -145,10 +152,11 @@ class Index:
             return sorted(hits, key=lambda each: self._least_first(each.id, by))
         places = {id: number for number, id in enumerate(first)}
 
-        def order(each: Listed) -> tuple[bool, int, int, int]:
+        def order(each: Listed) -> tuple[bool, int, bool, bool, int, int]:
             rank = _rank(each, words, others)
             place = places.get(each.id, len(places)) if rank < _ELSEWHERE else len(places)
-            return rank > 0, place, rank, -_uses()[each.id]
+            elsewhere = rank > _ELSEWHERE
+            return rank > 0, place, elsewhere, each.second, rank, -_uses()[each.id]
 
         return sorted(hits, key=order)
 
@@ -157,9 +165,8 @@ class Index:
         has.
         """
         every = " ".join(each.searched for each in self._listed.values())
-        known = {
-            word for word in _BETWEEN.split(every) if word.isalpha() and len(word) >= _SHORT - 1
-        }
+        own = _BETWEEN.split(" ".join(each.own_words for each in self._listed.values()))
+        known = {word for word in own if word.isalpha() and len(word) >= _SHORT - 1}
         for word in _words(_SIZE.sub(" ", _asked(text)[0])):
             if len(word) >= _SHORT and word.isalpha() and word not in every:
                 near = difflib.get_close_matches(word, known, 1, _ALIKE)
@@ -234,8 +241,10 @@ def _listed(entry: CatalogueEntry, shipped: object) -> Listed:
         kind=text("kind"),
         role=role or _ROLES.get(text("kind"), "instrument"),
         own=own,
-        more=" ".join((text("material"), text("source"), entry.family or "")),
+        material=f"{text('material')} {entry.family or ''}",
+        source=text("source").casefold(),
         diameter=_diameter(text("diameter")),
+        second="prefer" in fields or bool(lacking(fields)),
     )
 
 
@@ -250,6 +259,8 @@ _GROUPS = (
     ("twin", "double", "dual", "paired", "pair", "two", "tandem"),
     ("current meter", "rcm", "aquadopp", "s4", "argonaut", "dvs", "rcm4", "rcm5", "rcm8", "rcm11"),
     ("current profiler", "adcp", "rdcp", "workhorse", "doppler"),
+    ("75khz", "75 khz", "lr75", "longranger"),
+    ("railway", "railroad", "train"),
     ("ctd", "microcat", "seacat", "sbe37", "sbe16", "sbe19", "conductivity"),
     ("thermistor", "temperature logger", "hobo", "tr", "sbe39", "sbe56"),
     ("thimble", "termination", "eye", "socket"),
@@ -263,7 +274,7 @@ _GROUPS = (
     ("nylon", "polyamide", "perlon"),
     ("ring", "link", "maillon"),
     ("glass", "benthos", "vitrovex"),
-    ("release", "releaser"),
+    ("release", "releaser", "acoustic release"),
 )
 _FOUND = tuple(
     (re.compile(r"\b(" + "|".join(map(re.escape, group)) + r")s?\b"), " ".join(group))

@@ -8,7 +8,8 @@ from typing import Any
 
 from calm.assemble.line_arrays import drag_of
 from calm.files import Anchor, Catalogue, Component, Flexible
-from calm.files.catalogue import Assembly
+from calm.files.catalogue import Defined
+from calm.files.components import Outline
 from calm.files.definition import CATALOGUE_DENSITY
 from calm.units import QuantityError, parse_quantity
 
@@ -33,18 +34,17 @@ class Datasheet:
     cd_area: float | None
 
 
-def datasheet(
-    definition: Component | Assembly, catalogue: Catalogue | None = None
-) -> Datasheet | None:
+def datasheet(definition: Defined, catalogue: Catalogue | None = None) -> Datasheet | None:
     """Return what follows from the figures of a definition; for an assembly, the sums over its
     parts.
 
-    None for an assembly whose parts cannot be summed here: they override figures of a component, or
-    use what the catalogue does not have (`catalogue` None: no catalogue at all).
+    None for an outline, and for an assembly whose parts cannot be summed here: they override
+    figures of a component, or use what the catalogue does not have (`catalogue` None: no catalogue
+    at all).
     """
-    if not isinstance(definition, Assembly):
+    if isinstance(definition, Component):
         return _of_component(definition, 1.0)
-    if catalogue is None:
+    if catalogue is None or isinstance(definition, Outline):
         return None
     sheets = []
     for item in _items(definition.parts):
@@ -73,7 +73,7 @@ def _component(catalogue: Catalogue, item: Mapping[str, Any]) -> Component | Non
     if not item.keys() <= _PART_KEYS or catalogue.entry(str(item.get("use"))) is None:
         return None
     found = catalogue.get(str(item["use"]))
-    return None if isinstance(found, Assembly) else found
+    return found if isinstance(found, Component) else None
 
 
 def _of_component(component: Component, metres: float) -> Datasheet:

@@ -47,9 +47,7 @@ TOWED_SPHERE_CX = 0.90
 
 
 def assemble_line(
-    pieces: Sequence[Piece],
-    solver: Solver | None = None,
-    gravity: float = STANDARD_GRAVITY,
+    pieces: Sequence[Piece], solver: Solver | None = None, gravity: float = STANDARD_GRAVITY
 ) -> Line:
     """The line above the anchor, or the whole towed line, in the order of the pieces.
 

@@ -1,25 +1,193 @@
-"""Many current profiles of a net of legs, each sought from where the net is in still water."""
+"""Many current profiles of a net of legs, by the compiled search of `calm.solve.net_march`.
+
+Each is sought from where the net is in still water. Where that leads to nothing that stands, the
+seabed slopes, or an end is held above the water, the profile is solved as `calm run` does.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import inf
-from typing import Any
+from math import inf, sqrt
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.batch.solving import read_profile
+from calm.batch.solving import lay_profile, read_profile
 from calm.batch.statuses import STATUSES
+from calm.case.measure import leaning_of
 from calm.case.net import Net, net_result
 from calm.case.net_result import NetResult
+from calm.case.parts import clamps_down
 from calm.dataset.netcdf import OF_CLAMP, OF_COMPONENT, OF_ENDS
 from calm.errors import NoEquilibrium
 from calm.files import CurrentTable
-from calm.physics.line import Floats
-from calm.solve import expect_many
-from calm.solve.net import NetSolution
+from calm.files.legs import nodes_of
+from calm.physics.compiled import by_address, entry, record_type
+from calm.physics.line import Floats, Water
+from calm.physics.profile import Interval, Sea
+from calm.physics.track import head_count
+from calm.solve import expect_many, net_closing, net_march
+from calm.solve.net import NetSearch, NetSolution
+from calm.solve.net_closing import AskedNet, ask_net, keep
+from calm.solve.net_march import Marching, NetProblem, place_of
+from calm.solve.problem import CHOSEN, FINE
+
+ROUGHLY = 1e-6
+"""What may be left of lengths and forces, in shares: a run leaves less, which takes longer."""
+BLOCK = 256
+"""Profiles that a thread takes at a time."""
+NO_PROFILE, COINCIDING, TO_SOLVE = -1, -2, 1
+"""How a profile ends that has no current, or two at a level, and one that is to be solved alone."""
+
+
+class NetRows(NamedTuple):
+    """What is found of n profiles.
+
+    Attributes
+    ----------
+    pieces : (n, p, 12) place [m] and force [N] at the upper and at the lower end of each
+    clamps : (n, c, 7) place, sum of the forces above and below, and the greater one
+    shares : (n, l) of the buoyancy of the float at the upper end of each leg
+    """
+
+    pieces: Floats
+    clamps: Floats
+    shares: Floats
+
+
+class NetPaper(NamedTuple):
+    """What profiles are laid out on, and from where they are sought.
+
+    Attributes
+    ----------
+    read, joined, levels, intervals, fixed : as in `ProfileArrays`
+    strata, gravity : as in `Sea`
+    start, slopes, lands : the unknowns, slopes and legs on the seabed of the net in still water
+    x : room for the unknowns
+    piece, clamp : first of each leg in the rows
+    weight : of the anchor of each leg, inf where it has none [N]
+    """
+
+    read: Floats
+    joined: Floats
+    levels: Any
+    intervals: Any
+    fixed: Floats
+    strata: Any
+    gravity: float
+    start: Any
+    slopes: Any
+    lands: Floats
+    x: Any
+    piece: Any
+    clamp: Any
+    weight: Floats
+
+
+def solve_net_rows(
+    ask: Callable[[AskedNet, float], float],
+    net: NetProblem,
+    step: float,
+    paper: NetPaper,
+    depth: Floats,
+    u: Floats,
+    v: Floats,
+    w: Floats,
+    rows: NetRows,
+    endings: Any,
+) -> None:
+    """Solve profiles; what they lead to goes to their rows.
+
+    Parameters
+    ----------
+    step : angle step [rad]
+    depth : (1 or n, k) of the levels [m]
+    u, v, w : (n, k) current [m/s]; NaN where there is none
+    endings : (n,) those not 0 are left alone; then how each ends
+    """
+    for case in range(endings.size):
+        if endings[case] != 0:
+            continue
+        levels_at = depth[case if depth.shape[0] > 1 else 0]
+        found = read_profile(levels_at, u[case], v[case], w[case], paper.read)
+        if found <= 0:
+            endings[case] = NO_PROFILE if found == 0 else COINCIDING
+            continue
+        total = lay_profile(
+            paper.read, found, paper.fixed, paper.levels, paper.intervals, paper.joined
+        )
+        sea = Sea(
+            paper.levels[: total + 2], paper.intervals[: total + 1], paper.gravity, paper.strata
+        )
+        keep(paper.start, paper.x)
+        for k in range(len(paper.x)):
+            keep(paper.slopes[k], net.slopes[k])
+        for i in range(len(net.legs)):
+            net.state[i][net_march.LANDS] = paper.lands[i]
+        how = Marching(sea, 4.0 * step, CHOSEN, False, FINE)
+        ending = ask(AskedNet(net_closing.CLOSE, net, paper.x, how, net_closing.NEAR, True), 0.0)
+        if ending == net_closing.CAME_OUT:
+            how = Marching(sea, step, CHOSEN, False, FINE)
+            ending = ask(AskedNet(net_closing.SETTLE, net, paper.x, how, ROUGHLY, True), 0.0)
+        endings[case] = TO_SOLVE
+        if ending == net_closing.CAME_OUT and stands(net, paper):
+            endings[case] = 0
+            tell_net(net, paper, rows, case)
+
+
+def stands(net: NetProblem, paper: NetPaper) -> bool:
+    """Whether no leg is out of the water or in the seabed, and no anchor is lifted."""
+    near = net.errors[net_closing.DEPTH_ERROR] + 1e-9 * net.length + 1e-6 * net.lines.limits.depth
+    for i in range(len(net.legs)):
+        leg, state, record = net.legs[i], net.state[i], net.lines.work.records[i][FINE]
+        count, first = int(state[net_march.COUNT]), 0
+        bed = leg.seabed if leg.seabed > -inf else -net.lines.limits.depth
+        if leg.kind == net_march.STANDING and state[net_march.SHARE] < 1.0:
+            if state[net_march.SHARE] < 0.0:
+                return False
+            first = net.last[i][net.lines.surfacing[i][0].piece] + 1
+        for n in range(count):
+            if n < state[net_march.HUNG] and record[2][n] < bed - near:
+                return False
+            if n >= first and record[2][n] > near + leg.highest:
+                return False
+        if record[5][count - 1] > paper.weight[i]:
+            return False
+    return True
+
+
+def tell_net(net: NetProblem, paper: NetPaper, rows: NetRows, case: int) -> None:
+    """Write what is found of a profile to its row."""
+    for i in range(len(net.legs)):
+        leg, record = net.legs[i], net.lines.work.records[i][FINE]
+        count = int(net.state[i][net_march.COUNT])
+        east, north, _ = place_of(net, i, paper.x, 1)
+        dx, dy = east - record[0][count - 1], north - record[1][count - 1]
+        rows.shares[case, i] = net.state[i][net_march.SHARE]
+        own = 1 if leg.kind == net_march.PULLED else 0
+        for p in range(own, leg.pieces):
+            row = rows.pieces[case, paper.piece[i] + p - own]
+            for side in range(2):
+                n = net.first[i][p] if side == 0 else net.last[i][p]
+                for k in range(6):
+                    row[6 * side + k] = record[k][n]
+                row[6 * side] += dx
+                row[6 * side + 1] += dy
+        for n in range(1, count):
+            if record[7][n] < 0.0:
+                continue
+            row = rows.clamps[case, paper.clamp[i] + int(record[7][n])]
+            row[0], row[1], row[2] = record[0][n - 1] + dx, record[1][n - 1] + dy, record[2][n - 1]
+            above = below = 0.0
+            for k in range(3, 6):
+                row[k] = record[k][n - 1] + record[k][n]
+                above += record[k][n - 1] * record[k][n - 1]
+                below += record[k][n] * record[k][n]
+            row[6] = sqrt(max(above, below))
 
 
 @dataclass(frozen=True)
@@ -27,6 +195,12 @@ class NetProfiles:
     """A net made ready for many profiles."""
 
     net: Net
+
+    def water(self, *current: tuple[float, ...]) -> Water:
+        """Its water with another current: depth, u, v and w of its levels."""
+        depth, u, v, w = current
+        environment = replace(self.net.file.environment, current=CurrentTable(depth, u, v, w))
+        return self.net.water_of(environment)
 
     @cached_property
     def still(self) -> NetSolution | None:
@@ -37,7 +211,44 @@ class NetProfiles:
         except NoEquilibrium:
             return None
 
-    def solve(self, current: tuple[Floats, ...], status: NDArray[np.int8]) -> dict[str, Floats]:
+    @cached_property
+    def at_rest(self) -> NetResult | None:
+        """What is measured of it there; None where a check of it fails."""
+        try:
+            if self.still is not None:
+                return net_result(self.net, self.still, self.still.legs)
+        except NoEquilibrium:
+            pass
+        return None
+
+    @cached_property
+    def slopes(self) -> Floats | None:
+        """Slopes of the net in still water; None where profiles are to be solved alone."""
+        if self.still is None or self.at_rest is None or self.net.file.environment.seabed:
+            return None
+        search, step = self.search(), 4.0 * self.net.settings.angle_step
+        if search.water.level[0] < 0.0:
+            return None
+        search.asked(
+            net_closing.MARCH, self.still.unknowns, search.marching(step, CHOSEN, FINE, given=False)
+        )
+        search.asked(
+            net_closing.SLOPES, self.still.unknowns, search.marching(step, CHOSEN, FINE, given=True)
+        )
+        return np.array(search.net.slopes)
+
+    def search(self) -> NetSearch:
+        """The search for it, compiled."""
+        settings = replace(self.net.settings, compiled=True)
+        nodes = len(nodes_of(self.net.file.legs))
+        search = NetSearch(self.net.legs, nodes, self.water(*[(0.0,)] * 4), settings)
+        if self.still is not None:
+            search.lie_as(self.still.lands)
+        return search
+
+    def solve(
+        self, current: tuple[Floats, ...], status: NDArray[np.int8], workers: int
+    ) -> dict[str, Floats]:
         """The columns of profiles, by name; how each ends goes to `status` where that is 0.
 
         Parameters
@@ -45,36 +256,161 @@ class NetProfiles:
         current : depth (1 or n, k) of levels [m], and u, v, w (n, k) there [m/s]
         status : (n,) index in `STATUSES`
         """
-        net, (depth, u, v, w), still = self.net, current, self.still
-        pieces, legs = net.file.pieces, len(net.file.legs)
-        clamps = sum(len(piece.clamps) for piece in pieces)
-        sizes = dict.fromkeys(OF_COMPONENT, len(pieces)) | dict.fromkeys(OF_CLAMP, clamps)
-        sizes |= dict.fromkeys(OF_ENDS, legs)
-        columns = {name: np.full((len(status), size), np.nan) for name, size in sizes.items()}
-        read = np.zeros((depth.shape[1], 4))
-        for case in np.flatnonzero(status == 0).tolist():
-            levels = depth[case if len(depth) > 1 else 0]
-            count = read_profile(levels, u[case], v[case], w[case], read)
-            if count <= 0:
-                status[case] = STATUSES.index("no-current" if count == 0 else "levels-coincide")
-                continue
-            table = CurrentTable(*(tuple(column) for column in read[:count].T.tolist()))
-            water = net.water_of(replace(net.file.environment, current=table))
-            try:
-                solution = net.equilibrium(water, still)
-                before: Any = [None] * legs if still is None else still.legs
-                result = net_result(net, solution, before)
-            except NoEquilibrium as failure:
-                status[case] = STATUSES.index(failure.status)
-                continue
-            for name, column in _columns(result).items():
-                columns[name][case] = column
+        net, count = self.net, len(status)
+        pieces, legs = net.file.pieces, net.file.legs
+        clamps = clamps_down(pieces)
+        rows = NetRows(
+            np.full((count, len(pieces), 12), np.nan), np.full((count, len(clamps), 7), np.nan),
+            np.full((count, len(legs)), np.nan),
+        )  # fmt: skip
+        endings = np.where(status == 0, 0, 99)
+        if self.slopes is not None:
+
+            def solve(block: slice) -> None:
+                depth, *parts = (np.array(array, np.float64, order="C") for array in current)
+                levels = depth if len(depth) == 1 else depth[block]
+                mine = levels, *(part[block] for part in parts)
+                self._solve_rows(mine, NetRows(*(row[block] for row in rows)), endings[block])
+
+            solve(slice(0, 0))  # compiles where need be
+            with ThreadPoolExecutor(workers) as pool:
+                for _ in pool.map(solve, [slice(at, at + BLOCK) for at in range(0, count, BLOCK)]):
+                    pass
+        else:
+            endings[endings == 0] = TO_SOLVE
+        status[endings == NO_PROFILE] = STATUSES.index("no-current")
+        status[endings == COINCIDING] = STATUSES.index("levels-coincide")
+        columns = self._columns(rows)
+        for name in columns:
+            columns[name][endings != 0] = np.nan
+        for case in np.flatnonzero(endings == TO_SOLVE).tolist():
+            self._solve_alone(current, case, columns, status)
         return columns
 
+    def _solve_rows(
+        self, current: tuple[Floats, ...], rows: NetRows, endings: NDArray[np.int64]
+    ) -> None:
+        search, water = self.search(), self.water(*[(0.0,)] * 4)
+        levels = current[0].shape[1] + len(water.level) + 2
+        sea: Any = search.sea
+        assert self.still is not None
+        of_legs = self.net.file.legs
+        held = [leg.bottom.anchor is not None for leg in of_legs]
+        clamped = [len(piece.clamps) for piece in self.net.file.pieces]
+        paper = NetPaper(
+            read=np.zeros((levels, 4)),
+            joined=np.zeros((levels + 2, 5)),
+            levels=np.zeros(levels + 2),
+            intervals=np.zeros(levels + 2, record_type(Interval)),
+            fixed=np.column_stack([water.level, water.u, water.v, water.density]),
+            strata=sea.strata,
+            gravity=water.gravity,
+            start=self.still.unknowns,
+            slopes=self.slopes,
+            lands=np.array(search.lands, float),
+            x=np.zeros(len(self.still.unknowns)),
+            piece=np.array([leg.first for leg in of_legs]),
+            clamp=np.array([sum(clamped[: leg.first]) for leg in of_legs]),
+            weight=np.array(
+                [
+                    line.anchor_weight if anchored else inf
+                    for line, anchored in zip(self.net.lines, held, strict=True)
+                ]
+            ),
+        )
+        step = float(search.settings.angle_step)
+        how = search.marching(step, CHOSEN, FINE, given=False)
+        ask = by_address(ask_net, AskedNet(net_closing.CLOSE, search.net, paper.x, how, 0.0, True))
+        given = (ask, search.net, step, paper, *current, rows, endings)
+        entry(solve_net_rows, *given)(*given)
 
-def _columns(result: NetResult) -> dict[str, Any]:
-    return {
-        **{name: getattr(result.components, name) for name in OF_COMPONENT},
-        **{name: getattr(result.clamps, name.removeprefix("clamp_")) for name in OF_CLAMP},
-        **result.ends,
-    }
+    def _columns(self, rows: NetRows) -> dict[str, Floats]:
+        """The columns that the rows lead to."""
+        file, count = self.net.file, len(rows.shares)
+        pieces, clamps, legs = (row.shape[1] for row in rows)
+        place, tilt = np.zeros((count, pieces, 3)), np.zeros((count, pieces))
+        above, below = np.zeros((count, pieces)), np.zeros((count, pieces))
+        columns = {name: np.full((count, legs), np.nan) for name in OF_ENDS}
+        of_clamps, leans, held = rows.clamps.copy(), np.zeros((count, clamps)), 0
+        for i, (leg, line) in enumerate(zip(file.legs, self.net.legs, strict=True)):
+            own = slice(leg.first, leg.first + len(line.line.length))
+            upper, lower = rows.pieces[:, own, :6], rows.pieces[:, own, 6:]
+            hangs = line.lower.free and not line.upper.free
+            if hangs:  # listed from its lower end
+                upper, lower = lower[:, ::-1], upper[:, ::-1]
+            chord, pull = upper[..., :3] - lower[..., :3], upper[..., 3:] + lower[..., 3:]
+            if line.upper.free and (head := head_count(line.line)):
+                chord[:, :head] = (upper[:, :1] - lower[:, head - 1 : head])[..., :3]
+            upright = chord.any(-1, keepdims=True)
+            tilt[:, own] = leaning_of(np.where(upright, chord, -pull if hangs else pull))
+            place[:, own] = upper[..., :3]
+            above[:, own] = np.linalg.norm(upper[..., 3:], axis=-1)
+            below[:, own] = np.linalg.norm(lower[..., 3:], axis=-1)
+            anchor = leg.end - 1 if leg.bottom.anchor is not None else -1
+            if anchor >= 0:
+                place[:, anchor], force = lower[:, -1, :3], lower[:, -1, 3:]
+                above[:, anchor] = below[:, anchor] = below[:, anchor - 1]
+                columns["anchor_vertical"][:, i] = force[:, 2]
+                columns["anchor_horizontal"][:, i] = np.hypot(force[:, 0], force[:, 1])
+            if line.upper.free:
+                columns["top_depth"][:, i] = -upper[:, 0, 2]
+                columns["used_buoyancy"][:, i] = rows.shares[:, i]
+            for piece in file.pieces[leg.first : leg.end]:
+                p, ways = piece.index, -1.0 if hangs else 1.0
+                for clamp in piece.clamps:
+                    row = of_clamps[:, held]
+                    leans[:, held] = tilt[:, p]
+                    if p == anchor:
+                        row[:, :3], row[:, 6] = place[:, p] - [0.0, 0.0, clamp.at], above[:, p]
+                    elif line.line.flexible[p - leg.first]:
+                        leans[:, held] = leaning_of(ways * row[:, 3:6])
+                    held += 1
+        on = [(piece.index, clamp.at) for piece in file.pieces for clamp in piece.clamps]
+        order = sorted(range(clamps), key=on.__getitem__)
+        of_clamps, leans = of_clamps[:, order], leans[:, order]
+        still = self.at_rest
+        known = (
+            (np.nan, np.nan) if still is None else (still.components.depth_top, still.clamps.depth)
+        )
+        return columns | {
+            "depth_top": -place[..., 2],
+            "x_top": place[..., 0],
+            "y_top": place[..., 1],
+            "tension_top": above,
+            "tension_bottom": below,
+            "tilt": tilt,
+            "knockdown": -place[..., 2] - known[0],
+            "clamp_depth": -of_clamps[..., 2],
+            "clamp_x": of_clamps[..., 0],
+            "clamp_y": of_clamps[..., 1],
+            "clamp_tension": of_clamps[..., 6],
+            "clamp_tilt": leans,
+            "clamp_knockdown": -of_clamps[..., 2] - known[1],
+        }
+
+    def _solve_alone(
+        self, current: tuple[Floats, ...], case: int, columns: dict[str, Floats],
+        status: NDArray[np.int8],
+    ) -> None:  # fmt: skip
+        """Solve a profile as `calm run` does."""
+        depth, u, v, w = current
+        read, still = np.zeros((depth.shape[1], 4)), self.still
+        levels = depth[case if len(depth) > 1 else 0]
+        count = read_profile(levels, u[case], v[case], w[case], read)
+        if count <= 0:
+            status[case] = STATUSES.index("no-current" if count == 0 else "levels-coincide")
+            return
+        water = self.water(*(tuple(column) for column in read[:count].T.tolist()))
+        try:
+            solution = self.net.equilibrium(water, still)
+            before: Any = [None] * len(solution.legs) if still is None else still.legs
+            result = net_result(self.net, solution, before)
+        except NoEquilibrium as failure:
+            status[case] = STATUSES.index(failure.status)
+            return
+        for name in OF_COMPONENT:
+            columns[name][case] = getattr(result.components, name)
+        for name in OF_CLAMP:
+            columns[name][case] = getattr(result.clamps, name.removeprefix("clamp_"))
+        for name, column in result.ends.items():
+            columns[name][case] = column

@@ -206,15 +206,15 @@ class Batch:
             raise ValueError(f"{workers} workers: at least one is needed")
         shape, current = _checked(u, v, depth, w)
         if isinstance(self.mooring, Net):
-            measured = self._solve_net(self.mooring, current)
+            measured = self._solve_net(self.mooring, current, workers)
         else:
             measured = self._solve_lines(self.mooring, current, workers)
         return measured if shape == measured.status.shape else _shaped(measured, shape)
 
-    def _solve_net(self, net: Net, current: tuple[Floats, ...]) -> Profiles:
+    def _solve_net(self, net: Net, current: tuple[Floats, ...], workers: int | None) -> Profiles:
         status = np.zeros(len(current[1]), np.int8)
         status[self._implausible(current)] = _IMPLAUSIBLE
-        columns: dict[str, Any] = self._net.solve(current, status)
+        columns: dict[str, Any] = self._net.solve(current, status, workers or processors())
         pieces, clamps = net.file.pieces, clamps_down(net.file.pieces)
         labels = tuple(piece.label for piece in pieces), tuple(clamp.label for clamp in clamps)
         return Profiles(labels[0], labels[1], status=status, **columns)

@@ -28,7 +28,7 @@ from calm.files.legs import nodes_of
 from calm.physics.line import Floats, Line, Water
 from calm.solve import Settings
 from calm.solve.mooring import Nearby
-from calm.solve.net_nearby import NearbyNet
+from calm.solve.net import NearbyNet
 
 if TYPE_CHECKING:
     from calm.case.net import Net

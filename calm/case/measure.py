@@ -63,11 +63,11 @@ def measured(solution: Solution, still: Solution | None = None) -> PieceMeasures
     chord = top - bottom
     pull = solution.force[upper] + solution.force[lower]
     lean = np.where(
-        np.linalg.norm(chord, axis=1) > 0, _tilt(chord), _tilt(-pull if towed else pull)
+        np.linalg.norm(chord, axis=1) > 0, leaning_of(chord), leaning_of(-pull if towed else pull)
     )
     head = 0 if solution.pulled else head_count(solution.line)
     if head and (top[0] != bottom[head - 1]).any():
-        lean[:head] = _tilt(top[0] - bottom[head - 1])
+        lean[:head] = leaning_of(top[0] - bottom[head - 1])
     knockdown = np.full(len(first), np.nan)
     if still is not None:
         before = still.piece_nodes[ahead, 1 if towed else 0]
@@ -145,7 +145,7 @@ def clamps_of(pieces: Sequence[Piece], solution: Solution, still: Solution | Non
     pull = solution.force[elements] + solution.force[elements + 1]
     towed = solution.line.towed
     cable = solution.line.flexible[solution.element_piece[elements]]
-    tilt = _tilt(-pull if towed else pull)
+    tilt = leaning_of(-pull if towed else pull)
     if not cable.all():
         tilt = np.where(cable, tilt, measured(solution).tilt[index])
     clamps = [order[m] for m in which]
@@ -172,7 +172,7 @@ def shape_of(solution: Solution) -> Shape:
     # a point without length leans as the segment above it, the first ones as the one below
     last = np.maximum.accumulate(np.where(lengthy, np.arange(len(chord)), -1))
     first = int(np.argmax(lengthy))
-    leaning = _tilt(chord)[np.where(last >= 0, last, first)]
+    leaning = leaning_of(chord)[np.where(last >= 0, last, first)]
     position = solution.position
     return Shape(
         depth=-position[:, 2],
@@ -319,7 +319,7 @@ def _accuracy(mooring: Mooring, solution: Solution) -> Accuracy:
     )
 
 
-def _tilt(vector: Floats) -> Floats:
+def leaning_of(vector: Floats) -> Floats:
     """Angle of upward-pointing vectors (..., 3) from the vertical [degrees]; 0 for none."""
     horizontal = np.hypot(vector[..., 0], vector[..., 1])
     tilt: Floats = np.degrees(np.arctan2(horizontal, vector[..., 2]))

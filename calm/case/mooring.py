@@ -12,7 +12,7 @@ import numpy as np
 from calm.assemble import assemble_floating, assemble_line, assemble_water
 from calm.case.measure import anchor_weight_of, result_of
 from calm.case.memory import Forgetful, Memory
-from calm.case.parts import Origin, ReadFromFile, as_read, naming_the_piece
+from calm.case.parts import Origin, OtherEnvironment, ReadFromFile, as_read, naming_the_piece
 from calm.case.profilers import profilers_of
 from calm.case.result import Result
 from calm.case.tow import Tow
@@ -137,7 +137,7 @@ class Mooring(ReadFromFile):
         """Return another line in the same water, meant for what this one is meant for."""
         return Mooring(file, self.for_surface, self.memory, water=self._water)
 
-    def solve(self, environment: str | Path | None = None) -> Result:
+    def solve(self, environment: OtherEnvironment | None = None) -> Result:
         """Find the static equilibrium, in another of its environments where one is given.
 
         NoEquilibrium: with status, message and advice, where there is none that passes every check.

@@ -117,6 +117,10 @@ def naming_the_piece(pieces: Sequence[Piece], *, towed: bool = False) -> Iterato
 T = TypeVar("T")
 
 
+OtherEnvironment = str | Path | Mapping[str, Any]
+"""The name of one in the file, an environment file, or keys to change in the file's own."""
+
+
 @dataclass(frozen=True)
 class Origin:
     """Tell what a mooring was read from; the names are those of `load`."""
@@ -140,7 +144,7 @@ class Origin:
         self,
         file: MooringFile,
         label: str | None,
-        environment: str | Path | None,
+        environment: OtherEnvironment | None,
         keys: Mapping[str, Any],
     ) -> Origin:
         """Return the same with values put into the text, or in another environment.
@@ -149,7 +153,7 @@ class Origin:
         ----------
         file : as it was read
         label : of the piece or clamp that has the keys; None where they are those of the file
-        environment : None for its own
+        environment : None for its own; keys are those of its own
         keys : names and values as the file writes them; None takes a key out; where the file has a
             mapping under a name, its keys are changed one by one
 
@@ -160,13 +164,16 @@ class Origin:
         """
         draft = Draft(read_text(Path(self.path)) if self.text is None else self.text)
         place: Location = () if label is None else _place_of(file, label)
-        for name, value in keys.items():
-            inner = value if isinstance(value, Mapping) and label is None else {None: value}
+        own = environment if isinstance(environment, Mapping) else {}
+        changes = [*((place, *each) for each in keys.items()), ((), "environment", own)]
+        for at, name, value in changes:
+            inner = value if isinstance(value, Mapping) and not at else {None: value}
             for key, each in inner.items():
-                where = (*place, name) if key is None else (*place, name, key)
+                where = (*at, name) if key is None else (*at, name, key)
                 written = str(each) if isinstance(each, (int, float)) else each
                 draft = draft.put_at(where, written)
-        return replace(self, text=draft.text, environment=environment or self.environment)
+        named = None if isinstance(environment, Mapping) else environment
+        return replace(self, text=draft.text, environment=named or self.environment)
 
 
 def _place_of(file: MooringFile, label: str) -> Location:
@@ -193,7 +200,11 @@ class ReadFromFile:
     origin: Origin | None
 
     def with_(
-        self, label: str | None = None, /, environment: str | Path | None = None, **keys: Any
+        self,
+        label: str | None = None,
+        /,
+        environment: OtherEnvironment | None = None,
+        **keys: Any,
     ) -> Self:
         """Return the same with some values of its file changed, as `Origin.changed`.
 
@@ -201,7 +212,7 @@ class ReadFromFile:
         ----------
         label : of the piece or clamp that has the keys; the keys are the file's where it is not
             given: ``mooring.with_("wire 1", length="480 m")``, ``tow.with_(tow={"speed": "4 kn"})``
-        environment : name of one of its `environments`, or an environment file
+        environment : name of one of its `environments`, an environment file, or keys of its own
 
         Raises
         ------

@@ -6,13 +6,12 @@ from collections.abc import Iterable
 from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
 from math import atan2, degrees, hypot
-from pathlib import Path
 from typing import Any
 
 from calm.assemble import assemble_line, assemble_water
 from calm.case.measure import clamps_of, components_of, shape_of
 from calm.case.memory import Forgetful, Memory
-from calm.case.parts import Origin, ReadFromFile, cut_like, naming_the_piece
+from calm.case.parts import Origin, OtherEnvironment, ReadFromFile, cut_like, naming_the_piece
 from calm.case.result import Accuracy, Solved, document_of
 from calm.case.strumming import StrummingBand, strumming_of, tow_band
 from calm.case.warnings import warnings_of
@@ -168,7 +167,7 @@ class Tow(ReadFromFile):
         keys = self.keys.model_copy(update={"speed": speed})
         return Tow(replace(self.file, tow=keys), line=self.line)
 
-    def solve(self, environment: str | Path | None = None) -> TowResult:
+    def solve(self, environment: OtherEnvironment | None = None) -> TowResult:
         """Find the steady shape, in another of its environments where one is given.
 
         NoEquilibrium: with status, message and advice, where there is none that passes every check.

@@ -278,7 +278,7 @@ def sobol_indices(normals: Floats, values: Floats) -> Indices | None:
     columns += [hermite[order - 1][:, i] for i, order in powers]
     columns += [normals[:, i] * normals[:, j] for i, j in pairs]
     terms = np.column_stack(columns)
-    coefficients, *_ = np.linalg.lstsq(terms, values, rcond=None)
+    coefficients = np.linalg.solve(terms.T @ terms, terms.T @ values)  # terms nearly orthonormal
     left = float((values - terms @ coefficients).var()) / variance
     parts = coefficients[1:] ** 2
     explained = parts.sum()

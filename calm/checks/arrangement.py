@@ -220,9 +220,7 @@ def metals(handling: Handling) -> Iterator[Verdict]:
             yield _corrodes(base, noble, volts)
 
 
-def unlike_metals(
-    pieces: Sequence[Piece],
-) -> Iterator[tuple[Piece | Clamp, Piece | Clamp, float]]:
+def unlike_metals(pieces: Sequence[Piece]) -> Iterator[tuple[Piece | Clamp, Piece | Clamp, float]]:
     """Return what touches far apart in the galvanic series: base, noble, and how far [V]."""
     pairs: list[tuple[Piece | Clamp, Piece | Clamp]] = [*pairwise(pieces)]
     for piece in pieces:

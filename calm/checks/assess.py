@@ -47,13 +47,7 @@ from calm.checks.handling import Handling
 from calm.checks.inventory import inventory_of
 from calm.checks.posture import left_out_of_a_leg, reaches_the_surface
 from calm.checks.recovery import breaks_of, losses_of, recovery_of
-from calm.checks.situations import (
-    LEAST_CURRENT,
-    STILL_ONLY,
-    STRUMMING,
-    currents,
-    situations_of,
-)
+from calm.checks.situations import LEAST_CURRENT, STILL_ONLY, STRUMMING, currents, situations_of
 from calm.checks.wave_rules import IN_WAVES, MooringInWaves
 from calm.drop.launch import launch_of
 from calm.errors import NoEquilibrium, or_why_not
@@ -154,11 +148,7 @@ def _moved(mooring: Mooring) -> bool:
 
 
 def findings_of(
-    situation: Situation,
-    mooring: str,
-    environment: str,
-    *,
-    day: date | None = None,
+    situation: Situation, mooring: str, environment: str, *, day: date | None = None
 ) -> Iterator[Finding]:
     """Return what the rules of a standing line find in one situation.
 
@@ -311,10 +301,7 @@ def _stand(
 
 
 def _probable(
-    findings: tuple[Finding, ...],
-    broken: Counter[Key],
-    samples: int,
-    situation: str | None = None,
+    findings: tuple[Finding, ...], broken: Counter[Key], samples: int, situation: str | None = None
 ) -> tuple[Finding, ...]:
     """The findings, those of a situation that have a limit with how often it was broken."""
     return tuple(

@@ -17,8 +17,9 @@ from calm.checks.criterion import said
 from calm.checks.finding import State, Verdict, rule, unknown, verdict_on
 from calm.checks.posture import JUDGED_ROLES
 from calm.errors import nearest
-from calm.files import Anchor, Cable, Chain, Component, Cylinder, Flexible, Profiler, Sphere
-from calm.files.catalogue import Assembly
+from calm.files import Anchor, Cable, Chain, Component, Cylinder, Flexible, Sphere
+from calm.files.catalogue import Assembly, Defined
+from calm.files.components import KINDS, Outline
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
 from calm.physics.materials import (
     LEAD_DENSITY,
@@ -72,7 +73,7 @@ class CatalogueFinding:
 
 
 def check_catalogue(
-    definitions: Mapping[str, Component | Assembly], known: Collection[str]
+    definitions: Mapping[str, Defined], known: Collection[str]
 ) -> list[CatalogueFinding]:
     """All findings about the definitions of a catalogue, by id.
 
@@ -85,7 +86,7 @@ def check_catalogue(
         else:
             messages = chain(
                 _sources(definition),
-                impossible(definition),
+                impossible(definition) if isinstance(definition, Component) else (),
                 _late_warning(definition),
                 _of_unknown_material(definition),
             )
@@ -101,12 +102,12 @@ def check_catalogue(
     return findings
 
 
-def _sources(component: Component) -> Iterator[str]:
+def _sources(component: Component | Outline) -> Iterator[str]:
     """Yield what is wrong with the sources: none, one of a figure that is missing, or of a figure
     that is given though it was searched for in vain.
     """
-    known = type(component).model_fields
-    given = {name for name in known if getattr(component, name) is not None}
+    known = KINDS[component.kind].model_fields
+    given = {name for name in known if getattr(component, name, None) is not None}
     if not component.source:
         yield _NO_SOURCE
     if absent := [name for name in component.sources or () if name not in given]:
@@ -225,7 +226,7 @@ def _section(component: Flexible) -> float:
     return pi / 4 * component.diameter**2
 
 
-def _late_warning(component: Component) -> Iterator[str]:
+def _late_warning(component: Component | Outline) -> Iterator[str]:
     warned, limit = component.warn_tilt, component.max_tilt
     if warned is not None and limit is not None and warned > limit:
         yield f"warns at {warned:g}°, beyond its greatest tilt of {limit:g}°"
@@ -277,7 +278,7 @@ def figures(handling: Handling) -> Iterator[Verdict]:
                     yield verdict_on(part, state, f"{part.label} {fault}.", remedy)
 
 
-def _of_unknown_material(component: Component) -> Iterator[str]:
+def _of_unknown_material(component: Component | Outline) -> Iterator[str]:
     """Yield that the material a component names is none of those known."""
     material = component.material
     if material and not materials_in(material):
@@ -305,7 +306,7 @@ class MissingFigures:
     searched: tuple[str, ...]
 
 
-def missing_figures(definitions: Mapping[str, Component | Assembly]) -> list[MissingFigures]:
+def missing_figures(definitions: Mapping[str, Defined]) -> list[MissingFigures]:
     """The components of a catalogue that lack a figure, and which.
 
     Assemblies give no figures of their own.
@@ -321,10 +322,12 @@ def missing_figures(definitions: Mapping[str, Component | Assembly]) -> list[Mis
     return found
 
 
-def _missing(component: Component) -> Iterator[str]:
-    if mass_in_air(component) is None:
+def _missing(component: Component | Outline) -> Iterator[str]:
+    if isinstance(component, Outline):
+        yield from component.lacks
+    elif mass_in_air(component) is None:
         yield "mass"
-    borne = not isinstance(component, Anchor | Profiler)
+    borne = component.kind not in ("anchor", "profiler")
     if borne and all(getattr(component, load) is None for load in LOADS):
         yield from LOADS
     if component.role in JUDGED_ROLES and component.depth_rating is None:

@@ -218,9 +218,7 @@ def _hauled_in(lowest: LinePart, arrival: float, rise: Recovery) -> Verdict:
         return verdict_on(lowest, State.WARN, message, remedy)
     minutes = arrival / 60.0
     return reported(
-        lowest,
-        rise.rise_speed,
-        f"Released, {lowest.label} comes up after {minutes:.0f} minutes.",
+        lowest, rise.rise_speed, f"Released, {lowest.label} comes up after {minutes:.0f} minutes."
     )
 
 

@@ -97,9 +97,7 @@ def fatigue(evidence: MooringInWaves) -> Iterator[Verdict]:
     if given is None or given.scatter is None:
         message = "Its fatigue life is not known: one sea is not a wave climate."
         yield unknown(
-            None,
-            message,
-            "Give `waves: {scatter: FILE}`, seas with their shares of the time.",
+            None, message, "Give `waves: {scatter: FILE}`, seas with their shares of the time."
         )
         return
     limit = checks.fatigue_factor * checks.service_time
@@ -131,7 +129,7 @@ def _sure(waves: WaveAnalysis, verdict: Verdict) -> Verdict:
 
 
 def _years(count: float) -> str:
-    return "more than 1000 years" if count > 1000.0 else f"{count:.2g} years"
+    return "more than 1000 years" if count > 1000.0 else f"{float(f'{count:.2g}'):g} years"
 
 
 IN_WAVES = (wave_strength, wave_slack, fatigue)

@@ -14,7 +14,7 @@ from calm.errors import InputError, UsageError
 
 if TYPE_CHECKING:
     from calm.files import Catalogue
-    from calm.report.component_cards import Definition
+    from calm.files.catalogue import Defined
 
 catalog = App(
     name="catalog",
@@ -76,10 +76,15 @@ def search(words: list[str], /, *, json: bool = False) -> ExitCode:
     spelt = index.spelt(text)
     if spelt != text:
         narrate(f"no component has `{text}`; searched for `{spelt}`")
-    found = index.search(spelt, first=[*remembered.favourites, *remembered.recent])
+    first, asked = [*remembered.favourites, *remembered.recent], spelt.split()
+    fewer = (" ".join(asked[:i] + asked[i + 1 :]) for i in reversed(range(len(asked))))
+    found = index.search(spelt, first=first)
     if not found:
-        wanted = " and ".join(words)
-        narrate(f"no component has {wanted}; `calm catalog add` makes one from a few figures")
+        narrate(f"no component has `{spelt}`; `calm catalog add` makes one from a few figures")
+        some = next((text for text in fewer if text and index.search(text, first=first)), "")
+        if some:
+            narrate(f"with `{some}` alone:")
+            found = index.search(some, first=first)
     return _show(catalogue, {each.id: catalogue.get(each.id) for each in found}, json)
 
 
@@ -99,7 +104,7 @@ def show_components(ids: list[str], /, *, json: bool = False) -> ExitCode:
         As JSON: objects with every field, in SI units and degrees.
     """
     catalogue = _load()
-    chosen: dict[str, Definition] = {}
+    chosen: dict[str, Defined] = {}
     unknown: list[str] = []
     for identifier in ids:
         try:
@@ -226,7 +231,7 @@ def _load() -> Catalogue:
     return Catalogue.load()
 
 
-def _show(catalogue: Catalogue, definitions: Mapping[str, Definition], as_json: bool) -> ExitCode:
+def _show(catalogue: Catalogue, definitions: Mapping[str, Defined], as_json: bool) -> ExitCode:
     from calm.report.component_cards import to_documents, to_list
 
     if as_json:

@@ -232,12 +232,7 @@ for _number, (_name, _commands) in enumerate(_GROUPS.items()):
         _called = _command.__name__.rstrip("_")
         _how = {"usage": f"Usage: calm {_called} {_usage}"} if _usage else {}
         app.command(
-            _command,
-            name=_called,
-            group=_group,
-            sort_key=_place,
-            help_epilogue=_examples,
-            **_how,
+            _command, name=_called, group=_group, sort_key=_place, help_epilogue=_examples, **_how
         )
 app["--help"].group = app["--version"].group = Group("Options", sort_key=len(_GROUPS))
 

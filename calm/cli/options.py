@@ -64,6 +64,8 @@ def show_units(given: str | None, files: Iterable[MooringFile] = ()) -> None:
 
     UsageError: of a text that names no such dimension or unit.
     """
+    from calm.errors import nearest
+    from calm.files.logbook import unit_meant
     from calm.quantities import SHOWN_UNITS, show_in
 
     if given is None:
@@ -76,7 +78,11 @@ def show_units(given: str | None, files: Iterable[MooringFile] = ()) -> None:
     chosen: dict[str, str] = {}
     for part in given.split(","):
         name, _, unit = (text.strip() for text in part.partition("="))
-        if unit not in SHOWN_UNITS.get(name, ()):
+        if unit not in (known := SHOWN_UNITS.get(name, {})):
+            near = nearest(unit, known)
+            if meant := (name, near) if near else unit_meant(unit or name):
+                name, unit = meant
+                raise UsageError(f"--units: for `{part.strip()}` write `{name}={unit}`")
             forms = (f"{each}={'|'.join(units)}" for each, units in SHOWN_UNITS.items())
             raise UsageError(f"--units: `{part.strip()}` is none of {', '.join(forms)}")
         chosen[name] = unit

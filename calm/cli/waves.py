@@ -161,6 +161,8 @@ def _asked(
         for name in (*waves, "duration")
         if name in given and not given[name] > 0.0
     ]
+    if 0.0 < given["duration"] < 60.0:
+        complaints.append("--duration: a minute at least, for some waves to pass")
     if not 1.0 <= gamma <= 10.0:
         complaints.append("--gamma must be from 1, a fully developed sea, to 10")
     named, path = spectrum in sea_states.SPECTRA, Path(spectrum)

@@ -231,12 +231,7 @@ def write_names(axes: Axes, written: list[tuple[str, PictureMark]], height: floa
             verticalalignment="center",
             parse_math=False,
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5},
-            arrowprops={
-                "arrowstyle": "-",
-                "color": "grey",
-                "linewidth": 0.5,
-                "relpos": (0.0, 0.5),
-            },
+            arrowprops={"arrowstyle": "-", "color": "grey", "linewidth": 0.5, "relpos": (0.0, 0.5)},
         )
 
 

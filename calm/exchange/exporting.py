@@ -38,11 +38,7 @@ class Exported:
 
 
 def export_file(
-    path: Path,
-    to: str,
-    *,
-    environment: str | None = None,
-    catalogs: Sequence[Path] = (),
+    path: Path, to: str, *, environment: str | None = None, catalogs: Sequence[Path] = ()
 ) -> Exported:
     """Write a mooring or a tow for another program.
 
@@ -227,9 +223,7 @@ def _levels(water: Water, deepest: float) -> Levels:
 def _omitted(mooring: Mooring | Tow) -> tuple[str, ...]:
     """Return what a mooring file says that other programs do not know."""
     file = mooring.file
-    omitted = [
-        "limits of the design check, strengths, ratings and tilts of components",
-    ]
+    omitted = ["limits of the design check, strengths, ratings and tilts of components"]
     if file.solver.strumming is not None:
         omitted.append("strumming: cables have their drag at rest")
     anchor = file.legs[0].bottom.anchor if file.legs else None

@@ -33,7 +33,7 @@ from calm.exchange.mat_file import is_mat
 from calm.exchange.mdd_elements import is_moords, read_moords
 from calm.exchange.mdd_reader import read_mdd
 from calm.exchange.moordyn_reader import is_moordyn, read_moordyn
-from calm.files import Anchor, Assembly, Catalogue, Rigid, read_mooring
+from calm.files import Anchor, Catalogue, Rigid, read_mooring
 from calm.files.components import FLEXIBLE_KINDS, KINDS, Component
 from calm.files.editing.writing import WritingStyle
 from calm.files.yaml_document import read_document
@@ -263,9 +263,7 @@ def match_catalogue_entries(design: Design) -> tuple[CatalogueMatch, ...]:
     in diameter, length, net force, normal drag and stiffness, as far as both give them.
     """
     catalogue = Catalogue.load()
-    entries = {
-        id: entry for id, entry in catalogue.all().items() if not isinstance(entry, Assembly)
-    }
+    entries = {id: entry for id, entry in catalogue.all().items() if isinstance(entry, Component)}
     matched: dict[str, CatalogueMatch] = {}
     for component in design.components():
         model = _model(component)

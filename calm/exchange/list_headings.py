@@ -5,18 +5,12 @@ from __future__ import annotations
 import re
 import unicodedata
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from calm.errors import unknown
 from calm.exchange.design import refused
-from calm.exchange.list_cells import (
-    SheetRows,
-    decimal_sign,
-    number,
-    unit_called,
-    unit_of_heading,
-)
+from calm.exchange.list_cells import SheetRows, decimal_sign, number, unit_called, unit_of_heading
 from calm.units import KILOGRAM_FORCE
 
 COLUMNS = (
@@ -46,7 +40,7 @@ _PATTERNS: tuple[tuple[str, str], ...] = (
     ("breaking_load", r"break|rupture|\bmbl\b|strength|resistance|bruch|rotura"),
     ("stiffness", r"^ea\b|stiff|raideur|steifigkeit|rigidez"),
     ("buoyancy", r"buoy|flott|lift|portance|poussee|auftrieb|oppdrift|flotabilidad|empuje"),
-    ("weight", f"{_WEIGHT}.*{_WET}|{_WET}.*{_WEIGHT}"),
+    ("weight", rf"{_WEIGHT}.*{_WET}|{_WET}.*{_WEIGHT}|^(wet|in water)\b"),
     ("mass", rf"{_WEIGHT}.*{_AIR}|{_AIR}.*{_WEIGHT}|\bmass(e|a)?\b|\bmasa\b|\bdry\b"),
     ("weight", r"^(weight|poids|gewicht|vekt|peso)\b"),
     ("mass", r"^(weight|poids|gewicht|vekt|peso)\b"),
@@ -81,6 +75,7 @@ _BESIDE = re.compile(
 _ALONG = re.compile(r"tangent|axial")  # a drag along the piece, which has a column of its own
 _RUNNING = re.compile(r"cumul|kumul|acumul|running")
 _SEARCHED = 60  # rows in which the headings stand
+_UNIT = re.compile(r" ?\b(kgf?|g|lbf?|lbs|k?n|t)\b| ?/ ?(m|ft)\b| ?\b(per|total|whole|met\w+)\b")
 _MEASURES = {"length", "buoyancy", "weight", "mass"}
 
 
@@ -90,7 +85,8 @@ class ListColumn:
 
     `by_mass`: forces are counted in kilograms; `per_metre`: figures of lines are those of a metre;
     `known`: the heading gives a unit; `whole`: it says that its figures are those of a whole piece;
-    `wrong`: what is wrong with it.
+    `twin`: the column of the same figure of whole pieces beside one of a metre, or the other way
+    round; `wrong`: what is wrong with it.
     """
 
     index: int
@@ -101,6 +97,15 @@ class ListColumn:
     known: bool = False
     whole: bool = False
     wrong: str = ""
+    twin: ListColumn | None = None
+
+    def of(self, row: list[str], *, line: bool) -> tuple[ListColumn, str]:
+        """Return this column or its twin, whichever has a row's figure (of a line per metre), and
+        the cell.
+        """
+        both = [each for each in (self, self.twin) if each and cell_of(row, each)]
+        column = min(both, key=lambda each: each.per_metre != line, default=self)
+        return column, cell_of(row, column)
 
 
 @dataclass(frozen=True)
@@ -149,7 +154,8 @@ def headings_of(rows: SheetRows, given: Mapping[str, str]) -> ListHeadings | Non
             continue
         merit = len(found), sum(column.known for column in found.values())
         if best is None or merit > best[:2]:
-            taken = {column.index for column in found.values()}
+            every = [each for column in found.values() for each in (column, column.twin) if each]
+            taken = {column.index for column in every}
             others = tuple(
                 heading for index, heading in enumerate(rows[i]) if heading and index not in taken
             )
@@ -206,8 +212,7 @@ def _columns(row: list[str], given: Mapping[str, str], below: SheetRows) -> dict
             if what in found or i in taken or not cell or along or other:
                 continue
             if re.search(pattern, cell) and (what != "count" or not _worded(below, i)):
-                taken.add(i)
-                found[what] = _column(what, i, row[i])
+                found[what] = _with_twin(_column(what, i, row[i]), what, row, taken)
     for pattern in _NAMES:
         for i, cell in enumerate(plain):
             if "name" in found or i in taken or _NUMBERED.search(cell):
@@ -218,6 +223,19 @@ def _columns(row: list[str], given: Mapping[str, str], below: SheetRows) -> dict
         found["name"] = found["kind"]
     _resolve(found)
     return found
+
+
+def _with_twin(column: ListColumn, what: str, row: list[str], taken: set[int]) -> ListColumn:
+    """Return a column with its twin: headed alike, but one of the two is per metre."""
+    taken.add(column.index)
+    stem = _UNIT.sub("", _plain(column.heading, keep="/"))
+    for i, heading in enumerate(row if what in _MEASURES else ()):
+        if i not in taken and _UNIT.sub("", _plain(heading, keep="/")) == stem:
+            other = _column(what, i, heading)
+            if other.per_metre != column.per_metre:
+                taken.add(i)
+                return replace(column, twin=other)
+    return column
 
 
 def _worded(below: SheetRows, index: int) -> bool:
@@ -242,7 +260,11 @@ def _resolve(found: dict[str, ListColumn]) -> None:
         rf"(weight|poids|gewicht|peso)\b(?!.*{_WET})", _plain_of(found, "weight")
     )
     if plain_weight and "buoyancy" in found and "mass" not in found:
-        found["mass"] = _column("mass", found["weight"].index, found.pop("weight").heading)
+        weight = found.pop("weight")
+        found["mass"] = _column("mass", weight.index, weight.heading)
+        if weight.twin:
+            twin = _column("mass", weight.twin.index, weight.twin.heading)
+            found["mass"] = replace(found["mass"], twin=twin)
 
 
 def _plain_of(found: dict[str, ListColumn], what: str) -> str:

@@ -159,7 +159,7 @@ def _row(
     for what, column in known.items():
         if what in WORDS:
             continue
-        cell = cell_of(cells, column)
+        column, cell = column.of(cells, line=row.is_line)
         found = number(cell, decimal)
         if found.value is None:
             if found.wrong and what != "material":

@@ -17,7 +17,7 @@ from typing import Any, Literal, NamedTuple
 from pydantic import Field
 
 from calm.errors import InputError, Problem, UsageError, nearest, shown, unknown
-from calm.files.components import KINDS, Component
+from calm.files.components import KINDS, Component, Outline, lacking
 from calm.files.definition import Definition, described
 from calm.files.yaml_document import Document, SourceMapping, compose, read_document, validate
 from calm.shipped import shipped_folder
@@ -46,6 +46,9 @@ class Assembly(Definition):
         "pieces as in `line`, from the top",
         [{"use": "glass-17in", "count": 2}, {"use": "chain-13", "length": "1 m"}],
     )
+
+
+Defined = Component | Assembly | Outline
 
 
 @dataclass(frozen=True)
@@ -119,8 +122,8 @@ class Catalogue:
             in {(entry.family or "").rstrip("s"), *map(entry.section.data.get, ("role", "kind"))}
         ][:6]
 
-    def get(self, id: str) -> Component | Assembly:
-        """Return a component or assembly, validated.
+    def get(self, id: str) -> Defined:
+        """Return what an id stands for, validated.
 
         Raises
         ------
@@ -138,8 +141,8 @@ class Catalogue:
             raise InputError(problems)
         return definition
 
-    def all(self) -> dict[str, Component | Assembly]:
-        """Return every component and assembly, validated.
+    def all(self) -> dict[str, Defined]:
+        """Return everything in the catalogue, validated.
 
         InputError: with the mistakes of all definitions.
         """
@@ -182,7 +185,7 @@ def define(
     *,
     also_allowed: Iterable[str] = (),
     context: Mapping[str, object] | None = None,
-) -> Component | Assembly | None:
+) -> Defined | None:
     """Return the model of an entry, or of a section laid over it; None when it has mistakes.
 
     Parameters
@@ -210,6 +213,8 @@ def define(
         section = section.over(family_default)
     if kind == "assembly":
         return validate(Assembly, section, problems)
+    if lacking(section.data):
+        return validate(Outline, section, problems)
     return validate(KINDS[kind], section, problems, also_allowed=also_allowed, context=context)
 
 
@@ -360,9 +365,7 @@ def defined(id: str, values: Mapping[str, Any]) -> tuple[Component | None, tuple
     section = SourceMapping.of(Document(id, {id: dict(values)}), (id,), dict(values))
     problems: list[Problem] = []
     definition = define(CatalogueEntry(id, None, section), section, problems)
-    if definition is None or definition.kind == "assembly":
-        return None, tuple(problems)
-    return definition, tuple(problems)
+    return (definition if isinstance(definition, Component) else None), tuple(problems)
 
 
 def tidy_id(text: str) -> str:

@@ -146,15 +146,11 @@ class Checks(Model):
         "greatest allowed offset of the top", "200 m"
     )
     maximum_tilt: Annotated[
-        float | None,
-        QuantityField("angle", above=0, at_most=90),
-        Limit(THE_DESIGN),
+        float | None, QuantityField("angle", above=0, at_most=90), Limit(THE_DESIGN)
     ] = optional("greatest allowed tilt of a piece", "30 deg")
-    minimum_top_depth: Annotated[
-        float | None,
-        LENGTH,
-        Limit(THIS_PROGRAM, default=10.0),
-    ] = optional("least depth of the top of a sub-surface line, at low water too", "10 m")
+    minimum_top_depth: Annotated[float | None, LENGTH, Limit(THIS_PROGRAM, default=10.0)] = (
+        optional("least depth of the top of a sub-surface line, at low water too", "10 m")
+    )
     fishbite_depth: Annotated[float, LENGTH, Limit(_BERTEAUX)] = described(
         "depth down to which fish bite synthetic rope; 0 m for nowhere", "1500 m", default=1000.0
     )

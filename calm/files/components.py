@@ -8,10 +8,10 @@ per metre.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Set
-from typing import Annotated, Literal
+from collections.abc import Iterator, Mapping, Set
+from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, Field, ValidationInfo, model_validator
+from pydantic import AfterValidator, ConfigDict, Field, ValidationInfo, model_validator
 
 from calm.files.definition import (
     CATALOGUE_DENSITY,
@@ -29,17 +29,12 @@ from calm.files.definition import (
     TangentialDrag,
     is_in_air,
     optional,
+    quantity_of,
     refuse_weight_above_mass,
     volume_from_weights,
 )
-from calm.files.rigid import (
-    DRAG_FORMS,
-    Body,
-    Cylinder,
-    Profiler,
-    Rigid,
-    Sphere,
-)
+from calm.files.rigid import DRAG_FORMS, Body, Cylinder, Profiler, Rigid, Sphere
+from calm.files.yaml_document import unknown_key
 from calm.physics.materials import STEEL_DENSITY, density_of, fibre_of
 from calm.physics.stretch import ElongationCurve
 
@@ -271,6 +266,59 @@ RIGID_KINDS = frozenset(kind for kind, model in KINDS.items() if issubclass(mode
 
 
 _DRAG_KEYS = frozenset(key for form in DRAG_FORMS for key in form) | {"kt"}
+
+
+_ESSENTIAL = {
+    "length": {"length"},
+    "diameter": {"diameter"},
+    "buoyancy": {"buoyancy", "volume"},
+    "weight": {"weight", "buoyancy", "density"},
+    "drag_area": _DRAG_KEYS,
+}
+"""Figures that a component cannot do without, and the keys that give each."""
+
+
+class Outline(Definition):
+    """A product of which no source prints figures that its kind needs: those under `searched`.
+
+    It is found and shown like any other. A line that uses it gives these figures itself.
+    """
+
+    model_config = ConfigDict(extra="allow")
+
+    kind: str
+
+    @model_validator(mode="before")
+    @classmethod
+    def _of_its_kind(cls, data: dict[str, Any]) -> dict[str, Any]:
+        fields = KINDS[data["kind"]].model_fields
+        if strange := next((key for key in data if key not in fields), None):
+            raise ValueError(unknown_key(strange, [*fields], f" for kind {data['kind']}"))
+        more = ((key, quantity_of(fields[key])) for key in data.keys() - cls.model_fields.keys())
+        return data | {key: quantity.read(data[key]) for key, quantity in more if quantity}
+
+    @property
+    def lacks(self) -> list[str]:
+        """Return the keys that a line has to give."""
+        return lacking(self.model_dump(exclude_none=True))
+
+    def asks(self, id: str) -> str:
+        """Return what a line is to give, for people."""
+        keys = ", ".join(f"`{key}`" for key in self.lacks)
+        return (
+            f"no source prints {keys} of `{id}`: measure or ask the maker, and give it here with "
+            f"its unit (the rest is from: {self.source})"
+        )
+
+
+def lacking(fields: Mapping[str, Any]) -> list[str]:
+    """Return the keys under `searched` that a component needs, and that it does not give."""
+    sought = fields.get("searched")
+    return [
+        key
+        for key, ways in _ESSENTIAL.items()
+        if isinstance(sought, list | tuple) and key in sought and not fields.keys() & ways
+    ]
 
 
 def contradicted(kind: str, base: Set[str], override: Set[str]) -> frozenset[str]:

@@ -134,16 +134,8 @@ Length = Annotated[
     LENGTH,
     described("along the line, unstretched; `fit` cuts a cable to reach a depth", "480 m"),
 ]
-Diameter = Annotated[
-    float,
-    DIAMETER,
-    described("e.g. 12 mm; of a chain, that of its bar", "12 mm"),
-]
-Mass = Annotated[
-    float | None,
-    MASS,
-    described("in air (per metre of a cable or chain)", "35 kg"),
-]
+Diameter = Annotated[float, DIAMETER, described("e.g. 12 mm; of a chain, that of its bar", "12 mm")]
+Mass = Annotated[float | None, MASS, described("in air (per metre of a cable or chain)", "35 kg")]
 _ANY_QUANTITY = {"type": "string", "description": "with its unit"}
 MaterialDensity = Annotated[
     float | None,
@@ -151,19 +143,13 @@ MaterialDensity = Annotated[
     described("of the water, or of the material of a component", "1025 kg/m^3"),
 ]
 NormalCoefficient = Annotated[
-    float | None,
-    COEFFICIENT,
-    described("drag coefficient across the axis", 1.2),
+    float | None, COEFFICIENT, described("drag coefficient across the axis", 1.2)
 ]
 TangentialCoefficient = Annotated[
-    float | None,
-    COEFFICIENT,
-    described("drag coefficient along the axis", 0.01),
+    float | None, COEFFICIENT, described("drag coefficient along the axis", 0.01)
 ]
 TangentialDrag = Annotated[
-    float | None,
-    DRAG,
-    described("drag along the axis at 1 m/s", "9 N/(m/s)^2"),
+    float | None, DRAG, described("drag along the axis at 1 m/s", "9 N/(m/s)^2")
 ]
 
 

@@ -37,13 +37,7 @@ from calm.files.water import (
 )
 from calm.files.yaml_document import SourceMapping, validate
 from calm.records.current_terms import DEEPEST, Terms, TimeChoiceError, too_fast
-from calm.records.profile_tables import (
-    CurrentTable,
-    DepthTable,
-    SeaWater,
-    components,
-    read_current,
-)
+from calm.records.profile_tables import CurrentTable, DepthTable, SeaWater, components, read_current
 from calm.records.sea_states import SeaState
 from calm.units import QuantityError
 

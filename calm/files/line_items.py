@@ -7,14 +7,15 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from calm.errors import Problem, about_quantity, shown, unknown
-from calm.files.catalogue import Assembly, Catalogue, CatalogueEntry, define
+from calm.files.catalogue import Assembly, Catalogue, CatalogueEntry, Defined, define
 from calm.files.check_limits import GREATER_FLATTERS, LESSER_FLATTERS, LimitKey
 from calm.files.components import (
+    FLEXIBLE_KINDS,
     KINDS,
     Anchor,
-    Cable,
     Component,
     Flexible,
+    Outline,
     contradicted,
     odd_overrides,
 )  # fmt: skip
@@ -60,7 +61,7 @@ class LineReader:
         self.looser: list[LimitKey] = []
         self._towed = towed
         self._in_air = in_air
-        self._defined: dict[str, Component | Assembly | None] = {}
+        self._defined: dict[str, Defined | None] = {}
         self._assemblies: dict[str, tuple[Piece, ...]] = {}
         self._open: list[str] = []
 
@@ -221,8 +222,7 @@ class LineReader:
             notice = (
                 f"{use}: no mass is known; its net force in water is taken as its weight in air"
             )
-            if notice not in self._notices:
-                self._notices.append(notice)
+            self._notices += [notice] * (notice not in self._notices)
 
     def _clamps(self, item: SourceMapping, length: float | None) -> tuple[Clamp, ...]:
         """Return the clamps of an item, none beyond its length where that is known."""
@@ -287,8 +287,7 @@ class LineReader:
         hidden = self._catalogue.hidden(use)
         if hidden:
             notice = f"{use}: defined in {entry.place}, which hides that of {hidden.place}"
-            if notice not in self._notices:
-                self._notices.append(notice)
+            self._notices += [notice] * (notice not in self._notices)
         return entry
 
     def _definition(
@@ -303,9 +302,11 @@ class LineReader:
                 message = unknown(f"`{key}` cannot be set on an assembly", key, _ASSEMBLY_KEYS)
                 self._refuse(item, (key,), message, key=True)
             return definition
-        own_keys = item_keys if isinstance(definition, Flexible) else item_keys - {"length"}
+        if definition is None:
+            return None
+        own_keys = item_keys if definition.kind in FLEXIBLE_KINDS else item_keys - {"length"}
         overriding = {key: value for key, value in item.data.items() if key not in own_keys}
-        if definition is None or not overriding:
+        if not overriding and not isinstance(definition, Outline):
             return definition
         if "kind" in overriding:
             message = "`kind` cannot be overridden; define a component of your own"
@@ -314,12 +315,14 @@ class LineReader:
         void = contradicted(definition.kind, entry.section.data.keys(), overriding.keys())
         override = SourceMapping.of(item.document, item.location, overriding)
         section = override.over(entry.section, dropping=void)
-        hinted = item_keys if isinstance(definition, Cable) else item_keys - {"termination"}
+        hinted = item_keys if definition.kind == "cable" else item_keys - {"termination"}
         component = self._define(entry, section, also_allowed=hinted)
-        if isinstance(component, Assembly) or component is None:
+        if isinstance(component, Outline):
+            self._refuse(item, ("use",), component.asks(entry.id))
+        if not isinstance(component, Component):
             return None
         self._keep_looser_limits(entry, item, definition, component)
-        if not self._in_air:
+        if not self._in_air and isinstance(definition, Component):
             place = f"line {item.problem((), '').line}: "
             doubts = odd_overrides(entry.id, definition, component, overriding.keys())
             self._notices += (place + doubt for doubt in doubts)
@@ -329,17 +332,17 @@ class LineReader:
         self,
         entry: CatalogueEntry,
         item: SourceMapping,
-        definition: Component,
+        definition: Component | Outline,
         component: Component,
     ) -> None:
         """Keep what the line lets a component bear, lift, weigh or resist beyond its definition."""
-        loads = () if isinstance(definition, Anchor) else LESSER_FLATTERS
+        loads = () if isinstance(component, Anchor) else LESSER_FLATTERS
         sourced = item.data.get("sources")
         for key in (*GREATER_FLATTERS, *loads):
             before, after = (getattr(each, key, None) for each in (definition, component))
             if before is None or after is None:
                 continue
-            quantity = quantity_of(type(definition).model_fields[key])
+            quantity = quantity_of(type(component).model_fields[key])
             if quantity and (after < before if key in loads else after > before):
                 name, source = f"{key} of {self._label(item)}", f"the definition of {entry.id}"
                 backed = "source" in item.data or (isinstance(sourced, dict) and key in sourced)
@@ -348,7 +351,7 @@ class LineReader:
 
     def _define(
         self, entry: CatalogueEntry, section: SourceMapping, *, also_allowed: Iterable[str] = ()
-    ) -> Component | Assembly | None:
+    ) -> Defined | None:
         context = IN_AIR if self._in_air else None
         return define(entry, section, self._problems, also_allowed=also_allowed, context=context)
 

@@ -1,11 +1,13 @@
-"""What a mooring file keeps beside the design: its document, serial numbers, what was deployed."""
+"""What a mooring file keeps beside the design: document, units, serial numbers, what went out."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from typing import Annotated, Any, TypeGuard
+from contextlib import suppress
+from typing import Annotated, Any, Literal, TypeGuard
 
-from pydantic import AfterValidator, Field, WithJsonSchema
+from pydantic import AfterValidator, Field, WithJsonSchema, model_validator
 
 from calm.errors import Problem, shown, unknown
 from calm.files.check_limits import Day
@@ -23,7 +25,9 @@ from calm.files.definition import (
 )
 from calm.files.environment import Position
 from calm.files.yaml_document import SourceMapping, validate
+from calm.quantities import SHOWN_UNITS
 from calm.records.current_terms import TimeChoiceError, parse_time
+from calm.units import QuantityError, parse_quantity
 
 
 def _moment(text: str) -> str:
@@ -40,6 +44,42 @@ Moment = Annotated[
     WithJsonSchema({"type": "string", "pattern": r"^\d{4}-\d{2}-\d{2}"}),
 ]
 """A day, or a day and time, as ISO 8601 writes them; kept as written."""
+
+
+class OutputUnits(Model):
+    """Say in which units people read tables, papers and the builder; files for programs are SI."""
+
+    force: Literal["N", "kN", "kgf", "lbf"] | None = optional(
+        "of tensions, weights and loads", "kgf"
+    )
+    length: Literal["m", "ft"] | None = optional("of lengths and depths", "m")
+    speed: Literal["m/s", "cm/s", "kn"] | None = optional("of currents and ships", "kn")
+    mass: Literal["kg", "lb"] | None = optional("of masses in air", "kg")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _by_dimension(cls, data: object) -> object:
+        texts = data.replace(",", " ").split() if isinstance(data, str) else data
+        listed = [*texts] if isinstance(texts, list | tuple | dict) else []
+        meant = [unit_meant(str(text)) for text in listed if text not in cls.model_fields]
+        if found := [f"{each[0]}: {each[1]}" for each in meant if each]:
+            raise ValueError(f"write `units: {{{', '.join(found)}}}`")
+        return data
+
+    @property
+    def chosen(self) -> dict[str, str]:
+        """Return the units that are given, by dimension."""
+        return self.model_dump(exclude_none=True)
+
+
+def unit_meant(text: str) -> tuple[str, str] | None:
+    """Return the dimension and the unit to show that a text names, as `knots`; None of no such."""
+    for dimension, units in SHOWN_UNITS.items():
+        with suppress(QuantityError):
+            value = parse_quantity(f"1 {text}", dimension)
+            alike = (unit for unit, one in units.items() if math.isclose(one, value))
+            return next(((dimension, unit) for unit in alike), None)
+    return None
 
 
 class Revision(Model):

@@ -46,22 +46,6 @@ class TowKeys(Model):
     )
 
 
-class OutputUnits(Model):
-    """Say in which units people read tables, papers and the builder; files for programs are SI."""
-
-    force: Literal["N", "kN", "kgf", "lbf"] | None = optional(
-        "of tensions, weights and loads", "kgf"
-    )
-    length: Literal["m", "ft"] | None = optional("of lengths and depths", "m")
-    speed: Literal["m/s", "cm/s", "kn"] | None = optional("of currents and ships", "kn")
-    mass: Literal["kg", "lb"] | None = optional("of masses in air", "kg")
-
-    @property
-    def chosen(self) -> dict[str, str]:
-        """Return the units that are given, by dimension."""
-        return self.model_dump(exclude_none=True)
-
-
 class Solver(Model):
     """How the line is solved; `angle_step` in radians, `tolerance` as a share of the depth."""
 
@@ -272,9 +256,7 @@ def placed(piece: Piece, place: Place) -> Piece:
     """Put a piece, with its clamps and the serial numbers there, at a place of the line."""
     clamps = tuple(
         replace(
-            clamp,
-            place=replace(place, clamp=number),
-            equipment=clamp.equipment.of(place.repeat),
+            clamp, place=replace(place, clamp=number), equipment=clamp.equipment.of(place.repeat)
         )
         for number, clamp in enumerate(piece.clamps)
     )
@@ -363,11 +345,7 @@ def travelling(
 
 
 def _travelling(
-    clamp: Clamp,
-    piece: Piece,
-    pieces: Sequence[Piece],
-    top: SourceMapping,
-    problems: list[Problem],
+    clamp: Clamp, piece: Piece, pieces: Sequence[Piece], top: SourceMapping, problems: list[Problem]
 ) -> Clamp:
     stops = {each.label: 0.0 if each.index < piece.index else math.inf for each in pieces}
     del stops[piece.label]

@@ -17,19 +17,11 @@ from calm.files.check_limits import Checks, read_accepts
 from calm.files.components import Anchor, Flexible
 from calm.files.definition import Model, Text, described, optional
 from calm.files.environment import Position, read_environment
-from calm.files.legs import (
-    NET_REFUSED,
-    Leg,
-    LegKeys,
-    check_held_depths,
-    read_legs,
-    stand_in_anchor,
-)
+from calm.files.legs import NET_REFUSED, Leg, LegKeys, check_held_depths, read_legs, stand_in_anchor
 from calm.files.line_items import LineReader
-from calm.files.logbook import Deployed, DocumentKeys, ReleaseKeys, check_deployed
+from calm.files.logbook import Deployed, DocumentKeys, OutputUnits, ReleaseKeys, check_deployed
 from calm.files.mooring_file import (
     MooringFile,
-    OutputUnits,
     Piece,
     Solver,
     TowKeys,

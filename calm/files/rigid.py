@@ -6,10 +6,10 @@ from math import inf
 from typing import Annotated, Literal
 
 from pydantic import (
-    AfterValidator,
     BeforeValidator,
     Discriminator,
     Field,
+    PlainValidator,
     Tag,
     ValidationInfo,
     model_validator,
@@ -43,8 +43,11 @@ from calm.files.definition import (
     volume_from_weights,
 )
 from calm.physics.hull import tabulated_hull
+from calm.units import QuantityError
 
 _AREA = QuantityField("area", at_least=0)
+_REACH = QuantityField("length", at_least=-20, at_most=20)
+_GYRATION = QuantityField("length", above=0, at_most=20)
 
 Inclination = Annotated[
     Literal["follows", "insensitive"] | None,
@@ -55,9 +58,7 @@ Surface = Annotated[
     described("`smooth` may follow the drag curves; `painted` keeps the constant", "smooth"),
 ]
 SphereCoefficient = Annotated[
-    float | None,
-    COEFFICIENT,
-    described("drag coefficient of a sphere", 0.5),
+    float | None, COEFFICIENT, described("drag coefficient of a sphere", 0.5)
 ]
 
 
@@ -92,17 +93,34 @@ Hull = Annotated[
 ]
 
 
-def _frequencies_grow(rao: dict[str, tuple[float, float]] | None) -> object:
-    for key in rao or {}:
+def _read_rao(rao: object) -> tuple[tuple[float, ...], ...]:
+    rows = []
+    for key, row in rao.items() if isinstance(rao, dict) else ():
         try:
-            right = 0.0 < float(key) < inf
-        except ValueError:
-            right = False
-        if not right:
+            at = float(key)
+        except (TypeError, ValueError):
+            at = 0.0
+        if not 0.0 < at < inf:
             raise ValueError(f"`{key}` is no angular frequency in rad/s, such as `0.5: [1, 0 deg]`")
-    if rao is not None and len(rao) < 2:
-        raise ValueError("`rao` needs two frequencies or more")
-    return rao
+        if not isinstance(row, list) or len(row) not in (2, 4):
+            raise ValueError(
+                "a row has two figures, or four with the pitch: `[1, 0 deg, 6 deg, 90 deg]`"
+            )
+        try:
+            figures = (way.read(figure) for way, figure in zip(_RESPONSE, row, strict=False))
+            rows.append((at, *figures))
+        except QuantityError as error:
+            raise ValueError(f"`{key}`: {error}") from None
+    if len(rows) < 2 or len({len(row) for row in rows}) > 1:
+        raise ValueError("`rao` needs two frequencies or more, with the pitch at all or at none")
+    return tuple(sorted(rows))
+
+
+_ANGLE = QuantityField("angle")
+_RESPONSE = (
+    *(QuantityField("number", at_least=0, at_most=10), _ANGLE),
+    *(QuantityField("angle", at_least=0, at_most=90), _ANGLE),
+)
 
 
 class Rigid(Definition):
@@ -128,27 +146,29 @@ class Rigid(Definition):
         "of a float at the surface in waves: by its hull, by panels on it, or as the water does",
         "follows",
     )
-    rao: Annotated[
-        dict[
-            str,
-            tuple[
-                Annotated[float, QuantityField("number", at_least=0, at_most=10)],
-                Annotated[float, QuantityField("angle")],
-            ],
-        ]
-        | None,
-        AfterValidator(_frequencies_grow),
-    ] = optional(
-        "heave of a float over the elevation of the sea, by angular frequency in "
-        "rad/s: amplitude and phase",
+    rao: Annotated[tuple[tuple[float, ...], ...] | None, PlainValidator(_read_rao)] = optional(
+        "heave of a float over the elevation of the sea, by angular frequency in rad/s: amplitude "
+        "and phase; with its pitch four figures, the last two pitch per metre and phase",
         {"0.5": [1.0, "0 deg"], "2": [0.6, "20 deg"]},
     )
+    centre_of_mass: Annotated[float | None, _REACH] = optional(
+        "of a float and all it carries, above the keel; for its pitch in waves", "0.8 m"
+    )
+    radius_of_gyration: Annotated[float | None, _GYRATION] = optional(
+        "of a float and all it carries, about a horizontal axis through `centre_of_mass`", "0.9 m"
+    )
+    bail: Annotated[float | None, _REACH] = optional(
+        "height above the keel at which the line pulls a float; negative below it", "-0.5 m"
+    )
 
-    @property
-    def heave_response(self) -> tuple[tuple[float, float, float], ...]:
-        """Return the rows of `rao`: frequency [rad/s], amplitude [-], phase [degrees]."""
-        rows = (self.rao or {}).items()
-        return tuple(sorted((float(at), *response) for at, response in rows))
+    @model_validator(mode="after")
+    def _pitch_is_given_whole(self) -> Rigid:
+        weighed = (self.centre_of_mass, self.radius_of_gyration)
+        given = self.rao is not None and len(self.rao[0]) > 3
+        if None in weighed and (weighed != (None, None) or (self.bail is not None and not given)):
+            needs = "both its `centre_of_mass` and `radius_of_gyration`"
+            raise ValueError(f"the pitch of a float needs {needs}")
+        return self
 
     @property
     def net_buoyancy(self) -> float:

@@ -115,13 +115,19 @@ Booleans = NDArray[np.bool_]
 
 
 class _Arrays:
-    """Freezes every array field as float64, int64 or bool and asserts that it is finite."""
+    """Freezes every array field as float64, int64 or bool and asserts that it is finite.
+
+    What is frozen already, as of the line that another differs from, is taken as it is.
+    """
 
     def __post_init__(self) -> None:
         for column in fields(self):  # type: ignore[arg-type]
             if column.type not in _DTYPES:
                 continue
-            value = np.array(getattr(self, column.name), dtype=_DTYPES[str(column.type)], ndmin=1)
+            value, kind = getattr(self, column.name), _DTYPES[str(column.type)]
+            if type(value) is np.ndarray and not value.flags.writeable and value.dtype == kind:
+                continue
+            value = np.array(value, dtype=kind, ndmin=1)
             if not np.isfinite(value).all():
                 raise ValueError(f"{type(self).__name__}.{column.name} must be finite")
             value.setflags(write=False)

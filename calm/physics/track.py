@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from calm.physics.compiled import packed
 from calm.physics.line import Line
-from calm.physics.stretch import Knot
+from calm.physics.stretch import ElongationCurve, Knot
 from calm.physics.strumming import AT_REST, Vibration
 
 if TYPE_CHECKING:
@@ -50,19 +50,6 @@ class Load(NamedTuple):
     lengthening: float
 
 
-@dataclass(frozen=True)
-class Rod:
-    """One rigid body: a piece, or the pieces above the first float together with it."""
-
-    pieces: tuple[int, ...]
-    lengths: tuple[float, ...]
-    loads: tuple[Load, ...]
-
-    @property
-    def length(self) -> float:
-        return sum(self.lengths)
-
-
 class CableStretch(NamedTuple):
     """A stretch of cable or chain without clamps: a whole piece, or the part between two clamps.
 
@@ -89,9 +76,6 @@ class CableStretch(NamedTuple):
     first_knot: int
     end_knot: int
     beat: float
-
-
-Part = Rod | CableStretch | Load
 
 
 ROD, CABLE, CLAMP = range(3)
@@ -130,48 +114,58 @@ class Course(NamedTuple):
 
 @dataclass(frozen=True)
 class Track:
-    """A `Line` laid out for the march: its parts from the free end to the anchor.
+    """A `Line` laid out for the march, from the free end to the anchor: rows of plain numbers.
 
-    `knots` are those of the elongation curves of its cables, `vibration` the law by which they
-    strum.
+    Attributes
+    ----------
+    stages, loads, cables, knots : of a `Stage`, a `Load`, a `CableStretch` and a `Knot` each
+    vibration : the law by which the cables strum
     """
 
-    stages: tuple[Part, ...]
-    knots: tuple[Knot, ...] = ()
+    stages: list[tuple[Any, ...]]
+    loads: list[tuple[Any, ...]]
+    cables: list[tuple[Any, ...]]
+    knots: list[Knot]
     vibration: Vibration = AT_REST
 
     @cached_property
     def course(self) -> Course:
         """As the march takes it."""
-        stages: list[Stage] = []
-        loads: list[Load] = []
-        cables: list[CableStretch] = []
-        for part in self.stages:
-            if isinstance(part, CableStretch):
-                stages.append(Stage(CABLE, len(cables), 1, part.length))
-                cables.append(part)
-            elif isinstance(part, Rod):
-                stages.append(Stage(ROD, len(loads), len(part.loads), part.length))
-                loads += part.loads
-            else:
-                stages.append(Stage(CLAMP, len(loads), 1, 0.0))
-                loads.append(part)
-        return Course(stages, loads, cables, self.knots, self.vibration, self.landing)
+        stages, cables = map(Stage._make, self.stages), map(CableStretch._make, self.cables)
+        loads = list(map(Load._make, self.loads))
+        return Course(list(stages), loads, list(cables), self.knots, self.vibration, self.landing)
 
     @cached_property
     def packed(self) -> Course:
         """Return the same as compiled laws take it."""
-        course: Course = packed(self.course)
+        rows: Any = (self.stages, self.loads, self.cables, self.knots)
+        course: Course = packed(Course._make([*rows, self.vibration, self.landing]))
         return course
 
     @property
     def landing(self) -> int:
         """The first stage that may come down on the seabed: none below it is buoyant."""
         for i in range(len(self.stages), 0, -1):
-            for load in loads_of(self.stages[i - 1]):
-                if load.buoyancy > 0.0:
-                    return i
+            kind, first, size, _ = self.stages[i - 1]
+            if kind == CABLE:
+                rises = CableStretch._make(self.cables[first]).buoyancy > 0.0
+            else:
+                rises = any(
+                    Load._make(load).buoyancy > 0.0 for load in self.loads[first : first + size]
+                )
+            if rises:
+                return i
         return 0
+
+    def first_pieces(self, count: int) -> Track:
+        """The track as far as the first pieces go."""
+        cables = [row for row in self.cables if row[0] < count]
+        stages = [
+            row
+            for row in self.stages
+            if (self.cables if row[0] == CABLE else self.loads)[row[1]][0] < count
+        ]
+        return replace(self, stages=stages, cables=cables)
 
     @staticmethod
     def of(line: Line, frequency: float = 0.0) -> Track:
@@ -179,24 +173,50 @@ class Track:
 
         `frequency` is that of the cables that strum [Hz].
         """
-        head, rows = head_count(line), _Rows(line, frequency)
-        parts: list[Part] = [_rod(rows, range(head))] if head else []
-        knots: list[Knot] = []
+        vibration = AT_REST if line.strumming is None else line.strumming.vibration(0.0)
+        track = Track([], [], [], [], vibration)
+        rows, head = _Rows(line, frequency), head_count(line)
+        if head:
+            track._add_rod(rows, range(head))
         for piece, flexible in enumerate(line.flexible.tolist()[head:], head):
             if flexible:
-                curve = line.elongation[piece] if line.elongation else None
-                mine = () if curve is None else curve.knots
-                parts.extend(_cable_parts(rows, piece, len(knots), len(mine)))
-                knots += mine
+                track._add_cable(rows, piece, line.elongation[piece] if line.elongation else None)
             else:
-                parts.append(_rod(rows, range(piece, piece + 1)))
-        vibration = AT_REST if line.strumming is None else line.strumming.vibration(0.0)
-        return Track(tuple(parts), tuple(knots), vibration)
+                track._add_rod(rows, range(piece, piece + 1))
+        return track
 
+    def _add_rod(self, rows: _Rows, pieces: range) -> None:
+        first, top, total = len(self.loads), 0.0, sum([rows.length[piece] for piece in pieces])
+        for piece in pieces:
+            length = rows.length[piece]
+            at = top + 0.5 * length
+            lever = 1.0 - at / total if total > 0.0 else 0.5
+            self.loads.append((piece, -1, at, lever, length, *rows.rigid[piece]))
+            for clamp in rows.clamps.get(piece, ()):
+                at = top + rows.clamp_at[clamp]
+                lever = 1.0 - at / total if total > 0.0 else 0.5
+                self.loads.append((piece, clamp, at, lever, 0.0, *rows.clamp[clamp]))
+            top += length
+        self.stages.append((ROD, first, len(self.loads) - first, total))
 
-def loads_of(stage: Part) -> tuple[Load | CableStretch, ...]:
-    """Return what hangs on the line in a stage."""
-    return stage.loads if isinstance(stage, Rod) else (stage,)
+    def _add_cable(self, rows: _Rows, piece: int, curve: ElongationCurve | None) -> None:
+        start, end, first = 0.0, rows.length[piece], len(self.knots)
+        self.knots.extend(() if curve is None else curve.knots)
+        figures = (*rows.cable[piece], first, len(self.knots), rows.beat[piece])
+        rounding = 1e-12 * end  # a clamp so near to an end, or to another, is there
+        for clamp in rows.clamps.get(piece, ()):
+            at = rows.clamp_at[clamp]
+            if at - start > rounding:
+                self._add_stretch((piece, at - start, *figures))
+                start = at
+            self.stages.append((CLAMP, len(self.loads), 1, 0.0))
+            self.loads.append((piece, clamp, 0.0, 0.5, 0.0, *rows.clamp[clamp]))
+        if end - start > rounding or end == 0.0:
+            self._add_stretch((piece, end - start, *figures))
+
+    def _add_stretch(self, cable: tuple[Any, ...]) -> None:
+        self.stages.append((CABLE, len(self.cables), 1, cable[1]))
+        self.cables.append(cable)
 
 
 def head_count(line: Line) -> int:
@@ -251,10 +271,6 @@ class _Rows:
         for clamp in np.argsort(line.clamp_at, kind="stable").tolist():
             self.clamps.setdefault(on[clamp], []).append(clamp)
 
-    def clamp_load(self, m: int, piece: int, at: float = 0.0, lever: float = 0.5) -> Load:
-        """A clamp on a piece."""
-        return Load(piece, m, at, lever, 0.0, *self.clamp[m])
-
 
 def _rows(count: int, *columns: Any) -> list[tuple[Any, ...]]:
     """Columns, or single values throughout, row by row."""
@@ -273,35 +289,3 @@ def _followed(curves: Sequence[DragCurve | None]) -> tuple[Any, Any]:
         np.array([0.0 if curve is None else curve.diameter for curve in curves]),
         np.array([0.0 if curve is None else curve.lengthening for curve in curves]),
     )
-
-
-def _rod(rows: _Rows, pieces: range) -> Rod:
-    lengths = tuple(rows.length[p] for p in pieces)
-    total = sum(lengths)
-    loads, top = [], 0.0
-
-    def lever(at: float) -> float:
-        return 1.0 - at / total if total > 0.0 else 0.5
-
-    for piece, length in zip(pieces, lengths, strict=True):
-        middle = top + 0.5 * length
-        loads.append(Load(piece, -1, middle, lever(middle), length, *rows.rigid[piece]))
-        for m in rows.clamps.get(piece, ()):
-            at = top + rows.clamp_at[m]
-            loads.append(rows.clamp_load(m, piece, at, lever(at)))
-        top += length
-    return Rod(tuple(pieces), lengths, tuple(loads))
-
-
-def _cable_parts(rows: _Rows, piece: int, first_knot: int, knots: int) -> Iterable[Part]:
-    start, end = 0.0, rows.length[piece]
-    figures = (*rows.cable[piece], first_knot, first_knot + knots, rows.beat[piece])
-    rounding = 1e-12 * end  # a clamp so near to an end, or to another, is there
-    for m in rows.clamps.get(piece, ()):
-        at = rows.clamp_at[m]
-        if at - start > rounding:
-            yield CableStretch(piece, at - start, *figures)
-            start = at
-        yield rows.clamp_load(m, piece)
-    if end - start > rounding or end == 0.0:
-        yield CableStretch(piece, end - start, *figures)

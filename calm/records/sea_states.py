@@ -43,6 +43,9 @@ PEAK_BY_MEAN = "Tp is 1.41 Tz, the mean zero-crossing period; 1.29 Tz of jonswap
 SHARES = 0.02
 """How far shares of the time may be from 1 in all, where they are rounded."""
 
+CUT_OFF = 0.5
+"""Share of its greatest density that a measured spectrum may have at its last frequency."""
+
 _STANDARD_NAMES = (
     "sea_surface_wave_variance_spectral_density",
     "sea_surface_wave_directional_variance_spectral_density",
@@ -187,6 +190,23 @@ def _impossible(height: float, period: float) -> str | None:
     return None
 
 
+def doubted(sea: SeaState) -> str | None:
+    """Return why a sea is doubted: it is steeper than seas that were measured.
+
+    Hs over the length of waves of Tp is 1/15 at most up to a Tp of 8 s, falling to 1/25 at 15 s
+    (DNV-RP-C205, steepness criteria).
+    """
+    height, period = sea.significant_height, sea.peak_period
+    steepness = 2.0 * pi * height / (9.80665 * period**2)
+    if steepness <= float(np.interp(period, [8.0, 15.0], [1.0 / 15.0, 1.0 / 25.0])):
+        return None
+    return (
+        f"Hs {height:.3g} m with Tp {period:.3g} s is steeper than seas are, 1 in "
+        f"{1.0 / steepness:.0f}: look whether the period is a mean one ({PEAK_BY_MEAN}) and the "
+        "height in metres."
+    )
+
+
 def with_swell(sea: SeaState, height: float, period: float) -> SeaState:
     """Return a sea with a swell of Hs [m] and Tp [s], which runs the same way.
 
@@ -267,6 +287,8 @@ def _sea_of(path: Path, frequency: Floats, density: Floats, lines: Sequence[int]
     beyond = float(parts[omega[1:] > LARGEST_FREQUENCY].sum() / parts.sum())
     if wrong is None and beyond > BEYOND:
         wrong = f"{beyond:.0%} of its variance is above {LARGEST_FREQUENCY / (2.0 * pi):.2g} Hz"
+    if density[-1] > CUT_OFF * density.max():
+        wrong = wrong or f"it is cut off at {frequency[-1]:.3g} Hz, near its peak"
     if wrong is not None:
         message = f"{wrong}; look at its units"
         raise InputError([Problem(str(path), 0, 0, message)])
@@ -305,6 +327,8 @@ def _spectral_arrays(path: Path) -> tuple[Floats, Floats]:
             values = values.sum(name, skipna=False) * step
         density = known_values(values).reshape(values.sizes[along[0]], -1)
         frequency = np.asarray(data[along[0]].values, float)
+        if "rad" in str(data[along[0]].attrs.get("units", "")):
+            frequency, density = frequency / (2.0 * pi), density * 2.0 * pi
     density = density[:, np.isfinite(density).all(axis=0)]
     if not density.size:
         raise InputError([Problem(str(path), 0, 0, "every spectrum in it has gaps")])

@@ -143,15 +143,9 @@ def rules_table(summary: Summary) -> Table:
             Column("fails", "% of profiles", numeric=True),
             lambda rule: broken(rule.fails, State.FAIL),
         ),
-        (
-            Column("at most", "%", numeric=True),
-            lambda rule: broken(rule.fails_at_most, State.FAIL),
-        ),
+        (Column("at most", "%", numeric=True), lambda rule: broken(rule.fails_at_most, State.FAIL)),
         (Column("warns", "%", numeric=True), lambda rule: broken(rule.warns, State.WARN)),
-        (
-            Column("limits", numeric=True, narrow=False),
-            lambda rule: str(len(rule.exceedances)),
-        ),
+        (Column("limits", numeric=True, narrow=False), lambda rule: str(len(rule.exceedances))),
         (Column("most often broken by"), _most_often),
         note="Shares are of the profiles in which a rule is judged. At most: if the rule also "
         "fails in every profile with a current that was not solved. A limit judged in no "

@@ -90,8 +90,7 @@ def mooring_section(assessment: Assessment, against: Comparison | None = None) -
         ),
         ReportPart("Launch, recovery, breaks", tuple(_on_the_way(assessment))),
         ReportPart(
-            "Inventory",
-            (inventory_table(assessment.inventory), deck_table(assessment.inventory)),
+            "Inventory", (inventory_table(assessment.inventory), deck_table(assessment.inventory))
         ),
         inputs_part(
             [stand.mooring.file for stand in stands],

@@ -11,16 +11,15 @@ from typing import TYPE_CHECKING, Any
 from pydantic import BaseModel
 
 from calm.assemble.datasheet import Datasheet, datasheet
-from calm.files import Catalogue, Component, Flexible
-from calm.files.catalogue import Assembly
+from calm.files import Catalogue
+from calm.files.catalogue import Defined
+from calm.files.components import FLEXIBLE_KINDS, Outline
 from calm.files.definition import EstimatedFigure
 from calm.quantities import QUANTITIES
 from calm.report.blocks import Cell, Column, Heading, Pairs, ReportPart, Table
 
 if TYPE_CHECKING:
     from calm.checks.catalogue_rules import CatalogueFinding, MissingFigures
-
-    Definition = Component | Assembly
 
 
 _PER_METRE = ("mass", "weight", "buoyancy", "net_buoyancy")
@@ -32,7 +31,7 @@ _AUTHOR = re.compile(r"[,;] (?![^()]*\))")
 _HEADING_OF_OTHERS = "other"
 
 
-def to_list(catalogue: Catalogue, definitions: Mapping[str, Definition]) -> ReportPart:
+def to_list(catalogue: Catalogue, definitions: Mapping[str, Defined]) -> ReportPart:
     """One line for each definition, under the name of its family."""
     columns = (
         Column("id"),
@@ -47,18 +46,20 @@ def to_list(catalogue: Catalogue, definitions: Mapping[str, Definition]) -> Repo
         if family != last:
             rows += [(Cell(),), (Cell(family.upper()),)]
             last = family
-        net = _say(definition, "net_buoyancy") if definition.kind != "assembly" else ""
-        breaking = "" if definition.breaking_load is None else _say(definition, "breaking_load")
+        net, breaking = (
+            "" if getattr(definition, key, None) is None else _say(definition, key)
+            for key in ("net_buoyancy", "breaking_load")
+        )
         name = definition.name or ""
         if definition.prefer is not None:
             name += f" (use {definition.prefer})"
+        if isinstance(definition, Outline):
+            name += f" (without {', '.join(map(_heading, definition.lacks))})"
         rows.append(tuple(map(Cell, (identifier, name, net, breaking))))
     return ReportPart("", (Table("", columns, tuple(rows), dense=True),))
 
 
-def to_card(
-    identifier: str, definition: Definition, catalogue: Catalogue | None = None
-) -> ReportPart:
+def to_card(identifier: str, definition: Defined, catalogue: Catalogue | None = None) -> ReportPart:
     """Every figure that a definition gives, in the units people read, and where it comes from.
 
     What follows from the figures comes after them, then, where several definitions of the catalogue
@@ -72,9 +73,7 @@ def to_card(
     return ReportPart("", (Heading(identifier), pairs, _comparison(catalogue, same)))
 
 
-def to_documents(
-    catalogue: Catalogue, definitions: Mapping[str, Definition]
-) -> list[dict[str, Any]]:
+def to_documents(catalogue: Catalogue, definitions: Mapping[str, Defined]) -> list[dict[str, Any]]:
     """An object each: `id`, `family` and every field, SI or degrees, None if absent.
 
     `derived` has what follows from the figures, `same_thing` the ids that describe the same, the
@@ -96,9 +95,10 @@ def _family(catalogue: Catalogue, identifier: str) -> str | None:
     return entry.family if entry else None
 
 
-def _figures(definition: Definition) -> Iterator[tuple[str, str]]:
+def _figures(definition: Defined) -> Iterator[tuple[str, str]]:
     placed = (*_FIRST, *_LAST, *_ELSEWHERE)
-    fields = [name for name in type(definition).model_fields if name not in placed]
+    every = (*type(definition).model_fields, *(definition.model_extra or ()))
+    fields = [name for name in every if name not in placed]
     for name in (*_FIRST, *fields, *_LAST):
         if getattr(definition, name) is not None:
             yield _heading(name), _say(definition, name)
@@ -151,15 +151,15 @@ def _comparison(catalogue: Catalogue, same: Sequence[str]) -> Table:
     return Table("", columns, tuple(rows))
 
 
-def _per_metre(definition: Definition) -> str:
-    return "/m" if isinstance(definition, Flexible) else ""
+def _per_metre(definition: Defined) -> str:
+    return "/m" if definition.kind in FLEXIBLE_KINDS else ""
 
 
 def _heading(name: str) -> str:
     return QUANTITIES[name].heading if name in QUANTITIES else name.replace("_", " ")
 
 
-def _say(definition: Definition, name: str) -> str:
+def _say(definition: Defined, name: str) -> str:
     value = getattr(definition, name)
     if name == "searched":
         return ", ".join(_heading(each) for each in value) + " (in none of the sources seen)"

@@ -161,7 +161,10 @@ def _sheet(columns: str, items: Iterable[Any]) -> tuple[Sequence[str], Rows]:
 
 
 def deck_report(deck: Deck, paper: Paper, notes: tuple[str, ...] = ()) -> Report:
-    """Diagram, logs, lists and plans; `notes` is what else is to be said on the first sheet."""
+    """Diagram, deployment log, lists, drop plan, and on a sheet of its own the recovery log.
+
+    `notes` is what else is to be said on the first sheet.
+    """
     parts: list[ReportPart] = [*document_part(deck.file)]
     said = (*deck.notes, *notes)
     if said:
@@ -170,16 +173,17 @@ def deck_report(deck: Deck, paper: Paper, notes: tuple[str, ...] = ()) -> Report
         shape = Figure("The net from the side, the current, and from above", net_svg(deck))
         parts.append(ReportPart("The net", (shape, *net_part(deck.result).blocks[1:-1])))
     parts += [
-        _last(deployment_part(deck)),
-        _last(recovery_part(deck)),
-        instruments_part(deck),
+        deployment_part(deck),
+        *([instruments_part(deck)] if deck.instruments else []),
         cutting_part(deck),
-        hardware_part(deck),
+        *([hardware_part(deck)] if deck.hardware else []),
         shipping_part(deck),
         lifts_part(deck),
     ]
     if isinstance(deck.plan, DropPlan):
         parts.append(drop_part(deck.plan))
+    parts[-1] = replace(parts[-1], blocks=(*parts[-1].blocks, PageBreak()))
+    parts.append(recovery_part(deck))
     (made_by,) = (f"{name} {number}" for name, number in versions()[:1])
     return Report(
         deck.file.name,
@@ -210,7 +214,3 @@ def plates(deck: Deck, paper: Paper) -> tuple[Plate, ...]:
         Plate(f"Mooring diagram, {number} of {len(pages)}", svg)
         for number, svg in enumerate(pages, 1)
     )
-
-
-def _last(part: ReportPart) -> ReportPart:
-    return replace(part, blocks=(*part.blocks, PageBreak()))

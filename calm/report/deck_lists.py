@@ -17,7 +17,7 @@ from calm.deck.deck_items import (
 from calm.deck.hardware import LENGTH_ERROR, Mark
 from calm.deck.shipping import total_of
 from calm.quantities import QUANTITIES, say
-from calm.report.blocks import Block, Cell, Column, Note, Prose, ReportPart, Table, table_of
+from calm.report.blocks import Cell, Column, Note, Prose, ReportPart, Table, table_of
 from calm.report.net_sheet import leg_titles
 from calm.report.sheet import figure_cell, quantity_column, quantity_field
 
@@ -109,10 +109,7 @@ def hardware_part(deck: Deck) -> ReportPart:
         Column("packed", share=0.0),
     )
     table = Table("", columns, tuple(rows), _SPARES)
-    blocks: tuple[Block, ...] = (table,)
-    if not deck.hardware:
-        blocks = (Prose(("The line lists no hardware.",)),)
-    return ReportPart("Hardware bill", (*blocks, Note((_IMPLIED,))))
+    return ReportPart("Hardware bill", (table, Note((_IMPLIED,))))
 
 
 def shipping_part(deck: Deck) -> ReportPart:

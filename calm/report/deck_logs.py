@@ -37,7 +37,7 @@ def deployment_part(deck: Deck) -> ReportPart:
                 "unstretched.",
             )
         ),
-        _releases(deck, _TESTED, [_BOX] * len(_TESTED)),
+        *_releases(deck, _TESTED, [_BOX] * len(_TESTED)),
         _soundings(),
         _positions(deck),
         *_over_the_side(deck),
@@ -75,7 +75,7 @@ def recovery_part(deck: Deck) -> ReportPart:
         _station(deck, ""),
         *([Pairs(known)] if known else []),
         Prose(tuple(said)),
-        _releases(deck, _FIRED, ()),
+        *_releases(deck, _FIRED, ()),
         _events(),
         *_surfacing(deck),
     )
@@ -148,7 +148,7 @@ def _piece(row: DeckRow) -> Cell:
     return Cell(row.label, detail, indented=row.first.on is not None, strong=True, goes_on=True)
 
 
-def _releases(deck: Deck, checks: Sequence[str], boxes: Sequence[Cell]) -> Table:
+def _releases(deck: Deck, checks: Sequence[str], boxes: Sequence[Cell]) -> list[Table]:
     """The releases with their codes, and what is checked of each: in boxes or in writing."""
     empty = [*boxes, *[Cell()] * (len(checks) - len(boxes) + 1)]
     rows = [
@@ -167,7 +167,7 @@ def _releases(deck: Deck, checks: Sequence[str], boxes: Sequence[Cell]) -> Table
         *(Column(check, share=0.0 if boxes else 0.7) for check in checks),
         Column("battery, remarks"),
     )
-    return Table("Releases", columns, tuple(rows), by_hand=True)
+    return [Table("Releases", columns, tuple(rows), by_hand=True)] if rows else []
 
 
 def _over_the_side(deck: Deck) -> list[Table]:
@@ -181,7 +181,7 @@ def _over_the_side(deck: Deck) -> list[Table]:
 
     fields: tuple[Field[DeckRow], ...] = (
         (Column("no.", numeric=True), lambda row: _numbers(row, order)),
-        (Column("piece", share=3.2), _piece),
+        (Column("piece", share=3.8), _piece),
         (Column("length,\nor place", QUANTITIES["length"].display_unit, share=1.3), length),
         (Column("serial\nnumber", share=0.7), lambda row: row.first.serial or ""),
         (Column("over", "UTC", share=0.6), lambda row: ""),
@@ -262,16 +262,16 @@ def _surfacing(deck: Deck) -> list[Table]:
     listed = [one.item for one in deck.recovery if not one.item.is_joint]
     fields: tuple[Field[DeckRow], ...] = (
         (Column("no.", numeric=True), lambda row: _numbers(row, order)),
-        (Column("piece", share=3.4), _piece),
-        (Column("serial\nnumber", share=0.8), lambda row: row.first.deployed_serial or ""),
+        (Column("piece", share=4.6), _piece),
+        (Column("serial\nnumber", share=0.95), lambda row: row.first.deployed_serial or ""),
         (
             Column("up after,\nor hangs", share=0.0),
             lambda row: _expected([risen[id(one)] for one in (*row.items, *row.floats)]),
         ),
-        (Column("seen", "UTC", share=0.6), lambda row: ""),
-        (Column("on deck", "UTC", share=0.6), lambda row: ""),
-        (Column("whole, runs,\nfouled", share=0.0), lambda row: Cell("☐   ☐   ☐")),
-        (Column("remarks", share=0.9), lambda row: row.first.remark or ""),
+        (Column("seen", "UTC", share=0.65), lambda row: ""),
+        (Column("on deck", "UTC", share=0.65), lambda row: ""),
+        (Column("whole,\nruns,\nfouled", share=0.0), lambda row: Cell("☐ ☐ ☐")),
+        (Column("remarks"), lambda row: row.first.remark or ""),
     )
     note = (
         "Up after: time since the release, or the depth at which a piece hangs once the "
@@ -291,7 +291,8 @@ def _expected(items: Sequence[RecoveredItem]) -> Cell:
     said = []
     for one in (items[0], items[-1]):
         if one.time is not None:
-            said.append(f"{one.time / 60.0:.1f} min")
+            minutes = one.time / 60.0
+            said.append(f"{minutes:.{1 if minutes < 10.0 else 0}f} min")
         elif one.hangs_at is not None:
             said.append(f"at {say('depth', one.hangs_at)}")
     text = " to ".join(dict.fromkeys(said)).replace(" min to", " to")

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from itertools import count
+from itertools import accumulate, count
 from string import ascii_uppercase
 
 from calm.case import Result
@@ -30,7 +31,7 @@ from calm.drawing.schematic.deck_parts import parts_of
 from calm.drawing.schematic.pen import INK, SOFT, Pen, picture, svg_text, wrapped
 from calm.drawing.schematic.shown_parts import TextRow, one_line
 from calm.drawing.schematic.sign import LINES, WORDS, Sign
-from calm.drawing.schematic.symbols import SEABED_ROOM, draw_cable, figure_of
+from calm.drawing.schematic.symbols import draw_cable, figure_of
 from calm.quantities import QUANTITIES, say
 from calm.report.check_summary import short_verdict
 from calm.report.net_sheet import ends_told, leg_title
@@ -192,30 +193,37 @@ def _pages(deck: Deck, paper: Paper) -> _Pages:
     column = column_of(rows, headings, paper.column_width)
     legend = tuple({part.sign.symbol: part.sign for part in parts}.values())
     need = _GROUND + LEADING - (-len(legend) // _LEGEND_COLUMNS) * _LEGEND_ROW
-    bottom = paper.size[1] - _MARGIN - block.height
-    foot = block.height
+    sets = (  # long cables are drawn shorter where that saves a page
+        [(line, measured(leg, column, growth)) for line, leg in zip(lines, legs, strict=True)]
+        for growth in (1.0, 0.5, 0.0)
+    )
+    columns = min((_even(each, paper, block.height, need) for each in sets), key=len)
+    return _Pages(one_line(deck.file.name), paper, block, column, columns, legend)
+
+
+def _even(
+    legs: Sequence[tuple[Result, Sequence[PlacedPart]]], paper: Paper, block: float, need: float
+) -> _Stacks:
+    """The columns of all legs; the last takes over parts until it is about as long as the first.
+
+    Below the last part there is `need` for the seabed and the legend, above the title `block` [pt].
+    """
+    bottom, foot = paper.size[1] - _MARGIN - block, block
     even: _Stacks = ()
-    while True:  # the last column takes over parts until it is about as long as the first
+    while True:
         marks = (
             letter + (str(turn) if turn else "") for turn in count() for letter in ascii_uppercase
         )
-        columns = _stacked(
-            (
-                one
-                for line, leg in zip(lines, legs, strict=True)
-                for one in _columns(line, measured(leg, column), paper, foot, marks)
-            ),
-            bottom,
-        )
+        every = (one for line, leg in legs for one in _columns(line, leg, paper, foot, marks))
+        columns = _stacked(every, bottom)
         if even and len(columns) > len(even):
-            break
+            return even
         first, last = (down + one.end for down, one in (columns[0][-1], columns[-1][-1]))
         if len(columns) % paper.columns or last + need <= bottom:
             even = columns
             if len(columns) == 1 or len(legs) > 1 or last >= _EVEN * first:
-                break
+                return even
         foot += 2 * LEADING
-    return _Pages(one_line(deck.file.name), paper, block, column, even, legend)
 
 
 _TOP = _MARGIN + _TITLE_ROOM + HEAD
@@ -233,7 +241,7 @@ def _columns(
     """
     afloat, (top, bottom) = line.type == "surface", ends_told(line)
     sea = _MAST - parts[0].height / 2 if afloat else _SKY + _SUBMERGED
-    room = paper.size[1] - foot - _MARGIN - _TOP - 2 * _CONTINUED - sea - SEABED_ROOM
+    room = paper.size[1] - foot - _MARGIN - _TOP - _CONTINUED - max(sea, _CONTINUED)
     above = top
     for group in _broken(parts, room):
         mark = "" if group[-1] is parts[-1] else next(marks)
@@ -330,29 +338,20 @@ def _broken(parts: Sequence[PlacedPart], room: float) -> Iterator[list[PlacedPar
     """Groups that fit a column, parted at a junction near its end where there is one."""
     rest = [*parts]
     while rest:
-        height, fits = 0.0, 0
-        while fits < len(rest) and (fits == 0 or height + rest[fits].height <= room):
-            height += rest[fits].height
-            fits += 1
+        heights = [*accumulate(one.height for one in rest)]
+        fits = max(bisect_right(heights, room), 1)
         if fits < len(rest):
-            fits = _break(rest, fits, room)
+            fits = _break(rest, heights, fits, room)
         yield rest[:fits]
         rest = rest[fits:]
 
 
-def _break(rest: Sequence[PlacedPart], fits: int, room: float) -> int:
+def _break(rest: Sequence[PlacedPart], heights: Sequence[float], fits: int, room: float) -> int:
     """Before which part to part: a junction, else a piece, else a clamp, as low as can be."""
-    height = sum(one.height for one in rest[:fits])
-    best = fits, 3
-    for number in range(fits, 0, -1):
-        part = rest[number].part
-        quality = 0 if part.junction else 2 if part.clamped else 1
-        if height < (1.0 - _NEAR_THE_END) * room and best[1] < 3:
-            break
-        if quality < best[1]:
-            best = number, quality
-        height -= rest[number - 1].height
-    return best[0]
+    least = (1.0 - _NEAR_THE_END) * room
+    near = [each for each in range(fits, 0, -1) if each == fits or heights[each - 1] >= least]
+    parts = {each: rest[each].part for each in near}
+    return min(near, key=lambda each: (not parts[each].junction, parts[each].clamped))
 
 
 _FIELDS = (

@@ -130,10 +130,7 @@ def write_file(path: Path, content: bytes) -> None:
 
 
 def printed(
-    report: Report,
-    paper: str = "a4",
-    least: float = 0.0,
-    leaves: Sequence[str] | None = None,
+    report: Report, paper: str = "a4", least: float = 0.0, leaves: Sequence[str] | None = None
 ) -> bytes:
     """Any report on pages; its texts reach the template as data, never as markup.
 

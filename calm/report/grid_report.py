@@ -83,10 +83,7 @@ def scales_table(fields: Mapping[str, GriddedQuantity]) -> Table:
         (Column("instruments", numeric=True), lambda one: str(_used(one[1]))),
         (Column("depth scale", "m", numeric=True), lambda one: f"{one[1].scales.depth:.3g}"),
         (Column("time scale", "h", numeric=True), lambda one: _hours(one[1])),
-        (
-            Column("rest", "%", numeric=True),
-            lambda one: f"{100.0 * one[1].scales.share:.2g}",
-        ),
+        (Column("rest", "%", numeric=True), lambda one: f"{100.0 * one[1].scales.share:.2g}"),
         (Column("widened", numeric=True), lambda one: _widened(one[1])),
         note="Correlation falls to 0.48 over one depth scale and to 0.37 over one time scale; "
         "the rest of the variance is uncorrelated. Widened: the factors that widen the bands "

@@ -170,14 +170,7 @@ def _floats(columns: Mapping[str, Any]) -> dict[str, NDArray[np.float64]]:
     return {name: np.asarray(column, np.float64) for name, column in columns.items()}
 
 
-UNITS = {
-    "length": "m",
-    "force": "N",
-    "angle": "deg",
-    "mass": "kg",
-    "speed": "m/s",
-    "time": "s",
-}
+UNITS = {"length": "m", "force": "N", "angle": "deg", "mass": "kg", "speed": "m/s", "time": "s"}
 """The units of every JSON document."""
 
 

@@ -7,6 +7,7 @@ from math import isnan
 from calm.checks.finding import State
 from calm.drawing.picture import figure_svg
 from calm.quantities import QUANTITIES, say
+from calm.records.sea_states import doubted
 from calm.report.blocks import (
     Block,
     Column,
@@ -43,28 +44,33 @@ def sea_response_report(analysis: WaveAnalysis) -> Report:
         said += ". Tension at the top over Hs"
     pictures = ReportPart("Tension", (Figure(said, _drawn(analysis, several)),))
     section = Section(analysis.name, (sea_response_part(analysis), pictures))
-    return Report(f"{analysis.name}: in waves", "", (), (section,), date())
+    return Report(analysis.name, "in waves", (), (section,), date())
 
 
 def sea_response_part(analysis: WaveAnalysis) -> ReportPart:
     """Return the pieces in the sea, or in the highest of several seas with a line of each."""
     states, highest = analysis.states, _highest(analysis)
-    blocks: list[Block] = [table_of("", states, *_SEAS)] if len(states) > 1 else []
-    blocks += [_pieces(highest), Prose(tuple(_told(analysis, highest)))]
-    if len(states) > 1:
+    title = f"Hs {highest.sea.significant_height:.1f} m, Tp {highest.sea.peak_period:.1f} s"
+    told, several = Prose(tuple(_told(analysis, highest))), len(states) > 1
+    blocks: list[Block] = [
+        _pieces(highest, f"In the highest sea, {title}" if several else ""),
+        told,
+    ]
+    if several:
+        blocks.insert(0, table_of("", states, *_SEAS))
+        title = f"{len(states)} seas"
         known = [each for each in analysis.fatigue if each.life]
-        blocks.append(table_of("", known, *_LIVES, note=_LIFE))
+        blocks.append(table_of("Fatigue over all seas", known, *_LIVES, note=_LIFE))
         unknown = [each.label for each in analysis.fatigue if each.unknown]
         if unknown:
             blocks.append(Prose((f"Life unknown: {', '.join(unknown)}.",)))
-    if analysis.warnings:
-        blocks.append(Prose(analysis.warnings, State.WARN))
+    doubts = [doubt for each in states if (doubt := doubted(each.sea)) is not None]
+    if said := (*analysis.warnings, *doubts[:1]):
+        blocks.append(Prose(said, State.WARN))
     if analysis.status == SLACK:
-        said = f"Slack: {', '.join(highest.slack)}. Linear tensions are not valid there."
-        blocks.append(Prose((said,), State.FAIL))
-    sea = highest.sea
-    title = f"{analysis.name}: Hs {sea.significant_height:.1f} m, Tp {sea.peak_period:.1f} s"
-    return ReportPart(title, tuple(blocks))
+        slack = ", ".join(dict.fromkeys(label for each in states for label in each.slack))
+        blocks.append(Prose((f"Slack: {slack}. Linear tensions are not valid there.",), State.FAIL))
+    return ReportPart(f"{analysis.name}: {title}", tuple(blocks))
 
 
 def _highest(analysis: WaveAnalysis) -> MooringInSea:
@@ -85,10 +91,12 @@ _LIVES: tuple[Field[PieceFatigue], ...] = (
 
 
 def _years(count: float | None) -> str:
-    return "-" if count is None else "> 1000" if count > 1000.0 else f"{count:.2g}"
+    if count is None or count > 1000.0:
+        return "-" if count is None else "> 1000"
+    return f"{float(f'{count:.2g}'):g}"
 
 
-def _pieces(state: MooringInSea) -> Table:
+def _pieces(state: MooringInSea, title: str) -> Table:
     tension, unit = QUANTITIES["tension"], QUANTITIES["tension"].display_unit
 
     def named(one: PieceInWaves) -> str:
@@ -108,7 +116,7 @@ def _pieces(state: MooringInSea) -> Table:
         (_number("heave\nm"), lambda one: f"{one.heave_std:.2f}"),
         (_number("tilt\n°"), lambda one: f"{one.tilt_std:.1f}"),
     )
-    return table_of("", state.components, *fields, note=_NOTE)
+    return table_of(title, state.components, *fields, note=_NOTE)
 
 
 def _percent(share: float) -> str:
@@ -120,18 +128,23 @@ _SEAS: tuple[Field[MooringInSea], ...] = (
     (_number("Tp\ns"), lambda state: f"{state.sea.peak_period:.1f}"),
     (_number("share\n%"), lambda state: _percent(state.sea.share)),
     (_number("std at the top\nN"), lambda state: f"{state.components[0].tension_std:.0f}"),
-    (_number("greatest there\nN"), lambda state: f"{state.components[0].tension_max:.0f}"),
+    (_number("max at the top\nN"), lambda state: f"{state.components[0].tension_max:.0f}"),
     (Column("slack"), lambda state: ", ".join(state.slack) or "-"),
 )
 
 
 def _told(analysis: WaveAnalysis, state: MooringInSea) -> list[str | tuple[Span, ...]]:
     said: list[str | tuple[Span, ...]] = []
-    if state.follower_std is not None:
+    top = state.components[0].tension_std
+    if state.follower_std is not None and abs(state.follower_std - top) > 1e-3 * top:
         said.append(
             "If the float followed every wave, the standard deviation of tension below it would "
             f"be {say('tension', state.follower_std)}."
         )
+    if state.pitch_std is not None:
+        said.append(f"The float pitches by {state.pitch_std:.1f}° (standard deviation).")
+    elif analysis.pitch_unknown is not None:
+        said.append(f"The pitch of the float is not computed: {analysis.pitch_unknown}.")
     one = analysis.accuracy
     good = (
         f"Standard deviations change by {one.mesh:.1%} with twice the elements, by "
@@ -145,11 +158,14 @@ def _drawn(analysis: WaveAnalysis, several: bool) -> str:
     from matplotlib import figure as drawing
 
     state = _highest(analysis)
-    figure = drawing.Figure(figsize=(7.4, 3.2))
-    figure.subplots_adjust(0.09, 0.15, 0.99, 0.97, wspace=0.4)
+    figure = drawing.Figure(figsize=(7.4, 3.2), layout="constrained")
     left, right, *over = figure.subplots(1, 3 if several else 2)
-    left.plot(*state.spectrum, color="#0b3c5d")
-    left.set(xlabel="frequency [rad/s]", ylabel="spectrum of tension [N² s/rad]", xscale="log")
+    omega, density = state.spectrum
+    left.plot(omega, 1e-6 * density, color="#0b3c5d")
+    left.set(xlabel="frequency [rad/s]", ylabel="spectrum of tension [kN² s/rad]", xscale="log")
+    ticks = [at for at in (0.2, 0.5, 1.0, 2.0, 5.0) if omega[0] < at < omega[-1]]
+    left.set_xticks(ticks, [f"{at:g}" for at in ticks])
+    left.minorticks_off()
     depth, *tensions = state.along
     for values, name, dash in zip(tensions, ("mean", "std", "max"), ("-", ":", "--"), strict=True):
         right.plot(values, depth, dash, color="#0b3c5d", label=name)

@@ -160,7 +160,7 @@ class _Words(Text):
     def wrap(self, console: Console, width: int, **options: Any) -> Lines:
         """Return its lines, none wider than `width` cells."""
         places: list[int] = []
-        for word in re.finditer(r"\S+", self.plain):
+        for word in re.finditer(r"(?m)^ *\S+|\S+", self.plain):
             start = word.start()
             while word.end() - start > width:
                 ends = [one.end() for one in _BREAKS.finditer(self.plain, start, start + width)]

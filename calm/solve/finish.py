@@ -255,7 +255,8 @@ def refusal_of(found: FoundShape, line: Line, water: Water) -> NoEquilibrium:
     if ending == BELOW_SEABED:
         return touching(piece, value)
     if ending == ABOVE_SURFACE:
-        return risen(piece, value)
+        depth, length = water.depth, float(line.length.sum())
+        return risen(piece, value, doubted_depth(depth) if length > 2.0 * depth else "")
     return audit_refusal(ending, value)
 
 
@@ -270,10 +271,16 @@ def watch_circle_radius(length: float, height: float) -> float:
     return float(np.sqrt(max(length**2 - height**2, 0.0)))
 
 
-def risen(piece: int, above: float) -> NoEquilibrium:
+def doubted_depth(depth: float) -> str:
+    """Return what is likely where a line is far too long for its water."""
+    return f" The water is {depth:.1f} m deep: check `depth` and its unit (m, ft)."
+
+
+def risen(piece: int, above: float, likely: str = "") -> NoEquilibrium:
     """A line that would rise out of the water."""
     return Status.ABOVE_SURFACE.because(
-        f"The line would rise out of the water: {{piece}} comes {above:.2f} m above the surface.",
+        f"The line would rise out of the water: {{piece}} comes {above:.2f} m above the surface."
+        + likely,
         piece,
     )
 

@@ -10,6 +10,7 @@ from calm.physics.line import Line, MarchError, Water
 from calm.physics.march import march
 from calm.physics.profile import Profile
 from calm.physics.track import Track
+from calm.solve.finish import doubted_depth
 from calm.solve.least_change import root_near
 from calm.solve.mooring import solve_mooring
 from calm.solve.problem import COARSE_STEP, REACH
@@ -74,7 +75,8 @@ def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings:
     clamped = f" and its own {shortest:.2f} m down to the lowest clamp" if shortest else ""
     raise Status.NO_EQUILIBRIUM.because(
         f"No length of {{piece}} puts the top of the line at {top_depth:g} m: the other pieces, "
-        f"{others:.2f} m unstretched{clamped}, have {room:.2f} m of water to stand in.",
+        f"{others:.2f} m unstretched{clamped}, have {room:.2f} m of water to stand in."
+        + (doubted_depth(water.depth) if others > 2.0 * room else ""),
         piece,
     )
 

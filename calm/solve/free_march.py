@@ -18,7 +18,7 @@ from calm.physics.line import Floats, Line, Trace, Water
 from calm.physics.march import Cuts, End, march
 from calm.physics.profile import Profile
 from calm.physics.seawater import REFERENCE_DENSITY
-from calm.physics.track import CableStretch, Rod, Track, head_count
+from calm.physics.track import Track, head_count
 from calm.solve.problem import REACH
 
 
@@ -212,8 +212,8 @@ class Rising(Moving):
         """Return those from the upper and from the lower end."""
         below = replace(self.line.reversed(), towed=True)
         return (
-            _first_pieces(Track.of(self.line), self._split),
-            _first_pieces(Track.of(below), len(self.line.length) - self._split),
+            Track.of(self.line).first_pieces(self._split),
+            Track.of(below).first_pieces(len(self.line.length) - self._split),
         )
 
     def meet(
@@ -225,7 +225,7 @@ class Rising(Moving):
         record: bool = False,
     ) -> Meeting:
         above, below = self._tracks
-        cables = sum(isinstance(stage, CableStretch) for stage in above.stages)
+        cables = len(above.cables)
         upper = None if cuts is None else cuts.first(cables)
         lower = None if cuts is None else cuts.after(cables)
         down = self._run(above, flow, self.top, angle_step, upper, record)
@@ -233,16 +233,6 @@ class Rising(Moving):
         trace = _joined(down.trace, up.trace, len(self.line.length)) if record else None
         force = np.add(down.force, up.force)
         return Meeting(force, up.z - down.z, down.cuts.and_then(up.cuts), trace)
-
-
-def _first_pieces(track: Track, count: int) -> Track:
-    """The track as far as the first pieces go."""
-    parts = tuple(
-        part
-        for part in track.stages
-        if (part.pieces[-1] if isinstance(part, Rod) else part.piece) < count
-    )
-    return replace(track, stages=parts)
 
 
 def _joined(upper: Trace, lower: Trace, pieces: int) -> Trace:

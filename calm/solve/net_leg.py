@@ -1,48 +1,36 @@
-"""A leg of a net as it is marched: from its free end, or from its upper end with a pull on it."""
+"""A leg of a net laid out for the march, and as a line of its own once it is found."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from math import inf, isfinite
 from typing import Any
 
 import numpy as np
 
 from calm.errors import NoEquilibrium
-from calm.physics.compiled import entry
-from calm.physics.line import (
-    COLUMNS,
-    FAILURES,
-    GOES_ON,
-    NO_ROOM,
-    Floats,
-    Line,
-    MarchError,
-    Trace,
-    Water,
-)
-from calm.physics.march import NO_CUTS, Cuts
-from calm.physics.passing import (
-    FAILURE,
-    FX,
-    FY,
-    FZ,
-    HANGING,
-    LANDED,
-    LEFT,
-    NODES,
-    USED,
-    How,
-    Z,
-    pass_line,
-)
+from calm.physics.compiled import entry, record_type
+from calm.physics.hull import HullRow, SurfaceFloat
+from calm.physics.line import Line, Trace, Water
 from calm.physics.referee import RefereeShape
-from calm.physics.seabed import lay_line
-from calm.physics.track import Load
+from calm.physics.stretch import Knot
+from calm.physics.strumming import AT_REST
+from calm.physics.track import CableStretch, Course, Load, Stage
+from calm.solve import net_march
 from calm.solve.audit import referee_of
-from calm.solve.closing import place
 from calm.solve.finish import risen, touching
-from calm.solve.problem import BELOW, CHANGED, Unknown, problem_of
+from calm.solve.net_march import LegRow, NetProblem
+from calm.solve.problem import (
+    CHANGED,
+    FINE,
+    HALVED,
+    BuoyantPiece,
+    LineProblem,
+    SearchArrays,
+    problem_of,
+    work_for,
+)
 from calm.solve.search import residuals
 from calm.solve.solution import Settings, Solution, Status
 
@@ -77,246 +65,123 @@ class NetLeg:
     lower: LegEnd
 
 
-@dataclass
-class Passed:
-    """Where a leg came out: from where it was begun [m], and the force there [N]."""
+@dataclass(frozen=True)
+class LaidLeg:
+    """A leg as it is marched: its line, and that in numbers.
 
-    way: Floats
-    end: float
-    force: Floats
-    landed: bool
-
-
-STANDING, HANGING_DOWN, PULLED = range(3)
-
-
-@dataclass
-class LegCourse:
-    """A leg as it is marched."""
+    A leg without a free upper end that has a free lower one is listed from there.
+    """
 
     leg: NetLeg
-    water: Water
-    settings: Settings
-    compiled: bool
-    cuts: Cuts | None = None
-    lands: bool = False
-    marches: int = field(default=0)
+    line: Line
+    kind: int
+    problem: LineProblem
 
-    def __post_init__(self) -> None:
-        leg, line = self.leg, self.leg.line
-        self.start, self.end = leg.upper, leg.lower
-        if leg.upper.free:
-            self.kind = STANDING
-        elif leg.lower.free:
-            self.kind, self.start, self.end = HANGING_DOWN, leg.lower, leg.upper
-            line = replace(line.reversed(), towed=True)
-        else:
-            self.kind, line = PULLED, replace(pulled(line, (0.0, 0.0, 0.0)), towed=True)
-        self.line = line
-        self.problem = problem_of(line, self.water, self.settings, compiled=False, room=1)
-        self.course, self.sea = self.problem.course, self.problem.sea
-        if self.compiled:
-            laid = problem_of(line, self.water, self.settings, compiled=True, room=1)
-            self.course, self.sea = laid.course, laid.sea
-        self.room, self.share, self.nodes = 512, 1.0, 0
-        ends = (end.place[2] for end in (leg.upper, leg.lower) if end.place is not None)
-        self.highest = max(0.0, *ends, 0.0)
-        self.stands = max(self.line.length[0], 0.5) if len(self.line.length) else 0.5
-        self.hanging, self.stage, self.grounded, self.hung = -1.0, -1, 0.0, 0
-        self.record: Any = ()
-        self.last = NO_CUTS
-        self.longest = max(
-            float(leg.line.length.sum()) * 0.01, min(0.01 * self.water.depth, 50.0) * 0.1
-        )
+    @property
+    def ends(self) -> tuple[LegEnd, LegEnd]:
+        """Where its march begins and ends."""
+        upper, lower = self.leg.upper, self.leg.lower
+        return (lower, upper) if self.kind == net_march.HANGING_DOWN else (upper, lower)
 
     @property
     def unknowns(self) -> int:
-        return 3 if self.kind == PULLED else 1
+        return 3 if self.kind == net_march.PULLED else 1
 
-    def passed(self, x: Floats, z: float, step: float) -> Passed:
-        """March the leg from its unknowns, with its start at a height [m] where that is held.
+    @staticmethod
+    def of(leg: NetLeg, water: Water, settings: Settings) -> LaidLeg:
+        """Lay out a leg."""
+        line = leg.line
+        if leg.upper.free:
+            kind = net_march.STANDING
+        elif leg.lower.free:
+            kind, line = net_march.HANGING_DOWN, replace(line.reversed(), towed=True)
+        else:
+            kind, line = net_march.PULLED, replace(pulled(line, (0.0, 0.0, 0.0)), towed=True)
+        return LaidLeg(leg, line, kind, problem_of(line, water, settings, compiled=False, room=1))
 
-        Raises
-        ------
-        MarchError
-        """
-        depth, out = self._loaded(x, z)
-        how = How(
-            step, np.degrees(step) * self.longest, 0.0, len(self.course.stages), self.lands,
-            self.cuts is not None, True,
+    def row(self, first: int) -> LegRow:
+        """The leg in numbers; `first` is the first of its unknowns."""
+        (start, end), (course, limits) = self.ends, (self.problem.course, self.problem.limits)
+        length, counted = self.leg.line.length, (len(course.stages), course.landing)
+        return LegRow(
+            self.kind, first, start.node, end.node, self.leg.lower.seabed,
+            max(float(length.sum()) * 0.01, min(0.01 * limits.depth, 50.0) * 0.1),
+            max(float(self.line.length[0]), 0.5) if len(length) else 0.5, self.highest,
+            int(limits.rides), *counted, len(course.cables), len(self.problem.surfacing),
+            len(self.problem.hull), len(self.line.length),
         )  # fmt: skip
-        self.marches += 1
-        while True:
-            room = self.room if self.cuts is None else len(self.cuts.lengths)
-            stages, loads = len(self.course.stages), len(self.course.loads)
-            cables, most = len(self.course.cables), 2 * (room + 3 * loads + 2 * stages + 2)
-            lengths, counts = self.cuts or (np.zeros(room), np.zeros(cables, np.int64))
-            given: tuple[Any, ...] = (lengths.copy(), counts.copy(), np.empty((COLUMNS, most)),
-                                         np.zeros(LEFT))  # fmt: skip
-            if not self.compiled:
-                given = (lengths.tolist(), counts.tolist(),
-                         [[0.0] * most for _ in range(COLUMNS)], [0.0] * LEFT)  # fmt: skip
-            asked: Any = (self.course, self.sea, how, float(depth), float(out), *given)
-            (entry(pass_line, *asked) if self.compiled else pass_line)(*asked)
-            used, counted, self.record, left = given
-            if left[FAILURE] != NO_ROOM:
-                break
-            self.room *= 8
-        return self._came_out(used, counted, left)
-
-    def _came_out(self, used: Any, counted: Any, left: Any) -> Passed:
-        if left[FAILURE] != GOES_ON:
-            raise MarchError(FAILURES[int(left[FAILURE])])
-        if self.cuts is None:
-            self.last = Cuts(np.array(used[: int(left[USED])]), np.array(counted, np.int64))
-        else:
-            self.last = self.cuts
-        self.nodes, force = int(left[NODES]), np.array([left[FX], left[FY], left[FZ]])
-        self.hung, self.stage, self.hanging = self.nodes, int(left[LANDED]), float(left[HANGING])
-        self.grounded, end, landed = 0.0, float(left[Z]), int(left[LANDED]) >= 0
-        record = self.record
-        if landed:
-            limits = self.problem.limits
-            self.nodes, self.grounded = lay_line(
-                self.problem.course, record, self.nodes, self.stage, self.hanging,
-                float(force[0]), float(force[1]), self.leg.lower.seabed, limits.excess,
-                limits.friction,
-            )  # fmt: skip
-            force = np.array([record[k][self.nodes - 1] for k in (3, 4, 5)])
-        last = self.nodes - 1
-        way = np.array([record[k][last] - record[k][0] for k in range(2)])
-        return Passed(way, end, force, landed)
-
-    def _loaded(self, x: Floats, z: float) -> tuple[float, float]:
-        """Set what is unknown; the depth of the start and what of a float stands out of it [m]."""
-        if self.kind == PULLED:
-            first = Load(0, -1, 0.0, 0.5, 0.0, float(x[2]), 0.0, 0.0, 0.0, 0, 0.0,
-                         float(x[0]), float(x[1]), 0.0, 0.0)  # fmt: skip
-            loads: Any = self.problem.course.loads
-            loads[0] = first
-            changed, depth, out = 1, -z, 0.0
-        else:
-            self.share, sought, shallow = 1.0, BELOW, float(x[0])
-            if self.kind == STANDING and shallow < 0.0 and self.problem.surfacing:
-                sought, self.share = 0, 1.0 + shallow / self.stands
-                shallow = self.share
-            unknown = Unknown(0.0, sought, self.problem.limits.rides, False, 0)
-            before = int(self.problem.work.left[CHANGED])
-            depth, out = place(self.problem, unknown, shallow)
-            changed = max(before, int(self.problem.work.left[CHANGED]))
-        if self.compiled:
-            packed: Any = self.course.loads
-            for i in range(changed):
-                packed[i] = tuple(self.problem.course.loads[i])
-        return depth, out
-
-    def lies_otherwise(self) -> bool:
-        """Whether it lies on the seabed but was taken to hang clear, or the other way round.
-
-        It is taken to do so from then on.
-        """
-        if not isfinite(self.leg.lower.seabed) or self.kind == HANGING_DOWN:
-            return False
-        lowest = min(self.record[2][: self.hung])
-        deeper = bool(lowest < self.leg.lower.seabed - 1e-6 * self.water.depth)
-        before = self.lands
-        self.lands = self.stage >= 0 if before else deeper
-        return self.lands != before
 
     @property
-    def goal(self) -> float | None:
-        """Height at which an end that is held is to come out [m]."""
-        if self.end.place is None:
-            return None
-        return self.end.seabed if self.lands else self.end.place[2]
+    def highest(self) -> float:
+        """How high it may come [m]: to the surface, or where an end is held above it."""
+        return max(0.0, *(each.place[2] for each in self.ends if each.place is not None), 0.0)
 
-    def solution(self, x: Floats, ends: Floats, errors: tuple[float, float]) -> Solution:
-        """The leg as a line of its own, audited.
 
-        Parameters
-        ----------
-        x : its unknowns
-        ends : (3,) where it ends [m]
-        errors : of depths [m] and of tensions [N]
+def lay_net(laid: Sequence[LaidLeg], nodes: int, compiled: bool, room: int) -> NetProblem:
+    """Lay out a net, with room for so many segments in each of its legs."""
+    firsts = [0, *np.cumsum([each.unknowns for each in laid]).tolist()]
+    size, problems = firsts[-1] + 3 * nodes, [each.problem for each in laid]
+    courses = [each.course for each in problems]
+    length = max(float(each.leg.line.length.sum()) for each in laid)
+    lifts = [np.abs(each.leg.line.net_force(np.zeros(len(each.leg.line.length)))) for each in laid]
+    force = max(1.0, *(float(lift.sum()) for lift in lifts))
+    scale, rows = np.full(size, length), np.full(size, length)
+    rows[firsts[-1] :] = force
+    for first, each in zip(firsts, laid, strict=False):
+        if each.kind == net_march.PULLED:
+            scale[first : first + 3] = force
 
-        Raises
-        ------
-        NoEquilibrium
-        """
-        trace, line = Trace.of(self.record, self.nodes), self.line
-        position = trace.position
-        position[:, :2] += ends[:2] - position[-1, :2]
-        if self.kind == PULLED:
-            line = replace(pulled(self.leg.line, (x[0], x[1], x[2])), towed=True)
-        carried = self._carried(line)
-        closure, moment = self._audited(carried)
-        first = 1 if self.kind == PULLED else 0
-        afloat = self.kind == STANDING and bool(x[0] < 0.0 and self.problem.surfacing)
-        floating = line.floating
-        riding = floating.riding(self.share) if afloat and floating is not None else None
-        lift = float(self.problem.surfacing[0].surface_lift) if afloat else 0.0
-        if self.kind == PULLED:
-            line = carried = self.leg.line
-        return Solution(
-            line=line,
-            water=self.water,
-            settings=self.settings,
-            position=position[first:],
-            force=trace.force[first:],
-            element_piece=trace.piece[first:] - first,
-            element_clamp=trace.clamp[first:],
-            landed=self.stage >= 0,
-            hanging=self.hung - 1 - first,
-            grounded_length=self.grounded,
-            cut=trace.cut[first:],
-            strain=trace.strain[first:],
-            afloat=(int(self.problem.surfacing[0].piece),) if afloat else (),
-            buoyancy_used=self.share,
-            reserve=(1.0 - self.share) * lift,
-            carried=carried,
-            riding=riding,
-            marches=self.marches,
-            segments=len(self.last.lengths),
-            miss=0.0,
-            depth_error=errors[0],
-            tension_error=errors[1],
-            lift_error=errors[1],
-            pull_error=errors[1],
-            closure=closure,
-            moment_residual=moment,
-            pulled=self.kind == PULLED,
-        )
+    stack: Any = np.stack if compiled else list
+    no_sea: Any = None
 
-    def _carried(self, line: Line) -> Line:
-        """The line as it is loaded, its float at the surface by what is in the water."""
-        names = {"buoyancy", "volume", "normal_drag", "tangential_drag", "lift", "push_east",
-                 "push_north"}  # fmt: skip
-        columns: dict[str, Any] = {name: getattr(line, name).copy() for name in names}
-        clamps = {"clamp_buoyancy": "buoyancy", "clamp_volume": "volume",
-                  "clamp_drag": "normal_drag", "clamp_lift": "lift"}  # fmt: skip
-        columns |= {name: getattr(line, name).copy() for name in clamps}
-        for i in range(int(self.problem.work.left[CHANGED])):
-            load = self.problem.course.loads[i]
-            if load.clamp < 0:
-                for name in names:
-                    columns[name][load.piece] = getattr(load, name)
-            else:
-                for name, of in clamps.items():
-                    columns[name][load.clamp] = getattr(load, of)
-        return replace(line, **columns)
+    def taken(array: Any) -> Any:
+        return array if compiled else array.tolist()
 
-    def _audited(self, line: Line) -> tuple[float, float]:
-        """Closure and moment residual of the last march, recomputed from its coordinates."""
-        referee = referee_of(line, self.water, 0.0, self.compiled)
-        shape = RefereeShape(self.record, self.nodes, self.hung - 1, referee.first, referee.last)
-        loads: Any = np.zeros((3, self.nodes))
-        asked = (
-            referee.moored, shape, loads if self.compiled else loads.tolist(), self.stage >= 0,
-            self.problem.limits,
-        )  # fmt: skip
-        law = entry(residuals, *asked) if self.compiled else residuals
-        off, moment = law(*asked)
-        return off, moment
+    def zeros(*shape: int, of: type = float) -> Any:
+        return taken(np.zeros(shape, of))
+
+    def stacked(kind: type, given: list[Any]) -> Any:
+        if not compiled:
+            return [list(row) for row in given]
+        array: Any = np.zeros((len(given), max(map(len, given))), record_type(kind))
+        for mine, row in zip(array, given, strict=True):
+            mine[: len(row)] = [tuple(each) for each in row]
+        return array
+
+    def listed(kind: type, given: list[Any]) -> Any:
+        return stacked(kind, [given])[0]
+
+    pieces, count = max(len(each.line.length) for each in laid), len(laid)
+    most = courses[0]._replace(
+        **{name: max((getattr(each, name) for each in courses), key=len)
+           for name in ("stages", "loads", "cables")}
+    )  # fmt: skip
+    works: Any = zip(*[work_for(most, 1, room, compiled) for _ in laid], strict=True)
+    vibrations = [each.vibration for each in courses if each.vibration != AT_REST]
+    course = Course(
+        stacked(Stage, [each.stages for each in courses]),
+        stacked(Load, [each.loads for each in courses]),
+        stacked(CableStretch, [each.cables for each in courses]),
+        stacked(Knot, [each.knots for each in courses]),
+        vibrations[0] if vibrations else AT_REST, 0,
+    )  # fmt: skip
+    lines = problems[0]._replace(
+        course=course, loads=stacked(Load, [each.loads for each in problems]),
+        surfacing=stacked(BuoyantPiece, [each.surfacing for each in problems]),
+        afloat=listed(SurfaceFloat, [each.afloat for each in problems]),
+        hull=stacked(HullRow, [each.hull for each in problems]),
+        flexible=zeros(1, of=int), starts=zeros(count, 1), sea=no_sea,
+        work=SearchArrays(*(stack(own) for own in works)),
+    )  # fmt: skip
+    places = [[*(end.place or (0.0, 0.0, 0.0))] for each in laid for end in each.ends]
+    return NetProblem(
+        listed(LegRow, [each.row(at) for at, each in zip(firsts, laid, strict=False)]), lines,
+        taken(np.array(places).reshape(-1, 6)), zeros(count, net_march.OF_LEG), zeros(count, 6),
+        zeros(count, pieces, of=int), zeros(count, pieces, of=int), zeros(count, pieces + 1, 4),
+        zeros(size), zeros(size), zeros(size, size), zeros(size), zeros(size),
+        zeros(size, size + 1), zeros(size, of=int), taken(scale), taken(rows), zeros(2),
+        firsts[-1], length, force,
+    )  # fmt: skip
 
 
 def pulled(line: Line, force: tuple[float, float, float]) -> Line:
@@ -346,16 +211,99 @@ def pulled(line: Line, force: tuple[float, float, float]) -> Line:
     )
 
 
-def refuse_misplaced(each: LegCourse, leg: Solution, near: float, before: int) -> None:
+def leg_found(
+    laid: LaidLeg, net: NetProblem, i: int, trace: Trace, errors: tuple[float, float],
+    water: Water, settings: Settings, compiled: bool,
+) -> Solution:  # fmt: skip
+    """A leg as a line of its own, audited.
+
+    Parameters
+    ----------
+    i : its number
+    trace : its shape, where it is
+    errors : of depths [m] and of tensions [N]
+    """
+    state, work, problem = net.state[i], net.lines.work, laid.problem
+    record, nodes = work.records[i][FINE], int(state[net_march.COUNT])
+    share, landed = float(state[net_march.SHARE]), bool(state[net_march.STAGE] >= 0.0)
+    line = laid.line
+    # loads as they were marched: a float at the surface by what is in the water, the pull
+    changed = 1 if laid.kind == net_march.PULLED else int(work.left[i][CHANGED])
+    carried = _carried(line, net.lines.course.loads[i][:changed])
+    referee = referee_of(carried, water, 0.0, compiled)
+    shape = RefereeShape(record, nodes, int(state[net_march.HUNG]) - 1, referee.first, referee.last)
+    loads: Any = np.zeros((3, nodes))
+    asked = (
+        referee.moored, shape, loads if compiled else loads.tolist(), landed,
+        problem.limits,
+    )  # fmt: skip
+    closure, moment = (entry(residuals, *asked) if compiled else residuals)(*asked)
+    first = int(laid.kind == net_march.PULLED)
+    afloat = laid.kind == net_march.STANDING and share < 1.0 and bool(problem.surfacing)
+    floating = line.floating
+    if first:
+        line = carried = laid.leg.line
+    return Solution(
+        line=line,
+        water=water,
+        settings=settings,
+        position=trace.position[first:],
+        force=trace.force[first:],
+        element_piece=trace.piece[first:] - first,
+        element_clamp=trace.clamp[first:],
+        landed=landed,
+        hanging=int(state[net_march.HUNG]) - 1 - first,
+        grounded_length=float(state[net_march.GROUNDED]),
+        cut=trace.cut[first:],
+        strain=trace.strain[first:],
+        afloat=(int(problem.surfacing[0].piece),) if afloat else (),
+        buoyancy_used=share,
+        reserve=(1.0 - share) * problem.surfacing[0].surface_lift if afloat else 0.0,
+        carried=carried,
+        riding=floating.riding(share) if afloat and floating is not None else None,
+        marches=int(state[net_march.MARCHES]),
+        segments=int(sum(work.counts[i][HALVED])),
+        miss=0.0,
+        depth_error=errors[0],
+        tension_error=errors[1],
+        lift_error=errors[1],
+        pull_error=errors[1],
+        closure=closure,
+        moment_residual=moment,
+        pulled=bool(first),
+    )
+
+
+def _carried(line: Line, loads: Sequence[Any]) -> Line:
+    """The line with loads in place of its own."""
+    names = {"buoyancy", "volume", "normal_drag", "tangential_drag", "lift", "push_east",
+             "push_north"}  # fmt: skip
+    clamps = {"clamp_buoyancy": "buoyancy", "clamp_volume": "volume",
+              "clamp_drag": "normal_drag", "clamp_lift": "lift"}  # fmt: skip
+    columns: dict[str, Any] = {name: getattr(line, name).copy() for name in {*names, *clamps}}
+    if isinstance(loads, np.ndarray):
+        loads = [Load(*row) for row in loads.tolist()]
+    for load in loads:
+        if load.clamp < 0:
+            for name in names:
+                columns[name][load.piece] = getattr(load, name)
+        else:
+            for name, of in clamps.items():
+                columns[name][load.clamp] = getattr(load, of)
+    return replace(line, **columns)
+
+
+def refuse_misplaced(laid: LaidLeg, leg: Solution, near: float, before: int) -> None:
     """Refuse a leg that is out of the water, or in the seabed where it cannot lie."""
-    near += 1e-6 * each.water.depth
+    depth = leg.water.depth
+    near += 1e-6 * depth
     height, hung = leg.position[:, 2], leg.position[: leg.hanging + 1, 2]
-    bed = each.leg.lower.seabed if isfinite(each.leg.lower.seabed) else -each.water.depth
-    worst, pieces = int(np.argmin(hung)), len(each.leg.line.length)
+    bed = laid.leg.lower.seabed if isfinite(laid.leg.lower.seabed) else -depth
+    worst, pieces = int(np.argmin(hung)), len(leg.line.length)
 
     def piece(node: int) -> int:
         own = leg.piece_at(node)
-        return before + (pieces - 1 - own if each.kind == HANGING_DOWN else own)
+        return before + (pieces - 1 - own if laid.kind == net_march.HANGING_DOWN else own)
 
     if hung[worst] < bed - near:
         raise touching(piece(worst), float(bed - hung[worst]))
@@ -367,7 +315,7 @@ def refuse_misplaced(each: LegCourse, leg: Solution, near: float, before: int) -
                 piece(0),
             )
     highest = int(np.argmax(height))
-    if height[highest] > near + each.highest:
+    if height[highest] > near + laid.highest:
         raise risen(piece(highest), float(height[highest]))
 
 

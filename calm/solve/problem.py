@@ -13,7 +13,7 @@ from calm.physics.hull import NEVER_AFLOAT, HullRow, SurfaceFloat
 from calm.physics.line import COLUMNS, Floats, Line, Water
 from calm.physics.passing import LEFT
 from calm.physics.profile import Interval, Profile, Sea
-from calm.physics.track import Course, Load, Rod, Track
+from calm.physics.track import ROD, Course, Load, Track
 from calm.solve.solution import (
     SUPPORTED,
     Settings,
@@ -295,7 +295,6 @@ def problem_of(
     )
     afloat = NEVER_AFLOAT if floating is None else floating.as_numbers
     hull = () if floating is None or floating.hull is None else floating.hull.rows
-    course, sea = track.course, profile.sea
     flexible: Any = line.flexible.astype(np.int64)
     if compiled:
         course, sea = track.packed, profile.packed
@@ -306,7 +305,8 @@ def problem_of(
         starts: Any = np.zeros((START_ROWS, STARTS if rough else 0))
         work = work_for(course, max(len(sea.intervals), intervals), room, True)
         return LineProblem(course, sea, loads, flexible, rows, afloat, hulls, limits, starts, work)
-    loads, none = course.loads, [[0.0] * 0] * START_ROWS
+    course, sea, none = track.course, profile.sea, [[0.0] * 0] * START_ROWS
+    loads = course.loads
     course = course._replace(loads=list(loads))
     work = work_for(course, len(sea.intervals), room, False)
     return LineProblem(
@@ -358,31 +358,29 @@ def reach_of(limits: Limits, step: float) -> float:
 
 def _surfacing(line: Line, water: Water, track: Track, lift: Floats) -> list[BuoyantPiece]:
     """The rigid buoyant pieces of a line, from the top down."""
-    at_surface = surface_lift(line, water)
-    upto, carried = np.cumsum(line.length), np.cumsum(lift)
-    found, place = [], 0
-    for number, part in enumerate(track.stages):
-        if not isinstance(part, Rod):
-            place += isinstance(part, Load)
+    at_surface = surface_lift(line, water).tolist()
+    upto, carried = np.cumsum(line.length).tolist(), np.cumsum(lift)
+    found = []
+    for number, (kind, first, size, _) in enumerate(track.stages):
+        if kind != ROD:
             continue
-        for i, load in enumerate(part.loads):
+        for place in range(first, first + size):
+            load = Load._make(track.loads[place])
             piece = load.piece
-            if load.clamp >= 0 or not line.buoyancy[piece] > 0.0:
+            if load.clamp >= 0 or not load.buoyancy > 0.0:
                 continue
-            above = sum(part.lengths[: part.pieces.index(piece)])
             found.append(
                 BuoyantPiece(
                     piece=piece,
-                    load=place + i,
+                    load=place,
                     stage=number,
-                    length=float(line.length[piece]),
-                    rigid_above=float(above),
-                    upto=float(upto[piece]),
-                    surface_lift=float(at_surface[piece]),
-                    least=1.0 - float(carried[piece:].min()) / at_surface[piece].item()
+                    length=load.length,
+                    rigid_above=load.at - 0.5 * load.length,
+                    upto=upto[piece],
+                    surface_lift=at_surface[piece],
+                    least=1.0 - float(carried[piece:].min()) / at_surface[piece]
                     if at_surface[piece] > 0.0
                     else 1.0,
                 )
             )
-        place += len(part.loads)
     return found

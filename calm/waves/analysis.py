@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass, replace
-from math import degrees, isnan
+from math import degrees
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -34,8 +34,8 @@ as the root mean square height)."""
 CONVERGED, SLACK = "converged", "slack-in-waves"
 
 SETTLED = 0.01
-"""Change of the standard deviations of tension with twice the elements or the frequencies below
-which there are enough of them."""
+"""Change of the standard deviations of tension and pitch with twice the elements or frequencies
+below which there are enough of them."""
 
 COARSEST, FEWEST, MOST_HALVINGS = 1.0 / 50.0, 32, 4
 """Elements as a share of the depth, frequencies, and how often both are refined."""
@@ -74,13 +74,15 @@ class MooringInSea:
     is pulled about most. `spectrum` is that of the tension at the top, N² s/rad at rad/s, and
     `along` the depth [m], mean, standard deviation and greatest tension down the line.
     `follower_std` is the deviation of the tension below a float that follows every wave [N], of
-    the highest of several seas alone; None of a line below the surface.
+    the highest of several seas alone; None of a line below the surface. `pitch_std` is that of the
+    pitch of the float [degrees]; None where it is not known.
     """
 
     sea: SeaState
     components: tuple[PieceInWaves, ...]
     slack: tuple[str, ...]
     follower_std: float | None
+    pitch_std: float | None
     worst: tuple[tuple[float, Floats], ...]
     spectrum: tuple[Floats, Floats]
     along: tuple[Floats, Floats, Floats, Floats]
@@ -88,7 +90,7 @@ class MooringInSea:
 
 @dataclass(frozen=True)
 class WaveAccuracy:
-    """Hold how much the deviations of tension change, as shares.
+    """Hold how much the deviations of tension, and of the float's pitch, change, as shares.
 
     `mesh` and `frequencies`: with twice as many elements or frequencies. `linearisation`: with a
     fifth less of the linearised drag, of which they are a measure of the share.
@@ -110,6 +112,7 @@ class WaveAnalysis:
     accuracy : in the highest and in the shortest of them
     fatigue : of each piece, by the shares of the seas; a single one lasts all the year
     warnings : what rests on assumptions
+    pitch_unknown : why the pitch of the float is not computed; None where it is
     """
 
     name: str
@@ -117,6 +120,7 @@ class WaveAnalysis:
     fatigue: tuple[PieceFatigue, ...]
     accuracy: WaveAccuracy
     warnings: tuple[str, ...]
+    pitch_unknown: str | None
 
     @property
     def status(self) -> str:
@@ -139,12 +143,14 @@ class WaveAnalysis:
                     "components": [asdict(one) for one in state.components],
                     "slack": list(state.slack),
                     "follower_std": state.follower_std,
+                    "pitch_std": state.pitch_std,
                 }
                 for state in self.states
             ],
             "fatigue": [asdict(one) for one in self.fatigue],
             "accuracy": asdict(self.accuracy),
             "warnings": list(self.warnings),
+            "pitch_unknown": self.pitch_unknown,
         }
 
 
@@ -169,11 +175,15 @@ class _Setting:
 
     def deviations(
         self, seas: Sequence[SeaState], first: Sequence[Floats | None], **how: Any
-    ) -> tuple[Floats, list[Floats]]:
-        """Return the deviations of tension (seas, pieces) [N], 0 on the seabed, and the flows."""
+    ) -> tuple[tuple[Floats, Floats], list[Floats]]:
+        """Return the deviations of tension (seas, pieces) [N], 0 on the seabed, and the flows.
+
+        Beside those of tension stand those of the float's pitch (seas, 1), 0 where it is not known.
+        """
         found = [self.respond(sea, flow, **how) for sea, flow in zip(seas, first, strict=True)]
-        deviations = [_by_piece(self.line, response) for response, _ in found]
-        return np.array(deviations), [flow for _, flow in found]
+        tensions = np.array([_by_piece(self.line, response) for response, _ in found])
+        pitches = np.array([[response.moments(response.pitch)[0]] for response, _ in found])
+        return (tensions, pitches), [flow for _, flow in found]
 
 
 def analyse(
@@ -219,11 +229,8 @@ def analyse(
         near = flow * (sea.significant_height / before.significant_height)
         response, flow = setting.respond(sea, near)
         before = sea
-        states.append(
-            _in_sea(
-                mooring, solution, setting, sea, response, flow, duration, beside=sea is highest
-            )
-        )
+        beside = sea is highest
+        states.append(_in_sea(mooring, solution, setting, sea, response, flow, duration, beside))
     warnings = [
         f"{label} gives no `stiffness` and is taken as inextensible: its tensions are "
         "overestimated."
@@ -236,7 +243,14 @@ def analyse(
         )
         for index in range(setting.line.top_pieces, len(mooring.file.pieces) - 1)
     )  # fmt: skip
-    return WaveAnalysis(mooring.file.name, tuple(states), fatigue, accuracy, tuple(warnings))
+    missing = None
+    if setting.buoy is not None and setting.buoy.profile is None:
+        missing = "it takes its `hull`, `centre_of_mass` and `radius_of_gyration`"
+    elif getattr(mooring.file.pieces[0].component, "centre_of_mass", None) and not setting.buoy:
+        missing = "it stands below the surface"
+    return WaveAnalysis(
+        mooring.file.name, tuple(states), fatigue, accuracy, tuple(warnings), missing
+    )
 
 
 def _settled(
@@ -275,12 +289,16 @@ def _settled(
 def _carried(line: LumpedLine, finer: LumpedLine, flow: Floats) -> Floats:
     """Return the flow past the nodes of a line at those of a finer one of the same shape."""
     along, at = (np.concatenate([[0.0], each.span.cumsum()]) for each in (line, finer))
-    return np.column_stack([np.interp(at, along, values) for values in flow.T])
+    nodes = np.column_stack([np.interp(at, along, values) for values in flow[:-1].T])
+    return np.vstack([nodes, flow[-1:]])
 
 
-def _change(before: Floats, after: Floats) -> float:
-    counted = after > SMALL * after.max(1, initial=0.0, keepdims=True)
-    return float(np.abs(before[counted] / after[counted] - 1.0).max(initial=0.0))
+def _change(before: tuple[Floats, Floats], after: tuple[Floats, Floats]) -> float:
+    changes = []
+    for one, other in zip(before, after, strict=True):
+        counted = other > SMALL * other.max(1, initial=0.0, keepdims=True)
+        changes.append(float(np.abs(one[counted] / other[counted] - 1.0).max(initial=0.0)))
+    return max(changes)
 
 
 def _by_piece(line: LumpedLine, response: WaveResponse) -> Floats:
@@ -295,17 +313,19 @@ def _in_sea(
     response: WaveResponse,
     flow: Floats,
     duration: float,
-    *,
     beside: bool,
 ) -> MooringInSea:
     line = setting.line
     spectral = np.abs(response.pull) ** 2 * response.weight[:, None]
     moments = moments_of(response.omega, spectral)
     tension, period = response.moments(response.pull)
-    departs = np.array([_most(*each, duration) for each in zip(tension, period, strict=True)])
+    departs = np.array([greatest_of(*each, duration) for each in zip(tension, period, strict=True)])
     deviations, periods = response.moments(line.upper_ends(response.pull))
     motion, _ = response.moments(response.motion)
     lean, _ = response.moments(line.upper_ends(line.turned(response.motion)))
+    pitch = None
+    if setting.buoy is not None and setting.buoy.profile is not None:
+        pitch = degrees(float(response.moments(response.pitch)[0]))
     rows: list[PieceInWaves] = []
     worst: list[tuple[float, Floats]] = []
     for piece in mooring.file.pieces[:-1]:
@@ -313,17 +333,15 @@ def _in_sea(
         mean = float(solution.tension[int(solution.piece_nodes[piece.index, 0])])
         if piece.index < line.top_pieces:  # nothing pulls at the upper end of what floats on top
             mean = float(solution.tension[int(solution.piece_nodes[line.top_pieces - 1, 1])])
-        if spring < 0:  # on the seabed
-            still = (mean, 0.0, mean, mean, np.nan, 0.0, 0.0, 0.0, mean, mean)
-            rows.append(PieceInWaves(piece.index, piece.label, *still))
-            worst.append((mean, np.zeros(4)))
-            continue
-        below = line.piece_spring[line.piece_spring > spring]
-        own = slice(spring, int(below.min()) if len(below) else len(tension))
-        at = spring + int(tension[own].argmax())
-        worst.append((float(line.tension[at]), moments[:, at]))
+        own, most_moved = slice(0), (mean, np.zeros(4))  # on the seabed
+        if spring >= 0:
+            below = line.piece_spring[line.piece_spring > spring]
+            own = slice(spring, int(below.min()) if len(below) else len(tension))
+            at = spring + int(tension[own].argmax())
+            most_moved = float(line.tension[at]), moments[:, at]
+        worst.append(most_moved)
         deviation, apart = float(deviations[piece.index]), float(periods[piece.index])
-        most = _most(deviation, apart, duration)
+        most = greatest_of(deviation, apart, duration)
         rows.append(
             PieceInWaves(
                 index=piece.index,
@@ -335,9 +353,11 @@ def _in_sea(
                 zero_crossing_period=apart,
                 slack_probability=passing_probability(mean, deviation, apart, duration),
                 heave_std=float(motion[node, 2]),
-                tilt_std=degrees(float(np.linalg.norm(lean[piece.index]))),
-                greatest=max(mean + most, float((line.tension + departs)[own].max())),
-                least=min(mean - most, float((line.tension - departs)[own].min())),
+                tilt_std=degrees(float(np.linalg.norm(lean[piece.index])))
+                if pitch is None or piece.index >= line.top_pieces
+                else pitch,
+                greatest=float((line.tension + departs)[own].max(initial=mean + most)),
+                least=float((line.tension - departs)[own].min(initial=mean - most)),
             )
         )
     follower = None
@@ -351,12 +371,8 @@ def _in_sea(
         tuple(rows),
         slack,
         follower,
+        pitch,
         worst=tuple(worst),
         spectrum=(response.omega, np.abs(response.pull[:, 0]) ** 2 * sea.density(response.omega)),
         along=(depth, line.tension, tension, line.tension + departs),
     )
-
-
-def _most(deviation: float, period: float, duration: float) -> float:
-    moves = deviation > 0.0 and not isnan(period)
-    return greatest_of(deviation, period, duration) if moves else 0.0

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
-from math import pi, sqrt
+from math import pi
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from calm.errors import UsageError
-from calm.files import Cylinder, Sphere
-from calm.files.rigid import Displacement, Rigid
+from calm.files.rigid import Rigid
+from calm.physics.hull import SPAR, TABULATED, Hull
 from calm.physics.line import Floats
 from calm.waves.lumped_line import Complexes
 
@@ -28,8 +27,19 @@ DISC_CD = 1.17
 SIDEWAYS_ADDED = 0.5
 """Added mass in surge over the displaced water, of a short hull."""
 
-PANELS_UP, PANELS_ROUND = 10, 28
-"""Panels of a hull: up its side and round it."""
+DISC_TURNED = 8.0 / 45.0
+"""Added inertia of a disc at the surface over ρR⁵: half of that of one deep down (Lamb 1932)."""
+
+END_LOSS = 0.42
+"""How far above its keel water flows round a hull that moves sideways, over its radius: the share
+1 - e^(-h/0.42R) of a section's water is added to it. So cylinders of a draft of 0.6 to 10 radii
+have the added mass that panels give (Capytaine 3), within 4 %."""
+
+SECTIONS = 46
+"""Of a hull, from its keel up."""
+
+PANELS_ROUND = 28
+"""Panels round a hull; up its side they reach from every fifth section to the next."""
 
 PANEL_FREQUENCIES = (0.1, *(0.5 + 0.25 * each for each in range(15)), 5.0, 7.0, 10.0)
 """Between which what panels give is interpolated [rad/s]."""
@@ -49,10 +59,17 @@ class Buoy:
     radius : of its waterplane [m]
     draft : [m]
     drag, heave_drag : K of its drag in the current, and as it heaves [N/(m/s)²]
-    rao : heave over the elevation by angular frequency [rad/s]: amplitude [-], phase [degrees]
-    follows : whether it heaves as the water does
-    panels : (4, f) of a panel method: frequency [rad/s], added mass [kg], radiation [kg/s] and what
-        lifts per metre of elevation [N/m]; None by the formulas of a disc
+    rao : angular frequency [rad/s], and of the heave over the elevation amplitude [-] and phase
+        [degrees]; where it is given, of the pitch amplitude [degrees/m] and phase [degrees]
+    follows : whether it heaves, and pitches, as the water does
+    panels : (12, f) of a panel method: frequency [rad/s]; added mass and radiation of heave, surge,
+        surge with pitch and pitch about the surface; what pushes per metre of elevation as it
+        heaves, and over ω², with which it grows, as it surges and pitches; None by the formulas
+    profile : (s, 2) radius and height above the surface of its sections [m], the keel first; None
+        where its pitch is not known
+    centre, bail : heights above the surface of the centre of mass, of the float and all it carries,
+        and of where the line pulls [m]
+    gyration : radius of gyration about a horizontal axis through the centre of mass [m]
     """
 
     mass: float
@@ -61,9 +78,13 @@ class Buoy:
     draft: float
     drag: float
     heave_drag: float
-    rao: tuple[tuple[float, float, float], ...] = ()
+    rao: tuple[tuple[float, ...], ...] = ()
     follows: bool = False
     panels: Complexes | None = None
+    profile: Floats | None = None
+    centre: float = 0.0
+    bail: float = 0.0
+    gyration: float = 0.0
 
     def heave(
         self, omega: Floats, number: Floats, density: float, gravity: float
@@ -84,18 +105,12 @@ class Buoy:
         if self.follows:
             return np.full(omega.shape, FOLLOWING + 0j), np.full(omega.shape, FOLLOWING + 0j)
         if self.rao:
-            at, amplitude, phase = np.array(self.rao).T
-            turned = np.interp(omega, at, np.unwrap(np.radians(phase)))
-            return (
-                np.full(omega.shape, FOLLOWING + 0j),
-                FOLLOWING * np.interp(omega, at, amplitude) * np.exp(1j * turned),
-            )
+            return np.full(omega.shape, FOLLOWING + 0j), FOLLOWING * self._given(omega, 1)
         spring = density * gravity * pi * self.radius**2
         if self.panels is not None:
-            at = self.panels[0].real
-            added, radiated, lifting = (np.interp(omega, at, one) for one in self.panels[1:])
-            inertia = self.mass + added.real
-            return spring - omega**2 * inertia + 1j * omega * radiated.real, lifting
+            rows = [np.interp(omega, self.panels[0].real, one) for one in self.panels]
+            inertia = self.mass + rows[1].real
+            return spring - omega**2 * inertia + 1j * omega * rows[2].real, rows[9]
         added = DISC_ADDED * density * self.radius**3
         across = number * self.radius
         smith = np.exp(-number * self.draft) * 2.0 * j1(across) / np.maximum(across, 1e-12)
@@ -103,6 +118,96 @@ class Buoy:
         radiated = number * omega * lifting**2 / (2.0 * density * gravity**2)
         resisting = spring - omega**2 * (self.mass + added) + 1j * omega * radiated
         return resisting, lifting + 1j * omega * radiated * smith
+
+    def pitch(
+        self, profile: Floats, omega: Floats, number: Floats, density: float, gravity: float
+    ) -> tuple[Complexes, Complexes]:
+        """Return what resists surge and pitch and what pushes, per metre of them and of elevation.
+
+        About the point of the axis in the surface, a pitch that moves forward what is above it
+        being positive: (3, f) in surge [N/m], surge with pitch [N] and pitch [N m], and (2, f).
+
+        Parameters
+        ----------
+        profile : as above
+        omega, number, density, gravity : as in `heave`
+        """
+        if self.panels is None:
+            added, radiated, pushing = self._of_sections(profile, omega, number, density, gravity)
+        else:
+            rows = [np.interp(omega, self.panels[0].real, one) for one in self.panels]
+            added, radiated = np.real(rows[3:9:2]), np.real(rows[4:9:2])
+            pushing = omega**2 * np.array(rows[10:])
+        second = self.centre**2 + self.gyration**2
+        inertia = self.mass * np.array([[1.0], [self.centre], [second]])
+        held = np.asarray(1j * omega * radiated - omega**2 * (inertia + added), complex)
+        held[2] += self.righting(profile, density, gravity)
+        if self.follows or (self.rao and len(self.rao[0]) > 3):
+            given = 1j * number if self.follows else self._given(omega, 3) * pi / 180.0
+            held[2] += FOLLOWING
+            pushing[1] += FOLLOWING * given
+        return held, pushing
+
+    def _given(self, omega: Floats, column: int) -> Complexes:
+        """Return the response of `rao` with its amplitude in a column, its phase in the next."""
+        at, amplitude, phase = np.array(self.rao).T[[0, column, column + 1]]
+        turned = np.interp(omega, at, np.unwrap(np.radians(phase)))
+        return np.asarray(np.interp(omega, at, amplitude) * np.exp(1j * turned))
+
+    def righting(self, profile: Floats, density: float, gravity: float) -> float:
+        """Return the moment that rights the float, per radian of pitch [N m].
+
+        That of waterplane, centre of buoyancy and weight, which of a free float is its weight times
+        the metacentric height, and of the line, which pulls down at the bail.
+        """
+        radius, height = profile.T
+        buoyancy = float(np.trapezoid(radius**2 * height) / np.trapezoid(radius**2))
+        plane = 0.25 * density * pi * self.radius**4
+        pulled = (self.displaced - self.mass) * self.bail
+        moment = plane + self.displaced * buoyancy - self.mass * self.centre - pulled
+        return gravity * moment
+
+    def _of_sections(
+        self, profile: Floats, omega: Floats, number: Floats, density: float, gravity: float
+    ) -> tuple[Floats, Floats, Complexes]:
+        """Return added mass (3, f), radiation (3, f) and what pushes (2, f), as `pitch` has them.
+
+        The pressure of the waves on the hull itself; added mass of its sections by `END_LOSS`, of
+        its bottom by `DISC_TURNED`, and both pushed by the water as it moves there; radiation by
+        Haskind's relation, k ω Xi Xj / (4 ρ g²) in deep water (Newman 1977, 6.18).
+        """
+        from scipy.special import j1, jv
+
+        radius, height = profile.T
+        area = pi * radius**2
+        area *= self.displaced / (density * np.trapezoid(area, height))
+        share = 1.0 - np.exp((height[0] - height) / (END_LOSS * self.radius))
+        turned = DISC_TURNED * density * self.radius**5
+        powers = height ** np.arange(3)[:, None]
+        added = density * np.trapezoid(share * area * powers, height)[:, None]
+        added[2] += turned
+
+        k = number[:, None]
+        across = np.maximum(k * radius, 1e-9)
+        smith = np.exp(k * height) * 2.0 * j1(across) / across
+        lean = 8.0 * jv(2, across) / across**2
+        surging = (1.0 + share) * area * smith
+        lifted = 0.25 * k * area * radius**2 * np.exp(k * height) * lean
+        turning = np.trapezoid(surging * height - lifted, height)
+        turning += 0.25 * pi * self.radius**4 * lean[:, -1]
+        slope = 1j * number * np.exp(-number * self.draft) * lean[:, -1]
+        pressed = np.array([np.trapezoid(surging, height), turning])
+        pushing = 1j * density * gravity * number * pressed
+        pushing[1] -= omega**2 * turned * slope
+
+        one, two = pushing.imag
+        squares = np.array([one * one, one * two, two * two])
+        radiated = number * omega / (4.0 * density * gravity**2) * squares
+        water = omega * np.trapezoid(area * smith, height) / np.trapezoid(area, height)
+        rate = (1j * omega * slope).real
+        pushing[0] += radiated[0] * water + radiated[1] * rate
+        pushing[1] += radiated[1] * water + radiated[2] * rate
+        return added, radiated, pushing
 
 
 def buoy_of(mooring: Mooring, solution: Solution, follows: bool) -> Buoy | None:
@@ -125,11 +230,13 @@ def buoy_of(mooring: Mooring, solution: Solution, follows: bool) -> Buoy | None:
     riding, component = solution.riding, piece.component
     if not isinstance(component, Rigid):
         raise UsageError(f"{piece.label}, a {component.kind}, floats at the surface, and no float")
-    given = component.heave_response
+    given = component.rao or ()
     follows = follows or component.heave == "follows"
     draft = 0.0 if riding is None or np.isnan(riding.draft) else riding.draft
-    radius = _waterplane_radius(component, draft)
-    if radius is None and not (follows or given):
+    floating = mooring.line.floating
+    radius, profile = _round_hull(None if floating is None else floating.hull, draft)
+    known = radius > 0.0 if component.heave != "panels" else profile is not None
+    if not (known or follows or (given and component.heave != "panels")):
         raise UsageError(
             f"{piece.label} has no hull, which decides how it heaves: give its `hull`, or "
             "`heave: follows`"
@@ -139,64 +246,59 @@ def buoy_of(mooring: Mooring, solution: Solution, follows: bool) -> Buoy | None:
         raise UsageError(f"{piece.label} gives no `mass`, which decides how it heaves")
     density = mooring.water.density_at(np.array(0.0))
     panels = None
-    if component.heave == "panels" and not follows:
-        profile = _profile(component, draft)
-        if profile is None:
-            raise UsageError(f"{piece.label} has no hull to panel: give its `hull`")
-        panels = panel_heave(profile, float(density), mooring.water.gravity)
+    if component.heave == "panels" and profile is not None and not follows:
+        panels = panel_response(profile[::5], float(density), mooring.water.gravity)
+    centre, gyration = component.centre_of_mass, component.radius_of_gyration
+    if centre is None and given and len(given[0]) > 3:
+        centre, gyration = draft, 0.0
     lift = float(solution.force[int(solution.piece_nodes[index, 1]), 2])
     mass = float(sum(mass or 0.0 for mass in masses))
-    return Buoy(
+    buoy = Buoy(
         mass=mass,
         displaced=max(mass + lift / mooring.water.gravity, 0.0),
-        radius=radius or 0.0,
+        radius=radius,
         draft=draft,
         drag=float(solution.carried.normal_drag[index]) * float(density) / 1025.0,
-        heave_drag=0.5 * float(density) * DISC_CD * pi * (radius or 0.0) ** 2,
+        heave_drag=0.5 * float(density) * DISC_CD * pi * radius**2,
         rao=given,
         follows=follows,
         panels=panels,
+        profile=None if centre is None else profile,
+        centre=(centre or 0.0) - draft,
+        bail=(component.bail or 0.0) - draft,
+        gyration=gyration or 0.0,
     )
+    if buoy.profile is not None and gyration:
+        righted = buoy.righting(buoy.profile, float(density), mooring.water.gravity)
+        if righted <= 0.0:
+            raise UsageError(
+                f"{piece.label} does not float upright: its `centre_of_mass` is {centre:g} m above "
+                f"the keel, its draft {draft:.2f} m; {-righted:.0f} N m per radian turn it over"
+            )
+    return buoy
 
 
-def _waterplane_radius(component: object, draft: float) -> float | None:
-    """Return the radius of a disc as large as the hull's waterplane [m]; None where unknown."""
-    hull = getattr(component, "hull", None)
-    if isinstance(hull, Displacement):
-        rows = hull.displacement
-        if draft <= 0.0:
-            return None
-        for (low, below, _), (high, above, _) in pairwise(rows):
-            if draft <= high:
-                return sqrt((above - below) / (high - low) / pi)
-        return None
-    diameter = getattr(component, "diameter", None)
-    if isinstance(component, Sphere) and draft > 0.0 and diameter:
-        return sqrt(max(draft * (diameter - draft), 0.0))
-    if isinstance(component, Cylinder) and diameter:
-        return float(diameter) / 2.0
-    return None
+def _round_hull(hull: Hull | None, draft: float) -> tuple[float, Floats | None]:
+    """Return the radius of a hull's waterplane [m], and (s, 2) radius and height above the surface
+    of its sections [m], the keel first; 0 and None where they are not known."""
+    if hull is None or draft <= 0.0:
+        return (0.5 * hull.area / hull.height if hull and hull.form == SPAR else 0.0), None
+    up = np.linspace(0.0, draft, SECTIONS)
+    radii = np.sqrt(np.maximum(up * (hull.height - up), 0.0))
+    plane = float(radii[-1])
+    if hull.form == SPAR:
+        plane = 0.5 * hull.area / hull.height
+        radii = np.full(SECTIONS, plane)
+    elif hull.form == TABULATED:
+        drafts, volumes, _ = np.array(hull.rows).T
+        wide = np.sqrt(np.diff(volumes) / np.diff(drafts) / pi)
+        radii = np.interp(up, 0.5 * (drafts[1:] + drafts[:-1]), wide)
+        plane = float(wide[min(int(np.searchsorted(drafts, draft)), len(wide)) - 1])
+    return plane, np.column_stack([radii, up - draft])
 
 
-def _profile(component: object, draft: float) -> Floats | None:
-    """Return (n, 2) radius and height over the surface of a round hull, its keel first [m]."""
-    hull, diameter = getattr(component, "hull", None), getattr(component, "diameter", None)
-    heights = np.linspace(-draft, 0.0, PANELS_UP)
-    if isinstance(hull, Displacement):
-        rows = np.array(hull.displacement)
-        between = 0.5 * (rows[1:, 0] + rows[:-1, 0])
-        radii = np.sqrt(np.diff(rows[:, 1]) / np.diff(rows[:, 0]) / pi)
-        return np.column_stack([np.interp(heights + draft, between, radii), heights])
-    if isinstance(component, Sphere) and diameter:
-        up = heights + draft
-        return np.column_stack([np.sqrt(np.maximum(up * (diameter - up), 0.0)), heights])
-    if isinstance(component, Cylinder) and diameter:
-        return np.column_stack([np.full(PANELS_UP, 0.5 * float(diameter)), heights])
-    return None
-
-
-def panel_heave(profile: Floats, density: float, gravity: float) -> Complexes:
-    """Return heave of a round hull in deep water by the panels of Capytaine, as `Buoy.panels`.
+def panel_response(profile: Floats, density: float, gravity: float) -> Complexes:
+    """Return what panels give of a round hull in deep water, as `Buoy.panels`; by Capytaine.
 
     Parameters
     ----------
@@ -226,12 +328,21 @@ def panel_heave(profile: Floats, density: float, gravity: float) -> Complexes:
     points = np.insert(outline, 1, 0.0, axis=1)
     body = capytaine.FloatingBody(mesh=from_profile(points, n=PANELS_ROUND))
     body.add_translation_dof(name="Heave")
+    body.add_translation_dof(name="Surge")
+    about = {"rotation_center": np.zeros(3), "direction": np.array([0.0, 1.0, 0.0])}
+    body.add_rotation_dof(name="Pitch", **about)
     solver, found = capytaine.BEMSolver(), []
     for omega in PANEL_FREQUENCIES:
         given = {"body": body, "omega": omega, "rho": density, "g": gravity}
-        moved = solver.solve(capytaine.RadiationProblem(radiating_dof="Heave", **given))
+        row = [omega + 0j]
+        for way, other in _WAYS:
+            moved = solver.solve(capytaine.RadiationProblem(radiating_dof=way, **given))
+            row += [moved.added_masses[other], moved.radiation_dampings[other]]
         waves = capytaine.DiffractionProblem(wave_direction=0.0, **given)
-        lifts = solver.solve(waves).forces["Heave"] + froude_krylov_force(waves)["Heave"]
-        mass, radiation = moved.added_masses["Heave"], moved.radiation_dampings["Heave"]
-        found.append((omega, mass, radiation, np.conj(lifts)))
+        bent, straight = solver.solve(waves).forces, froude_krylov_force(waves)
+        pushing = [np.conj(bent[way] + straight[way]) for way in ("Heave", "Surge", "Pitch")]
+        found.append([*row, pushing[0], pushing[1] / omega**2, pushing[2] / omega**2])
     return np.array(found, complex).T
+
+
+_WAYS = ("Heave", "Heave"), ("Surge", "Surge"), ("Pitch", "Surge"), ("Pitch", "Pitch")

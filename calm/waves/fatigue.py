@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import exp, gamma, log, pi, sqrt
+from math import exp, gamma, isnan, log, pi, sqrt
 from typing import Literal
 
 import numpy as np
@@ -17,7 +17,7 @@ from calm.physics.materials import fibre_of, materials_in
 def greatest_of(deviation: float, period: float, duration: float) -> float:
     """Return the most probable greatest departure of a Gaussian process from its mean.
 
-    σ √(2 ln N) of N = duration / zero-crossing period (Longuet-Higgins 1952).
+    σ √(2 ln N) of N = duration / zero-crossing period (Longuet-Higgins 1952); 0 where it is still.
 
     Parameters
     ----------
@@ -25,6 +25,8 @@ def greatest_of(deviation: float, period: float, duration: float) -> float:
     period : between upward crossings of the mean [s]
     duration : [s]
     """
+    if not deviation > 0.0 or isnan(period):
+        return 0.0
     return deviation * sqrt(2.0 * log(max(duration / period, 1.0 + 1e-9)))
 
 

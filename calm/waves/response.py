@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import erf, exp, pi, radians, sqrt
+from typing import NamedTuple
 
 import numpy as np
 
@@ -38,14 +39,14 @@ class WaveResponse:
     weight : (f,) variance of the elevation that each stands for [m²]
     motion : (f, n, 3) of the nodes [m/m]
     pull : (f, n-1) tension in the springs [N/m]
-    iterations : of the linearisation
+    pitch : (f,) of the float, toward where the waves run [rad/m]
     """
 
     omega: Floats
     weight: Floats
     motion: Complexes
     pull: Complexes
-    iterations: int
+    pitch: Complexes
 
     def moments(self, transfer: Complexes) -> tuple[Floats, Floats]:
         """Return standard deviation and zero-crossing period [s] of transfers (f, …)."""
@@ -80,14 +81,18 @@ class Waves:
         """Return the wave numbers [1/m]."""
         return wave_numbers(self.omega, self.depth, self.gravity)
 
+    @property
+    def ahead(self) -> Floats:
+        """Return the unit vector of where they run, (3,)."""
+        return np.array([np.sin(radians(self.toward)), np.cos(radians(self.toward)), 0.0])
+
     def velocity(self, position: Floats) -> Complexes:
         """Return the velocity of the water at (n, 3) places, per metre of elevation: (f, n, 3).
 
         Linear waves, elevation Re e^(i(ωt - ks)), s toward where they run.
         """
         k, omega = self.number[:, None], self.omega[:, None]
-        ahead = np.array([np.sin(radians(self.toward)), np.cos(radians(self.toward)), 0.0])
-        height = np.minimum(position[:, 2], 0.0)[None, :]
+        ahead, height = self.ahead, np.minimum(position[:, 2], 0.0)[None, :]
         deep = k * self.depth
         # cosh k(z+h) / sinh kh and sinh k(z+h) / sinh kh without overflow
         whole = 1.0 - np.exp(-2.0 * np.minimum(deep, 300.0))
@@ -97,6 +102,63 @@ class Waves:
         along = omega * decay * (1.0 + rest) * phase
         up = 1j * omega * decay * (1.0 - rest) * phase
         return np.asarray(along[:, :, None] * ahead + up[:, :, None] * np.array([0.0, 0.0, 1.0]))
+
+
+class _Afloat(NamedTuple):
+    """What holds a float and what pushes it, by its bail's three ways and its pitch.
+
+    `held` (f, 4, 4) and `pushed` (f, 4) per metre of elevation, without drag. Drag acts where
+    `ways` (p, 3, 4) says how that moves, in water of these velocities (f, p, 3), and by `turning`,
+    K of its bottom, on its turn beside the `slope` (f,) of the waves.
+    """
+
+    held: Complexes
+    pushed: Complexes
+    ways: Floats
+    water: Complexes
+    turning: float
+    slope: Complexes
+
+    @classmethod
+    def of(cls, place: Floats, buoy: Buoy, waves: Waves) -> _Afloat:
+        omega, number, ahead, hull = waves.omega, waves.number, waves.ahead, buoy.profile
+        medium = (omega, number, waves.density, waves.gravity)
+        if hull is None:
+            deep, heights, both, turning = 0.0, place[2:], 0.0, 0.0
+            moved = (1.0 + SIDEWAYS_ADDED) * buoy.displaced
+            surge, turn = -(omega**2) * (moved + buoy.mass - buoy.displaced), 1.0
+            middle = waves.velocity(np.array([[0.0, 0.0, -0.5 * buoy.draft]]))[:, 0]
+            pushing = 1j * omega * moved * (middle @ ahead)
+        else:
+            (surge, both, turn), (pushing, turning) = buoy.pitch(hull, *medium)
+            # two points stand for a drag that is the same all over the draft
+            deep, heights = -buoy.bail, buoy.draft * (-0.5 + np.array([-1.0, 1.0]) / sqrt(12.0))
+        held = np.zeros((len(omega), 4, 4), complex)
+        pushed = pushing[:, None] * np.array([*ahead, deep], complex)
+        held[:, 2, 2], pushed[:, 2] = buoy.heave(*medium)
+        held[:, 0, 0] = held[:, 1, 1] = surge
+        if hull is not None:
+            held[:, :3, 3] = held[:, 3, :3] = (both + deep * surge)[:, None] * ahead
+        held[:, 3, 3] = turn + 2.0 * deep * both + deep**2 * surge
+        pushed[:, 3] += turning
+        at = np.column_stack([np.tile(place[:2], (len(heights), 1)), heights])
+        arms = np.zeros(1) if hull is None else heights + deep
+        ways = np.stack([np.column_stack([np.eye(3), arm * ahead]) for arm in arms])
+        elevation = np.exp(-1j * number * float(place @ ahead))
+        # of the bottom: the drag of its heave, by the third power of the distance from the axis
+        drag = 0.0 if hull is None else buoy.heave_drag * 8.0 * buoy.radius**3 / (15.0 * pi)
+        slope = 1j * number * np.exp(-number * buoy.draft) * elevation
+        return cls(held, pushed * elevation[:, None], ways, waves.velocity(at), drag, slope)
+
+    def dragged(self, omega: Floats, drag: Floats, turning: float) -> tuple[Complexes, Complexes]:
+        """Return what holds and what pushes with the linear drag (3, 3) and that of its turn."""
+        each = drag / len(self.ways)
+        whole = np.einsum("pca,cd,pdb->ab", self.ways, each, self.ways)
+        held = self.held + 1j * omega[:, None, None] * whole
+        held[:, 3, 3] += 1j * omega * turning
+        pushed = self.pushed + np.einsum("pca,cd,fpd->fa", self.ways, each, self.water)
+        pushed[:, 3] += 1j * omega * turning * self.slope
+        return held, pushed
 
 
 def respond(
@@ -126,21 +188,39 @@ def respond(
     steps = np.diff(omega, prepend=omega[0], append=omega[-1])
     weight = sea.density(omega) * 0.5 * (steps[:-1] + steps[1:])
     water = waves.velocity(line.position)
-    forced = _inertia_force(line, buoy, waves, water)
+    forced = _inertia_force(line, waves, water)
     still = np.sqrt((np.abs(water) ** 2 * weight[:, None, None]).sum(0)) + STILL
-    flow = still if first is None else first
-    iterations = 0
-    while iterations < MOST_ITERATIONS:
-        iterations += 1
-        damping = drag_factor * _linearised(line, buoy, flow)
-        motion = _solved(line, buoy, waves, water, forced, damping)
-        found = _deviations(line, water - 1j * omega[:, None, None] * motion, weight)
+    flow = np.vstack([still, still[:1]]) if first is None else first
+    afloat = None if buoy is None else _Afloat.of(line.position[0], buoy, waves)
+    axes, rate = _axes(line), 1j * omega[:, None, None]
+    pitch, held = np.zeros(len(omega), complex), None
+    for _ in range(MOST_ITERATIONS):
+        damping = drag_factor * _linearised(line, buoy, flow[:-1])
+        if afloat is not None:
+            turning = drag_factor * afloat.turning * _slope(0.0, flow[-1, 0])
+            whole, pushed = afloat.dragged(omega, damping[0], turning)
+            damping[0] = 0.0
+            lever = whole[:, :3, 3] / whole[:, 3, 3, None]
+            bail = whole[:, :3, :3] - lever[:, :, None] * whole[:, 3, None, :3]
+            held = bail, pushed[:, :3] - lever * pushed[:, 3, None]
+        motion = _solved(line, held, waves, water, forced, damping)
+        found = np.zeros_like(flow)
+        found[:-1] = _deviations(axes, water - rate * motion, weight)
+        if afloat is not None:
+            rest = pushed[:, 3] - (whole[:, 3, :3] * motion[:, 0]).sum(1)
+            pitch = rest / whole[:, 3, 3]
+            moved = np.column_stack([motion[:, 0], pitch])
+            past = afloat.water - rate * np.einsum("pca,fa->fpc", afloat.ways, moved)
+            own = _deviations(np.repeat(axes[:1], len(afloat.ways), 0), past, weight)
+            found[0] = np.sqrt((own**2).mean(0))
+            turned = np.abs(omega * (afloat.slope - pitch)) ** 2 * weight
+            found[-1] = sqrt(float(turned.sum())) + STILL
         change = np.abs(found - flow).max() / max(float(found.max()), 1e-12)
         if once or change < SETTLED:
             break
         flow = flow + RELAXATION * (found - flow)
     pull = _pull(line, motion)
-    return WaveResponse(omega, weight, motion, pull, iterations), flow
+    return WaveResponse(omega, weight, motion, pull, pitch), flow
 
 
 def _axes(line: LumpedLine) -> Floats:
@@ -155,9 +235,9 @@ def _axes(line: LumpedLine) -> Floats:
     return np.stack([t, first, np.cross(t, first)], axis=1)
 
 
-def _deviations(line: LumpedLine, relative: Complexes, weight: Floats) -> Floats:
-    """Return (n, 3) standard deviations of the flow past the nodes, along their axes [m/s]."""
-    own = np.einsum("nac,fnc->fna", _axes(line), relative)
+def _deviations(axes: Floats, relative: Complexes, weight: Floats) -> Floats:
+    """Return (n, 3) standard deviations of the flow past nodes, along their axes [m/s]."""
+    own = np.einsum("nac,fnc->fna", axes, relative)
     return np.asarray(np.sqrt((np.abs(own) ** 2 * weight[:, None, None]).sum(0)) + STILL)
 
 
@@ -204,29 +284,14 @@ def _slope(mean: float, deviation: float) -> float:
     )
 
 
-def _inertia_force(
-    line: LumpedLine, buoy: Buoy | None, waves: Waves, water: Complexes
-) -> Complexes:
+def _inertia_force(line: LumpedLine, waves: Waves, water: Complexes) -> Complexes:
     """Return (f, n, 3) forces of the accelerated water, per metre of elevation [N/m]."""
     across = line.water_across + line.added_across
     along = line.water_along + line.added_along
     t = line.tangent
     axial = (water * t).sum(2, keepdims=True) * t
     accelerated = across[:, None] * (water - axial) + along[:, None] * axial
-    force = 1j * waves.omega[:, None, None] * accelerated
-    if buoy is not None:
-        _, lifting = buoy.heave(waves.omega, waves.number, waves.density, waves.gravity)
-        surface = waves.velocity(np.array([[*line.position[0, :2], -0.5 * buoy.draft]]))[:, 0]
-        moved = (1.0 + SIDEWAYS_ADDED) * buoy.displaced
-        force[:, 0, :2] += 1j * waves.omega[:, None] * moved * surface[:, :2]
-        elevation = np.exp(-1j * waves.number * _ahead(line, waves))
-        force[:, 0, 2] += lifting * elevation
-    return np.asarray(force)
-
-
-def _ahead(line: LumpedLine, waves: Waves) -> float:
-    east, north = line.position[0, :2]
-    return float(east * np.sin(radians(waves.toward)) + north * np.cos(radians(waves.toward)))
+    return np.asarray(1j * waves.omega[:, None, None] * accelerated)
 
 
 _BAND = 5
@@ -235,13 +300,16 @@ _BAND = 5
 
 def _solved(
     line: LumpedLine,
-    buoy: Buoy | None,
+    top: tuple[Complexes, Complexes] | None,
     waves: Waves,
     water: Complexes,
     forced: Complexes,
     damping: Floats,
 ) -> Complexes:
-    """Return the motion (f, n, 3) of the nodes, of each frequency by a banded matrix."""
+    """Return the motion (f, n, 3) of the nodes, of each frequency by a banded matrix.
+
+    `top` are what holds the first node, (f, 3, 3), and what pushes it, (f, 3), beside the line.
+    """
     from scipy.linalg.lapack import zgbsv
 
     omega, free = waves.omega, len(line.mass) - 1
@@ -258,16 +326,16 @@ def _solved(
         _banded(each[:free], beside)
         for each, beside in ((held, springs), (mass, None), (damping, None))
     )
-    resisting, moved = np.zeros(len(omega), complex), 0.0
-    if buoy is not None:
-        resisting, _ = buoy.heave(omega, waves.number, waves.density, waves.gravity)
-        moved = buoy.mass + SIDEWAYS_ADDED * buoy.displaced
     push = forced + np.einsum("ncd,fnd->fnc", damping, water)
+    if top is not None:
+        push[:, 0] += top[1]
     motion = np.zeros(push.shape, complex)
     for one, each in enumerate(omega):
         matrix = np.empty(stiffness.shape, complex)
         matrix.real, matrix.imag = stiffness - each**2 * inertia, each * resistance
-        matrix[:3, 2 * _BAND] += -(each**2) * moved, -(each**2) * moved, resisting[one]
+        if top is not None:
+            for row, column in np.ndindex(3, 3):
+                matrix[column, 2 * _BAND + row - column] += top[0][one, row, column]
         pushed = push[one, :free].ravel()
         *_, found, singular = zgbsv(_BAND, _BAND, matrix.T, pushed, overwrite_ab=True)
         motion[one, :free] = np.nan if singular else found.reshape(free, 3)

@@ -116,6 +116,25 @@ def test_search_wants_every_word(calm):
     assert calm("catalog", "search", "steel", "sphere").code == 0
 
 
+def test_outlines_are_found_after_complete_entries_and_say_what_they_lack(calm):
+    found = json.loads(calm("catalog", "search", "mmp", "--json").out)
+    assert [(each["id"], each["mass"], each["derived"]) for each in found] == [
+        ("mmp-mclane", 70.0, None)
+    ]
+    assert "(without length, drag area)" in " ".join(calm("catalog", "search", "mmp").out.split())
+    ids = [each["id"] for each in json.loads(calm("catalog", "search", "smp", "--json").out)]
+    assert ids[:2] == ["sbe37-smp-frame", "sbe37-smp-plastic"]
+
+
+def test_search_takes_a_bare_fraction_for_inches_and_drops_a_word_that_nothing_has(calm):
+    ids = [
+        each["id"] for each in json.loads(calm("catalog", "search", "3/4", "shackle", "--json").out)
+    ]
+    assert ids[0] == "shackle-19" and "shackle-anchor-19" in ids[:3]
+    done = calm("catalog", "search", "rbr", "quartet")
+    assert "with `rbr` alone" in done.err and "rbr-duet-uwa" in done.out
+
+
 def test_search_without_a_find(calm):
     done = calm("catalog", "search", "unobtainium")
     assert (done.code, done.out) == (0, "")

@@ -229,7 +229,23 @@ def test_files_that_ask_for_other_units_are_shown_in_the_usual_ones(calm, write_
     assert " N," in both
 
 
-@pytest.mark.parametrize("units", ["force=kg", "weight=N", "force", "force=kgf,,", ""])
+@pytest.mark.parametrize(
+    ("units", "meant"),
+    [("kgf", "force=kgf"), ("force=kg", "force=kgf"), ("weight=N", "force=N"),
+     ("knots", "speed=kn"), ("length=kgf", "force=kgf"), ("length=m,feet", "length=ft")],
+)  # fmt: skip
+def test_the_unit_that_is_meant_is_offered(calm, write_mooring, folder, units, meant):
+    done = calm("run", write_mooring(), "--units", units)
+    assert done.code == 2
+    assert f"for `{units.split(',')[-1]}` write `{meant}`" in done.err
+    path = folder / write_mooring()
+    path.write_text(path.read_text() + f"units: [{units.rpartition('=')[2].split(',')[-1]}]\n")
+    dimension, _, unit = meant.partition("=")
+    if units != "force=kg":  # a kilogram is one of mass
+        assert f"write `units: {{{dimension}: {unit}}}`" in calm("run", path).err
+
+
+@pytest.mark.parametrize("units", ["force", "force=kgf,,", "", "furlong"])
 def test_units_that_are_none(calm, write_mooring, units):
     done = calm("run", write_mooring(), "--units", units)
     assert done.code == 2

@@ -88,6 +88,7 @@ def test_a_rope_of_unknown_stiffness_is_told(calm, buoy):
         (("--hs", "5 m", "--tp", "4 s"), "would break"),
         (("--hs", "40 m", "--tp", "25 s"), "no sea is higher than 30 m"),
         (("--hs", "3 m", "--tp", "60 s"), "longer than 30 s"),
+        ((*SEA, "--duration", "2 s"), "--duration: a minute at least"),
         ((*SEA, "--spectrum", "jonswop"), "did you mean `jonswap`?"),
         ((*SEA, "--spectrum", "jonswap", "--gamma", "0.2"), "--gamma must be from 1"),
         ((*SEA, "--scatter", "none.csv"), "--scatter: gives heights"),
@@ -135,12 +136,46 @@ def test_a_buoy_that_follows_and_one_by_its_own_response(calm, buoy):
     assert stiffer > following
 
 
+def test_the_pitch_of_a_float_that_gives_what_it_takes(calm, buoy):
+    """Of a given response of 4° per metre it is that of the elevation; it is the float's tilt."""
+
+    def pitch(hull):
+        shown = calm("waves", buoy(hull), *SEA)
+        told = json.loads(calm("waves", buoy(hull), *SEA, "--json", "-").out)
+        return shown.out, told["states"][0], told["pitch_unknown"]
+
+    text, state, missing = pitch("hull: cylinder")
+    assert state["pitch_std"] is None
+    assert missing == "it takes its `hull`, `centre_of_mass` and `radius_of_gyration`"
+    assert "The pitch of the float is not computed: it takes its `hull`" in " ".join(text.split())
+    text, state, missing = pitch("centre_of_mass: 0.3 m, radius_of_gyration: 0.6 m")
+    assert missing is None
+    assert f"The float pitches by {state['pitch_std']:.1f}°" in text
+    assert state["components"][0]["tilt_std"] == state["pitch_std"] > 0.0
+    _, state, _ = pitch('rao: {"0.1": [1, 0 deg, 4 deg, 90 deg], "12": [1, 0 deg, 4 deg, 90 deg]}')
+    assert state["pitch_std"] == pytest.approx(4.0 * 1.5 / 4.0, rel=2e-3)
+
+
+def test_a_sea_steeper_than_seas_are_is_doubted(calm, buoy):
+    assert "steeper than seas are" not in calm("waves", buoy(), *SEA).out
+    doubted = calm("waves", buoy(), "--hs", "5 m", "--tp", "6.5 s").out
+    assert "steeper than seas are, 1 in 13" in doubted
+
+
 @pytest.mark.parametrize(
     ("hull", "told"),
     [
         ("heave: floats", "`heave: floats` must be one of filtered, follows"),
         ('rao: {"fast": [1, 0 deg], "2": [1, 0 deg]}', "`fast` is no angular frequency"),
         ('rao: {"1": [1, 0 deg]}', "two frequencies or more"),
+        (
+            'rao: {"1": [1, 0 deg], "2": [1, 0 deg, 5 deg, 0 deg]}',
+            "with the pitch at all or at none",
+        ),
+        ('rao: {"1": [1, 0 deg, 5 deg], "2": [1, 0 deg]}', "four with the pitch"),
+        ("centre_of_mass: 0.4 m", "needs both its `centre_of_mass` and `radius_of_gyration`"),
+        ("bail: 0 m", "needs both its `centre_of_mass`"),
+        ("centre_of_mass: 2 m, radius_of_gyration: 0.6 m", "does not float upright"),
         ('rao: {"1": [-1, 0 deg], "2": [1, 0 deg]}', "at least 0"),
         ('rao: {"1": [60, 0 deg], "2": [1, 0 deg]}', "at most 10"),
         ('rao: {"inf": [1, 0 deg], "2": [1, 0 deg]}', "is no angular frequency"),

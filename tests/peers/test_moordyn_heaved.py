@@ -13,10 +13,9 @@ import pytest
 from calm.case import load
 from calm.exchange.exporting import export_file
 from calm.records.sea_states import spectrum_of
-from calm.waves.buoy import Buoy
 from calm.waves.fatigue import greatest_of
 from calm.waves.lumped_line import lumped_line
-from calm.waves.response import Waves, _deviations, _linearised, _pull, _solved
+from calm.waves.response import Waves, _axes, _deviations, _linearised, _pull, _solved
 
 pytestmark = pytest.mark.peers
 
@@ -106,15 +105,18 @@ def in_frequency(text, omega, amplitude):
     """Return depths and deviations of tension here, the top held to the heave, no water moving."""
     mooring = load("line.yaml", text=text)
     line = lumped_line(mooring, mooring.equilibrium(mooring.water), 1.0)
-    held = Buoy(900.0, 900.0, 1.0, 0.4, 0.0, 0.0, follows=True)
+    held = np.zeros((len(omega), 3, 3))
+    held[:, 0, 0] = held[:, 1, 1] = -(omega**2) * 1350.0  # kg, of a float and the water beside it
+    held[:, 2, 2] = 1e10
+    top = held, np.zeros((len(omega), 3))
     waves = Waves(omega, 90.0, mooring.water.depth, 1025.0, 9.80665)
     water = np.zeros((len(omega), len(line.mass), 3), complex)
     push = water.copy()
     push[:, 0, 2] = 1e10 * amplitude
     flow, weight = np.full((len(line.mass), 3), 0.01), np.full(len(omega), 0.5)
     for _ in range(30):
-        motion = _solved(line, held, waves, water, push, _linearised(line, None, flow))
-        found = _deviations(line, water - 1j * omega[:, None, None] * motion, weight)
+        motion = _solved(line, top, waves, water, push, _linearised(line, None, flow))
+        found = _deviations(_axes(line), water - 1j * omega[:, None, None] * motion, weight)
         flow = flow + 0.5 * (found - flow)
     depth = -0.5 * (line.position[1:, 2] + line.position[:-1, 2])
     return depth, np.sqrt(0.5 * (np.abs(_pull(line, motion)) ** 2).sum(0))

@@ -108,7 +108,7 @@ def test_clamp_an_instrument_on_a_piece(drive, small):
     async def story(driver):
         await driver.press("down", "i")
         assert {each.kind for each in driver.builder.catalogue.listing.rows} <= {
-            "sphere", "cylinder", "body",
+            "sphere", "cylinder", "body", "profiler",
         }  # fmt: skip
         await driver.type("sbe37")
         await driver.press("enter")

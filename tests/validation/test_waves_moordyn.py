@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from calm.case import load
-from calm.waves.buoy import Buoy
 from calm.waves.lumped_line import lumped_line
-from calm.waves.response import Waves, _deviations, _linearised, _pull, _solved
+from calm.waves.response import Waves, _axes, _deviations, _linearised, _pull, _solved
 
 COASTAL = """\
 name: Coastal buoy
@@ -45,14 +44,14 @@ def test_tensions_of_a_heaved_line():
     line = lumped_line(mooring, mooring.equilibrium(mooring.water), 0.5)
     omega = np.array([2.0])
     water = np.zeros((1, len(line.mass), 3), complex)
-    held = Buoy(700.0, 900.0, 0.8, 0.4, 0.0, 0.0, follows=True)
+    held = np.diag([-4.0 * 1150.0, -4.0 * 1150.0, 1e10])[None], np.zeros((1, 3))  # of 1150 kg
     push = water.copy()
     push[0, 0, 2] = 1e10 * 0.1
     damping = _linearised(line, None, np.full((len(line.mass), 3), 1e-3))
     waves = Waves(omega, 90.0, 80.0, 1025.0, 9.80665)
     for _ in range(20):
         motion = _solved(line, held, waves, water, push, damping)
-        flow = _deviations(line, water - 2j * motion, np.array([0.5]))
+        flow = _deviations(_axes(line), water - 2j * motion, np.array([0.5]))
         damping = 0.5 * (damping + _linearised(line, None, flow))
     found = np.abs(_pull(line, motion)[0])
     depth = -0.5 * (line.position[1:, 2] + line.position[:-1, 2])

@@ -217,16 +217,18 @@ class PlacedPart:
         return self.top + self.height / 2
 
 
-def measured(parts: Sequence[ShownPart], column: LineColumn) -> list[PlacedPart]:
+def measured(
+    parts: Sequence[ShownPart], column: LineColumn, growth: float = 1.0
+) -> list[PlacedPart]:
     """Each part with the height that it needs, not placed yet.
 
     A long cable is seen to be long: its height, with what is clamped on it, grows with the
-    logarithm of its length.
+    logarithm of its length, at a rate of `growth`.
     """
     found = [_measured(part, column) for part in parts]
     for number, one in enumerate(found):
         if one.part.cable is not None and not one.part.clamped and not isnan(one.part.length):
-            wanted = _SHORTEST + _PER_DECADE * log10(max(one.part.length, 1.0))
+            wanted = _SHORTEST + growth * _PER_DECADE * log10(max(one.part.length, 1.0))
             for other in found[number + 1 :]:
                 if not other.part.clamped:
                     break

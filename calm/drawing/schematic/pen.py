@@ -57,14 +57,7 @@ class Pen:
         self.draw("path", d=d, **attributes)
 
     def write(
-        self,
-        x: float,
-        y: float,
-        text: str,
-        width: float,
-        *,
-        size: float,
-        bold: bool = False,
+        self, x: float, y: float, text: str, width: float, *, size: float, bold: bool = False
     ) -> None:
         """A text in a width, its middle at `y`; one that is cut has the whole for its title."""
         shown = shortened(text, width, size, bold=bold)

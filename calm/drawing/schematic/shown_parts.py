@@ -20,11 +20,7 @@ if TYPE_CHECKING:
     from calm.case import Result, TowResult
     from calm.files import Clamp, MooringFile, Piece
 
-HEADINGS = {
-    "cut_length": ("cut", "length"),
-    "depth": ("", "depth"),
-    "height": ("above", "seabed"),
-}
+HEADINGS = {"cut_length": ("cut", "length"), "depth": ("", "depth"), "height": ("above", "seabed")}
 """The quantities beside each part, with the two lines of their headings."""
 
 _JOINED = (*BALLS, Symbol.SHACKLE, Symbol.SWIVEL, Symbol.LINK)

@@ -43,6 +43,8 @@ def written(tmp_path, old, new):
         ("upper", {"length": "180 m"}, "length: 200 m", "length: 180 m"),
         ("probe", {"at": "80 m"}, "at: 50 m", "at: 80 m"),
         (None, {"environment_": "still"}, "speed: 0.3 m/s", "speed: 0 m/s"),
+        (None, {"environment_": {"current": {"speed": "0.4 m/s", "toward": "90 deg"}}},
+         "speed: 0.3 m/s", "speed: 0.4 m/s"),
         (None, {"solver": {"angle_step": "0.5 deg"}}, "line:\n", f"{FINE}\nline:\n"),
     ],
 )  # fmt: skip

@@ -114,6 +114,18 @@ def test_weights_that_are_those_of_a_metre(read, tmp_path):
     assert lines[0].weight == pytest.approx(0.24 * 9.80665)
 
 
+def test_figures_of_a_metre_and_of_whole_pieces_in_two_columns(read, tmp_path):
+    """Floats lift, so that a second column of weights taken for masses had a negative one."""
+    made = read(
+        "name,length m,diameter mm,mass kg/m,mass kg,weight kg/m,weight kg\n"
+        "Float,1,1000,,200,,-300\nWire rope,500,8,0.2,100,0.15,75\nAnchor,0.5,,,800,,700\n"
+    )
+    buoy, wire, anchor = (piece.component for piece in pieces(made, tmp_path))
+    assert (buoy.mass, buoy.net_buoyancy) == (200.0, pytest.approx(300 * 9.80665))
+    assert (wire.mass, wire.weight) == (0.2, pytest.approx(0.15 * 9.80665))
+    assert anchor.weight == pytest.approx(700 * 9.80665)
+
+
 def test_names_without_a_heading_units_below_and_no_anchor(read, tmp_path):
     """As a list of an institute has it: a title, units in a row of their own, no anchor."""
     text = (

@@ -20,6 +20,7 @@ chain-13: {kind: chain, diameter: 13 mm}
 meter: {kind: cylinder, diameter: 100 mm, length: 0.5 m, mass: 10 kg, volume: 4 L, role: instrument}
 plate: {kind: body, length: 0.4 m, mass: 5 kg, buoyancy: -30 N, drag_area: 0.1 m^2, cd: 1.2}
 deadweight: {kind: anchor, mass: 1500 kg, length: 0.4 m}
+mmp: {kind: profiler, mass: 70 kg, buoyancy: 0 N, source: a manual, searched: [length, drag_area]}
 pair: {kind: assembly, parts: [{use: meter, label: upper}, {use: meter}]}
 """
 

@@ -186,6 +186,20 @@ def test_overrides_are_for_that_piece_alone(read: Read) -> None:
     assert rope.clamps[0].component.cn == 1.0
 
 
+def test_an_outline_is_used_with_the_figures_that_it_lacks(read: Read, mistakes: Mistakes) -> None:
+    ends = "[{use: meter, at: 0, label: up}, {use: meter, at: 480 m, label: down}, PROFILER]"
+    text = GOOD.replace("[{use: meter, at: 20 m}]", ends)
+    rider = "{use: mmp, between: [up, down]}"
+    [(row, _, said)] = mistakes(text.replace("PROFILER", rider))
+    assert (row, said[:49]) == (11, "no source prints `length`, `drag_area` of `mmp`: ")
+    assert said.endswith("(the rest is from: a manual)")
+    [(_, _, said)] = mistakes(text.replace("PROFILER", rider[:-1] + ", length: 1.3 m}"))
+    assert said.startswith("no source prints `drag_area` of `mmp`")
+    given = rider[:-1] + ", length: 1.3 m, kn: 80 N/(m/s)^2, kt: 9 N/(m/s)^2, mass: 72 kg}"
+    profiler = read(text.replace("PROFILER", given)).pieces[1].clamps[2].component
+    assert (profiler.mass, profiler.length, profiler.net_buoyancy) == (72.0, 1.3, 0.0)
+
+
 def test_mistake_of_an_overridden_definition_is_told_at_the_item(mistakes: Mistakes) -> None:
     text = GOOD.replace("{use: plate}", "{use: plate, kn: 3 N/(m/s)^2}")
     assert mistakes(text) == [(12, 5, "`kn` needs `kt`, or `inclination: insensitive`")]

@@ -12,7 +12,7 @@ from calm.errors import InputError
 from calm.records import sea_states
 from calm.shipped import shipped_folder
 from calm.waves.analysis import analyse
-from calm.waves.buoy import Buoy, buoy_of
+from calm.waves.buoy import END_LOSS, Buoy, buoy_of
 from calm.waves.fatigue import greatest_of, passing_probability
 from calm.waves.lumped_line import LumpedLine, lumped_line
 from calm.waves.response import Waves, _linearised, _slope, _solved, respond, wave_numbers
@@ -238,6 +238,132 @@ def test_a_disc_without_mass_follows_the_water_below_it():
     assert lifting / resisting == pytest.approx(expected, rel=1e-12)
 
 
+def upright(radius, draft, centre, gyration, bail=0.0, pull=0.0, **more):
+    """A cylinder afloat, its centre of mass above the surface and its bail below it [m], and K."""
+    height = np.linspace(-draft, 0.0, 400)
+    hull = np.column_stack([np.full(400, radius), height])
+    displaced = DENSITY * pi * radius**2 * draft
+    mass = displaced - pull / GRAVITY
+    return Buoy(
+        mass, displaced, radius, draft, 0.0, 0.0, profile=hull, centre=centre, bail=bail,
+        gyration=gyration, **more,
+    )  # fmt: skip
+
+
+DISC, SPAR = (1.37, 0.875, -0.4, 1.0), (0.5, 5.0, -3.2, 2.0)
+
+
+def over_slope(buoy, omega):
+    """Pitch of a free float over the slope of the waves."""
+    number = omega**2 / GRAVITY
+    held, pushing = buoy.pitch(buoy.profile, omega, number, DENSITY, GRAVITY)
+    whole = held[[[0, 1], [1, 2]]].transpose(2, 0, 1)
+    return np.linalg.solve(whole, pushing.T[:, :, None])[:, 1, 0] / (1j * number)
+
+
+@pytest.mark.parametrize("figures", [DISC, SPAR, (0.8, 0.4, 0.0, 0.6)])
+def test_a_float_pitches_as_long_waves_slope(figures):
+    assert over_slope(upright(*figures), np.array([0.02])) == pytest.approx(1.0, abs=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("figures", "omega", "panels"),
+    [
+        (DISC, [0.5, 1.0, 1.5], [1.041, 1.184, 1.716]),
+        (SPAR, [0.5, 0.8, 1.5, 2.0, 2.5], [1.353, 2.545, 1.372, 0.521, 0.265]),
+    ],
+)
+def test_pitch_over_slope_against_a_panel_method(figures, omega, panels):
+    """Capytaine 3, 40 panels round and 8 or 30 up the side: within 5 % away from the resonances.
+
+    They are near 2 rad/s of the disc and 1 rad/s of the spar.
+    """
+    found = np.abs(over_slope(upright(*figures), np.array(omega)))
+    assert found == pytest.approx(panels, rel=0.05)
+
+
+@pytest.mark.parametrize("bail", [0.0, -5.0])
+def test_the_natural_period_of_pitch(bail):
+    """ω² = ρg∇ GM / (I + A), GM = R²/4T - T/2 - z and A by hand, of a spar with a loose line.
+
+    Surge with pitch is m z + A15, less its square over m + A11 of what turns. The bail, wherever,
+    adds nothing to a float that no line holds.
+    """
+    radius, draft, centre, gyration = SPAR
+    scale, mass = END_LOSS * radius, DENSITY * pi * radius**2 * draft
+    share = 1.0 - scale / draft * (1.0 - np.exp(-draft / scale))
+    first = -0.5 + scale / draft - (scale / draft) ** 2
+    second = 1.0 / 3.0 - scale / draft + 2.0 * (scale / draft) ** 2 - 2.0 * (scale / draft) ** 3
+    added = mass * np.array([share, first * draft, second * draft**2])
+    inertia = added[2] + 8.0 / 45.0 * DENSITY * radius**5 + mass * (centre**2 + gyration**2)
+    inertia -= (mass * centre + added[1]) ** 2 / (mass + added[0])
+    righting = mass * GRAVITY * (radius**2 / (4.0 * draft) - 0.5 * draft - centre)
+    expected = sqrt(righting / inertia)
+    omega = expected * np.linspace(0.97, 1.03, 121)
+    sea = sea_states.spectrum_of("bretschneider", 1.0, 6.0, 3.3)
+    buoy = upright(*SPAR, bail=bail)
+    response, _ = respond(plumb(40.0, 1e-9, 1e-9, 1e-9, 8), buoy, waves(omega), sea, once=True)
+    assert omega[np.abs(response.pitch).argmax()] == pytest.approx(expected, rel=2e-3)
+
+
+def test_the_bail_moves_by_pitch_times_its_depth():
+    omega, loose = np.array([0.4, 0.8, 1.6]), plumb(40.0, 1e-9, 1e-9, 1e-9, 8)
+    sea = sea_states.spectrum_of("bretschneider", 1.0, 6.0, 3.3)
+    top, keel = (
+        respond(loose, upright(*SPAR, bail=bail), waves(omega), sea, once=True)[0]
+        for bail in (0.0, -5.0)
+    )
+    assert keel.pitch == pytest.approx(top.pitch, rel=1e-6)
+    moved = keel.motion[:, 0] - top.motion[:, 0]
+    assert moved[:, 0] == pytest.approx(-5.0 * top.pitch, rel=1e-6)
+    assert np.abs(moved[:, 1:]).max() < 1e-9
+
+
+@pytest.mark.parametrize(("pull", "bail"), [(0.0, 0.0), (9000.0, -0.875), (9000.0, -2.0)])
+def test_what_rights_a_float_by_the_energy_of_a_heeled_one(pull, bail):
+    """d²U/dθ² of weight and water displaced, heeled about a bail that stays: columns of a disc."""
+    radius, draft, centre, gyration = 1.37, 0.875, -0.1, 1.0
+    buoy = upright(radius, draft, centre, gyration, bail, pull)
+    rings, spokes = np.meshgrid((np.arange(200) + 0.5) / 200.0, 2.0 * pi * np.arange(64) / 64.0)
+    x, area = radius * rings * np.cos(spokes), radius**2 * rings * 2.0 * pi / 64.0 / 200.0
+
+    def energy(heel):
+        def height(along, aside):
+            return bail + cos(heel) * (along - bail) - sin(heel) * aside
+
+        keel = height(-draft, x)
+        depths = 0.5 * keel**2 / cos(heel)
+        wet = float((depths * area).sum()) * DENSITY * GRAVITY
+        return wet + buoy.mass * GRAVITY * height(centre, 0.0)
+
+    step = 0.02
+    expected = (energy(step) - 2.0 * energy(0.0) + energy(-step)) / step**2
+    found = buoy.righting(buoy.profile, DENSITY, GRAVITY)
+    assert found == pytest.approx(expected, rel=2e-3)
+
+
+def test_a_pitching_hull_gives_no_energy():
+    """What it radiates is no source in any motion of surge and pitch."""
+    omega = np.array([0.5, 1.0, 2.0])
+    for figures in (DISC, SPAR):
+        buoy = upright(*figures)
+        held, _ = buoy.pitch(buoy.profile, omega, omega**2 / GRAVITY, DENSITY, GRAVITY)
+        lost = held.imag[[[0, 1], [1, 2]]].transpose(2, 0, 1)
+        assert np.linalg.eigvalsh(lost).min() > -1e-6 * np.abs(lost).max()
+
+
+def test_drag_quiets_the_pitch_of_a_spar_in_high_seas():
+    """Linear drag grows with the sea, and so the pitch less than that."""
+    found = []
+    for height in (0.5, 5.0):
+        sea = sea_states.spectrum_of("bretschneider", height, 8.0, 3.3)
+        spar = replace(upright(*SPAR, bail=-5.0), drag=2500.0, heave_drag=450.0)
+        sent = waves(sea.frequencies(64))
+        response, _ = respond(plumb(40.0, 1e-9, 1e-9, 1e-9, 8), spar, sent, sea)
+        found.append(float(response.moments(response.pitch)[0]))
+    assert found[0] < found[1] < 9.0 * found[0]
+
+
 def test_a_given_heave_is_followed():
     given = Buoy(2000.0, 3000.0, 1.4, 0.8, 0.0, 0.0, rao=((0.1, 1.0, 0.0), (2.0, 0.5, 90.0)))
     line = plumb(1000.0, 0.4, 4e6, 5000.0, 50)
@@ -279,6 +405,27 @@ def test_a_following_float_heaves_with_the_water():
     assert np.abs(response.motion[:, 0, 2]) == pytest.approx(1.0, rel=1e-4)
     free, _ = respond(line, replace(FOLLOWER, follows=False), waves([0.05]), sea)
     assert np.abs(free.motion[0, 0, 2]) == pytest.approx(1.0, rel=0.3)
+
+
+def test_a_spectrum_over_radians_per_second(tmp_path):
+    """Frequencies of a dataset in rad/s are told by their unit; the sea is the same."""
+    sea = sea_states.spectrum_of("bretschneider", 0.5, 14.0, 3.3)
+    given = dataset(lambda f: sea.density(2.0 * pi * f))
+    turning = {"units": "rad s-1"}
+    given = given.assign_coords(
+        frequency=("frequency", 2.0 * pi * given["frequency"].data, turning)
+    )
+    given.to_netcdf(tmp_path / "sea.nc", engine="scipy")
+    read = sea_states.measured_spectrum(tmp_path / "sea.nc")
+    assert read.significant_height == pytest.approx(0.5, rel=5e-3)
+    assert read.peak_period == pytest.approx(14.0, rel=0.03)
+
+
+def test_a_spectrum_that_ends_at_its_peak_is_refused(tmp_path):
+    rows = "".join(f"{f:.3f},{25.0 * f:.3f}\n" for f in np.linspace(0.05, 0.15, 11))
+    (tmp_path / "cut.csv").write_text(f"frequency[Hz],density[m^2/Hz]\n{rows}")
+    with pytest.raises(InputError, match="is cut off"):
+        sea_states.measured_spectrum(tmp_path / "cut.csv")
 
 
 def dataset(density, directions=0, units="m2 Hz-1"):

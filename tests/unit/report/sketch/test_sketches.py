@@ -205,7 +205,7 @@ def test_still_water_says_so(solved):
 def test_tension_tells_the_greatest_and_dots_the_limits(solved):
     result = solved("deep-current-meters")
     texts = tension(result, 38, 18)
-    assert texts[0].plain.rstrip() == "at most 5138 N; dotted: limits"
+    assert texts[0].plain.rstrip() == "at most 5157 N; dotted: limits"
     assert any("red" in str(span.style) for text in texts for span in text.spans)
     texts = tension(solved("s1000"), 38, 18)
     assert texts[0].plain.rstrip() == "at most 4003 N"

@@ -1,0 +1,260 @@
+"""A net of legs closed, as laws: Newton's method on segments that stay.
+
+Slopes are kept by Broyden's rule while they lead on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, MutableSequence, Sequence
+from math import inf, sqrt
+from typing import Any, NamedTuple
+
+from calm.physics.line import GOES_ON, NO_ROOM
+from calm.physics.profile import Sea
+from calm.physics.referee import RefereeShape, find_ends
+from calm.solve import net_march
+from calm.solve.closing import halve
+from calm.solve.net_march import LANDS, STAGE, Marching, NetProblem, left_over, leg_of, place_of
+from calm.solve.problem import CHOSEN, COARSE, FINE, HALVED
+
+MOST_STEPS, HALVINGS = 60, 9
+"""Newton steps towards a shape, and how often one is halved that leads nowhere."""
+NEAR, CLOSED = 1e-4, 1e-10
+"""What is left of lengths and forces, as shares of the longest leg and of a typical force: before
+segments are kept, and in a shape."""
+WORTH = 5e-5
+"""Errors, as shares of the water depth and of the greatest tension, above which segments are
+halved once more, `MOST_HALVINGS` times."""
+MOST_HALVINGS = 3
+LEADS_ON = 0.25
+"""What a step leaves of the sum of squares, at most, for slopes to be kept."""
+SINGULAR = 1e-14
+"""Slope, in shares, below which an unknown is left as it is."""
+CAME_OUT, NOT_CLOSED, TO_AND_FRO, NEEDS_ROOM = range(4)
+"""How a net ends: closed; not; a leg alternately lies and lifts off; more segments than there is
+room for."""
+
+DEPTH_ERROR, TENSION_ERROR = range(2)
+
+
+def find_way(net: NetProblem, found: Sequence[float]) -> float:
+    """Write the step that brings to nothing what is left, by its slopes; its greatest share.
+
+    By elimination, column by column. Unknowns of which the slopes say nothing stay.
+    """
+    size, paper, row, most = len(found), net.paper, 0, 0.0
+    for r in range(size):
+        for c in range(size):
+            paper[r][c] = net.slopes[r][c]
+        paper[r][size] = -found[r]
+    for k in range(size):
+        pivot = row
+        for r in range(row, size):
+            if abs(paper[r][k]) > abs(paper[pivot][k]):
+                pivot = r
+        net.order[k] = -1
+        if row == size or abs(paper[pivot][k]) < SINGULAR:
+            continue
+        for c in range(k, size + 1):
+            paper[row][c], paper[pivot][c] = paper[pivot][c], paper[row][c]
+        for r in range(size):
+            share = 0.0 if r == row else paper[r][k] / paper[row][k]
+            if share != 0.0:
+                for c in range(k, size + 1):
+                    paper[r][c] -= share * paper[row][c]
+        net.order[k] = row
+        row += 1
+    for k in range(size):
+        row = net.order[k]
+        net.way[k] = 0.0 if row < 0 else paper[row][size] / paper[row][k]
+        most = max(most, abs(net.way[k]))
+    return most
+
+
+def squares(values: Sequence[float]) -> float:
+    """The sum of the squares."""
+    total = 0.0
+    for k in range(len(values)):
+        total += values[k] * values[k]
+    return total
+
+
+def keep(values: Sequence[Any], kept: MutableSequence[Any]) -> None:
+    """Copy values."""
+    for k in range(len(values)):
+        kept[k] = values[k]
+
+
+def close_net(
+    net: NetProblem, x: MutableSequence[float], how: Marching, enough: float, known: bool
+) -> int:
+    """Newton's method; the last march is that of the unknowns that it ends with.
+
+    Parameters
+    ----------
+    x : the unknowns, where they about are; then those found
+    enough : what may be left, in shares
+    known : whether the slopes are about right already, and need not be found first
+    """
+    size, trial, fresh = len(x), net.trial, not known
+    failure = left_over(net, x, how, fresh)
+    if failure != GOES_ON:
+        return NEEDS_ROOM if failure == NO_ROOM else NOT_CLOSED
+    plain = known
+    left = net.kept
+    keep(net.found, left)
+    for _ in range(MOST_STEPS):
+        if squares(left) <= enough * enough:
+            break
+        before = squares(left)
+        share = min(1.0, 0.5 / max(find_way(net, left), 1e-300))
+        now = inf
+        for _ in range(HALVINGS if fresh else 1):
+            for k in range(size):
+                trial[k] = x[k] + share * net.way[k] * net.scale[k]
+            failure = left_over(net, trial, how, False)
+            if failure == NO_ROOM:
+                return NEEDS_ROOM
+            now = squares(net.found) if failure == GOES_ON else inf
+            if now < (1.0 - 1e-3 * share) * before:
+                break
+            share *= 0.5
+            now = inf
+        plain = now < inf
+        if not plain and fresh:
+            if squares(left) > 1e4 * enough * enough:
+                return NOT_CLOSED
+            break
+        if plain:
+            keep(trial, x)
+            whole = share * share * squares(net.way)
+            for k in range(size):
+                off = (net.found[k] - (1.0 - share) * left[k]) * share / max(whole, 1e-300)
+                for m in range(size):
+                    net.slopes[k][m] += off * net.way[m]
+            keep(net.found, left)
+        fresh = not now < LEADS_ON * before
+        if fresh and (not plain or squares(left) > enough * enough):
+            failure = left_over(net, x, how, True)
+            if failure != GOES_ON:
+                return NOT_CLOSED
+            keep(net.found, left)
+            plain = False
+    if squares(left) > 1e4 * enough * enough:
+        return NOT_CLOSED
+    if not plain:
+        left_over(net, x, how, False)
+    return CAME_OUT
+
+
+def lies_otherwise(net: NetProblem, sea: Sea, record: int) -> bool:
+    """Whether a leg lies on the seabed but was taken to hang clear, or the other way round.
+
+    It is taken to do so from then on.
+    """
+    changed = False
+    for i in range(len(net.legs)):
+        leg, state, height = net.legs[i], net.state[i], net.lines.work.records[i][record][2]
+        if leg.kind == net_march.HANGING_DOWN or leg.seabed == -inf:
+            continue
+        lies = state[STAGE] >= 0.0
+        if state[LANDS] == 0.0:
+            lowest = inf
+            for n in range(int(state[net_march.HUNG])):
+                lowest = min(lowest, height[n])
+            lies = lowest < leg.seabed - 1e-6 * net.lines.limits.depth
+        changed = changed or lies != (state[LANDS] > 0.0)
+        state[LANDS] = 1.0 if lies else 0.0
+    return changed
+
+
+def moved_ends(net: NetProblem, x: Sequence[float], record: int) -> float:
+    """Write where the ends of all pieces are, and how much these and their tensions have moved.
+
+    Returns the greatest tension.
+    """
+    net.errors[DEPTH_ERROR] = net.errors[TENSION_ERROR] = greatest = 0.0
+    for i in range(len(net.legs)):
+        nodes, shape = int(net.state[i][net_march.COUNT]), net.lines.work.records[i][record]
+        pieces, end = net.legs[i].pieces, nodes - 1
+        first, last = net.first[i][:pieces], net.last[i][:pieces]
+        find_ends(RefereeShape(shape, nodes, end, first, last))
+        keep(first, net.first[i])
+        keep(last, net.last[i])
+        east, north, _ = place_of(net, i, x, 1)
+        for p in range(pieces + 1):
+            n, row = 0 if p == 0 else int(net.last[i][p - 1]), net.ends[i][p]
+            fx, fy, fz = shape[3][n], shape[4][n], shape[5][n]
+            tension = sqrt(fx * fx + fy * fy + fz * fz)
+            x0, y0 = shape[0][n] - shape[0][end] + east, shape[1][n] - shape[1][end] + north
+            off = max(abs(x0 - row[0]), abs(y0 - row[1]), abs(shape[2][n] - row[2]))
+            net.errors[DEPTH_ERROR] = max(net.errors[DEPTH_ERROR], 0.5 * off)
+            net.errors[TENSION_ERROR] = max(net.errors[TENSION_ERROR], 0.5 * abs(tension - row[3]))
+            row[0], row[1], row[2], row[3] = x0, y0, shape[2][n], tension
+            greatest = max(greatest, tension)
+    return greatest
+
+
+def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float) -> int:
+    """Close a net that about is to the last digits, on segments that are short enough."""
+    for _ in range(MOST_HALVINGS):
+        for left in range(len(net.legs), -1, -1):
+            left_over(net, x, Marching(sea, 2.0 * step, CHOSEN, False, COARSE), False)
+            coarse = Marching(sea, 2.0 * step, CHOSEN, True, COARSE)
+            ending = close_net(net, x, coarse, enough, True)
+            if ending != CAME_OUT:
+                return ending
+            if not lies_otherwise(net, sea, COARSE):
+                break
+            roughly = Marching(sea, 4.0 * step, CHOSEN, False, COARSE)
+            if left == 0 or close_net(net, x, roughly, NEAR, False) != CAME_OUT:
+                return TO_AND_FRO
+        moved_ends(net, x, COARSE)
+        for i in range(len(net.legs)):
+            halve(leg_of(net, sea, i))
+        ending = close_net(net, x, Marching(sea, step, HALVED, True, FINE), enough, True)
+        if ending != CAME_OUT:
+            return ending
+        tension = WORTH * moved_ends(net, x, FINE)
+        if (
+            net.errors[DEPTH_ERROR] <= WORTH * net.lines.limits.depth
+            and net.errors[TENSION_ERROR] <= tension
+        ):
+            break
+        step *= 0.5
+    return CAME_OUT
+
+
+class AskedNet(NamedTuple):
+    """What `ask_net` is asked: to march a net, with the slopes or without, to close it or to settle
+    it, from unknowns that it changes.
+
+    Attributes
+    ----------
+    enough, known : as of `close_net`
+    """
+
+    task: int
+    net: NetProblem
+    x: MutableSequence[float]
+    how: Marching
+    enough: float
+    known: bool
+
+
+MARCH, SLOPES, CLOSE, SETTLE = range(4)
+
+
+def ask_net(asked: AskedNet, _: float) -> float:
+    """Do what is asked; how it ended."""
+    net, x, how = asked.net, asked.x, asked.how
+    if asked.task == SETTLE:
+        return float(settle(net, how.sea, x, how.step, asked.enough))
+    if asked.task == CLOSE:
+        return float(close_net(net, x, how, asked.enough, asked.known))
+    return float(left_over(net, x, how, asked.task == SLOPES))
+
+
+def ask_now(ask: Callable[[AskedNet, float], float], asked: AskedNet) -> float:
+    """Call `ask_net` by its address."""
+    return ask(asked, 0.0)
