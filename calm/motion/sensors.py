@@ -28,6 +28,7 @@ from calm.records.current_file import holds_arrays
 from calm.records.headings import read_time_columns
 from calm.records.instrument_series import (
     INTERPOLATED,
+    named,
     readings,
     split_label,
     who_along,
@@ -168,16 +169,8 @@ def _understood(
 
 def _find(dataset: xr.Dataset) -> tuple[str, bool]:
     """Return the variable of the pressures, or else of the depths; whether it is the former."""
-    for standard in _PRESSURES:
-        found = [str(name) for name in dataset.cf.standard_names.get(standard, [])]
-        usual = [name for name in _USUAL if name in found]
-        if len(found) > 1 and not usual:
-            raise UnreadableError(f"several variables are {standard}: {', '.join(found)}")
-        if found:
-            return (usual or found)[0], True
-    for name in _USUAL:
-        if name in dataset.data_vars:
-            return name, True
+    if found := named(dataset, _PRESSURES, _USUAL):
+        return found[0], True
     for name in map(str, dataset.cf.standard_names.get("depth", [])):
         clock = find_times(dataset, name)
         if (

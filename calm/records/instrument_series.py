@@ -210,11 +210,20 @@ def _find(dataset: xr.Dataset, name: str) -> tuple[str, ...]:
                 "before it is gridded"
             )
         return velocity.names
-    there = _standard(dataset, quantity.sought)
-    usual = [one for one in quantity.usual if one in (there or dataset.data_vars)]
-    if len(there) > 1 and not usual:
-        raise UnreadableError(f"several variables are {name}: {', '.join(there)}")
-    return tuple((usual or there)[:1])
+    return tuple(named(dataset, quantity.sought, quantity.usual)[:1])
+
+
+def named(dataset: xr.Dataset, sought: Sequence[str], usual: Sequence[str]) -> list[str]:
+    """Return the variables of the first standard name that any has, or else of a usual name.
+
+    UnreadableError: there are several, and none is called as usual.
+    """
+    there = _standard(dataset, sought)
+    known = [one for one in usual if one in (there or dataset.data_vars)]
+    if len(there) > 1 and not known:
+        standard = dataset[there[0]].attrs["standard_name"]
+        raise UnreadableError(f"several variables are {standard}: {', '.join(there)}")
+    return known or there
 
 
 def _standard(dataset: xr.Dataset, sought: Sequence[str]) -> list[str]:
