@@ -155,13 +155,20 @@ class Net(ReadFromFile):
                 nodes = len(nodes_of(self.file.legs))
                 return solve_net(self.legs, nodes, water, self.settings, near)
         except NoEquilibrium as failure:
-            raise self._too_short() or failure from None
+            raise self._why_not() or failure from None
 
-    def _too_short(self) -> NoEquilibrium | None:
-        """Why held ends cannot be reached, where the lengths of the legs between them say so.
+    def _why_not(self) -> NoEquilibrium | None:
+        """Why it sinks, or held ends cannot be reached, where weights or lengths say so.
 
         Between every two ends the shortest way through the net counts (Floyd and Warshall).
         """
+        lift = sum(float(leg.line.total_buoyancy.sum()) for leg in self.legs)
+        if lift <= 0.0 and not any(end.held for leg in self.file.legs for end in leg.ends):
+            return Status.NO_EQUILIBRIUM.because(
+                f"It sinks: its legs weigh {say('force', -lift)} more in water than their floats "
+                "lift, and no end is held.",
+                advice="Add buoyancy.",
+            )
         ways: dict[tuple[Any, Any], Way] = {}
         for leg, keys in zip(self.legs, self.file.legs, strict=True):
             ends = [end.node if end.place is None else end.place for end in (leg.upper, leg.lower)]
@@ -238,7 +245,23 @@ def net_result(net: Net, found: NetSolution, still: Sequence[Solution | None]) -
         ),
         anchors=tuple(end for end in ends if end.weight is not None),
         held=tuple(end for end in ends if end.weight is None),
-        warnings=(*net.file.notices, *(said for leg in legs for said in leg.warnings)),
+        warnings=(
+            *net.file.notices,
+            *(said for leg in legs for said in leg.warnings),
+            *(said for leg in legs if (said := _upside_down(leg))),
+        ),
+    )
+
+
+def _upside_down(leg: Result) -> str:
+    """What is said of a leg with a free end that hangs or stands the other way round."""
+    (keys,), rows = leg.file.legs, leg.components
+    top, bottom = float(rows.depth_top[0]), float(rows.depth_bottom[len(rows) - 2])
+    if not (keys.top.free or keys.bottom.free) or top <= bottom:
+        return ""
+    return (
+        f"Leg {leg.name} is the other way round: its upper end is {say('length', top - bottom)} "
+        "deeper than its lower one. Legs are listed from their upper to their lower ends."
     )
 
 

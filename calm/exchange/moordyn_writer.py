@@ -91,7 +91,7 @@ class _System:
             self.joined[node] = last
             return
         self._here = self.joined[node]
-        self.points.remove(last)
+        self.points = [point for point in self.points if point is not last]
         self.load.merge(last.load)
         for line in self.lines:
             if line.upper is last:

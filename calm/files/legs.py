@@ -310,7 +310,7 @@ def _check_net(legs: Sequence[Leg], top: SourceMapping, problems: list[Problem])
 
 
 def _check_held(legs: Sequence[Leg], section: SourceMapping, problems: list[Problem]) -> None:
-    """Check that no part of the net is without a hold."""
+    """Check that no part of the net is without a hold, and no two anchors are in one place."""
     held: set[str] = set()
     reached: set[str | None] = set()
     while True:
@@ -323,7 +323,16 @@ def _check_held(legs: Sequence[Leg], section: SourceMapping, problems: list[Prob
         if more == held:
             break
         held = more
+    stand: dict[tuple[float, float], str] = {}
     for leg in legs:
+        if leg.bottom.anchor is not None and leg.name != stand.setdefault(
+            leg.bottom.anchor.at, leg.name
+        ):
+            message = (
+                f"its anchor stands where that of leg `{stand[leg.bottom.anchor.at]}` does; say "
+                "where it is: `bottom: {anchor: {at: [30 m, 0 m]}}`"
+            )
+            problems.append(section.problem((leg.name,), message, key=True))
         if leg.name not in held:
             message = f"nothing holds leg `{leg.name}`: no anchor, no held end"
             problems.append(section.problem((leg.name,), message, key=True))

@@ -224,8 +224,8 @@ def solve_net(
 
 
 def about(net: NetSearch, near: NetSolution | None) -> Floats:
-    """The unknowns of a net about closed, sought near another, where it about is, and from still
-    water on.
+    """The unknowns of a net about closed: near another, else from still water on, which of several
+    equilibria leads to the highest; where that leads nowhere, from where it comes to rest.
 
     Raises
     ------
@@ -237,26 +237,23 @@ def about(net: NetSearch, near: NetSolution | None) -> Floats:
         net.lie_as(near.lands)
         if (x := net.closed(near.unknowns, step, net_closing.NEAR)) is not None:
             return x
-    x = net.closed(net.begin(start_of(legs, net.nodes, water)), step, net_closing.NEAR)
-    if x is not None:
-        return x
-    still = water.still()
+    still, way, stride = water.still(), 0.0, 1.0
     net.put_in(still)
     x = net.closed(net.begin(start_of(legs, net.nodes, still)), step, net_closing.NEAR)
-    if x is None:
-        raise unsettled("not even in still water do its legs come together")
-    way, stride = 0.0, 0.25
-    while way < 1.0:
+    why = "not even in still water do its legs come together"
+    while x is not None and way < 1.0 and stride >= 0.01:
         following = min(way + stride, 1.0)
         moving = replace(water, u=following * water.u, v=following * water.v, w=following * water.w)
         net.put_in(moving if following < 1.0 else water)
         closer = net.closed(x, step, net_closing.NEAR)
-        if closer is None:
-            stride *= 0.5
-            if stride < 0.01:
-                raise unsettled(f"beyond {way:.0%} of the current its legs do not come together")
-            continue
-        x, way = closer, following
+        stride = stride if closer is not None else 0.5 * stride
+        x, way = (x, way) if closer is None else (closer, following)
+        why = f"beyond {way:.0%} of the current its legs do not come together"
+    if x is None or way < 1.0:
+        net.put_in(water)
+        x = net.closed(net.begin(start_of(legs, net.nodes, water)), step, net_closing.NEAR)
+    if x is None:
+        raise unsettled(why)
     return x
 
 

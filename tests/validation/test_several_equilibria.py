@@ -2,7 +2,7 @@
 
 With the free end at a depth the line ends some way above its anchor. It stands where this
 vanishes, and stays there where it falls with depth: where it grows a line pushed down goes on down.
-CALM gives the highest and tells the deepest that it comes upon.
+CALM gives the highest and tells the deepest that it comes upon; of a net it gives the highest.
 """
 
 from __future__ import annotations
@@ -18,6 +18,8 @@ from scipy.optimize import brentq
 import calm
 from calm.physics.line import Line, Water
 from calm.solve import Settings, solve_mooring
+from calm.solve.net import solve_net
+from calm.solve.net_leg import LegEnd, NetLeg
 from tests.property.strategies import mooring
 from tests.validation.closing import COARSE, FINE
 from tests.validation.continuous import March
@@ -27,7 +29,8 @@ NEAR = 5e-5
 """Of the depth: what CALM promises at an angle step of 1°."""
 
 THREAD = line_of(point(500.0, 100.0), cable(100.0, 0.0, 0.0, 1.3, 0.0))
-ROPE = line_of(point(900.0, 250.0), cable(260.0, 0.006, 0.3, 1.3, 0.01, 2e-6))
+IN_ROPE = 0.006, 0.3, 1.3, 0.01, 2e-6
+ROPE = line_of(point(900.0, 250.0), cable(260.0, *IN_ROPE))
 LONG = line_of(point(2000.0, 800.0), cable(401.0, 0.006, 0.3, 1.3, 0.01, 2e-6))
 
 
@@ -78,6 +81,24 @@ def test_the_highest_is_given_and_the_deepest_told(line, water, expected) -> Non
         assert solution.other_depth is None
     else:
         assert solution.other_depth == pytest.approx(depths[-1], abs=NEAR * water.depth)
+
+
+@pytest.mark.parametrize("water", [sheet(1.4, 148.0), turning(1.0, 160.0)])
+def test_of_a_net_the_highest_is_found(water: Water) -> None:
+    """The same line as two legs that meet; let go in the second it would rest at the deeper."""
+    depths = stays(ROPE, water, 150)
+    assert len(depths) == 2
+    legs = [
+        NetLeg(line_of(point(900.0, 250.0), cable(100.0, *IN_ROPE)), LegEnd(), LegEnd(node=0)),
+        NetLeg(
+            line_of(cable(160.0, *IN_ROPE)), LegEnd(node=0),
+            LegEnd(place=(0.0, 0.0, ROPE.anchor_height - 400.0), seabed=-400.0),
+        ),
+    ]  # fmt: skip
+    still = solve_net(legs, 1, water.still())
+    for near in (None, still):  # as of `calm run` and of `calm batch`
+        net = solve_net(legs, 1, water, near=near)
+        assert -net.legs[0].position[0, 2] == pytest.approx(depths[0], abs=NEAR * water.depth)
 
 
 def test_a_line_afloat_that_an_undercurrent_would_hold_down() -> None:
