@@ -226,7 +226,7 @@ def test_a_right_pressure_is_seldom_judged_wrong_where_no_current_was_measured(m
             measured, u=none, v=none, level_depth=none, level_point=empty, level_sensor=empty,
             flag=none.astype(np.int8),
         )  # fmt: skip
-        wrong = replace(alone, depth=alone.depth + [0.0, 15.0, 0.0])
+        wrong = replace(alone, depth=alone.depth + np.array([0.0, 15.0, 0.0]))
         task = prepare(mooring, alone, fitted(currents=False), [THREE[1]])
         assert fit_of(task, alone, THREE[1]).fits is not False
         assert fit_of(task, wrong, THREE[1]).fits is False
