@@ -110,12 +110,10 @@ class NetSearch:
         for state, lies in zip(self.net.state, lands, strict=True):
             state[net_march.LANDS] = float(lies)
 
-    def asked(
-        self, task: int, x: Floats, how: Marching, enough: float = 0.0, *, known: bool = False
-    ) -> tuple[int, Floats]:
+    def asked(self, task: int, x: Floats, how: Marching, enough: float = 0.0) -> tuple[int, Floats]:
         """Ask about unknowns, see `AskedNet`; how it ended, and the unknowns then."""
         own: Any = x.copy() if self.compiled else x.tolist()
-        asked = AskedNet(task, self.net, own, how, enough, known)
+        asked = AskedNet(task, self.net, own, how, enough, False)
         if self.compiled:
             ask = by_address(ask_net, asked)
             ending = entry(ask_now, ask, asked)(ask, asked)
