@@ -100,7 +100,8 @@ def motion(
         Hide each sensor in turn, and compare.
     correct
         What to correct where a sensor is found wrong, separated by commas: clock,
-        gain, offset, drift. The history of the output says what was corrected.
+        gain, offset, drift; air, where pressures are absolute. The history of the
+        output says what was corrected.
     judge
         Label of a suspicious sensor: it is hidden as with --hold-out, and whether its
         pressures fit the line is said, with the odds: yes, no, or cannot tell.
@@ -227,7 +228,8 @@ def write_copies(
         if all(point is None for point in one.point):
             narrate(f"{one.path}: no part of the line; it is not written")
             continue
-        target = output / one.path.name if folder else output
+        name = one.path.name if one.path.suffix == ".nc" else f"{one.path.name}.nc"
+        target = output / name if folder else output
         for label in write_depths(one, result, gap, target, told):
             narrate(f"{one.path}: `{label}` is not a part of the line; its depth is NaN")
 

@@ -8,6 +8,7 @@ equilibrium a bar then lies along the mean of the forces at its ends, as everywh
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -211,6 +212,16 @@ class Elements:
     height: Floats
     out: Booleans
     curve: tuple[DragCurve | None, ...]
+
+    @cached_property
+    def lifts(self) -> bool:
+        """Return whether the flow lifts any."""
+        return bool(self.lift.any())
+
+    @cached_property
+    def push(self) -> Floats:
+        """(k, 3) of the wind [N]."""
+        return np.column_stack([self.push_east, self.push_north, 0.0 * self.push_east])
 
     @staticmethod
     def of(rows: list[Element]) -> Elements:

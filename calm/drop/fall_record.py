@@ -125,7 +125,7 @@ def end_tensions(mover: Mover, state: ChainState, *, within: bool = False) -> Fl
     In the first moment the anchor pushes what is beside it, where a real line goes slack.
     """
     on = mover.chain.elements
-    loads, axis = mover.loads(state.node, state.velocity, state.tension, mover.variation(state))
+    loads, axis, _ = mover.loads(state.node, state.velocity, state.tension, mover.variation(state))
     pull = state.tension[:, np.newaxis] * axis
     force = loads.force
     if within:

@@ -101,24 +101,28 @@ def loads_on(
     size = np.sqrt(np.einsum("ij,ij->i", across, across) + slowest**2)
     kn, kt = grown * variation * on.normal_drag, on.directional * grown * on.tangential_drag
     square, slope, aside, oblique = _friction(chain, kt, along, speed, slowest)
-    drag = (kn * size)[:, np.newaxis] * across + square[:, np.newaxis] * axis
-    drag += oblique[:, np.newaxis] * flow
+    sized = kn * size
+    drag = sized[:, np.newaxis] * across + square[:, np.newaxis] * axis
     # d(s n)/dn of the normal drag is s + n n/s; n = V - (V.t) t is at right angles to t
-    held, skewed = wet * kn * size, wet * (slope - on.directional * kn * size)
-    normal = (wet * kn / size)[:, np.newaxis, np.newaxis] * _outer(across, across)
-    by_flow = normal + skewed[:, np.newaxis, np.newaxis] * _outer(axis, axis)
-    by_axis = skewed[:, np.newaxis, np.newaxis] * _outer(axis, flow)
-    by_axis -= along[:, np.newaxis, np.newaxis] * normal
-    by_flow += _outer((wet * aside)[:, np.newaxis] * axis, flow)
-    by_flow += _outer((wet * oblique / speed**2)[:, np.newaxis] * flow, flow)
-    for i in range(3):
-        by_flow[:, i, i] += held + wet * oblique
-        by_axis[:, i, i] += wet * square - along * held
-    raised = dense * on.lift * wet
+    held, skewed = wet * sized, (wet * (slope - on.directional * sized))[:, np.newaxis]
+    normal = _outer((wet * kn / size)[:, np.newaxis] * across, across)
+    by_flow = normal + _outer(skewed * axis, axis)
+    by_axis = _outer(skewed * axis, flow) - along[:, np.newaxis, np.newaxis] * normal
+    np.einsum("kii->ki", by_axis)[:] += (wet * square - along * held)[:, np.newaxis]
+    if aside is not None:
+        by_flow += _outer((wet * aside)[:, np.newaxis] * axis, flow)
+    if oblique is not None:
+        drag += oblique[:, np.newaxis] * flow
+        by_flow += _outer((wet * oblique / speed**2)[:, np.newaxis] * flow, flow)
+        held = held + wet * oblique
+    np.einsum("kii->ki", by_flow)[:] += held[:, np.newaxis]
     force = wet[:, np.newaxis] * drag + push
-    force[:, 2] += lift + raised * speed**2
-    by_flow[:, 2] += 2.0 * raised[:, np.newaxis] * flow
-    by_height = -np.einsum("ijk,ik->ij", by_flow, shear) + wetting[:, np.newaxis] * drag
+    force[:, 2] += lift
+    if on.lifts:
+        raised = dense * on.lift * wet
+        force[:, 2] += raised * speed**2
+        by_flow[:, 2] += 2.0 * raised[:, np.newaxis] * flow
+    by_height = wetting[:, np.newaxis] * drag - np.einsum("ijk,ik->ij", by_flow, shear)
     by_height[:, 2] += stiffness
     return Loads(force, by_flow, by_axis, by_height)
 
@@ -131,25 +135,25 @@ def _outer(a: Floats, b: Floats) -> Floats:
 
 def _friction(
     chain: BarChain, kt: Floats, along: Floats, speed: Floats, slowest: float
-) -> tuple[Floats, Floats, Floats, Floats]:
+) -> tuple[Floats, Floats, Floats | None, Floats | None]:
     """Drag along the axis, its growth with the flow along it and, times the flow, with all of it.
 
-    The last is of Hoerner's law: the drag that goes with the flow, over that flow.
+    The last is of Hoerner's law: the drag that goes with the flow, over that flow. None is none.
     """
     law = chain.line.friction
     straight = kt * np.sqrt(along**2 + slowest**2)
-    square, slope, none = straight * along, 2.0 * straight, np.zeros_like(along)
+    square, slope = straight * along, 2.0 * straight
     cable = chain.elements.flexible
     if law is Friction.CONSTANT:
         # the whole of V², towards where the flow goes along the cable
         sign = along / np.sqrt(along**2 + slowest**2)
         square = np.where(cable, kt * speed**2 * sign, square)
         slope = np.where(cable, kt * speed**2 * (1.0 - sign**2) / np.hypot(along, slowest), slope)
-        return square, slope, np.where(cable, 2.0 * kt * sign, 0.0), none
+        return square, slope, np.where(cable, 2.0 * kt * sign, 0.0), None
     if law is Friction.HOERNER:
         square, slope = (np.where(cable, 0.0, each) for each in (square, slope))
-        return square, slope, none, np.where(cable, kt * speed, 0.0)
-    return square, slope, none, none
+        return square, slope, None, np.where(cable, kt * speed, 0.0)
+    return square, slope, None, None
 
 
 def _afloat(
@@ -161,20 +165,21 @@ def _afloat(
     known it then weighs on the line. A float whose hull is known loses it, and its drag, by its
     draft.
     """
-    on = chain.elements
-    excess = (density - REFERENCE_DENSITY) * sea.water.gravity
-    net = on.buoyancy + excess * on.volume
-    displaced = density * sea.water.gravity * on.volume
-    dry = np.where(on.out & (on.volume > 0.0), displaced - net, np.maximum(displaced - net, 0.0))
-    top = height + 0.5 * on.height
-    way = np.clip(1.0 - top / sea.skin, 0.0, 1.0)
-    share = way**2 * (3.0 - 2.0 * way)
-    rise = -6.0 * way * (1.0 - way) / sea.skin
-    floats = net > 0.0
-    lift = np.where(floats | on.out, share * (net + dry) - dry, net)
-    stiffness = np.where(floats | on.out, rise * (net + dry), 0.0)
-    wet, wetting = np.where(on.out, share, 1.0), np.where(on.out, rise, 0.0)
-    push = np.column_stack([on.push_east, on.push_north, np.zeros(len(net))])
+    on, gravity = chain.elements, sea.water.gravity
+    net = on.buoyancy + (density - REFERENCE_DENSITY) * gravity * on.volume
+    top, push = height + 0.5 * on.height, on.push
+    lift, wet, stiffness = net.copy(), np.ones(len(net)), np.zeros(len(net))
+    wetting = stiffness.copy()
+    if top.max() > 0.0:
+        weight = REFERENCE_DENSITY * gravity * on.volume - on.buoyancy
+        dry = np.where(on.out & (on.volume > 0.0), weight, np.maximum(weight, 0.0))
+        way = np.clip(1.0 - top / sea.skin, 0.0, 1.0)
+        share = way**2 * (3.0 - 2.0 * way)
+        rise = -6.0 * way * (1.0 - way) / sea.skin
+        emerges = (net > 0.0) | on.out
+        lift = np.where(emerges, share * (net + dry) - dry, net)
+        stiffness = np.where(emerges, rise * (net + dry), 0.0)
+        wet, wetting = np.where(on.out, share, 1.0), np.where(on.out, rise, 0.0)
     if chain.afloat is not None:
         hull, i = chain.afloat, chain.afloat.element
         draft = 0.5 - height[i] / hull.height
@@ -187,6 +192,7 @@ def _afloat(
             growth * whole * (immersed[2] - immersed[0]),
         )
         wet[i], wetting[i] = drag[1], growth * (drag[2] - drag[0])
+        push = push.copy()
         push[i, :2] += [np.interp(draft, hull.draft, hull.push[:, k]) for k in (0, 1)]
     return lift, stiffness, wet, wetting, push
 

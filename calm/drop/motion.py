@@ -24,7 +24,7 @@ MOST_ROUNDS = 16
 """Of Newton's method; a step that takes more is too long."""
 GENTLE = 10.0
 """Speed below which drag goes with the speed, in the first round of a step from rest [m/s]."""
-CLOSE = 1e-6
+CLOSE = 1e-5
 """Last change of a place, as a share of the line, and of a tension, as one of all the weights; what
 is left is of the order of its square."""
 SINKING = 1e-4
@@ -129,18 +129,19 @@ class Mover:
         tension: Floats,
         variation: Floats,
         slowest: float = SLOWEST,
-    ) -> tuple[Loads, Floats]:
-        """The forces on the loads, and the axes (n, 3) of the bars."""
-        bar, place = self.chain.elements.bar, self.chain.elements.place[:, np.newaxis]
-        chord = np.diff(node, axis=0)
-        axis = chord / np.linalg.norm(chord, axis=1)[:, np.newaxis]
+    ) -> tuple[Loads, Floats, Floats]:
+        """The forces on the loads, the axes (n, 3) of the bars and their lengths (n,) [m]."""
+        bar, share = self.chain.elements.bar, self._shares
+        chord = node[1:] - node[:-1]
+        length = np.sqrt(np.einsum("ij,ij->i", chord, chord))
+        axis = chord / length[:, np.newaxis]
         strain, _ = self.strain(tension)
-        height = ((1.0 - place) * node[bar] + place * node[bar + 1])[:, 2]
-        moving = (1.0 - place) * velocity[bar] + place * velocity[bar + 1]
+        height = share[:, 0] * node[bar, 2] + share[:, 1] * node[bar + 1, 2]
+        moving = share[:, :1] * velocity[bar] + share[:, 1:] * velocity[bar + 1]
         loads = loads_on(
             self.chain, self.sea, height, moving, axis[bar], strain[bar], variation, slowest
         )
-        return loads, axis
+        return loads, axis, length
 
     def strain(self, tension: Floats) -> tuple[Floats, Floats]:
         """(n,) of the bars and what it grows by [1/N]; a rope that is pushed is as one at rest."""
@@ -195,35 +196,33 @@ class Mover:
         slowest: float,
     ) -> Floats:
         """Return what nodes and tensions are too much by, one of each after another."""
-        chain, place = self.chain, self.chain.elements.place
+        chain, share = self.chain, self._shares
         velocity = (node - before) / step
-        loads, axis = self.loads(node, velocity, tension, variation, slowest)
-        length = np.linalg.norm(np.diff(node, axis=0), axis=1)
+        loads, axis, length = self.loads(node, velocity, tension, variation, slowest)
         strain, growth = self.strain(tension)
         bars = len(length)
         # nodes and bars in turn, as the unknowns
         residual = np.zeros((bars + 1, 4))
-        upper, lower = (1.0 - place)[:, np.newaxis], place[:, np.newaxis]
         pull = tension[:, np.newaxis] * axis
-        residual[:-1, :3] += self._summed(upper * loads.force) + pull
-        residual[1:, :3] += self._summed(lower * loads.force) - pull
+        ends = self._summed(share[:, :, np.newaxis] * loads.force[:, np.newaxis])
+        residual[:-1, :3] += ends[:, 0] + pull
+        residual[1:, :3] += ends[:, 1] - pull
         residual[:-1, 3] = length - chain.length * (1.0 + strain)
-        project = _UNIT - axis[:, :, np.newaxis] * axis[:, np.newaxis]
-        turn = project / length[:, np.newaxis, np.newaxis]
+        turn = (_UNIT - axis[:, :, np.newaxis] * axis[:, np.newaxis]) / length[:, None, None]
         stiff = tension[:, np.newaxis, np.newaxis] * turn
-        own = -loads.by_flow / step
+        own = loads.by_flow / -step
         own[:, :, 2] += loads.by_height
         leaning = loads.by_axis @ turn[chain.elements.bar]
-        upper, lower = upper[:, np.newaxis], lower[:, np.newaxis]
-        from_upper, from_lower = upper * own - leaning, lower * own + leaning
-        blocks = np.zeros((4, bars, 3, 3))
-        blocks[0] = self._summed(upper * from_upper) - stiff
-        blocks[1] = self._summed(upper * from_lower) + stiff
-        blocks[2] = self._summed(lower * from_upper) + stiff
-        blocks[3] = self._summed(lower * from_lower) - stiff
+        # by the upper and by the lower end, each shared between the two
+        by_end = share[:, :, np.newaxis, np.newaxis] * own[:, np.newaxis]
+        by_end[:, 0] -= leaning
+        by_end[:, 1] += leaning
+        blocks = self._summed(share[:, :, None, None, None] * by_end[:, np.newaxis])
+        blocks[:, (0, 1), (0, 1)] -= stiff[:, np.newaxis]
+        blocks[:, (0, 1), (1, 0)] += stiff[:, np.newaxis]
         diagonal = np.zeros((bars + 1, 3, 3))
-        diagonal[:-1] += blocks[0]
-        diagonal[1:] += blocks[3]
+        diagonal[:-1] += blocks[:, 0, 0]
+        diagonal[1:] += blocks[:, 1, 1]
         if self.bedded:
             sunk = np.maximum(-self.sea.water.depth - node[:-1, 2], 0.0) / self._sinking
             residual[:-1, 2] += self._bearing * sunk**2
@@ -233,7 +232,7 @@ class Mover:
             residual[-1, :3] += force
             diagonal[-1] += by_velocity / step
         return self._band.solved(
-            residual, diagonal, (blocks[1], blocks[2]), axis, -chain.length * growth
+            residual, diagonal, (blocks[:, 0, 1], blocks[:, 1, 0]), axis, -chain.length * growth
         )
 
     def _summed(self, per_element: Floats) -> Floats:
@@ -245,6 +244,12 @@ class Mover:
     def _first(self) -> Integers:
         bar = self.chain.elements.bar
         return np.searchsorted(bar, np.arange(len(self.chain.length)))
+
+    @cached_property
+    def _shares(self) -> Floats:
+        """(k, 2) of what acts on a load that its bar's upper and its lower node take."""
+        place = self.chain.elements.place
+        return np.column_stack([1.0 - place, place])
 
     @cached_property
     def _sinking(self) -> float:

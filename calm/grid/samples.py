@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from calm.errors import InputError, Problem, UsageError
 from calm.motion.line_places import LinePlaces
 from calm.motion.measurements import interpolated
-from calm.records.cf_files import UnreadableError, is_netcdf, open_current, read_times, reading
+from calm.records.cf_files import UnreadableError, is_dataset, open_current, read_times, reading
 from calm.records.instrument_series import InstrumentSeries
 
 if TYPE_CHECKING:
@@ -70,7 +70,7 @@ def read_depths(path: Path) -> MooringDepths:
     """
     if not path.exists():
         raise InputError([Problem(str(path), 0, 0, "no such file")])
-    if not path.is_dir() and not is_netcdf(path):
+    if not path.is_dir() and not is_dataset(path):
         raise InputError([Problem(str(path), 0, 0, "is not a result of calm motion")])
     with reading(path), open_current(path) as dataset:
         return _understood(dataset, path)
@@ -180,9 +180,19 @@ def gather(
     ----------
     points : of each series that is used, its point
     time : (n,) see `common_times`
+
+    Raises
+    ------
+    UsageError
+        Two series are of the same instrument.
     """
     still = depths.places.still
-    order = sorted(points, key=lambda i: still[points[i]])
+    each = [(at, series[i].below) for i, at in points.items()]
+    for at, below in each:
+        if each.count((at, below)) > 1:
+            who = ", ".join(series[i].source for i in points if points[i] == at)
+            raise UsageError(f"two series are of `{depths.label[at]}`: {who}; leave one out")
+    order = sorted(points, key=lambda i: still[points[i]] + series[i].below)
     shape = len(time), len(order)
     value, depth, deviation = (np.full(shape, np.nan) for _ in range(3))
     half = (np.median(np.diff(time)) if len(time) > 1 else np.timedelta64(1, "h")) / 2
@@ -204,7 +214,7 @@ def gather(
         count = np.bincount(bin_of[good], minlength=len(time)).astype(float)
         for table, known in (
             (value, one.value),
-            (depth, where),
+            (depth, where + one.below),
             (deviation, np.nan_to_num(spread)),
         ):
             sums = np.bincount(bin_of[good], known[good], minlength=len(time))

@@ -21,6 +21,7 @@ from calm.records.cf_files import (
     engine_of,
     groups_of,
     holdings,
+    is_dataset,
     is_netcdf,
     labels_along,
     open_current,
@@ -37,7 +38,7 @@ if TYPE_CHECKING:
 SEVERAL = ("depth", "depth_sd", "depth_qc")
 """What is added to a file of several instruments; in capitals to that of one."""
 ONE = tuple(name.upper() for name in SEVERAL)
-_OF_OLD = ("DEPTH_quality_control", "DEPTH_UNCERTAINTY")
+_OF_OLD = ("DEPTH_quality_control", "DEPTH_UNCERTAINTY", "INSTRUMENT_DEPTH")
 NOMINAL = "NOMINAL_DEPTH"
 """Where the place of the one instrument of a file goes, if that was its `DEPTH`."""
 _TIMES = ("time", "TIME", "Time")
@@ -104,8 +105,8 @@ def read_instruments(
 
 
 def _read(path: Path, seabed: float, replacing: bool) -> Instruments:
-    if not path.is_file() or not is_netcdf(path):
-        raise InputError([Problem(str(path), 0, 0, "is not a NetCDF file")])
+    if not path.is_file() or not is_dataset(path):
+        raise InputError([Problem(str(path), 0, 0, "is not NetCDF, RODB, .cnv or RBR's table")])
     with reading(path), open_current(path) as dataset:
         if groups := groups_of(path):
             raise UnreadableError(
@@ -132,7 +133,7 @@ def _who(
             if any(one.label or one.serial for one in who) or dim == "N_LEVELS":
                 return dim, tuple(who)
     alone = who_along(dataset, None, seabed, path.name)
-    if not (alone[0].label or alone[0].serial or np.isfinite(alone[0].nominal)):
+    if not alone[0].known:
         raise UnreadableError(
             "has no labels of instruments (`instrument` or `label`), and no serial number or "
             f"nominal depth of one; it holds {holdings(dataset)}"
@@ -196,14 +197,17 @@ def write_depths(
             continue
         depth[:, j], spread[:, j], flag[:, j] = at_own_times(result, point, instruments.time, gap)
     # values as they stand, but for texts: kept as characters they would be split once more
-    with xr.open_dataset(
-        instruments.path,
-        engine=engine_of(instruments.path),
-        mask_and_scale=False,
-        decode_times=False,
-        decode_coords=False,
-    ) as own:
-        copy = own.load()
+    if is_netcdf(instruments.path):
+        with xr.open_dataset(
+            instruments.path,
+            engine=engine_of(instruments.path),
+            mask_and_scale=False,
+            decode_times=False,
+            decode_coords=False,
+        ) as own:
+            copy = own.load()
+    else:
+        copy = open_current(instruments.path)
     one = instruments.along is None
     copy = _without_depths(copy, instruments)
     name, deviation, mark = instruments.names

@@ -61,12 +61,14 @@ def points_of(series: Sequence[Identity], line: LinePlaces) -> tuple[dict[int, i
     By its label; else by its serial number; else, where none of its file has either, by nominal
     depths, in their order down the line.
 
-    UsageError: no series is of any point, or two are of the same, or their order is not the only
-    one.
+    UsageError: no series is of any point, or their order is not the only one.
     """
     found: dict[int, int] = {}
     said, lost, placed = [], [], []
-    for i, one in enumerate(series):
+    who = [(one.label, one.serial, one.nominal, one.source) for one in series]
+    first = [who.index(one) for one in who]  # the bins of a profiler are one instrument
+    for i in sorted(set(first)):
+        one = series[i]
         at = _index(one.label, line.label)
         if at is None:
             at = _index(one.serial, line.serial)
@@ -91,12 +93,7 @@ def points_of(series: Sequence[Identity], line: LinePlaces) -> tuple[dict[int, i
             "no instrument is a part of the line: " + "; ".join(lost[:8])
             + "; name a file of one instrument by LABEL=FILE"
         )  # fmt: skip
-    taken = list(found.values())
-    twice = sorted({line.label[at] for at in taken if taken.count(at) > 1})
-    if twice:
-        who = ", ".join(series[i].source for i, at in found.items() if line.label[at] == twice[0])
-        raise UsageError(f"two series are of `{twice[0]}`: {who}; leave one out")
-    return found, said + lost
+    return {i: found[one] for i, one in enumerate(first) if one in found}, said + lost
 
 
 def _index(text: str, among: Sequence[str]) -> int | None:

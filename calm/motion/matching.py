@@ -13,6 +13,7 @@ from calm.case import Mooring
 from calm.case.parts import clamps_down
 from calm.dataset.discovery import hashed
 from calm.errors import UsageError, nearest, not_among
+from calm.motion.common_unknowns import FEWEST
 from calm.motion.line_places import aligned
 from calm.motion.line_response import Forward, instruments_of, labels_of
 from calm.motion.measurements import FREE, MooringMeasurements, joined, read_currents
@@ -36,6 +37,7 @@ def read_measured(
     sea_level: Path | None = None,
     declination: float | None = None,
     faults: Sequence[Fault] = (),
+    absolute: bool = False,
 ) -> tuple[MooringMeasurements, list[str], dict[str, str]]:
     """Return what was measured, at common times, with notes on what was read and the source files.
 
@@ -48,6 +50,7 @@ def read_measured(
     sea_level : the height of the sea surface, as a path
     declination : added to the directions of the currents [degrees]
     faults : of the sensors, that are taken off
+    absolute : whether all pressures hold that of the air, which is taken off
 
     Raises
     ------
@@ -83,7 +86,9 @@ def read_measured(
     notes += dict.fromkeys(f"{one.source}: {one.note}" for one in sensors if one.note)
     used = []
     for i, at in points.items():
-        one, said = plausible(corrected(sensors[i], faults), float(still[at]), seabed)
+        one = sensors[i]
+        one = replace(one, depth=one.depth - AIR * absolute)
+        one, said = plausible(corrected(one, faults), float(still[at]), seabed)
         used.append(one)
         notes += said
         if one.dropped:
@@ -93,6 +98,7 @@ def read_measured(
     level = None if sea_level is None else read_sea_level(sea_level)
     measured = joined(read, used, list(points.values()), labels, still, gap, level)
     notes += [f"{one.source}: {note}" for one in read for note in one.notes]
+    notes += air_notes(measured, still)
     lost = unusable(measured, still)
     notes += [f"{label} {reason}" for label, reason in lost.items()]
     measured = without(measured, list(lost))
@@ -102,13 +108,15 @@ def read_measured(
         "currents": ", ".join(hashed(split_label(one)[1]) for one in currents),
         "pressures": ", ".join(hashed(split_label(one)[1]) for one in pressures),
     }
-    if faults:
-        source["corrected"] = "taken off: " + "; ".join(one.sentence() for one in faults)
+    off = [one.sentence() for one in faults]
+    off += ["all sensors: 10.13 dbar, the pressure of the air"] * absolute
+    if off:
+        source["corrected"] = "taken off: " + "; ".join(off)
     return measured, notes, source
 
 
-CORRECTABLE = ("clock", "gain", "offset", "drift")
-"""What can be taken off what a sensor reads, of `calm.motion.diagnosis.Fault`."""
+CORRECTABLE = ("clock", "gain", "offset", "drift", "air")
+"""What can be taken off what a sensor reads: of `calm.motion.diagnosis.Fault`, and the air."""
 
 
 def corrected(sensor: Sensor, faults: Sequence[Fault]) -> Sensor:
@@ -264,6 +272,13 @@ def plausible(sensor: Sensor, place: float, seabed: float) -> tuple[Sensor, list
         sensor = replace(sensor, time=sensor.time[~again], depth=sensor.depth[~again])
     least = min(0.5 * place, place - MISPLACED)
     greatest = max(BELOW * seabed, seabed + MISPLACED)
+    deck = sensor.depth[sensor.depth < min(least, 2.0 * AIR)]
+    if len(deck) >= FEWEST and np.percentile(np.abs(deck - AIR), 75.0) < ON_DECK:
+        notes.append(
+            f"{sensor.label}: reads {np.median(deck):.1f} m on deck: its pressures are absolute, "
+            "and 10.13 dbar, the air's, are taken off"
+        )
+        sensor = replace(sensor, depth=sensor.depth - AIR)
     wrong = (sensor.depth < least) | (sensor.depth > greatest)
     if wrong.any() and 2 * wrong.sum() < np.isfinite(sensor.depth).sum():
         first = int(wrong.argmax())
@@ -274,6 +289,29 @@ def plausible(sensor: Sensor, place: float, seabed: float) -> tuple[Sensor, list
         )
         sensor = replace(sensor, depth=np.where(wrong, np.nan, sensor.depth))
     return sensor, notes
+
+
+AIR = 10.05
+"""What the pressure of the air adds to a depth by pressure [m]: 10.13 dbar."""
+NEAR_AIR, ON_DECK = 2.5, 0.6
+"""How near that is, to what sensors are off in calm water, and to what one reads on deck [m]."""
+
+
+def air_notes(measured: MooringMeasurements, still: Floats) -> list[str]:
+    """Return a sentence where all depths are those of absolute pressures.
+
+    In calm water they are all too great by the pressure of the air, where a current takes them
+    deeper still: what counts is the sensor that is the least too deep.
+    """
+    off = np.array([_least(column) for column in measured.depth.T]) - still[measured.point]
+    alike = float(np.min(off[np.isfinite(off)], initial=np.inf))
+    if abs(alike - AIR) > NEAR_AIR:
+        return []
+    return [
+        f"all sensors are {alike:.1f} m or more below their places at their least: these pressures "
+        "look absolute, 10.13 dbar being the air's. `--correct air` takes it off; else they are "
+        "taken as they stand, the depth of the water being wrong, and all depths are from there"
+    ]
 
 
 def unusable(measured: MooringMeasurements, still: Floats) -> dict[str, str]:

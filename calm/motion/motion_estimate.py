@@ -113,7 +113,7 @@ class RecoveredMooring:
     def _read(self) -> None:
         self.measured, self.notes, self.source = read_measured(
             self.mooring, self.pressures, self.currents, self.match, self.flags, self.gap,
-            self.sea_level, self.declination, self._faults,
+            self.sea_level, self.declination, self._faults, "air" in self.correct,
         )  # fmt: skip
         if self.prior is not None:
             self.source["prior"] = hashed(self.prior)
@@ -354,7 +354,8 @@ def estimate_motion(
     flags : quality flags of the pressures that count as measured
     gap : longest time between two values that are interpolated [s]; two hours where not given
     declination : added to the directions of the currents [degrees]
-    correct : what is taken off where a sensor is wrong: `clock`, `gain`, `offset`, `drift`
+    correct : what is taken off where a sensor is wrong: `clock`, `gain`, `offset`, `drift`; `air`
+        of absolute pressures
     judge : label of a sensor that is hidden, and of which is said whether it fits the line
     prior : a record of currents whose shapes are taken, without `currents`
     workers : threads; one for each processor that may be used where not given

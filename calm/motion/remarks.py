@@ -29,8 +29,6 @@ FAR_FACTOR = 3.0
 """Deviations from 1 beyond which a factor on a drag is something else."""
 WORST = 0.15
 """Share of the knockdown from which the error of the line itself is named."""
-AIR = 10.1
-"""What the weight of the air adds to depths by pressure [m]: 1013 hPa."""
 
 
 @dataclass(frozen=True)
@@ -106,7 +104,8 @@ class Fault:
         )
         text = {
             "currents": f"they read {share} of the current",
-            "speed": f"its speeds are {share} of the current",
+            "speed": f"its speeds are {share} of the current"
+            + ": its direction or its unit is wrong" * (not 0.25 < self.value < 4.0),
             "slows": f"its speeds change to {share} of the current by the end: a rotor that slows",
             "buoyancy": f"the net force of its floats is {share} of that in the file: one that is "
             "missing, flooded or not as listed",
@@ -114,7 +113,9 @@ class Fault:
             f"{'longer' if self.value > 1.0 else 'shorter'} than in the file",
             "drag": f"its drag is {share} of that assumed",
             "fouling": f"its drag changes to {share} of itself by the end: fouling",
-            "clock": f"{clock} {abs(self.value):.2f} h {way} {band}",
+            "clock": f"{clock} {abs(self.value):.2f} h {way} {band}"
+            + f", or those of the currents {'early' if self.value > 0.0 else 'late'}"
+            * (self.label == ALL),
             "gain": f"reads {self.value:.3f} times the depth ({self.low:.3f} to {self.high:.3f}): "
             "the gain of the pressures, or their unit, is wrong",
             "offset": f"{self.value:+.1f} m off throughout: its zero, or a length or a place on "
@@ -207,18 +208,13 @@ def alone_remarks(common: Common) -> list[str]:
 
 
 def datum_remarks(common: Common, seabed: float) -> list[str]:
-    """Return a sentence where all sensors are off alike: by the weight of the air, or by much of
-    the depth of the seabed [m].
-    """
-    at = len(common.factors)
-    spread = float(np.sqrt(common.covariance[at, at]))
-    alike = common.datum + float(common.offset.mean())
-    said = f"all sensors: {common.datum:+.1f} m off alike"
-    if common.datum > 2.0 * spread and abs(alike - AIR) < 2.0 * max(spread, common_unknowns.NOISE):
-        return [f"{said}: as if the pressures included that of the air, 10.13 dbar; take it off"]
-    if abs(common.datum) > FAR_OFFSET * common_unknowns.DATUM * seabed:
-        return [f"{said}: the depth of the water, a length, or the zero of the pressures is wrong"]
-    return []
+    """Return a sentence where all sensors are off alike, by much of the depth of the seabed [m]."""
+    if abs(common.datum) <= FAR_OFFSET * common_unknowns.DATUM * seabed:
+        return []
+    return [
+        f"all sensors: {common.datum:+.1f} m off alike: the depth of the water, a length, or the "
+        "zero of the pressures is wrong"
+    ]
 
 
 CALM = 0.1

@@ -28,13 +28,12 @@ from calm.records.current_file import holds_arrays
 from calm.records.headings import read_time_columns
 from calm.records.instrument_series import (
     INTERPOLATED,
-    axes_of,
-    flagged_values,
+    named,
+    readings,
     split_label,
     who_along,
 )
-from calm.records.instrument_text import read_instrument_text
-from calm.records.velocity import MISSING, flag_variable, refuse_ragged
+from calm.records.velocity import MISSING, flag_variable
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -141,15 +140,11 @@ def _understood(
 ) -> list[Sensor]:
     name, is_pressure = _find(dataset)
     variable = dataset[name]
-    clock = find_times(dataset, name)
-    if clock is None or dataset[clock].ndim != 1:
-        raise UnreadableError(f"`{name}` has no times")
-    time, along = axes_of(dataset, name, clock)
-    refuse_ragged(dataset, name)
+    found = readings(dataset, [name], flags)
     words, note = words_of(variable, "long_name", "comment"), ""
     if _NOT_MEASURED.search(words):
         flagged = flag_variable(dataset, name)
-        if flagged is None or not {time} < set(flagged.dims):
+        if flagged is None or not {found.axis} < set(flagged.dims):
             raise UnreadableError(f"`{name}` is not a measurement by its attributes: {words[:120]}")
         # attributes of several instruments in one variable are those of any of them
         note = (
@@ -157,36 +152,25 @@ def _understood(
         )
     unit = "pressure" if is_pressure else "length"
     factor = factor_of(variable, unit) / (PASCALS_PER_DBAR if is_pressure else 1.0)
-    values, dropped = flagged_values(dataset, name, time, along, flags)
-    values = np.where(dropped, np.nan, values * factor)
-    times = read_times(dataset, clock)
-    order = np.argsort(times, kind="stable")
+    values = np.where(found.dropped, np.nan, found.values[0] * factor)
     depth = depth_of(values, latitude) if is_pressure else values
     return [
         Sensor(
             **vars(who),
-            time=times[order],
-            depth=depth[order, j],
-            dropped=int(dropped[:, j].sum()),
+            time=found.time,
+            depth=depth[:, j],
+            dropped=int(found.dropped[:, j].sum()),
             note=note,
         )
-        for j, who in enumerate(who_along(dataset, along, seabed, path.name))
+        for j, who in enumerate(who_along(dataset, found.along, seabed, path.name))
         if not note or np.isfinite(depth[:, j]).any()
     ]
 
 
 def _find(dataset: xr.Dataset) -> tuple[str, bool]:
     """Return the variable of the pressures, or else of the depths; whether it is the former."""
-    for standard in _PRESSURES:
-        found = [str(name) for name in dataset.cf.standard_names.get(standard, [])]
-        usual = [name for name in _USUAL if name in found]
-        if len(found) > 1 and not usual:
-            raise UnreadableError(f"several variables are {standard}: {', '.join(found)}")
-        if found:
-            return (usual or found)[0], True
-    for name in _USUAL:
-        if name in dataset.data_vars:
-            return name, True
+    if found := named(dataset, _PRESSURES, _USUAL):
+        return found[0], True
     for name in map(str, dataset.cf.standard_names.get("depth", [])):
         clock = find_times(dataset, name)
         if (
@@ -203,25 +187,17 @@ def _find(dataset: xr.Dataset) -> tuple[str, bool]:
 
 def _from_csv(path: Path, latitude: float) -> list[Sensor]:
     """Return a table ``time,LABEL[dbar],…``; a label may come with a unit of length instead."""
-    instrument = read_instrument_text(path)
-    if instrument is not None:
-        lines = instrument.lines(("pressure",))
-        table = read_time_columns(path, ("pressure",), "pressure[dbar]", lines)
-    else:
-        table = read_time_columns(path, ("pressure", "length"), "LABEL[dbar]")
-    time, values = table.time, table.values
+    table = read_time_columns(path, ("pressure", "length"), "LABEL[dbar]")
     return [
         Sensor(
-            label if instrument is None else "",
-            time,
-            depth_of(values[:, j] / PASCALS_PER_DBAR, latitude)
-            if dimension == "pressure"
-            else values[:, j],
+            label,
+            table.time,
+            depth_of(values / PASCALS_PER_DBAR, latitude) if dimension == "pressure" else values,
             path.name,
-            float("nan") if instrument is None else instrument.nominal,
-            serial="" if instrument is None else instrument.serial,
         )
-        for j, (label, dimension) in enumerate(zip(table.names, table.dimensions, strict=True))
+        for label, dimension, values in zip(
+            table.names, table.dimensions, table.values.T, strict=True
+        )
     ]
 
 

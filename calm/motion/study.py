@@ -34,6 +34,7 @@ from calm.motion.remarks import (
     pchip,
     rms,
 )
+from calm.motion.suspects import meter_remarks
 from calm.motion.unknown_currents import learn_currents, with_knots
 from calm.motion.whole_record import estimate_common
 from calm.physics.line import Floats
@@ -186,7 +187,7 @@ def judged(
     if plain is not None:
         names = level_names(used, labels_of(task.mooring))
         false = false_current_times(names, used.time, np.asarray(result["current_doubt"].values))
-        said += current_remarks(false, len(used.time))
+        said += [*current_remarks(false, len(used.time)), *meter_remarks(used, names)]
     if not any(one.label == ALL and one.kind == "gain" for one in diagnosis):
         said += datum_remarks(task.common, float(task.mooring.water.depth))
     if task.common.widened > 1.0:

@@ -7,7 +7,7 @@ fouling. Some do nearly the same to the depths: their odds say whether the recor
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -22,8 +22,8 @@ from calm.motion.line_response import (
     ReadCurrents,
     labels_of,
 )
-from calm.motion.measurements import level_names
-from calm.motion.remarks import CURRENTS, LINE, Fault
+from calm.motion.measurements import MooringMeasurements, level_names
+from calm.motion.remarks import BAND, CURRENTS, LINE, Fault
 from calm.physics.line import Floats
 
 NO_TIME = np.datetime64("NaT", "ns")
@@ -135,3 +135,62 @@ def line_suspects(
             one_level, many = -slope[:, :, k], len(levels)
             yield suspect(name, "speed", one_level, many, misread(k), np.ones_like(share))
             yield suspect(name, "slows", share * one_level, many, misread(k), share)
+
+
+GOOD, FEWEST_TIMES = 2, 20
+"""Flag of a current up to which it counts, and how many times two meters need in common."""
+COHERENT, TURNED, UNLIKE = 0.8, 10.0, 5.0
+"""Correlation of a level with others, and how much it is turned against them [degrees], or how many
+times as fast, from which that is named."""
+
+
+def meter_remarks(measured: MooringMeasurements, names: Sequence[str]) -> list[str]:
+    """Return a sentence on each meter that is turned, mirrored or in another unit.
+
+    That is said by the two nearest, where these agree: by the complex correlation of the currents
+    over the whole record, whose phase is the mean angle between two of them (Kundu 1976, J. Phys.
+    Oceanogr. 6, 238-242), with a deviation of sqrt((1 - r²) / 2 r² n) of n independent times; and
+    by that with the mirror image of another, where east and north are exchanged.
+    """
+    flow = np.where(measured.flag <= GOOD, measured.u + 1j * measured.v, np.nan)
+
+    def against(one: int, other: int) -> tuple[complex, complex, float]:
+        both = np.isfinite(flow[:, [one, other]]).all(axis=1)
+        a, b = flow[both][:, [one, other]].T
+        own, his = np.linalg.norm(a), np.linalg.norm(b)
+        if both.sum() < FEWEST_TIMES or not own * his:
+            return 0j, 0j, 1.0
+        return np.vdot(b, a) / (own * his), a @ b / (own * his), float(own / his)
+
+    said = []
+    for k, name in enumerate(names if len(names) > 2 else []):
+        near = sorted((j for j in range(len(names)) if j != k), key=lambda j: abs(j - k))[:2]
+        (*straight, agree), (*mirror, _), (*fast, usual) = zip(
+            *(against(*pair) for pair in ((k, near[0]), (k, near[1]), near)), strict=True
+        )
+        if abs(agree) < COHERENT:
+            continue
+        angle = -np.degrees(np.angle(straight))
+        least = TURNED + abs(np.degrees(np.angle(agree)))
+        if min(np.abs(mirror)) > max(COHERENT, *np.abs(straight)):
+            what = "its east and north are exchanged, or the sign of one is wrong"
+        elif min(np.abs(straight)) < COHERENT:
+            continue
+        elif min(np.abs(angle)) > least:
+            mean = float(-np.degrees(np.angle(sum(straight))))
+            known = flow[np.isfinite(flow[:, k]), k]
+            alike = abs(np.vdot(known[1:], known[:-1]) / np.vdot(known, known)) ** 2
+            count = len(known) * (1.0 - alike) / (1.0 + alike)  # of times that are independent
+            part = min(min(np.abs(straight)), 1.0) ** 2
+            band = BAND * np.degrees(np.sqrt((1.0 - part) / (2.0 * part * count)))
+            way = "clockwise" if mean > 0.0 else "anticlockwise"
+            why = "its compass, its declination, or a current that veers there"
+            if abs(mean) > 180.0 - least - band:
+                why = "it says where the current comes from, or both signs are wrong"
+            what = f"its direction is turned {abs(mean):.0f}° (± {band:.0f}°) {way}: {why}"
+        elif max(fast) * UNLIKE < min(1.0, usual) or min(fast) > UNLIKE * max(1.0, usual):
+            what = f"its speeds are {np.sqrt(np.prod(fast)):.2g} of theirs: its unit"
+        else:
+            continue
+        said.append(f"current at {name}: against {names[near[0]]} and {names[near[1]]}, {what}")
+    return said

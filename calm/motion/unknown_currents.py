@@ -39,7 +39,7 @@ thermocline, and what is added everywhere [m/s]."""
 ALL, EACH, ALIKE = 0.7, 1.4, 0.5
 """Deviations of the logarithm of the speed that is assumed: of all knots alike, of each, and the
 share of the knots over which these are alike."""
-PRIOR = 6.0
+PRIOR = 20.0
 """So many times are what is assumed worth beside those of the record."""
 SHAPED, OTHER, FEWEST_PROFILES = 60.0, 0.2, 20
 """The same of shapes that were given; by how much each speed may differ from them, as a logarithm;

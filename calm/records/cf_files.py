@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from calm.errors import CalmError, InputError, Problem
 from calm.records.attributes import is_local
 from calm.records.current_terms import ZONES_OF_UTC, TimeChoiceError
+from calm.records.instrument_text import is_instrument_text, read_instrument_text
 from calm.units import QuantityError, unit_factor
 
 if TYPE_CHECKING:
@@ -57,8 +58,8 @@ class UnreadableError(Exception):
     """The file does not hold a current that can be understood; the text says why."""
 
 
-def is_netcdf(path: Path) -> bool:
-    """Return whether a file is NetCDF, by its first bytes.
+def is_dataset(path: Path) -> bool:
+    """Return whether a file is NetCDF, by its first bytes, or text of one instrument.
 
     InputError: it is of a kind that is known, and not read.
     """
@@ -67,7 +68,13 @@ def is_netcdf(path: Path) -> bool:
     for begin, kind in _KINDS.items():
         if signature.startswith(begin):
             raise InputError([Problem(str(path), 0, 0, f"is {kind}; NetCDF, zarr or CSV is read")])
-    return signature[:4] == b"\x89HDF" or signature[:3] == b"CDF"
+    return is_netcdf(path) or is_instrument_text(path)
+
+
+def is_netcdf(path: Path) -> bool:
+    """Return whether a file is NetCDF, by its first bytes."""
+    with path.open("rb") as file:
+        return file.read(4) in (b"\x89HDF", b"CDF\x01", b"CDF\x02", b"CDF\x05")
 
 
 @contextmanager
@@ -96,6 +103,8 @@ def open_current(path: Path) -> xr.Dataset:
         return xr.open_dataset(
             path, engine="zarr", decode_times=False, cache=False, consolidated=False
         )
+    if not is_netcdf(path):
+        return read_instrument_text(path)
     return xr.open_dataset(path, engine=engine_of(path), decode_times=False, cache=False)
 
 
@@ -130,7 +139,7 @@ def groups_of(path: Path) -> list[str]:
     """Return the names of the groups of a NetCDF 4 file; of any other file it has none."""
     import h5netcdf
 
-    if not path.is_file() or engine_of(path) != "h5netcdf":
+    if not (path.is_file() and is_netcdf(path)) or engine_of(path) != "h5netcdf":
         return []
     with h5netcdf.File(path, "r") as file:
         return list(file.groups)
@@ -142,7 +151,7 @@ def factor_of(variable: xr.DataArray, dimension: str) -> float:
     UnreadableError: it has no unit, or that of something else.
     """
     unit = str(variable.attrs.get("units", ""))
-    plain = _NORTH_NAMED.sub("", unit.strip())
+    plain = {"db": "dbar"}.get(unit.strip(), _NORTH_NAMED.sub("", unit.strip()))
     if not plain:
         raise UnreadableError(f"`{variable.name}` has no `units`")
     if (plain.istitle() or plain.isupper()) and len(plain) > 1:  # `Meter`, `METER/SEC`
@@ -229,7 +238,9 @@ def places_along(dataset: xr.Dataset, dimension: str | None, seabed: float) -> F
                 try:
                     factor = factor_of(dataset[name], "length")
                 except UnreadableError:
-                    continue
+                    if name != "InstrDepth" or "units" in dataset[name].attrs:
+                        continue
+                    factor = 1.0  # RODB has metres, and whoever takes its name no unit
                 values = np.atleast_1d(known_values(dataset[name])) * factor
                 return start + sign * values
     return None

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from calm.errors import InputError, Problem
-from calm.records.cf_files import UnreadableError, is_netcdf, open_current, reading
+from calm.records.cf_files import UnreadableError, is_dataset, open_current, reading
 from calm.records.current_dataset import ArrayRecord, CurrentArrays, understand
 from calm.records.current_terms import (
     Terms,
@@ -21,7 +21,6 @@ from calm.records.current_terms import (
     too_fast,
 )
 from calm.records.delimited import CellRow, abridged, read_table
-from calm.records.instrument_text import read_instrument_text
 from calm.records.profile_tables import CurrentTable, turned_notices
 from calm.records.record import Period, Record
 from calm.records.record_csv import EXAMPLE, CsvRecord, CurrentHeader, comment_notices
@@ -102,12 +101,12 @@ def open_record(
 
 
 def holds_arrays(path: Path) -> bool:
-    """Return whether a file is NetCDF or a folder zarr; any other file is taken as CSV.
+    """Return whether a file is NetCDF or text of one instrument, or a folder zarr; others are CSV.
 
     InputError: it is a folder of something else.
     """
     if not path.is_dir():
-        return is_netcdf(path)
+        return is_dataset(path)
     if not any((path / name).is_file() for name in _ZARR):
         message = "is a folder, and not a zarr store; join its files into one first"
         raise InputError([Problem(str(path), 0, 0, message)])
@@ -155,9 +154,7 @@ def _profile(arrays: CurrentArrays, terms: Terms, notices: list[str]) -> Current
 
 
 def _from_text(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable, list[str]]:
-    instrument = read_instrument_text(path)
-    lines = None if instrument is None else instrument.lines(("depth", "u", "v", "w"))
-    table = read_table(path, EXAMPLE, lines)
+    table = read_table(path, EXAMPLE)
     header, rows = CurrentHeader(path, table.header), list(table.rows)
     notices: list[str] = []
     if header.timed:

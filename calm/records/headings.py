@@ -7,7 +7,7 @@ several words needs brackets around its unit, or a unit that is known.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
@@ -23,7 +23,6 @@ from calm.records.delimited import (
     GAPS,
     NUMBER,
     CellRow,
-    NumberedLine,
     TextTable,
     abridged,
     read_table,
@@ -261,12 +260,7 @@ def read_named_columns(
     return NamedColumns(factors, rows, others, header.number)
 
 
-def read_time_columns(
-    path: Path,
-    dimensions: Sequence[str],
-    example: str,
-    lines: Iterable[NumberedLine] | None = None,
-) -> TimeColumns:
+def read_time_columns(path: Path, dimensions: Sequence[str], example: str) -> TimeColumns:
     """Return a table of times and quantities, each column headed by a label and its unit.
 
     Parameters
@@ -274,14 +268,13 @@ def read_time_columns(
     path : of the table
     dimensions : what the columns may be, of `calm.units.DIMENSIONS`
     example : of a heading, for messages
-    lines : of the table, where they are not those of the file
 
     Raises
     ------
     InputError
         With every mistake.
     """
-    table = read_table(path, f"time,{example}", lines)
+    table = read_table(path, f"time,{example}")
     header = table.header
     if not is_time(header.cells[0]):
         message = f"is not a table over time; its heading should be `time,{example}`"

@@ -22,7 +22,7 @@ from calm.records.cf_files import (
     find_times,
     first_present,
     holdings,
-    is_netcdf,
+    is_dataset,
     known_values,
     labels_along,
     open_current,
@@ -30,6 +30,7 @@ from calm.records.cf_files import (
     read_times,
     reading,
 )
+from calm.records.level_depths import find_levels
 from calm.records.measured_quantities import (
     QUANTITIES_MEASURED,
     celsius_zero,
@@ -47,6 +48,9 @@ if TYPE_CHECKING:
     import xarray as xr
 
     Floats = NDArray[np.float64]
+
+_ENDINGS = (".nc", ".cnv", ".use", ".microcat", ".rcm")
+_SAID = ", ".join(_ENDINGS)
 
 INTERPOLATED = 8
 """The flag of what was interpolated, which is no measurement."""
@@ -75,6 +79,11 @@ class Identity:
     source: str
 
     @property
+    def known(self) -> bool:
+        """Whether its file says anything of it."""
+        return bool(self.label or self.serial) or np.isfinite(self.nominal)
+
+    @property
     def named(self) -> str:
         """What a person calls it."""
         return self.label or self.serial or self.source
@@ -89,11 +98,13 @@ class InstrumentSeries(Identity):
     time : (n,) to the nanosecond, rising
     value : (n,) in the unit of its quantity; NaN where not measured, or the flag is not wanted
     dropped : readings that were left out for their flag
+    below : depth of what is measured below the instrument, a profiler's [m]
     """
 
     time: NDArray[np.datetime64]
     value: Floats
     dropped: int
+    below: float = 0.0
 
 
 def read_series(
@@ -124,7 +135,7 @@ def read_series(
             problems += error.problems
             continue
         for name, series in mine.items():
-            if label and len(series) > 1:
+            if label and len(series) > len({one.below for one in series}):
                 raise UsageError(f"{path} holds {len(series)} instruments; `{label}=` names one")
             found[name] += [replace(one, label=label or one.label) for one in series]
     if problems:
@@ -141,11 +152,13 @@ def files_given(given: Sequence[str]) -> list[tuple[str, Path]]:
     problems = []
     for text in given:
         label, path = split_label(text)
-        inside = sorted(path.glob("*.nc")) if path.is_dir() and path.suffix != ".zarr" else [path]
+        inside = [path]
+        if path.is_dir() and path.suffix != ".zarr":
+            inside = sorted(one for one in path.iterdir() if one.suffix in _ENDINGS)
         if not path.exists():
             problems.append(Problem(str(path), 0, 0, "no such file"))
         elif not inside:
-            problems.append(Problem(str(path), 0, 0, "the folder has no .nc files"))
+            problems.append(Problem(str(path), 0, 0, f"the folder has no files in {_SAID}"))
         else:
             found += [(label, one) for one in inside]
     if problems:
@@ -164,8 +177,8 @@ def split_label(text: str) -> tuple[str, Path]:
 def _of_file(
     path: Path, names: Sequence[str], flags: frozenset[int], seabed: float
 ) -> dict[str, list[InstrumentSeries]]:
-    if not path.is_dir() and not is_netcdf(path):
-        raise InputError([Problem(str(path), 0, 0, "is not a NetCDF file")])
+    if not path.is_dir() and not is_dataset(path):
+        raise InputError([Problem(str(path), 0, 0, "is not NetCDF, RODB, .cnv or RBR's table")])
     with reading(path), open_current(path) as dataset:
         try:
             whole = with_components(dataset)
@@ -197,11 +210,20 @@ def _find(dataset: xr.Dataset, name: str) -> tuple[str, ...]:
                 "before it is gridded"
             )
         return velocity.names
-    there = _standard(dataset, quantity.sought)
-    usual = [one for one in quantity.usual if one in (there or dataset.data_vars)]
-    if len(there) > 1 and not usual:
-        raise UnreadableError(f"several variables are {name}: {', '.join(there)}")
-    return tuple((usual or there)[:1])
+    return tuple(named(dataset, quantity.sought, quantity.usual)[:1])
+
+
+def named(dataset: xr.Dataset, sought: Sequence[str], usual: Sequence[str]) -> list[str]:
+    """Return the variables of the first standard name that any has, or else of a usual name.
+
+    UnreadableError: there are several, and none is called as usual.
+    """
+    there = _standard(dataset, sought)
+    known = [one for one in usual if one in (there or dataset.data_vars)]
+    if len(there) > 1 and not known:
+        standard = dataset[there[0]].attrs["standard_name"]
+        raise UnreadableError(f"several variables are {standard}: {', '.join(there)}")
+    return known or there
 
 
 def _standard(dataset: xr.Dataset, sought: Sequence[str]) -> list[str]:
@@ -218,17 +240,8 @@ def _instruments(
     seabed: float,
 ) -> list[InstrumentSeries]:
     quantity, first = QUANTITIES_MEASURED[name], variables[0]
-    clock = find_times(dataset, first)
-    if clock is None or dataset[clock].ndim != 1:
-        raise UnreadableError(f"`{first}` has no times")
-    refuse_ragged(dataset, first)
-    time, along = axes_of(dataset, first, clock)
-    parts, dropped = [], None
-    for one in variables:
-        values, left_out = flagged_values(dataset, one, time, along, flags)
-        parts.append(values)
-        dropped = left_out if dropped is None else dropped | left_out
-    assert dropped is not None
+    found = readings(dataset, variables, flags)
+    parts, dropped, along = found.values, found.dropped, found.along
     if quantity.dimension == "speed":
         value = _velocity(dataset, variables, parts, name)
     elif quantity.dimension == "temperature":
@@ -238,38 +251,90 @@ def _instruments(
     else:
         value = parts[0] * factor_of(dataset[first], quantity.dimension)
     value = np.where(dropped, np.nan, value)
-    times = read_times(dataset, clock)
-    order = np.argsort(times, kind="stable")
     who = who_along(dataset, along, seabed, path.name)
+    below = np.zeros(len(who))
+    if along is not None and not any(one.known for one in who):
+        below = _bins(dataset, along, found.axis, seabed)
+        who = who_along(dataset, None, seabed, path.name) * len(who)
     return [
         InstrumentSeries(
             **vars(who[j]),
-            time=times[order],
-            value=value[order, j],
+            time=found.time,
+            value=value[:, j],
             dropped=int(dropped[:, j].sum()),
+            below=float(below[j]),
         )
         for j in range(value.shape[1])
     ]
 
 
-def axes_of(dataset: xr.Dataset, name: str, clock: str) -> tuple[str, str | None]:
-    """Return the dimension of the times of a variable, and that of its instruments.
+def _bins(dataset: xr.Dataset, along: str, time: str, seabed: float) -> Floats:
+    """Return how far the bins of a profiler are below it [m]; nowhere else are they known."""
+    levels = find_levels(dataset, along, time, seabed)
+    if levels.instrument is None or time in levels.variable.dims:
+        raise UnreadableError(f"`{along}` counts neither instruments nor bins of a profiler")
+    return np.asarray(known_values(levels.variable) * levels.factor)
+
+
+@dataclass(frozen=True)
+class Readings:
+    """Hold what variables say of k instruments at n times.
+
+    Attributes
+    ----------
+    time : (n,) rising
+    axis, along : dimension of the times, and of the instruments; None of a single one
+    values : (n, k) of each variable, as they stand
+    dropped : (n, k) which are left out for the flag of any
+    """
+
+    time: NDArray[np.datetime64]
+    axis: str
+    along: str | None
+    values: list[Floats]
+    dropped: NDArray[np.bool_]
+
+
+def readings(dataset: xr.Dataset, names: Sequence[str], flags: frozenset[int]) -> Readings:
+    """Return the readings of some variables of the same dimensions.
 
     Parameters
     ----------
-    name : of the variable
-    clock : the variable of its times
+    names : of the variables
+    flags : of what counts as measured; 8 never does
 
     Raises
     ------
     UnreadableError
-        It is not of times and instruments alone.
+        They have no times, or are not of times and instruments alone.
     """
-    time = str(dataset[clock].dims[0]) if dataset[clock].dims else ""
-    others = [str(dim) for dim, size in dataset[name].sizes.items() if dim != time and size > 1]
-    if len(others) > 1 or time not in dataset[name].dims:
-        raise UnreadableError(f"`{name}` is not of times and instruments: {dataset[name].dims}")
-    return time, others[0] if others else None
+    first = dataset[names[0]]
+    clock = find_times(dataset, names[0])
+    if clock is None or dataset[clock].ndim != 1:
+        raise UnreadableError(f"`{first.name}` has no times")
+    refuse_ragged(dataset, names[0])
+    time = str(dataset[clock].dims[0])
+    others = [str(dim) for dim, size in first.sizes.items() if dim != time and size > 1]
+    if len(others) > 1 or time not in first.dims:
+        raise UnreadableError(f"`{first.name}` is not of times and instruments: {first.dims}")
+    along = others[0] if others else None
+    times = read_times(dataset, clock)
+    order = np.argsort(times, kind="stable")
+
+    def table(one: xr.DataArray, values: NDArray[Any]) -> NDArray[Any]:
+        axes = [str(dim) for dim in one.dims]
+        kept = [axis for axis in (time, along) if axis in axes]
+        moved = values.transpose(*(axes.index(a) for a in kept),
+                                 *(i for i, a in enumerate(axes) if a not in kept))  # fmt: skip
+        return moved.reshape(len(moved), -1)[order]
+
+    parts = [table(dataset[name], known_values(dataset[name])) for name in names]
+    dropped = np.zeros(parts[0].shape, bool)
+    for name, values in zip(names, parts, strict=True):
+        if (marks := flag_variable(dataset, name)) is not None:
+            given = np.broadcast_to(table(marks, flags_of(marks)), values.shape)
+            dropped |= ~np.isin(given, sorted(flags - {INTERPOLATED})) & np.isfinite(values)
+    return Readings(times[order], time, along, parts, dropped)
 
 
 def who_along(dataset: xr.Dataset, along: str | None, seabed: float, source: str) -> list[Identity]:
@@ -315,35 +380,6 @@ def _number(attributes: Any) -> float:
         except (KeyError, TypeError, ValueError):
             continue
     return float("nan")
-
-
-def flagged_values(
-    dataset: xr.Dataset, name: str, time: str, along: str | None, flags: frozenset[int]
-) -> tuple[Floats, NDArray[np.bool_]]:
-    """Return (n, k) values as they stand, and which are left out for their flag.
-
-    Parameters
-    ----------
-    name : of the variable
-    time, along : as of `axes_of`
-    flags : of what counts as measured; 8 never does
-    """
-
-    def table(one: xr.DataArray, values: NDArray[Any]) -> NDArray[Any]:
-        axes = [str(dim) for dim in one.dims]
-        kept = [axis for axis in (time, along) if axis in axes]
-        moved = values.transpose(*(axes.index(a) for a in kept),
-                                 *(i for i, a in enumerate(axes) if a not in kept))  # fmt: skip
-        return moved.reshape(len(moved), -1)
-
-    variable = dataset[name]
-    values = table(variable, known_values(variable))
-    marks = flag_variable(dataset, name)
-    dropped = np.zeros(values.shape, bool)
-    if marks is not None:
-        given = np.broadcast_to(table(marks, flags_of(marks)), values.shape)
-        dropped = ~np.isin(given, sorted(flags - {INTERPOLATED})) & np.isfinite(values)
-    return values, dropped
 
 
 def _velocity(

@@ -1,15 +1,17 @@
-"""Text files of one instrument, as the lines of the table that they are.
+"""Text files of one instrument, as datasets like those of archives.
 
 RODB files, `.use`, `.microcat` and `.rcm` of RAPID and OSNAP, have lines ``Name = value`` above
-columns in known units. Sea-Bird's `.cnv` files name each column, with its unit, in their head.
+columns in known units. Sea-Bird's `.cnv` files name each column, with its unit, in their head, and
+so do the tables of RBR's own library.
 """
 
 from __future__ import annotations
 
+import math
 import re
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,13 +21,28 @@ from calm.physics.line import Floats
 from calm.positions import plain_degrees
 from calm.whole_file import read_content
 
+if TYPE_CHECKING:
+    import xarray as xr
+
 LARGEST = 500_000_000
 """Largest file that is read [bytes]."""
 
+AIR = 10.1325
+"""Pressure of the air [dbar]."""
 _HEAD = 100_000  # bytes in which a head ends
+_WHAT = {
+    "temperature": ("TEMP", "sea_water_temperature"),
+    "conductivity": ("CNDC", "sea_water_electrical_conductivity"),
+    "salinity": ("PSAL", "sea_water_practical_salinity"),
+    "pressure": ("PRES", "sea_water_pressure_due_to_sea_water"),
+    "depth": ("DEPTH", "depth"),
+    "u": ("UCUR", "eastward_sea_water_velocity"),
+    "v": ("VCUR", "northward_sea_water_velocity"),
+    "w": ("WCUR", "upward_sea_water_velocity"),
+}
 _RODB = {
-    "T": "temperature[degC]", "C": "conductivity[mS/cm]", "P": "pressure[dbar]",
-    "U": "u[cm/s]", "V": "v[cm/s]", "W": "w[cm/s]", "Z": "depth[m]",
+    "T": ("temperature", "degC"), "C": ("conductivity", "mS/cm"), "P": ("pressure", "dbar"),
+    "U": ("u", "cm/s"), "V": ("v", "cm/s"), "W": ("w", "cm/s"), "Z": ("depth", "m"),
 }  # fmt: skip
 _DATE = ("YY", "MM", "DD", "HH")
 _PAIR = re.compile(r"\s*(\w+)\s*=\s*(.*?)\s*$")
@@ -35,90 +52,92 @@ _CNV = (
     (r"pr\w*", "pressure", {"db": "dbar", "dbar": "dbar", "psi": "psi", "psia": "psi"}),
     (r"dep[SF]\w*", "depth", {"m": "m", "ft": "ft"}),
     (r"(t|tv)\d*(68|90)\w*", "temperature", {"deg C": "degC"}),
-    (r"sal\w*", "salinity", {"PSU": "PSU"}),
+    (r"sal\w*", "salinity", {"PSU": "1"}),
+    (r"c(ond)?\d\w*/c?m", "conductivity", {"S/m": "S/m", "mS/cm": "mS/cm", "uS/cm": "uS/cm"}),
 )  # fmt: skip
 _CNV_TIMES = {
     "timeJ": 86_400.0, "timeJV2": 86_400.0, "timeK": 1.0, "timeY": 1.0,
     "timeS": 1.0, "timeM": 60.0, "timeH": 3600.0,
 }  # fmt: skip
 _CNV_EPOCHS = {"timeK": "2000-01-01", "timeY": "1970-01-01"}
+_SECONDS = "seconds since 1970-01-01 00:00:00"
 _MISSING = (-9999.0, -999.0, -99.999, -9.99e-29, 1e35)
 
 
-@dataclass(frozen=True)
-class InstrumentText:
-    """Hold the columns of a file of one instrument.
-
-    Attributes
-    ----------
-    path : of the file
-    time : (n,) to the microsecond
-    columns : (n,) by their headings, ``pressure[dbar]``, as they stand; NaN where missing
-    line : (n,) number of the line of each row
-    nominal : depth where it was meant to hang [m]; NaN where the file does not say
-    latitude : [degrees]; NaN where the file does not say
-    serial : number of the instrument; empty where the file does not say
-    """
-
-    path: Path
-    time: NDArray[np.datetime64]
-    columns: dict[str, Floats]
-    line: NDArray[np.intp]
-    nominal: float
-    latitude: float
-    serial: str
-
-    def lines(self, names: Sequence[str]) -> Iterator[tuple[int, str]]:
-        """Yield the numbered lines of a table of the time and some of the columns, by their name.
-
-        A depth that has no column of its own is that of the pressure, by TEOS-10, or the nominal
-        one. InputError: the file has none of them.
-        """
-        known = {heading.partition("[")[0]: heading for heading in self.columns}
-        chosen = {known[name]: self.columns[known[name]] for name in names if name in known}
-        if "depth" in names and "depth" not in known:
-            chosen = {"depth[m]": self._depths(known), **chosen}
-        if not set(names) & known.keys():
-            has = ", ".join(known) or "nothing that is known"
-            raise _refused(self.path, 0, f"holds no {' or '.join(names)}; it has {has}")
-        yield 1, ",".join(["time", *chosen])
-        moments = np.datetime_as_string(self.time)
-        for number, moment, row in zip(
-            self.line.tolist(), moments.tolist(), np.column_stack([*chosen.values()]), strict=True
-        ):
-            yield number, ",".join([moment, *(f"{value:.10g}" for value in row.tolist())])
-
-    def _depths(self, known: dict[str, str]) -> Floats:
-        """Return depths [m] of the pressures, and the nominal one where there is none."""
-        import gsw
-
-        nominal = np.full(len(self.time), self.nominal)
-        if known.get("pressure") != "pressure[dbar]":
-            return nominal
-        latitude = 45.0 if np.isnan(self.latitude) else self.latitude
-        depth = -gsw.z_from_p(self.columns["pressure[dbar]"], latitude)
-        return np.maximum(np.where(np.isnan(depth), nominal, depth), 0.0)
+def is_instrument_text(path: Path) -> bool:
+    """Return whether a file is text of one instrument, of a format that is known."""
+    return _reader(path) is not None
 
 
-def read_instrument_text(path: Path) -> InstrumentText | None:
-    """Return what a text file of an instrument holds; None where it is none of a known format.
+def read_instrument_text(path: Path) -> xr.Dataset:
+    """Return what a text file of an instrument holds, in the names and attributes of OceanSITES.
+
+    Times are seconds since 1970; values are NaN where they are missing. A current has its depth in
+    `INSTRUMENT_DEPTH`: that of the pressure, by TEOS-10, or the nominal one.
 
     InputError: it cannot be read, has no times, or a row that is none.
     """
+    reader = _reader(path)
+    assert reader is not None  # by `is_instrument_text`
+    return reader(path)
+
+
+def _reader(path: Path) -> Callable[[Path], xr.Dataset] | None:
     with path.open("rb") as file:
         head = file.read(_HEAD).decode("latin-1")
     if head.startswith("* Sea-Bird") or re.search(r"(?m)^# nquan\s*=", head):
-        return _cnv(path)
-    if re.search(r"(?mi)^\s*columns\s*=\s*\w+(:\w+)+\s*$", head):
-        return _rodb(path)
-    return None
+        return _cnv
+    if head.startswith("// Creator: RBR"):
+        return _rbr
+    return _rodb if re.search(r"(?mi)^\s*columns\s*=\s*\w+(:\w+)+\s*$", head) else None
+
+
+def _dataset(
+    path: Path,
+    time: NDArray[np.datetime64],
+    columns: dict[tuple[str, str], Floats],
+    nominal: float = math.nan,
+    latitude: float = math.nan,
+    serial: str = "",
+) -> xr.Dataset:
+    """Return columns, by what they are and their unit, as a dataset."""
+    import cf_xarray  # noqa: F401  (gives datasets their `cf`)
+    import xarray as xr
+
+    seconds = (time - np.datetime64(0, "us")) / np.timedelta64(1, "s")
+    dataset = xr.Dataset(attrs={"Conventions": "CF-1.8", "source": path.name})
+    dataset["TIME"] = "TIME", seconds, {"standard_name": "time", "units": _SECONDS, "axis": "T"}
+    for (what, unit), values in columns.items():
+        name, standard = _WHAT[what]
+        dataset[name] = "TIME", values, {"standard_name": standard, "units": unit}
+    down = {"standard_name": "depth", "units": "m", "positive": "down"}
+    if "DEPTH" in dataset:
+        dataset["DEPTH"].attrs.update(down)
+    elif "UCUR" in dataset:
+        dataset["INSTRUMENT_DEPTH"] = "TIME", _depths(columns, len(time), nominal, latitude), down
+    if math.isfinite(nominal):
+        dataset["NOMINAL_DEPTH"] = (), nominal, {**down, "long_name": "nominal depth"}
+    if serial:
+        dataset.attrs["serial_number"] = serial
+    return dataset
+
+
+def _depths(
+    columns: dict[tuple[str, str], Floats], count: int, nominal: float, latitude: float
+) -> Floats:
+    """Return depths [m] of the pressures, and the nominal one where there is none."""
+    import gsw
+
+    pressure = columns.get(("pressure", "dbar"), np.full(count, np.nan))
+    depth = -gsw.z_from_p(pressure, 45.0 if math.isnan(latitude) else latitude)
+    return np.maximum(np.where(np.isnan(depth), nominal, depth), 0.0)
 
 
 def _lines(path: Path) -> list[str]:
     return read_content(path, largest=LARGEST).decode("latin-1").splitlines()
 
 
-def _rodb(path: Path) -> InstrumentText:
+def _rodb(path: Path) -> xr.Dataset:
     lines = _lines(path)
     said: dict[str, str] = {}
     first = 0
@@ -129,38 +148,36 @@ def _rodb(path: Path) -> InstrumentText:
     names = said["columns"].upper().split(":")
     if not set(_DATE[:3]) <= set(names):
         raise _refused(path, first, "its `Columns` have no YY, MM and DD")
-    line, values = _numbers(path, lines, first, len(names))
+    values = _numbers(path, lines, first, len(names))
     of = dict(zip(names, values.T, strict=True))
     year, month, day = (of[name].astype(np.int64) for name in _DATE[:3])
     months = (year - 1970).astype("M8[Y]").astype("M8[M]") + (month - 1)
-    seconds = np.rint(of.get("HH", np.zeros(len(line))) * 3600.0)  # it has five digits
+    seconds = np.rint(of.get("HH", np.zeros(len(values))) * 3600.0)  # it has five digits
     time = months.astype("M8[us]") + (day - 1) * np.timedelta64(1, "D")
     columns = {_RODB[name]: of[name] for name in names if name in _RODB}
     latitude = said.get("latitude", "nan")
     try:
-        return InstrumentText(
-            path, time + seconds.astype("m8[s]"), columns, line,
-            float(said.get("instrdepth", "nan")), plain_degrees(latitude, "latitude"),
-            said.get("serialnumber", ""),
-        )  # fmt: skip
+        nominal, degrees = float(said.get("instrdepth", "nan")), plain_degrees(latitude, "latitude")
     except ValueError:
         raise _refused(path, 0, "its `InstrDepth` or `Latitude` is no number") from None
+    serial = said.get("serialnumber", "")
+    return _dataset(path, time + seconds.astype("m8[s]"), columns, nominal, degrees, serial)
 
 
-def _cnv(path: Path) -> InstrumentText:
+def _cnv(path: Path) -> xr.Dataset:
     lines = _lines(path)
     first = next((i for i, line in enumerate(lines) if line.startswith("*END*")), -1) + 1
     head = "\n".join(lines[:first])
     names = {int(one[1]): (one[2], one[3]) for one in map(_CNV_NAME.match, lines[:first]) if one}
     if not names:
         raise _refused(path, 0, "its head names no columns")
-    line, values = _numbers(path, lines, first, len(names))
-    columns: dict[str, Floats] = {}
+    values = _numbers(path, lines, first, len(names))
+    columns: dict[tuple[str, str], Floats] = {}
     for j, (name, told) in names.items():
         unit = _CNV_UNIT.search(told)
         for pattern, what, units in _CNV:
             if re.fullmatch(pattern, name) and unit is not None and unit[1] in units:
-                columns.setdefault(f"{what}[{units[unit[1]]}]", values[:, j])
+                columns.setdefault((what, units[unit[1]]), values[:, j])
     bad = next((values[:, j] for j, (name, _) in names.items() if name == "flag"), None)
     if bad is not None:
         columns = {name: np.where(bad == 0.0, one, np.nan) for name, one in columns.items()}
@@ -168,11 +185,6 @@ def _cnv(path: Path) -> InstrumentText:
     start = re.search(r"(?m)^# start_time = (\w{3} \d+ \d{4}(?: [\d:]+)?)", head)
     if clock is None or (start is None and clock[1] not in _CNV_EPOCHS):
         raise _refused(path, 0, f"has no times: none of {', '.join(_CNV_TIMES)}, or no start_time")
-    latitude = re.search(r"(?mi)^\** *latitude\s*[:=]\s*(.+?)\s*$", head)
-    try:
-        degrees = plain_degrees(latitude[1], "latitude") if latitude else float("nan")
-    except ValueError:
-        degrees = float("nan")
     seconds = values[:, clock[0]] * _CNV_TIMES[clock[1]]
     if clock[1] in _CNV_EPOCHS:
         epoch = np.datetime64(_CNV_EPOCHS[clock[1]], "us")
@@ -186,15 +198,35 @@ def _cnv(path: Path) -> InstrumentText:
             epoch, seconds = epoch.astype("M8[Y]").astype("M8[us]"), seconds - 86_400.0
     time = epoch + np.rint(seconds * 1e3).astype("m8[ms]")
     serial = re.search(r"(?m)^\* (?:Temperature|Conductivity) SN = (\S+)", head)
-    return InstrumentText(
-        path, time, columns, line, float("nan"), degrees, serial[1] if serial else ""
-    )
+    return _dataset(path, time, columns, serial=serial[1] if serial else "")
 
 
-def _numbers(
-    path: Path, lines: Sequence[str], first: int, count: int
-) -> tuple[NDArray[np.intp], Floats]:
-    """Return the numbers of the lines that have any, and their `count` columns."""
+def _rbr(path: Path) -> xr.Dataset:
+    """Return a table of RSKtools, whose `pressure` holds that of the air."""
+    lines = _lines(path)
+    first = sum(1 for line in lines if line.startswith("//") or not line.strip())
+    head = next((line for line in lines[:first][::-1] if line.startswith("// timestamp")), "")
+    told = [re.fullmatch(r"\s*(\w+?)\((.*)\)\s*", name) for name in head.split(",")[1:]]
+    moments = [line.partition(",")[0].strip() for line in lines[first:]]
+    values = _numbers(path, [line.partition(",")[2] for line in lines], first, len(told))
+    try:
+        time = np.array(moments, "M8[us]")
+    except ValueError:
+        raise _refused(path, first + 1, "has a row without a time") from None
+    of = {one[1]: (one[2], values[:, j]) for j, one in enumerate(told) if one}
+    if "sea_pressure" in of or "pressure" in of:
+        of["pressure"] = of.get("sea_pressure") or ("dbar", of["pressure"][1] - AIR)
+    columns = {
+        (name, {"PSU": "1"}.get(unit, "degC" if unit.endswith("°C") else unit)): one
+        for name, (unit, one) in of.items()
+        if name in ("temperature", "conductivity", "salinity", "pressure")
+    }
+    serial = re.search(r"(?m)serialID: .* (\d+)$", "\n".join(lines[:first]))
+    return _dataset(path, time, columns, serial=serial[1] if serial else "")
+
+
+def _numbers(path: Path, lines: Sequence[str], first: int, count: int) -> Floats:
+    """Return the `count` columns of the lines that have any."""
     there = [i for i in range(first, len(lines)) if lines[i].strip()]
     rows, problems = [], []
     for i in there:
@@ -208,7 +240,7 @@ def _numbers(
         raise InputError(problems[:20] or [Problem(str(path), first, 1, "has no rows")])
     values = np.array(rows, np.float64)
     values[np.isin(values, _MISSING)] = np.nan
-    return np.array(there, np.intp) + 1, values
+    return values
 
 
 def _refused(path: Path, line: int, message: str) -> InputError:

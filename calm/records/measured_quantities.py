@@ -73,14 +73,14 @@ def chosen_quantities(text: str | None) -> tuple[str, ...]:
 
 
 _CELSIUS = ("degree_celsius", "degrees_celsius", "celsius", "degc", "deg_c", "°c", "degree_c", "c",
-            "degrees celsius", "degree celsius", "degrees_c")  # fmt: skip
+            "degrees celsius", "degree celsius", "degrees_c", "deg c")  # fmt: skip
 _KELVIN = ("k", "kelvin", "degree_kelvin", "degrees_kelvin")
 
 
 def celsius_zero(variable: xr.DataArray) -> float:
     """Return what is taken from a temperature to have it in °C."""
     unit = str(variable.attrs.get("units", "")).strip()
-    if unit.lower() in _CELSIUS:
+    if unit.rpartition(",")[2].strip().lower() in _CELSIUS:  # `ITS-90, deg C`
         return 0.0
     if unit.lower() in _KELVIN:
         return 273.15

@@ -31,7 +31,6 @@ from calm.records.delimited import (
     table_lines,
 )
 from calm.records.headings import heading, is_time, magnetic_columns, zone_complaint
-from calm.records.instrument_text import read_instrument_text
 from calm.records.profile_tables import read_currents, turned_notices
 from calm.records.record import RULES, Levels, Period, Record, choose_profiles, part
 
@@ -69,9 +68,6 @@ class CsvRecord(Record):
     def _read(self, path: Path) -> CurrentHeader:
         """Return every profile of the file into the temporary one."""
         try:
-            if (instrument := read_instrument_text(path)) is not None:
-                lines = instrument.lines(("depth", "u", "v", "w"))
-                return self._keep(path, *table_lines(path, lines, f"time,{EXAMPLE}"))
             with path.open("rb") as file:
                 bare = (COMMENT.sub(rb"\1", line) if b"#" in line else line for line in file)
                 lines = (

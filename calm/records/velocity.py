@@ -163,7 +163,8 @@ def _find(dataset: xr.Dataset, sought: _Sought, regular: bool, notes: list[str])
     """Return the variable of a standard name, else of a usual one; one to true north first."""
     for standard_name in sought.standard:
         found = [str(name) for name in dataset.cf.standard_names.get(standard_name, [])]
-        true = [name for name in found if not is_magnetic(dataset[name])]
+        found = [one for one in found if not any(one.startswith(f"{two}_") for two in found)]
+        true = [name for name in found if not is_magnetic(dataset[name])]  # not `UCUR_max`
         if len(true or found) > 1:
             listed = ", ".join(true or found)
             raise UnreadableError(f"several variables are {standard_name}: {listed}")

@@ -27,10 +27,10 @@ _SPARES = (
     "default of this program."
 )
 _IMPLIED = (
-    "A shackle is taken to have a bolt, nut and cotter pin unless its name or note says screw "
-    "pin; a termination with a thimble to have one at each end. Where metals touch that corrode "
-    "each other (those of which calm check warns), there is an isolator at each contact and an "
-    "anode on each piece of the baser metal. Nothing else is counted unless the line lists it."
+    "Each shackle is counted with a bolt, nut and cotter pin unless its name or note says screw "
+    "pin, and a termination that names a thimble with one at each end. Where metals touch that "
+    "corrode each other (calm check warns of them), an isolator is counted for each contact and an "
+    "anode for each piece of the baser metal. Nothing else is counted unless the line lists it."
 )
 
 

@@ -92,7 +92,7 @@ def _residuals(located: Located) -> Table:
 def located_figure(located: Located) -> Figure:
     """Return where each range meets the depth of what answers, as a circle about the ship.
 
-    Left all of the survey, right the place itself with its ellipse of 95 %. What is not used is
+    Left all of the survey, right the place itself with its 95 % ellipse. What is not used is
     grey and dashed, and carries the number of its line.
     """
     from matplotlib.figure import Figure
@@ -123,7 +123,7 @@ def located_figure(located: Located) -> Figure:
     _draw_ellipse(near, located)
     scatter = float(np.abs(located.residuals[located.used]).max())
     close = max(3.0 * np.nan_to_num(located.horizontal_95), 3.0 * scatter, 1.0)
-    near.set_title("the place, with its ellipse of 95 %", fontsize=_FONT_SIZE)
+    near.set_title("the place, with its 95 % ellipse", fontsize=_FONT_SIZE)
     for axes, half in ((whole, max(reach, 2.0 * close)), (near, close)):
         axes.plot(0.0, 0.0, "+", color=_PLACE, markersize=10, markeredgewidth=1.6)
         axes.set_xlim(-half, half)

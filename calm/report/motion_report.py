@@ -44,12 +44,10 @@ _LEGEND = (
     "Black: measured. Blue: estimated, with its 95 % band. Orange: from the currents "
     "alone. Hidden sensors were not used."
 )
-_WHOLE = (
-    "Depths of all instruments, with bands of 95 %; hidden ones and those without pressure dashed"
-)
+_WHOLE = "Depths of all instruments, with 95 % bands; hidden ones and those without pressure dashed"
 _ASSUMED = (
-    "Assumed: floats, weights, lengths and places as in the mooring file; the drag of every part "
-    "within 15 % beforehand, the datum within 1 % of the water depth, each sensor within 1 m."
+    "Assumed beforehand: floats, weights, lengths and places as in the mooring file; the drag of "
+    "every part to 15 %, the datum to 1 % of the water depth, each sensor to 1 m."
 )
 _NOTHING = "Nothing is clearly wrong: no clock, gain, offset, drift, slipped clamp or label."
 

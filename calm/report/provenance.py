@@ -48,7 +48,7 @@ def moment() -> datetime | None:
     if not text:
         return None
     if not text.isascii() or not text.isdigit() or int(text) > _LATEST:
-        raise UsageError(f"SOURCE_DATE_EPOCH, `{text}`, is no number of seconds")
+        raise UsageError(f"SOURCE_DATE_EPOCH, `{text}`, is not a number of seconds")
     return datetime.fromtimestamp(int(text), UTC)
 
 

@@ -126,13 +126,13 @@ BRACONNOT = Source(
     """H. Braconnot's charts of cables in a uniform current with normal drag only (EDF),
 K = ρ Cx D V²/(2w); A is the lower end of the cable, B the upper, angles are to the current.
 
-His buoy, K = 2.4, w = 5 N/m, φ_B = 75°, T_B = 350 N, 20 m above A, he reads off the charts: 28.3 m
-of cable, 18.5 m, 22°, 250 N. That buoy's true K is 2.7, and taking the chart of a nearby K matters:
-with 2.7, L is 30.71 m. His towed cable, K = 2.4, w = 0.5 N/m, φ_B = 140°, T_B = 100 N, L = 100 m,
-comes to a depth of 69.5 m in the paper, which takes H₀ from 1 + z′ = 2.4; the point lies at z′ =
-2.27, and the depth is 73.20 m, 82.87 m at the K = 3.176 of its own knot. The other figures are
-integrals of T′ = w sin φ, φ′ = (w/T)(cos φ + K |sin φ| sin φ) to nine digits: a cable of the second
-branch, beyond the critical angle of 144.4°, and one that dips below its lower end through the apex.
+For his buoy (K = 2.4, w = 5 N/m, φ_B = 75°, T_B = 350 N, 20 m above A) he reads 28.3 m of cable,
+18.5 m, 22° and 250 N off the charts. That buoy's true K is 2.7, and the chart of a nearby K makes a
+difference: with 2.7, L is 30.71 m. His towed cable (K = 2.4, w = 0.5 N/m, φ_B = 140°, T_B = 100 N,
+L = 100 m) reaches a depth of 69.5 m in the paper, which takes H₀ from 1 + z′ = 2.4. The point is at
+z′ = 2.27, so the depth is 73.20 m; at the knot he tows at, K is 3.176 and the depth 82.87 m. Other
+figures are integrals of T′ = w sin φ, φ′ = (w/T)(cos φ + K |sin φ| sin φ) to nine digits: a cable
+of the second branch, beyond the critical angle of 144.4°, and one that dips below its lower end.
 All are compared with `calm.analytic.chart`, the buoy and the tow with the march as well.""",
     (
         *table(

@@ -229,16 +229,16 @@ CDMS_1 = Source(
     "CDMS-1",
     """An intermediate mooring of the user manual of Berteaux's CDMS package (C16), with the answers
 of Berteaux's SSMOOR and of R. Dewey's *Mooring Design & Dynamics* (MD&D), both printed in the MD&D
-users guide. A sphere of 1.2 m; 10 m of wire; three current meters, 98 m of Kevlar below the first
-and the second and 212.9 m below the third; ten glass balls; a release; 4.8 m of chain; the anchor.
-525 m of water, 1.5, 0.6 and 0.1 m/s at heights of 525, 325 and 0 m.
+users guide. From the top: a sphere of 1.2 m, 10 m of wire, three current meters with 98 m of Kevlar
+below the first two and 212.9 m below the third, ten glass balls, a release, 4.8 m of chain and the
+anchor, in 525 m of water. The current is 1.5, 0.6 and 0.1 m/s at heights of 525, 325 and 0 m.
 
 **Why the programs differ.** MD&D's tensions are 2 % above SSMOOR's from the third meter down. The
 gap is the downward part of the normal drag: on an inclined line a drag normal to the line has a
-component that pushes it down and takes tension off its lower part. SSMOOR has it, CALM has it; the
+component that pushes it down and takes tension off its lower part. SSMOOR and CALM include it; the
 drag law of the MD&D version that solved the case (Cd cos³ θ and 0.01 π θ/90°, both along the
-current) has not. The users guide puts the gap down to |U|Uᵢ against Uᵢ², which cannot differ in a
-current of one direction. An independent solution with rigid links and segments of 0.25 to 1 m
+current) does not. The users guide blames |U|Uᵢ in place of Uᵢ², but these are the same in a current
+of one direction. An independent solution with rigid links and segments of 0.25 to 1 m
 gives 815.1 kgf at the anchor with normal drag, 826.6 with MD&D's law: each within 0.3 % of the
 program it stands for. SSMOOR's offset is 4 to 6 m shorter than everyone else's. CALM takes normal
 drag and no tangential drag here; it agrees with the independent solution to 0.1 m in height and

@@ -315,10 +315,10 @@ ANCHOR_DROP = Source(
     """The deployment example of WHOI Cable (J. Gobat & M. Grosenbaugh): 1050 m of wire between a
 sphere of 1.5 m at the surface and an anchor of 8896 N in water, let go at 2 knots in 1000 m of
 still water. The expected figures come from a program with inertia and added mass, with drag on the
-end bodies by |V|V, as in CALM; WHOI Cable 3.12 takes their drag axis by axis and finds 233 to 234 s
-and 107.9 m, that program with that drag 232.6 s and 108.3 m. The distance streamed is that of WHOI
-Cable's own static solution. Then the terminal speed, against that of the steady fall, and √(W/K) of
-a heavy sphere.""",
+end bodies by |V|V, as in CALM. WHOI Cable 3.12 takes their drag axis by axis and finds 233 to 234 s
+and 107.9 m; the other program with that drag finds 232.6 s and 108.3 m. The distance streamed is
+taken from WHOI Cable's static solution. Two terminal speeds follow: that of a long line, compared
+with its steady fall, and that of a heavy sphere, √(W/K).""",
     (
         Case("streamed behind the ship", 894.8, "m", 0.5, "The chain's bars are 10 m long.",
              lambda: float(-_start().node[0, 1]), Kind.INDEPENDENT),

@@ -119,14 +119,14 @@ UNIFORM_CURRENT = Source(
     "Floats and lines in a uniform current",
     """A float of 500 kgf and 1 m (Cx 0.65) on 100 m of line without weight or drag (C1); a ball
 on a thread, the check of the R package *mooring* by D. Kelley, in water of 1027 kg/m³ (C2); the
-float of C1 on 1000 m of line, 12.7 mm, Cn 1.3: neutral (C3), of 2 N/m (C4), and with Ct 0.01 on its
-surface besides (C5).
+float of C1 on 1000 m of 12.7 mm line with Cn 1.3, which is neutral (C3), weighs 2 N/m (C4), or
+weighs 2 N/m and has a Ct of 0.01 as well (C5).
 
 C1 and C2 are elementary: tan θ = D/B, T² = B² + D². C3 is a catenary on its side, cot φ = cot φ₀ +
 R s/T at constant T. C4 and C5 follow from T′ = w sin φ + F, T φ′ = w cos φ − R sin² φ by quadrature
 (relative error 1e-10), without CALM. In C4 the tension differs between two points by w times their
-difference in height. C5 shows the sign of the tangential drag. All with g = 9.81 m/s² and, but for
-C2, ρ = 1025 kg/m³; CALM's march is compared with them at an angle step of 0.1°.""",
+difference in height. C5 shows the sign of the tangential drag. All cases use g = 9.81 m/s² and,
+except C2, ρ = 1025 kg/m³; CALM's march is compared with them at an angle step of 0.1°.""",
     (
         *table(
             _thread(100.0, 5.5e-5, 5.5e-6, 5.5e-6),
@@ -216,9 +216,9 @@ _AT_THE_SHIP = "angle at the ship"
 
 TOWED_CABLES = Source(
     "Towed cables",
-    """A cable of 10 mm, 2.5 N/m, Cn 1.5, towed bare (C7): it is straight at the critical angle, cos
-φc = √(1 + p²/4) − p/2 with p the weight over the normal drag square to the stream. In the second
-case (C8) 300 m of it tow a body of 2000 N in water and 0.05 m² of drag area, with a friction of ½ρ
+    """A cable of 10 mm, 2.5 N/m and Cn 1.5, towed bare (C7), is straight at the critical angle, cos
+φc = √(1 + p²/4) − p/2, where p is its weight over its drag square to the stream. In the second case
+(C8) 300 m of it tow a body of 2000 N in water and 0.05 m² of drag area, with a friction of ½ρ
 0.02 D V² cos² φ along the cable; it is solved by quadrature of the differential equations (relative
 error 1e-10) without CALM. CALM's march is compared with both, at an angle step of 0.1° in C8.""",
     (

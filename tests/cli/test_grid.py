@@ -82,6 +82,32 @@ def test_a_line_in_depth_is_found_again(calm, depths):
     assert Path("page/grid.pdf").read_bytes().startswith(b"%PDF-")
 
 
+def test_the_bins_of_a_profiler_move_with_it(calm, depths):
+    heights = [5.0, 25.0, 45.0]  # above `lower`
+    where = depths[:, 2:3] - heights
+    speed = {"units": "m s-1"}
+    xarray.Dataset(
+        {
+            "UCUR": (("TIME", "HEIGHT_ABOVE_SENSOR"), 0.002 * where, speed),
+            "VCUR": (("TIME", "HEIGHT_ABOVE_SENSOR"), 0.0 * where, speed),
+            "DEPTH": ("TIME", depths[:, 2], {"standard_name": "depth", "units": "m"}),
+        },
+        {
+            "TIME": START + np.arange(HOURS) * np.timedelta64(3600, "s"),
+            "HEIGHT_ABOVE_SENSOR": ("HEIGHT_ABOVE_SENSOR", heights, {
+                "units": "m", "positive": "up", "long_name": "height above sensor"}),
+        },
+        {"instrument_serial_number": "13"},
+    ).to_netcdf("adcp.nc", engine="h5netcdf")  # fmt: skip
+    result, _ = gridded(calm, "adcp.nc", levels="150:10:210")
+    sure = result["u_qc"].values == 8
+    assert sure.any(axis=1).all()
+    off = result["u"].values - 0.002 * result["depth"].values
+    assert np.abs(off[sure]).max() < 0.002  # a metre of depth
+    whole, _ = gridded(calm, "lower=adcp.nc", levels="150:10:210")
+    assert whole["u"].equals(result["u"])
+
+
 def test_what_archives_ask_for_is_there(calm, depths, monkeypatch):
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1790000000")
     write_values("v.nc", depths)
@@ -189,13 +215,13 @@ def test_bad_inputs_are_refused(calm, depths, folder):
     write_values("none.nc", depths, unit="")
     assert "is missing: degree_Celsius or K" in refused(calm, "depths.nc", "none.nc")
     (folder / "empty.nc").write_bytes(b"")
-    assert "is not a NetCDF file" in refused(calm, "depths.nc", "empty.nc")
+    assert "is not NetCDF, RODB, .cnv or RBR's table" in refused(calm, "depths.nc", "empty.nc")
     assert "no such file" in refused(calm, "depths.nc", "absent.nc")
     assert "is not a result of calm motion" in refused(calm, "v.nc", "v.nc")
     write_values("blank.nc", np.full_like(depths, np.nan))
     assert "no instrument has a good value" in refused(calm, "depths.nc", "blank.nc")
     write_values("twin.nc", depths)
-    assert "two series are of `deep`: v.nc, twin.nc" in refused(
+    assert "two series are of `upper`: v.nc, twin.nc" in refused(
         calm, "depths.nc", "v.nc", "twin.nc"
     )
     run = calm("grid", "depths.nc", "v.nc", "-o", "depths.nc", "--levels", "100,200")

@@ -207,11 +207,19 @@ def test_readings_that_cannot_be_and_pressures_of_the_air_are_named(calm, given,
     lines = [line for line in done.err.splitlines() if " of its readings" in line]
     said = [line.partition(" of its readings")[0] for line in lines]
     assert said == ["upper: 5", "middle: 6", "lower: 5"]
-    (doubt,) = json.loads(done.out)["doubts"]
-    assert "off alike: as if the pressures included that of the air" in doubt
+    assert "these pressures look absolute, 10.13 dbar being the air's" in done.err
     with xarray.open_dataset(folder / "d.nc", engine="h5netcdf") as result:
         off = result["clamp_depth"].values - truth[1]
         assert off.mean() == pytest.approx(9.7, abs=0.3) and off.std() < 0.3
+    # taken off when told so, or where the readings on deck say it
+    values[:5] = 10.1
+    for file, more in (("air.csv", ("--correct", "air")), (given("deck.csv", values=values), ())):
+        done = calm(*COMMAND, "--pressures", file, *more, "-o", "e.nc")
+        assert done.code == 0 and "look absolute" not in done.err
+        assert ("its pressures are absolute, and 10.13 dbar" in done.err) == (not more)
+        with xarray.open_dataset(folder / "e.nc", engine="h5netcdf") as result:
+            assert (result["clamp_depth"].values - truth[1]).mean() == pytest.approx(0.0, abs=0.5)
+        (folder / "e.nc").unlink()
 
 
 def test_flags_that_leave_no_pressure_are_named(calm, given, truth, folder):

@@ -117,6 +117,9 @@ def test_a_buoy_without_a_hull_is_refused(calm, tmp_path, buoy):
     shown = calm("waves", path, *SEA)
     assert shown.code == 2
     assert "has no hull" in shown.err
+    for hull in ("cylinder", "sphere"):  # of its volume, as it rides
+        (tmp_path / "body.yaml").write_text(body.replace("m^3}", f"m^3, hull: {hull}}}"))
+        assert "std" in calm("waves", path, *SEA).out
 
 
 def test_a_buoy_that_follows_and_one_by_its_own_response(calm, buoy):

@@ -76,6 +76,20 @@ def test_the_copy_has_all_that_was_there_and_the_depths_at_its_own_times(tmp_pat
                                                            nan_ok=True)  # fmt: skip
 
 
+def test_text_of_an_instrument_becomes_a_dataset(tmp_path):
+    path = tmp_path / "a.use"
+    path.write_text("SerialNumber = 22\nInstrDepth = 150\nColumns = YY:MM:DD:HH:T:C:P\n"
+                    "2026 3 1 0.5 4.5 33.1 152.0\n2026 3 1 1.0 4.6 33.2 -9999\n")  # fmt: skip
+    (read,), _ = read_instruments(path, LINE, replacing=False)
+    assert not write_depths(read, result(), GAP, tmp_path / "copy.nc")
+    with xarray.open_dataset(tmp_path / "copy.nc", engine="h5netcdf") as copy:
+        assert copy["DEPTH"].values == pytest.approx([150.5, 151.0])
+        assert copy["TIME"].values[1] == START + HOUR
+        assert copy["PRES"].values == pytest.approx([152.0, np.nan], nan_ok=True)
+        assert copy["CNDC"].attrs["units"] == "mS/cm" and float(copy["NOMINAL_DEPTH"]) == 150.0
+        assert copy.attrs["serial_number"] == "22" and "DEPTH estimated" in copy.attrs["history"]
+
+
 def without_times(path):
     xarray.open_dataset(own(path)).drop_vars("TIME").to_netcdf(path.with_name("b.nc"))
     return path.with_name("b.nc")
@@ -106,7 +120,7 @@ def text(path):
     ("file", "replace", "said"),
     [
         (lambda path: path, False, "no such file"),
-        (text, False, "is not a NetCDF file"),
+        (text, False, "is not NetCDF, RODB, .cnv or RBR's table"),
         (without_times, False, "has no times"),
         (without_labels, False, "has no labels of instruments"),
         (grouped, False, "has groups, which a copy would lack: extra"),

@@ -1,6 +1,7 @@
 """What is named of currents and of a datum, and what is not."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from calm.motion.remarks import (
     false_current_times,
     no_drag,
 )
+from calm.motion.suspects import meter_remarks
 
 TIMES = 100
 TIME = np.datetime64("2026-03-01", "ns") + np.arange(TIMES) * np.timedelta64(1, "h")
@@ -39,28 +41,46 @@ def test_currents_that_look_false_are_listed_with_their_times():
 
 
 @pytest.mark.parametrize(
-    ("datum", "offset", "spread", "said"),
+    ("datum", "named"),
+    [(9.0, True), (7.6, True), (-7.6, True), (7.4, False)],  # 2.5 times a hundredth of the depth
+)
+def test_all_sensors_off_alike_are_named(datum, named):
+    found = datum_remarks(replace(common((0.0, 0.0)), datum=datum), 300.0)
+    assert len(found) == named
+    for one in found:
+        assert one.startswith(f"all sensors: {datum:+.1f} m off alike: the depth of the water")
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
     [
-        (9.7, 0.3, 0.5, "as if the pressures included that of the air"),
-        (9.2, 0.0, 0.5, "as if the pressures included that of the air"),
-        (9.0, 0.0, 0.5, "the depth of the water"),
-        (7.8, 1.5, 3.4, "as if the pressures included that of the air"),
-        (6.0, 2.0, 3.4, None),  # less than two deviations from none
-        (7.6, 0.0, 0.5, "the depth of the water"),  # 2.5 times a hundredth of it
-        (-7.6, 0.0, 0.5, "the depth of the water"),
-        (7.4, 0.0, 0.5, None),
-        (-10.1, 0.0, 0.5, "the depth of the water"),
+        (lambda flow: flow, None),
+        (
+            lambda flow: flow * np.exp(-1j * np.radians(15.0)),
+            "turned 16° (± 4°) clockwise: its compass",
+        ),
+        (lambda flow: flow * np.exp(1j * np.radians(15.0)), "turned 14° (± 4°) anticlockwise"),
+        (lambda flow: flow * np.exp(1j * np.radians(8.0)), None),
+        (lambda flow: -flow, "it says where the current comes from"),
+        (lambda flow: 1j * flow.conj(), "its east and north are exchanged"),
+        (lambda flow: 0.1 * flow, "its speeds are 0.11 of theirs: its unit"),
     ],
 )
-def test_all_sensors_off_alike_are_named_and_the_weight_of_the_air_is_known(
-    datum, offset, spread, said
-):
-    known = replace(common((offset, offset)), factors={"cable_drag": 1.0}, datum=datum)
-    covariance = np.diag([0.1, spread, 1.0, 1.0, 0.0, 0.0]) ** 2
-    found = datum_remarks(replace(known, covariance=covariance), 300.0)
+def test_a_meter_that_the_two_nearest_do_not_agree_with_is_named(change, said):
+    # a quarter of white noise: r² = 1 / (1 + 0.25), and of 100 times that are independent
+    # 1.96 sqrt(0.25 / 2 / 100) = 4.0°
+    random = np.random.default_rng(1)
+    parts = random.standard_normal((TIMES, 8)).view(complex)
+    flow = parts[:, :1] + np.array([0.0, 0.5, 0.0]) * parts[:, 1:]
+    flow[:, 1] = change(flow[:, 1])
+    flags = np.ones(flow.shape, np.int8)
+    measured = SimpleNamespace(u=flow.real, v=flow.imag, flag=flags)
+    found = meter_remarks(measured, ("a", "b", "c"))
     assert len(found) == (said is not None)
     for one in found:
-        assert said in one and one.startswith(f"all sensors: {datum:+.1f} m off alike")
+        assert one.startswith("current at b: against a and c, ") and said in one
+    measured.flag = 4 * flags
+    assert not meter_remarks(measured, ("a", "b", "c"))
 
 
 def test_an_absurd_factor_is_not_called_drag():

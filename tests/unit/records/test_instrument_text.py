@@ -9,7 +9,8 @@ from calm.errors import InputError
 from calm.motion.sensors import depth_of, read_sensors
 from calm.records.current_file import open_record, read_current_file
 from calm.records.current_terms import Terms
-from calm.records.instrument_text import read_instrument_text
+from calm.records.instrument_series import read_series
+from calm.records.instrument_text import is_instrument_text, read_instrument_text
 
 HEAD = """Mooring              = wb1_12_2015
 SerialNumber         = 6123
@@ -35,6 +36,14 @@ RCM = (
 2015 11 30 13.0 200 12.0 0.0 7.7 36.4 -9999 3.0 12.0
 """
 )
+RBR = """// Creator: RBR Ltd.
+// Instrument model firmware and serialID: RBRmaestro 12.03 80217
+// Comment:
+
+// timestamp(yyyy-mm-ddTHH:MM:ss.FFF),  temperature(°C),  pressure(dbar),  sea_pressure(dbar)
+2015-09-19T08:32:16.000,    14.2,    12.64,    2.6
+2015-09-19T08:32:26.500,    14.3,    nan,    nan
+"""
 CNV = """* Sea-Bird SBE37SM-RS232  Data File:
 * Latitude = 65 28.5 N
 # nquan = 4
@@ -98,6 +107,18 @@ def test_pressures_of_sea_bird(tmp_path: Path, name: str, times: tuple, first: s
     assert one.depth == pytest.approx(expected, abs=1e-6, nan_ok=True)
 
 
+@pytest.mark.parametrize("sea", [True, False])
+def test_a_table_of_rbrs_library_is_without_the_air(tmp_path: Path, sea: bool) -> None:
+    path = tmp_path / "a.csv"
+    path.write_text(RBR if sea else RBR.replace("sea_pressure", "x"))
+    (one,) = read_sensors([f"CTD={path}"], frozenset({1}), 45.0, 900.0)
+    assert (one.serial, str(one.time[1])) == ("80217", "2015-09-19T08:32:26.500000000")
+    expected = depth_of(np.array([2.6, np.nan] if sea else [12.64 - 10.1325, np.nan]), 45.0)
+    assert one.depth == pytest.approx(expected, abs=1e-9, nan_ok=True)
+    (warm,) = read_series([str(path)], ["temperature"], frozenset({1}), 900.0)["temperature"]
+    assert warm.value.tolist() == [14.2, 14.3]
+
+
 def test_mistakes_have_their_line(tmp_path: Path) -> None:
     path = tmp_path / "a.use"
     path.write_text(USE.replace("36.3907", "x"))
@@ -109,7 +130,7 @@ def test_mistakes_have_their_line(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="has no times"):
         read_instrument_text(path)
     path.write_text(USE.replace("T:C:P", "T:C:X"))
-    with pytest.raises(InputError, match="holds no pressure; it has temperature, conductivity"):
+    with pytest.raises(InputError, match=r"holds no pressures: .* it holds TIME .* TEMP .* CNDC"):
         read_sensors([f"CTD={path}"], frozenset({1}), 26.5, 1401.0)
     path.write_text("time,a[dbar]\n2026-03-01,5\n")
-    assert read_instrument_text(path) is None
+    assert not is_instrument_text(path)
