@@ -44,7 +44,6 @@ BLOCK = 256
 NO_PROFILE, COINCIDING, TO_SOLVE = -1, -2, 1
 """How a profile ends that has no current, or two at a level, and one that is to be solved alone."""
 Column = tuple[float, ...]
-STILL: tuple[Column, ...] = ((0.0,),) * 4
 OWN = {NO_PROFILE: "no-current", COINCIDING: "levels-coincide"}
 
 
@@ -228,7 +227,7 @@ class NetProfiles:
         if self.still is None or self.at_rest is None or self.net.file.environment.seabed:
             return None
         search, step = self.search(), 4.0 * self.net.settings.angle_step
-        if search.water.level[0] < 0.0:
+        if search.water.level[0] < 0.0:  # air
             return None
         how = search.marching(step, CHOSEN, FINE, given=False)
         search.asked(net_closing.SLOPES, self.still.unknowns, how)
@@ -238,7 +237,7 @@ class NetProfiles:
         """The search for it, compiled."""
         settings = replace(self.net.settings, compiled=True)
         nodes = len(nodes_of(self.net.file.legs))
-        search = NetSearch(self.net.legs, nodes, self.water(*STILL), settings)
+        search = NetSearch(self.net.legs, nodes, self.water(*[(0.0,)] * 4), settings)
         if self.still is not None:
             search.lie_as(self.still.lands)
         return search
@@ -282,7 +281,7 @@ class NetProfiles:
     def _solve_rows(
         self, current: tuple[Floats, ...], rows: NetRows, endings: NDArray[np.int64]
     ) -> None:
-        search, water = self.search(), self.water(*STILL)
+        search, water = self.search(), self.water(*[(0.0,)] * 4)
         levels = current[0].shape[1] + len(water.level) + 2
         sea: Any = search.sea
         assert self.still is not None
@@ -321,7 +320,7 @@ class NetProfiles:
         place, tilt = np.zeros((count, pieces, 3)), np.zeros((count, pieces))
         above, below = np.zeros((count, pieces)), np.zeros((count, pieces))
         columns = {name: np.full((count, legs), np.nan) for name in OF_ENDS}
-        of_clamps, leans, held = rows.clamps.copy(), np.zeros((count, clamps)), 0
+        of_clamps, leans, held = rows.clamps, np.zeros((count, clamps)), 0
         for i, (leg, line) in enumerate(zip(file.legs, self.net.legs, strict=True)):
             own = slice(leg.first, leg.first + len(line.line.length))
             upper, lower = rows.pieces[:, own, :6], rows.pieces[:, own, 6:]
@@ -354,7 +353,7 @@ class NetProfiles:
                     elif line.line.flexible[p - leg.first]:
                         leans[:, held] = leaning_of(-row[:, 3:6] if hangs else row[:, 3:6])
                     held += 1
-        on = [(piece.index, clamp.at) for piece in file.pieces for clamp in piece.clamps]
+        on = [(n, clamp.at) for n, piece in enumerate(file.pieces) for clamp in piece.clamps]
         order = sorted(range(clamps), key=on.__getitem__)
         of_clamps, leans = of_clamps[:, order], leans[:, order]
         still = self.at_rest
