@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import inf, sqrt
@@ -42,6 +43,8 @@ BLOCK = 256
 """Profiles that a thread takes at a time."""
 NO_PROFILE, COINCIDING, TO_SOLVE = -1, -2, 1
 """How a profile ends that has no current, or two at a level, and one that is to be solved alone."""
+Column = tuple[float, ...]
+OWN = {NO_PROFILE: "no-current", COINCIDING: "levels-coincide"}
 
 
 class NetRows(NamedTuple):
@@ -196,9 +199,8 @@ class NetProfiles:
 
     net: Net
 
-    def water(self, *current: tuple[float, ...]) -> Water:
-        """Its water with another current: depth, u, v and w of its levels."""
-        depth, u, v, w = current
+    def water(self, depth: Column, u: Column, v: Column, w: Column) -> Water:
+        """Its water with another current."""
         environment = replace(self.net.file.environment, current=CurrentTable(depth, u, v, w))
         return self.net.water_of(environment)
 
@@ -214,11 +216,9 @@ class NetProfiles:
     @cached_property
     def at_rest(self) -> NetResult | None:
         """What is measured of it there; None where a check of it fails."""
-        try:
+        with suppress(NoEquilibrium):
             if self.still is not None:
                 return net_result(self.net, self.still, self.still.legs)
-        except NoEquilibrium:
-            pass
         return None
 
     @cached_property
@@ -227,14 +227,10 @@ class NetProfiles:
         if self.still is None or self.at_rest is None or self.net.file.environment.seabed:
             return None
         search, step = self.search(), 4.0 * self.net.settings.angle_step
-        if search.water.level[0] < 0.0:
+        if search.water.level[0] < 0.0:  # air
             return None
-        search.asked(
-            net_closing.MARCH, self.still.unknowns, search.marching(step, CHOSEN, FINE, given=False)
-        )
-        search.asked(
-            net_closing.SLOPES, self.still.unknowns, search.marching(step, CHOSEN, FINE, given=True)
-        )
+        how = search.marching(step, CHOSEN, FINE, given=False)
+        search.asked(net_closing.SLOPES, self.still.unknowns, how)
         return np.array(search.net.slopes)
 
     def search(self) -> NetSearch:
@@ -256,13 +252,9 @@ class NetProfiles:
         current : depth (1 or n, k) of levels [m], and u, v, w (n, k) there [m/s]
         status : (n,) index in `STATUSES`
         """
-        net, count = self.net, len(status)
-        pieces, legs = net.file.pieces, net.file.legs
-        clamps = clamps_down(pieces)
-        rows = NetRows(
-            np.full((count, len(pieces), 12), np.nan), np.full((count, len(clamps), 7), np.nan),
-            np.full((count, len(legs)), np.nan),
-        )  # fmt: skip
+        count, pieces = len(status), self.net.file.pieces
+        shapes = (len(pieces), 12), (len(clamps_down(pieces)), 7), (len(self.net.legs),)
+        rows = NetRows(*(np.full((count, *shape), np.nan) for shape in shapes))
         endings = np.where(status == 0, 0, 99)
         if self.slopes is not None:
 
@@ -274,12 +266,11 @@ class NetProfiles:
 
             solve(slice(0, 0))  # compiles where need be
             with ThreadPoolExecutor(workers) as pool:
-                for _ in pool.map(solve, [slice(at, at + BLOCK) for at in range(0, count, BLOCK)]):
-                    pass
+                list(pool.map(solve, [slice(at, at + BLOCK) for at in range(0, count, BLOCK)]))
         else:
             endings[endings == 0] = TO_SOLVE
-        status[endings == NO_PROFILE] = STATUSES.index("no-current")
-        status[endings == COINCIDING] = STATUSES.index("levels-coincide")
+        for ending, name in OWN.items():
+            status[endings == ending] = STATUSES.index(name)
         columns = self._columns(rows)
         for name in columns:
             columns[name][endings != 0] = np.nan
@@ -295,7 +286,10 @@ class NetProfiles:
         sea: Any = search.sea
         assert self.still is not None
         of_legs = self.net.file.legs
-        held = [leg.bottom.anchor is not None for leg in of_legs]
+        weights = [
+            line.anchor_weight if leg.bottom.anchor else inf
+            for line, leg in zip(self.net.lines, of_legs, strict=True)
+        ]
         clamped = [len(piece.clamps) for piece in self.net.file.pieces]
         paper = NetPaper(
             read=np.zeros((levels, 4)),
@@ -311,12 +305,7 @@ class NetProfiles:
             x=np.zeros(len(self.still.unknowns)),
             piece=np.array([leg.first for leg in of_legs]),
             clamp=np.array([sum(clamped[: leg.first]) for leg in of_legs]),
-            weight=np.array(
-                [
-                    line.anchor_weight if anchored else inf
-                    for line, anchored in zip(self.net.lines, held, strict=True)
-                ]
-            ),
+            weight=np.array(weights),
         )
         step = float(search.settings.angle_step)
         how = search.marching(step, CHOSEN, FINE, given=False)
@@ -331,7 +320,7 @@ class NetProfiles:
         place, tilt = np.zeros((count, pieces, 3)), np.zeros((count, pieces))
         above, below = np.zeros((count, pieces)), np.zeros((count, pieces))
         columns = {name: np.full((count, legs), np.nan) for name in OF_ENDS}
-        of_clamps, leans, held = rows.clamps.copy(), np.zeros((count, clamps)), 0
+        of_clamps, leans, held = rows.clamps, np.zeros((count, clamps)), 0
         for i, (leg, line) in enumerate(zip(file.legs, self.net.legs, strict=True)):
             own = slice(leg.first, leg.first + len(line.line.length))
             upper, lower = rows.pieces[:, own, :6], rows.pieces[:, own, 6:]
@@ -355,23 +344,20 @@ class NetProfiles:
             if line.upper.free:
                 columns["top_depth"][:, i] = -upper[:, 0, 2]
                 columns["used_buoyancy"][:, i] = rows.shares[:, i]
-            for piece in file.pieces[leg.first : leg.end]:
-                p, ways = piece.index, -1.0 if hangs else 1.0
+            for p, piece in enumerate(file.pieces[leg.first : leg.end], leg.first):
                 for clamp in piece.clamps:
                     row = of_clamps[:, held]
                     leans[:, held] = tilt[:, p]
                     if p == anchor:
                         row[:, :3], row[:, 6] = place[:, p] - [0.0, 0.0, clamp.at], above[:, p]
                     elif line.line.flexible[p - leg.first]:
-                        leans[:, held] = leaning_of(ways * row[:, 3:6])
+                        leans[:, held] = leaning_of(-row[:, 3:6] if hangs else row[:, 3:6])
                     held += 1
-        on = [(piece.index, clamp.at) for piece in file.pieces for clamp in piece.clamps]
+        on = [(n, clamp.at) for n, piece in enumerate(file.pieces) for clamp in piece.clamps]
         order = sorted(range(clamps), key=on.__getitem__)
         of_clamps, leans = of_clamps[:, order], leans[:, order]
         still = self.at_rest
-        known = (
-            (np.nan, np.nan) if still is None else (still.components.depth_top, still.clamps.depth)
-        )
+        known = (still and (still.components.depth_top, still.clamps.depth)) or (np.nan, np.nan)
         return columns | {
             "depth_top": -place[..., 2],
             "x_top": place[..., 0],
@@ -393,12 +379,12 @@ class NetProfiles:
         status: NDArray[np.int8],
     ) -> None:  # fmt: skip
         """Solve a profile as `calm run` does."""
-        depth, u, v, w = current
-        read, still = np.zeros((depth.shape[1], 4)), self.still
+        (depth, u, v, w), still = current, self.still
+        read = np.zeros((depth.shape[1], 4))
         levels = depth[case if len(depth) > 1 else 0]
         count = read_profile(levels, u[case], v[case], w[case], read)
         if count <= 0:
-            status[case] = STATUSES.index("no-current" if count == 0 else "levels-coincide")
+            status[case] = STATUSES.index(OWN[NO_PROFILE if count == 0 else COINCIDING])
             return
         water = self.water(*(tuple(column) for column in read[:count].T.tolist()))
         try:
@@ -408,9 +394,7 @@ class NetProfiles:
         except NoEquilibrium as failure:
             status[case] = STATUSES.index(failure.status)
             return
-        for name in OF_COMPONENT:
-            columns[name][case] = getattr(result.components, name)
-        for name in OF_CLAMP:
-            columns[name][case] = getattr(result.clamps, name.removeprefix("clamp_"))
-        for name, column in result.ends.items():
+        found = {name: getattr(result.components, name) for name in OF_COMPONENT} | result.ends
+        found |= {name: getattr(result.clamps, name.removeprefix("clamp_")) for name in OF_CLAMP}
+        for name, column in found.items():
             columns[name][case] = column

@@ -13,6 +13,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, ConfigDict, Field, ValidationInfo, model_validator
 
+from calm.errors import about_quantity
 from calm.files.definition import (
     CATALOGUE_DENSITY,
     STANDARD_GRAVITY,
@@ -37,6 +38,7 @@ from calm.files.rigid import DRAG_FORMS, Body, Cylinder, Profiler, Rigid, Sphere
 from calm.files.yaml_document import unknown_key
 from calm.physics.materials import STEEL_DENSITY, density_of, fibre_of
 from calm.physics.stretch import ElongationCurve
+from calm.units import QuantityError
 
 _LOAD = QuantityField("number", at_least=0, at_most=1)
 _STRAIN = QuantityField("number", at_least=0)
@@ -279,10 +281,7 @@ _ESSENTIAL = {
 
 
 class Outline(Definition):
-    """A product of which no source prints figures that its kind needs: those under `searched`.
-
-    It is found and shown like any other. A line that uses it gives these figures itself.
-    """
+    """A product without figures that its kind needs, `searched` in vain: its line gives them."""
 
     model_config = ConfigDict(extra="allow")
 
@@ -294,8 +293,13 @@ class Outline(Definition):
         fields = KINDS[data["kind"]].model_fields
         if strange := next((key for key in data if key not in fields), None):
             raise ValueError(unknown_key(strange, [*fields], f" for kind {data['kind']}"))
-        more = ((key, quantity_of(fields[key])) for key in data.keys() - cls.model_fields.keys())
-        return data | {key: quantity.read(data[key]) for key, quantity in more if quantity}
+        for key in data.keys() - cls.model_fields.keys():
+            if quantity := quantity_of(fields[key]):
+                try:
+                    data = data | {key: quantity.read(data[key])}
+                except QuantityError as error:
+                    raise ValueError(about_quantity(key, data[key], error)) from error
+        return data
 
     @property
     def lacks(self) -> list[str]:
@@ -305,20 +309,15 @@ class Outline(Definition):
     def asks(self, id: str) -> str:
         """Return what a line is to give, for people."""
         keys = ", ".join(f"`{key}`" for key in self.lacks)
-        return (
-            f"no source prints {keys} of `{id}`: measure or ask the maker, and give it here with "
-            f"its unit (the rest is from: {self.source})"
-        )
+        said = f"no source prints {keys} of `{id}`: measure or ask the maker, and give it here"
+        return f"{said} (the rest is from: {self.source})" if self.source else said
 
 
 def lacking(fields: Mapping[str, Any]) -> list[str]:
     """Return the keys under `searched` that a component needs, and that it does not give."""
     sought = fields.get("searched")
-    return [
-        key
-        for key, ways in _ESSENTIAL.items()
-        if isinstance(sought, list | tuple) and key in sought and not fields.keys() & ways
-    ]
+    known = sought if isinstance(sought, list | tuple) else ()
+    return [key for key, ways in _ESSENTIAL.items() if key in known and not fields.keys() & ways]
 
 
 def contradicted(kind: str, base: Set[str], override: Set[str]) -> frozenset[str]:

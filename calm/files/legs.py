@@ -23,7 +23,8 @@ if TYPE_CHECKING:
 MOST_LEGS = 40
 NET_REFUSED = (
     "this is a net of legs, for `calm run`, `check`, `batch`, `deck`, `size`, `diff` and `export`; "
-    "this takes a single line: one free end, one anchor"
+    "this takes a single line: one free end, one anchor. `calm batch` gives the depths of a net's "
+    "instruments in a record of currents"
 )
 
 _Offset = Annotated[float, QuantityField("length")]

@@ -289,7 +289,8 @@ def hanging_sensors(
     sensors, count = len(first), len(mean)
     offset, moved = count - 2 * sensors, count - sensors
     told = []
-    for way in _ways(np.flatnonzero(first != NEVER)):
+    possible = np.flatnonzero(first != NEVER).tolist()
+    for way in chain.from_iterable(combinations(possible, size) for size in range(3)):
         spread = covariance.copy()
         chance = 0.0
         for sensor in way:
@@ -319,11 +320,6 @@ def hanging_sensors(
         spread += weight * (whole + np.outer(off, off))
         elsewhere[list(way)] += weight
     return HangingSensors(centre, spread, elsewhere)
-
-
-def _ways(sensors: Integers) -> Iterator[tuple[int, ...]]:
-    """Yield the sensors that hang elsewhere: none of them, one or two."""
-    return chain.from_iterable(combinations(sensors.tolist(), size) for size in range(3))
 
 
 def _from_there_on(values: Floats) -> Floats:

@@ -249,6 +249,7 @@ def joined(
         if not np.isfinite(tide).any():
             raise UsageError("--sea-level: it covers no time of the currents")
         tide = np.nan_to_num(tide - np.nanmean(tide))
+    when = [one.time[one.false] for one in currents if one.false is not None]
     measured = MooringMeasurements(
         time,
         tuple(one.label or labels[where] for one, where in zip(sensors, used, strict=True)),
@@ -261,7 +262,7 @@ def joined(
         _beside([column[4] for column in columns], len(time)),
         _beside([column[5] for column in columns], len(time)).astype(np.int8),
         tide,
-        _false(currents, time),
+        np.isin(time, np.concatenate(when)) if when else None,
     )
     if currents:
         _refuse_apart(measured)
@@ -271,11 +272,6 @@ def joined(
 def _beside(columns: Sequence[NDArray[Any]], times: int) -> NDArray[Any]:
     """Return columns side by side; (n, 0) without any."""
     return np.stack(columns, axis=1) if columns else np.zeros((times, 0))
-
-
-def _false(currents: Sequence[CurrentMeasurements], time: Times) -> NDArray[np.bool_] | None:
-    when = [one.time[one.false] for one in currents if one.false is not None]
-    return np.isin(time, np.concatenate(when)) if when else None
 
 
 def _mean(depth: Floats) -> float:

@@ -226,6 +226,11 @@ def fit_of(task: Task, measured: MooringMeasurements, label: str) -> SensorFit:
     if law is None or law.known[:, at].sum() < FEWEST:
         return SensorFit(label, None, 1.0, "")
     diagnosis = Diagnosis(whole, law, judged=label)
+    if diagnosis.alone:  # what the line is wrong by where no pressure was is for all times alike
+        own = with_it.depth[:, at]
+        zero = len(common.factors) + 1 + at
+        wrong = common.worst * float(np.nanmean(own) - np.nanpercentile(own, 5.0))
+        diagnosis.spread[zero, zero] += wrong**2
     taken: list[Suspect] = []
     while True:
         both = diagnosis.weighed(taken)
@@ -238,7 +243,9 @@ def fit_of(task: Task, measured: MooringMeasurements, label: str) -> SensorFit:
     against = [log - np.log(MISPLACED) * (one.fault.kind == "offset") for one, log in mine]
     wide = law.expected.copy()  # as of readings that say nothing of the line
     wide[:, at, at] += np.where(law.known[:, at], SPIKE**2, 0.0)
-    nothing = Diagnosis(whole, replace(law, expected=wide)).fitted(taken, None, 1.0).log
+    other = Diagnosis(whole, replace(law, expected=wide))
+    other.spread = diagnosis.spread
+    nothing = other.fitted(taken, None, 1.0).log
     nothing -= diagnosis.fitted(taken, None, 1.0).log
     size = np.linalg.slogdet(wide)[1] - np.linalg.slogdet(law.expected)[1]
     nothing -= 0.5 * float(size.sum())

@@ -179,7 +179,8 @@ def learn_currents(
     before = covariance.copy()
     nothing = np.zeros_like(begun.covariance)
     reach = np.ones(len(part.time))
-    used = _strong(part)
+    down = np.nansum(part.depth, axis=1)
+    used = np.flatnonzero(down >= np.quantile(down, 1.0 - STRONGER))
     for turn in range(TURNS):
         tell(f"learning the currents from the pressures: {turn + 1} of {TURNS}")
         moments = LineResponse(part, *forwards_of(mooring, common))
@@ -283,12 +284,6 @@ def _chosen(measured: MooringMeasurements) -> Integers:
     if len(order) > MOST_TIMES:
         order = order[np.linspace(0, len(order) - 1, MOST_TIMES).round().astype(np.int64)]
     return np.sort(order)
-
-
-def _strong(part: MooringMeasurements) -> Integers:
-    """Return which times have more knockdown than the others."""
-    down = np.nansum(part.depth, axis=1)
-    return np.flatnonzero(down >= np.quantile(down, 1.0 - STRONGER))
 
 
 def _worst(fit: _Fit, at: Linear, common: Common, used: Integers) -> Common:

@@ -53,7 +53,7 @@ _CNV = (
     (r"dep[SF]\w*", "depth", {"m": "m", "ft": "ft"}),
     (r"(t|tv)\d*(68|90)\w*", "temperature", {"deg C": "degC"}),
     (r"sal\w*", "salinity", {"PSU": "1"}),
-    (r"c(ond)?\d\w*/c?m", "conductivity", {"S/m": "S/m", "mS/cm": "mS/cm", "uS/cm": "uS/cm"}),
+    (r"(c|cond)\d\w*/c?m", "conductivity", {"S/m": "S/m", "mS/cm": "mS/cm", "uS/cm": "uS/cm"}),
 )  # fmt: skip
 _CNV_TIMES = {
     "timeJ": 86_400.0, "timeJV2": 86_400.0, "timeK": 1.0, "timeY": 1.0,

@@ -13,7 +13,7 @@ from pydantic import BaseModel
 from calm.assemble.datasheet import Datasheet, datasheet
 from calm.files import Catalogue
 from calm.files.catalogue import Defined
-from calm.files.components import FLEXIBLE_KINDS, Outline
+from calm.files.components import FLEXIBLE_KINDS, KINDS, Outline
 from calm.files.definition import EstimatedFigure
 from calm.quantities import QUANTITIES
 from calm.report.blocks import Cell, Column, Heading, Pairs, ReportPart, Table
@@ -81,6 +81,9 @@ def to_documents(catalogue: Catalogue, definitions: Mapping[str, Defined]) -> li
     """
     return [
         {"id": identifier, "family": _family(catalogue, identifier)}
+        | dict.fromkeys(
+            KINDS[definition.kind].model_fields if isinstance(definition, Outline) else ()
+        )
         | definition.model_dump(mode="json")
         | {
             "derived": asdict(sheet) if (sheet := datasheet(definition, catalogue)) else None,

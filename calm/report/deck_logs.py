@@ -295,5 +295,5 @@ def _expected(items: Sequence[RecoveredItem]) -> Cell:
             said.append(f"{minutes:.{1 if minutes < 10.0 else 0}f} min")
         elif one.hangs_at is not None:
             said.append(f"at {say('depth', one.hangs_at)}")
-    text = " to ".join(dict.fromkeys(said)).replace(" min to", " to")
+    text = "\nto ".join(dict.fromkeys(said)).replace(" min\nto", " to").replace("to at ", "to ")
     return Cell(text, "by itself" if any(one.by_itself for one in items) else "")

@@ -125,7 +125,7 @@ def solution_of(
         afloat=tuple(int(each[0]) for each in floats),
         buoyancy_used=used,
         reserve=reserve,
-        carried=_carried(line, problem) if unknown.sought != BELOW else line,
+        carried=carried_by(line, problem) if unknown.sought != BELOW else line,
         riding=riding,
         marches=int(problem.work.left[MARCHES]),
         segments=refined.segments,
@@ -149,7 +149,7 @@ def _buoyancy_in_use(problem: LineProblem, closed: Closed) -> tuple[float, float
     return float(used / total), float(total - used)
 
 
-def _carried(line: Line, problem: LineProblem) -> Line:
+def carried_by(line: Line, problem: LineProblem) -> Line:
     """The line as it is loaded: what is at the surface by what is in the water and in use of it."""
     columns = {name: getattr(line, name).copy() for name in (*_OF_PIECE, *_OF_CLAMP)}
     for i in range(int(problem.work.left[CHANGED])):

@@ -110,12 +110,10 @@ class NetSearch:
         for state, lies in zip(self.net.state, lands, strict=True):
             state[net_march.LANDS] = float(lies)
 
-    def asked(
-        self, task: int, x: Floats, how: Marching, enough: float = 0.0, *, known: bool = False
-    ) -> tuple[int, Floats]:
+    def asked(self, task: int, x: Floats, how: Marching, enough: float = 0.0) -> tuple[int, Floats]:
         """Ask about unknowns, see `AskedNet`; how it ended, and the unknowns then."""
         own: Any = x.copy() if self.compiled else x.tolist()
-        asked = AskedNet(task, self.net, own, how, enough, known)
+        asked = AskedNet(task, self.net, own, how, enough, False)
         if self.compiled:
             ask = by_address(ask_net, asked)
             ending = entry(ask_now, ask, asked)(ask, asked)
@@ -148,14 +146,16 @@ class NetSearch:
             raise unsettled("its legs do not come together to the last digits")
         return found
 
+    def end(self, i: int, x: Floats) -> Floats:
+        """Where the march of a leg ends [m]."""
+        end, first = self.laid[i].ends[1], self.net.nodes_at
+        return x[first + 3 * end.node :] if end.place is None else np.array(end.place)
+
     def shape(self, i: int, x: Floats) -> Trace:
         """The shape of a leg as it was marched last, where it is."""
-        trace = Trace.of(
-            self.net.lines.work.records[i][FINE], int(self.net.state[i][net_march.COUNT])
-        )
-        end, first = self.laid[i].ends[1], self.net.nodes_at
-        place = end.place or x[first + 3 * end.node :]
-        trace.position[:, :2] += np.array(place[:2]) - trace.position[-1, :2]
+        nodes = int(self.net.state[i][net_march.COUNT])
+        trace = Trace.of(self.net.lines.work.records[i][FINE], nodes)
+        trace.position[:, :2] += self.end(i, x)[:2] - trace.position[-1, :2]
         return trace
 
     def told(self, x: Floats) -> NetSolution:
@@ -174,9 +174,9 @@ class NetSearch:
             float(net.errors[net_closing.TENSION_ERROR]) + 1e-8 * net.force,
         )
         for i, each in enumerate(self.laid):
-            trace = self.shape(i, x)
+            end = self.end(i, x)
             legs.append(
-                leg_found(each, net, i, trace, errors, self.water, self.settings, self.compiled)
+                leg_found(each, net, i, end, errors, self.water, self.settings, self.compiled)
             )
         greatest = max(float(each.tension.max()) for each in legs)
         if len(imbalance) and float(imbalance.max()) > 1e-6 * greatest:

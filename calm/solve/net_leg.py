@@ -12,27 +12,31 @@ import numpy as np
 from calm.errors import NoEquilibrium
 from calm.physics.compiled import entry, record_type
 from calm.physics.hull import HullRow, SurfaceFloat
-from calm.physics.line import Line, Trace, Water
+from calm.physics.line import Floats, Line, Water
 from calm.physics.referee import RefereeShape
 from calm.physics.stretch import Knot
 from calm.physics.strumming import AT_REST
 from calm.physics.track import CableStretch, Course, Load, Stage
 from calm.solve import net_march
 from calm.solve.audit import referee_of
-from calm.solve.finish import risen, touching
+from calm.solve.closing import Closed, Root
+from calm.solve.finish import carried_by, risen, solution_of, touching
 from calm.solve.net_march import LegRow, NetProblem
 from calm.solve.problem import (
+    BELOW,
     CHANGED,
     FINE,
     HALVED,
     BuoyantPiece,
     LineProblem,
     SearchArrays,
+    Unknown,
     problem_of,
     work_for,
 )
+from calm.solve.refine import Errors, Refined
 from calm.solve.search import residuals
-from calm.solve.solution import Settings, Solution, Status
+from calm.solve.solution import FOUND, Settings, Solution, Status
 
 
 @dataclass(frozen=True)
@@ -212,7 +216,7 @@ def pulled(line: Line, force: tuple[float, float, float]) -> Line:
 
 
 def leg_found(
-    laid: LaidLeg, net: NetProblem, i: int, trace: Trace, errors: tuple[float, float],
+    laid: LaidLeg, net: NetProblem, i: int, end: Floats, errors: tuple[float, float],
     water: Water, settings: Settings, compiled: bool,
 ) -> Solution:  # fmt: skip
     """A leg as a line of its own, audited.
@@ -220,77 +224,52 @@ def leg_found(
     Parameters
     ----------
     i : its number
-    trace : its shape, where it is
+    end : (3,) where it ends [m]
     errors : of depths [m] and of tensions [N]
     """
-    state, work, problem = net.state[i], net.lines.work, laid.problem
-    record, nodes = work.records[i][FINE], int(state[net_march.COUNT])
+    state, (deep, taut) = net.state[i], errors
+    work = SearchArrays(*(column[i] for column in net.lines.work))
+    course = laid.problem.course._replace(loads=net.lines.course.loads[i])
+    problem = laid.problem._replace(course=course, work=work)
+    first = int(laid.kind == net_march.PULLED)
+    if first:
+        work.left[CHANGED] = 1.0  # the pull
     share, landed = float(state[net_march.SHARE]), bool(state[net_march.STAGE] >= 0.0)
-    line = laid.line
-    # loads as they were marched: a float at the surface by what is in the water, the pull
-    changed = 1 if laid.kind == net_march.PULLED else int(work.left[i][CHANGED])
-    carried = _carried(line, net.lines.course.loads[i][:changed])
-    referee = referee_of(carried, water, 0.0, compiled)
-    shape = RefereeShape(record, nodes, int(state[net_march.HUNG]) - 1, referee.first, referee.last)
-    loads: Any = np.zeros((3, nodes))
+    sought = 0 if share < 1.0 and problem.surfacing else BELOW
+    root = Root(True, Unknown(0.0, sought, problem.limits.rides, False, 0), share, 0.0, 0.0)
+    closed = Closed(
+        FOUND, 0.0, -1, root, int(state[net_march.COUNT]), int(state[net_march.HUNG]) - 1, landed,
+        float(state[net_march.GROUNDED]),
+    )  # fmt: skip
+    told = Errors(deep, taut, 0.0, taut, taut)
+    refined = Refined(closed, int(sum(work.counts[HALVED])), told)
+    found = solution_of(problem, laid.line, water, settings, refined, told)
+    referee = referee_of(carried_by(laid.line, problem), water, 0.0, compiled)
+    shape = RefereeShape(
+        work.records[FINE], closed.nodes, closed.hanging, referee.first, referee.last
+    )
+    loads: Any = np.zeros((3, closed.nodes))
     asked = (
-        referee.moored, shape, loads if compiled else loads.tolist(), landed,
-        problem.limits,
+        referee.moored, shape, loads if compiled else loads.tolist(), landed, problem.limits
     )  # fmt: skip
     closure, moment = (entry(residuals, *asked) if compiled else residuals)(*asked)
-    first = int(laid.kind == net_march.PULLED)
-    afloat = laid.kind == net_march.STANDING and share < 1.0 and bool(problem.surfacing)
-    floating = line.floating
-    if first:
-        line = carried = laid.leg.line
-    return Solution(
+    line = laid.leg.line if first else found.line
+    return replace(
+        found,
         line=line,
-        water=water,
-        settings=settings,
-        position=trace.position[first:],
-        force=trace.force[first:],
-        element_piece=trace.piece[first:] - first,
-        element_clamp=trace.clamp[first:],
-        landed=landed,
-        hanging=int(state[net_march.HUNG]) - 1 - first,
-        grounded_length=float(state[net_march.GROUNDED]),
-        cut=trace.cut[first:],
-        strain=trace.strain[first:],
-        afloat=(int(problem.surfacing[0].piece),) if afloat else (),
-        buoyancy_used=share,
-        reserve=(1.0 - share) * problem.surfacing[0].surface_lift if afloat else 0.0,
-        carried=carried,
-        riding=floating.riding(share) if afloat and floating is not None else None,
+        carried=line if first else found.carried,
+        position=found.position[first:] + np.array([end[0], end[1], 0.0]),
+        force=found.force[first:],
+        element_piece=found.element_piece[first:] - first,
+        element_clamp=found.element_clamp[first:],
+        hanging=found.hanging - first,
+        cut=found.cut[first:],
+        strain=found.strain[first:],
         marches=int(state[net_march.MARCHES]),
-        segments=int(sum(work.counts[i][HALVED])),
-        miss=0.0,
-        depth_error=errors[0],
-        tension_error=errors[1],
-        lift_error=errors[1],
-        pull_error=errors[1],
         closure=closure,
         moment_residual=moment,
         pulled=bool(first),
     )
-
-
-def _carried(line: Line, loads: Sequence[Any]) -> Line:
-    """The line with loads in place of its own."""
-    names = {"buoyancy", "volume", "normal_drag", "tangential_drag", "lift", "push_east",
-             "push_north"}  # fmt: skip
-    clamps = {"clamp_buoyancy": "buoyancy", "clamp_volume": "volume",
-              "clamp_drag": "normal_drag", "clamp_lift": "lift"}  # fmt: skip
-    columns: dict[str, Any] = {name: getattr(line, name).copy() for name in {*names, *clamps}}
-    if isinstance(loads, np.ndarray):
-        loads = [Load(*row) for row in loads.tolist()]
-    for load in loads:
-        if load.clamp < 0:
-            for name in names:
-                columns[name][load.piece] = getattr(load, name)
-        else:
-            for name, of in clamps.items():
-                columns[name][load.clamp] = getattr(load, of)
-    return replace(line, **columns)
 
 
 def refuse_misplaced(laid: LaidLeg, leg: Solution, near: float, before: int) -> None:

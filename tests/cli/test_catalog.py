@@ -121,6 +121,7 @@ def test_outlines_are_found_after_complete_entries_and_say_what_they_lack(calm):
     assert [(each["id"], each["mass"], each["derived"]) for each in found] == [
         ("mmp-mclane", 70.0, None)
     ]
+    assert found[0]["length"] is None and found[0]["buoyancy"] == 0.0
     assert "(without length, drag area)" in " ".join(calm("catalog", "search", "mmp").out.split())
     ids = [each["id"] for each in json.loads(calm("catalog", "search", "smp", "--json").out)]
     assert ids[:2] == ["sbe37-smp-frame", "sbe37-smp-plastic"]

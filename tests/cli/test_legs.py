@@ -796,6 +796,29 @@ def test_a_leg_from_a_node_to_itself_is_a_mistake(tmp_path: Path) -> None:
         load(tmp_path / "net.yaml", text=text)
 
 
+def test_two_anchors_in_one_place_are_a_mistake(tmp_path: Path) -> None:
+    pieces = "[{use: glass-17in}, {use: wire-jacketed-8, length: 10 m}, {use: anchor-wheels-4}]"
+    more = f"  other:\n    line: {pieces}\n"
+    with pytest.raises(InputError, match="its anchor stands where that of leg `stem` does"):
+        load(tmp_path / "net.yaml", text=NET + more)
+
+
+def test_a_leg_that_stands_the_other_way_round_is_said(tmp_path: Path) -> None:
+    """A wire with its floats listed below it hangs from them: 60 m of it, less what it leans."""
+    text = NET.replace("      - {use: glass-17in, count: 4}\n", "").replace(
+        "length: 60 m}\n", "length: 60 m}\n      - {use: glass-17in, count: 4}\n"
+    )
+    (said,) = (one for one in load(tmp_path / "net.yaml", text=text).solve().warnings
+               if "other way round" in one)  # fmt: skip
+    assert "Leg second" in said
+
+
+def test_a_net_that_sinks_is_refused_as_such(tmp_path: Path) -> None:
+    text = NET.replace("sphere-steel-1250", "rcm11").replace("glass-17in, count: 4", "rcm11")
+    with pytest.raises(NoEquilibrium, match=r"It sinks: its legs weigh \d+ N more"):
+        load(tmp_path / "net.yaml", text=text).solve()
+
+
 def test_what_names_no_part_of_a_net_is_a_mistake(tmp_path: Path) -> None:
     """As of a line: in `deployed:` and in what is accepted."""
     text = NET + "deployed: {items: [{label: nobody, serial: '3'}]}\n"

@@ -16,7 +16,7 @@ from calm.motion.correction import Task
 from calm.motion.diagnosis import diagnosed
 from calm.motion.line_response import Forward, labels_of, points
 from calm.motion.measurements import MooringMeasurements
-from calm.motion.motion_estimate import fit_of
+from calm.motion.motion_estimate import fit_of, fitted
 from calm.motion.study import prepare
 from calm.motion.whole_record import estimate_common
 
@@ -214,3 +214,19 @@ def test_a_sensor_that_one_far_below_hardly_constrains_cannot_be_judged(mooring)
         found = judged(mooring, off, USED, "Aquadopp 626", slice(0, 24))
         assert found.fits is None and 0.05 < found.odds < 5.0
         assert "cannot be told" in found.sentence()
+
+
+@pytest.mark.slow
+def test_a_right_pressure_is_seldom_judged_wrong_where_no_current_was_measured(mooring):
+    # odds of 97 and 38 to 1 against these, before the error of the line was counted at the sensor
+    for seed in (7, 10):
+        measured, _, _ = twin(mooring, seed, THREE)
+        none, empty = np.zeros((TIMES, 0)), np.zeros(0, np.int64)
+        alone = replace(
+            measured, u=none, v=none, level_depth=none, level_point=empty, level_sensor=empty,
+            flag=none.astype(np.int8),
+        )  # fmt: skip
+        wrong = replace(alone, depth=alone.depth + np.array([0.0, 15.0, 0.0]))
+        task = prepare(mooring, alone, fitted(currents=False), [THREE[1]])
+        assert fit_of(task, alone, THREE[1]).fits is not False
+        assert fit_of(task, wrong, THREE[1]).fits is False

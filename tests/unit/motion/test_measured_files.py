@@ -7,6 +7,8 @@ import xarray
 from calm.errors import InputError, UsageError
 from calm.motion.measurements import read_currents
 from calm.motion.sensors import depth_of, read_sensors
+from calm.records.instrument_series import read_series
+from calm.records.velocity import find_velocity
 
 TIMES = 6
 DAYS = 25182.0 + np.arange(TIMES) / 24.0  # 2018-12-13
@@ -230,3 +232,31 @@ def test_a_comment_that_merging_left_condemns_no_instrument_whose_flags_are_good
     invented.drop_vars("p_qc").to_netcdf(tmp_path / "bare.nc", engine="h5netcdf")
     with pytest.raises(InputError, match="is not a measurement"):
         read_sensors([str(tmp_path / "bare.nc")], frozenset({1, 2}), -32.0, 300.0)
+
+
+def test_an_instrument_as_oceanarray_writes_it(tmp_path):
+    times = ("time", np.arange(3) * 3600, {"units": "seconds since 2018-08-13"})
+    units = {"pressure": "db", "temperature": "ITS-90, deg C"}
+    one = xarray.Dataset(
+        {
+            **{name: ("time", np.float32([10.0, 11.0, 12.0]),
+                      {"units": unit, "standard_name": f"sea_water_{name}"})
+               for name, unit in units.items()},
+            "serial_number": 7518, "InstrDepth": 100,
+        },
+        {"time": times},
+    )  # fmt: skip
+    (found,) = read(tmp_path, one)
+    assert (found.serial, found.nominal) == ("7518", 100.0)
+    assert found.depth == pytest.approx(depth_of(np.array([10.0, 11.0, 12.0]), -32.0), abs=1e-4)
+    path = [str(tmp_path / "a.nc")]
+    (warm,) = read_series(path, ["temperature"], frozenset({1}), 900.0)["temperature"]
+    assert warm.value.tolist() == [10.0, 11.0, 12.0]
+
+
+def test_the_greatest_speed_beside_a_mean_is_no_second_current():
+    east = {"units": "m s-1", "standard_name": "eastward_sea_water_velocity"}
+    north = {"units": "m s-1", "standard_name": "northward_sea_water_velocity"}
+    dataset = xarray.Dataset({name: ("TIME", np.zeros(3), about) for name, about in (
+        ("UCUR", east), ("UCUR_max", east), ("VCUR", north), ("VCUR_std", north))})  # fmt: skip
+    assert find_velocity(dataset, regular=False).names == ("UCUR", "VCUR")
