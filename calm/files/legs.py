@@ -311,7 +311,10 @@ def _check_net(legs: Sequence[Leg], top: SourceMapping, problems: list[Problem])
 
 
 def _check_held(legs: Sequence[Leg], section: SourceMapping, problems: list[Problem]) -> None:
-    """Check that no part of the net is without a hold, and no two anchors are in one place."""
+    """Check that no part of the net is without a hold.
+
+    Nor may an anchor whose place is not written stand where another does.
+    """
     held: set[str] = set()
     reached: set[str | None] = set()
     while True:
@@ -326,12 +329,12 @@ def _check_held(legs: Sequence[Leg], section: SourceMapping, problems: list[Prob
         held = more
     stand: dict[tuple[float, float], str] = {}
     for leg in legs:
-        if leg.bottom.anchor is not None and leg.name != stand.setdefault(
-            leg.bottom.anchor.at, leg.name
-        ):
+        anchor = leg.bottom.anchor
+        before = leg.name if anchor is None else stand.setdefault(anchor.at, leg.name)
+        if anchor is not None and before != leg.name and "at" not in anchor.model_fields_set:
             message = (
-                f"its anchor stands where that of leg `{stand[leg.bottom.anchor.at]}` does; say "
-                "where it is: `bottom: {anchor: {at: [30 m, 0 m]}}`"
+                f"its anchor stands where that of leg `{before}` does; say where it is: "
+                "`bottom: {anchor: {at: [30 m, 0 m]}}`"
             )
             problems.append(section.problem((leg.name,), message, key=True))
         if leg.name not in held:
