@@ -259,9 +259,8 @@ class NetProfiles:
         if self.slopes is not None:
 
             def solve(block: slice) -> None:
-                depth, *parts = (np.array(array, np.float64, order="C") for array in current)
-                levels = depth if len(depth) == 1 else depth[block]
-                mine = levels, *(part[block] for part in parts)
+                own = (each if len(each) == 1 < count else each[block] for each in current)
+                mine = tuple(np.array(each, np.float64, order="C") for each in own)
                 self._solve_rows(mine, NetRows(*(row[block] for row in rows)), endings[block])
 
             solve(slice(0, 0))  # compiles where need be

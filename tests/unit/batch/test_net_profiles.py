@@ -43,6 +43,7 @@ legs:
 """
 
 
+@pytest.mark.thorough  # its laws are compiled first
 def test_profiles_of_a_net_are_what_each_is_alone(tmp_path: Path) -> None:
     """By the compiled search from still water and by the solver of `calm run`, audited: to the
     1e-6 of 200 m and of 6 kN that the former leaves, or some times that.

@@ -243,6 +243,7 @@ def test_many_random_nets_agree_with_relaxation(seed: int) -> None:
     agrees_with_relaxation(seed)
 
 
+@pytest.mark.thorough  # its laws are compiled first
 def test_compiled_it_is_the_same() -> None:
     water = water_of(300.0, *SHEAR)
     plain = solve_net(y_net(), 1, water, Settings(compiled=False))
