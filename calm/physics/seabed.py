@@ -14,7 +14,7 @@ from calm.physics.cable import strain_at
 from calm.physics.line import Bed, Record, State, write_element, write_node
 from calm.physics.referee import Moored, RefereeShape
 from calm.physics.stretch import Knot, mean_curve_strain
-from calm.physics.track import CABLE, CableStretch, Course
+from calm.physics.track import CABLE, CLAMP, CableStretch, Course
 
 
 def lay_line(
@@ -81,7 +81,8 @@ def lay_line(
                     own, length, end = weight, load.length, reached + load.length
                 ends = k == last or course.loads[k + 1].clamp < 0
                 for part in range(3):  # the piece down to a clamp, the clamp, the piece to its end
-                    if not ends if part == 2 else load.clamp < 0:
+                    there = ends if part == 2 else load.clamp >= 0
+                    if not there or (here.kind == CLAMP and part != 1):
                         continue
                     clamp = load.clamp if part == 1 else -1
                     step = 0.0 if part == 1 else (end if part == 2 else load.at) - reached

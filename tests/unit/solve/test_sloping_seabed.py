@@ -99,7 +99,9 @@ def test_slope_and_current_turn_together(weight, least, most):
     assert one.landed
     assert least <= one.grounded_length <= most
     assert one.closure < 1e-9
-    assert back.T == pytest.approx(one.position, abs=1e-4)
+    assert np.allclose(back.T, one.position, rtol=0.0, atol=1e-4)
+    lying = one.element_clamp[one.hanging :] < 0
+    assert (one.cut[one.hanging :][lying] > 0.0).all()
     assert other.tension == pytest.approx(one.tension, rel=1e-6, abs=1e-3)
 
 
