@@ -182,8 +182,12 @@ def _power(number: float) -> str:
 def _bight(result: Result, solution: Solution) -> Iterator[str]:
     if result.file.legs:  # which hang as their ends are held
         return
-    pieces, force = solution.element_piece, solution.force[1:, 2]
-    hanging = pieces[(force < 0.0) & (solution.element_clamp < 0)]
+    water, (east, north, up) = solution.water, solution.force[1:].T
+    if solution.landed:  # as the seabed leads up so does the line above it
+        up = up + water.deeper_east * east + water.deeper_north * north
+    bights = (up < 0.0) & (solution.element_clamp < 0)
+    hanging = solution.element_piece[: solution.hanging - solution.landed]
+    hanging = hanging[bights[: len(hanging)]]
     if len(hanging):
         yield (
             f"The line hangs in a bight: at {result.components.label[hanging[0]]} it rises "

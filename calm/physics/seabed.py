@@ -68,7 +68,7 @@ def lay_line(
             x, y, z = x + reach * east, y + reach * north, z + reach * up
             if recording:
                 write_element(record, nodes, cable.piece, -1, length, strain)
-                at = (x, y, z, -tension * east, -tension * north, -tension * up, tz, level)
+                at = (x, y, z, -tension * east, -tension * north, 0.0 - tension * up, tz, level)
                 write_node(record, nodes, at)
             nodes, grounded = nodes + 1, grounded + length
         elif hung == 0.0:
@@ -91,10 +91,23 @@ def lay_line(
                     x, y, z = x + step * east, y + step * north, z + step * up
                     if recording:
                         write_element(record, nodes, load.piece, clamp, step, 0.0)
-                        at = (x, y, z, -tension * east, -tension * north, -tension * up, tz, level)
+                        at = (
+                            x,
+                            y,
+                            z,
+                            -tension * east,
+                            -tension * north,
+                            0.0 - tension * up,
+                            tz,
+                            level,
+                        )
                         write_node(record, nodes, at)
                     nodes, grounded, reached = nodes + 1, grounded + step, reached + step
-    return (x, y, z, -tension * east, -tension * north, -tension * up, tz, level), nodes, grounded
+    return (
+        (x, y, z, -tension * east, -tension * north, 0.0 - tension * up, tz, level),
+        nodes,
+        grounded,
+    )
 
 
 def held_back(tension: float, hold: float) -> tuple[float, float]:
