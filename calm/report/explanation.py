@@ -21,7 +21,6 @@ from calm.checks.recovery import recovery_of
 from calm.errors import NoEquilibrium
 from calm.quantities import QUANTITIES, Quantity, duration, say
 from calm.report.blocks import Block, Cell, Column, Line, Prose, ReportPart, Span, Table
-from calm.report.check_summary import SIGNS
 from calm.units import with_unit
 
 if TYPE_CHECKING:
@@ -343,6 +342,8 @@ _SHORT = "before", "after"
 
 
 def _figure(one: Compared) -> tuple[Cell, ...]:
+    from calm.report.check_summary import SIGNS
+
     quantity = QUANTITIES.get(one.quantity)
     states, both = one.states or (None, None), (one.before, one.after)
     texts = [_text(value, quantity, state) for value, state in zip(both, states, strict=True)]
