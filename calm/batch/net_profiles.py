@@ -1,7 +1,8 @@
 """Many current profiles of a net of legs, by the compiled search of `calm.solve.net_march`.
 
-Each is sought from where the net is in still water. Where that leads to nothing that stands, the
-seabed slopes, or an end is held above the water, the profile is solved as `calm run` does.
+Each is sought from where the net is in still water, or where it does not stand there in the current
+of its file. Where that leads to nothing that stands, or the seabed is a grid, the profile is solved
+as `calm run` does.
 """
 
 from __future__ import annotations
@@ -31,6 +32,7 @@ from calm.physics.compiled import by_address, entry, record_type
 from calm.physics.line import Floats, Water
 from calm.physics.profile import Interval, Sea
 from calm.physics.track import head_count
+from calm.records.seabed_grid import SeabedGrid
 from calm.solve import expect_many, net_closing, net_march
 from calm.solve.net import NetSearch, NetSolution
 from calm.solve.net_closing import AskedNet, ask_net, keep
@@ -221,24 +223,31 @@ class NetProfiles:
         return None
 
     @cached_property
+    def base(self) -> NetSolution | None:
+        """From where profiles are sought: the net in still water, or else in that of its file."""
+        with suppress(NoEquilibrium):
+            return self.still or self.net.standing
+        return None
+
+    @cached_property
     def slopes(self) -> Floats | None:
-        """Slopes of the net in still water; None where profiles are to be solved alone."""
-        if self.still is None or self.at_rest is None or self.net.file.environment.seabed:
+        """Slopes of the net there; None where profiles are to be solved alone."""
+        if self.base is None or isinstance(self.net.file.environment.seabed, SeabedGrid):
             return None
         search, step = self.search(), 4.0 * self.net.settings.angle_step
-        if search.water.level[0] < 0.0:  # air
-            return None
+        search.put_in(self.net.water.still() if self.still else self.net.water)
         how = search.marching(step, CHOSEN, FINE, given=False)
-        search.asked(net_closing.SLOPES, self.still.unknowns, how)
+        search.asked(net_closing.SLOPES, self.base.unknowns, how)
         return np.array(search.net.slopes)
 
     def search(self) -> NetSearch:
         """The search for it, compiled."""
         settings = replace(self.net.settings, compiled=True)
         nodes = len(nodes_of(self.net.file.legs))
-        search = NetSearch(self.net.legs, nodes, self.water(*[(0.0,)] * 4), settings)
-        if self.still is not None:
-            search.lie_as(self.still.lands)
+        water = self.water(*[(0.0,)] * 4)
+        search = NetSearch(self.net.legs, nodes, water, settings, rough=True)
+        if self.base is not None:
+            search.lie_as(self.base.lands)
         return search
 
     def solve(
@@ -282,7 +291,7 @@ class NetProfiles:
         search, water = self.search(), self.water(*[(0.0,)] * 4)
         levels = current[0].shape[1] + len(water.level) + 2
         sea: Any = search.sea
-        assert self.still is not None
+        assert self.base is not None
         of_legs = self.net.file.legs
         weights = [
             line.anchor_weight if leg.bottom.anchor else inf
@@ -297,10 +306,10 @@ class NetProfiles:
             fixed=np.column_stack([water.level, water.u, water.v, water.density]),
             strata=sea.strata,
             gravity=water.gravity,
-            start=self.still.unknowns,
+            start=self.base.unknowns,
             slopes=self.slopes,
             lands=np.array(search.lands, float),
-            x=np.zeros(len(self.still.unknowns)),
+            x=np.zeros(len(self.base.unknowns)),
             piece=np.array([leg.first for leg in of_legs]),
             clamp=np.array([sum(clamped[: leg.first]) for leg in of_legs]),
             weight=np.array(weights),
@@ -386,7 +395,7 @@ class NetProfiles:
             return
         water = self.water(*(tuple(column) for column in read[:count].T.tolist()))
         try:
-            solution = self.net.equilibrium(water, still)
+            solution = self.net.equilibrium(water, self.base)
             before: Any = [None] * len(solution.legs) if still is None else still.legs
             result = net_result(self.net, solution, before)
         except NoEquilibrium as failure:

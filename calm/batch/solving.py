@@ -333,9 +333,10 @@ def lay_profile(
         k = i - 1 if i > 0 and read[i - 1, 0] == depth else i
         f = j - 1 if j > 0 and fixed[j - 1, 0] == depth else j
         joined[total, 0] = depth
-        joined[total, 1] = value_at(read, count, k, depth, 1) + value_at(fixed, given, f, depth, 1)
-        joined[total, 2] = value_at(read, count, k, depth, 2) + value_at(fixed, given, f, depth, 2)
-        joined[total, 3] = value_at(read, count, k, depth, 3)
+        for c in range(1, 4):  # no current is in the air
+            joined[total, c] = value_at(read, count, k, depth, c) if depth >= 0.0 else 0.0
+        joined[total, 1] += value_at(fixed, given, f, depth, 1)
+        joined[total, 2] += value_at(fixed, given, f, depth, 2)
         joined[total, 4] = value_at(fixed, given, f, depth, 3)
         total += 1
     levels[0], levels[total + 1] = -inf, inf
