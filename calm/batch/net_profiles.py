@@ -18,8 +18,15 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.batch.solving import lay_profile, read_profile
-from calm.batch.statuses import STATUSES
+from calm.batch.solving import (
+    LEVELS_COINCIDE,
+    NO_CURRENT,
+    ProfileLevels,
+    levels_for,
+    read_profile,
+    sea_of,
+)
+from calm.batch.statuses import OF_PROFILES, STATUSES
 from calm.case.measure import leaning_of
 from calm.case.net import Net, net_result
 from calm.case.net_result import NetResult
@@ -28,9 +35,9 @@ from calm.dataset.netcdf import OF_CLAMP, OF_COMPONENT, OF_ENDS
 from calm.errors import NoEquilibrium
 from calm.files import CurrentTable
 from calm.files.legs import nodes_of
-from calm.physics.compiled import by_address, entry, record_type
+from calm.physics.compiled import by_address, entry
 from calm.physics.line import Floats, Water
-from calm.physics.profile import Interval, Sea
+from calm.physics.profile import Sea
 from calm.physics.track import head_count
 from calm.records.seabed_grid import SeabedGrid
 from calm.solve import expect_many, net_closing, net_march
@@ -43,10 +50,9 @@ ROUGHLY = 1e-6
 """What may be left of lengths and forces, in shares: a run leaves less, which takes longer."""
 BLOCK = 256
 """Profiles that a thread takes at a time."""
-NO_PROFILE, COINCIDING, TO_SOLVE = -1, -2, 1
-"""How a profile ends that has no current, or two at a level, and one that is to be solved alone."""
+TO_SOLVE = 1
+"""How a profile ends that is to be solved alone."""
 Column = tuple[float, ...]
-OWN = {NO_PROFILE: "no-current", COINCIDING: "levels-coincide"}
 
 
 class NetRows(NamedTuple):
@@ -69,21 +75,15 @@ class NetPaper(NamedTuple):
 
     Attributes
     ----------
-    read, joined, levels, intervals, fixed : as in `ProfileArrays`
-    strata, gravity : as in `Sea`
-    start, slopes, lands : the unknowns, slopes and legs on the seabed of the net in still water
+    still : the water without the profile
+    start, slopes, lands : the unknowns, slopes and legs on the seabed of the net there
     x : room for the unknowns
     piece, clamp : first of each leg in the rows
     weight : of the anchor of each leg, inf where it has none [N]
     """
 
-    read: Floats
-    joined: Floats
-    levels: Any
-    intervals: Any
-    fixed: Floats
-    strata: Any
-    gravity: float
+    on: ProfileLevels
+    still: Sea
     start: Any
     slopes: Any
     lands: Floats
@@ -117,17 +117,9 @@ def solve_net_rows(
     for case in range(endings.size):
         if endings[case] != 0:
             continue
-        levels_at = depth[case if depth.shape[0] > 1 else 0]
-        found = read_profile(levels_at, u[case], v[case], w[case], paper.read)
-        if found <= 0:
-            endings[case] = NO_PROFILE if found == 0 else COINCIDING
+        endings[case], sea = sea_of(paper.on, depth, u, v, w, case, paper.still)
+        if endings[case] != 0:
             continue
-        total = lay_profile(
-            paper.read, found, paper.fixed, paper.levels, paper.intervals, paper.joined
-        )
-        sea = Sea(
-            paper.levels[: total + 2], paper.intervals[: total + 1], paper.gravity, paper.strata
-        )
         keep(paper.start, paper.x)
         for k in range(len(paper.x)):
             keep(paper.slopes[k], net.slopes[k])
@@ -276,7 +268,7 @@ class NetProfiles:
                 list(pool.map(solve, [slice(at, at + BLOCK) for at in range(0, count, BLOCK)]))
         else:
             endings[endings == 0] = TO_SOLVE
-        for ending, name in OWN.items():
+        for ending, name in OF_PROFILES.items():
             status[endings == ending] = STATUSES.index(name)
         columns = self._columns(rows)
         for name in columns:
@@ -289,8 +281,6 @@ class NetProfiles:
         self, current: tuple[Floats, ...], rows: NetRows, endings: NDArray[np.int64]
     ) -> None:
         search, water = self.search(), self.water(*[(0.0,)] * 4)
-        levels = current[0].shape[1] + len(water.level) + 2
-        sea: Any = search.sea
         assert self.base is not None
         of_legs = self.net.file.legs
         weights = [
@@ -299,13 +289,8 @@ class NetProfiles:
         ]
         clamped = [len(piece.clamps) for piece in self.net.file.pieces]
         paper = NetPaper(
-            read=np.zeros((levels, 4)),
-            joined=np.zeros((levels + 2, 5)),
-            levels=np.zeros(levels + 2),
-            intervals=np.zeros(levels + 2, record_type(Interval)),
-            fixed=np.column_stack([water.level, water.u, water.v, water.density]),
-            strata=sea.strata,
-            gravity=water.gravity,
+            on=levels_for(current[0].shape[1], water),
+            still=search.sea,
             start=self.base.unknowns,
             slopes=self.slopes,
             lands=np.array(search.lands, float),
@@ -391,7 +376,8 @@ class NetProfiles:
         levels = depth[case if len(depth) > 1 else 0]
         count = read_profile(levels, u[case], v[case], w[case], read)
         if count <= 0:
-            status[case] = STATUSES.index(OWN[NO_PROFILE if count == 0 else COINCIDING])
+            ending = NO_CURRENT if count == 0 else LEVELS_COINCIDE
+            status[case] = STATUSES.index(OF_PROFILES[ending])
             return
         water = self.water(*(tuple(column) for column in read[:count].T.tolist()))
         try:
