@@ -27,8 +27,8 @@ NET_REFUSED = (
     "instruments in a record of currents; waves and a launch take a line of its most loaded leg"
 )
 NET_SURE = (
-    "single lines; `calm run --explain` says how far a net moves by more drag, buoyancy or current, "
-    "and a copy of its file, or `with_` in Python, solves it with other figures"
+    "single lines; `calm run --explain` says how far a net moves by more drag, buoyancy or "
+    "current, and a copy of its file, or `with_` in Python, solves it with other figures"
 )
 
 _Offset = Annotated[float, QuantityField("length")]

@@ -43,13 +43,29 @@ legs:
 """
 
 
+SLOPING = NET.replace("90 deg}}", "90 deg}, seabed: {slope: 8 deg, toward: 60 deg}}").replace(
+    "{use: wire-jacketed-8, length: 90 m}",
+    "{use: wire-jacketed-8, length: 60 m}\n      - {use: chain-buoy-16, length: 60 m}",
+)
+IN_AIR = """\
+name: From a pier
+environment: {depth: 300 m, current: {speed: 0.3 m/s, toward: 90 deg}}
+legs:
+  span:
+    line: [{use: wire-jacketed-8, length: 130 m}]
+    top: {held: {depth: -2 m, at: [-60 m, 0 m]}}
+    bottom: {held: {depth: 60 m, at: [40 m, 0 m]}}
+"""
+
+
 @pytest.mark.thorough  # its laws are compiled first
-def test_profiles_of_a_net_are_what_each_is_alone(tmp_path: Path) -> None:
-    """By the compiled search from still water and by the solver of `calm run`, audited: to the
-    1e-6 of 200 m and of 6 kN that the former leaves, or some times that.
+@pytest.mark.parametrize("text", [NET, SLOPING, IN_AIR])
+def test_profiles_of_a_net_are_what_each_is_alone(tmp_path: Path, text: str) -> None:
+    """By the compiled search from still water, on its own segments, and by the solver of `calm
+    run`, audited: to half of the 1e-4 of the depth and 2e-4 of the tension that is promised.
     Neither order nor threads change a bit.
     """
-    net = load(tmp_path / "net.yaml", text=NET)
+    net = load(tmp_path / "net.yaml", text=text)
     assert isinstance(net, Net)
     rng, depth = np.random.default_rng(2), np.array([0.0, 80.0, 300.0])
     u, v = (rng.normal(0.0, 0.5, (6, 3)) * [1.0, 0.6, 0.2] for _ in range(2))
@@ -70,7 +86,8 @@ def test_profiles_of_a_net_are_what_each_is_alone(tmp_path: Path) -> None:
     for name, column in expected.items():
         found = getattr(many, name)
         assert np.array_equal(getattr(others, name), found[order], equal_nan=True), name
-        assert found[:4] == pytest.approx(column, rel=1e-5, abs=6e-3, nan_ok=True), name
+        near = 0.05 if "tension" in name or "anchor" in name else 0.01  # N; m and degrees
+        assert found[:4] == pytest.approx(column, rel=4e-5, abs=near, nan_ok=True), name
 
 
 @pytest.mark.parametrize("size", [1, 4, 9])
