@@ -12,21 +12,8 @@ from string import ascii_uppercase
 from calm.case import Result
 from calm.case.net_result import legs_of
 from calm.deck import Deck
-from calm.drawing.schematic import (
-    FONT,
-    HEAD,
-    LEADING,
-    ColumnHead,
-    LineColumn,
-    PlacedPart,
-    column_of,
-    draw_ground,
-    draw_headings,
-    draw_parts,
-    draw_sea,
-    measured,
-    placed,
-)
+from calm.drawing import schematic
+from calm.drawing.schematic import FONT, HEAD, LEADING, ColumnHead, LineColumn, PlacedPart, placed
 from calm.drawing.schematic.deck_parts import parts_of
 from calm.drawing.schematic.pen import INK, SOFT, Pen, picture, svg_text, wrapped
 from calm.drawing.schematic.shown_parts import TextRow, one_line
@@ -190,11 +177,14 @@ def _pages(deck: Deck, paper: Paper) -> _Pages:
     block = title_block_of(deck, paper)
     headings = [ColumnHead(words, QUANTITIES[name].display_unit) for words, name in _HEADINGS]
     rows = (row for part in parts for row in part.rows)
-    column = column_of(rows, headings, paper.column_width)
+    column = schematic.column_of(rows, headings, paper.column_width)
     legend = tuple({part.sign.symbol: part.sign for part in parts}.values())
     need = _GROUND + LEADING - (-len(legend) // _LEGEND_COLUMNS) * _LEGEND_ROW
     sets = (  # long cables are drawn shorter where that saves a page
-        [(line, measured(leg, column, growth)) for line, leg in zip(lines, legs, strict=True)]
+        [
+            (line, schematic.measured(leg, column, growth))
+            for line, leg in zip(lines, legs, strict=True)
+        ]
         for growth in (1.0, 0.5, 0.0)
     )
     columns = min((_even(each, paper, block.height, need) for each in sets), key=len)
@@ -288,19 +278,19 @@ def _fill(page: Pen, pages: _Pages, number: int) -> None:
 
 
 def _draw_column(page: Pen, one: _PageColumn, column: LineColumn, left: float) -> None:
-    draw_headings(page, column, left, _TOP - HEAD)
+    schematic.draw_headings(page, column, left, _TOP - HEAD)
     if one.leg:
         page.write(left, _TOP - 8.0, one.leg, column.text[1], size=FONT, bold=True)
     start, end = one.parts[0].top, one.end
     surface = one.parts[0].middle if one.afloat else _TOP + _SKY
     if one.above is None:
         row = None if one.afloat else TextRow("sea surface", "")
-        draw_sea(page, column, left, (surface, end), row)
+        schematic.draw_sea(page, column, left, (surface, end), row)
     if one.below is None:
-        draw_ground(page, column, left, end, TextRow("seabed", ""))
+        schematic.draw_ground(page, column, left, end, TextRow("seabed", ""))
     if one.above is not None:
         _draw_continued(page, column, left, start - _CONTINUED, one.above)
-    draw_parts(page, one.parts, column, left)
+    schematic.draw_parts(page, one.parts, column, left)
     if one.below is not None:
         _draw_continued(page, column, left, end, one.below)
 

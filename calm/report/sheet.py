@@ -237,7 +237,7 @@ def line_table(
     return Table("", (*columns, *map(quantity_column, names)), rows, note, dense=True)
 
 
-def quantity_field(name: str, attribute: str = "", heading: str | None = None) -> Field[Any]:
+def quantity_field(name: str, attribute: str = "", heading: str | None = None) -> Field:
     """A column of a quantity for `table_of`.
 
     Parameters
