@@ -20,8 +20,8 @@ from calm.report.blocks import Figure, PageBreak, Report, ReportPart, warned
 from calm.report.check_summary import short_verdict
 from calm.report.diagram import Paper, diagram_pages
 from calm.report.drop_sheet import drop_part
-from calm.report.net_sheet import net_part
 from calm.report.provenance import date, document_part, input_hash, moment, report_of, versions
+from calm.report.sheet import net_part
 
 Rows = Iterable[Sequence[object]]
 

@@ -13,7 +13,7 @@ from calm.deck.shipping import total_of
 from calm.quantities import QUANTITIES, say
 from calm.report import blocks
 from calm.report.blocks import Cell, Field, Note, ReportPart, number, quantity, table_of, words
-from calm.report.net_sheet import leg_titles
+from calm.report.sheet import leg_titles
 
 _SHARE = f"{LENGTH_ERROR:.1%}".replace("%", " %")
 _SPARES = (

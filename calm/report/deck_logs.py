@@ -23,8 +23,8 @@ from calm.report.blocks import (
     words,
 )
 from calm.report.drop_sheet import whereabouts
-from calm.report.net_sheet import leg_titles
 from calm.report.provenance import position_text
+from calm.report.sheet import leg_titles
 
 _BOX = Cell("☐")
 _BLANK = Cell("\u00a0", "\u00a0")

@@ -21,8 +21,8 @@ from calm.drawing.schematic.sign import LINES, WORDS, Sign
 from calm.drawing.schematic.symbols import draw_cable, figure_of
 from calm.quantities import QUANTITIES, say
 from calm.report.check_summary import short_verdict
-from calm.report.net_sheet import ends_told, leg_title
 from calm.report.provenance import title_pairs
+from calm.report.sheet import ends_told, leg_title
 
 _HEADINGS = (
     (("cut,", "or place"), "length"), (("stretched",), "length"), (("depth",), "depth"),
