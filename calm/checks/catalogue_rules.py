@@ -11,7 +11,7 @@ from itertools import chain
 from math import pi
 from typing import TYPE_CHECKING
 
-from calm.assemble import mass_in_air
+from calm.assemble import drag_of, mass_in_air
 from calm.case.parts import parts_of
 from calm.checks.criterion import said
 from calm.checks.finding import State, Verdict, rule, unknown, verdict_on
@@ -21,6 +21,7 @@ from calm.files import Anchor, Cable, Chain, Component, Cylinder, Flexible, Sphe
 from calm.files.catalogue import Assembly, Defined
 from calm.files.components import KINDS, Outline
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
+from calm.files.rigid import Shaped
 from calm.physics.materials import (
     LEAD_DENSITY,
     MATERIAL_NAMES,
@@ -29,6 +30,7 @@ from calm.physics.materials import (
     density_of,
     materials_in,
 )
+from calm.physics.seawater import REFERENCE_DENSITY
 
 if TYPE_CHECKING:
     from calm.checks.handling import Handling
@@ -210,8 +212,25 @@ MOST_DRAG = 10.0
 """No piece of a mooring has a greater coefficient, whatever vibrates."""
 
 
+LEAST_BODY_DRAG = 0.02
+"""Least drag area of a body over its volume to the power 2/3: that of streamlined bodies along the
+flow (Hoerner 1965, Fluid-Dynamic Drag, chapter VI). Bodies of the catalogue have 0.6 to 10."""
+
+SMALL_BODY = 1e-3
+"""Volume up to which a body's drag may be left out, as that of shackles often is [m³]."""
+
+
 def _drags_out_of_range(component: Component) -> Iterator[str]:
-    """Yield a coefficient of drag that no piece of its kind has."""
+    """Yield a coefficient of drag that no piece of its kind has, or too little drag of a body."""
+    mass = mass_in_air(component)
+    if isinstance(component, Shaped) and mass is not None:
+        volume = _displaced(component, mass) / (CATALOGUE_DENSITY * STANDARD_GRAVITY)
+        area = drag_of(component)[0] / (0.5 * REFERENCE_DENSITY)
+        if volume > SMALL_BODY and area < (least := LEAST_BODY_DRAG * volume ** (2 / 3)):
+            yield (
+                f"has a drag coefficient times area of {area:.2g} m² across it; a streamlined body "
+                f"of its {volume:.2g} m³ has {least:.2g} m²"
+            )
     name = "cx" if isinstance(component, Sphere) else "cn"
     value, least = getattr(component, name, None), LEAST_DRAG.get(component.kind)
     if value == 0.0 and isinstance(component, Flexible):

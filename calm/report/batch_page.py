@@ -99,9 +99,9 @@ def limits_table(summary: Summary) -> Table:
     return table_of(
         "Limits",
         [(one, rule) for rule in summary.rules for one in rule.exceedances],
-        *check_summary.of_first(words("state", state, 0.0)),
+        *blocks.of_first(words("state", state, 0.0)),
         words("rule", lambda row: row[1].title),
-        *check_summary.of_first(
+        *blocks.of_first(
             words("component", "limit.component"),
             number("limit", limit),
             number("broken in", lambda one: percent(one.share), "% of profiles"),

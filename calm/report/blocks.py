@@ -265,6 +265,15 @@ def number(heading: str, show: Shown = "", unit: str = "", **more: Any) -> Field
     return words(heading, show, unit=unit, numeric=True, **more)
 
 
+def of_first(*fields: Field) -> list[Field]:
+    """The same columns for items that begin with what they show."""
+
+    def first(show: Callable[[Any], Any]) -> Callable[[Any], Any]:
+        return lambda row: show(row[0])
+
+    return [(column, first(show)) for column, show in fields]
+
+
 def blank(heading: str, unit: str = "", share: float = 1.0) -> Field:
     """A column that is filled in by hand."""
     return words(heading, lambda _: None, share, unit=unit)

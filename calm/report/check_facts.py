@@ -18,9 +18,8 @@ from calm.checks.assessment import Assessment
 from calm.checks.finding import AS_GIVEN, Finding, State
 from calm.files.check_limits import LimitKey
 from calm.quantities import say
-from calm.report import check_summary
-from calm.report.blocks import ON_THE_WAY, Cell, Column, Pairs, ReportPart, Section, Table, table_of
-from calm.report.blocks import words as column
+from calm.report import blocks, check_summary
+from calm.report.blocks import Cell, Column, Pairs, ReportPart, Section, Table, table_of, words
 from calm.report.check_summary import counted_states, named_components, worst_by_part
 from calm.report.provenance import title_pairs
 from calm.report.result_files import members
@@ -120,7 +119,7 @@ def facts_of(assessment: Assessment) -> CheckFacts:
 
 def judged_section(assessment: Assessment) -> Section:
     """What is concluded of one mooring; nothing of it is printed yet."""
-    columns = (*(stand.environment for stand in assessment.stands), ON_THE_WAY)
+    columns = (*(stand.environment for stand in assessment.stands), blocks.ON_THE_WAY)
     name, worst = assessment.name, check_summary.worst_by_rule(assessment)
     return Section(name, (), columns, worst, facts_of(assessment))
 
@@ -248,19 +247,19 @@ def _lines_of(row: Sequence[Cell], columns: Sequence[Column], signs: float) -> f
 
 def settled_tables(facts: CheckFacts) -> Iterator[Table]:
     """What the designer has decided: what is accepted, and limits of the design's own."""
-    words = attrgetter("accept.reason", "accept.by", "accept.date", "accept.until")
-    groups = check_summary.grouped(facts.accepted, words)
+    terms = attrgetter("accept.reason", "accept.by", "accept.date", "accept.until")
+    groups = check_summary.grouped(facts.accepted, terms)
     rows = [(accept, found) for found in groups if (accept := found[0].accept) is not None]
     if rows:
         yield table_of(
             "Accepted",
             rows,
-            column("rule", lambda row: ", ".join(check_summary.rules_of(row[1]))),
-            column("component", lambda row: named_components(row[1])),
-            *check_summary.of_first(
-                column("reason", share=1.8),
-                column("by, on", lambda one: Cell(one.by or "nobody", one.date or ""), 0.8),
-                column("until", lambda one: one.until or "for good", 0.0),
+            words("rule", lambda row: ", ".join(check_summary.rules_of(row[1]))),
+            words("component", lambda row: named_components(row[1])),
+            *blocks.of_first(
+                words("reason", share=1.8),
+                words("by, on", lambda one: Cell(one.by or "nobody", one.date or ""), 0.8),
+                words("until", lambda one: one.until or "for good", 0.0),
             ),
         )
     if facts.departures:
@@ -276,9 +275,9 @@ def _mending(findings: Sequence[Finding]) -> Iterator[Table]:
         yield table_of(
             _MENDING,
             groups,
-            *check_summary.of_first(
-                check_summary.STATE, column("rule", lambda one: RULES[one.rule].title, 0.8)
+            *blocks.of_first(
+                check_summary.STATE, words("rule", lambda one: RULES[one.rule].title, 0.8)
             ),
-            column("component", named_components),
-            column("finding", lambda found: check_summary.said_of(found[0]).text, 2.2),
+            words("component", named_components),
+            words("finding", lambda found: check_summary.said_of(found[0]).text, 2.2),
         )

@@ -9,7 +9,7 @@ from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from functools import partial
 from itertools import groupby
 from operator import attrgetter
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment
@@ -42,15 +42,6 @@ VALUE, LIMIT, MARGIN = (
     blocks.number(name, partial(figure_of, name=name)) for name in ("value", "limit", "margin")
 )
 """Columns of findings."""
-
-
-def of_first(*fields: Field) -> list[Field]:
-    """Columns of findings for items that begin with one."""
-
-    def first(show: Callable[[Any], Any]) -> Callable[[Any], Any]:
-        return lambda row: show(row[0])
-
-    return [(column, first(show)) for column, show in fields]
 
 
 def place_of(finding: Finding) -> str:
@@ -149,7 +140,7 @@ def worst_table(sections: Sequence[Section]) -> Table:
     return blocks.table_of(
         "Worst finding of each rule",
         rows,
-        *of_first(words("rule", share=0.0), STATE, VALUE, LIMIT, MARGIN),
+        *blocks.of_first(words("rule", share=0.0), STATE, VALUE, LIMIT, MARGIN),
         blocks.number("unknown", lambda row: row[1] or None, short="?"),
         in_so_many("moorings that fail", State.FAIL),
         in_so_many("that warn", State.WARN),

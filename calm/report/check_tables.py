@@ -22,27 +22,10 @@ from calm.drawing.schematic.shown_parts import place_text
 from calm.files.components import FLEXIBLE_KINDS
 from calm.physics.line import Floats
 from calm.quantities import QUANTITIES, say
-from calm.report import check_summary
-from calm.report.blocks import (
-    Block,
-    Cell,
-    Field,
-    Heading,
-    Line,
-    Note,
-    Pairs,
-    Prose,
-    ReportPart,
-    Span,
-    Table,
-    blank,
-    number,
-    quantity,
-    table_of,
-    words,
-)
+from calm.report import blocks, check_summary
+from calm.report.blocks import Cell, Field, Prose, Span, Table, number, quantity, table_of, words
 from calm.report.check_facts import CheckFacts, judged_section, key_pairs, settled_tables
-from calm.report.check_summary import grouped, joined, of_first, place_of
+from calm.report.check_summary import grouped, joined, place_of
 from calm.report.provenance import unseen
 
 _RESULTS: dict[str, Callable[[Result], float | None]] = {
@@ -94,11 +77,11 @@ def checks_table(findings: Iterable[Finding]) -> Iterator[Table | Prose]:
     yield table_of(
         "Worst finding of each rule on each component",
         joined(kept),
-        *of_first(check_summary.STATE),
+        *blocks.of_first(check_summary.STATE),
         words("rule", rule),
         words("component", component, 1.8),
-        *of_first(check_summary.VALUE, check_summary.LIMIT, check_summary.MARGIN),
-        *of_first(words("finding and remedy", check_summary.said_of, 2.5)),
+        *blocks.of_first(check_summary.VALUE, check_summary.LIMIT, check_summary.MARGIN),
+        *blocks.of_first(words("finding and remedy", check_summary.said_of, 2.5)),
         note="Components with the same finding share a row, which shows the worst of them; "
         "every finding is in checks.csv and report.json. [1] is the first source below "
         "the table.",
@@ -125,7 +108,7 @@ def breaks_table(backup: Sequence[Break]) -> Table:
     )
 
 
-def handling_summary(assessment: Assessment) -> Pairs:
+def handling_summary(assessment: Assessment) -> blocks.Pairs:
     """The launch and the recovery in a few figures."""
     pairs, launch, recovery = [], assessment.launch, assessment.recovery
     if launch is not None:
@@ -144,7 +127,7 @@ def handling_summary(assessment: Assessment) -> Pairs:
             ("Speed of the rise", say("speed", recovery.rise_speed) + still),
             ("Time to the surface", "-" if time is None else f"{time / 60:.1f} min"),
         ]
-    return Pairs(tuple(pairs))
+    return blocks.Pairs(tuple(pairs))
 
 
 def handling_table(assessment: Assessment) -> Table:
@@ -209,7 +192,7 @@ def inventory_table(items: Sequence[InventoryItem]) -> Table:
         words("id", lambda each: None if each is items else each[0].use),
         number("pieces", len),
         *map(summed, ("cut_length", "dry_mass", "wet_weight")),
-        blank("spares"),
+        blocks.blank("spares"),
         note=note,
         sums=[items],
         by_hand=True,
@@ -286,7 +269,7 @@ _LACKING = 60
 """Most components named that lack a figure."""
 
 
-def check_part(assessments: Sequence[Assessment]) -> ReportPart:
+def check_part(assessments: Sequence[Assessment]) -> blocks.ReportPart:
     """Everything that a design check says in short.
 
     Moorings by environments with the worst state in each; what decides, what is accepted and what
@@ -295,7 +278,7 @@ def check_part(assessments: Sequence[Assessment]) -> ReportPart:
     """
     sections = [judged_section(each) for each in assessments]
     facts = [each.facts for each in sections if each.facts is not None]
-    blocks = (
+    shown = (
         *(replace(each, title="", note="") for each in check_summary.matrix_tables(sections)),
         check_summary.verdict_prose(finding for each in facts for finding in each.findings),
         *(block for each in facts for block in _decisive(each, several=len(facts) > 1)),
@@ -303,20 +286,20 @@ def check_part(assessments: Sequence[Assessment]) -> ReportPart:
         *likelihood_tables([(each.name, [*each.all_findings()]) for each in assessments]),
         *(block for each in facts for block in _told(each)),
     )
-    return ReportPart(
-        "", (*blocks, Note(unseen(each for one in facts for each in one.findings)[:1]))
+    return blocks.ReportPart(
+        "", (*shown, blocks.Note(unseen(each for one in facts for each in one.findings)[:1]))
     )
 
 
-def _decisive(facts: CheckFacts, *, several: bool) -> Iterator[Block]:
+def _decisive(facts: CheckFacts, *, several: bool) -> Iterator[blocks.Block]:
     """What decides of a mooring, what is accepted, and what departs."""
     if several:
-        yield Heading(facts.mooring)
+        yield blocks.Heading(facts.mooring)
     yield key_pairs(facts)
     yield from settled_tables(facts)
 
 
-def _told(facts: CheckFacts) -> Iterator[Block]:
+def _told(facts: CheckFacts) -> Iterator[blocks.Block]:
     """Return what a mooring fails or is warned of, the gravest first with its remedy; what is
     missing.
     """
@@ -325,18 +308,18 @@ def _told(facts: CheckFacts) -> Iterator[Block]:
     )
     if not listed:
         return
-    lines: list[Line] = []
+    lines: list[blocks.Line] = []
     for state, groups in groupby(listed, key=lambda found: found[0].state):
         found = list(groups)
         most = len(found) if state is State.UNKNOWN else _TOLD
         lines += map(_sentence, found[:most])
         if len(found) > most:
             lines.append(f"  and {len(found) - most} more that {state}; --json has them")
-    yield Heading(facts.mooring)
+    yield blocks.Heading(facts.mooring)
     yield Prose(tuple(lines))
 
 
-def _sentence(found: Sequence[Finding]) -> Line:
+def _sentence(found: Sequence[Finding]) -> blocks.Line:
     """What is found alike of some components, told of the worst of them."""
     worst = found[0]
     sign, quiet = Span(f"{_SIGNS[worst.state]} ", worst.state), worst.state is not State.FAIL

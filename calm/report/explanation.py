@@ -21,7 +21,6 @@ from calm.errors import NoEquilibrium
 from calm.quantities import QUANTITIES, Quantity, duration, say
 from calm.report import blocks
 from calm.report.blocks import Block, Cell, Prose, ReportPart, Span, Table, number, table_of, words
-from calm.report.check_summary import SIGNS
 from calm.units import with_unit
 
 if TYPE_CHECKING:
@@ -327,6 +326,8 @@ def _figures(
 
 
 def _figure(one: Compared) -> tuple[str, str, Cell, Cell, str]:
+    from calm.report.check_summary import SIGNS
+
     quantity, states = QUANTITIES.get(one.quantity), one.states or (None, None)
     before, after = (
         Cell(

@@ -15,7 +15,6 @@ from calm.motion.remarks import no_drag
 from calm.motion.study import knockdown
 from calm.report import blocks
 from calm.report.blocks import Figure, Note, Prose, ReportPart, Table, number, table_of, words
-from calm.report.check_summary import of_first
 from calm.report.provenance import report_of
 from calm.report.result_files import members
 
@@ -218,7 +217,7 @@ def factors_table(factors: Mapping[str, tuple[float, float, float]], datum: floa
 def sensors_table(study: Study) -> Table:
     """Return how sensors in use agree with the currents alone, and with what is estimated."""
     rows = [(alone, label) for label, alone in (study.plain or study.fit).items()]
-    alone = of_first(
+    alone = blocks.of_first(
         _figure("alone: bias", "bias"), _figure("rms", "rms"),
         _figure("r", "r", "", 3), _figure("slope", "slope", "", 3),
     )  # fmt: skip
@@ -226,7 +225,7 @@ def sensors_table(study: Study) -> Table:
         "",
         rows,
         words("sensor", 1),
-        *of_first(number("times", "count")),
+        *blocks.of_first(number("times", "count")),
         *(alone if study.plain else ()),
         number("estimated: rms", lambda row: _said(study.fit[row[1]].rms), "m"),
     )

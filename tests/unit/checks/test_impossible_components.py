@@ -3,7 +3,7 @@
 import pytest
 
 from calm.checks.catalogue_rules import check_catalogue
-from calm.files import Anchor, Assembly, Cable, Chain, Cylinder, Sphere
+from calm.files import Anchor, Assembly, Body, Cable, Chain, Cylinder, Sphere
 
 KINDS = {
     "sphere": Sphere,
@@ -12,11 +12,14 @@ KINDS = {
     "chain": Chain,
     "anchor": Anchor,
     "assembly": Assembly,
+    "body": Body,
 }
 
 GOOD_SPHERE = {"kind": "sphere", "diameter": "1 m", "buoyancy": "2000 N", "source": "a list"}
 GOOD_ROPE = {"kind": "cable", "diameter": "10 mm", "weight": "0.2 N/m", "source": "a list"}
 GOOD_CHAIN = {"kind": "chain", "diameter": "10 mm", "source": "a list"}
+GOOD_BODY = {"kind": "body", "length": "1 m", "mass": "70 kg", "buoyancy": "0 N", "cd": 0.7,
+             "drag_area": "0.35 m^2", "source": "a list"}  # fmt: skip
 
 
 def findings(definition, known=()):
@@ -24,13 +27,14 @@ def findings(definition, known=()):
     return [finding.message for finding in check_catalogue({"x": model}, known)]
 
 
-@pytest.mark.parametrize("good", [GOOD_SPHERE, GOOD_ROPE, GOOD_CHAIN])
+@pytest.mark.parametrize("good", [GOOD_SPHERE, GOOD_ROPE, GOOD_CHAIN, GOOD_BODY])
 def test_good_components_pass(good):
     assert findings(good) == []
 
 
 # Water displaced by a sphere of 1 m: 1025 pi/6 = 536.7 kg, 5263 N. A bar of 10 mm: steel
-# 0.6165 kg/m, nylon 0.0895 kg/m.
+# 0.6165 kg/m, nylon 0.0895 kg/m. The body displaces 70/1025 m³: 0.02 of that to the power 2/3 is
+# 0.003342 m², 0.7 times 0.004774 m².
 @pytest.mark.parametrize(
     ("good", "change", "told"),
     [
@@ -58,6 +62,7 @@ def test_good_components_pass(good):
         (GOOD_CHAIN, {"cn": 0.0}, "no drag across it"),
         (GOOD_CHAIN, {"mass": "0.8 kg/m"}, "steel bars"),
         (GOOD_CHAIN, {"mass": "3.2 kg/m"}, "steel bars"),
+        (GOOD_BODY, {"drag_area": "0.00477 m^2"}, "of its 0.068 m³ has 0.0033 m²"),
     ],
 )
 def test_impossible_figures_are_found(good, change, told):
@@ -83,6 +88,8 @@ def test_impossible_figures_are_found(good, change, told):
         (GOOD_ROPE, {"diameter": "13 mm", "mass": "0.036 kg/m"}),
         (GOOD_CHAIN, {"mass": "1.6 kg/m"}),
         (GOOD_CHAIN, {"mass": "2.6 kg/m"}),
+        (GOOD_BODY, {"drag_area": "0.00478 m^2"}),
+        (GOOD_BODY, {"mass": "1 kg", "drag_area": "0.000001 m^2"}),
     ],
 )
 def test_possible_figures_pass(good, change):
