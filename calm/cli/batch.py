@@ -103,7 +103,7 @@ def batch(
     place = own if at is None else parse_place(at)
     seabed = float(mooring.water.depth)
     teller = ProgressTeller()
-    turned = quantities({"declination": (declination, "angle")}).get("declination")
+    turned = quantities(declination=(declination, "angle")).get("declination")
     with stopped_by_a_signal() as stop:
         with open_record(
             currents, seabed=seabed, at=place, declination=turned, time=period, every=every

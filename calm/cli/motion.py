@@ -162,7 +162,7 @@ def motion(
         raise UsageError(f"{file} is a tow; calm motion is for moorings")
     for notice in mooring.file.notices:
         narrate(f"{file}: {notice}")
-    turned = quantities({"declination": (declination, "angle")}).get("declination")
+    turned = quantities(declination=(declination, "angle")).get("declination")
     apart = options.span_of("--gap", gap, (0.0, _LONGEST_GAP), "0 and three years")
     instruments = None
     if onto is not None:

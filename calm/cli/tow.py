@@ -231,14 +231,12 @@ def strumming(
     outputs = Outputs(json=json)
     cable = _cable(
         quantities(
-            {
-                "angle": (angle, "angle"),
-                "speed": (speed, "speed"),
-                "diameter": (diameter, "length"),
-                "weight": (weight, "force per length"),
-                "solid_density": (solid_density, "density"),
-                "density": (density, "density"),
-            }
+            angle=(angle, "angle"),
+            speed=(speed, "speed"),
+            diameter=(diameter, "length"),
+            weight=(weight, "force per length"),
+            solid_density=(solid_density, "density"),
+            density=(density, "density"),
         )
     )
     outputs.write_answer(lambda: bare_cable_document(cable), bare_cable_part(cable))
