@@ -34,7 +34,7 @@ from calm.physics.track import head_count
 from calm.solve import expect_many, net_closing, net_march
 from calm.solve.net import NetSearch, NetSolution
 from calm.solve.net_closing import AskedNet, ask_net, keep
-from calm.solve.net_march import Marching, NetProblem, place_of
+from calm.solve.net_march import Marching, NetProblem, above_bed, place_of
 from calm.solve.problem import CHOSEN, FINE
 
 ROUGHLY = 1e-6
@@ -148,13 +148,12 @@ def stands(net: NetProblem, paper: NetPaper) -> bool:
     for i in range(len(net.legs)):
         leg, state, record = net.legs[i], net.state[i], net.lines.work.records[i][FINE]
         count, first = int(state[net_march.COUNT]), 0
-        bed = leg.seabed if leg.seabed > -inf else -net.lines.limits.depth
         if leg.kind == net_march.STANDING and state[net_march.SHARE] < 1.0:
             if state[net_march.SHARE] < 0.0:
                 return False
             first = net.last[i][net.lines.surfacing[i][0].piece] + 1
         for n in range(count):
-            if n < state[net_march.HUNG] and record[2][n] < bed - near:
+            if n < state[net_march.HUNG] and above_bed(net, i, paper.x, record, n) < -near:
                 return False
             if n >= first and record[2][n] > near + leg.highest:
                 return False

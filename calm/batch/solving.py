@@ -112,8 +112,8 @@ def in_current(problem: LineProblem, paper: ProfileArrays, total: int) -> LinePr
         moving |= paper.joined[k, 3] != 0.0
     limits = Limits(
         given.span, given.depth, given.anchor_height, given.tow_height, given.towed,
-        given.angle_step, given.coarse_step, given.allowed, given.share_allowed, given.friction,
-        given.excess, given.near, given.length, given.standing, given.lift, given.rides,
+        given.angle_step, given.coarse_step, given.allowed, given.share_allowed, given.bed,
+        given.near, given.length, given.standing, given.lift, given.rides,
         not (moving or given.blown), given.blown, given.refused, given.refused_at_rest,
     )  # fmt: skip
     levels, intervals = paper.levels[: total + 2], paper.intervals[: total + 1]

@@ -35,10 +35,15 @@ class SeabedKeys(Model):
         """Return the same about another point, by its distance from this one [m]."""
         return self
 
+    @property
+    def plane(self) -> tuple[float, float]:
+        """How much deeper it is per metre to the east and to the north [-]."""
+        way, steep = math.radians(self.toward), math.tan(math.radians(self.slope))
+        return steep * math.sin(way), steep * math.cos(way)
+
     def deeper(self, places: Floats) -> Floats:
         """Return how much deeper it is (n,) at places (n, 2) east and north of the point [m]."""
-        way, steep = math.radians(self.toward), math.tan(math.radians(self.slope))
-        deeper: Floats = places @ np.array([steep * math.sin(way), steep * math.cos(way)])
+        deeper: Floats = places @ np.array(self.plane)
         return deeper
 
 
