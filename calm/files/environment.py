@@ -11,30 +11,9 @@ from typing import Annotated, Literal
 from pydantic import BeforeValidator, Discriminator, Tag
 
 from calm.errors import InputError, Problem, shown
-from calm.files.definition import (
-    DENSITY,
-    POSITIVE_LENGTH,
-    Model,
-    QuantityField,
-    Text,
-    described,
-    optional,
-)
+from calm.files import definition, water
+from calm.files.definition import DENSITY, Model, QuantityField, Text, described, optional
 from calm.files.seabed import Seabed, SeabedGiven, read_seabed
-from calm.files.water import (
-    USUAL_DENSITY,
-    Density,
-    TableKeys,
-    Toward,
-    WaveKeys,
-    Wind,
-    check_density,
-    density_notices,
-    quantity_table,
-    read_density,
-    read_waves,
-    table_of,
-)
 from calm.files.yaml_document import SourceMapping, validate
 from calm.records.current_terms import DEEPEST, Terms, TimeChoiceError, too_fast
 from calm.records.profile_tables import CurrentTable, DepthTable, SeaWater, components, read_current
@@ -87,12 +66,12 @@ class Environment:
     density: float | DepthTable | SeaWater
     gravity: float | None
     current: CurrentTable
-    wind: Wind | None
+    wind: water.Wind | None
     position: Position | None
     depth_range: tuple[float, float] | None = None
     fouling: Fouling | None = None
     maximum_speed: float = math.inf
-    waves: WaveKeys | None = None
+    waves: water.WaveKeys | None = None
     seas: tuple[SeaState, ...] = ()
     seabed: Seabed | None = None
 
@@ -103,7 +82,7 @@ class Fouling(Model):
     Without a density [kg/m³] it is as heavy as water.
     """
 
-    depth: Annotated[float, POSITIVE_LENGTH] = described("how far down it grows", "50 m")
+    depth: Annotated[float, definition.POSITIVE_LENGTH] = described("how far down it grows", "50 m")
     thickness: Annotated[float, QuantityField("length", usual_unit="mm", above=0)] = described(
         "of the growth all around, e.g. 20 mm", "20 mm"
     )
@@ -116,7 +95,7 @@ class UniformCurrent(Model):
     """The same current at all depths [m/s, degrees]."""
 
     speed: Annotated[float, _SPEED] = described("of the water", "0.5 m/s")
-    toward: Toward = described(
+    toward: water.Toward = described(
         "direction it flows or goes to, clockwise from north, e.g. 90 deg", "90 deg"
     )
     w: Annotated[float, QuantityField("speed")] = described(
@@ -169,16 +148,16 @@ class TowEnvironmentKeys(Model):
         "what the line is in: a tow may be in air", "water", default="water"
     )
     depth: Annotated[float | None, _WATER_DEPTH] = optional("of the water, e.g. 1100 m", "1100 m")
-    density: Density = described(
+    density: water.Density = described(
         "of the water: one, a table, or by temperature and salinity",
         "1025 kg/m^3",
-        default=USUAL_DENSITY["water"],
+        default=water.USUAL_DENSITY["water"],
     )
     gravity: Annotated[float | None, QuantityField("acceleration", at_least=9.7, at_most=10)] = (
         optional("acceleration", "9.81 m/s^2")
     )
     current: Annotated[
-        Annotated[TableKeys, Tag("table")]
+        Annotated[water.TableKeys, Tag("table")]
         | Annotated[CurrentFile, Tag("file")]
         | Annotated[UniformCurrent, Tag("uniform")],
         Discriminator(_current_form),
@@ -187,7 +166,7 @@ class TowEnvironmentKeys(Model):
         {"speed": "0.5 m/s", "toward": "90 deg"},
         default=UniformCurrent.model_construct(speed=0.0, toward=0.0, w=0.0),
     )
-    wind: Wind | None = optional("over the water", {"speed": "12 m/s", "toward": "90 deg"})
+    wind: water.Wind | None = optional("over the water", {"speed": "12 m/s", "toward": "90 deg"})
 
 
 class EnvironmentKeys(TowEnvironmentKeys):
@@ -210,7 +189,7 @@ class EnvironmentKeys(TowEnvironmentKeys):
     seabed: SeabedGiven | None = optional(
         "how the seabed slopes below the anchors", {"slope": "3 deg", "toward": "120 deg"}
     )
-    waves: WaveKeys | None = optional(
+    waves: water.WaveKeys | None = optional(
         "seas that the design check judges: one, or a table of them",
         {"significant_height": "5 m", "peak_period": "8.4 s"},
     )
@@ -242,8 +221,8 @@ def read_environment(
         _check_tables(section, problems)
         return None
     before = len(problems)
-    given = keys.density if "density" in keys.model_fields_set else USUAL_DENSITY[keys.fluid]
-    density = read_density(given, keys.fluid, section, problems)
+    given = keys.density if "density" in keys.model_fields_set else water.USUAL_DENSITY[keys.fluid]
+    density = water.read_density(given, keys.fluid, section, problems)
     if isinstance(density, SeaWater) and keys.fluid == "air":
         message = "temperature and salinity are those of the sea, not of air"
         problems.append(section.problem(("density",), message))
@@ -252,13 +231,13 @@ def read_environment(
         _check_depth_range(keys, section, problems)
     current = _current(keys, section, problems, notices, open_files, position)
     waves = getattr(keys, "waves", None)
-    seas = () if waves is None else read_waves(waves, section, problems, open_files)
+    seas = () if waves is None else water.read_waves(waves, section, problems, open_files)
     where = None if position is None else (position.latitude, position.longitude)
     sloping = getattr(keys, "seabed", None) if open_files else None
     seabed = read_seabed(sloping, where, keys.depth, section, problems)
     if density is None or current is None or len(problems) > before:
         return None
-    notices.extend(density_notices(density, keys.depth))
+    notices.extend(water.density_notices(density, keys.depth))
     if isinstance(density, SeaWater) and position is None:
         notices.append(
             "Density from temperature and salinity without a `position`: taken at 45 degrees of "
@@ -320,9 +299,9 @@ def _current(
 ) -> CurrentTable | None:
     current = keys.current
     maximum_speed = getattr(keys, "maximum_speed", math.inf)
-    if isinstance(current, TableKeys):
+    if isinstance(current, water.TableKeys):
         terms = Terms(maximum_speed=maximum_speed)
-        return read_current(quantity_table(current, section, problems, "current"), terms)
+        return read_current(water.quantity_table(current, section, problems, "current"), terms)
     if isinstance(current, UniformCurrent):
         u, v = components(current.speed, current.toward)
         if reason := too_fast(u, v, current.w, maximum_speed):
@@ -358,7 +337,7 @@ def _current(
 
 def _check_tables(section: SourceMapping, problems: list[Problem]) -> None:
     """Look into the tables although other keys are wrong, to report all mistakes at once."""
-    check_density(section, problems)
-    table = table_of(section.data.get("current"))
+    water.check_density(section, problems)
+    table = water.table_of(section.data.get("current"))
     if table is not None:
-        read_current(quantity_table(table, section, problems, "current"))
+        read_current(water.quantity_table(table, section, problems, "current"))
