@@ -604,5 +604,5 @@ def test_drag_goes_with_the_density_and_a_rope_that_floats_is_slackest_on_top(tm
     (state,) = analyse(mooring, [sea], 90.0).states
     rope = state.components[2]
     assert rope.least == rope.tension_min < rope.tension_mean
-    # at its lower end it is pulled by 5 N/m over 60 m more
-    assert rope.greatest == pytest.approx(rope.tension_max + 300.0, abs=30.0)
+    # its lower end is pulled by 5 N/m over 60 m more, and by what the waves move below the middle
+    assert 300.0 < rope.greatest - rope.tension_max < 400.0
