@@ -92,12 +92,10 @@ def _give_results_their_forms() -> None:
     from calm.case.result import ResultForms
 
     def html(result: AnyResult) -> str:
-        from calm.case.net_result import NetResult
         from calm.report.html import fragment
-        from calm.report.net_sheet import net_part
         from calm.report.sheet import result_part
 
-        return fragment(net_part(result) if isinstance(result, NetResult) else result_part(result))
+        return fragment(result_part(result))
 
     def netcdf(result: AnyResult) -> bytes:
         from calm.report.result_files import result_netcdf

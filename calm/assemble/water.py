@@ -36,6 +36,7 @@ def assemble_water(environment: Environment) -> Water:
         velocity += [np.interp(levels, flow.depth, part) for part in (flow.u, flow.v, flow.w)]
     u, v, w = velocity
     viscosity_level, viscosity = _viscosity(environment, density_levels, density)
+    deeper = (0.0, 0.0) if environment.seabed is None else environment.seabed.plane
     return Water(
         depth=_depth(environment),
         level=levels,
@@ -46,6 +47,8 @@ def assemble_water(environment: Environment) -> Water:
         gravity=_gravity(environment),
         viscosity_level=viscosity_level,
         viscosity=viscosity,
+        deeper_east=deeper[0],
+        deeper_north=deeper[1],
     )
 
 

@@ -12,7 +12,14 @@ import numpy as np
 from calm.assemble import assemble_floating, assemble_line, assemble_water
 from calm.case.measure import anchor_weight_of, result_of
 from calm.case.memory import Forgetful, Memory
-from calm.case.parts import Origin, OtherEnvironment, ReadFromFile, as_read, naming_the_piece
+from calm.case.parts import (
+    Origin,
+    OtherEnvironment,
+    ReadFromFile,
+    as_read,
+    below_the_seabed,
+    naming_the_piece,
+)
 from calm.case.profilers import profilers_of
 from calm.case.result import Result
 from calm.case.tow import Tow
@@ -214,27 +221,23 @@ class Mooring(ReadFromFile):
 
 
 def refuse_in_the_slope(file: MooringFile, solution: Solution, depth: float) -> None:
-    """Refuse a line that hangs into a seabed that slopes.
+    """Refuse a line that hangs into a seabed out of a grid, whose plane the solver knows.
 
     Parameters
     ----------
-    solution : of the line of the file; what lies on the seabed is not looked at
+    solution : of the line of the file; what hangs may come as far below as what lies
     depth : of the water at the origin, or of a leg at its anchor [m]
     """
-    seabed = file.environment.seabed
-    if seabed is None:
+    if file.environment.seabed is None:
         return
-    anchor = file.legs[0].bottom.anchor if file.legs else None
-    origin = (0.0, 0.0) if anchor is None else anchor.at
-    place = solution.position[: solution.hanging + 1]
-    below = -place[:, 2] - depth - seabed.deeper(place[:, :2] - np.array(origin))
-    below = np.nan_to_num(below, nan=-np.inf)  # outside a grid nothing is known
-    worst = int(np.argmax(below))
-    if below[worst] > solution.depth_error + 1e-6 * depth:
+    below = np.nan_to_num(below_the_seabed(file, solution, depth), nan=-np.inf)
+    lying = max(0.0, *below[solution.hanging :].tolist())
+    worst = int(np.argmax(below[: solution.hanging + 1]))
+    if below[worst] > lying + solution.depth_error + 1e-6 * depth:
         number = solution.piece_at(worst)
         pieces = len(file.pieces) - 1
         piece = file.pieces[pieces - 1 - number if solution.line.towed else number]
         raise Status.GROUNDED.because(
             f"{piece.label} comes {below[worst]:.2f} m below the sloping seabed.",
-            advice="Raise it, or move it down the slope: a line lying on a slope is not solved.",
+            advice="Raise it, or move it down the slope.",
         )

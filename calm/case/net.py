@@ -27,6 +27,7 @@ from calm.files.mooring_file import STAND_IN
 from calm.physics.hull import AIR_DENSITY
 from calm.physics.line import Floats, Line, Water
 from calm.quantities import say
+from calm.records.seabed_grid import SeabedGrid
 from calm.solve import Settings, Solution, Status
 from calm.solve.net import NetSolution, solve_net
 from calm.solve.net_leg import LegEnd, NetLeg
@@ -51,6 +52,8 @@ class Net(ReadFromFile):
 
     def water_of(self, environment: Environment) -> Water:
         """The water of an environment, with still air above it where an end is held there."""
+        if isinstance(environment.seabed, SeabedGrid):  # its plane is that of one place
+            environment = replace(environment, seabed=None)
         water, ends = assemble_water(environment), [e for leg in self.file.legs for e in leg.ends]
         if all(end.held is None or end.held.depth >= 0.0 for end in ends):
             return water
@@ -136,10 +139,10 @@ class Net(ReadFromFile):
         if end.held is not None:
             return LegEnd(place=(*end.held.at, -end.held.depth))
         if end.anchor is not None:
-            seabed = -mooring.water.depth
-            return LegEnd(
-                place=(*end.anchor.at, seabed + mooring.line.anchor_height), seabed=seabed
-            )
+            water, seabed = mooring.water, -mooring.water.depth
+            place = (*end.anchor.at, seabed + mooring.line.anchor_height)
+            deeper = water.deeper_east, water.deeper_north
+            return LegEnd(place=place, seabed=seabed, deeper=deeper)
         return LegEnd()
 
     def equilibrium(self, water: Water, near: NetSolution | None = None) -> NetSolution:

@@ -9,10 +9,14 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self, TypeVar
 
+import numpy as np
+
 from calm.errors import NoEquilibrium, UsageError, unknown
 from calm.files import Clamp, MooringFile, Piece, read_mooring
 from calm.files.editing import LINE, Draft, clamps_of
 from calm.files.yaml_document import Location
+from calm.physics.line import Floats
+from calm.solve import Solution
 from calm.whole_file import read_text
 
 if TYPE_CHECKING:
@@ -228,3 +232,16 @@ class ReadFromFile:
         if (file.tow is None) != (self.file.tow is None):
             raise UsageError("a mooring does not become a tow, nor a tow a mooring")
         return as_read(type(self), file, origin)
+
+
+def below_the_seabed(file: MooringFile, solution: Solution, depth: float) -> Floats:
+    """How far below the seabed of its file every node of a line is (k+1,) [m]; NaN off its grid.
+
+    `depth`: of the water at the origin, or of a leg at its anchor [m].
+    """
+    seabed, place = file.environment.seabed, solution.position
+    assert seabed is not None
+    anchor = file.legs[0].bottom.anchor if file.legs else None
+    origin = (0.0, 0.0) if anchor is None else anchor.at
+    below: Floats = -place[:, 2] - depth - seabed.deeper(place[:, :2] - np.array(origin))
+    return below

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from calm.case.parts import clamps_in, parts_of
+from calm.case.parts import below_the_seabed, clamps_in, parts_of
 from calm.files import Cable, Component
 from calm.physics.line import Floats
 from calm.physics.materials import fibre_of, published_stiffnesses
@@ -182,8 +182,12 @@ def _power(number: float) -> str:
 def _bight(result: Result, solution: Solution) -> Iterator[str]:
     if result.file.legs:  # which hang as their ends are held
         return
-    pieces, force = solution.element_piece, solution.force[1:, 2]
-    hanging = pieces[(force < 0.0) & (solution.element_clamp < 0)]
+    water, (east, north, up) = solution.water, solution.force[1:].T
+    if solution.landed:  # as the seabed leads up so does the line above it
+        up = up + water.deeper_east * east + water.deeper_north * north
+    bights = (up < 0.0) & (solution.element_clamp < 0)
+    hanging = solution.element_piece[: solution.hanging - solution.landed]
+    hanging = hanging[bights[: len(hanging)]]
     if len(hanging):
         yield (
             f"The line hangs in a bight: at {result.components.label[hanging[0]]} it rises "
@@ -199,14 +203,14 @@ def _on_the_seabed(result: Result, solution: Solution) -> Iterator[str]:
     names = [result.components.label[p] for p in rigid] + [known[m] for m in clamps]
     if names:
         yield f"On the seabed: {', '.join(names)}."
-    seabed = result.file.environment.seabed
-    if seabed is not None and solution.grounded_length > 0.0:
-        rise = solution.grounded_length * np.sin(np.radians(seabed.slope))
-        yield (
-            f"{say('grounded_length', solution.grounded_length)} of line lies on the seabed, "
-            f"taken as level there: on its slope of {seabed.slope:.4g}° depths differ by up to "
-            f"{say('depth', float(rise))}."
-        )
+    if solution.landed and result.file.environment.seabed is not None:
+        off = below_the_seabed(result.file, solution, solution.water.depth)[solution.hanging :]
+        worst = float(np.nan_to_num(np.abs(off)).max())
+        if worst > solution.depth_error + 1e-3:
+            yield (
+                f"{say('grounded_length', solution.grounded_length)} of line lies on the plane of "
+                f"the seabed about its anchor, where the grid is up to {worst:.2f} m off it."
+            )
     if solution.landed and result.still_shape is result.shape:
         yield "In still water the line on the seabed may lie any way: the offset is the greatest."
 

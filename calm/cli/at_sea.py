@@ -94,12 +94,10 @@ def deck(
     check_folder(output)
     moment()
     ship = quantities(
-        {
-            "ship_speed": (ship_speed, "speed"),
-            "streamed": (streamed, "length"),
-            "course": (course, "angle"),
-            "deck_time": (deck_time, "time"),
-        }
+        ship_speed=(ship_speed, "speed"),
+        streamed=(streamed, "length"),
+        course=(course, "angle"),
+        deck_time=(deck_time, "time"),
     )
     designs, tows = read_designs(files, environment, catalog or [], None, "calm deck")
     if tows:
@@ -313,11 +311,9 @@ def locate(
         check_format(plot, (".png", ".svg", ".pdf"))
         check_destination(plot)
     given = quantities(
-        {
-            "transducer": (transducer, "length"),
-            "depth": (depth, "length"),
-            "above_seabed": (above_seabed, "length"),
-        }
+        transducer=(transducer, "length"),
+        depth=(depth, "length"),
+        above_seabed=(above_seabed, "length"),
     )
     under, height = given["transducer"], given["above_seabed"]
     answering = given["depth"] - height if "depth" in given else None
@@ -370,7 +366,7 @@ def _sound(text: str) -> Sound:
 
     if text.lower().endswith((".csv", ".txt", ".tsv")):
         return read_sound(Path(text))
-    speed = quantities({"sound_speed": (text, "speed")})["sound_speed"]
+    speed = quantities(sound_speed=(text, "speed"))["sound_speed"]
     if not SLOWEST <= speed <= FASTEST:
         raise UsageError(f"--sound-speed: `{text}` {sound_complaint()}")
     return Sound.constant(speed)

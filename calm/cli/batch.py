@@ -12,15 +12,8 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from calm.cli.options import (
-    CatalogFiles,
-    Declination,
-    EnvironmentName,
-    Threads,
-    Units,
-    quantities,
-    show_units,
-)
+from calm.cli import options
+from calm.cli.options import CatalogFiles, Declination, EnvironmentName, Threads, Units, quantities
 from calm.cli.progress import ProgressTeller, grouped
 from calm.cli.streams import ExitCode, narrate, show_parts
 from calm.errors import UsageError
@@ -104,13 +97,13 @@ def batch(
     mooring = load(file, environment, catalog or [])
     if isinstance(mooring, Tow):
         raise UsageError(f"{file} is a tow; calm batch is for moorings")
-    show_units(units, [mooring.file])
+    options.show_units(units, [mooring.file])
     position = mooring.file.position
     own = None if position is None else (position.latitude, position.longitude)
     place = own if at is None else parse_place(at)
     seabed = float(mooring.water.depth)
     teller = ProgressTeller()
-    turned = quantities({"declination": (declination, "angle")}).get("declination")
+    turned = quantities(declination=(declination, "angle")).get("declination")
     with stopped_by_a_signal() as stop:
         with open_record(
             currents, seabed=seabed, at=place, declination=turned, time=period, every=every

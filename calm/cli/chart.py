@@ -106,21 +106,19 @@ def solve(
 
     outputs = Outputs(json=json)
     known = quantities(
-        {
-            "weight": (weight, "force per length"),
-            "k": (k, "number"),
-            "diameter": (diameter, "length"),
-            "cd": (cd, "number"),
-            "speed": (speed, "speed"),
-            "density": (density, "density"),
-            "phi_a": (phi_a, "angle"),
-            "phi_b": (phi_b, "angle"),
-            "tension_a": (tension_a, "force"),
-            "tension_b": (tension_b, "force"),
-            "height": (height, "length"),
-            "distance": (distance, "length"),
-            "length": (length, "length"),
-        }
+        weight=(weight, "force per length"),
+        k=(k, "number"),
+        diameter=(diameter, "length"),
+        cd=(cd, "number"),
+        speed=(speed, "speed"),
+        density=(density, "density"),
+        phi_a=(phi_a, "angle"),
+        phi_b=(phi_b, "angle"),
+        tension_a=(tension_a, "force"),
+        tension_b=(tension_b, "force"),
+        height=(height, "length"),
+        distance=(distance, "length"),
+        length=(length, "length"),
     )
     cable = {name: known.pop(name) for name in _CABLE if name in known}
     for name in known.keys() & {"phi_a", "phi_b"}:
@@ -159,7 +157,7 @@ def draw(
 
     check_format(output, CHART_FORMATS)
     check_destination(output)
-    (drag_over_weight,) = quantities({"k": (k, "number")}).values()
+    (drag_over_weight,) = quantities(k=(k, "number")).values()
     write_file(output, image(draw_chart(drag_over_weight, lower_end), output.suffix))
     narrate(f"{output} written")
     return ExitCode.DONE

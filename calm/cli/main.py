@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import App, CycloptsError, Group, Parameter, UnusedCliTokensError
 
+from calm.cli import starter
 from calm.cli.at_sea import DECK_EXAMPLES, LOCATE_EXAMPLES, deck, locate
 from calm.cli.batch import BATCH_EXAMPLES, batch
 from calm.cli.catalog import catalog
@@ -23,16 +24,7 @@ from calm.cli.exchange import EXPORT_EXAMPLES, IMPORT_EXAMPLES, export, import_
 from calm.cli.grid import GRID_EXAMPLES, grid
 from calm.cli.motion import MOTION_EXAMPLES, motion
 from calm.cli.run import RUN_EXAMPLES, run
-from calm.cli.starter import (
-    BUILD_EXAMPLES,
-    DOCS_EXAMPLES,
-    NEW_EXAMPLES,
-    SCHEMA_EXAMPLES,
-    build,
-    docs,
-    new,
-    schema,
-)
+from calm.cli.starter import BUILD_EXAMPLES, DOCS_EXAMPLES, NEW_EXAMPLES, SCHEMA_EXAMPLES, build
 from calm.cli.streams import ExitCode, narrate, prepare, show
 from calm.cli.tow import STRUMMING_EXAMPLES, TOW_EXAMPLES, strumming, tow
 from calm.cli.verify import VERIFY_EXAMPLES, verify
@@ -188,7 +180,7 @@ _TOW.command(strumming, help_epilogue=STRUMMING_EXAMPLES)
 
 _GROUPS: dict[str, tuple[tuple[Any, str, str], ...]] = {
     "Design": (
-        (new, "", NEW_EXAMPLES),
+        (starter.new, "", NEW_EXAMPLES),
         (build, "", BUILD_EXAMPLES),
         (run, "[OPTIONS] FILE...", RUN_EXAMPLES),
         (size, "", SIZE_EXAMPLES),
@@ -209,13 +201,13 @@ _GROUPS: dict[str, tuple[tuple[Any, str, str], ...]] = {
         (import_, "[OPTIONS] FILE...", IMPORT_EXAMPLES),
         (export, "", EXPORT_EXAMPLES),
         (catalog, "", ""),
-        (schema, "", SCHEMA_EXAMPLES),
+        (starter.schema, "", SCHEMA_EXAMPLES),
     ),
     "More": (
         (_TOW, "", ""),
         (chart, "", ""),
         (verify, "[OPTIONS] [WORD...]", VERIFY_EXAMPLES),
-        (docs, "[OPTIONS] [PAGE]", DOCS_EXAMPLES),
+        (starter.docs, "[OPTIONS] [PAGE]", DOCS_EXAMPLES),
         (completion, "SHELL", COMPLETION_EXAMPLES),
     ),
 }

@@ -7,15 +7,9 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
+from calm.cli import options
 from calm.cli.batch import check_output, ended, stopped_by_a_signal
-from calm.cli.options import (
-    CatalogFiles,
-    Declination,
-    EnvironmentName,
-    Threads,
-    quantities,
-    span_of,
-)
+from calm.cli.options import CatalogFiles, Declination, EnvironmentName, Threads, quantities
 from calm.cli.outputs import OutputPath, Outputs
 from calm.cli.progress import ProgressTeller
 from calm.cli.streams import ExitCode, narrate
@@ -168,8 +162,8 @@ def motion(
         raise UsageError(f"{file} is a tow; calm motion is for moorings")
     for notice in mooring.file.notices:
         narrate(f"{file}: {notice}")
-    turned = quantities({"declination": (declination, "angle")}).get("declination")
-    apart = span_of("--gap", gap, (0.0, _LONGEST_GAP), "0 and three years")
+    turned = quantities(declination=(declination, "angle")).get("declination")
+    apart = options.span_of("--gap", gap, (0.0, _LONGEST_GAP), "0 and three years")
     instruments = None
     if onto is not None:
         instruments, matched = read_instruments(onto, places_of(mooring), replacing=replace_depth)

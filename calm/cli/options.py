@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -89,7 +89,7 @@ def show_units(given: str | None, files: Iterable[MooringFile] = ()) -> None:
     show_in(chosen)
 
 
-def quantities(given: Mapping[str, tuple[str | None, str]]) -> dict[str, float]:
+def quantities(**given: tuple[str | None, str]) -> dict[str, float]:
     """The quantities that were given, in SI and degrees; or all that is wrong with them.
 
     They are given as text (None where absent) and dimension by the name of the parameter.

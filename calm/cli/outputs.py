@@ -71,19 +71,11 @@ class FileOutcome:
         """The table of the line, with its schematic and its explanation where asked for."""
         parts: list[Shows] = [*self.schematic]
         if self.result is not None:
-            from calm.case.net_result import NetResult
+            from calm.report.explanation import line_facts
+            from calm.report.sheet import result_part
 
-            if isinstance(self.result, NetResult):
-                from calm.report.net_sheet import net_part
-
-                parts.append(net_part(self.result))
-            else:
-                from calm.case import Result
-                from calm.report.explanation import line_facts
-                from calm.report.sheet import result_part
-
-                facts = line_facts(self.result) if isinstance(self.result, Result) else ()
-                parts.append(result_part(self.result, facts, verbose=self.verbose))
+            facts = line_facts(self.result)
+            parts.append(result_part(self.result, facts, verbose=self.verbose))
         if self.explanation is not None:
             from calm.report.explanation import explanation_part
 
@@ -98,16 +90,17 @@ class FileOutcome:
         """The line drawn, or its report."""
         if self.result is None:
             return None
-        if suffix == ".html":
+        if suffix in (".html", ".pdf"):
+            from calm.report.result_report import result_report
+
+            report = result_report(self.result, self.uncertain)
+            if suffix == ".pdf":
+                from calm.report.folder import printed
+
+                return printed(report)
             from calm.report.html import page
-            from calm.report.result_report import result_report
 
-            return page(result_report(self.result, self.uncertain)).encode("utf-8", "replace")
-        if suffix == ".pdf":
-            from calm.report.folder import printed
-            from calm.report.result_report import result_report
-
-            return printed(result_report(self.result, self.uncertain))
+            return page(report).encode("utf-8", "replace")
         if suffix == ".nc":
             from calm.report.result_files import result_netcdf
 

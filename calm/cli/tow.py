@@ -10,15 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from calm.cli.options import (
-    CatalogFiles,
-    EnvironmentName,
-    Units,
-    option,
-    quantities,
-    show_units,
-    speed_range,
-)
+from calm.cli import options
+from calm.cli.options import CatalogFiles, EnvironmentName, Units, option, quantities, show_units
 from calm.cli.outputs import FileOutcome, OutputPath, Outputs
 from calm.cli.progress import progress
 from calm.cli.run import read_all, solve_and_show
@@ -82,7 +75,7 @@ def tow(
         raise UsageError("--sensitivity is a table; it has no --plot")
     if schematic and (speeds is not None or sensitivity):
         raise UsageError("--schematic draws a tow at the speed of its file")
-    chosen = None if speeds is None else speed_range(speeds)
+    chosen = None if speeds is None else options.speed_range(speeds)
     outputs = Outputs(tuple(files), json, csv, plot)
     tows = _only_tows(files, environment, catalog or [])
     show_units(units, [tow.file for tow in tows])
@@ -238,14 +231,12 @@ def strumming(
     outputs = Outputs(json=json)
     cable = _cable(
         quantities(
-            {
-                "angle": (angle, "angle"),
-                "speed": (speed, "speed"),
-                "diameter": (diameter, "length"),
-                "weight": (weight, "force per length"),
-                "solid_density": (solid_density, "density"),
-                "density": (density, "density"),
-            }
+            angle=(angle, "angle"),
+            speed=(speed, "speed"),
+            diameter=(diameter, "length"),
+            weight=(weight, "force per length"),
+            solid_density=(solid_density, "density"),
+            density=(density, "density"),
         )
     )
     outputs.write_answer(lambda: bare_cable_document(cable), bare_cable_part(cable))

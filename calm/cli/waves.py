@@ -7,7 +7,14 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from calm.cli.options import CatalogFiles, EnvironmentName, Units, quantities, show_units
+from calm.cli.options import (
+    CatalogFiles,
+    EnvironmentName,
+    Units,
+    option,
+    quantities,
+    show_units,
+)
 from calm.cli.outputs import OutputPath, Outputs
 from calm.cli.streams import ExitCode, narrate
 from calm.errors import NoEquilibrium, UsageError
@@ -97,7 +104,7 @@ def waves(
     if report is not None:
         check_folder(report)
     asked, way, length = _asked(
-        {"hs": hs, "tp": tp, "swell": swell, "swell-tp": swell_tp},
+        {"hs": hs, "tp": tp, "swell": swell, "swell_tp": swell_tp},
         spectrum, gamma, toward, scatter, duration,
     )  # fmt: skip
     mooring = load_line(file, environment=environment, catalogs=catalog or [])
@@ -147,17 +154,15 @@ def _asked(
     from calm.records import sea_states
 
     given = quantities(
-        {
-            "hs": (waves["hs"], "length"),
-            "tp": (waves["tp"], "time"),
-            "swell": (waves["swell"], "length"),
-            "swell-tp": (waves["swell-tp"], "time"),
-            "toward": (toward, "angle"),
-            "duration": (duration, "time"),
-        }
+        hs=(waves["hs"], "length"),
+        tp=(waves["tp"], "time"),
+        swell=(waves["swell"], "length"),
+        swell_tp=(waves["swell_tp"], "time"),
+        toward=(toward, "angle"),
+        duration=(duration, "time"),
     )
     complaints = [
-        f"--{name}: must be above 0"
+        f"{option(name)}: must be above 0"
         for name in (*waves, "duration")
         if name in given and not given[name] > 0.0
     ]
@@ -172,7 +177,7 @@ def _asked(
         complaints.append(
             f"--spectrum: `{spectrum}` is neither {', '.join(sea_states.SPECTRA)} nor a file{meant}"
         )
-    chosen = [f"--{name}" for name, each in waves.items() if each is not None]
+    chosen = [option(name) for name, each in waves.items() if each is not None]
     swells = [name for name in ("--swell", "--swell-tp") if name in chosen]
     if len(swells) == 1:
         complaints.append("--swell, --swell-tp: a swell has both a height and a period")
@@ -196,5 +201,5 @@ def _asked(
     elif chosen:
         seas = [sea_states.spectrum_of(spectrum, given["hs"], given.get("tp"), gamma)]
         if swells:
-            seas = [sea_states.with_swell(seas[0], given["swell"], given["swell-tp"])]
+            seas = [sea_states.with_swell(seas[0], given["swell"], given["swell_tp"])]
     return seas, given.get("toward"), given["duration"]

@@ -14,14 +14,8 @@ from calm.case.net_result import NetResult, legs_of
 from calm.checks.finding import OWN
 from calm.checks.net_check import NetGraph, check
 from calm.checks.recovery import recovery_of
-from calm.deck.deck_items import (
-    DeckInstrument,
-    DeckItem,
-    Order,
-    deck_items_of,
-    instruments_of,
-    over_the_side,
-)
+from calm.deck import deck_items
+from calm.deck.deck_items import DeckInstrument, DeckItem, Order, deck_items_of, instruments_of
 from calm.deck.hardware import Cut, Stock, cuts_of, hardware_of
 from calm.deck.shipping import Lifts, ShippedComponent, lifts_of, shipped_of
 from calm.drop import DropPlan, drop_plan
@@ -182,7 +176,7 @@ def deck_of(
         environment=_name(first),
         order=order,
         parts=parts,
-        deployment=over_the_side(parts, order),
+        deployment=deck_items.over_the_side(parts, order),
         recovery=surfacing(parts, rising, rise),
         rise=rise,
         cuts=cuts_of(result, parts, order),

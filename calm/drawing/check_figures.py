@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from calm.checks.posture import reaches_the_surface
 from calm.checks.strength import allowable_load
+from calm.drawing import line_picture
 from calm.drawing.graph import (
     Graph,
     LegendEntry,
@@ -21,16 +22,7 @@ from calm.drawing.graph import (
     numbers,
     write_legend,
 )
-from calm.drawing.line_picture import (
-    NAMED_ROLES,
-    LineKind,
-    along_the_line,
-    current_between,
-    elevation_of,
-    from_the_side,
-    named_parts,
-    plane_of,
-)
+from calm.drawing.line_picture import NAMED_ROLES, LineKind, along_the_line, current_between
 from calm.drawing.plot import SEABED_COLOUR, SIGNS, WATER_COLOUR
 from calm.quantities import QUANTITIES
 
@@ -93,7 +85,7 @@ def _legend(solved: Solved) -> list[LegendEntry]:
     _, first = solved[0]
     if first.still_shape is not None:
         entries.append(LegendEntry("still water", line=_STILL))
-    there = {part.role for part in named_parts(first)}
+    there = {part.role for part in line_picture.named_parts(first)}
     entries += [LegendEntry(role, sign=SIGNS[role]) for role in NAMED_ROLES if role in there]
     return [*entries, LegendEntry("limit", line=_LIMIT)]
 
@@ -113,8 +105,8 @@ def _depths(solved: Solved) -> Scale:
 
 def _draw_elevation(graph: Graph, place: Place, solved: Solved, depths: Scale) -> None:
     _, first = solved[0]
-    side, depth = elevation_of(first), depths.low / 1.03
-    lines = [from_the_side(one.shape, plane_of(one)) for _, one in solved]
+    side, depth = line_picture.elevation_of(first), depths.low / 1.03
+    lines = [line_picture.from_the_side(one.shape, line_picture.plane_of(one)) for _, one in solved]
     start = min(0.0, *(float(line.x.min()) for line in lines))
     end = max(0.0, *(float(line.x.max()) for line in lines))
     span = max(end - start, _LEAST_SPAN * depth)

@@ -9,20 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from calm.case import TowResult
-from calm.drawing.line_picture import (
-    NAMED_ROLES,
-    LineKind,
-    LinePicture,
-    PictureMark,
-    along,
-    current_between,
-    elevation_of,
-    lines_of,
-    names,
-    plan_of,
-    plane_of,
-    spread,
-)
+from calm.drawing import line_picture
+from calm.drawing.line_picture import LineKind, LinePicture, PictureMark, along, current_between
 from calm.drawing.picture import image
 from calm.quantities import QUANTITIES
 from calm.units import KNOT
@@ -88,10 +76,13 @@ def draw(result: AnyResult, uncertain: Uncertain | None = None) -> Figure:
     """
     from matplotlib.figure import Figure
 
-    side, plane = elevation_of(result, uncertain=uncertain), plane_of(result)
+    side, plane = (
+        line_picture.elevation_of(result, uncertain=uncertain),
+        line_picture.plane_of(result),
+    )
     extent = side.bottom - side.top
     near = extent * _LINE_HEIGHT / (_LEAST_HEIGHT - _FRAME)
-    written = sorted(names(list(side.marks), near), key=lambda named: named[1].depth)
+    written = sorted(line_picture.names(list(side.marks), near), key=lambda named: named[1].depth)
     height = min(max(_LEAST_HEIGHT, len(written) * _LINE_HEIGHT + _FRAME), _GREATEST_HEIGHT)
     figure = Figure(figsize=(WIDTH, height), layout="constrained")
     flat = side.ship is not None and not _leaves_plane(result, plane)
@@ -104,12 +95,12 @@ def draw(result: AnyResult, uncertain: Uncertain | None = None) -> Figure:
     write_names(elevation, written, height)
     _draw_flow_of(flow, result, side, plane)
     for axes in plan:
-        draw_plan(axes, plan_of(result))
+        draw_plan(axes, line_picture.plan_of(result))
     return figure
 
 
 def _leaves_plane(result: AnyResult, behind: Floats) -> bool:
-    (shape,) = (line.shape for line in lines_of(result))
+    (shape,) = (line.shape for line in line_picture.lines_of(result))
     across = along(shape.x, shape.y, np.array([behind[1], -behind[0]]))
     distance = np.hypot(shape.x, shape.y).max()
     return bool(np.abs(across).max() > _PLANE_WITHIN * distance)
@@ -199,7 +190,7 @@ def set_span(axes: Axes, start: float, end: float, height: float) -> None:
 
 def mark_parts(axes: Axes, marks: Sequence[PictureMark]) -> None:
     """Mark the named parts where they are, in one group for each role that occurs."""
-    for role in NAMED_ROLES:
+    for role in line_picture.NAMED_ROLES:
         there = [mark for mark in marks if mark.role == role]
         if there:
             sign, size, colour = SIGNS[role]
@@ -220,7 +211,7 @@ def write_names(axes: Axes, written: list[tuple[str, PictureMark]], height: floa
     line = min(_LINE_HEIGHT, height / len(written)) / height
     bottom, top = axes.get_ylim()
     wanted = [(part.depth - top) / (bottom - top) for _, part in written]
-    places = spread(wanted, line, line / 2, 1.0 - line / 2)
+    places = line_picture.spread(wanted, line, line / 2, 1.0 - line / 2)
     for (text, part), place in zip(written, places, strict=True):
         axes.annotate(
             text,

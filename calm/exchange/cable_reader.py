@@ -8,17 +8,10 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from calm.errors import InputError, Problem
+from calm.exchange import cable_grammar
 from calm.exchange.cable_components import ComponentMaker, counts_on_depth, varies
 from calm.exchange.cable_formulas import UnknownNameError
-from calm.exchange.cable_grammar import (
-    CableBranch,
-    CableDefinition,
-    CableProblem,
-    CableSegment,
-    CableTerminal,
-    KeyValue,
-    read_problem,
-)
+from calm.exchange.cable_grammar import CableBranch, CableDefinition, CableProblem, CableSegment
 from calm.exchange.cable_source import Token
 from calm.exchange.cable_water import USUAL_GRAVITY, water_of
 from calm.exchange.design import (
@@ -100,7 +93,7 @@ def read_cbl(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> 
 
 
 def _read(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> Design:
-    problem = read_problem(path, defines, allow_include=allow_include)
+    problem = cable_grammar.read_problem(path, defines, allow_include=allow_include)
     _refuse_other_shapes(problem)
     title, environment = problem.description.get("title"), problem.environment
     design = Design("WHOI Cable", title.text if title and title.text else path.stem, [], None)
@@ -154,7 +147,7 @@ def _refuse_other_shapes(problem: CableProblem) -> None:
     if len(ends) != 2 or not segments:
         counts = f"{len(ends)} terminals and {len(segments)} segments"
         raise refused(problem.path, f"the layout has {counts}")
-    if not all(isinstance(layout[end], CableTerminal) for end in (0, -1)):
+    if not all(isinstance(layout[end], cable_grammar.CableTerminal) for end in (0, -1)):
         raise refused(problem.path, "the layout must lead from one terminal to the other")
     anchored = ["anchor" in end.values for end in ends]
     if any("node" in end.values for end in ends):
@@ -341,7 +334,7 @@ def _heights(segment: CableSegment, length: float) -> list[float]:
 
 
 def defined(
-    definitions: dict[str, CableDefinition], value: KeyValue | None, token: Token
+    definitions: dict[str, CableDefinition], value: cable_grammar.KeyValue | None, token: Token
 ) -> CableDefinition:
     """Return the definition that a value names; a problem stands at the value, or at `token`."""
     if value is None or not value.text:

@@ -15,16 +15,8 @@ from pathlib import Path
 
 import numpy as np
 
-from calm.exchange.design import (
-    MOST_PIECES,
-    Design,
-    FigureOrWord,
-    ImportedComponent,
-    ImportedPiece,
-    is_chain,
-    refused,
-    role_of,
-)
+from calm.exchange import design
+from calm.exchange.design import MOST_PIECES, FigureOrWord, ImportedComponent, ImportedPiece
 from calm.exchange.mat_file import MatValue, RealArray, names, numbers
 from calm.files.definition import CATALOGUE_DENSITY
 from calm.units import KILOGRAM_FORCE
@@ -53,7 +45,7 @@ def rigid(element: MddElement) -> ImportedComponent:
     faces.
     """
     lift = element.lift * KILOGRAM_FORCE
-    role = role_of(element.name, lift, fastener=element.is_fastener)
+    role = design.role_of(element.name, lift, fastener=element.is_fastener)
     figures: dict[str, FigureOrWord]
     if element.diameter > 0.0:
         kind = "sphere"
@@ -110,7 +102,7 @@ def _is_too_small(element: MddElement) -> bool:
 
 def _flexible(element: MddElement) -> ImportedComponent:
     """Return the definition of a wire, rope or chain; its Cd is of its width."""
-    chain = is_chain(element.name)
+    chain = design.is_chain(element.name)
     figures: dict[str, FigureOrWord] = {"diameter": element.across, "cn": element.cd, "ct": 0.0}
     weight = 0.0 - element.lift * KILOGRAM_FORCE
     component = ImportedComponent.of_line(element.name, weight, figures, chain=chain)
@@ -313,19 +305,19 @@ def is_moords(content: bytes) -> bool:
     return set(head.strip().split(",")) >= _MARKS
 
 
-def read_moords(path: Path) -> Design:
+def read_moords(path: Path) -> design.Design:
     """Read a design (InputError: its headings or figures are not those of that program)."""
     rows = list(csv.DictReader(io.StringIO(read_text(path))))
     if not rows or not rows[0].keys() >= _MARKS:
-        raise refused(path, "is not a design of moords: its headings are others")
+        raise design.refused(path, "is not a design of moords: its headings are others")
     if len(rows) > MOST_PIECES:
-        raise refused(path, f"has {len(rows)} rows; more than {MOST_PIECES} are not read")
+        raise design.refused(path, f"has {len(rows)} rows; more than {MOST_PIECES} are not read")
     problems: list[str] = []
     elements = [_element(row, place, problems) for place, row in enumerate(rows, 2)]
     if not problems and rows[0].get("bool_clampon") == "True":
         problems.append("row 2: a clamp stands before the first piece")
     if problems:
-        raise refused(path, *problems)
+        raise design.refused(path, *problems)
     anchor = anchor_of(elements[0])
     if not elements[0].lift:
         del anchor.figures["weight"]
@@ -338,7 +330,7 @@ def read_moords(path: Path) -> Design:
                 ImportedPiece(component_of(element), element.length if element.is_line else None)
             )
     name = rows[0].get("mooring") or path.stem
-    return Design("moords", name, items[::-1], None, notes=[_NOTE], in_kilograms=True)
+    return design.Design("moords", name, items[::-1], None, notes=[_NOTE], in_kilograms=True)
 
 
 def _hang(host: ImportedPiece, element: MddElement, height: float) -> None:

@@ -15,27 +15,18 @@ from typing import Annotated
 from pydantic import AfterValidator, WithJsonSchema, model_validator
 from pydantic.fields import FieldInfo
 
-from calm.errors import Problem, shown, unknown
-from calm.files.definition import (
-    LENGTH,
-    POSITIVE_LENGTH,
-    Model,
-    QuantityField,
-    Text,
-    described,
-    optional,
-    quantity_of,
-)
+from calm.errors import shown, unknown
+from calm.files import definition
 from calm.files.rule_texts import ACCEPTABLE, RULES
 from calm.files.yaml_document import SourceMapping
 
-_FACTOR = QuantityField("number", above=0)
-_SAFETY = QuantityField("number", at_least=1)
+_FACTOR = definition.QuantityField("number", above=0)
+_SAFETY = definition.QuantityField("number", at_least=1)
 """At least 1: a smaller factor would pass what breaks, or an anchor that is lifted."""
-_FRICTION = QuantityField("number", above=0, at_most=1)
-_SHARE = QuantityField("number", at_least=0, at_most=1)
-_SPEED = QuantityField("speed", at_least=0)
-_LEAST_TENSION = QuantityField("force", at_least=0)
+_FRICTION = definition.QuantityField("number", above=0, at_most=1)
+_SHARE = definition.QuantityField("number", at_least=0, at_most=1)
+_SPEED = definition.QuantityField("speed", at_least=0)
+_LEAST_TENSION = definition.QuantityField("force", at_least=0)
 
 THIS_PROGRAM = "a default of this program"
 THE_DESIGN = "the design"
@@ -65,96 +56,98 @@ _LIFE = "API RP 2SK: a fatigue life of three times the service life"
 _URI = "URI GSO mooring program"
 
 
-class SafetyFactors(Model):
+class SafetyFactors(definition.Model):
     """Least breaking load over tension."""
 
-    steel: Annotated[float, _SAFETY, Limit(_UFC)] = described(
+    steel: Annotated[float, _SAFETY, Limit(_UFC)] = definition.described(
         "of steel and everything that is not rope", 3, default=3.0
     )
-    synthetic: Annotated[float, _SAFETY, Limit(_PRACTICE)] = described(
+    synthetic: Annotated[float, _SAFETY, Limit(_PRACTICE)] = definition.described(
         "of synthetic rope", 5, default=5.0
     )
-    surface: Annotated[float, _SAFETY, Limit(_PRACTICE)] = described(
+    surface: Annotated[float, _SAFETY, Limit(_PRACTICE)] = definition.described(
         "of all pieces of a surface mooring", 5, default=5.0
     )
 
 
-class MinimumTensions(Model):
+class MinimumTensions(definition.Model):
     """Least tension above the release [N]."""
 
-    wire: Annotated[float, _LEAST_TENSION, Limit(_NO_FIGURE)] = described(
+    wire: Annotated[float, _LEAST_TENSION, Limit(_NO_FIGURE)] = definition.described(
         "in wire", "500 N", default=500.0
     )
-    rope: Annotated[float, _LEAST_TENSION, Limit(_NO_FIGURE)] = described(
+    rope: Annotated[float, _LEAST_TENSION, Limit(_NO_FIGURE)] = definition.described(
         "in synthetic rope", "300 N", default=300.0
     )
 
 
-class Checks(Model):
+class Checks(definition.Model):
     """Limits of the design check, and what of its findings is accepted.
 
     A limit without a default is judged only when given.
     """
 
-    safety_factor: SafetyFactors = described(
+    safety_factor: SafetyFactors = definition.described(
         "least breaking load over tension, by the material of a piece",
         {"steel": 3, "synthetic": 5},
         default_factory=SafetyFactors,
     )
-    anchor_factor: Annotated[float, _SAFETY, Limit(_DEWEY)] = described(
+    anchor_factor: Annotated[float, _SAFETY, Limit(_DEWEY)] = definition.described(
         "required weight of the anchor: factor × (vertical + horizontal / friction)",
         1.5,
         default=1.5,
     )
-    anchor_friction: Annotated[float, _FRICTION, Limit(_DEWEY)] = described(
+    anchor_friction: Annotated[float, _FRICTION, Limit(_DEWEY)] = definition.described(
         "friction of an anchor on the seabed that gives none", 0.6, default=0.6
     )
-    minimum_tension: MinimumTensions = described(
+    minimum_tension: MinimumTensions = definition.described(
         "above the release", {"wire": "500 N", "rope": "300 N"}, default_factory=MinimumTensions
     )
-    backup_margin: Annotated[float, _SHARE, Limit(_URI)] = described(
+    backup_margin: Annotated[float, _SHARE, Limit(_URI)] = definition.described(
         "buoyancy left after any break, as a share of the weight lifted", 0.1, default=0.1
     )
-    minimum_rise_speed: Annotated[float, _SPEED, Limit()] = described(
+    minimum_rise_speed: Annotated[float, _SPEED, Limit()] = definition.described(
         "speed of the rise once the release has opened", "0.3 m/s", default=0.3
     )
-    launch_safety_factor: Annotated[float, _SAFETY, Limit(_URI)] = described(
+    launch_safety_factor: Annotated[float, _SAFETY, Limit(_URI)] = definition.described(
         "breaking load over tension, as the line falls behind its anchor", 2, default=2.0
     )
-    launch_working_factor: Annotated[float, _FACTOR, Limit()] = described(
+    launch_working_factor: Annotated[float, _FACTOR, Limit()] = definition.described(
         "working load over tension there", 1, default=1.0
     )
-    waves_safety_factor: Annotated[float, _SAFETY, Limit(_2SK)] = described(
+    waves_safety_factor: Annotated[float, _SAFETY, Limit(_2SK)] = definition.described(
         "breaking load over greatest tension in waves", 1.67, default=1.67
     )
-    fatigue_factor: Annotated[float, _SAFETY, Limit(_LIFE)] = described(
+    fatigue_factor: Annotated[float, _SAFETY, Limit(_LIFE)] = definition.described(
         "life in waves over `service_time`", 3, default=3.0
     )
-    service_time: Annotated[float, QuantityField("time", above=0), Limit()] = described(
-        "between two renewals of the line", "730 d", default=365.0 * 86_400.0
+    service_time: Annotated[float, definition.QuantityField("time", above=0), Limit()] = (
+        definition.described("between two renewals of the line", "730 d", default=365.0 * 86_400.0)
     )
-    minimum_reserve: Annotated[float, _SHARE, Limit()] = described(
+    minimum_reserve: Annotated[float, _SHARE, Limit()] = definition.described(
         "share of a surface float's buoyancy that must remain", 0.3, default=0.3
     )
-    rating_margin: Annotated[float, LENGTH, Limit()] = described(
+    rating_margin: Annotated[float, definition.LENGTH, Limit()] = definition.described(
         "margin to keep to a depth rating", "100 m", default=100.0
     )
-    maximum_knockdown: Annotated[float | None, POSITIVE_LENGTH, Limit(THE_DESIGN)] = optional(
-        "greatest allowed knockdown of the top", "50 m"
+    maximum_knockdown: Annotated[float | None, definition.POSITIVE_LENGTH, Limit(THE_DESIGN)] = (
+        definition.optional("greatest allowed knockdown of the top", "50 m")
     )
-    maximum_excursion: Annotated[float | None, POSITIVE_LENGTH, Limit(THE_DESIGN)] = optional(
-        "greatest allowed offset of the top", "200 m"
+    maximum_excursion: Annotated[float | None, definition.POSITIVE_LENGTH, Limit(THE_DESIGN)] = (
+        definition.optional("greatest allowed offset of the top", "200 m")
     )
     maximum_tilt: Annotated[
-        float | None, QuantityField("angle", above=0, at_most=90), Limit(THE_DESIGN)
-    ] = optional("greatest allowed tilt of a piece", "30 deg")
-    minimum_top_depth: Annotated[float | None, LENGTH, Limit(THIS_PROGRAM, default=10.0)] = (
-        optional("least depth of the top of a sub-surface line, at low water too", "10 m")
+        float | None, definition.QuantityField("angle", above=0, at_most=90), Limit(THE_DESIGN)
+    ] = definition.optional("greatest allowed tilt of a piece", "30 deg")
+    minimum_top_depth: Annotated[
+        float | None, definition.LENGTH, Limit(THIS_PROGRAM, default=10.0)
+    ] = definition.optional(
+        "least depth of the top of a sub-surface line, at low water too", "10 m"
     )
-    fishbite_depth: Annotated[float, LENGTH, Limit(_BERTEAUX)] = described(
+    fishbite_depth: Annotated[float, definition.LENGTH, Limit(_BERTEAUX)] = definition.described(
         "depth down to which fish bite synthetic rope; 0 m for nowhere", "1500 m", default=1000.0
     )
-    accept: tuple[AcceptKeys, ...] = described(
+    accept: tuple[AcceptKeys, ...] = definition.described(
         "findings that this design accepts, each with its reason",
         [{"rule": "strength", "component": "glass *", "reason": "hung on chain"}],
         default=(),
@@ -202,10 +195,10 @@ def limit_keys(checks: Checks) -> Iterator[LimitKey]:
     yield from _limit_keys(checks, "")
 
 
-def _limit_keys(model: Model, prefix: str) -> Iterator[LimitKey]:
+def _limit_keys(model: definition.Model, prefix: str) -> Iterator[LimitKey]:
     for name, default in _defaults(type(model)):
         value = getattr(model, name)
-        if isinstance(value, Model):
+        if isinstance(value, definition.Model):
             yield from _limit_keys(value, f"{prefix}{name}.")
         elif default is not None:
             used = default.value if value is None else value
@@ -214,14 +207,14 @@ def _limit_keys(model: Model, prefix: str) -> Iterator[LimitKey]:
 
 
 @cache
-def _defaults(model: type[Model]) -> tuple[tuple[str, LimitKey | None], ...]:
+def _defaults(model: type[definition.Model]) -> tuple[tuple[str, LimitKey | None], ...]:
     """Return for each field the limit that it is unless given; None of one that is no limit."""
     return tuple((name, _default(name, field)) for name, field in model.model_fields.items())
 
 
 def _default(name: str, field: FieldInfo) -> LimitKey | None:
     limit = next((one for one in field.metadata if isinstance(one, Limit)), None)
-    quantity = quantity_of(field)
+    quantity = definition.quantity_of(field)
     if limit is None or quantity is None:
         return None
     default = limit.default if field.default is None else field.default
@@ -246,30 +239,30 @@ def _said(text: str) -> str:
 
 
 Day = Annotated[
-    Text,
+    definition.Text,
     AfterValidator(_day),
     WithJsonSchema({"type": "string", "pattern": r"^\d{4}-\d{2}-\d{2}$"}),
 ]
 """A day such as 2027-06-30; such texts sort by date."""
 
-Reason = Annotated[Text, AfterValidator(_said)]
+Reason = Annotated[definition.Text, AfterValidator(_said)]
 
 
-class AcceptKeys(Model):
+class AcceptKeys(definition.Model):
     """An item of `checks: accept:`."""
 
-    rule: Annotated[Text, WithJsonSchema({"enum": list(ACCEPTABLE)})] = described(
-        "of the design check", "knockdown"
+    rule: Annotated[definition.Text, WithJsonSchema({"enum": list(ACCEPTABLE)})] = (
+        definition.described("of the design check", "knockdown")
     )
-    reason: Reason = described(
+    reason: Reason = definition.described(
         "why the finding is accepted", "the maker gives no load; hung on chain"
     )
-    component: Text | None = optional(
+    component: definition.Text | None = definition.optional(
         "label of the line, or a pattern of labels; all when absent", "glass *"
     )
-    by: Text | None = optional("who accepts it", "A. Martin")
-    date: Day | None = optional("day, e.g. 2026-11-20", "2026-11-22")
-    until: Day | None = optional("last day on which it counts", "2027-12-31")
+    by: definition.Text | None = definition.optional("who accepts it", "A. Martin")
+    date: Day | None = definition.optional("day, e.g. 2026-11-20", "2026-11-22")
+    until: Day | None = definition.optional("last day on which it counts", "2027-12-31")
 
     @model_validator(mode="after")
     def _ends_after_it_begins(self) -> AcceptKeys:
@@ -299,10 +292,7 @@ class Accept(AcceptKeys):
 
 
 def read_accepts(
-    keys: Sequence[AcceptKeys],
-    labels: Sequence[str] | None,
-    top: SourceMapping,
-    problems: list[Problem],
+    keys: Sequence[AcceptKeys], labels: Sequence[str] | None, top: SourceMapping
 ) -> tuple[Accept, ...]:
     """Return what a mooring file accepts, the most specific first.
 
@@ -311,33 +301,24 @@ def read_accepts(
     labels : of the line; None where the line has mistakes of its own
     top : the mooring file
     """
-    found = [
-        accept
-        for number, one in enumerate(keys)
-        if (accept := _accept(one, number, labels, top, problems)) is not None
-    ]
+    found = [_accept(one, number, labels, top) for number, one in enumerate(keys)]
     return tuple(sorted(found, key=lambda one: _breadth(one, labels or ())))
 
 
 def _accept(
-    keys: AcceptKeys,
-    number: int,
-    labels: Sequence[str] | None,
-    top: SourceMapping,
-    problems: list[Problem],
-) -> Accept | None:
-    def wrong(key: str, message: str) -> None:
-        problems.append(top.problem(("checks", "accept", number, key), message))
-
+    keys: AcceptKeys, number: int, labels: Sequence[str] | None, top: SourceMapping
+) -> Accept:
+    here = "checks", "accept", number
     if keys.rule not in ACCEPTABLE:
         rule = shown(keys.rule)
-        wrong("rule", unknown(f"no rule that can be accepted is called `{rule}`", rule, ACCEPTABLE))
+        message = unknown(f"no rule that can be accepted is called `{rule}`", rule, ACCEPTABLE)
+        top.refuse((*here, "rule"), message)
     covered = None
     if keys.component is not None and labels is not None:
         covered = tuple(matching(keys.component, labels))
         if not covered:
-            wrong("component", _nothing_called(keys.component, labels))
-    line = top.problem(("checks", "accept", number), "").line
+            top.refuse((*here, "component"), _nothing_called(keys.component, labels))
+    line = top.problem(here, "").line
     return Accept.model_construct(**dict(keys), labels=covered, line=line)
 
 

@@ -10,31 +10,10 @@ from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Discriminator, Tag
 
-from calm.errors import InputError, Problem, shown
-from calm.files.definition import (
-    DENSITY,
-    POSITIVE_LENGTH,
-    Model,
-    QuantityField,
-    Text,
-    described,
-    optional,
-)
+from calm.errors import InputError, shown
+from calm.files import definition, water
+from calm.files.definition import DENSITY, Model, QuantityField, Text, described, optional
 from calm.files.seabed import Seabed, SeabedGiven, read_seabed
-from calm.files.water import (
-    USUAL_DENSITY,
-    Density,
-    TableKeys,
-    Toward,
-    WaveKeys,
-    Wind,
-    check_density,
-    density_notices,
-    quantity_table,
-    read_density,
-    read_waves,
-    table_of,
-)
 from calm.files.yaml_document import SourceMapping, validate
 from calm.records.current_terms import DEEPEST, Terms, TimeChoiceError, too_fast
 from calm.records.profile_tables import CurrentTable, DepthTable, SeaWater, components, read_current
@@ -87,12 +66,12 @@ class Environment:
     density: float | DepthTable | SeaWater
     gravity: float | None
     current: CurrentTable
-    wind: Wind | None
+    wind: water.Wind | None
     position: Position | None
     depth_range: tuple[float, float] | None = None
     fouling: Fouling | None = None
     maximum_speed: float = math.inf
-    waves: WaveKeys | None = None
+    waves: water.WaveKeys | None = None
     seas: tuple[SeaState, ...] = ()
     seabed: Seabed | None = None
 
@@ -103,7 +82,7 @@ class Fouling(Model):
     Without a density [kg/m³] it is as heavy as water.
     """
 
-    depth: Annotated[float, POSITIVE_LENGTH] = described("how far down it grows", "50 m")
+    depth: Annotated[float, definition.POSITIVE_LENGTH] = described("how far down it grows", "50 m")
     thickness: Annotated[float, QuantityField("length", usual_unit="mm", above=0)] = described(
         "of the growth all around, e.g. 20 mm", "20 mm"
     )
@@ -116,7 +95,7 @@ class UniformCurrent(Model):
     """The same current at all depths [m/s, degrees]."""
 
     speed: Annotated[float, _SPEED] = described("of the water", "0.5 m/s")
-    toward: Toward = described(
+    toward: water.Toward = described(
         "direction it flows or goes to, clockwise from north, e.g. 90 deg", "90 deg"
     )
     w: Annotated[float, QuantityField("speed")] = described(
@@ -169,16 +148,16 @@ class TowEnvironmentKeys(Model):
         "what the line is in: a tow may be in air", "water", default="water"
     )
     depth: Annotated[float | None, _WATER_DEPTH] = optional("of the water, e.g. 1100 m", "1100 m")
-    density: Density = described(
+    density: water.Density = described(
         "of the water: one, a table, or by temperature and salinity",
         "1025 kg/m^3",
-        default=USUAL_DENSITY["water"],
+        default=water.USUAL_DENSITY["water"],
     )
     gravity: Annotated[float | None, QuantityField("acceleration", at_least=9.7, at_most=10)] = (
         optional("acceleration", "9.81 m/s^2")
     )
     current: Annotated[
-        Annotated[TableKeys, Tag("table")]
+        Annotated[water.TableKeys, Tag("table")]
         | Annotated[CurrentFile, Tag("file")]
         | Annotated[UniformCurrent, Tag("uniform")],
         Discriminator(_current_form),
@@ -187,7 +166,7 @@ class TowEnvironmentKeys(Model):
         {"speed": "0.5 m/s", "toward": "90 deg"},
         default=UniformCurrent.model_construct(speed=0.0, toward=0.0, w=0.0),
     )
-    wind: Wind | None = optional("over the water", {"speed": "12 m/s", "toward": "90 deg"})
+    wind: water.Wind | None = optional("over the water", {"speed": "12 m/s", "toward": "90 deg"})
 
 
 class EnvironmentKeys(TowEnvironmentKeys):
@@ -210,7 +189,7 @@ class EnvironmentKeys(TowEnvironmentKeys):
     seabed: SeabedGiven | None = optional(
         "how the seabed slopes below the anchors", {"slope": "3 deg", "toward": "120 deg"}
     )
-    waves: WaveKeys | None = optional(
+    waves: water.WaveKeys | None = optional(
         "seas that the design check judges: one, or a table of them",
         {"significant_height": "5 m", "peak_period": "8.4 s"},
     )
@@ -219,46 +198,44 @@ class EnvironmentKeys(TowEnvironmentKeys):
 def read_environment(
     section: SourceMapping,
     name: str | None,
-    problems: list[Problem],
     notices: list[str],
     *,
     towed: bool = False,
     position: Position | None = None,
     open_files: bool = True,
 ) -> Environment | None:
-    """Read the environment of a mapping; None, with its mistakes in `problems`, if it has any.
+    """Read the environment of a mapping; None if it has mistakes.
 
     Parameters
     ----------
     section : the environment
     name : of the variant or file it is from; None for the file's own
-    problems, notices : what is wrong, and worth knowing, is added to them
+    notices : what is worth knowing is added to them
     towed : it may be air, and the water's depth need not be known
     position : chooses a column of a current file, which is looked for beside its mooring file
     open_files : read current files; where not, None is returned
     """
-    keys = validate(TowEnvironmentKeys if towed else EnvironmentKeys, section, problems)
+    keys = validate(TowEnvironmentKeys if towed else EnvironmentKeys, section)
     if keys is None:
-        _check_tables(section, problems)
+        _check_tables(section)
         return None
-    before = len(problems)
-    given = keys.density if "density" in keys.model_fields_set else USUAL_DENSITY[keys.fluid]
-    density = read_density(given, keys.fluid, section, problems)
+    before = len(section.problems)
+    given = keys.density if "density" in keys.model_fields_set else water.USUAL_DENSITY[keys.fluid]
+    density = water.read_density(given, keys.fluid, section)
     if isinstance(density, SeaWater) and keys.fluid == "air":
-        message = "temperature and salinity are those of the sea, not of air"
-        problems.append(section.problem(("density",), message))
-    _check_wind(keys, section, problems)
+        section.refuse(("density",), "temperature and salinity are those of the sea, not of air")
+    _check_wind(keys, section)
     if open_files:  # otherwise the depth may be that of another section
-        _check_depth_range(keys, section, problems)
-    current = _current(keys, section, problems, notices, open_files, position)
+        _check_depth_range(keys, section)
+    current = _current(keys, section, notices, open_files, position)
     waves = getattr(keys, "waves", None)
-    seas = () if waves is None else read_waves(waves, section, problems, open_files)
+    seas = () if waves is None else water.read_waves(waves, section, open_files)
     where = None if position is None else (position.latitude, position.longitude)
     sloping = getattr(keys, "seabed", None) if open_files else None
-    seabed = read_seabed(sloping, where, keys.depth, section, problems)
-    if density is None or current is None or len(problems) > before:
+    seabed = read_seabed(sloping, where, keys.depth, section)
+    if density is None or current is None or len(section.problems) > before:
         return None
-    notices.extend(density_notices(density, keys.depth))
+    notices.extend(water.density_notices(density, keys.depth))
     if isinstance(density, SeaWater) and position is None:
         notices.append(
             "Density from temperature and salinity without a `position`: taken at 45 degrees of "
@@ -282,9 +259,7 @@ def read_environment(
     )
 
 
-def _check_depth_range(
-    keys: TowEnvironmentKeys, section: SourceMapping, problems: list[Problem]
-) -> None:
+def _check_depth_range(keys: TowEnvironmentKeys, section: SourceMapping) -> None:
     """Check that low water comes first, then high water, with the depth between them."""
     depth, levels = keys.depth, getattr(keys, "depth_range", None)
     if levels is None or depth is None:
@@ -295,44 +270,42 @@ def _check_depth_range(
             f"`depth_range` is low and high water, with `depth`, {depth:g} m, between them: "
             f"e.g. [{depth - 2:g} m, {depth + 2:g} m]"
         )
-        problems.append(section.problem(("depth_range",), message, key=True))
+        section.refuse(("depth_range",), message, key=True)
 
 
-def _check_wind(keys: TowEnvironmentKeys, section: SourceMapping, problems: list[Problem]) -> None:
+def _check_wind(keys: TowEnvironmentKeys, section: SourceMapping) -> None:
     """Check that wind blows over water, and drives it down to a known depth."""
     if keys.wind is None:
         return
     if keys.fluid == "air":
         message = "`wind` blows over water; in air the wind is the `current`"
-        problems.append(section.problem(("wind",), message, key=True))
+        section.refuse(("wind",), message, key=True)
     elif keys.wind.surface_drift and keys.wind.drift_depth is None and keys.depth is None:
         message = "`surface_drift` needs `drift_depth`, as `depth` is not given"
-        problems.append(section.problem(("wind", "surface_drift"), message, key=True))
+        section.refuse(("wind", "surface_drift"), message, key=True)
 
 
 def _current(
     keys: TowEnvironmentKeys,
     section: SourceMapping,
-    problems: list[Problem],
     notices: list[str],
     open_files: bool,
     position: Position | None,
 ) -> CurrentTable | None:
     current = keys.current
     maximum_speed = getattr(keys, "maximum_speed", math.inf)
-    if isinstance(current, TableKeys):
+    if isinstance(current, water.TableKeys):
         terms = Terms(maximum_speed=maximum_speed)
-        return read_current(quantity_table(current, section, problems, "current"), terms)
+        return read_current(water.quantity_table(current, section, "current"), terms)
     if isinstance(current, UniformCurrent):
         u, v = components(current.speed, current.toward)
         if reason := too_fast(u, v, current.w, maximum_speed):
-            problems.append(section.problem(("current", "speed"), reason))
+            section.refuse(("current", "speed"), reason)
             return None
         return CurrentTable((0.0,), (u,), (v,), (current.w,))
     path = Path(section.home("current").document.path).parent / current.file
     if not (os.path.isfile(path) or os.path.isdir(path)):
-        message = f"`file: {shown(current.file)}`: no such file"
-        problems.append(section.problem(("current", "file"), message))
+        section.refuse(("current", "file"), f"`file: {shown(current.file)}`: no such file")
         return None
     if not open_files:
         return None
@@ -347,18 +320,18 @@ def _current(
 
         table, remarks = read_current_file(path, current.time, terms)
     except TimeChoiceError as error:
-        problems.append(section.problem(("current", "time"), str(error)))
+        section.refuse(("current", "time"), str(error))
     except InputError as error:
-        problems.extend(error.problems)
+        section.problems.extend(error.problems)
     else:
         notices.extend(remarks)
         return table
     return None
 
 
-def _check_tables(section: SourceMapping, problems: list[Problem]) -> None:
+def _check_tables(section: SourceMapping) -> None:
     """Look into the tables although other keys are wrong, to report all mistakes at once."""
-    check_density(section, problems)
-    table = table_of(section.data.get("current"))
+    water.check_density(section)
+    table = water.table_of(section.data.get("current"))
     if table is not None:
-        read_current(quantity_table(table, section, problems, "current"))
+        read_current(water.quantity_table(table, section, "current"))

@@ -15,33 +15,8 @@ from pydantic import (
     model_validator,
 )
 
-from calm.files.definition import (
-    CATALOGUE_DENSITY,
-    COEFFICIENT,
-    DISAGREEMENT,
-    LENGTH,
-    POSITIVE_FORCE,
-    STANDARD_GRAVITY,
-    Coefficient,
-    Definition,
-    Diameter,
-    Drag,
-    Length,
-    Mass,
-    Model,
-    NormalCoefficient,
-    PositiveForce,
-    PositiveLength,
-    QuantityField,
-    TangentialCoefficient,
-    TangentialDrag,
-    Text,
-    described,
-    is_in_air,
-    optional,
-    refuse_weight_above_mass,
-    volume_from_weights,
-)
+from calm.files import definition
+from calm.files.definition import CATALOGUE_DENSITY, Model, QuantityField, described, optional
 from calm.physics.hull import tabulated_hull
 from calm.units import QuantityError
 
@@ -58,7 +33,7 @@ Surface = Annotated[
     described("`smooth` may follow the drag curves; `painted` keeps the constant", "smooth"),
 ]
 SphereCoefficient = Annotated[
-    float | None, COEFFICIENT, described("drag coefficient of a sphere", 0.5)
+    float | None, definition.COEFFICIENT, described("drag coefficient of a sphere", 0.5)
 ]
 
 
@@ -67,7 +42,7 @@ class Displacement(Model):
 
     displacement: tuple[
         tuple[
-            Annotated[float, LENGTH],
+            Annotated[float, definition.LENGTH],
             Annotated[float, QuantityField("volume", at_least=0)],
             Annotated[float, _AREA],
         ],
@@ -123,10 +98,10 @@ _RESPONSE = (
 )
 
 
-class Rigid(Definition):
+class Rigid(definition.Definition):
     """A piece of fixed length, or one clamped on a line."""
 
-    mass: Mass = None
+    mass: definition.Mass = None
     buoyancy: Annotated[float | None, QuantityField("force")] = optional(
         "net force in sea water of 1025 kg/m^3, positive up (per metre of a cable)", "7000 N"
     )
@@ -136,11 +111,11 @@ class Rigid(Definition):
     hull: Hull | None = optional(
         "of a float at the surface: a shape, or its displacement by draft", "sphere"
     )
-    k_surface: Drag = optional("drag of a float at the surface at 1 m/s", "40 N/(m/s)^2")
+    k_surface: definition.Drag = optional("drag of a float at the surface at 1 m/s", "40 N/(m/s)^2")
     wind_area: Annotated[float | None, _AREA] = optional(
         "area in the wind, with mast and sensors", "1.4 m^2"
     )
-    wind_cd: Coefficient = optional("drag coefficient of `wind_area`", 1.0)
+    wind_cd: definition.Coefficient = optional("drag coefficient of `wind_area`", 1.0)
 
     heave: Literal["filtered", "follows", "panels"] | None = optional(
         "of a float at the surface in waves: by its hull, by panels on it, or as the water does",
@@ -176,34 +151,34 @@ class Rigid(Definition):
         if self.buoyancy is not None:
             return self.buoyancy
         assert self.mass is not None
-        return (CATALOGUE_DENSITY * (self.volume or 0.0) - self.mass) * STANDARD_GRAVITY
+        return (CATALOGUE_DENSITY * (self.volume or 0.0) - self.mass) * definition.STANDARD_GRAVITY
 
     @property
     def displaced_volume(self) -> float | None:
         """Return the volume displaced [m³], None if it is unknown, nor follows from the weights."""
         if self.volume is not None or self.buoyancy is None:
             return self.volume
-        return volume_from_weights(self.mass, self.net_buoyancy)
+        return definition.volume_from_weights(self.mass, self.net_buoyancy)
 
     @model_validator(mode="after")
     def _weights_agree(self, info: ValidationInfo) -> Rigid:
         if self.mass is None or self.volume is None:
-            if self.buoyancy is None and not is_in_air(info):
+            if self.buoyancy is None and not definition.is_in_air(info):
                 raise ValueError("needs `buoyancy`, or `mass` with `volume`")
             if self.buoyancy is None and self.mass is None:
                 raise ValueError("needs `mass`, or `buoyancy`")
         elif self.buoyancy is not None:
-            computed = (CATALOGUE_DENSITY * self.volume - self.mass) * STANDARD_GRAVITY
+            computed = (CATALOGUE_DENSITY * self.volume - self.mass) * definition.STANDARD_GRAVITY
             largest = max(abs(self.buoyancy), abs(computed))
-            if abs(self.buoyancy - computed) > DISAGREEMENT * largest:
+            if abs(self.buoyancy - computed) > definition.DISAGREEMENT * largest:
                 raise ValueError(
                     f"`buoyancy` is {self.buoyancy:g} N but `mass` and `volume` give "
                     f"{computed:.5g} N, more than 1 % apart; leave one of the three out"
                 )
-        refuse_weight_above_mass(self.mass, self.net_buoyancy)
+        definition.refuse_weight_above_mass(self.mass, self.net_buoyancy)
         if isinstance(self.hull, Displacement):
             largest = self.hull.displacement[-1][1]
-            if CATALOGUE_DENSITY * STANDARD_GRAVITY * largest < self.net_buoyancy:
+            if CATALOGUE_DENSITY * definition.STANDARD_GRAVITY * largest < self.net_buoyancy:
                 raise ValueError(
                     f"the `hull` displaces {largest:g} m³ at most, less than its net buoyancy of "
                     f"{self.net_buoyancy:.5g} N takes"
@@ -215,7 +190,7 @@ class SphereShape(Model):
     """A sphere as part of a body, for its drag alone."""
 
     kind: Literal["sphere"] = Field(description="which kind of component it is")
-    diameter: Diameter
+    diameter: definition.Diameter
     cx: SphereCoefficient = None
 
 
@@ -223,17 +198,17 @@ class CylinderShape(Model):
     """A cylinder as part of a body, for its drag alone."""
 
     kind: Literal["cylinder"] = Field(description="which kind of component it is")
-    diameter: Diameter
-    length: Length
-    cn: NormalCoefficient = None
-    ct: TangentialCoefficient = None
+    diameter: definition.Diameter
+    length: definition.Length
+    cn: definition.NormalCoefficient = None
+    ct: definition.TangentialCoefficient = None
     inclination: Inclination = None
 
 
 class Sphere(Rigid, SphereShape):
     """A sphere; its length along the line is its diameter unless it says otherwise."""
 
-    length: Length = Field(default_factory=lambda data: data.get("diameter", 0.0))
+    length: definition.Length = Field(default_factory=lambda data: data.get("diameter", 0.0))
     surface: Surface = None
 
 
@@ -272,13 +247,15 @@ DRAG_FORMS: tuple[tuple[str, ...], ...] = (
 class Shaped(Rigid):
     """A piece of any shape that gives its drag in one of the `DRAG_FORMS`."""
 
-    length: Length
-    kn: Drag = optional("drag across the axis at 1 m/s, e.g. 26 N/(m/s)^2", "26 N/(m/s)^2")
-    kt: TangentialDrag = None
+    length: definition.Length
+    kn: definition.Drag = optional(
+        "drag across the axis at 1 m/s, e.g. 26 N/(m/s)^2", "26 N/(m/s)^2"
+    )
+    kt: definition.TangentialDrag = None
     drag_area: Annotated[float | None, _AREA] = optional(
         "area seen by the current, e.g. 0.12 m^2", "0.12 m^2"
     )
-    cd: Coefficient = optional("drag coefficient of `drag_area`", 1.2)
+    cd: definition.Coefficient = optional("drag coefficient of `drag_area`", 1.2)
     drag_measurements: tuple[DragMeasurement, ...] | None = optional(
         "forces measured at several speeds",
         [{"speed": "0.5 m/s", "force": "12 N"}, {"speed": "1 m/s", "force": "48 N"}],
@@ -330,16 +307,16 @@ class Profiler(Shaped):
     """A profiler that travels along a wire, from one stop to another and back."""
 
     kind: Literal["profiler"] = Field(description="which kind of component it is")
-    between: Annotated[tuple[Text, ...] | None, BeforeValidator(_two_stops)] = optional(
+    between: Annotated[tuple[definition.Text, ...] | None, BeforeValidator(_two_stops)] = optional(
         "labels of its upper and its lower stop: what is clamped on its wire, or "
         "pieces at the ends of that",
         ["upper bumper", "lower bumper"],
     )
-    minimum_tension: Annotated[float, POSITIVE_FORCE] = described(
+    minimum_tension: Annotated[float, definition.POSITIVE_FORCE] = described(
         "that its wire needs where it travels", "2224 N", default=LEAST_WIRE_TENSION
     )
-    drive_force: PositiveForce = optional("that it can climb with", "50 N")
+    drive_force: definition.PositiveForce = optional("that it can climb with", "50 N")
     speed: Annotated[float | None, QuantityField("speed", above=0)] = optional(
         "along its wire", "0.25 m/s"
     )
-    endurance: PositiveLength = optional("way that its batteries last for", "1000 km")
+    endurance: definition.PositiveLength = optional("way that its batteries last for", "1000 km")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os.path
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Self
@@ -111,7 +111,6 @@ def read_density(
     given: float | TableKeys | SeaWaterKeys,
     fluid: str,
     section: SourceMapping,
-    problems: list[Problem],
 ) -> float | DepthTable | SeaWater | None:
     """Read the density of an environment; None where it has mistakes.
 
@@ -120,20 +119,19 @@ def read_density(
     given : as the model has it
     fluid : "water" or "air"
     section : the environment
-    problems : what is wrong is added to them
     """
     density = _RANGES[fluid]
     if isinstance(given, TableKeys):
-        return read_water(quantity_table(given, section, problems, "density"), density)
+        return read_water(quantity_table(given, section, "density"), density)
     if not isinstance(given, SeaWaterKeys):
         try:
             return density.read(f"{given!r} kg/m^3")
         except QuantityError as error:
             message = about_quantity("density", f"{given:g} kg/m^3", error)
-            problems.append(section.problem(("density",), message))
+            section.refuse(("density",), message)
             return None
-    temperature = _profile("temperature", given.temperature, section, problems)
-    salinity = _profile("salinity", given.salinity, section, problems)
+    temperature = _profile("temperature", given.temperature, section)
+    salinity = _profile("salinity", given.salinity, section)
     return SeaWater(temperature, salinity) if temperature and salinity else None
 
 
@@ -145,20 +143,19 @@ def table_of(value: object) -> TableKeys | None:
         return None
 
 
-def quantity_table(
-    table: TableKeys, section: SourceMapping, problems: list[Problem], *place: str
-) -> QuantityTable:
+def quantity_table(table: TableKeys, section: SourceMapping, *place: str) -> QuantityTable:
     """Return a table below a key of a mapping, or a key under that, with places for its mistakes.
 
     Parameters
     ----------
     table : as the model has it
     section, place : the mapping, and the keys that lead to the table
-    problems : what is wrong is added to them
     """
-    return QuantityTable(
-        table.columns, table.rows, lambda at, said: section.problem((*place, *at), said), problems
-    )
+
+    def problem(at: Sequence[str | int], said: str) -> Problem:
+        return section.problem((*place, *at), said)
+
+    return QuantityTable(table.columns, table.rows, problem, section.problems)
 
 
 def density_notices(density: float | DepthTable | SeaWater, depth: float | None) -> Iterator[str]:
@@ -216,24 +213,22 @@ def _falls(table: DepthTable) -> Iterator[str]:
             greatest, depth = value, below
 
 
-def check_density(section: SourceMapping, problems: list[Problem]) -> None:
+def check_density(section: SourceMapping) -> None:
     """Report the mistakes in the tables below `density:`, whatever else is wrong with it."""
     given = section.data.get("density")
     density = _RANGES["air" if section.data.get("fluid") == "air" else "water"]
     table = table_of(given)
     if table is not None:
-        read_water(quantity_table(table, section, problems, "density"), density)
+        read_water(quantity_table(table, section, "density"), density)
     for name in SeaWaterKeys.model_fields:
         table = table_of(given.get(name)) if isinstance(given, dict) else None
         if table is not None:
-            _profile(name, table, section, problems)
+            _profile(name, table, section)
 
 
-def _profile(
-    name: str, given: float | TableKeys, section: SourceMapping, problems: list[Problem]
-) -> DepthTable | None:
+def _profile(name: str, given: float | TableKeys, section: SourceMapping) -> DepthTable | None:
     if isinstance(given, TableKeys):
-        return read_profile(name, quantity_table(given, section, problems, "density", name))
+        return read_profile(name, quantity_table(given, section, "density", name))
     return DepthTable((0.0,), (given,))
 
 
@@ -315,10 +310,8 @@ class WaveKeys(Model):
         return self
 
 
-def read_waves(
-    keys: WaveKeys, section: SourceMapping, problems: list[Problem], open_files: bool
-) -> tuple[SeaState, ...]:
-    """Return the seas of `waves:`; none, with its mistakes in `problems`, if it has any.
+def read_waves(keys: WaveKeys, section: SourceMapping, open_files: bool) -> tuple[SeaState, ...]:
+    """Return the seas of `waves:`; none if it has mistakes.
 
     Those of a scatter table have their shares of the time; one beside them has a share of 0.
 
@@ -327,7 +320,7 @@ def read_waves(
     section : the environment
     open_files : read its files, which are beside the mooring file; where not, none is returned
     """
-    before = len(problems)
+    before = len(section.problems)
     measured = keys.spectrum not in SPECTRA
     files = {"scatter": keys.scatter, "spectrum": keys.spectrum if measured else None}
     paths: dict[str, Path] = {}
@@ -342,8 +335,8 @@ def read_waves(
         what = "no such file" if name == "scatter" else f"neither {', '.join(SPECTRA)} nor a file"
         meant = f"; did you mean `{near}`?" if near else ""
         message = f"`{name}: {shown(text)}`: {what}{meant}"
-        problems.append(section.problem(("waves", name), message))
-    if len(problems) > before or not open_files:
+        section.refuse(("waves", name), message)
+    if len(section.problems) > before or not open_files:
         return ()
     form = "bretschneider" if measured else keys.spectrum
     seas: list[SeaState] = []
@@ -358,7 +351,7 @@ def read_waves(
         if "spectrum" in paths:
             seas.append(replace(measured_spectrum(paths["spectrum"]), share=0.0 if seas else 1.0))
     except UsageError as error:
-        problems.append(section.problem(("waves",), str(error), key=True))
+        section.refuse(("waves",), str(error), key=True)
     except InputError as error:
-        problems.extend(error.problems)
+        section.problems.extend(error.problems)
     return tuple(seas)

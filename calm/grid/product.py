@@ -12,18 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.batch.dataset import laid_out, time_axis
+from calm.dataset import netcdf
 from calm.dataset.discovery import coverage, in_capitals, kept, with_flags, written
-from calm.dataset.netcdf import (
-    LEVEL,
-    NUMBER,
-    Attributes,
-    Chunk,
-    ResultLayout,
-    Variable,
-    chunk_shape,
-    station,
-    write_netcdf,
-)
 from calm.errors import UsageError
 from calm.grid.field import BLOCK, GriddedQuantity, estimate
 from calm.grid.samples import MooringDepths
@@ -81,7 +71,7 @@ def grid_layout(
     inputs: Sequence[str],
     names: Mapping[str, str],
     averaged: str | None,
-) -> ResultLayout:
+) -> netcdf.ResultLayout:
     """Return the layout of a gridded file.
 
     Parameters
@@ -95,10 +85,10 @@ def grid_layout(
     """
     time = next(iter(fields.values())).samples.time
     title = str(depths.attributes.get("title", "mooring")).partition(": ")[0]
-    of_station, where = station(title, depths.place, "the anchor")
+    of_station, where = netcdf.station(title, depths.place, "the anchor")
     variables = [
         time_axis(time, "time"),
-        Variable("depth", ("depth",), "<f8", {
+        netcdf.Variable("depth", ("depth",), "<f8", {
             "standard_name": "depth", "long_name": "depth below the sea surface", "units": "m",
             "positive": "down", "axis": "Z", "reference": "sea_level",
         }, levels),
@@ -107,20 +97,20 @@ def grid_layout(
     flagged = {}
     for name, field in fields.items():
         quantity, called = QUANTITIES_MEASURED[name], names[name]
-        about: Attributes = {
+        about: netcdf.Attributes = {
             "standard_name": quantity.standard_name, "long_name": quantity.long_name,
             "units": quantity.units, "coordinates": where.strip(), "coverage_content_type":
             "physicalMeasurement", "comment": method_sentence(field),
         }  # fmt: skip
-        spread: Attributes = {
+        spread: netcdf.Attributes = {
             "standard_name": f"{quantity.standard_name} standard_error",
             "long_name": f"standard deviation of the {quantity.long_name}",
             "units": quantity.units, "coordinates": where.strip(),
             "coverage_content_type": "qualityInformation",
         }  # fmt: skip
         variables += [
-            Variable(called, ("time", "depth"), NUMBER, about),
-            Variable(f"{called}_sd", ("time", "depth"), NUMBER, spread),
+            netcdf.Variable(called, ("time", "depth"), netcdf.NUMBER, about),
+            netcdf.Variable(f"{called}_sd", ("time", "depth"), netcdf.NUMBER, spread),
         ]
         if name == "temperature":
             about["units_metadata"] = "temperature: on_scale"
@@ -135,7 +125,7 @@ def grid_layout(
         )  # fmt: skip
     before = [str(depths.attributes[key]) for key in ("history",) if key in depths.attributes]
     labels = list(dict.fromkeys(label for one in fields.values() for label in one.samples.label))
-    attributes: Attributes = {
+    attributes: netcdf.Attributes = {
         **coverage(time, (levels[0], levels[-1]), depths.place),
         **kept(depths.attributes),
         "title": f"{title}: on fixed levels",
@@ -164,7 +154,7 @@ def grid_layout(
     }
     if not depths.place:
         attributes.pop("featureType")
-    layout = ResultLayout({"time": len(time), "depth": len(levels)}, whole, attributes)
+    layout = netcdf.ResultLayout({"time": len(time), "depth": len(levels)}, whole, attributes)
     return in_capitals(layout) if all(one.isupper() for one in names.values()) else layout
 
 
@@ -180,7 +170,7 @@ def method_sentence(field: GriddedQuantity) -> str:
 
 
 def write_grid(
-    layout: ResultLayout,
+    layout: netcdf.ResultLayout,
     fields: Mapping[str, GriddedQuantity],
     levels: NDArray[np.float64],
     names: Mapping[str, str],
@@ -204,11 +194,11 @@ def write_grid(
     capitals = all(one.isupper() for one in names.values())
     lower, upper = ("_SD", "_QC") if capitals else ("_sd", "_qc")
     with tempfile.TemporaryDirectory(dir=output.parent, prefix=f".{output.name[:40]}.") as folder:
-        chunks: list[Chunk] = []
+        chunks: list[netcdf.Chunk] = []
 
         def keep(name: str, start: int, values: NDArray[Any]) -> None:
             variable = kinds[name]
-            shape = chunk_shape(layout, variable, BLOCK)
+            shape = netcdf.chunk_shape(layout, variable, BLOCK)
             whole = np.zeros(shape, variable.dtype)
             whole[: len(values)] = values
             path = Path(folder, str(len(chunks)))
@@ -227,7 +217,7 @@ def write_grid(
             keep(names[name] + lower, start, found.deviation)
             keep(names[name] + upper, start, found.flag)
         with beside(output) as part:
-            write_netcdf(layout, BLOCK, chunks, part, lambda: None)
+            netcdf.write_netcdf(layout, BLOCK, chunks, part, lambda: None)
 
 
 def _packed(values: NDArray[Any]) -> bytes:
@@ -238,4 +228,4 @@ def _packed(values: NDArray[Any]) -> bytes:
     plain = np.ascontiguousarray(values)
     if size > 1:
         plain = np.asarray(Shuffle(size).encode(plain))
-    return bytes(Zlib(LEVEL).encode(plain))
+    return bytes(Zlib(netcdf.LEVEL).encode(plain))

@@ -17,7 +17,7 @@ from calm.physics.drag import (
     friction_force,
     turning_friction,
 )
-from calm.physics.line import NO_BALANCE, State
+from calm.physics.line import NO_BALANCE, Bed, State, off_bed
 from calm.physics.profile import Sea, distance_to_level, water_at
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.physics.stretch import Knot, curve_strain, mean_curve_strain
@@ -215,18 +215,20 @@ def touchdown(
     cut: float,
     near: float,
     expected: Vector,
+    bed: Bed,
 ) -> float:
-    """Return how much of a segment hangs before its end has nothing left to carry [m]; at most
-    `cut`.
+    """Return how much of a segment hangs before its end has nothing left to carry above the bed
+    [m]; at most `cut`.
 
     `near` and `expected` are as in `pass_segment`.
     """
     low, high, hanging = 0.0, cut, cut
-    _, _, _, _, _, carried, _, _ = state
+    carried = off_bed(bed, state[3], state[4], state[5])
     for _ in range(PASSES):
-        (_, _, _, _, _, fz, _, _), _ = pass_segment(
+        (_, _, _, fx, fy, fz, _, _), _ = pass_segment(
             cable, knots, vibration, sea, state, hanging, near, expected
         )
+        fz = off_bed(bed, fx, fy, fz)
         if hanging == cut and fz > 0.0:
             return cut
         if abs(fz) <= 1e-12 * carried:

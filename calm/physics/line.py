@@ -7,7 +7,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, fields, replace
 from functools import partial
 from math import inf
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,6 +45,37 @@ FAILURES = (
 """The same in words."""
 NO_BALANCE = -2.0
 """In place of the strain of a segment, or of the rise of a rod, that finds no balance."""
+
+
+class Bed(NamedTuple):
+    """The seabed below an anchor, as a plane, and how it holds a line that lies on it.
+
+    Attributes
+    ----------
+    east, north : how much deeper it is per metre [-]
+    friction : along a line that lies there [-]
+    excess : what a displaced cubic metre lifts more there than in reference water [N/m³]
+    """
+
+    east: float
+    north: float
+    friction: float
+    excess: float
+
+
+@within
+def off_bed(bed: Bed, x: float, y: float, z: float) -> float:
+    """Height of a place above the plane through another, by the way from there; of a force, what
+    it has across the plane, times √(1 + tan² slope)."""
+    return z + bed.east * x + bed.north * y
+
+
+@within
+def along_bed(bed: Bed, x: float, y: float, z: float) -> tuple[float, float, float]:
+    """A force without what it has across the plane."""
+    across = off_bed(bed, x, y, z) / (1.0 + bed.east * bed.east + bed.north * bed.north)
+    x, y = x - across * bed.east, y - across * bed.north
+    return x, y, 0.0 - bed.east * x - bed.north * y
 
 
 Record = Any
@@ -305,6 +336,7 @@ class Water(_Arrays):
     u, v, w : (k,) current to the east, to the north, upward [m/s]
     density : (k,) [kg/m³]
     gravity : [m/s²]
+    deeper_east, deeper_north : how much deeper the seabed is per metre from the anchor [-]
     viscosity_level, viscosity : (j,), (j,) depths [m], strictly increasing, and the kinematic
         viscosity at them [m²/s], for drags that go with the Reynolds number
 
@@ -320,6 +352,8 @@ class Water(_Arrays):
     gravity: float = 9.80665
     viscosity_level: Floats = field(default_factory=partial(_one, 0.0))
     viscosity: Floats = field(default_factory=partial(_one, REFERENCE_VISCOSITY))
+    deeper_east: float = 0.0
+    deeper_north: float = 0.0
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -15,6 +15,7 @@ from calm.physics.line import (
     FAILURES,
     GOES_ON,
     NO_ROOM,
+    Bed,
     Floats,
     Integers,
     MarchError,
@@ -119,7 +120,8 @@ def march(
         An element finds no balance or a cable would need more than 50 000 segments.
     """
     course, sea = (track.packed, profile.packed) if compiled else (track.course, profile.sea)
-    how = How(angle_step, reach, 0.0, len(course.stages), False, cuts is not None, record)
+    stages, level = len(course.stages), Bed(0.0, 0.0, 0.0, 0.0)
+    how = How(angle_step, reach, 0.0, stages, False, level, cuts is not None, record)
     room = ROOM if cuts is None else len(cuts.lengths)
     while True:
         most = room + 3 * len(course.loads) + 2 * len(course.stages) + 1 if record else 1

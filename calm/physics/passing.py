@@ -26,23 +26,27 @@ from calm.physics.line import (
     ROD_UNBALANCED,
     RUNS_OFF,
     SEGMENT_UNBALANCED,
+    Bed,
     Record,
     State,
+    along_bed,
+    off_bed,
     write_element,
     write_node,
 )
 from calm.physics.profile import Sea, interval_at
 from calm.physics.rod import floating_depth, pass_clamp, pass_rod
+from calm.physics.seabed import lay_line
 from calm.physics.track import CABLE, ROD, Course
 
 MOST_SEGMENTS = 50_000
 
-Z, FX, FY, FZ, USED, NODES, LANDED, HANGING, FAILURE = range(9)
+Z, FX, FY, FZ, USED, NODES, LANDED, HANGING, GROUNDED, FAILURE = range(10)
 """Where it stands in what a march leaves: height [m] and force above [N] of the end; how many
 segments were used, and nodes passed; the stage where the line came down on the seabed, -1 where it
-did not, and the unstretched length of that stage above the seabed [m]: of a rod or clamp inf, it
-stands there, or 0, it lies there; why the march stopped, see `calm.physics.line`."""
-LEFT = 9
+did not, how many nodes hang, and the unstretched length that lies [m]; why the march stopped, see
+`calm.physics.line`."""
+LEFT = 10
 
 SHORT = 1e-6
 """Length of a segment, as a share of the longest, that says nothing of the load of the next."""
@@ -58,8 +62,9 @@ class How(NamedTuple):
     near : how far from a load the water may be looked up [m]; 0 where all is to settle to the last
         digits
     stages : how many stages of the line are marched
-    lands : whether it stops at the touchdown: below the last buoyant piece, where the vertical
-        force vanishes
+    lands : whether it comes down on the seabed: below the last buoyant piece, where the force
+        across that vanishes; the rest lies there
+    bed : the seabed
     given : whether the segments are given, else chosen
     recording : whether every node and element is recorded
     """
@@ -69,6 +74,7 @@ class How(NamedTuple):
     near: float
     stages: int
     lands: bool
+    bed: Bed
     given: bool
     recording: bool
 
@@ -111,13 +117,15 @@ def pass_line(
             )
         elif stage.kind == ROD:
             state, hanging, nodes = pass_rod(
-                stage, course.loads, sea, state, may_land, how.near, record, how.recording, nodes
-            )
+                stage, course.loads, sea, state, may_land, how.bed, how.near, record,
+                how.recording, nodes,
+            )  # fmt: skip
             failure = ROD_UNBALANCED if state[6] == NO_BALANCE else GOES_ON
         else:
             state, hanging, nodes = pass_clamp(
-                course.loads[stage.first], sea, state, may_land, record, how.recording, nodes
-            )
+                course.loads[stage.first], sea, state, may_land, how.bed, record, how.recording,
+                nodes,
+            )  # fmt: skip
         x, y, z, fx, fy, fz, _, _ = state
         if failure == GOES_ON and not isfinite(x + y + z + fx + fy + fz):
             failure = RUNS_OFF
@@ -134,10 +142,14 @@ def pass_line(
                 used = cut_evenly(cuts, counts, stage.first, used, stage.length, how.reach)
     if used > len(cuts):
         failure = NO_ROOM
+    left[HANGING], left[GROUNDED] = nodes, 0.0
+    if landed >= 0 and failure == GOES_ON:
+        state, nodes, left[GROUNDED] = lay_line(
+            course, how.bed, state, landed, hanging, record, how.recording, nodes
+        )
     _, _, z, fx, fy, fz, _, _ = state
     left[Z], left[FX], left[FY], left[FZ] = z, fx, fy, fz
-    left[USED], left[NODES], left[LANDED], left[HANGING] = used, nodes, landed, hanging
-    left[FAILURE] = failure
+    left[USED], left[NODES], left[LANDED], left[FAILURE] = used, nodes, landed, failure
 
 
 def pass_cable(
@@ -178,8 +190,8 @@ def pass_cable(
             cuts[used] = cut
         used += 1
         hung = cut
-        if lands and state[5] > 0.0:
-            hung = touchdown(cable, knots, vibration, sea, state, cut, near, expected)
+        if lands and off_bed(how.bed, state[3], state[4], state[5]) > 0.0:
+            hung = touchdown(cable, knots, vibration, sea, state, cut, near, expected, how.bed)
         _, _, _, ax, ay, az, _, _ = state
         state, strain = pass_segment(cable, knots, vibration, sea, state, hung, near, expected)
         x, y, z, fx, fy, fz, tz, level = state
@@ -190,7 +202,8 @@ def pass_cable(
         if hung > SHORT * how.reach:
             expected = (fx - ax) / hung, (fy - ay) / hung, (fz - az) / hung
         if hung < cut:
-            state = x, y, z, fx, fy, 0.0, tz, level
+            fx, fy, fz = along_bed(how.bed, fx, fy, fz)
+            state = x, y, z, fx, fy, fz, tz, level
             hanging = done + hung
         if how.recording:
             write_element(record, nodes, cable.piece, -1, hung, strain)

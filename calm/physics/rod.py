@@ -5,7 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import inf
 
-from calm.physics.line import NO_BALANCE, Record, State, write_element, write_node
+from calm.physics.line import (
+    NO_BALANCE,
+    Bed,
+    Record,
+    State,
+    along_bed,
+    off_bed,
+    write_element,
+    write_node,
+)
 from calm.physics.profile import Sea, interval_at
 from calm.physics.rod_axis import force_at, rod_axis
 from calm.physics.track import Load, Stage
@@ -18,17 +27,19 @@ def pass_clamp(
     sea: Sea,
     state: State,
     lands: bool,
+    bed: Bed,
     record: Record,
     recording: bool,
     nodes: int,
 ) -> tuple[State, float, int]:
     """Take the state past an instrument clamped on a cable: as `pass_rod`."""
-    x, y, z, fx, fy, carried, tz, level = state
+    x, y, z, fx, fy, fz, tz, level = state
     qx, qy, qz = force_at(load, sea, -z, level, 0.0, 0.0, -1.0)
-    fz, hanging = carried + qz, -1.0
-    if lands and carried > 0.0 >= fz:
-        fz, hanging = 0.0, inf
-    below: State = (x, y, z, fx + qx, fy + qy, fz, tz, level)
+    sx, sy, sz, hanging = fx + qx, fy + qy, fz + qz, -1.0
+    if lands and off_bed(bed, fx, fy, fz) > 0.0 >= off_bed(bed, sx, sy, sz):
+        sx, sy, sz = along_bed(bed, sx, sy, sz)
+        hanging = inf
+    below: State = (x, y, z, sx, sy, sz, tz, level)
     if recording:
         write_element(record, nodes, load.piece, load.clamp, 0.0, 0.0)
         write_node(record, nodes, below)
@@ -41,6 +52,7 @@ def pass_rod(
     sea: Sea,
     state: State,
     lands: bool,
+    bed: Bed,
     near: float,
     record: Record,
     recording: bool,
@@ -50,8 +62,8 @@ def pass_rod(
 
     Parameters
     ----------
-    lands : whether the seabed carries what the line cannot: at the rod's lower end, or all along
-        it where it would tip over
+    lands : whether the seabed, `bed`, carries what the line cannot: at the rod's lower end, or all
+        along it where it would tip over
     near : as in `rod_axis`
     record, recording, nodes : where to write it, if at all, and how many nodes are there
 
@@ -68,16 +80,17 @@ def pass_rod(
     for i in range(rod.first, rod.first + rod.size):
         qx, qy, qz = force_at(loads[i], sea, -z - loads[i].at * tz, level, tx, ty, tz)
         sx, sy, sz = sx + qx, sy + qy, sz + qz
-    landed = lands and fz > 0.0 >= sz
-    if landed and tz >= 0.0:
-        return (x, y, z, fx, fy, 0.0, before, level), 0.0, nodes
+    landed = lands and off_bed(bed, fx, fy, fz) > 0.0 >= off_bed(bed, sx, sy, sz)
+    if landed and off_bed(bed, tx, ty, tz) >= 0.0:
+        fx, fy, fz = along_bed(bed, fx, fy, fz)
+        return (x, y, z, fx, fy, fz, before, level), 0.0, nodes
     if recording:
         nodes = _record(rod, loads, sea, state, tx, ty, tz, record, nodes)
     length = rod.length
     if landed:
-        sz = 0.0
+        sx, sy, sz = along_bed(bed, sx, sy, sz)
         if recording:
-            record[5][nodes - 1] = 0.0
+            record[3][nodes - 1], record[4][nodes - 1], record[5][nodes - 1] = sx, sy, sz
     below = (x + length * tx, y + length * ty, z + length * tz, sx, sy, sz, tz, level)
     return below, inf if landed else -1.0, nodes
 

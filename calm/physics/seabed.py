@@ -1,4 +1,5 @@
-"""The part of a line that lies on the seabed: straight, held by friction, out of the current."""
+"""The part of a line that lies on the seabed, a plane: straight, held by friction, out of the
+current."""
 
 from __future__ import annotations
 
@@ -10,112 +11,103 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.physics.cable import strain_at
-from calm.physics.line import Record, write_element, write_node
+from calm.physics.line import Bed, Record, State, write_element, write_node
 from calm.physics.referee import Moored, RefereeShape
 from calm.physics.stretch import Knot, mean_curve_strain
-from calm.physics.track import CABLE, CableStretch, Course
+from calm.physics.track import CABLE, CLAMP, CableStretch, Course
 
 
 def lay_line(
     course: Course,
-    record: Record,
-    nodes: int,
+    bed: Bed,
+    state: State,
     stage: int,
     hanging: float,
-    fx: float,
-    fy: float,
-    seabed: float,
-    excess: float,
-    friction: float,
-) -> tuple[int, float]:
-    """Continue a record from a touchdown to the anchor; returns the nodes and the length [m].
+    record: Record,
+    recording: bool,
+    nodes: int,
+) -> tuple[State, int, float]:
+    """Lay a line from its touchdown to the anchor; returns the end's state, the nodes and the
+    length that lies [m].
 
-    The line lies along the horizontal force at touchdown. Its tension falls by friction times the
-    weight of what lies, down to nothing; there is no drag. What the vertical force could not carry
-    at the touchdown itself, a rigid piece or a clamp, rests there at a point.
+    It lies straight along the force at touchdown, in the plane of the seabed. Down the line its
+    tension falls by friction times what presses on the bed, and by the weight's share down the
+    slope, or grows where it leads up; it never falls below nothing. There is no drag. A line that
+    nothing pulls lies across the slope. What the touchdown itself could not carry, a rigid piece or
+    a clamp, rests there at a point.
 
     Parameters
     ----------
-    stage, hanging : where the line came down
-    fx, fy : horizontal force above the touchdown [N]
-    seabed : height [m], + up from the surface
-    friction : of the line on the seabed [-]
-    excess : what a displaced cubic metre lifts more there than in reference water [N/m³]
+    stage, hanging : where the line came down: the unstretched length of that stage above the seabed
+        [m], of a rod or clamp inf, it stands there, or 0, it lies there
+    record, recording, nodes : where to write it, if at all, and how many nodes are there
     """
-    tension = sqrt(fx * fx + fy * fy)
-    east, north = (-fx / tension, -fy / tension) if tension > 0.0 else (1.0, 0.0)
-    grounded, first = 0.0, nodes
-    # elements and tensions first, then the places that follow from them
+    x, y, z, fx, fy, fz, tz, level = state
+    tension = sqrt(fx * fx + fy * fy + fz * fz)
+    steep = sqrt(bed.east * bed.east + bed.north * bed.north)
+    east, north, up = 1.0, 0.0, 0.0
+    if tension > 0.0:
+        east, north, up = -fx / tension, -fy / tension, -fz / tension
+    elif steep > 0.0:
+        east, north = -bed.north / steep, bed.east / steep
+    hold = bed.friction / sqrt(1.0 + steep * steep) - up
+    grounded = 0.0
     for i in range(stage, len(course.stages)):
-        here = course.stages[i]
+        here, first = course.stages[i], course.stages[i].first
         hung = hanging if i == stage else 0.0
         if here.kind == CABLE:
-            cable = course.cables[here.first]
+            cable = course.cables[first]
             length = cable.length - hung
             if length <= 0.0:
                 continue
-            weight = -(cable.buoyancy + excess * cable.volume) * length
-            pulled, left = held_back(tension, friction * weight)
+            weight = -(cable.buoyancy + bed.excess * cable.volume) * length
+            pulled, left = held_back(tension, hold * weight)
             strain = lying_strain(cable, course.knots, pulled, tension, left)
             tension = left
-            write_element(record, nodes, cable.piece, -1, length, strain)
-            record[3][nodes] = tension
-            nodes += 1
+            reach = length * (1.0 + strain)
+            x, y, z = x + reach * east, y + reach * north, z + reach * up
+            if recording:
+                write_element(record, nodes, cable.piece, -1, length, strain)
+                at = (x, y, z, -tension * east, -tension * north, 0.0 - tension * up, tz, level)
+                write_node(record, nodes, at)
+            nodes, grounded = nodes + 1, grounded + length
         elif hung == 0.0:
-            nodes, tension = lay_rod(course, i, record, nodes, tension, excess, friction)
-    x, y = record[0][first - 1], record[1][first - 1]
-    for n in range(first, nodes):
-        length, strain, pull = record[8][n], record[9][n], record[3][n]
-        x, y = x + length * (1.0 + strain) * east, y + length * (1.0 + strain) * north
-        grounded += length
-        write_node(record, n, (x, y, seabed, -pull * east, -pull * north, 0.0, 0.0, 0))
-    return nodes, grounded
-
-
-def lay_rod(
-    course: Course,
-    stage: int,
-    record: Record,
-    nodes: int,
-    tension: float,
-    excess: float,
-    friction: float,
-) -> tuple[int, float]:
-    """Lay down a rod or a clamp; returns the nodes and the tension that is left [N].
-
-    The loads of a rod go down it: of every piece its own, spread along it, then its clamps.
-    """
-    rod, loads = course.stages[stage], course.loads
-    reached, end, own, length, piece = 0.0, 0.0, 0.0, 0.0, -1
-    last = rod.first + rod.size - 1
-    for i in range(rod.first, rod.first + rod.size):
-        load = loads[i]
-        weight = -(load.buoyancy + excess * load.volume)
-        if load.clamp < 0:
-            own, length, piece = weight, load.length, load.piece
-            end = reached + length
-        else:
-            if piece >= 0:
-                step = load.at - reached
-                share = step / length if length > 0.0 else 0.0
-                _, tension = held_back(tension, friction * share * own)
-                write_element(record, nodes, piece, -1, step, 0.0)
-                record[3][nodes] = tension
-                nodes += 1
-                reached = load.at
-            _, tension = held_back(tension, friction * weight)
-            write_element(record, nodes, load.piece, load.clamp, 0.0, 0.0)
-            record[3][nodes] = tension
-            nodes += 1
-        if piece >= 0 and (i == last or loads[i + 1].clamp < 0):
-            step = end - reached
-            share = step / length if length > 0.0 else 1.0
-            _, tension = held_back(tension, friction * share * own)
-            write_element(record, nodes, piece, -1, step, 0.0)
-            record[3][nodes] = tension
-            nodes += 1
-            reached = end
-    return nodes, tension
+            # the loads of a rod go down it: of every piece its own, spread along it, then clamps
+            reached, end, own, length, last = 0.0, 0.0, 0.0, 0.0, first + here.size - 1
+            for k in range(first, last + 1):
+                load = course.loads[k]
+                weight = -(load.buoyancy + bed.excess * load.volume)
+                if load.clamp < 0:
+                    own, length, end = weight, load.length, reached + load.length
+                ends = k == last or course.loads[k + 1].clamp < 0
+                for part in range(3):  # the piece down to a clamp, the clamp, the piece to its end
+                    there = ends if part == 2 else load.clamp >= 0
+                    if not there or (here.kind == CLAMP and part != 1):
+                        continue
+                    clamp = load.clamp if part == 1 else -1
+                    step = 0.0 if part == 1 else (end if part == 2 else load.at) - reached
+                    share = step / length if length > 0.0 else 0.5 * part
+                    _, tension = held_back(tension, hold * (weight if part == 1 else share * own))
+                    x, y, z = x + step * east, y + step * north, z + step * up
+                    if recording:
+                        write_element(record, nodes, load.piece, clamp, step, 0.0)
+                        at = (
+                            x,
+                            y,
+                            z,
+                            -tension * east,
+                            -tension * north,
+                            0.0 - tension * up,
+                            tz,
+                            level,
+                        )
+                        write_node(record, nodes, at)
+                    nodes, grounded, reached = nodes + 1, grounded + step, reached + step
+    return (
+        (x, y, z, -tension * east, -tension * north, 0.0 - tension * up, tz, level),
+        nodes,
+        grounded,
+    )
 
 
 def held_back(tension: float, hold: float) -> tuple[float, float]:
@@ -133,7 +125,7 @@ def lying_strain(
     middle = 0.5 * (tension + left)
     if cable.first_knot == cable.end_knot:
         return pulled * cable.compliance * middle
-    half = 0.5 * (tension - left)
+    half = 0.5 * abs(tension - left)
     strain = mean_curve_strain(knots, cable.first_knot, cable.end_knot, middle, half)
     return pulled * strain + (1.0 - pulled) * strain_at(cable, knots, 0.0)
 
@@ -165,22 +157,19 @@ def closure(
     shape: RefereeShape,
     loads: Sequence[MutableSequence[float]],
     landed: bool,
-    friction: float,
-    excess: float,
+    bed: Bed,
 ) -> float:
     """Relative departure of the sum of the loads from the force at the line's end.
 
-    Where the line lies on the seabed, the loads above its touchdown must leave no vertical force
-    there: but a downward one where a rigid piece or clamp stands, and an upward one that the weight
-    of a rigid piece lying there holds down. Friction on what lies takes its share of the horizontal
-    force.
+    Where the line lies on the seabed, the loads above its touchdown must leave no force across
+    that: but a downward one where a rigid piece or clamp stands, and an upward one that the weight
+    of a rigid piece lying there holds down. Friction, and the weight down the slope, take their
+    share of the rest.
 
     Parameters
     ----------
     loads : of every element, as by `element_loads`
     landed : whether the line lies on the seabed
-    friction : there [-]
-    excess : what a displaced cubic metre lifts more there than in reference water [N/m³]
     """
     record, end = shape.record, shape.nodes - 1
     x = y = z = whole = 0.0
@@ -190,14 +179,19 @@ def closure(
     fx, fy, fz = record[3][end], record[4][end], record[5][end]
     scale = max(sqrt(fx * fx + fy * fy + fz * fz), 1e-3 * whole, 1e-300)
     if landed:
+        square = 1.0 + bed.east * bed.east + bed.north * bed.north
+        across = (z + bed.east * x + bed.north * y) / square
+        x, y, z = x - across * bed.east, y - across * bed.north, z - across
+        tension, left = sqrt(x * x + y * y + z * z), 1.0
+        if tension > 0.0:
+            held = bed.friction / sqrt(square) + z / tension
+            left -= held * weight_on_seabed(moored, shape, bed.excess) / tension
         if bears_at_a_point(moored, shape, shape.hanging - 1):
-            z = max(z, 0.0)
+            across = max(across, 0.0)
         if bears_at_a_point(moored, shape, shape.hanging):
-            z = min(z, 0.0)
-        tension = sqrt(x * x + y * y)
-        held = min(friction * weight_on_seabed(moored, shape, excess), tension)
-        left = 1.0 - held / tension if tension > 0.0 else 0.0
-        x, y = left * x, left * y
+            across = min(across, 0.0)
+        left = max(left, 0.0)
+        x, y, z = left * x + across * bed.east, left * y + across * bed.north, left * z + across
     x, y, z = x - fx, y - fy, z - fz
     return sqrt(x * x + y * y + z * z) / scale
 

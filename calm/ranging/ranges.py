@@ -22,17 +22,7 @@ import numpy as np
 from calm.errors import InputError, Problem, shown
 from calm.physics.line import Floats
 from calm.positions import HEMISPHERES, Frame, degrees_of, plain_degrees
-from calm.records.delimited import (
-    GAPS,
-    NUMBER,
-    CellRow,
-    Dialect,
-    TextTable,
-    abridged,
-    dialect_of,
-    no_number,
-    read_table,
-)
+from calm.records import delimited
 from calm.records.headings import NamedRow, heading, read_named_columns
 from calm.units import DIMENSIONS
 from calm.whole_file import read_text
@@ -110,7 +100,7 @@ def read_ranges(path: Path, transducer: float = 0.0) -> Survey:
     values: list[tuple[int, float, float, float]] = []
     silent: list[int] = []
     for row in columns.rows:
-        if row.cells.get(measure, "").strip().lower() in GAPS:
+        if row.cells.get(measure, "").strip().lower() in delimited.GAPS:
             silent.append(row.line)
             continue
         names = [name for name in ("latitude", "longitude", measure) if name in heads]
@@ -120,7 +110,7 @@ def read_ranges(path: Path, transducer: float = 0.0) -> Survey:
             values.append((row.line, numbers[0], numbers[1], numbers[2]))
     problems += _misplaced(path, values)
     if problems:
-        raise InputError(abridged(problems))
+        raise InputError(delimited.abridged(problems))
     notices = said
     if columns.others:
         notices.append(f"not read: {', '.join(f'`{shown(one)}`' for one in columns.others)}")
@@ -167,7 +157,7 @@ def _refusal(name: str, text: str, factor: float) -> str:
         sexagesimal = degrees_of(text, name) if placed else None
     except ValueError as error:
         return str(error)
-    if sexagesimal is None and (complaint := no_number(text)):
+    if sexagesimal is None and (complaint := delimited.no_number(text)):
         degrees = "; degrees are needed, such as -5.2 or 5 12.0 W" if placed else ""
         return complaint + degrees
     value = (float(text) if sexagesimal is None else sexagesimal) * factor
@@ -273,12 +263,12 @@ def read_sound(path: Path) -> Sound:
     if not problems and not depths:
         problems.append(Problem(str(path), 0, 0, "there are no rows below the header"))
     if problems:
-        raise InputError(abridged(problems))
+        raise InputError(delimited.abridged(problems))
     return Sound(np.array(depths), np.array(speeds))
 
 
 def _complaint(name: str, text: str, factor: float, depths: list[float]) -> str:
-    if complaint := no_number(text):
+    if complaint := delimited.no_number(text):
         return complaint
     value = float(text) * factor
     if name == "depth":
@@ -306,14 +296,14 @@ _LARGEST = 5_000_000
 _NEAR = 1.0  # degrees between a survey's positions, at most
 
 
-def _survey_table(path: Path) -> tuple[TextTable, float | None, list[str]]:
+def _survey_table(path: Path) -> tuple[delimited.TextTable, float | None, list[str]]:
     """Return the table of a survey, the depth of its transducer [m] where it says so, and notices.
 
     InputError: it cannot be read, is empty, or has no header and is of neither form without one.
     """
     bare = _without_heading(path)
     if bare is None:
-        return _joined(read_table(path, EXAMPLE)), None, []
+        return _joined(delimited.read_table(path, EXAMPLE)), None, []
     rows, columns = bare
     if columns == 5:
         lines = []
@@ -324,7 +314,7 @@ def _survey_table(path: Path) -> tuple[TextTable, float | None, list[str]]:
             "has no heading: read as degrees, minutes, degrees, minutes and the seconds one way; "
             "south and west are negative"
         )
-        table = read_table(path, EXAMPLE, [(1, "latitude,longitude,time[s]"), *lines])
+        table = delimited.read_table(path, EXAMPLE, [(1, "latitude,longitude,time[s]"), *lines])
         return table, None, [said]
     transducer = float(rows[1].cells[2])
     lines = [(row.number, ",".join(row.cells)) for row in rows[3:]]
@@ -332,11 +322,11 @@ def _survey_table(path: Path) -> tuple[TextTable, float | None, list[str]]:
         "has no heading: read as range, latitude and longitude below the target, the depths and "
         f"the drop; its transducer is {transducer:g} m deep"
     )
-    table = read_table(path, EXAMPLE, [(1, "range[m],latitude,longitude"), *lines])
+    table = delimited.read_table(path, EXAMPLE, [(1, "range[m],latitude,longitude"), *lines])
     return table, transducer, [said]
 
 
-def _without_heading(path: Path) -> tuple[list[CellRow], int] | None:
+def _without_heading(path: Path) -> tuple[list[delimited.CellRow], int] | None:
     """Return the rows of one of the two forms without a heading, and how many columns it has."""
     lines = [
         (number, line.partition("%")[0].partition("#")[0])
@@ -345,10 +335,12 @@ def _without_heading(path: Path) -> tuple[list[CellRow], int] | None:
     there = [(number, line.strip()) for number, line in lines if line.strip()]
     if not there:
         return None
-    dialect: Dialect = dialect_of([line for _, line in there])
-    rows = [CellRow(number, line, dialect.cells(line), dialect) for number, line in there]
+    dialect: delimited.Dialect = delimited.dialect_of([line for _, line in there])
+    rows = [delimited.CellRow(number, line, dialect.cells(line), dialect) for number, line in there]
     counts = {len(row.cells) for row in rows}
-    if len(counts) != 1 or not all(NUMBER.fullmatch(cell) for row in rows for cell in row.cells):
+    if len(counts) != 1 or not all(
+        delimited.NUMBER.fullmatch(cell) for row in rows for cell in row.cells
+    ):
         return None
     count = counts.pop()
     values = [[float(cell) for cell in row.cells] for row in rows]
@@ -368,7 +360,7 @@ def _placed(cells: Sequence[str]) -> str:
     return " ".join([degrees, *rest]).strip()
 
 
-def _joined(table: TextTable) -> TextTable:
+def _joined(table: delimited.TextTable) -> delimited.TextTable:
     """Return a table whose degrees and minutes of one position are one cell, in that of degrees.
 
     A time of day is no time of travel: its column is called another.

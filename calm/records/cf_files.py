@@ -17,7 +17,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.errors import CalmError, InputError, Problem
-from calm.records.attributes import is_local
 from calm.records.current_terms import ZONES_OF_UTC, TimeChoiceError
 from calm.records.instrument_text import is_instrument_text, read_instrument_text
 from calm.units import QuantityError, unit_factor
@@ -286,6 +285,8 @@ def read_times(dataset: xr.Dataset, name: str) -> NDArray[np.datetime64]:
 
 def zone_notices(dataset: xr.Dataset, name: str) -> list[str]:
     """Return what is said where the times, or the file, name another zone than UTC."""
+    from calm.records.attributes import is_local
+
     for attributes in (dataset[name].attrs, dataset.attrs):
         for key, said in attributes.items():
             zone, comment = str(said).strip(), _SAID_IN.fullmatch(str(key))

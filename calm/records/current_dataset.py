@@ -11,20 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.errors import InputError, Problem
+from calm.records import cf_files
 from calm.records.attributes import remarks_in_texts
-from calm.records.cf_files import (
-    UnreadableError,
-    factor_of,
-    find_times,
-    holdings,
-    known_values,
-    labels_along,
-    open_current,
-    read_times,
-    reading,
-    valid_range,
-    zone_notices,
-)
+from calm.records.cf_files import holdings
 from calm.records.current_terms import Terms, current_notices
 from calm.records.level_depths import LevelDepths, find_levels
 from calm.records.profile_tables import turned_by
@@ -120,7 +109,8 @@ class CurrentDataset:
         All profiles where there is no time.
         """
         first, second, *up = (
-            self._along(variable, index, known_values) * factor for variable, factor in self._parts
+            self._along(variable, index, cf_files.known_values) * factor
+            for variable, factor in self._parts
         )
         if not self._terms.on_the_line:
             for variable in self._flags:
@@ -158,9 +148,9 @@ class CurrentDataset:
             times = times[index]
         for variable, _ in self._parts[:2]:
             whole = np.isfinite(self._along(variable, index, lambda one: one.values))
-            outside = whole & np.isnan(self._along(variable, index, known_values))
+            outside = whole & np.isnan(self._along(variable, index, cf_files.known_values))
             if outside.any():
-                low, high = valid_range(variable)
+                low, high = cf_files.valid_range(variable)
                 said.append(
                     f"{outside.sum()} of {whole.sum()} values of `{variable.name}` are left out, "
                     f"outside its valid range, {low:g} to {high:g}"
@@ -197,8 +187,8 @@ def understand(dataset: xr.Dataset, terms: Terms) -> CurrentDataset:
     """
     try:
         return _understood(dataset, terms)
-    except UnreadableError as error:
-        raise UnreadableError(f"{error}; it holds {holdings(dataset)}") from None
+    except cf_files.UnreadableError as error:
+        raise cf_files.UnreadableError(f"{error}; it holds {holdings(dataset)}") from None
 
 
 def _understood(dataset: xr.Dataset, terms: Terms) -> CurrentDataset:
@@ -206,8 +196,8 @@ def _understood(dataset: xr.Dataset, terms: Terms) -> CurrentDataset:
     velocity = find_velocity(dataset, regular=is_regular(dataset))
     refuse_ragged(dataset, velocity.names[0])
     turned = _turned(velocity, terms.declination)
-    name_of_time = find_times(dataset, velocity.names[0])
-    times = None if name_of_time is None else read_times(dataset, name_of_time)
+    name_of_time = cf_files.find_times(dataset, velocity.names[0])
+    times = None if name_of_time is None else cf_files.read_times(dataset, name_of_time)
     time = None if name_of_time is None else next(map(str, dataset[name_of_time].dims), None)
     labels = _labels(dataset, velocity.names[0], time) if terms.on_the_line else ()
     column, levels = GridColumn({}, None), None
@@ -226,7 +216,7 @@ def _understood(dataset: xr.Dataset, terms: Terms) -> CurrentDataset:
         )
     notices = [*column.notes]
     if name_of_time is not None:
-        notices += zone_notices(dataset, name_of_time)
+        notices += cf_files.zone_notices(dataset, name_of_time)
     found = (flag_variable(dataset, name) for name in velocity.names)
     flags = {str(one.name): one for one in found if one is not None}
     notices += remarks_in_texts(dataset.attrs)
@@ -249,7 +239,7 @@ def _understood(dataset: xr.Dataset, terms: Terms) -> CurrentDataset:
 def _labels(dataset: xr.Dataset, name: str, time: str | None) -> tuple[str, ...]:
     """Return the labels of the parts of a line that the levels of a velocity hang at."""
     along = [str(dim) for dim in dataset[name].dims if dim != time]
-    return (len(along) == 1 and labels_along(dataset, along[0])) or ()
+    return (len(along) == 1 and cf_files.labels_along(dataset, along[0])) or ()
 
 
 def _turned(velocity: Velocity, declination: float | None) -> tuple[str, ...]:
@@ -257,12 +247,12 @@ def _turned(velocity: Velocity, declination: float | None) -> tuple[str, ...]:
     counted = velocity.names if velocity.turn is None else velocity.names[1:]
     which = " and ".join(f"`{name}`" for name in counted)
     if velocity.magnetic and declination is None:
-        raise UnreadableError(
+        raise cf_files.UnreadableError(
             f"{which} are relative to magnetic north; give the `declination` there, positive "
             "to the east (beside `file:`, or `--declination`)"
         )
     if declination is not None and not velocity.magnetic:
-        raise UnreadableError(
+        raise cf_files.UnreadableError(
             f"{which} are not said to be relative to magnetic north, so no `declination` is "
             "applied; leave it out"
         )
@@ -280,13 +270,13 @@ def _single_levels(
     dataset = dataset.isel(dict.fromkeys(single, 0))
     for other in velocity.all_names[1:]:
         if set(dataset[other].dims) != set(dataset[name].dims):
-            raise UnreadableError(
+            raise cf_files.UnreadableError(
                 f"`{name}` and `{other}` have different dimensions: "
                 f"{_spread(dataset[name])}; {_spread(dataset[other])}"
             )
     levels = [str(dim) for dim in dataset[name].dims if dim != time]
     if len(levels) > 1:
-        raise UnreadableError(
+        raise cf_files.UnreadableError(
             f"`{name}` is not a single profile, but spreads over {_spread(dataset[name])}"
         )
     return (levels[0] if levels else None), dataset
@@ -296,7 +286,7 @@ def _parts(dataset: xr.Dataset, velocity: Velocity) -> list[tuple[xr.DataArray, 
     """Return the variables of the current, each with its factor to SI (angles: degrees)."""
     dimensions = ("speed", "speed" if velocity.turn is None else "angle", "speed")
     return [
-        (dataset[name], factor_of(dataset[name], dimension))
+        (dataset[name], cf_files.factor_of(dataset[name], dimension))
         for name, dimension in zip(velocity.all_names, dimensions, strict=False)
     ]
 
@@ -313,17 +303,17 @@ class ArrayRecord(Record):
 
     def __init__(self, path: Path, terms: Terms, period: Period | None, every: int) -> None:
         self._path = path
-        with reading(path):
-            self._dataset = open_current(path)
+        with cf_files.reading(path):
+            self._dataset = cf_files.open_current(path)
         try:
-            with reading(path):
+            with cf_files.reading(path):
                 self._current = understand(self._dataset, terms)
             times = self._current.times
             if times is None:
                 message = "has no times: it is one profile, for `calm run`"
                 raise InputError([Problem(str(path), 0, 0, message)])
             self._index, chosen = choose_profiles(times, period, every, path)
-            with reading(path):
+            with cf_files.reading(path):
                 remarks = self._current.remarks(self._index)
         except BaseException:
             self._dataset.close()
@@ -350,7 +340,7 @@ class ArrayRecord(Record):
 
     def flags(self, start: int, stop: int) -> NDArray[np.int8] | None:
         """See `Record`."""
-        with reading(self._path):
+        with cf_files.reading(self._path):
             return self._current.flags(part(self._index, start, stop))
 
     def _window(self, start: int, stop: int) -> tuple[int, int, CurrentArrays]:
@@ -359,7 +349,7 @@ class ArrayRecord(Record):
             return self._ahead
         self._ahead = None
         end = min(max(stop, self._end_of_chunk(start)), self.count)
-        with reading(self._path):
+        with cf_files.reading(self._path):
             arrays = self._current.read(part(self._index, start, end))
         window = start, end, arrays
         if end > stop:

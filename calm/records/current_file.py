@@ -9,17 +9,10 @@ from pathlib import Path
 import numpy as np
 
 from calm.errors import InputError, Problem
+from calm.records import current_terms
 from calm.records.cf_files import UnreadableError, is_dataset, open_current, reading
 from calm.records.current_dataset import ArrayRecord, CurrentArrays, understand
-from calm.records.current_terms import (
-    Terms,
-    TimeChoiceError,
-    choose_time,
-    current_notices,
-    parse_time,
-    too_deep,
-    too_fast,
-)
+from calm.records.current_terms import Terms, TimeChoiceError, choose_time, current_notices
 from calm.records.delimited import CellRow, abridged, read_table
 from calm.records.profile_tables import CurrentTable, turned_notices
 from calm.records.record import Period, Record
@@ -142,9 +135,9 @@ def _profile(arrays: CurrentArrays, terms: Terms, notices: list[str]) -> Current
     if not below.any():
         raise UnreadableError("no level below the surface has a value")
     for level, east, north, up in zip(*(one[below] for one in (depth, u, v, w)), strict=True):
-        if reason := too_deep(level):
+        if reason := current_terms.too_deep(level):
             raise UnreadableError(f"its {reason}")
-        if reason := too_fast(east, north, up, terms.maximum_speed):
+        if reason := current_terms.too_fast(east, north, up, terms.maximum_speed):
             raise UnreadableError(f"its current at {level:g} m, {reason}")
     order = np.argsort(depth[below])
     levels, *speeds = (tuple(values[below][order].tolist()) for values in (depth, u, v, w))
@@ -183,7 +176,7 @@ def _rows_of(rows: list[CellRow], time: str | None, path: Path) -> tuple[list[Ce
     moments = []
     for row in rows:
         try:
-            moments.append(parse_time(row.cells[0]))
+            moments.append(current_terms.parse_time(row.cells[0]))
         except TimeChoiceError as error:
             problems.append(Problem(str(path), row.number, row.column(0), str(error)))
     if problems:

@@ -18,15 +18,8 @@ from numpy.typing import NDArray
 from calm.errors import InputError, Problem, about_quantity, shown, unknown
 from calm.physics.line import Floats
 from calm.positions import HEMISPHERES
+from calm.records import delimited
 from calm.records.current_terms import ZONES_OF_UTC, TimeChoiceError, parse_time
-from calm.records.delimited import (
-    GAPS,
-    NUMBER,
-    CellRow,
-    TextTable,
-    abridged,
-    read_table,
-)
 from calm.units import DIMENSIONS, QuantityError, QuantityRange, unit_factor
 
 _BRACKETED = re.compile(r"(.*?)\s*[\[(]((?:[^\[\]()]|\([^()]*\))*)[\])]")
@@ -208,7 +201,7 @@ def read_named_columns(
     example: str,
     problems: list[Problem],
     *,
-    table: TextTable | None = None,
+    table: delimited.TextTable | None = None,
     other_names: Mapping[str, str] = MappingProxyType({}),
 ) -> NamedColumns:
     """Return the cells of a table as they stand; mistakes of its form are added to `problems`.
@@ -227,7 +220,7 @@ def read_named_columns(
     InputError
         It cannot be read, is empty, or has no header.
     """
-    table = table or read_table(path, example)
+    table = table or delimited.read_table(path, example)
     header = table.header
     names = [heading(column)[0].lower().replace(" ", "_") for column in header.cells]
     names = [name if name in known else other_names.get(name, name) for name in names]
@@ -274,7 +267,7 @@ def read_time_columns(path: Path, dimensions: Sequence[str], example: str) -> Ti
     InputError
         With every mistake.
     """
-    table = read_table(path, f"time,{example}")
+    table = delimited.read_table(path, f"time,{example}")
     header = table.header
     if not is_time(header.cells[0]):
         message = f"is not a table over time; its heading should be `time,{example}`"
@@ -305,7 +298,7 @@ def read_time_columns(path: Path, dimensions: Sequence[str], example: str) -> Ti
                 message = about_quantity(column.name, row.cells[j + 1], error)
                 problems.append(Problem(str(path), row.number, row.column(j + 1), message))
     if problems:
-        raise InputError(abridged(problems))
+        raise InputError(delimited.abridged(problems))
     found = [column for column in columns if column is not None]
     order = np.argsort(times, kind="stable")
     return TimeColumns(
@@ -327,16 +320,16 @@ class _LabelledColumn:
 
     def value(self, cell: str) -> float:
         """Return the number of a cell in SI, NaN of a gap; QuantityError where it is none."""
-        if NUMBER.fullmatch(cell):
+        if delimited.NUMBER.fullmatch(cell):
             return float(cell) * self.factor
-        if cell.lower() in GAPS or cell.lower().lstrip("+-") in _INFINITE:
+        if cell.lower() in delimited.GAPS or cell.lower().lstrip("+-") in _INFINITE:
             return float("nan")
         return QuantityRange(self.dimension, self.unit).read(cell)
 
 
 def _labelled(
     path: Path,
-    header: CellRow,
+    header: delimited.CellRow,
     j: int,
     dimensions: Sequence[str],
     usual: str,
@@ -353,7 +346,7 @@ def _labelled(
     return _LabelledColumn(name, dimension, unit or DIMENSIONS[dimension].unit, factor)
 
 
-def _whole_rows(table: TextTable, problems: list[Problem]) -> list[CellRow]:
+def _whole_rows(table: delimited.TextTable, problems: list[Problem]) -> list[delimited.CellRow]:
     """Return the rows that have as many cells as the header; mistakes are added for the others."""
     whole = []
     for row in table.rows:

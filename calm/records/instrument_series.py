@@ -16,20 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.errors import InputError, Problem, UsageError
-from calm.records.cf_files import (
-    UnreadableError,
-    factor_of,
-    find_times,
-    first_present,
-    holdings,
-    is_dataset,
-    known_values,
-    labels_along,
-    open_current,
-    places_along,
-    read_times,
-    reading,
-)
+from calm.records import cf_files
+from calm.records.cf_files import UnreadableError, factor_of, first_present, holdings, known_values
 from calm.records.level_depths import find_levels
 from calm.records.measured_quantities import (
     QUANTITIES_MEASURED,
@@ -177,9 +165,9 @@ def split_label(text: str) -> tuple[str, Path]:
 def _of_file(
     path: Path, names: Sequence[str], flags: frozenset[int], seabed: float
 ) -> dict[str, list[InstrumentSeries]]:
-    if not path.is_dir() and not is_dataset(path):
+    if not path.is_dir() and not cf_files.is_dataset(path):
         raise InputError([Problem(str(path), 0, 0, "is not NetCDF, RODB, .cnv or RBR's table")])
-    with reading(path), open_current(path) as dataset:
+    with cf_files.reading(path), cf_files.open_current(path) as dataset:
         try:
             whole = with_components(dataset)
             found = {}
@@ -309,7 +297,7 @@ def readings(dataset: xr.Dataset, names: Sequence[str], flags: frozenset[int]) -
         They have no times, or are not of times and instruments alone.
     """
     first = dataset[names[0]]
-    clock = find_times(dataset, names[0])
+    clock = cf_files.find_times(dataset, names[0])
     if clock is None or dataset[clock].ndim != 1:
         raise UnreadableError(f"`{first.name}` has no times")
     refuse_ragged(dataset, names[0])
@@ -318,7 +306,7 @@ def readings(dataset: xr.Dataset, names: Sequence[str], flags: frozenset[int]) -
     if len(others) > 1 or time not in first.dims:
         raise UnreadableError(f"`{first.name}` is not of times and instruments: {first.dims}")
     along = others[0] if others else None
-    times = read_times(dataset, clock)
+    times = cf_files.read_times(dataset, clock)
     order = np.argsort(times, kind="stable")
 
     def table(one: xr.DataArray, values: NDArray[Any]) -> NDArray[Any]:
@@ -348,17 +336,17 @@ def who_along(dataset: xr.Dataset, along: str | None, seabed: float, source: str
     """
     if along is None:
         single = [str(dim) for dim, size in dataset.sizes.items() if size == 1]
-        labels = next(filter(None, (labels_along(dataset, dim) for dim in single)), ("",))
-        tried = (places_along(dataset, dim, seabed) for dim in (None, *single))
+        labels = next(filter(None, (cf_files.labels_along(dataset, dim) for dim in single)), ("",))
+        tried = (cf_files.places_along(dataset, dim, seabed) for dim in (None, *single))
         place = next((float(one[0]) for one in tried if one is not None), _number(dataset.attrs))
         known = (_serials(dataset, dims) for dims in ((), *((dim,) for dim in single)))
         told = next((dataset.attrs[name] for name in _SERIALS if name in dataset.attrs), "")
         serial = next(filter(None, known), [str(told).strip()])[0]
         return [Identity(labels[0], serial, place, source)]
     count = dataset.sizes[along]
-    labels = labels_along(dataset, along) or ("",) * count
+    labels = cf_files.labels_along(dataset, along) or ("",) * count
     serials = _serials(dataset, (along,)) or [""] * count
-    places = places_along(dataset, along, seabed)
+    places = cf_files.places_along(dataset, along, seabed)
     nominal = [float("nan")] * count if places is None else places.tolist()
     return [Identity(*one, source) for one in zip(labels, serials, nominal, strict=True)]
 

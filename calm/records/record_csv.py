@@ -17,19 +17,11 @@ import numpy as np
 
 from calm.errors import InputError, Problem, UsageError
 from calm.physics.line import Floats, Integers
+from calm.records import delimited
 from calm.records.attributes import refused_by_comments, remarks_in_comments
 from calm.records.columns import QuantityTable
 from calm.records.current_terms import Terms, TimeChoiceError, current_notices, parse_time
-from calm.records.delimited import (
-    COMMENT,
-    MOST_PROBLEMS,
-    CellRow,
-    NumberedLine,
-    abridged,
-    is_gap,
-    row_below,
-    table_lines,
-)
+from calm.records.delimited import COMMENT, MOST_PROBLEMS, CellRow, NumberedLine, abridged, is_gap
 from calm.records.headings import heading, is_time, magnetic_columns, zone_complaint
 from calm.records.profile_tables import read_currents, turned_notices
 from calm.records.record import RULES, Levels, Period, Record, choose_profiles, part
@@ -74,7 +66,7 @@ class CsvRecord(Record):
                     (i, line.decode("utf-8-sig" if i == 1 else "utf-8").rstrip("\r\n"))
                     for i, line in enumerate(bare, 1)
                 )
-                return self._keep(path, *table_lines(path, lines, f"time,{EXAMPLE}"))
+                return self._keep(path, *delimited.table_lines(path, lines, f"time,{EXAMPLE}"))
         except UnicodeDecodeError:
             raise InputError([Problem(str(path), 0, 0, "is not UTF-8 text")]) from None
         except OSError as error:
@@ -162,7 +154,7 @@ def _whole_profiles(lines: Iterable[NumberedLine], header: CellRow) -> Iterator[
     """
     gathered: list[CellRow] = []
     for line in lines:
-        row = row_below(header, *line)
+        row = delimited.row_below(header, *line)
         if len(gathered) >= AT_ONCE and row.cells[0] != gathered[-1].cells[0]:
             yield gathered
             gathered = []

@@ -69,10 +69,24 @@ class SeabedGrid:
     @property
     def slope(self) -> float:
         """The steepest slope to a node's distance from the point [degrees]."""
+        across, along = np.abs(self._falls).max(axis=1)
+        return float(np.degrees(np.arctan(np.hypot(across, along))))
+
+    @property
+    def plane(self) -> tuple[float, float]:
+        """How much deeper it is per metre to the east and to the north [-]: the mean over a node's
+        distance to either side."""
+        east, north = self._falls.mean(axis=1).tolist()
+        return east, north
+
+    @property
+    def _falls(self) -> Floats:
+        """How much deeper it is per metre along east (2,) and north (2,), on either side [-]."""
         step = float(np.diff(_nodes(self.at(-self.east, -self.north))[0]).mean())
         rises = self.deeper(step * np.array([(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)]))
-        across, along = np.abs(np.nan_to_num(rises)).reshape(2, 2).max(axis=1) / step
-        return float(np.degrees(np.arctan(np.hypot(across, along))))
+        falls = rises.reshape(2, 2) * np.array([1.0, -1.0]) / step
+        known: Floats = np.nan_to_num(np.where(np.isnan(falls), falls[:, ::-1], falls))
+        return known
 
     def _depths(self, places: Floats) -> Floats:
         from scipy.interpolate import RegularGridInterpolator

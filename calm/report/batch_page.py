@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 from calm.batch.finished import stored_result
 from calm.batch.statistics.extremes import EXTRAPOLATION, METHODS, Fit, Level
@@ -13,44 +15,13 @@ from calm.batch.statistics.summary import PERCENTILES, WORST, Distribution, Summ
 from calm.case import Mooring
 from calm.case.net import Net
 from calm.checks.finding import State
-from calm.quantities import QUANTITIES
-from calm.report.batch_figures import exceedance_figure, parts_figure, series_figure
-from calm.report.batch_summary import (
-    DEFINITIONS,
-    METHODS_IN_SHORT,
-    QUANTITY,
-    TITLES,
-    extent,
-    left_out,
-    percent,
-    profiles_table,
-    refusals,
-    rules_table,
-    standing,
-    stops_tables,
-    summary_document,
-    when,
-)
-from calm.report.blocks import (
-    Block,
-    Cell,
-    Column,
-    Figure,
-    Heading,
-    Listing,
-    Prose,
-    Report,
-    ReportPart,
-    Section,
-    Span,
-    Table,
-    table_of,
-)
-from calm.report.check_summary import limits_table as limits_used_table
+from calm.quantities import QUANTITIES, Quantity
+from calm.report import batch_figures, batch_summary, blocks, check_summary
+from calm.report.batch_summary import QUANTITY, TITLES, percent, when
+from calm.report.blocks import Cell, Figure, Prose, ReportPart, Table, number, table_of, words
 from calm.report.html import page
-from calm.report.provenance import NOT_JUDGED, date, versions
+from calm.report.provenance import NOT_JUDGED, report_of, versions
 from calm.report.result_files import to_json
-from calm.report.sheet import figure_cell, quantity_column
 from calm.whole_file import put
 
 
@@ -59,60 +30,47 @@ def summary_html(summary: Summary) -> str:
     return page(summary_report(summary))
 
 
-def summary_report(summary: Summary) -> Report:
+def summary_report(summary: Summary) -> blocks.Report:
     """Return how often limits are broken, distributions, worst profiles, return levels, drawn."""
+    lost = State.WARN if summary.count - summary.solved else None
+    left_out = blocks.warned(filter(None, [batch_summary.left_out(summary)]))
     not_judged = (f"Not judged: {name}, {why}." for name, why in summary.not_judged.items())
     moving = [part for part in summary.parts if part.clamped] or list(summary.parts[:-1])
-    parts = (
-        ReportPart("Result", tuple(_result(summary))),
-        ReportPart(
-            "Through time", (Figure("Least and greatest in each interval", series_figure(summary)),)
-        ),
-        ReportPart(
-            "How often",
-            (
-                Figure("Responses of the line", exceedance_figure(summary)),
-                Figure("Clamped instruments, or components", parts_figure(moving)),
-                *_left_out(summary),
-            ),
-        ),
-        *(ReportPart(table.title, (table,)) for table in stops_tables(summary)),
-        ReportPart("Return levels", (*levels_tables(summary), Prose((_EXTRAPOLATED,)))),
-        ReportPart("Worst profiles", tuple(worst_tables(summary))),
-        ReportPart(
-            "Limits",
-            (
-                limits_table(summary),
-                Prose(tuple(not_judged)),
-                limits_used_table(summary.limits_used),
-            ),
-        ),
-        ReportPart("Distributions", (*_left_out(summary), *statistics_tables(summary))),
-        NOT_JUDGED,
-        ReportPart("Inputs", tuple(_inputs(summary))),
-    )
-    section = Section(summary.name, parts)
-    return Report(summary.name, extent(summary), (), (section,), date())
-
-
-def _result(summary: Summary) -> Iterator[Block]:
-    lost = summary.count - summary.solved
-    yield Prose((f"{standing(summary)}.",), State.WARN if lost else None)
-    yield rules_table(summary)
-    yield from _left_out(summary)
-    yield Prose(DEFINITIONS)
-
-
-def _left_out(summary: Summary) -> Iterator[Prose]:
-    if summary.unsolved:
-        yield Prose((left_out(summary),), State.WARN)
-
-
-def _inputs(summary: Summary) -> Iterator[Block]:
-    for name, text in summary.source.items():
-        yield Listing(name.replace("_", " ").capitalize(), text)
     made_by = ", ".join(f"{name} {number}" for name, number in versions())
-    yield Prose((f"Gathered with {made_by}",))
+    through_time = batch_figures.series_figure(summary)
+    responses = Figure("Responses of the line", batch_figures.exceedance_figure(summary))
+    instruments = batch_figures.parts_figure(moving)
+    parts: dict[str, tuple[blocks.Block, ...]] = {
+        "Result": (
+            Prose((f"{batch_summary.standing(summary)}.",), lost),
+            batch_summary.rules_table(summary),
+            *left_out,
+            Prose(batch_summary.DEFINITIONS),
+        ),
+        "Through time": (Figure("Least and greatest in each interval", through_time),),
+        "How often": (
+            responses, Figure("Clamped instruments, or components", instruments), *left_out,
+        ),
+        **{table.title: (table,) for table in batch_summary.stops_tables(summary)},
+        "Return levels": (*levels_tables(summary), Prose((_EXTRAPOLATED,))),
+        "Worst profiles": tuple(worst_tables(summary)),
+        "Limits": (
+            limits_table(summary),
+            Prose(tuple(not_judged)),
+            check_summary.limits_table(summary.limits_used),
+        ),
+        "Distributions": (*left_out, *statistics_tables(summary)),
+        NOT_JUDGED.title: NOT_JUDGED.blocks,
+        "Inputs": (
+            *(
+                blocks.Listing(name.replace("_", " ").capitalize(), text)
+                for name, text in summary.source.items()
+            ),
+            Prose((f"Gathered with {made_by}",)),
+        ),
+    }  # fmt: skip
+    extent = batch_summary.extent(summary)
+    return report_of(summary.name, extent, *(ReportPart(*part) for part in parts.items()))
 
 
 _EXTRAPOLATED = (
@@ -135,21 +93,21 @@ def limits_table(summary: Summary) -> Table:
     def figure(one: Exceedance, value: float | None, bound: str = "") -> str:
         return "-" if value is None else bound + QUANTITIES[one.limit.quantity].say(value)
 
+    def limit(one: Exceedance) -> str:
+        return figure(one, one.limit.limit, "≥ " if one.limit.least else "≤ ")
+
     return table_of(
         "Limits",
-        [(rule, one) for rule in summary.rules for one in rule.exceedances],
-        (Column("state", share=0.0), lambda pair: state(pair[1])),
-        (Column("rule"), lambda pair: pair[0].title),
-        (Column("component"), lambda pair: pair[1].limit.component),
-        (
-            Column("limit", numeric=True),
-            lambda pair: figure(
-                pair[1], pair[1].limit.limit, "≥ " if pair[1].limit.least else "≤ "
-            ),
+        [(one, rule) for rule in summary.rules for one in rule.exceedances],
+        *blocks.of_first(words("state", state, 0.0)),
+        words("rule", lambda row: row[1].title),
+        *blocks.of_first(
+            words("component", "limit.component"),
+            number("limit", limit),
+            number("broken in", lambda one: percent(one.share), "% of profiles"),
+            number("worst value", lambda one: figure(one, one.worst)),
+            words("when", lambda one: when(one.time), 0.0),
         ),
-        (Column("broken in", "% of profiles", numeric=True), lambda pair: percent(pair[1].share)),
-        (Column("worst value", numeric=True), lambda pair: figure(pair[1], pair[1].worst)),
-        (Column("when", share=0.0), lambda pair: when(pair[1].time)),
         note="Strength: at the ends of a piece and at the clamps on it. Least tension: at the ends "
         "of a piece. Anchor sliding: H + friction × V against friction × weight in water / factor.",
         sortable=True,
@@ -158,15 +116,23 @@ def limits_table(summary: Summary) -> Table:
 
 def statistics_tables(summary: Summary) -> Iterator[Table]:
     """Yield for each quantity the mean, the percentiles and the maximum of every part."""
-    for name in ("knockdown", "tilt", "tension"):
-        figures = ("mean", *(f"{percentile:g} %" for percentile in PERCENTILES), "maximum")
-        numbers = (Column(figure, numeric=True) for figure in figures)
-        columns = (Column("component"), *numbers, Column("maximum reached", share=0.0))
-        rows = tuple(
-            (Cell(part.label, indented=part.clamped), *_figures(name, getattr(part, name)))
-            for part in summary.parts
+    for name in _QUANTITIES:
+
+        def figures(part: Any, name: str = name) -> list[str]:
+            one: Distribution | None = getattr(part, name)
+            if one is None:
+                return ["-"] * (len(PERCENTILES) + 3)
+            values = one.mean, *one.percentiles, one.maximum
+            return [*map(QUANTITIES[name].format, values), when(one.time)]
+
+        heads = "mean", *(f"{percentile:g} %" for percentile in PERCENTILES), "maximum"
+        yield table_of(
+            QUANTITIES[name].label.capitalize(),
+            [(Cell(part.label, indented=part.clamped), *figures(part)) for part in summary.parts],
+            words("component", 0),
+            *(number(head, at) for at, head in enumerate(heads, 1)),
+            words("maximum reached", -1, 0.0),
         )
-        yield Table(QUANTITIES[name].label.capitalize(), columns, rows)
 
 
 def worst_tables(summary: Summary) -> Iterator[Table | Prose]:
@@ -177,47 +143,36 @@ def worst_tables(summary: Summary) -> Iterator[Table | Prose]:
             continue
         count = f"{len(profiles)} profiles" if len(profiles) < WORST else f"{WORST} worst profiles"
         title = f"The {count} by {TITLES[name]}"
-        yield profiles_table(title, [("", profile) for profile in profiles])
+        yield batch_summary.profiles_table(title, [("", profile) for profile in profiles])
 
 
 def levels_tables(summary: Summary) -> Iterator[Table | Prose]:
     """Return levels with their intervals, and why others are not given."""
     for response in summary.responses:
-        name = QUANTITY[response.name]
-        title = TITLES[response.name].capitalize()
+        quantity = QUANTITIES[QUANTITY[response.name]]
         fits = [fit for fit in response.return_levels if isinstance(fit, Fit)]
+        rows = [
+            (METHODS[fit.method], each.period, quantity.format(each.level),
+             " – ".join(_ends(each, quantity, "not set")))
+            for fit in fits for each in fit.levels
+        ]  # fmt: skip
         if fits:
-            columns = (
-                Column("method"),
-                Column("return period", "years", numeric=True),
-                replace(quantity_column(name), heading="level"),
-                replace(quantity_column(name), heading="95 % interval"),
+            yield table_of(
+                TITLES[response.name].capitalize(),
+                rows,
+                words("method", 0),
+                number("return period", 1, "years"),
+                number("level", 2, quantity.display_unit),
+                number("95 % interval", 3, quantity.display_unit),
+                note=" ".join(f"{_rules(fit)}." for fit in fits),
             )
-            rows = tuple(_level(name, fit, level) for fit in fits for level in fit.levels)
-            yield Table(title, columns, rows, " ".join(f"{_rules(fit)}." for fit in fits))
-    for reason in refusals(summary):
+    for reason in batch_summary.refusals(summary):
         yield Prose((f"{reason[0].upper()}{reason[1:]}.",), State.UNKNOWN)
 
 
-def _figures(name: str, one: Distribution | None) -> Iterator[Cell]:
-    if one is None:
-        yield from (Cell("-") for _ in range(len(PERCENTILES) + 3))
-        return
-    yield from (figure_cell(name, value) for value in (one.mean, *one.percentiles, one.maximum))
-    yield Cell(when(one.time))
-
-
-def _level(name: str, fit: Fit, level: Level) -> tuple[Cell, ...]:
-    ends = (
-        "not set" if end is None else QUANTITIES[name].format(end)
-        for end in (level.low, level.high)
-    )
-    return (
-        Cell(METHODS[fit.method]),
-        Cell(str(level.period)),
-        figure_cell(name, level.level),
-        Cell(" – ".join(ends)),
-    )
+def _ends(level: Level, quantity: Quantity, unknown: str) -> Iterator[str]:
+    for end in (level.low, level.high):
+        yield unknown if end is None else quantity.format(end)
 
 
 def _rules(fit: Fit) -> str:
@@ -250,7 +205,7 @@ def write_summary(
     with stored_result(result) as stored:
         summary = summarize(stored, mooring, result.parent, check, result)
     document, page = summary_paths(result)
-    put(document, to_json([summary_document(summary)]).encode())
+    put(document, to_json([batch_summary.summary_document(summary)]).encode())
     put(page, summary_html(summary).encode())
     return summary
 
@@ -275,68 +230,56 @@ def summary_part(summary: Summary) -> ReportPart:
     Components and clamps with the 99 % percentile and the maximum of each quantity, how often
     each rule fails, the worst profile by each response, and return levels.
     """
-    lost, note = summary.count - summary.solved, left_out(summary)
-    ended = Span(standing(summary), State.FAIL if lost else None)
-    missing = tuple(refusals(summary))
+    lost = State.FAIL if summary.count - summary.solved else None
+    ended = blocks.Span(batch_summary.standing(summary), lost)
     worst = [(name, one) for name, each in summary.worst.items() for one in each[:1]]
-    blocks: tuple[Block, ...] = (
-        Heading(summary.name),
-        Prose((extent(summary), (ended,))),
+    shown: tuple[blocks.Block, ...] = (
+        blocks.Heading(summary.name),
+        Prose((batch_summary.extent(summary), (ended,))),
         _parts(summary),
-        replace(rules_table(summary), title="", note=""),
-        *([Prose((note,), State.WARN)] if note else []),
-        *stops_tables(summary),
-        profiles_table("", worst),
+        replace(batch_summary.rules_table(summary), title="", note=""),
+        *blocks.warned(filter(None, [batch_summary.left_out(summary)])),
+        *batch_summary.stops_tables(summary),
+        batch_summary.profiles_table("", worst),
         *_levels(summary),
-        *([Prose(missing, State.WARN)] if missing else []),
-        Prose(((Span(_ALL, quiet=True),),)),
+        *blocks.warned(batch_summary.refusals(summary)),
+        blocks.quiet(_ALL),
     )
-    return ReportPart("", blocks)
+    return ReportPart("", shown)
 
 
 def _parts(summary: Summary) -> Table:
-    columns = [Column("")]
+    def extreme(part: Any, name: str, of: Callable[[Distribution], float]) -> str:
+        one = getattr(part, name)
+        return "-" if one is None else QUANTITIES[name].format(of(one))
+
+    fields = [words("", lambda part: Cell(part.label, indented=part.clamped))]
     for name in _QUANTITIES:
-        quantity = QUANTITIES[name]
-        columns.append(Column(f"{quantity.heading}\n99 %", numeric=True))
-        columns.append(Column(f"{quantity.display_unit}\nmaximum", numeric=True))
-    rows = tuple(
-        (
-            Cell(part.label, indented=part.clamped),
-            *(Cell(text) for name in _QUANTITIES for text in _extremes(name, getattr(part, name))),
-        )
-        for part in summary.parts
-    )
-    return Table("", tuple(columns), rows)
-
-
-def _extremes(name: str, one: Distribution | None) -> tuple[str, str]:
-    if one is None:
-        return "-", "-"
-    quantity = QUANTITIES[name]
-    return quantity.format(one.percentiles[2]), quantity.format(one.maximum)
+        high = partial(extreme, name=name, of=lambda one: one.percentiles[2])
+        highest = partial(extreme, name=name, of=lambda one: one.maximum)
+        fields.append(number(f"{QUANTITIES[name].heading}\n99 %", high))
+        fields.append(number(f"{QUANTITIES[name].display_unit}\nmaximum", highest))
+    return table_of("", summary.parts, *fields)
 
 
 def _levels(summary: Summary) -> Iterator[Table]:
     """Return levels, where there are any."""
-    columns = [Column("return level, and 95 % interval")]
-    columns += [Column(f"{period} years", numeric=True) for period in _PERIODS]
     rows = []
     for response in summary.responses:
         quantity = QUANTITIES[QUANTITY[response.name]]
+        of = f"{TITLES[response.name]} [{quantity.display_unit}]"
         for fit in response.return_levels:
             if isinstance(fit, Fit):
-                levels = {level.period: level for level in fit.levels}
-                said = (_level_text(response.name, levels.get(period)) for period in _PERIODS)
-                of = f"{TITLES[response.name]} [{quantity.display_unit}]"
-                rows.append(tuple(map(Cell, (f"{of}, {METHODS_IN_SHORT[fit.method]}", *said))))
+                levels = {each.period: each for each in fit.levels}
+                said = (_level_text(levels.get(period), quantity) for period in _PERIODS)
+                method = batch_summary.METHODS_IN_SHORT[fit.method]
+                rows.append((f"{of}, {method}", *said))
     if rows:
-        yield Table("", tuple(columns), tuple(rows))
+        years = (number(f"{period} years", at) for at, period in enumerate(_PERIODS, 1))
+        yield table_of("", rows, words("return level, and 95 % interval", 0), *years)
 
 
-def _level_text(name: str, level: Level | None) -> str:
+def _level_text(level: Level | None, quantity: Quantity) -> str:
     if level is None:
         return "-"
-    quantity = QUANTITIES[QUANTITY[name]]
-    low, high = ("?" if end is None else quantity.format(end) for end in (level.low, level.high))
-    return f"{quantity.format(level.level)}\n{low}–{high}"
+    return f"{quantity.format(level.level)}\n{'–'.join(_ends(level, quantity, '?'))}"

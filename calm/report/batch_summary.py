@@ -21,10 +21,9 @@ from calm.batch.statistics.summary import (
     WorstProfile,
 )
 from calm.checks.finding import State
-from calm.report.blocks import Cell, Column, Field, Table, table_of
+from calm.report.blocks import Cell, Field, Table, number, quantity, table_of, words
 from calm.report.check_report import limit_document
 from calm.report.result_files import members
-from calm.report.sheet import figure_cell, quantity_column
 
 
 def summary_document(summary: Summary) -> dict[str, Any]:
@@ -73,23 +72,18 @@ def _part(part: PartDistributions) -> dict[str, Any]:
 def _distribution(one: Distribution | None) -> dict[str, Any] | None:
     if one is None:
         return None
-    percentiles = zip(PERCENTILES, one.percentiles, strict=True)
-    return {
-        "count": one.count,
-        "mean": one.mean,
-        **{f"p{percentile:g}": value for percentile, value in percentiles},
-        "maximum": one.maximum,
-        "time": _time(one.time),
-    }
+    names = (f"p{percentile:g}" for percentile in PERCENTILES)
+    percentiles = dict(zip(names, one.percentiles, strict=True))
+    ends = {"maximum": one.maximum, "time": _time(one.time)}
+    return {**members(one, "count", "mean"), **percentiles, **ends}
 
 
 def _response(response: Response) -> dict[str, Any]:
     one = response.distribution
+    curve = one and {"share": one.share.tolist(), "value": one.value.tolist()}
     return {
         "distribution": _distribution(one),
-        "exceedance": None
-        if one is None
-        else {"share": one.share.tolist(), "value": one.value.tolist()},
+        "exceedance": curve,
         "return_levels": {fit.method: _fit(fit) for fit in response.return_levels},
     }
 
@@ -128,25 +122,23 @@ def _time(time: np.datetime64 | None) -> str | None:
 def rules_table(summary: Summary) -> Table:
     """Return how often each rule fails or warns anywhere on the line."""
 
-    def broken(share: float | None, state: State) -> Cell:
-        return Cell(percent(share), state=state if share else None)
+    def broken(heading: str, name: str, state: State, unit: str = "%") -> Field:
+        def cell(rule: RuleShare) -> Cell:
+            share = getattr(rule, name)
+            return Cell(percent(share), state=state if share else None)
+
+        return number(heading, cell, unit)
 
     return table_of(
         "How often a rule fails",
         summary.rules,
-        (Column("rule"), lambda rule: rule.title),
-        (
-            Column("judged in", "profiles", numeric=True, narrow=False),
-            lambda rule: grouped(rule.judged),
-        ),
-        (
-            Column("fails", "% of profiles", numeric=True),
-            lambda rule: broken(rule.fails, State.FAIL),
-        ),
-        (Column("at most", "%", numeric=True), lambda rule: broken(rule.fails_at_most, State.FAIL)),
-        (Column("warns", "%", numeric=True), lambda rule: broken(rule.warns, State.WARN)),
-        (Column("limits", numeric=True, narrow=False), lambda rule: str(len(rule.exceedances))),
-        (Column("most often broken by"), _most_often),
+        words("rule", "title"),
+        number("judged in", lambda rule: grouped(rule.judged), "profiles", narrow=False),
+        broken("fails", "fails", State.FAIL, "% of profiles"),
+        broken("at most", "fails_at_most", State.FAIL),
+        broken("warns", "warns", State.WARN),
+        number("limits", lambda rule: len(rule.exceedances), narrow=False),
+        words("most often broken by", _most_often),
         note="Shares are of the profiles in which a rule is judged. At most: if the rule also "
         "fails in every profile with a current that was not solved. A limit judged in no "
         "profile is unknown.",
@@ -164,18 +156,17 @@ def _most_often(rule: RuleShare) -> str:
 def profiles_table(title: str, profiles: Sequence[tuple[str, WorstProfile]]) -> Table:
     """Profiles with their responses, each with what it is the worst by where that is not said."""
 
-    def response(name: str) -> Field[tuple[str, WorstProfile]]:
-        quantity, short = QUANTITY[name], name.replace("_", " ")
-        column = replace(quantity_column(quantity, TITLES[name]), short=short, marked=False)
-        return column, lambda pair: figure_cell(quantity, getattr(pair[1], name))
+    def response(name: str) -> Field:
+        column, cell = quantity(QUANTITY[name], lambda row: getattr(row[1], name), TITLES[name])
+        return replace(column, short=name.replace("_", " "), marked=False), cell
 
     return table_of(
         title,
         profiles,
-        (Column("worst profile by"), lambda pair: pair[0].replace("_", " ")),
-        (Column("time", share=0.0), lambda pair: when(pair[1].time)),
+        words("worst profile by", lambda row: row[0].replace("_", " ")),
+        words("time", lambda row: when(row[1].time), 0.0),
         *map(response, TITLES),
-        (Column("tilts most", narrow=False), lambda pair: pair[1].leaning),
+        words("tilts most", lambda row: row[1].leaning, narrow=False),
     )
 
 
@@ -266,19 +257,16 @@ def stops_tables(summary: Summary) -> Iterator[Table]:
     """Yield the depths of the stops of the profilers, as they are typed into these."""
     if not summary.stops:
         return
-    columns = [Column("profiler"), Column("stop")]
-    columns += [Column(f"{share:g} %\ndbar", numeric=True) for share in STOP_SHARES]
-    columns += [Column(f"{share:g} %\nm", numeric=True) for share in STOP_SHARES]
-    rows = tuple(
-        tuple(
-            Cell(text)
-            for text in (
-                one.profiler,
-                one.stop,
-                *(f"{figure:.1f}" for figure in (*one.pressures, *one.depths)),
-            )
-        )
-        for one in summary.stops
+    shares = (*(f"{share:g} %\ndbar" for share in STOP_SHARES),
+              *(f"{share:g} %\nm" for share in STOP_SHARES))  # fmt: skip
+    yield table_of(
+        "Stops of profilers",
+        [
+            (one.profiler, one.stop, *(f"{each:.1f}" for each in (*one.pressures, *one.depths)))
+            for one in summary.stops
+        ],
+        words("profiler", 0),
+        words("stop", 1),
+        *(number(head, at) for at, head in enumerate(shares, 2)),
+        note="The stop is no deeper than this in that share of the profiles.",
     )
-    note = "The stop is no deeper than this in that share of the profiles."
-    yield Table("Stops of profilers", tuple(columns), rows, note=note)

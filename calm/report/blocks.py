@@ -7,14 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeVar
+from operator import attrgetter, itemgetter
+from typing import TYPE_CHECKING, Any
 
 from calm.checks.finding import Finding, State
+from calm.quantities import QUANTITIES
 
 if TYPE_CHECKING:
     from calm.report.check_facts import CheckFacts
-
-Item = TypeVar("Item")
 
 ON_THE_WAY = "launch, recovery, breaks"
 """The column of a summary for what is judged of a mooring outside its environments."""
@@ -104,14 +104,6 @@ class Figure:
     title: str
     svg: str
     tall: bool = False
-
-
-@dataclass(frozen=True)
-class Plate:
-    """A drawing as SVG that is as large as a page and has it to itself, and what it shows."""
-
-    title: str
-    svg: str
 
 
 @dataclass(frozen=True)
@@ -237,35 +229,135 @@ class Report:
     front: tuple[ReportPart, ...]
     sections: tuple[Section, ...]
     date: str | None = None
-    plates: tuple[Plate, ...] = ()
+    plates: tuple[Figure, ...] = ()
     verdict: Span | None = None
     foot: str = ""
 
 
-Field = tuple[Column, Callable[[Item], Cell | str]]
-"""Head of a column, and what it shows of an item."""
+Field = tuple[Column, Callable[[Any], Any]]
+"""Head of a column, and what it shows of an item: a cell, a text, a number, or None for nothing."""
+
+Shown = str | int | Callable[[Any], Any]
+
+
+def words(heading: str, show: Shown = "", share: float = 1.0, **more: Any) -> Field:
+    """A column of words for `table_of`.
+
+    Parameters
+    ----------
+    heading : over it
+    show : what it shows of an item, the name of an attribute, by default that of the heading, or
+        which of its members
+    share : of the width, as in `Column`
+    more : what else a `Column` says
+    """
+    return Column(heading, share=share, **more), _getter(show, heading)
+
+
+def _getter(show: Shown, name: str) -> Callable[[Any], Any]:
+    if isinstance(show, int):
+        return itemgetter(show)
+    return attrgetter(show or name) if isinstance(show, str) else show
+
+
+def number(heading: str, show: Shown = "", unit: str = "", **more: Any) -> Field:
+    """A column of numbers, with the unit below its heading; all else as in `words`."""
+    return words(heading, show, unit=unit, numeric=True, **more)
+
+
+def of_first(*fields: Field) -> list[Field]:
+    """The same columns for items that begin with what they show."""
+
+    def first(show: Callable[[Any], Any]) -> Callable[[Any], Any]:
+        return lambda row: show(row[0])
+
+    return [(column, first(show)) for column, show in fields]
+
+
+def blank(heading: str, unit: str = "", share: float = 1.0) -> Field:
+    """A column that is filled in by hand."""
+    return words(heading, lambda _: None, share, unit=unit)
+
+
+def quantity(name: str, show: Shown = "", heading: str | None = None) -> Field:
+    """A column of a quantity, in the unit that people read.
+
+    Parameters
+    ----------
+    name : of the quantity
+    show : what it shows of an item [SI, degrees], as in `words`; by default what has its name
+    heading : where it is another than that of the quantity
+    """
+    value = _getter(show, name)
+    return quantity_column(name, heading), lambda one: figure_cell(name, value(one))
+
+
+_SHORT = {
+    "height": "above\nseabed",
+    "knockdown": "knock-\ndown",
+    "safety_factor": "safety\nfactor\n",
+}
+"""Headings cut so that the table of a line fits 80 columns."""
+
+
+def quantity_column(name: str, heading: str | None = None) -> Column:
+    """The head of a column of a quantity, or another, with the unit that people read."""
+    shown = QUANTITIES[name]
+    short = None if heading else _SHORT.get(name)
+    marked = name in ("tilt", "safety_factor")
+    return Column(heading or shown.heading, shown.display_unit, True, short=short, marked=marked)
+
+
+def figure_cell(name: str, value: float | None, state: State | None = None) -> Cell:
+    """Return a value of a quantity as it stands under its `quantity_column`.
+
+    Parameters
+    ----------
+    name : of the quantity
+    value : SI, degrees; None where it is not known
+    state : warns or fails where the figure is near a limit or beyond it, and marks it so
+    """
+    mark = {State.WARN: "~", State.FAIL: "!", None: ""}[state]
+    return Cell(QUANTITIES[name].format(value), state=state, mark=mark)
 
 
 def table_of(
     title: str,
-    items: Iterable[Item],
-    *fields: Field[Item],
+    items: Iterable[Any],
+    *fields: Field,
     note: str = "",
-    sums: Iterable[Item] = (),
-    sortable: bool = False,
-    by_hand: bool = False,
+    sums: Iterable[Any] = (),
+    **more: bool,
 ) -> Table:
     """Return a table with a row for each item and a column for each field.
 
     Parameters
     ----------
-    fields : head of a column, and what it shows of an item
+    items : a cell among them heads the rows below it
+    fields : as `words`, `number` and `quantity` make them
     note : below the table
     sums : items whose rows close the table as its totals
-    sortable, by_hand : as in `Table`
+    more : sortable, dense or by_hand, as in `Table`
     """
     totals = list(sums)
-    shown = ([show(item) for _, show in fields] for item in (*items, *totals))
-    rows = tuple(tuple(Cell(c) if isinstance(c, str) else c for c in row) for row in shown)
+    rows = (
+        (item,) if isinstance(item, Cell) else tuple(_cell(show(item)) for _, show in fields)
+        for item in (*items, *totals)
+    )
     columns = tuple(column for column, _ in fields)
-    return Table(title, columns, rows, note, len(totals), sortable=sortable, by_hand=by_hand)
+    return Table(title, columns, tuple(rows), note, len(totals), **more)
+
+
+def _cell(shown: Any) -> Cell:
+    return shown if isinstance(shown, Cell) else Cell("" if shown is None else str(shown))
+
+
+def warned(texts: Iterable[str], state: State = State.WARN) -> tuple[Prose, ...]:
+    """Sentences that must not be overlooked, where there are any."""
+    lines = tuple(texts)
+    return (Prose(lines, state),) if lines else ()
+
+
+def quiet(*texts: str) -> Prose:
+    """Sentences that are read last."""
+    return Prose(tuple((Span(text, quiet=True),) for text in texts))

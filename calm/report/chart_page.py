@@ -18,7 +18,8 @@ import numpy as np
 from calm.analytic.chart_branch import CurvePoints, critical_angle, curve
 from calm.errors import UsageError
 from calm.physics.line import Floats
-from calm.report.blocks import Cell, Column, Note, ReportPart, Table
+from calm.report.blocks import Field, Note, ReportPart, number, table_of, words
+from calm.report.result_files import members
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -123,12 +124,12 @@ def _graduate(axes: Axes, labels: Labels, points: CurvePoints) -> None:
             if long:
                 labels.beside(f"{value}°", *place, size + 2.0, "black", 8.5)
     step = _round_step(float(points.arc[-1]) / 20.0)
-    for number in range(1, int(points.arc[-1] / (step / 5.0)) + 1):
-        place = _place(points, points.arc, number * step / 5.0)
-        size = -6.0 if number % 5 == 0 else -3.0
+    for count in range(1, int(points.arc[-1] / (step / 5.0)) + 1):
+        place = _place(points, points.arc, count * step / 5.0)
+        size = -6.0 if count % 5 == 0 else -3.0
         labels.tick(*place, size, "#7a4b00")
-        if number % 5 == 0:
-            labels.beside(f"{number * step / 5.0:.4g}", *place, size - 2.0, "#7a4b00", 7.0)
+        if count % 5 == 0:
+            labels.beside(f"{count * step / 5.0:.4g}", *place, size - 2.0, "#7a4b00", 7.0)
 
 
 def _place(points: CurvePoints, scale: Floats, value: float) -> tuple[float, float, float]:
@@ -185,21 +186,18 @@ def _write_frame(figure: Figure, axes: Axes, k: float, above: bool) -> None:
     axes.set_axisbelow(True)
     figure.text(0.1, 0.965, f"Cable in a uniform current, K = {k:g}", fontsize=14, weight="bold")
     figure.text(0.1, 0.945, f"Lower end A at an angle {side} 90° to the current", fontsize=10)
-    for number, family in enumerate(_FAMILIES):
-        x = 0.1 + 0.17 * number
+    for x, family in zip((0.1, 0.27, 0.44), _FAMILIES, strict=True):
         figure.text(x, 0.918, family.name.replace("T_A", "$T_A$"), color=family.colour, fontsize=11)
     figure.text(0.61, 0.918, "on the curve: φ in degrees, ", fontsize=9)
     figure.text(0.83, 0.918, "arc s′", fontsize=9, color="#7a4b00")
-    figure.text(
-        0.1,
-        0.03,
-        "Loci are of the point P: the abscissa y′ of the lower end A, the level z′ of the upper "
-        "end B.\nA and B lie on the curve; H, D, L are their difference in height, their distance "
-        "and the cable between them.",
-        fontsize=8,
-    )
+    figure.text(0.1, 0.03, _LOCI, fontsize=8)
 
 
+_LOCI = (
+    "Loci are of the point P: the abscissa y′ of the lower end A, the level z′ of the upper "
+    "end B.\nA and B lie on the curve; H, D, L are their difference in height, their distance "
+    "and the cable between them."
+)
 _MARGIN = 1.5  # points kept free around a label
 _SHORTEST = 40.0  # points of a locus that are worth a label
 _TRIALS = 41
@@ -280,17 +278,10 @@ class Labels:
 
     def _text(self, text: str, place: Floats, turned: float, colour: str, font: float) -> Text:
         label = self.axes.text(
-            0.0,
-            0.0,
-            text,
-            color=colour,
-            fontsize=font,
-            rotation=turned,
-            horizontalalignment="center",
-            verticalalignment="center",
-            zorder=4,
+            0.0, 0.0, text, color=colour, fontsize=font, rotation=turned, zorder=4,
+            horizontalalignment="center", verticalalignment="center",
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.4},
-        )
+        )  # fmt: skip
         self._move(label, place)
         return label
 
@@ -331,39 +322,30 @@ _NOTE = "A lower end, B upper end; D positive when B is downstream of A; angles 
 
 def answer_document(answer: ChartAnswer) -> dict[str, Any]:
     """The JSON object: `status`, `k`, `solutions` (SI, degrees); without any, the reason too."""
-    document: dict[str, Any] = {
-        "status": answer.status,
-        "k": answer.k,
-        "solutions": [_figures(solution) for solution in answer.solutions],
-    }
-    if not answer.solutions:
-        document |= {"message": answer.message, "advice": answer.advice}
-    return document
+    found = {"solutions": [_figures(solution) for solution in answer.solutions]}
+    reason = () if answer.solutions else ("message", "advice")
+    return members(answer, "status", "k") | found | members(answer, *reason)
 
 
 def answer_part(answer: ChartAnswer) -> ReportPart:
     """A column for each cable."""
     figures = [_figures(solution) for solution in answer.solutions]
     several = len(figures) > 1
-    columns = (
-        Column(""),
-        Column("", share=0.0),
-        *(
-            Column(str(number) if several else "", numeric=True)
-            for number, _ in enumerate(figures, start=1)
-        ),
-    )
-    rows = tuple(
-        (Cell(heading), Cell(unit), *(Cell(f"{cable[name]:z.{decimals}f}") for cable in figures))
-        for name, heading, unit, decimals in _ROWS
-    )
+
+    def cable(at: int) -> Field:
+        def text(row: tuple[str, str, str, int]) -> str:
+            name, _, _, decimals = row
+            return f"{figures[at][name]:z.{decimals}f}"
+
+        return number(str(at + 1) if several else "", text)
+
+    table = table_of("", _ROWS, words("", 1), words("", 2, 0.0), *map(cable, range(len(figures))))
     notes = [_NOTE]
     if several:
         notes.append("Each of these cables fits what is given.")
-    if any(min(cable["phi_a"], cable["phi_b"]) < 0.0 for cable in figures):
+    if any(min(each["phi_a"], each["phi_b"]) < 0.0 for each in figures):
         notes.append("A negative angle: the cable goes down there, beyond the level of that end.")
-    title = f"Uniform current, K = {answer.k:.6g}"
-    return ReportPart(title, (Table("", columns, rows), Note(tuple(notes))))
+    return ReportPart(f"Uniform current, K = {answer.k:.6g}", (table, Note(tuple(notes))))
 
 
 def _figures(solution: ChartSolution) -> dict[str, float]:

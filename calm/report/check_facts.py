@@ -18,20 +18,9 @@ from calm.checks.assessment import Assessment
 from calm.checks.finding import AS_GIVEN, Finding, State
 from calm.files.check_limits import LimitKey
 from calm.quantities import say
-from calm.report.blocks import ON_THE_WAY, Cell, Column, Pairs, ReportPart, Section, Table, table_of
-from calm.report.check_summary import (
-    counted_states,
-    grouped,
-    joined,
-    limits_table,
-    named_components,
-    place_of,
-    rules_of,
-    said_of,
-    state_cell,
-    worst_by_part,
-    worst_by_rule,
-)
+from calm.report import blocks, check_summary
+from calm.report.blocks import Cell, Column, Pairs, ReportPart, Section, Table, table_of, words
+from calm.report.check_summary import counted_states, named_components, worst_by_part
 from calm.report.provenance import title_pairs
 from calm.report.result_files import members
 from calm.units import KILOGRAM_FORCE, KNOT
@@ -130,8 +119,8 @@ def facts_of(assessment: Assessment) -> CheckFacts:
 
 def judged_section(assessment: Assessment) -> Section:
     """What is concluded of one mooring; nothing of it is printed yet."""
-    columns = (*(stand.environment for stand in assessment.stands), ON_THE_WAY)
-    name, worst = assessment.name, worst_by_rule(assessment)
+    columns = (*(stand.environment for stand in assessment.stands), blocks.ON_THE_WAY)
+    name, worst = assessment.name, check_summary.worst_by_rule(assessment)
     return Section(name, (), columns, worst, facts_of(assessment))
 
 
@@ -149,49 +138,49 @@ def _strongest_current(assessment: Assessment) -> StrongestCurrent:
         level = int(np.hypot(water.u, water.v).argmax())
         speed = hypot(water.u[level], water.v[level])
         found.append((speed, float(water.level[level]), stand.environment))
-    weak = [
-        one.message
-        for one in assessment.all_findings()
-        if one.rule == "current" and one.state is State.WARN and one.limit is not None
-    ]
+    currents = (one for one in assessment.all_findings() if one.rule == "current")
+    weak = [one.message for one in currents if one.state is State.WARN and one.limit is not None]
     return StrongestCurrent(*max(found, key=lambda each: each[0]), " ".join(weak))
 
 
 def _least_factor(assessment: Assessment) -> LeastFactor | None:
     """Return the least factor in every situation; None where no piece gives a breaking load."""
     found = []
-    for stand in assessment.stands:
-        for situation in stand.situations:
-            if situation.result is not None:
-                pieces = situation.result.components
-                factors = np.asarray(pieces.safety_factor, np.float64)
-                unknown = int(np.isnan(factors[:-1]).sum())
-                if not np.isnan(factors).all():
-                    row = int(np.nanargmin(factors))
-                    at = stand.environment, situation.name
-                    found.append(LeastFactor(float(factors[row]), pieces.label[row], *at, unknown))
+    for stand, situation in ((one, each) for one in assessment.stands for each in one.situations):
+        if situation.result is None:
+            continue
+        pieces = situation.result.components
+        factors = np.asarray(pieces.safety_factor, np.float64)
+        if not np.isnan(factors).all():
+            row, unknown = int(np.nanargmin(factors)), int(np.isnan(factors[:-1]).sum())
+            at = pieces.label[row], stand.environment, situation.name
+            found.append(LeastFactor(float(factors[row]), *at, unknown))
     return min(found, key=lambda each: each.factor, default=None)
 
 
 def key_pairs(facts: CheckFacts) -> Pairs:
     """Return what decides, a line or two each: on page one, and on a terminal."""
-    pairs = []
-    current, anchor, factor = facts.current, facts.anchor, facts.factor
+    current, anchor = facts.current, facts.anchor
     depth = f" at a depth of {say('depth', current.depth)}" if current.speed else ""
-    text = f"{_both('speed', current.speed, KNOT, 'kn', 2)}{depth}"
-    text = f"{text}, environment {current.environment}"
-    pairs.append(("strongest current", _lines(text, current.weak)))
-    if anchor is None or None in (anchor.margin, anchor.value, anchor.limit):
-        pairs.append(("anchor margin", "unknown"))
-    else:
-        margin, held, needed = map(_force, (anchor.margin, anchor.value, anchor.limit))
-        text = f"{margin}: {held} held, {needed} needed, environment {place_of(anchor)}"
-        pairs.append(("anchor margin", text))
-    pairs.append(("least factor of safety", _factor_text(factor)))
+    speed = _both("speed", current.speed, KNOT, "kn", 2)
+    strongest = f"{speed}{depth}, environment {current.environment}\n{current.weak}".strip()
+    held = "unknown"
+    if anchor is not None:
+        figures = [anchor.margin, anchor.value, anchor.limit]
+        known = [each for each in figures if each is not None]
+        said = [_both("tension", each, KILOGRAM_FORCE, "kgf", 0) for each in known]
+        if len(said) == len(figures):
+            held = "{}: {} held, {} needed, environment {}".format(
+                *said, check_summary.place_of(anchor)
+            )
     counts = counted_states(facts.findings)
     named = (State.FAIL, State.WARN, State.UNKNOWN, State.ESTIMATED, State.ACCEPTED)
-    pairs.append(("findings", ", ".join(f"{counts[state]} {state.value}" for state in named)))
-    return Pairs(tuple(pairs))
+    return Pairs((
+        ("strongest current", strongest),
+        ("anchor margin", held),
+        ("least factor of safety", _factor_text(facts.factor)),
+        ("findings", ", ".join(f"{counts[state]} {state.value}" for state in named)),
+    ))  # fmt: skip
 
 
 def _factor_text(factor: LeastFactor | None) -> str:
@@ -202,15 +191,7 @@ def _factor_text(factor: LeastFactor | None) -> str:
     if not factor.unknown:
         return text
     pieces = "1 piece gives" if factor.unknown == 1 else f"{factor.unknown} pieces give"
-    return _lines(text, f"{pieces} no breaking load.")
-
-
-def _lines(*texts: str) -> str:
-    return "\n".join(filter(None, texts))
-
-
-def _force(value: float | None) -> str:
-    return "" if value is None else _both("tension", value, KILOGRAM_FORCE, "kgf", 0)
+    return f"{text}\n{pieces} no breaking load."
 
 
 def _both(quantity: str, value: float, scale: float, unit: str, decimals: int) -> str:
@@ -266,37 +247,37 @@ def _lines_of(row: Sequence[Cell], columns: Sequence[Column], signs: float) -> f
 
 def settled_tables(facts: CheckFacts) -> Iterator[Table]:
     """What the designer has decided: what is accepted, and limits of the design's own."""
-    words = attrgetter("accept.reason", "accept.by", "accept.date", "accept.until")
-    groups = grouped(facts.accepted, words)
-    rows = [(found, accept) for found in groups if (accept := found[0].accept) is not None]
+    terms = attrgetter("accept.reason", "accept.by", "accept.date", "accept.until")
+    groups = check_summary.grouped(facts.accepted, terms)
+    rows = [(accept, found) for found in groups if (accept := found[0].accept) is not None]
     if rows:
         yield table_of(
             "Accepted",
             rows,
-            (Column("rule"), lambda one: ", ".join(rules_of(one[0]))),
-            (Column("component"), lambda one: named_components(one[0])),
-            (Column("reason", share=1.8), lambda one: one[1].reason),
-            (
-                Column("by, on", share=0.8),
-                lambda one: Cell(one[1].by or "nobody", one[1].date or ""),
+            words("rule", lambda row: ", ".join(check_summary.rules_of(row[1]))),
+            words("component", lambda row: named_components(row[1])),
+            *blocks.of_first(
+                words("reason", share=1.8),
+                words("by, on", lambda one: Cell(one.by or "nobody", one.date or ""), 0.8),
+                words("until", lambda one: one.until or "for good", 0.0),
             ),
-            (Column("until", share=0.0), lambda one: one[1].until or "for good"),
         )
     if facts.departures:
-        yield limits_table(facts.departures, "Limits that depart from their defaults")
+        title = "Limits that depart from their defaults"
+        yield check_summary.limits_table(facts.departures, title)
 
 
 def _mending(findings: Sequence[Finding]) -> Iterator[Table]:
     """The gravest of what fails, is unknown or warns; like findings are one row."""
     shown = (State.FAIL, State.UNKNOWN, State.WARN)
-    groups = joined(one for one in worst_by_part(findings) if one.state in shown)
-    if not groups:
-        return
-    yield table_of(
-        _MENDING,
-        groups,
-        (Column("state", share=0.0), lambda found: state_cell(found[0])),
-        (Column("rule", share=0.8), lambda found: RULES[found[0].rule].title),
-        (Column("component"), named_components),
-        (Column("finding", share=2.2), lambda found: said_of(found[0]).text),
-    )
+    groups = check_summary.joined(one for one in worst_by_part(findings) if one.state in shown)
+    if groups:
+        yield table_of(
+            _MENDING,
+            groups,
+            *blocks.of_first(
+                check_summary.STATE, words("rule", lambda one: RULES[one.rule].title, 0.8)
+            ),
+            words("component", named_components),
+            words("finding", lambda found: check_summary.said_of(found[0]).text, 2.2),
+        )

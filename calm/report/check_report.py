@@ -17,46 +17,13 @@ from calm.drawing.check_figures import check_figure
 from calm.files.check_limits import LimitKey
 from calm.quantities import QUANTITIES
 from calm.records.delimited import table_csv
-from calm.report.blocks import (
-    ON_THE_WAY,
-    Block,
-    Figure,
-    Heading,
-    PageBreak,
-    Prose,
-    Report,
-    ReportPart,
-    Section,
-    Signatures,
-)
+from calm.report import blocks, check_summary, check_tables, provenance
+from calm.report.blocks import Block, Figure, Prose, Report, ReportPart, Section, Signatures
 from calm.report.check_facts import PAGE_ONE, facts_of, facts_part, judged_section, left_out
-from calm.report.check_summary import (
-    limits_table,
-    matrix_tables,
-    rules_tables,
-    verdict_prose,
-    worst_table,
-)
-from calm.report.check_tables import (
-    breaks_table,
-    checks_table,
-    deck_table,
-    handling_summary,
-    handling_table,
-    inventory_table,
-    likelihood_tables,
-    results_table,
-)
+from calm.report.check_summary import limits_table, matrix_tables, rules_tables, verdict_prose
+from calm.report.check_tables import breaks_table, checks_table, deck_table, likelihood_tables
 from calm.report.explanation import comparison_part
-from calm.report.provenance import (
-    BY_WAVES,
-    NOT_JUDGED,
-    UNJUDGED,
-    date,
-    history_part,
-    inputs_part,
-    unseen,
-)
+from calm.report.provenance import BY_WAVES, NOT_JUDGED, UNJUDGED, date, history_part, inputs_part
 from calm.report.result_files import members
 from calm.report.sheet import quality_of, summary_of, table_of_line
 
@@ -90,7 +57,8 @@ def mooring_section(assessment: Assessment, against: Comparison | None = None) -
         ),
         ReportPart("Launch, recovery, breaks", tuple(_on_the_way(assessment))),
         ReportPart(
-            "Inventory", (inventory_table(assessment.inventory), deck_table(assessment.inventory))
+            "Inventory",
+            (check_tables.inventory_table(assessment.inventory), deck_table(assessment.inventory)),
         ),
         inputs_part(
             [stand.mooring.file for stand in stands],
@@ -107,12 +75,12 @@ def check_report(sections: Sequence[Section]) -> Report:
     Page one is all that an engineer signs, of one mooring; of several, a summary follows it.
     """
     count = len(sections)
-    environments = {column for each in sections for column in each.columns} - {ON_THE_WAY}
+    environments = {column for each in sections for column in each.columns} - {blocks.ON_THE_WAY}
     moorings = sections[0].name if count == 1 else f"{count} moorings"
     in_all = f"{len(environments)} environment{'s' if len(environments) != 1 else ''}"
     facts = [each.facts for each in sections if each.facts is not None]
     verdict = verdict_prose(finding for each in facts for finding in each.findings)
-    seen = unseen(finding for each in facts for finding in each.findings)
+    seen = provenance.unseen(finding for each in facts for finding in each.findings)
     signatures = Signatures(("Designed by", "Checked by"))
     return Report(
         title="Design check",
@@ -120,7 +88,7 @@ def check_report(sections: Sequence[Section]) -> Report:
         front=(
             ReportPart("", (verdict,), least=PAGE_ONE),
             *(facts_part(each, each.mooring if count > 1 else "") for each in facts),
-            ReportPart("Signatures", (signatures, PageBreak()), least=PAGE_ONE),
+            ReportPart("Signatures", (signatures, blocks.PageBreak()), least=PAGE_ONE),
             *((ReportPart("Summary", tuple(_summary(sections))),) if count > 1 else ()),
             ReportPart(NOT_JUDGED.title, (Prose(seen, State.UNKNOWN),)),
         ),
@@ -133,7 +101,7 @@ def _summary(sections: Sequence[Section]) -> Iterator[Block]:
     yield from matrix_tables(sections)
     findings = [(each.name, each.facts.findings) for each in sections if each.facts is not None]
     yield from likelihood_tables(findings)
-    yield worst_table(sections)
+    yield check_summary.worst_table(sections)
 
 
 def _judgement(assessment: Assessment, judged: Section) -> Iterator[Block]:
@@ -142,7 +110,7 @@ def _judgement(assessment: Assessment, judged: Section) -> Iterator[Block]:
         yield Prose((description,))
     yield from rules_tables(judged.columns, judged.worst)
     yield from likelihood_tables([(assessment.name, [*assessment.all_findings()])])
-    yield results_table(assessment.stands)
+    yield check_tables.results_table(assessment.stands)
 
 
 def _line(assessment: Assessment) -> Iterator[Block]:
@@ -170,9 +138,9 @@ def _drawn(assessment: Assessment) -> Iterator[Block]:
 
 def _on_the_way(assessment: Assessment) -> Iterator[Block]:
     if assessment.launch is not None or assessment.recovery is not None:
-        yield Heading("Launch and recovery in short")
-        yield handling_summary(assessment)
-        yield handling_table(assessment)
+        yield blocks.Heading("Launch and recovery in short")
+        yield check_tables.handling_summary(assessment)
+        yield check_tables.handling_table(assessment)
     else:
         net = bool(assessment.mooring.file.legs)
         said = "The launch and the recovery of a net of legs are not judged."

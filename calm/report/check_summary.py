@@ -6,8 +6,10 @@ import math
 import re
 from collections import Counter
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
+from functools import partial
 from itertools import groupby
 from operator import attrgetter
+from typing import TypeVar
 
 from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment
@@ -15,42 +17,37 @@ from calm.checks.criterion import said
 from calm.checks.finding import AS_GIVEN, OWN, Finding, State, worst_state
 from calm.files.check_limits import LimitKey
 from calm.quantities import QUANTITIES
-from calm.report.blocks import (
-    ON_THE_WAY,
-    Cell,
-    Column,
-    Item,
-    Prose,
-    Section,
-    Span,
-    Table,
-    Worst,
-    table_of,
-)
+from calm.report import blocks
+from calm.report.blocks import ON_THE_WAY, Cell, Field, Prose, Section, Span, Table, Worst, words
+
+Item = TypeVar("Item")
 
 _ABREAST = 5
 """Environments beside each other in a table; more of them take another table."""
 
-
 _rank = attrgetter("rank")
 
 
-def say_in_unit(finding: Finding, value: float | None) -> str:
-    """A value, limit or margin of a finding with its unit; nothing where it is unknown."""
-    return "" if value is None else QUANTITIES[RULES[finding.rule].quantity].say(value)
+def figure_of(finding: Finding, name: str) -> str:
+    """The value, limit or margin of a finding with its unit; nothing where it is unknown."""
+    value = getattr(finding, name)
+    if value is None:
+        return ""
+    text = QUANTITIES[RULES[finding.rule].quantity].say(value)
+    return text if name != "margin" or text.startswith("-") else f"+{text}"
 
 
-def margin_of(finding: Finding) -> str:
-    """The margin with its sign and unit."""
-    text = say_in_unit(finding, finding.margin)
-    return text if not text or text.startswith("-") else f"+{text}"
+STATE = words("state", lambda one: Cell(one.state.value, state=one.state), 0.0)
+VALUE, LIMIT, MARGIN = (
+    blocks.number(name, partial(figure_of, name=name)) for name in ("value", "limit", "margin")
+)
+"""Columns of findings."""
 
 
 def place_of(finding: Finding) -> str:
     """The environment, and what was changed in it."""
-    if finding.situation == AS_GIVEN:
-        return finding.environment
-    return f"{finding.environment}, {finding.situation}"
+    changed = "" if finding.situation == AS_GIVEN else f", {finding.situation}"
+    return f"{finding.environment}{changed}"
 
 
 def worst_by_rule(assessment: Assessment) -> tuple[Worst, ...]:
@@ -58,10 +55,9 @@ def worst_by_rule(assessment: Assessment) -> tuple[Worst, ...]:
     columns = [
         (stand.environment, (*stand.findings, *stand.tighter)) for stand in assessment.stands
     ]
-    columns.append((ON_THE_WAY, assessment.findings))
     return tuple(
         Worst(column, min(group, key=_rank), sum(one.state is State.UNKNOWN for one in group))
-        for column, findings in columns
+        for column, findings in (*columns, (ON_THE_WAY, assessment.findings))
         for group in grouped(findings, lambda each: each.rule)
     )
 
@@ -79,11 +75,8 @@ def rules_tables(columns: Sequence[str], found: Sequence[Worst]) -> Iterator[Tab
         for rule in RULES.values()
     ]
     note = "Under each state: the least margin, its component, and what is unknown."
-
-    def detail(one: Finding) -> str:
-        return f"{margin_of(one)} {one.component or ''}"
-
-    return _states("Rules by environment", columns, rows, detail, note)
+    return _states("Rules by environment", columns, rows, note,
+                   lambda one: f"{figure_of(one, 'margin')} {one.component or ''}")  # fmt: skip
 
 
 def matrix_tables(sections: Sequence[Section]) -> Iterator[Table]:
@@ -92,26 +85,24 @@ def matrix_tables(sections: Sequence[Section]) -> Iterator[Table]:
     every.pop(ON_THE_WAY, None)
     rows = [(section.name, section.worst) for section in sections]
     note = "Under each state: the rule that makes it, its least margin, and how many unknown."
-
-    def detail(one: Finding) -> str:
-        return f"{RULES[one.rule].title} {margin_of(one)}"
-
-    return _states("Moorings by environment", (*every, ON_THE_WAY), rows, detail, note)
+    return _states("Moorings by environment", (*every, ON_THE_WAY), rows, note,
+                   lambda one: f"{RULES[one.rule].title} {figure_of(one, 'margin')}")  # fmt: skip
 
 
 def _states(
     title: str,
     columns: Sequence[str],
     rows: Iterable[tuple[str, Sequence[Worst]]],
-    detail: Callable[[Finding], str],
     note: str,
+    detail: Callable[[Finding], str],
 ) -> Iterator[Table]:
     """Tables of the worst state of each row, a name and what was found of it, in each column.
 
     The detail of a state stands under it.
     """
 
-    def cell(found: Sequence[Worst]) -> Cell:
+    def cell(row: tuple[str, Sequence[Worst]], column: str) -> Cell:
+        found = [each for each in row[1] if each.column == column]
         if not found:
             return Cell("–")
         finding = min((each.finding for each in found), key=_rank)
@@ -119,15 +110,14 @@ def _states(
         texts = (detail(finding).strip(), f"{missing} unknown" if missing else "")
         return Cell(finding.state.value, "; ".join(filter(None, texts)), finding.state)
 
-    for beside in _abreast(columns):
-        yield table_of(
+    size = math.ceil(len(columns) / math.ceil(len(columns) / _ABREAST))  # of groups much the same
+    for start in range(0, len(columns), size):
+        beside = columns[start : start + size]
+        yield blocks.table_of(
             title,
             [row for row in rows if any(each.column in beside for each in row[1])],
-            (Column(title.split()[0].lower().removesuffix("s")), lambda row: row[0]),
-            *(
-                (Column(name), lambda row, name=name: cell([w for w in row[1] if w.column == name]))
-                for name in beside
-            ),
+            words(title.split()[0].lower().removesuffix("s"), lambda row: row[0]),
+            *(words(name, partial(cell, column=name)) for name in beside),
             note=note,
         )
 
@@ -143,23 +133,18 @@ def worst_table(sections: Sequence[Section]) -> Table:
             counts = Counter(state for _, state in states) if several else Counter[State]()
             worst = min((each.finding for _, each in found), key=_rank)
             rows.append((worst, sum(each.unknown for _, each in found), counts))
-    return table_of(
+
+    def in_so_many(heading: str, state: State) -> Field:
+        return blocks.number(heading, lambda row: row[2][state] or None, narrow=False)
+
+    return blocks.table_of(
         "Worst finding of each rule",
         rows,
-        (Column("rule", share=0.0), lambda row: row[0].rule),
-        (Column("state", share=0.0), lambda row: state_cell(row[0])),
-        (Column("value", numeric=True), lambda row: say_in_unit(row[0], row[0].value)),
-        (Column("limit", numeric=True), lambda row: say_in_unit(row[0], row[0].limit)),
-        (Column("margin", numeric=True), lambda row: margin_of(row[0])),
-        (Column("unknown", numeric=True, short="?"), lambda row: str(row[1] or "")),
-        *(
-            (
-                Column(heading, numeric=True, narrow=False),
-                lambda row, state=state: str(row[2][state] or ""),
-            )
-            for heading, state in (("moorings that fail", State.FAIL), ("that warn", State.WARN))
-        ),
-        (Column("where"), lambda row: _where(row[0], several)),
+        *blocks.of_first(words("rule", share=0.0), STATE, VALUE, LIMIT, MARGIN),
+        blocks.number("unknown", lambda row: row[1] or None, short="?"),
+        in_so_many("moorings that fail", State.FAIL),
+        in_so_many("that warn", State.WARN),
+        words("where", lambda row: _where(row[0], several)),
         sortable=True,
     )
 
@@ -170,14 +155,6 @@ def _where(finding: Finding, several: bool) -> str:
     if several or finding.environment != OWN or finding.situation != AS_GIVEN:
         places.append(place_of(finding))
     return ", ".join(filter(None, places))
-
-
-def _abreast(columns: Sequence[str]) -> Iterator[Sequence[str]]:
-    """The columns in groups of about the same size that fit the width of a page."""
-    groups = math.ceil(len(columns) / _ABREAST)
-    size = math.ceil(len(columns) / groups)
-    for start in range(0, len(columns), size):
-        yield columns[start : start + size]
 
 
 def grouped(items: Iterable[Item], key: Callable[[Item], Hashable]) -> list[list[Item]]:
@@ -235,11 +212,6 @@ def named_components(findings: Iterable[Finding]) -> str:
     return named(one.component or "whole line" for one in findings)
 
 
-def state_cell(finding: Finding) -> Cell:
-    """The state of a finding, in its colour and word."""
-    return Cell(finding.state.value, state=finding.state)
-
-
 def said_of(finding: Finding) -> Cell:
     """Return what was found and what to do; the figures of a pass say it all, and so does a remedy
     that names the figure missing."""
@@ -250,14 +222,7 @@ def said_of(finding: Finding) -> Cell:
     return Cell(finding.message, finding.remedy or "")
 
 
-SIGNS = {
-    State.FAIL: "!",
-    State.UNKNOWN: "?",
-    State.WARN: "~",
-    State.ACCEPTED: "◦",
-    State.ESTIMATED: "≈",
-    State.PASS: "✓",
-}
+SIGNS = dict(zip(reversed(State), "!?~≈◦✓", strict=True))
 """What stands before a verdict."""
 
 
@@ -280,7 +245,7 @@ def verdict_of(findings: Iterable[Finding]) -> tuple[State, str]:
     failing = any(one.accept is not None and (one.margin or 0.0) < 0.0 for one in findings)
     other = "else " if failing else ""
     state = worst_state(counts)
-    words = [
+    told = [
         _counted(counts[State.FAIL], "failure") if counts[State.FAIL] else f"nothing {other}fails",
         _counted(counts[State.UNKNOWN], "figure") + " unknown" if counts[State.UNKNOWN] else "",
         _counted(counts[State.WARN], "warning") if counts[State.WARN] else "",
@@ -288,13 +253,13 @@ def verdict_of(findings: Iterable[Finding]) -> tuple[State, str]:
         f"{counts[State.ACCEPTED]} accepted" if counts[State.ACCEPTED] else "",
         f"{nobody} of them by nobody" if nobody else "",
     ]
-    return state, ", ".join(word for word in words if word)
+    return state, ", ".join(filter(None, told))
 
 
 def verdict_prose(findings: Iterable[Finding]) -> Prose:
     """The verdict with its sign, such as ``? nothing fails, 34 figures unknown``."""
-    state, words = verdict_of(findings)
-    return Prose(((Span(f"{SIGNS[state]} {words}", state),),), state)
+    state, told = verdict_of(findings)
+    return Prose(((Span(f"{SIGNS[state]} {told}", state),),), state)
 
 
 def short_verdict(findings: Iterable[Finding]) -> Span:
@@ -309,14 +274,14 @@ def short_verdict(findings: Iterable[Finding]) -> Span:
 def limits_table(limits: Iterable[LimitKey], title: str = "Limits as used") -> Table:
     """Limits with their defaults and the sources of those; departures come first."""
     departs = Cell("departs", state=State.WARN)
-    return table_of(
+    return blocks.table_of(
         title,
         sorted(limits, key=lambda key: not key.departs),
-        (Column("", share=0.0), lambda key: departs if key.departs else ""),
-        (Column("limit", share=1.2), lambda key: key.name),
-        (Column("as used", numeric=True), lambda key: said(key, key.value)),
-        (Column("default", numeric=True), lambda key: said(key, key.default)),
-        (Column("source of the default", share=2.0), lambda key: key.source),
+        words("", lambda key: departs if key.departs else None, 0.0),
+        words("limit", "name", 1.2),
+        blocks.number("as used", lambda key: said(key, key.value)),
+        blocks.number("default", lambda key: said(key, key.default)),
+        words("source of the default", "source", 2.0),
         note="A limit that departs from its default is the design's own; no source is given "
         "for it.",
     )

@@ -16,7 +16,8 @@ from calm.files.catalogue import Defined
 from calm.files.components import FLEXIBLE_KINDS, KINDS, Outline
 from calm.files.definition import EstimatedFigure
 from calm.quantities import QUANTITIES
-from calm.report.blocks import Cell, Column, Heading, Pairs, ReportPart, Table
+from calm.report import blocks
+from calm.report.blocks import Cell, Field, Heading, Pairs, ReportPart, number, table_of, words
 
 if TYPE_CHECKING:
     from calm.checks.catalogue_rules import CatalogueFinding, MissingFigures
@@ -33,30 +34,40 @@ _HEADING_OF_OTHERS = "other"
 
 def to_list(catalogue: Catalogue, definitions: Mapping[str, Defined]) -> ReportPart:
     """One line for each definition, under the name of its family."""
-    columns = (
-        Column("id"),
-        Column("name"),
-        Column("net force\nin water", numeric=True),
-        Column("breaking\nload", numeric=True),
-    )
-    rows: list[tuple[Cell, ...]] = []
+    rows: list[Any] = []
     last = None
     for identifier, definition in definitions.items():
         family = _family(catalogue, identifier) or _HEADING_OF_OTHERS
         if family != last:
-            rows += [(Cell(),), (Cell(family.upper()),)]
+            rows += [Cell(), Cell(family.upper())]
             last = family
-        net, breaking = (
-            "" if getattr(definition, key, None) is None else _say(definition, key)
-            for key in ("net_buoyancy", "breaking_load")
-        )
-        name = definition.name or ""
+        rows.append((identifier, definition))
+
+    def name(row: tuple[str, Defined]) -> str:
+        _, definition = row
+        said = definition.name or ""
         if definition.prefer is not None:
-            name += f" (use {definition.prefer})"
+            said += f" (use {definition.prefer})"
         if isinstance(definition, Outline):
-            name += f" (without {', '.join(map(_heading, definition.lacks))})"
-        rows.append(tuple(map(Cell, (identifier, name, net, breaking))))
-    return ReportPart("", (Table("", columns, tuple(rows), dense=True),))
+            said += f" (without {', '.join(map(_heading, definition.lacks))})"
+        return said
+
+    def figure(heading: str, key: str) -> Field:
+        def text(row: tuple[str, Defined]) -> str | None:
+            return None if getattr(row[1], key, None) is None else _say(row[1], key)
+
+        return number(heading, text)
+
+    table = table_of(
+        "",
+        rows,
+        words("id", 0),
+        words("name", name),
+        figure("net force\nin water", "net_buoyancy"),
+        figure("breaking\nload", "breaking_load"),
+        dense=True,
+    )
+    return ReportPart("", (table,))
 
 
 def to_card(identifier: str, definition: Defined, catalogue: Catalogue | None = None) -> ReportPart:
@@ -68,9 +79,8 @@ def to_card(identifier: str, definition: Defined, catalogue: Catalogue | None = 
     following = _following(datasheet(definition, catalogue), _per_metre(definition))
     pairs = Pairs((*_figures(definition), *following))
     same = [] if catalogue is None else catalogue.same_thing(identifier)
-    if catalogue is None or len(same) < 2:
-        return ReportPart("", (Heading(identifier), pairs))
-    return ReportPart("", (Heading(identifier), pairs, _comparison(catalogue, same)))
+    beside = [_comparison(catalogue, same)] if catalogue is not None and len(same) > 1 else []
+    return ReportPart("", (Heading(identifier), pairs, *beside))
 
 
 def to_documents(catalogue: Catalogue, definitions: Mapping[str, Defined]) -> list[dict[str, Any]]:
@@ -122,36 +132,38 @@ def _following(sheet: Datasheet | None, per_metre: str) -> Iterator[tuple[str, s
     yield "Cd × area", QUANTITIES["cd_area"].figure(sheet.cd_area) + per_metre
 
 
-def _comparison(catalogue: Catalogue, same: Sequence[str]) -> Table:
+def _comparison(catalogue: Catalogue, same: Sequence[str]) -> blocks.Table:
     """The definitions of one thing beside one another, and how far they are apart."""
-    columns = (
-        Column("the same thing", share=0.0),
-        Column("", share=0.0),
-        Column("net force in water", numeric=True),
-        Column("Cd × area", numeric=True),
-        Column("by"),
-    )
-    rows, sheets = [], []
-    for identifier in same:
-        definition = catalogue.get(identifier)
-        sheet = datasheet(definition, catalogue)
-        if sheet is None:
-            continue
-        sheets.append(sheet)
-        texts = (
+    defined = {each: catalogue.get(each) for each in same}
+    sheets = {
+        identifier: sheet
+        for identifier, definition in defined.items()
+        if (sheet := datasheet(definition, catalogue)) is not None
+    }
+    rows = [
+        (
             identifier,
             "use this" if identifier == same[0] else "",
-            _text("net_buoyancy", sheet.net_buoyancy) + _per_metre(definition),
+            _text("net_buoyancy", sheet.net_buoyancy) + _per_metre(defined[identifier]),
             "" if sheet.cd_area is None else _text("cd_area", sheet.cd_area),
-            _AUTHOR.split(definition.source or "", maxsplit=1)[0],
+            _AUTHOR.split(defined[identifier].source or "", maxsplit=1)[0],
         )
-        rows.append(tuple(map(Cell, texts)))
-    nets = [sheet.net_buoyancy for sheet in sheets]
-    areas = [sheet.cd_area for sheet in sheets if sheet.cd_area is not None]
+        for identifier, sheet in sheets.items()
+    ]
+    nets = [sheet.net_buoyancy for sheet in sheets.values()]
+    areas = [sheet.cd_area for sheet in sheets.values() if sheet.cd_area is not None]
     for word, extreme in (("least", min), ("most", max)):
         area = _text("cd_area", extreme(areas)) if areas else ""
-        rows.append(tuple(map(Cell, (word, "", _text("net_buoyancy", extreme(nets)), area, ""))))
-    return Table("", columns, tuple(rows))
+        rows.append((word, "", _text("net_buoyancy", extreme(nets)), area, ""))
+    return table_of(
+        "",
+        rows,
+        words("the same thing", 0, 0.0),
+        words("", 1, 0.0),
+        number("net force in water", 2),
+        number("Cd × area", 3),
+        words("by", 4),
+    )
 
 
 def _per_metre(definition: Defined) -> str:
@@ -209,18 +221,9 @@ def to_objects(
     findings: Sequence[CatalogueFinding], missing: Sequence[MissingFigures]
 ) -> list[dict[str, Any]]:
     """Findings, then what is missing: `id`, `finding`, `message`, `missing` and `searched`."""
-    wrong = [
-        {"id": each.id, "finding": True, "message": each.message, "missing": [], "searched": []}
-        for each in findings
+    wrong = [(one.id, True, one.message, (), ()) for one in findings]
+    lacking = [(one.id, False, in_words(one), one.figures, one.searched) for one in missing]
+    return [
+        {"id": id, "finding": wrong, "message": message, "missing": [*named], "searched": [*sought]}
+        for id, wrong, message, named, sought in (*wrong, *lacking)
     ]
-    lacking = [
-        {
-            "id": each.id,
-            "finding": False,
-            "message": in_words(each),
-            "missing": list(each.figures),
-            "searched": list(each.searched),
-        }
-        for each in missing
-    ]
-    return wrong + lacking

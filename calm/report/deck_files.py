@@ -10,26 +10,18 @@ from operator import attrgetter
 from typing import Any
 
 from calm.case.net_result import NetResult
-from calm.checks.finding import State
 from calm.deck import Deck
 from calm.drawing.picture import figure_svg
 from calm.drawing.plot import draw
 from calm.drop import DropPlan
 from calm.records.delimited import table_csv
-from calm.report.blocks import Figure, PageBreak, Plate, Prose, Report, ReportPart, Section
+from calm.report import deck_lists, deck_logs
+from calm.report.blocks import Figure, PageBreak, Report, ReportPart, warned
 from calm.report.check_summary import short_verdict
-from calm.report.deck_lists import (
-    cutting_part,
-    hardware_part,
-    instruments_part,
-    lifts_part,
-    shipping_part,
-)
-from calm.report.deck_logs import deployment_part, recovery_part
 from calm.report.diagram import Paper, diagram_pages
 from calm.report.drop_sheet import drop_part
-from calm.report.net_sheet import net_part
-from calm.report.provenance import date, document_part, input_hash, moment, versions
+from calm.report.provenance import date, document_part, input_hash, moment, report_of, versions
+from calm.report.sheet import net_part
 
 Rows = Iterable[Sequence[object]]
 
@@ -166,32 +158,31 @@ def deck_report(deck: Deck, paper: Paper, notes: tuple[str, ...] = ()) -> Report
     `notes` is what else is to be said on the first sheet.
     """
     parts: list[ReportPart] = [*document_part(deck.file)]
-    said = (*deck.notes, *notes)
-    if said:
-        parts.append(ReportPart("Warnings", (Prose(said, State.WARN),)))
+    if told := warned((*deck.notes, *notes)):
+        parts.append(ReportPart("Warnings", told))
     if isinstance(deck.result, NetResult):
         shape = Figure("The net from the side, the current, and from above", net_svg(deck))
         parts.append(ReportPart("The net", (shape, *net_part(deck.result).blocks[1:-1])))
     parts += [
-        deployment_part(deck),
-        *([instruments_part(deck)] if deck.instruments else []),
-        cutting_part(deck),
-        *([hardware_part(deck)] if deck.hardware else []),
-        shipping_part(deck),
-        lifts_part(deck),
+        deck_logs.deployment_part(deck),
+        *([deck_lists.instruments_part(deck)] if deck.instruments else []),
+        deck_lists.cutting_part(deck),
+        *([deck_lists.hardware_part(deck)] if deck.hardware else []),
+        deck_lists.shipping_part(deck),
+        deck_lists.lifts_part(deck),
+        *([drop_part(deck.plan)] if isinstance(deck.plan, DropPlan) else []),
     ]
-    if isinstance(deck.plan, DropPlan):
-        parts.append(drop_part(deck.plan))
     parts[-1] = replace(parts[-1], blocks=(*parts[-1].blocks, PageBreak()))
-    parts.append(recovery_part(deck))
-    (made_by,) = (f"{name} {number}" for name, number in versions()[:1])
-    return Report(
+    report = report_of(
         deck.file.name,
         f"{deck.order}, environment: {deck.environment}",
-        (),
-        (Section(deck.file.name, tuple(parts)),),
-        date(),
-        plates(deck, paper),
+        *parts,
+        deck_logs.recovery_part(deck),
+    )
+    made_by = " ".join(versions()[0])
+    return replace(
+        report,
+        plates=plates(deck, paper),
         verdict=short_verdict(deck.assessment.all_findings()),
         foot=f"{made_by}, inputs SHA-256 {input_hash([deck.file])}",
     )
@@ -207,10 +198,10 @@ def diagram_report(deck: Deck, paper: Paper) -> Report:
     return Report(deck.file.name, "mooring diagram", (), (), date(), plates(deck, paper))
 
 
-def plates(deck: Deck, paper: Paper) -> tuple[Plate, ...]:
+def plates(deck: Deck, paper: Paper) -> tuple[Figure, ...]:
     """The pages of the diagram."""
     pages = diagram_pages(deck, paper)
     return tuple(
-        Plate(f"Mooring diagram, {number} of {len(pages)}", svg)
+        Figure(f"Mooring diagram, {number} of {len(pages)}", svg)
         for number, svg in enumerate(pages, 1)
     )

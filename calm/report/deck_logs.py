@@ -10,15 +10,25 @@ from calm.deck.deck_items import DeckItem, DeckRow, Order, rows_on_paper
 from calm.deck.model import RecoveredItem
 from calm.drop import DropPlan
 from calm.quantities import QUANTITIES, say
-from calm.report.blocks import Block, Cell, Column, Field, Pairs, Prose, ReportPart, Table, table_of
+from calm.report.blocks import (
+    Block,
+    Cell,
+    Pairs,
+    Prose,
+    ReportPart,
+    Table,
+    blank,
+    number,
+    table_of,
+    words,
+)
 from calm.report.drop_sheet import whereabouts
-from calm.report.net_sheet import leg_titles
 from calm.report.provenance import position_text
+from calm.report.sheet import leg_titles
 
 _BOX = Cell("☐")
 _BLANK = Cell("\u00a0", "\u00a0")
 """Room to write, as high as two lines of text."""
-_SOUNDINGS = 4
 _LEAST = 9.0
 """Size of the texts of a log, which is read and filled in on deck [pt]."""
 
@@ -26,19 +36,27 @@ _LEAST = 9.0
 def deployment_part(deck: Deck) -> ReportPart:
     """Return what is done before, the order over the side, and where the anchor went."""
     last = deck.order is Order.ANCHOR_LAST
+    said = (
+        ("Anchor last: the top" if last else "Anchor first: the lower end")
+        + f"{' of each leg' if deck.file.legs else ''} goes over the side first. "
+        + (_LEGS if deck.file.legs else "")
+        + "Lengths are as cut; clamps are placed from the upper end of their piece, unstretched."
+    )
+    unit = QUANTITIES["depth"].display_unit
+    soundings = table_of(
+        "Soundings",
+        "1234",
+        words("sounding", str, 0.0),
+        blank("time", "UTC"),
+        blank("position", share=2.0),
+        *(blank(heading, unit) for heading in ("uncorrected", "correction", "corrected")),
+        by_hand=True,
+    )
     blocks: tuple[Block, ...] = (
         _station(deck, _deployed(deck)[0]),
-        Prose(
-            (
-                ("Anchor last: the top" if last else "Anchor first: the lower end")
-                + f"{' of each leg' if deck.file.legs else ''} goes over the side first. "
-                + (_LEGS if deck.file.legs else "")
-                + "Lengths are as cut; clamps are placed from the upper end of their piece, "
-                "unstretched.",
-            )
-        ),
+        Prose((said,)),
         *_releases(deck, _TESTED, [_BOX] * len(_TESTED)),
-        _soundings(),
+        soundings,
         _positions(deck),
         *_over_the_side(deck),
     )
@@ -71,12 +89,21 @@ def recovery_part(deck: Deck) -> ReportPart:
             said.append("The rise is computed in still water.")
     named = zip(("deployed", "position", "water depth"), _deployed(deck), strict=True)
     known = tuple((name, text) for name, text in named if text)
+    events = table_of(
+        "At the release",
+        _EVENTS,
+        words("event", str),
+        blank("time", "UTC", 0.7),
+        blank("position"),
+        blank("remarks", share=1.5),
+        by_hand=True,
+    )
     blocks: tuple[Block, ...] = (
         _station(deck, ""),
         *([Pairs(known)] if known else []),
         Prose(tuple(said)),
         *_releases(deck, _FIRED, ()),
-        _events(),
+        events,
         *_surfacing(deck),
     )
     return ReportPart("Recovery log", blocks, _LEAST)
@@ -96,16 +123,18 @@ _FIRED = ("enabled\nUTC", "range", "command\nsent, UTC", "confirmed\nUTC")
 def _station(deck: Deck, day: str) -> Table:
     """Who was where and in what weather; what the file does not say is written in by hand."""
     document = deck.file.document
-    fields = (
-        (Column("ship"), document.ship if document else None),
-        (Column("cruise"), document.cruise if document else None),
-        (Column("station", share=0.7), None),
-        (Column("date, UTC"), day),
-        (Column("observer"), None),
-        (Column("wind, sea, current, weather", share=2.4), None),
-    )
-    row = tuple(Cell(text) if text else _BLANK for _, text in fields)
-    return Table("", tuple(column for column, _ in fields), (row,), by_hand=True)
+    known = {
+        "ship": document.ship if document else None,
+        "cruise": document.cruise if document else None,
+        "station": None,
+        "date, UTC": day,
+        "observer": None,
+        "wind, sea, current, weather": None,
+    }
+    shares = {"station": 0.7, "wind, sea, current, weather": 2.4}
+    row = [Cell(text) if text else _BLANK for text in known.values()]
+    heads = (words(name, at, shares.get(name, 1.0)) for at, name in enumerate(known))
+    return table_of("", [row], *heads, by_hand=True)
 
 
 def _deployed(deck: Deck) -> tuple[str, str, str]:
@@ -150,24 +179,27 @@ def _piece(row: DeckRow) -> Cell:
 
 def _releases(deck: Deck, checks: Sequence[str], boxes: Sequence[Cell]) -> list[Table]:
     """The releases with their codes, and what is checked of each: in boxes or in writing."""
-    empty = [*boxes, *[Cell()] * (len(checks) - len(boxes) + 1)]
-    rows = [
-        (Cell(release.serial or ""), Cell("\n".join(release.code_lines)), *empty)
-        for release in deck.file.releases
-    ]
-    known = {release.serial for release in deck.file.releases}
+    releases = deck.file.releases
+    known = {release.serial for release in releases}
+    rows = [(Cell(one.serial or ""), "\n".join(one.code_lines)) for one in releases]
     rows += [
-        (Cell(one.serial or "", one.label), Cell(), *empty)
+        (Cell(one.serial or "", one.label), "")
         for one in deck.parts
         if one.role == "release" and (one.serial is None or one.serial not in known)
     ]
-    columns = (
-        Column("release, serial number"),
-        Column("codes"),
-        *(Column(check, share=0.0 if boxes else 0.7) for check in checks),
-        Column("battery, remarks"),
+    table = table_of(
+        "Releases",
+        rows,
+        words("release, serial number", 0),
+        words("codes", 1),
+        *(
+            words(check, lambda _: _BOX, 0.0) if boxes else blank(check, share=0.7)
+            for check in checks
+        ),
+        blank("battery, remarks"),
+        by_hand=True,
     )
-    return [Table("Releases", columns, tuple(rows), by_hand=True)] if rows else []
+    return [table] if rows else []
 
 
 def _over_the_side(deck: Deck) -> list[Table]:
@@ -179,14 +211,15 @@ def _over_the_side(deck: Deck) -> list[Table]:
             return placed(row.items, deck)
         return "\n".join(filter(None, (row.lengths, placed(row.floats, deck))))
 
-    fields: tuple[Field[DeckRow], ...] = (
-        (Column("no.", numeric=True), lambda row: _numbers(row, order)),
-        (Column("piece", share=3.8), _piece),
-        (Column("length,\nor place", QUANTITIES["length"].display_unit, share=1.3), length),
-        (Column("serial\nnumber", share=0.7), lambda row: row.first.serial or ""),
-        (Column("over", "UTC", share=0.6), lambda row: ""),
-        (Column("remarks"), lambda row: ""),
-        (Column("☐", share=0.0), lambda row: _BOX),
+    unit = QUANTITIES["length"].display_unit
+    fields = (
+        number("no.", lambda row: _numbers(row, order)),
+        words("piece", _piece, 3.8),
+        words("length,\nor place", length, 1.3, unit=unit),
+        words("serial\nnumber", "first.serial", 0.7),
+        blank("over", "UTC", 0.6),
+        blank("remarks"),
+        words("☐", lambda _: _BOX, 0.0),
     )
     return [
         table_of(title, rows_on_paper(items), *fields, by_hand=True)
@@ -204,54 +237,27 @@ def _titled(title: str, deck: Deck, items: Sequence[DeckItem]) -> list[tuple[str
 
 
 def _positions(deck: Deck) -> Table:
-    file = deck.file
+    file, plan = deck.file, deck.plan
     target = "" if file.position is None else position_text(file.position)
-    depth = QUANTITIES["depth"].say(file.environment.depth)
-    plan = deck.plan
     start = let_go = ""
     if isinstance(plan, DropPlan):
         let_go = whereabouts(plan, plan.let_go)
         start = "" if plan.start is None else whereabouts(plan, plan.start.place)
     rows = (
-        (Cell("Target"), Cell(), Cell(target), Cell(depth), Cell()),
-        (Cell("Fall-back target"), Cell(), Cell(), Cell(), Cell()),
-        (Cell("First piece over"), Cell(start), Cell(), Cell(), Cell()),
-        (Cell("Anchor let go"), Cell(let_go), Cell(), Cell(), Cell()),
-        (Cell("Anchor, ranged"), Cell(), *map(Cell, _deployed(deck)[1:]), Cell()),
+        ("Target", "", target, QUANTITIES["depth"].say(file.environment.depth)),
+        ("Fall-back target", "", "", ""),
+        ("First piece over", start, "", ""),
+        ("Anchor let go", let_go, "", ""),
+        ("Anchor, ranged", "", *_deployed(deck)[1:]),
     )
-    columns = (
-        Column(""),
-        Column("planned, from the target", share=1.9),
-        Column("position", share=1.9),
-        Column("depth,\ncorrected", share=0.8),
-        Column("time", "UTC", share=0.6),
-    )
-    return Table("Positions", columns, rows, by_hand=True)
-
-
-def _soundings() -> Table:
-    unit = QUANTITIES["depth"].display_unit
     return table_of(
-        "Soundings",
-        range(1, _SOUNDINGS + 1),
-        (Column("sounding", share=0.0), str),
-        (Column("time", "UTC"), lambda one: ""),
-        (Column("position", share=2.0), lambda one: ""),
-        (Column("uncorrected", unit), lambda one: ""),
-        (Column("correction", unit), lambda one: ""),
-        (Column("corrected", unit), lambda one: ""),
-        by_hand=True,
-    )
-
-
-def _events() -> Table:
-    return table_of(
-        "At the release",
-        _EVENTS,
-        (Column("event"), str),
-        (Column("time", "UTC", share=0.7), lambda one: ""),
-        (Column("position"), lambda one: ""),
-        (Column("remarks", share=1.5), lambda one: ""),
+        "Positions",
+        rows,
+        words("", 0),
+        words("planned, from the target", 1, 1.9),
+        words("position", 2, 1.9),
+        words("depth,\ncorrected", 3, 0.8),
+        blank("time", "UTC", 0.6),
         by_hand=True,
     )
 
@@ -260,18 +266,19 @@ def _surfacing(deck: Deck) -> list[Table]:
     order = {id(one.item): number for number, one in enumerate(deck.recovery, 1)}
     risen = {id(one.item): one for one in deck.recovery}
     listed = [one.item for one in deck.recovery if not one.item.is_joint]
-    fields: tuple[Field[DeckRow], ...] = (
-        (Column("no.", numeric=True), lambda row: _numbers(row, order)),
-        (Column("piece", share=4.6), _piece),
-        (Column("serial\nnumber", share=0.95), lambda row: row.first.deployed_serial or ""),
-        (
-            Column("up after,\nor hangs", share=0.0),
-            lambda row: _expected([risen[id(one)] for one in (*row.items, *row.floats)]),
-        ),
-        (Column("seen", "UTC", share=0.65), lambda row: ""),
-        (Column("on deck", "UTC", share=0.65), lambda row: ""),
-        (Column("whole,\nruns,\nfouled", share=0.0), lambda row: Cell("☐ ☐ ☐")),
-        (Column("remarks"), lambda row: row.first.remark or ""),
+
+    def expected(row: DeckRow) -> Cell:
+        return _expected([risen[id(one)] for one in (*row.items, *row.floats)])
+
+    fields = (
+        number("no.", lambda row: _numbers(row, order)),
+        words("piece", _piece, 4.6),
+        words("serial\nnumber", "first.deployed_serial", 0.95),
+        words("up after,\nor hangs", expected, 0.0),
+        blank("seen", "UTC", 0.65),
+        blank("on deck", "UTC", 0.65),
+        words("whole,\nruns,\nfouled", lambda _: "☐ ☐ ☐", 0.0),
+        words("remarks", "first.remark"),
     )
     note = (
         "Up after: time since the release, or the depth at which a piece hangs once the "

@@ -12,21 +12,8 @@ from string import ascii_uppercase
 from calm.case import Result
 from calm.case.net_result import legs_of
 from calm.deck import Deck
-from calm.drawing.schematic import (
-    FONT,
-    HEAD,
-    LEADING,
-    ColumnHead,
-    LineColumn,
-    PlacedPart,
-    column_of,
-    draw_ground,
-    draw_headings,
-    draw_parts,
-    draw_sea,
-    measured,
-    placed,
-)
+from calm.drawing import schematic
+from calm.drawing.schematic import FONT, HEAD, LEADING, ColumnHead, PlacedPart, placed
 from calm.drawing.schematic.deck_parts import parts_of
 from calm.drawing.schematic.pen import INK, SOFT, Pen, picture, svg_text, wrapped
 from calm.drawing.schematic.shown_parts import TextRow, one_line
@@ -34,8 +21,8 @@ from calm.drawing.schematic.sign import LINES, WORDS, Sign
 from calm.drawing.schematic.symbols import draw_cable, figure_of
 from calm.quantities import QUANTITIES, say
 from calm.report.check_summary import short_verdict
-from calm.report.net_sheet import ends_told, leg_title
 from calm.report.provenance import title_pairs
+from calm.report.sheet import ends_told, leg_title
 
 _HEADINGS = (
     (("cut,", "or place"), "length"), (("stretched",), "length"), (("depth",), "depth"),
@@ -80,39 +67,6 @@ class Paper(StrEnum):
 
 
 @dataclass(frozen=True)
-class TitleBlock:
-    """Fields in rows of as many columns, each with its text in lines; what is not known is blank.
-
-    Attributes
-    ----------
-    rows : of name and lines of text
-    columns : how many stand side by side
-    height : of all [pt]
-    """
-
-    rows: tuple[tuple[tuple[str, tuple[str, ...]], ...], ...]
-    columns: int
-    height: float
-
-    def draw(self, page: Pen, left: float, top: float, width: float, sheet: str) -> None:
-        """In a frame, its upper left corner at a point; `sheet` is such as 2 of 5."""
-        step, y = width / self.columns, top
-        for row in self.rows:
-            height = _height(row)
-            for number, (name, lines) in enumerate(one for one in row if one[0]):
-                x = left + number * step
-                page.draw(
-                    "rect", x=x, y=y, width=step, height=height, fill="none", stroke=INK,
-                    stroke_width=0.6,
-                )  # fmt: skip
-                page.letters(x + _PAD, y + 6.0, name, size=FONT, colour=SOFT)
-                shown = (sheet,) if name == "sheet" else lines
-                for line, text in enumerate(shown):
-                    page.letters(x + _PAD, y + 6.0 + LEADING * (line + 1), text, size=FONT)
-            y += height
-
-
-@dataclass(frozen=True)
 class _PageColumn:
     """A column of a page: its parts, what it comes from and leads to, and the leg it is of.
 
@@ -135,24 +89,147 @@ _Stacks = tuple[tuple[tuple[float, _PageColumn], ...], ...]
 """Columns in reading order, in each its legs with how far down they begin [pt]."""
 
 
-@dataclass(frozen=True)
-class _Pages:
-    """The pages of a diagram: their columns in reading order, and what each page has besides.
+class _Diagram:
+    """The pages of a diagram: its columns in reading order, and what each page has besides.
 
     In a column stand one or several legs, each with how far it is moved down.
     """
 
-    title: str
-    paper: Paper
-    block: TitleBlock
-    column: LineColumn
-    columns: _Stacks
-    legend: tuple[Sign, ...]
+    def __init__(self, deck: Deck, paper: Paper) -> None:
+        lines = legs_of(deck.result)
+        listed = [items for _, items in deck.by_leg(deck.parts, lambda one: one.index)]
+        legs = [
+            parts_of(deck, items, surface=line.type == "surface")
+            for line, items in zip(lines, listed, strict=True)
+        ]
+        parts = [part for leg in legs for part in leg]
+        self.title, self.paper, self.fields = one_line(deck.file.name), paper, _fields(deck, paper)
+        self.bottom = paper.size[1] - _MARGIN - sum(map(_height, self.fields))
+        headings = [ColumnHead(words, QUANTITIES[name].display_unit) for words, name in _HEADINGS]
+        rows = (row for part in parts for row in part.rows)
+        self.column = column = schematic.column_of(rows, headings, paper.column_width)
+        self.legend = tuple({part.sign.symbol: part.sign for part in parts}.values())
+        sets = (  # long cables are drawn shorter where that saves a page
+            [
+                (line, schematic.measured(leg, column, growth))
+                for line, leg in zip(lines, legs, strict=True)
+            ]
+            for growth in (1.0, 0.5, 0.0)
+        )
+        self.columns = min(map(self._even, sets), key=len)
+        self.count = -(-len(self.columns) // paper.columns)
 
-    @property
-    def count(self) -> int:
-        """How many there are."""
-        return -(-len(self.columns) // self.paper.columns)
+    def _even(self, legs: Sequence[tuple[Result, Sequence[PlacedPart]]]) -> _Stacks:
+        """The columns of all legs; the last takes over parts until it is as long as the first.
+
+        Below its last part there is room for the seabed and the legend, above the title block.
+        """
+        need = _GROUND + LEADING - (-len(self.legend) // _LEGEND_COLUMNS) * _LEGEND_ROW
+        lowest = self.bottom
+        even: _Stacks = ()
+        while True:
+            marks = (
+                letter + (str(turn) if turn else "")
+                for turn in count()
+                for letter in ascii_uppercase
+            )
+            every = (one for line, leg in legs for one in _columns(line, leg, lowest, marks))
+            columns = self._stacked(every)
+            if even and len(columns) > len(even):
+                return even
+            first, last = (down + one.end for down, one in (columns[0][-1], columns[-1][-1]))
+            if len(columns) % self.paper.columns or last + need <= self.bottom:
+                even = columns
+                if len(columns) == 1 or len(legs) > 1 or last >= _EVEN * first:
+                    return even
+            lowest -= 2 * LEADING
+
+    def _stacked(self, columns: Iterable[_PageColumn]) -> _Stacks:
+        """The columns, of legs as many in one as there is room for above the title block."""
+        found: list[list[tuple[float, _PageColumn]]] = []
+        down = 0.0
+        for one in columns:
+            if found:
+                down = found[-1][-1][0] + found[-1][-1][1].end + _CONTINUED + HEAD - _TOP
+            if found and one.leg and down + one.end + _GROUND <= self.bottom:
+                found[-1].append((down, one))
+            else:
+                found.append([(0.0, one)])
+        return tuple(map(tuple, found))
+
+    def fill(self, page: Pen, number: int) -> None:
+        """Draw a page: its head, its columns, its title block, and the legend on the last one."""
+        width = self.paper.size[0] - 2 * _MARGIN
+        page.write(_MARGIN, _MARGIN + 0.4 * _TITLE, self.title, width, size=_TITLE, bold=True)
+        first = number * self.paper.columns
+        there = self.columns[first : first + self.paper.columns]
+        for at, column in enumerate(there):
+            for down, one in column:
+                self._draw_column(page.group(0.0, down), one, self.paper.left(at))
+        if number + 1 == self.count:
+            self._draw_legend(page, len(there) - (len(there) == self.paper.columns))
+        self._draw_title_block(page, f"{number + 1} of {self.count}")
+
+    def _draw_column(self, page: Pen, one: _PageColumn, left: float) -> None:
+        column = self.column
+        schematic.draw_headings(page, column, left, _TOP - HEAD)
+        if one.leg:
+            page.write(left, _TOP - 8.0, one.leg, column.text[1], size=FONT, bold=True)
+        start, end = one.parts[0].top, one.end
+        if one.above is None:
+            surface = one.parts[0].middle if one.afloat else _TOP + _SKY
+            row = None if one.afloat else TextRow("sea surface", "")
+            schematic.draw_sea(page, column, left, (surface, end), row)
+        if one.below is None:
+            schematic.draw_ground(page, column, left, end, TextRow("seabed", ""))
+        if one.above is not None:
+            self._draw_continued(page, left, start - _CONTINUED, one.above)
+        schematic.draw_parts(page, one.parts, column, left)
+        if one.below is not None:
+            self._draw_continued(page, left, end, one.below)
+
+    def _draw_continued(self, page: Pen, left: float, top: float, words: str) -> None:
+        """Where a line is parted: its two ends carry the same letter."""
+        x, text = left + self.column.line_at, left + self.column.text[0]
+        page.line(x, top, x, top + _CONTINUED, stroke=INK, stroke_width=1.2, stroke_dasharray="2 2")
+        page.draw(
+            "rect", x=text - 4.0, y=top + 2.0, width=78.0, height=_CONTINUED - 4.0, fill="white",
+            stroke=INK, stroke_width=0.8,
+        )  # fmt: skip
+        page.letters(text, top + _CONTINUED / 2, words, size=FONT, bold=True)
+
+    def _draw_legend(self, page: Pen, column: int) -> None:
+        """The symbols that are drawn, each in words, at the foot of a column."""
+        left = self.paper.left(column)
+        top = self.bottom + (-len(self.legend) // _LEGEND_COLUMNS) * _LEGEND_ROW
+        page.letters(left, top - LEADING - 5.0, "Symbols", size=FONT, bold=True)
+        pen = page.draw("g", stroke=INK, stroke_width=0.9, fill=INK)
+        step = self.paper.column_width / _LEGEND_COLUMNS
+        for place, sign in enumerate(self.legend):
+            x = left + 14.0 + step * (place % _LEGEND_COLUMNS)
+            y = top + _LEGEND_ROW * (place // _LEGEND_COLUMNS) + _LEGEND_ROW / 2 - 3.0
+            if sign.symbol in LINES:
+                draw_cable(pen, sign.symbol, x, y - 9.0, y + 9.0)
+            else:
+                figure = figure_of(Sign(sign.symbol))
+                figure.draw(pen.group(x, y, min(0.5, 20.0 / figure.height)))
+            page.letters(x + 18.0, y, WORDS[sign.symbol], size=FONT)
+
+    def _draw_title_block(self, page: Pen, sheet: str) -> None:
+        """Fields in a frame, what is not known blank; `sheet` is such as 2 of 5."""
+        step, y = (self.paper.size[0] - 2 * _MARGIN) / _COLUMNS[self.paper], self.bottom
+        for row in self.fields:
+            height = _height(row)
+            for number, (name, lines) in enumerate(row):
+                x = _MARGIN + number * step
+                page.draw(
+                    "rect", x=x, y=y, width=step, height=height, fill="none", stroke=INK,
+                    stroke_width=0.6,
+                )  # fmt: skip
+                page.letters(x + _PAD, y + 6.0, name, size=FONT, colour=SOFT)
+                for line, text in enumerate((sheet,) if name == "sheet" else lines, 1):
+                    page.letters(x + _PAD, y + 6.0 + LEADING * line, text, size=FONT)
+            y += height
 
 
 def diagram_pages(deck: Deck, paper: Paper) -> list[str]:
@@ -162,88 +239,38 @@ def diagram_pages(deck: Deck, paper: Paper) -> list[str]:
     two clamps; where a line goes on, both ends carry the same letter. No text is cut: long ones
     wrap. The same deck gives the same text.
     """
-    pages, written = _pages(deck, paper), []
-    for number in range(pages.count):
-        page = picture(*paper.size, pages.title)
-        _fill(page, pages, number)
-        written.append(svg_text(page))
-    return written
+    diagram = _Diagram(deck, paper)
+    pages = [picture(*paper.size, diagram.title) for _ in range(diagram.count)]
+    for number, page in enumerate(pages):
+        diagram.fill(page, number)
+    return [svg_text(page) for page in pages]
 
 
 def diagram_svg(deck: Deck, paper: Paper) -> str:
     """All pages of the diagram, one below the other, as one picture."""
-    pages, (width, height) = _pages(deck, paper), paper.size
-    drawn = picture(width, height * pages.count, pages.title)
-    for number in range(pages.count):
-        _fill(drawn.group(0.0, number * height), pages, number)
+    diagram, (width, height) = _Diagram(deck, paper), paper.size
+    drawn = picture(width, height * diagram.count, diagram.title)
+    for number in range(diagram.count):
+        diagram.fill(drawn.group(0.0, number * height), number)
     return svg_text(drawn)
-
-
-def _pages(deck: Deck, paper: Paper) -> _Pages:
-    lines = legs_of(deck.result)
-    listed = [items for _, items in deck.by_leg(deck.parts, lambda one: one.index)]
-    legs = [
-        parts_of(deck, items, surface=line.type == "surface")
-        for line, items in zip(lines, listed, strict=True)
-    ]
-    parts = [part for leg in legs for part in leg]
-    block = title_block_of(deck, paper)
-    headings = [ColumnHead(words, QUANTITIES[name].display_unit) for words, name in _HEADINGS]
-    rows = (row for part in parts for row in part.rows)
-    column = column_of(rows, headings, paper.column_width)
-    legend = tuple({part.sign.symbol: part.sign for part in parts}.values())
-    need = _GROUND + LEADING - (-len(legend) // _LEGEND_COLUMNS) * _LEGEND_ROW
-    sets = (  # long cables are drawn shorter where that saves a page
-        [(line, measured(leg, column, growth)) for line, leg in zip(lines, legs, strict=True)]
-        for growth in (1.0, 0.5, 0.0)
-    )
-    columns = min((_even(each, paper, block.height, need) for each in sets), key=len)
-    return _Pages(one_line(deck.file.name), paper, block, column, columns, legend)
-
-
-def _even(
-    legs: Sequence[tuple[Result, Sequence[PlacedPart]]], paper: Paper, block: float, need: float
-) -> _Stacks:
-    """The columns of all legs; the last takes over parts until it is about as long as the first.
-
-    Below the last part there is `need` for the seabed and the legend, above the title `block` [pt].
-    """
-    bottom, foot = paper.size[1] - _MARGIN - block, block
-    even: _Stacks = ()
-    while True:
-        marks = (
-            letter + (str(turn) if turn else "") for turn in count() for letter in ascii_uppercase
-        )
-        every = (one for line, leg in legs for one in _columns(line, leg, paper, foot, marks))
-        columns = _stacked(every, bottom)
-        if even and len(columns) > len(even):
-            return even
-        first, last = (down + one.end for down, one in (columns[0][-1], columns[-1][-1]))
-        if len(columns) % paper.columns or last + need <= bottom:
-            even = columns
-            if len(columns) == 1 or len(legs) > 1 or last >= _EVEN * first:
-                return even
-        foot += 2 * LEADING
 
 
 _TOP = _MARGIN + _TITLE_ROOM + HEAD
 
 
 def _columns(
-    line: Result, parts: Sequence[PlacedPart], paper: Paper, foot: float, marks: Iterator[str]
+    line: Result, parts: Sequence[PlacedPart], lowest: float, marks: Iterator[str]
 ) -> Iterator[_PageColumn]:
     """The columns of a line or a leg in reading order.
 
     Parameters
     ----------
-    foot : the height of the title block [pt]
+    lowest : how far down a column may reach [pt]
     marks : of the places where a line goes on
     """
-    afloat, (top, bottom) = line.type == "surface", ends_told(line)
+    afloat, (above, bottom) = line.type == "surface", ends_told(line)
     sea = _MAST - parts[0].height / 2 if afloat else _SKY + _SUBMERGED
-    room = paper.size[1] - foot - _MARGIN - _TOP - _CONTINUED - max(sea, _CONTINUED)
-    above = top
-    for group in _broken(parts, room):
+    for group in _broken(parts, lowest - _TOP - _CONTINUED - max(sea, _CONTINUED)):
         mark = "" if group[-1] is parts[-1] else next(marks)
         if above is not None:
             there = placed(group, _TOP + _CONTINUED)
@@ -253,85 +280,6 @@ def _columns(
         leg = leg_title(line) if line.file.legs else ""
         yield _PageColumn(there, above, below, afloat and above is None, leg)
         above = f"from {mark}"
-
-
-def _stacked(columns: Iterable[_PageColumn], bottom: float) -> _Stacks:
-    """The columns, of legs as many in one as there is room for above `bottom`."""
-    found: list[list[tuple[float, _PageColumn]]] = []
-    for one in columns:
-        down = found[-1][-1][0] + found[-1][-1][1].end + _CONTINUED + HEAD - _TOP if found else 0.0
-        if found and one.leg and down + one.end + _GROUND <= bottom:
-            found[-1].append((down, one))
-        else:
-            found.append([(0.0, one)])
-    return tuple(map(tuple, found))
-
-
-def _fill(page: Pen, pages: _Pages, number: int) -> None:
-    """Draw a page: its head, its columns, its title block, and the legend on the last one."""
-    paper, block = pages.paper, pages.block
-    width, height = paper.size
-    page.write(
-        _MARGIN, _MARGIN + 0.4 * _TITLE, pages.title, width - 2 * _MARGIN, size=_TITLE, bold=True
-    )
-    first = number * paper.columns
-    there = pages.columns[first : first + paper.columns]
-    for at, column in enumerate(there):
-        for down, one in column:
-            _draw_column(page.group(0.0, down), one, pages.column, paper.left(at))
-    bottom = height - _MARGIN - block.height
-    if number + 1 == pages.count:
-        place = len(there) - (len(there) == paper.columns)
-        _draw_legend(page, pages, paper.left(place), bottom)
-    sheet = f"{number + 1} of {pages.count}"
-    block.draw(page, _MARGIN, bottom, width - 2 * _MARGIN, sheet)
-
-
-def _draw_column(page: Pen, one: _PageColumn, column: LineColumn, left: float) -> None:
-    draw_headings(page, column, left, _TOP - HEAD)
-    if one.leg:
-        page.write(left, _TOP - 8.0, one.leg, column.text[1], size=FONT, bold=True)
-    start, end = one.parts[0].top, one.end
-    surface = one.parts[0].middle if one.afloat else _TOP + _SKY
-    if one.above is None:
-        row = None if one.afloat else TextRow("sea surface", "")
-        draw_sea(page, column, left, (surface, end), row)
-    if one.below is None:
-        draw_ground(page, column, left, end, TextRow("seabed", ""))
-    if one.above is not None:
-        _draw_continued(page, column, left, start - _CONTINUED, one.above)
-    draw_parts(page, one.parts, column, left)
-    if one.below is not None:
-        _draw_continued(page, column, left, end, one.below)
-
-
-def _draw_continued(page: Pen, column: LineColumn, left: float, top: float, words: str) -> None:
-    """Where a line is parted: its two ends carry the same letter."""
-    x, text = left + column.line_at, left + column.text[0]
-    page.line(x, top, x, top + _CONTINUED, stroke=INK, stroke_width=1.2, stroke_dasharray="2 2")
-    page.draw(
-        "rect", x=text - 4.0, y=top + 2.0, width=78.0, height=_CONTINUED - 4.0, fill="white",
-        stroke=INK, stroke_width=0.8,
-    )  # fmt: skip
-    page.letters(text, top + _CONTINUED / 2, words, size=FONT, bold=True)
-
-
-def _draw_legend(page: Pen, pages: _Pages, left: float, bottom: float) -> None:
-    """The symbols that are drawn, each in words, at the foot of the last column."""
-    rows = -(-len(pages.legend) // _LEGEND_COLUMNS)
-    top = bottom - rows * _LEGEND_ROW
-    page.letters(left, top - LEADING - 5.0, "Symbols", size=FONT, bold=True)
-    pen = page.draw("g", stroke=INK, stroke_width=0.9, fill=INK)
-    step = pages.paper.column_width / _LEGEND_COLUMNS
-    for place, sign in enumerate(pages.legend):
-        x = left + 14.0 + step * (place % _LEGEND_COLUMNS)
-        y = top + _LEGEND_ROW * (place // _LEGEND_COLUMNS) + _LEGEND_ROW / 2 - 3.0
-        if sign.symbol in LINES:
-            draw_cable(pen, sign.symbol, x, y - 9.0, y + 9.0)
-        else:
-            figure = figure_of(Sign(sign.symbol))
-            figure.draw(pen.group(x, y, min(0.5, 20.0 / figure.height)))
-        page.letters(x + 18.0, y, WORDS[sign.symbol], size=FONT)
 
 
 def _broken(parts: Sequence[PlacedPart], room: float) -> Iterator[list[PlacedPart]]:
@@ -363,15 +311,17 @@ _COLUMNS = {Paper.A4: 5, Paper.LETTER: 5, Paper.A3: 9}
 _PAD = 4.0
 
 
-def title_block_of(deck: Deck, paper: Paper) -> TitleBlock:
-    """The title block of a mooring, without the number of its page."""
+_Fields = tuple[tuple[str, tuple[str, ...]], ...]
+"""A row of the title block: names and lines of text."""
+
+
+def _fields(deck: Deck, paper: Paper) -> list[_Fields]:
+    """The title block of a mooring, row by row, without the number of its page."""
     known = {**dict(title_pairs(deck.file)), **_known(deck), "environment": deck.environment}
     columns = _COLUMNS[paper]
     room = (paper.size[0] - 2 * _MARGIN) / columns - 2 * _PAD
     fields = [(name, tuple(wrapped(one_line(known.get(name, "")), room, FONT))) for name in _FIELDS]
-    fields += [("", ())] * (-len(fields) % columns)
-    rows = tuple(tuple(fields[start : start + columns]) for start in range(0, len(fields), columns))
-    return TitleBlock(rows, columns, sum(map(_height, rows)))
+    return [tuple(fields[start : start + columns]) for start in range(0, len(fields), columns)]
 
 
 def _known(deck: Deck) -> dict[str, str]:
@@ -394,5 +344,5 @@ def _known(deck: Deck) -> dict[str, str]:
     }
 
 
-def _height(row: tuple[tuple[str, tuple[str, ...]], ...]) -> float:
+def _height(row: _Fields) -> float:
     return 8.0 + LEADING * max(1, *(len(lines) for _, lines in row)) + 3.0

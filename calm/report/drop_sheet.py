@@ -14,22 +14,10 @@ from calm.drop import DropPlan
 from calm.drop.fall_record import DepthReached
 from calm.physics.line import Floats
 from calm.quantities import QUANTITIES, bearing_text, duration, say
-from calm.report.blocks import (
-    Block,
-    Cell,
-    Column,
-    Field,
-    Figure,
-    Note,
-    Pairs,
-    Prose,
-    ReportPart,
-    Table,
-    table_of,
-)
+from calm.report import blocks
+from calm.report.blocks import Cell, Figure, Prose, ReportPart, Table, number, quantity, table_of
 from calm.report.check_summary import grouped
 from calm.report.provenance import position_text
-from calm.report.sheet import quantity_column
 from calm.units import KNOT
 
 if TYPE_CHECKING:
@@ -44,16 +32,16 @@ _DEEPER = 0.5
 
 def drop_part(plan: DropPlan) -> ReportPart:
     """The sheet."""
-    blocks: list[Block] = [
+    shown: tuple[blocks.Block, ...] = (
         _instructions(plan),
-        *([Prose(plan.warnings, state=State.WARN)] if plan.warnings else []),
-        Pairs(_figures(plan)),
-        Note(_notes(plan)),
+        *blocks.warned(plan.warnings),
+        blocks.Pairs(_figures(plan)),
+        blocks.Note(_notes(plan)),
         Figure("Anchor drop", drop_figure(plan)),
         _fall_table(plan),
-        *_depth_blocks(plan),
-    ]
-    return ReportPart("Anchor drop plan", tuple(blocks))
+        *_depths_table(plan),
+    )
+    return ReportPart("Anchor drop plan", shown)
 
 
 def _instructions(plan: DropPlan) -> Prose:
@@ -90,44 +78,30 @@ def _speed(speed: float) -> str:
 def _figures(plan: DropPlan) -> tuple[tuple[str, str], ...]:
     early, late = plan.fall_time_band
     near, far = plan.fall_back_band
-    given = (
-        "as given"
-        if plan.drag_known
-        else "of a cube of its volume, since the file gives it no `kt`"
-    )
+    cube = "of a cube of its volume, since the file gives it no `kt`"
+    given = "as given" if plan.drag_known else cube
     side = "right" if plan.aside >= 0.0 else "left"
     pull = max(plan.pulls, key=lambda each: each.tension)
-    return (
-        (
-            "Fall time",
-            f"{plan.fall_time:.0f} s ± {max(ceil(plan.time_error), 1)} s; {early:.0f} to "
-            f"{late:.0f} s with the anchor's drag halved or doubled",
-        ),
-        (
-            "Fall-back, towards the float",
-            f"{_distance(plan.fall_back)} ± {_distance(max(ceil(plan.distance_error), 1))}; "
-            f"{_distance(near)} to {_distance(far)} with the anchor's drag halved or doubled",
-        ),
-        (
-            "Lateral offset",
-            f"{_distance(abs(plan.aside))} to the {side}, seen from where it is let go",
-        ),
-        (
-            "Float behind the ship when let go",
-            f"{_distance(plan.streamed)}, towards {bearing_text(plan.astern)} true",
-        ),
-        ("Let go, from the target", whereabouts(plan, plan.let_go)),
-        (
-            "Start of the run, from the target",
-            "unknown" if plan.start is None else whereabouts(plan, plan.start.place),
-        ),
-        ("Speed at touchdown", say("speed", plan.touchdown_speed)),
-        (
-            "Greatest tension in the fall",
-            f"{say('tension', pull.tension)} in {pull.part.label}, after {pull.time:.0f} s",
-        ),
-        ("Drag of the anchor at 1 m/s", f"{say('tension', plan.anchor_drag)}, {given}"),
-    )
+    halved = "with the anchor's drag halved or doubled"
+    error, back = max(ceil(plan.time_error), 1), _distance(max(ceil(plan.distance_error), 1))
+    figures = {
+        "Fall time": f"{plan.fall_time:.0f} s ± {error} s; {early:.0f} to {late:.0f} s {halved}",
+        "Fall-back, towards the float": f"{_distance(plan.fall_back)} ± {back}; "
+        f"{_distance(near)} to {_distance(far)} {halved}",
+        "Lateral offset": f"{_distance(abs(plan.aside))} to the {side}, seen from where it is "
+        "let go",
+        "Float behind the ship when let go": f"{_distance(plan.streamed)}, towards "
+        f"{bearing_text(plan.astern)} true",
+        "Let go, from the target": whereabouts(plan, plan.let_go),
+        "Start of the run, from the target": "unknown"
+        if plan.start is None
+        else whereabouts(plan, plan.start.place),
+        "Speed at touchdown": say("speed", plan.touchdown_speed),
+        "Greatest tension in the fall": f"{say('tension', pull.tension)} in {pull.part.label}, "
+        f"after {pull.time:.0f} s",
+        "Drag of the anchor at 1 m/s": f"{say('tension', plan.anchor_drag)}, {given}",
+    }
+    return tuple(figures.items())
 
 
 def _fall_table(plan: DropPlan) -> Table:
@@ -136,65 +110,56 @@ def _fall_table(plan: DropPlan) -> Table:
     deepest = np.maximum.accumulate(path.anchor_depth)
 
     def column(
-        heading: str, name: str, values: Floats, decimals: int = 0, least: float = -np.inf
-    ) -> Field[int]:
-        unit, scale = name, 1.0
-        if name in QUANTITIES:
-            unit, scale = QUANTITIES[name].display_unit, QUANTITIES[name].scale
-        at = scale * np.maximum(np.interp(depths, deepest, values), least)
-        return Column(heading, unit, numeric=True), lambda row: f"{at[row]:.{decimals}f}"
-
-    def moving(field: Field[int]) -> Field[int]:
-        head, show = field
-        return head, lambda row: show(row) if row else "-"
+        heading: str, name: str, values: Floats, decimals: int = 0, first: int = 0
+    ) -> blocks.Field:
+        """Figures from the `first` row on."""
+        shown = QUANTITIES.get(name)
+        unit, scale = (shown.display_unit, shown.scale) if shown else (name, 1.0)
+        at = scale * np.interp(depths, deepest, values)
+        return number(heading, lambda n: f"{at[n]:.{decimals}f}" if n >= first else "-", unit)
 
     return table_of(
         "The fall",
         range(_ROWS),
         column("anchor depth", "depth", deepest),
         column("time", "s", path.time),
-        moving(column("speed", "speed", path.anchor_speed, 2)),
+        column("speed", "speed", path.anchor_speed, 2, first=1),
         column("towards float", "offset", path.anchor_x),
-        moving(column("tension at anchor", "tension", path.anchor_tension)),
+        column("tension at anchor", "tension", path.anchor_tension, first=1),
         column("float at", "offset", path.float_x),
-        column("float depth", "depth", path.float_depth, least=0.0),
+        column("float depth", "depth", np.maximum(path.float_depth, 0.0)),
         note="Distances are from where the anchor is let go, towards the float.",
     )
 
 
-def _depth_blocks(plan: DropPlan) -> list[Block]:
+def _depths_table(plan: DropPlan) -> list[Table]:
     listed = [
         each
         for each in plan.depths
         if each.part.component.role != "float" or each.beyond or each.greatest > each.rest + _DEEPER
     ]
-    if not listed:
-        return []
+    # components of one rating share a row; what sinks beyond it stands alone
+    runs = grouped(listed, lambda one: one.label if one.beyond else (one.part.use, one.rating))
+    rows = [(max(run, key=lambda one: one.greatest), run) for run in runs]
     depth = QUANTITIES["depth"]
+
+    def label(row: tuple[DepthReached, Sequence[DepthReached]]) -> str:
+        return row[0].label + (f", of {len(row[1])}" if len(row[1]) > 1 else "")
+
+    def greatest(row: tuple[DepthReached, Sequence[DepthReached]]) -> Cell:
+        beyond = any(one.beyond for one in row[1])
+        return Cell(depth.format(row[0].greatest), state=State.FAIL if beyond else None)
+
     table = table_of(
         "Depths during the drop",
-        # components of one rating share a row; what sinks beyond it stands alone
-        grouped(listed, lambda one: one.label if one.beyond else (one.part.use, one.rating)),
-        (
-            Column("piece or clamp, the deepest of its kind"),
-            lambda run: _deepest(run).label + (f", of {len(run)}" if len(run) > 1 else ""),
-        ),
-        (
-            quantity_column("depth", "greatest depth"),
-            lambda run: Cell(
-                depth.format(_deepest(run).greatest),
-                state=State.FAIL if any(one.beyond for one in run) else None,
-            ),
-        ),
-        (Column("after", "s", numeric=True), lambda run: f"{_deepest(run).time:.0f}"),
-        (quantity_column("depth", "at rest"), lambda run: depth.format(_deepest(run).rest)),
-        (quantity_column("depth", "rated to"), lambda run: depth.format(run[0].rating)),
+        rows,
+        blocks.words("piece or clamp, the deepest of its kind", label),
+        number("greatest depth", greatest, depth.display_unit),
+        number("after", lambda row: f"{row[0].time:.0f}", "s"),
+        quantity("depth", lambda row: row[0].rest, "at rest"),
+        quantity("depth", lambda row: row[1][0].rating, "rated to"),
     )
-    return [table]
-
-
-def _deepest(run: Sequence[DepthReached]) -> DepthReached:
-    return max(run, key=lambda one: one.greatest)
+    return [table] if listed else []
 
 
 def _notes(plan: DropPlan) -> tuple[str, ...]:

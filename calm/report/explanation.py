@@ -8,20 +8,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from math import floor, hypot, log10
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from calm.case import Result
-from calm.case.net_result import NetResult
+from calm.case.net_result import AnyResult, NetResult
 from calm.case.parts import parts_of
 from calm.checks.finding import State
 from calm.checks.inventory import inventory_of
 from calm.checks.recovery import recovery_of
 from calm.errors import NoEquilibrium
 from calm.quantities import QUANTITIES, Quantity, duration, say
-from calm.report.blocks import Block, Cell, Column, Line, Prose, ReportPart, Span, Table
-from calm.report.check_summary import SIGNS
+from calm.report import blocks
+from calm.report.blocks import Block, Cell, Prose, ReportPart, Span, Table, number, table_of, words
 from calm.units import with_unit
 
 if TYPE_CHECKING:
@@ -29,7 +28,6 @@ if TYPE_CHECKING:
     from calm.case.size import Sizing, Trial
     from calm.case.targets import Figures
     from calm.checks.comparison import Compared, Comparison
-    from calm.files.file_differences import Change
 
 SMALLEST_SHARE = 0.005
 """Of every whole; drags that cause less of all of them are summed up in one row."""
@@ -41,8 +39,10 @@ _SHARES = (
 _CHANGES = "Buoyancy is changed for everything buoyant, drag for everything; lengths are not."
 
 
-def line_facts(result: Result) -> tuple[str, ...]:
+def line_facts(result: AnyResult) -> tuple[str, ...]:
     """The weights of a mooring, its length and watch circle, and how it rises when freed."""
+    if not isinstance(result, Result):
+        return ()
     items = inventory_of(result.mooring)
     masses = [one.dry_mass for one in items if one.role != "anchor"]
     weights = [one.wet_weight or 0.0 for one in items if one.role != "anchor"]
@@ -55,29 +55,29 @@ def line_facts(result: Result) -> tuple[str, ...]:
     floats = -sum(weight for weight in weights if weight < 0.0)
     length = float(result.components.cut_length.sum())
     depth = result.mooring.water.depth
-    rises = []
-    with suppress(NoEquilibrium):
-        rise = recovery_of(result.mooring, result, first_only=True)
-        if rise.time_to_surface is None:
-            rises = ["Once released, it does not rise by itself"]
-        elif rise.time_to_surface > 0.0:
-            up = duration(rise.time_to_surface)
-            rises = [
-                f"Once released, it rises at {say('speed', rise.rise_speed)}: the top surfaces in "
-                f"{up}"
-            ]
     return (
         f"Without the anchor {mass}; what floats lifts {say('wet_weight', floats)}, net "
         f"{say('wet_weight', -sum(weights))}",
         f"Line of {say('length', length)}, scope {length / depth:.3f}; watch circle of "
         f"{say('offset', hypot(result.top.x, result.top.y))} in this current",
-        *rises,
+        *_rise(result),
     )
 
 
-@dataclass(frozen=True)
-class _Column:
-    """A figure to show: its name in `Figures`, how it is headed, its quantity and unit."""
+def _rise(result: Result) -> Iterator[str]:
+    with suppress(NoEquilibrium):
+        rise = recovery_of(result.mooring, result, first_only=True)
+        if rise.time_to_surface is None:
+            yield "Once released, it does not rise by itself"
+        elif rise.time_to_surface > 0.0:
+            yield (
+                f"Once released, it rises at {say('speed', rise.rise_speed)}: the top surfaces in "
+                f"{duration(rise.time_to_surface)}"
+            )
+
+
+class _Shown(NamedTuple):
+    """A figure to show: its name in `Figures`, how it is headed, its quantity, unit and scale."""
 
     name: str
     heading: str
@@ -85,17 +85,37 @@ class _Column:
     unit: str
     scale: float = 1.0
 
+    def decimals(self, whole: float) -> int:
+        """Return those of the quantity, more where three digits of the whole need them."""
+        usual = QUANTITIES[self.quantity].decimals if self.scale == 1.0 else 1
+        if whole == 0.0:
+            return usual
+        return max(usual, min(2 - floor(log10(abs(whole * self.scale))), 4))
+
+    def text(self, figures: Figures) -> str:
+        """The figure as it is."""
+        value = getattr(figures, self.name)
+        return f"{value * self.scale:z.{self.decimals(value)}f}"
+
+    def growth(self, now: Figures, then: Figures | None) -> str:
+        """By how much it grows."""
+        before, after = getattr(now, self.name), then and getattr(then, self.name)
+        if after is None:
+            return "-"
+        growth = f"{(after - before) * self.scale:+z.{self.decimals(before)}f}"
+        return growth if growth.strip("+0.") else growth.removeprefix("+")
+
 
 _COLUMNS = {
-    column.name: column
-    for column in (
-        _Column("knockdown", "knock-\ndown", "knockdown", "m"),
-        _Column("excursion", "excur-\nsion", "offset", "m"),
-        _Column("used_buoyancy", "buoyancy\nused", "used_buoyancy", "%", 100.0),
-        _Column("tension", "anchor\npull", "tension", "N"),
-        _Column("vertical", "\nup", "vertical", "N"),
-        _Column("horizontal", "\nsideways", "horizontal", "N"),
-        _Column("required_weight", "weight\nneeded", "required_weight", "N"),
+    name: _Shown(name, *more)
+    for name, *more in (
+        ("knockdown", "knock-\ndown", "knockdown", "m"),
+        ("excursion", "excur-\nsion", "offset", "m"),
+        ("used_buoyancy", "buoyancy\nused", "used_buoyancy", "%", 100.0),
+        ("tension", "anchor\npull", "tension", "N"),
+        ("vertical", "\nup", "vertical", "N"),
+        ("horizontal", "\nsideways", "horizontal", "N"),
+        ("required_weight", "weight\nneeded", "required_weight", "N"),
     )
 }
 _ANCHOR = ("tension", "vertical", "horizontal", "required_weight")
@@ -108,21 +128,21 @@ def explanation_part(explanation: Explanation) -> ReportPart:
     columns.
     """
     wholes = [
-        f"{name} {_figure_text(_COLUMNS[name], explanation.figures)} m"
+        f"{name} {_COLUMNS[name].text(explanation.figures)} m"
         for name in explanation.quantities
         if name != "used_buoyancy"
     ]
     title = f"What causes the {' and '.join(wholes)} of {explanation.label}"
-    blocks: list[Block] = [Prose(explanation.notes)] if explanation.notes else []
-    if explanation.causes is not None and len(explanation.causes):
-        blocks.append(_causes(explanation, explanation.causes))
-    blocks.append(_changes(explanation))
-    failures = [change for change in explanation.changes if change.failure is not None]
-    if failures:
-        told = tuple(f"{change.name}: {change.failure}" for change in failures)
-        blocks.append(Prose(told, State.WARN))
-    lines = (_SHARES, _CHANGES) if explanation.causes is not None else (_CHANGES,)
-    return ReportPart(title, (*blocks, Prose(tuple((Span(line, quiet=True),) for line in lines))))
+    causes, changes = explanation.causes, explanation.changes
+    failures = (f"{one.name}: {one.failure}" for one in changes if one.failure is not None)
+    shown: tuple[Block, ...] = (
+        *([Prose(explanation.notes)] if explanation.notes else []),
+        *([_causes(explanation, causes)] if causes is not None and len(causes) else []),
+        _changes(explanation),
+        *blocks.warned(failures),
+        blocks.quiet(*([_SHARES] if causes is not None else []), _CHANGES),
+    )
+    return ReportPart(title, shown)
 
 
 def _causes(explanation: Explanation, causes: Causes) -> Table:
@@ -132,78 +152,48 @@ def _causes(explanation: Explanation, causes: Causes) -> Table:
     rows = [
         (row.label, row.drag, [getattr(row, column.name) for column in columns]) for row in causes
     ]
-    largest = sorted(rows, key=lambda row: -abs(row[2][0]))
-    told = [row for row in largest if _matters(row[2], wholes)]
-    rest = [row for row in largest if not _matters(row[2], wholes)]
-    heads = [Column(""), Column("drag", "N", numeric=True)]
-    for column in columns:
-        heads.append(Column(column.heading, column.unit, numeric=True))
-        if column.unit != "%":
-            heads.append(Column("\n", "%", numeric=True))
+    rows.sort(key=lambda row: -abs(row[2][0]))
+
+    def matters(shares: list[float]) -> bool:
+        pairs = zip(shares, wholes, strict=True)
+        return any(abs(share) >= SMALLEST_SHARE * abs(whole) for share, whole in pairs)
+
+    rest = [(label, shares) for label, _, shares in rows if not matters(shares)]
     lines = [("without drag", "", start)] if any(start) else []
-    lines += [(label, f"{drag:.0f}", shares) for label, drag, shares in told]
+    lines += [(label, f"{drag:.0f}", shares) for label, drag, shares in rows if matters(shares)]
     if rest:
-        sums = [sum(row[2][i] for row in rest) for i in range(len(columns))]
+        sums = [sum(each) for each in zip(*(shares for _, shares in rest), strict=True)]
         lines.append((rest[0][0] if len(rest) == 1 else f"{len(rest)} others", "", sums))
-    lines.append(("all", "", wholes))
-    cells = tuple(
-        (Cell(label), Cell(drag), *map(Cell, _cells(columns, shares, wholes)))
-        for label, drag, shares in lines
-    )
-    return Table("", tuple(heads), cells, totals=1)
 
-
-def _matters(shares: list[float], wholes: list[float]) -> bool:
-    pairs = zip(shares, wholes, strict=True)
-    return any(abs(share) >= SMALLEST_SHARE * abs(whole) for share, whole in pairs)
-
-
-def _cells(columns: list[_Column], shares: list[float], wholes: list[float]) -> list[str]:
-    cells = []
-    for column, share, whole in zip(columns, shares, wholes, strict=True):
-        cells.append(f"{share * column.scale:z.{_decimals(column, whole)}f}")
+    def figure(at: int, column: _Shown) -> Iterator[blocks.Field]:
+        digits, whole = column.decimals(wholes[at]), wholes[at]
+        yield number(
+            column.heading, lambda row: f"{row[2][at] * column.scale:z.{digits}f}", column.unit
+        )
         if column.unit != "%":
-            cells.append(f"{100.0 * share / whole:z.1f}" if whole else "-")
-    return cells
+            yield number(
+                "\n", lambda row: f"{100.0 * row[2][at] / whole:z.1f}" if whole else "-", "%"
+            )
+
+    fields = [field for at, column in enumerate(columns) for field in figure(at, column)]
+    total = ("all", "", wholes)
+    return table_of("", lines, words("", 0), number("drag", 1, "N"), *fields, sums=[total])
 
 
 def _changes(explanation: Explanation) -> Table:
     anchor = _ANCHOR if explanation.figures.tension is not None else ()
     columns = [_COLUMNS[name] for name in (*explanation.quantities, *anchor)]
-    heads = (Column(""), *(Column(each.heading, each.unit, numeric=True) for each in columns))
     now = explanation.figures
-    as_it_is = (Cell(_figure_text(column, now), strong=True) for column in columns)
-    rows = [(Cell("as it is", strong=True), *as_it_is)]
+    as_it_is = ("as it is", *(column.text(now) for column in columns))
+    rows: list[Sequence[Cell | str]] = [[Cell(text, strong=True) for text in as_it_is]]
     for change in explanation.changes:
-        if change.figures is None:
-            assert change.failure is not None
-            nothing = (Cell() for _ in columns[1:])
-            rows.append((Cell(change.name), Cell(change.failure.status), *nothing))
+        if change.failure is not None:
+            rows.append((change.name, change.failure.status, *([""] * (len(columns) - 1))))
         else:
-            growths = (_growth(each, now, change.figures) for each in columns)
-            rows.append((Cell(change.name), *map(Cell, growths)))
-    return Table("", heads, tuple(rows))
-
-
-def _figure_text(column: _Column, figures: Figures) -> str:
-    value = getattr(figures, column.name)
-    return f"{value * column.scale:z.{_decimals(column, value)}f}"
-
-
-def _growth(column: _Column, now: Figures, then: Figures) -> str:
-    before, after = getattr(now, column.name), getattr(then, column.name)
-    if after is None:
-        return "-"
-    growth = f"{(after - before) * column.scale:+z.{_decimals(column, before)}f}"
-    return growth if growth.strip("+0.") else growth.removeprefix("+")
-
-
-def _decimals(column: _Column, whole: float) -> int:
-    """Return those of the quantity, more where three digits of the whole need them."""
-    usual = QUANTITIES[column.quantity].decimals if column.scale == 1.0 else 1
-    if whole == 0.0:
-        return usual
-    return max(usual, min(2 - floor(log10(abs(whole * column.scale))), 4))
+            growths = (column.growth(now, change.figures) for column in columns)
+            rows.append((change.name, *growths))
+    fields = (number(each.heading, at, each.unit) for at, each in enumerate(columns, 1))
+    return table_of("", rows, words("", 0), *fields)
 
 
 _ROWS = (
@@ -222,7 +212,7 @@ _ROWS = (
 def sizing_part(sizing: Sizing) -> ReportPart:
     """Return what to change so that a target that can be met is met, and what else that changes."""
     assert sizing.after is not None
-    lines: list[Line] = []
+    lines: list[blocks.Line] = []
     if sizing.before.failure is not None:
         lines.append((Span(f"As it is: {sizing.before.failure}", State.WARN),))
     lines += [(Span(f"! {text}", State.FAIL),) for text in _new_warnings(sizing)]
@@ -256,24 +246,24 @@ def _answer(sizing: Sizing) -> str:
 
 def _comparison(sizing: Sizing, before: Trial, after: Trial) -> Table:
     target, both = sizing.target, (before, after)
-    words_of = {field: words for field, _, words in _ROWS}
-    name = words_of.get(target.quantity, f"{target.quantity} of the top")
+    told_of = {field: told for field, _, told in _ROWS}
+    name = told_of.get(target.quantity, f"{target.quantity} of the top")
     if target.label is not None:
         name = f"{target.quantity} of {target.label}"
     measured = ("-" if one.measured is None else f"{one.measured:.6g}" for one in both)
     aimed = (name, target.unit.replace("deg", "°"), *measured)
-    rows = [tuple(Cell(text, strong=True) for text in aimed)]
+    rows: list[Sequence[Cell | str]] = [[Cell(text, strong=True) for text in aimed]]
     afloat = after.result is not None and after.result.type == "surface"
     net = isinstance(after.result, NetResult)
     for field, quantity, told in _ROWS:
-        words = told.replace("the top", _place_told(after)) if net else told
-        if words == name or (field == "used_buoyancy" and not afloat):
+        head = told.replace("the top", _place_told(after)) if net else told
+        if head == name or (field == "used_buoyancy" and not afloat):
             continue
         shown = QUANTITIES[quantity]
         figures = (getattr(one.figures, field, None) for one in both)
-        rows.append((Cell(words), Cell(shown.display_unit), *map(Cell, map(shown.format, figures))))
-    heads = (Column(name, numeric=True) for name in _SHORT)
-    return Table("", (Column(""), Column("", share=0.0), *heads), tuple(rows))
+        rows.append((head, shown.display_unit, *map(shown.format, figures)))
+    fields = words("", 0), words("", 1, 0.0), number("before", 2), number("after", 3)
+    return table_of("", rows, *fields)
 
 
 def _place_told(trial: Trial) -> str:
@@ -292,35 +282,28 @@ def _new_warnings(sizing: Sizing) -> list[str]:
 
 def comparison_part(comparison: Comparison) -> ReportPart:
     """The differences, then the figures side by side."""
-    before, after = comparison.names
-    return ReportPart(f"{before} → {after}", tuple(_blocks(comparison)))
+    return ReportPart(" → ".join(comparison.names), tuple(_blocks(comparison)))
 
 
 def _blocks(comparison: Comparison) -> Iterator[Block]:
     found, (before, after) = comparison.differences, comparison.names
-    if not found.any:
-        yield Prose(("Nothing differs.",))
+    if found.any:
+        changes = [("changed", each) for each in found.changed]
+        changes += [("moved", each) for each in found.moved]
+        rows = [(kind, one.where, one.before.text, one.after.text) for kind, one in changes]
+        rows += [("removed", label, "", "") for label in found.removed]
+        rows += [("added", label, "", "") for label in found.added]
+        fields = words("", 0, 0.0), words("what", 1), words(before, 2), words(after, 3)
+        yield table_of("What differs", rows, *fields)
     else:
-        rows = [
-            *(_row("changed", one) for one in found.changed),
-            *(_row("moved", one) for one in found.moved),
-            *((Cell("removed"), Cell(label), Cell(), Cell()) for label in found.removed),
-            *((Cell("added"), Cell(label), Cell(), Cell()) for label in found.added),
-        ]
-        columns = (Column("", share=0.0), Column("what"), Column(before), Column(after))
-        yield Table("What differs", columns, tuple(rows))
-    if comparison.notes:
-        yield Prose(comparison.notes, State.FAIL)
+        yield Prose(("Nothing differs.",))
+    yield from blocks.warned(comparison.notes, State.FAIL)
     whole = [one for one in comparison.figures if not one.of_a_part and one.states is None]
     yield _figures("What it does", comparison.names, whole, all_rows=True)
     parts = [one for one in comparison.figures if one.of_a_part]
     yield _figures("Pieces and instruments", comparison.names, parts)
     margins = [one for one in comparison.figures if one.states is not None]
     yield _figures("Margins of the design check", comparison.names, margins, all_rows=True)
-
-
-def _row(kind: str, change: Change) -> tuple[Cell, ...]:
-    return Cell(kind), Cell(change.where), Cell(change.before.text), Cell(change.after.text)
 
 
 def _figures(
@@ -330,33 +313,36 @@ def _figures(
     rows = [_figure(one) for one in figures]
     shown = [row for row in rows if all_rows or row[2].text != row[3].text]
     same = len(rows) - len(shown)
-    columns = (
-        Column(""),
-        Column("", share=0.0),
-        *(Column(name, numeric=True, short=_SHORT[n]) for n, name in enumerate(names)),
-        Column("change", numeric=True),
+    return table_of(
+        title,
+        shown,
+        words("", 0),
+        words("", 1, 0.0),
+        number(names[0], 2, short="before"),
+        number(names[1], 3, short="after"),
+        number("change", 4),
+        note=f"The other {same} do not change." if same else "",
     )
-    return Table(title, columns, tuple(shown), f"The other {same} do not change." if same else "")
 
 
-_SHORT = "before", "after"
+def _figure(one: Compared) -> tuple[str, str, Cell, Cell, str]:
+    from calm.report.check_summary import SIGNS
 
-
-def _figure(one: Compared) -> tuple[Cell, ...]:
-    quantity = QUANTITIES.get(one.quantity)
-    states, both = one.states or (None, None), (one.before, one.after)
-    texts = [_text(value, quantity, state) for value, state in zip(both, states, strict=True)]
-    values = [
-        Cell(text, state=state, mark="" if state is None or value is None else SIGNS[state])
-        for text, value, state in zip(texts, both, states, strict=True)
-    ]
+    quantity, states = QUANTITIES.get(one.quantity), one.states or (None, None)
+    before, after = (
+        Cell(
+            _text(value, quantity, state),
+            state=state,
+            mark="" if state is None or value is None else SIGNS[state],
+        )
+        for value, state in zip((one.before, one.after), states, strict=True)
+    )
     change = ""
-    if isinstance(one.before, float) and isinstance(one.after, float) and texts[0] != texts[1]:
+    if isinstance(one.before, float) and isinstance(one.after, float) and before.text != after.text:
         assert quantity is not None
         text = quantity.format(one.after - one.before)
         change = text if text.startswith("-") else f"+{text}"
-    unit = quantity.display_unit if quantity else ""
-    return Cell(one.title), Cell(unit), *values, Cell(change)
+    return one.title, quantity.display_unit if quantity else "", before, after, change
 
 
 def _text(value: float | str | None, quantity: Quantity | None, state: State | None) -> str:

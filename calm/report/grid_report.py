@@ -9,18 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from calm.drawing.picture import figure_svg
-from calm.report.blocks import (
-    Column,
-    Figure,
-    Note,
-    Prose,
-    Report,
-    ReportPart,
-    Section,
-    Table,
-    table_of,
-)
-from calm.report.provenance import date
+from calm.report import blocks
+from calm.report.blocks import Figure, Note, Prose, Report, ReportPart, Table, number, table_of
+from calm.report.provenance import report_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -60,13 +51,14 @@ def grid_report(
             columns = [np.asarray(result[names[name] + end].values) for end in ("", *ends)]
             figures.append(_section(name, field, levels, *columns))
     time = next(iter(fields.values())).samples.time
-    parts = (
+    return report_of(
+        title,
+        f"{str(time[0])[:16]} to {str(time[-1])[:16]}, {len(time)} times, {len(levels)} levels",
         ReportPart("Sections", (*figures, Note((_READ,)))),
         ReportPart("Scales", (scales_table(fields),)),
         ReportPart("For the methods of a cruise report", (Prose(methods_text(fields, levels)),)),
+        name=output.name,
     )
-    span = f"{str(time[0])[:16]} to {str(time[-1])[:16]}, {len(time)} times, {len(levels)} levels"
-    return Report(title, span, (), (Section(output.name, parts),), date())
 
 
 def grid_part(fields: Mapping[str, GriddedQuantity]) -> ReportPart:
@@ -79,12 +71,12 @@ def scales_table(fields: Mapping[str, GriddedQuantity]) -> Table:
     return table_of(
         "",
         fields.items(),
-        (Column("quantity"), lambda one: one[0]),
-        (Column("instruments", numeric=True), lambda one: str(_used(one[1]))),
-        (Column("depth scale", "m", numeric=True), lambda one: f"{one[1].scales.depth:.3g}"),
-        (Column("time scale", "h", numeric=True), lambda one: _hours(one[1])),
-        (Column("rest", "%", numeric=True), lambda one: f"{100.0 * one[1].scales.share:.2g}"),
-        (Column("widened", numeric=True), lambda one: _widened(one[1])),
+        blocks.words("quantity", 0),
+        number("instruments", lambda one: _used(one[1])),
+        number("depth scale", lambda one: f"{one[1].scales.depth:.3g}", "m"),
+        number("time scale", lambda one: _hours(one[1]), "h"),
+        number("rest", lambda one: f"{100.0 * one[1].scales.share:.2g}", "%"),
+        number("widened", lambda one: _widened(one[1])),
         note="Correlation falls to 0.48 over one depth scale and to 0.37 over one time scale; "
         "the rest of the variance is uncorrelated. Widened: the factors that widen the bands "
         "between instruments (the greatest one) and beyond them, found by leaving out each "
@@ -98,23 +90,20 @@ def methods_text(
     """Return sentences to paste into the methods of a cruise report."""
     from calm.version import __version__
 
-    said = [
+    return (
         f"{', '.join(fields)} at the estimated depths of the instruments were mapped to "
         f"{len(levels)} levels between {levels[0]:g} and {levels[-1]:g} m by a Gaussian process "
-        f"over depth and time about the mean profile of the record (CALM {__version__})."
-    ]
-    for name, field in fields.items():
-        said.append(
+        f"over depth and time about the mean profile of the record (CALM {__version__}).",
+        *(
             f"{name}: {_used(field)} instruments; correlated over {field.scales.depth:.3g} m "
             f"along depth and {_hours(field)} h in time; {100.0 * field.scales.share:.2g} % "
             "of the variance taken as uncorrelated."
-        )
-    said.append(
+            for name, field in fields.items()
+        ),
         "Standard deviations include the error of the sensors, the error of their depths "
         "times the local gradient, and the gap between instruments; levels beyond the "
-        "instruments are flagged."
+        "instruments are flagged.",
     )
-    return tuple(said)
 
 
 def _used(field: GriddedQuantity) -> int:
@@ -132,12 +121,7 @@ def _widened(field: GriddedQuantity) -> str:
 
 
 def _section(
-    name: str,
-    field: GriddedQuantity,
-    levels: NDArray[np.float64],
-    value: Any,
-    deviation: Any,
-    flag: Any,
+    name: str, field: GriddedQuantity, levels: Any, value: Any, deviation: Any, flag: Any
 ) -> Figure:
     """A section over time, the deviation below it."""
     from matplotlib.figure import Figure as Drawing

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from calm.checks.finding import State
-from calm.report.blocks import Block, Cell, Column, Note, Pairs, Prose, ReportPart, Table, table_of
+from calm.report import blocks
+from calm.report.blocks import Block, Cell, Note, Pairs, Prose, ReportPart, Table, number, table_of
 from calm.report.provenance import degrees_text
 
 if TYPE_CHECKING:
@@ -23,21 +24,25 @@ _ROUND = np.linspace(0.0, 2.0 * np.pi, 1441)
 
 def located_part(located: Located, water_depth: float) -> ReportPart:
     """The place, how well it is known, and the residual of every range; in a depth of water [m]."""
-    blocks: list[Block] = [Pairs(_figures(located, water_depth))]
-    if located.warnings:
-        blocks.append(Prose(located.warnings, state=State.WARN))
     outliers = [
         line for line, used in zip(located.survey.line, located.used, strict=True) if not used
     ]
+    said = []
     if outliers:
-        lines = ", ".join(map(str, outliers))
         several = "lines" if len(outliers) > 1 else "line"
-        blocks.append(Prose((f"Not used, they do not fit the others: {several} {lines}.",)))
+        lines = ", ".join(map(str, outliers))
+        said.append(Prose((f"Not used, they do not fit the others: {several} {lines}.",)))
     notes = ["Rays are taken as straight, and the sea surface as the ellipsoid WGS 84."]
     if located.survey.timed:
         notes.append("Times are taken as two-way, without a turn-around delay of the transponder.")
-    blocks += [_residuals(located), Note(tuple(notes))]
-    return ReportPart("Place of the anchor", tuple(blocks))
+    shown: tuple[Block, ...] = (
+        Pairs(_figures(located, water_depth)),
+        *blocks.warned(located.warnings),
+        *said,
+        _residuals(located),
+        Note(tuple(notes)),
+    )
+    return ReportPart("Place of the anchor", shown)
 
 
 def _figures(located: Located, water_depth: float) -> tuple[tuple[str, str], ...]:
@@ -73,18 +78,19 @@ def _residuals(located: Located) -> Table:
     """A row for each range, in the order of the file."""
     survey, used = located.survey, located.used
     decimals, measured = (4, ("time", "s")) if survey.timed else (1, ("range", "m"))
+
+    def residual(at: int) -> Cell:
+        return Cell(f"{located.residuals[at]:+.2f}", state=None if used[at] else State.FAIL)
+
     return table_of(
         "Ranges",
         range(len(survey.line)),
-        (Column("line", numeric=True), lambda i: str(survey.line[i])),
-        (Column("latitude", "°", numeric=True), lambda i: f"{survey.latitude[i]:.5f}"),
-        (Column("longitude", "°", numeric=True), lambda i: f"{survey.longitude[i]:.5f}"),
-        (Column(*measured, numeric=True), lambda i: f"{survey.measured[i]:.{decimals}f}"),
-        (
-            Column("residual", "m", numeric=True),
-            lambda i: Cell(f"{located.residuals[i]:+.2f}", state=None if used[i] else State.FAIL),
-        ),
-        (Column("", share=0.0), lambda i: "" if used[i] else "not used"),
+        number("line", lambda at: survey.line[at]),
+        number("latitude", lambda at: f"{survey.latitude[at]:.5f}", "°"),
+        number("longitude", lambda at: f"{survey.longitude[at]:.5f}", "°"),
+        number(measured[0], lambda at: f"{survey.measured[at]:.{decimals}f}", measured[1]),
+        number("residual", residual, "m"),
+        blocks.words("", lambda at: None if used[at] else "not used", 0.0),
         note="Residual: measured less computed.",
     )
 

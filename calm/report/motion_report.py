@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
 from math import isfinite
 from typing import TYPE_CHECKING, Any
@@ -13,24 +13,14 @@ from calm.checks.finding import State
 from calm.drawing.picture import figure_svg
 from calm.motion.remarks import no_drag
 from calm.motion.study import knockdown
-from calm.report.blocks import (
-    Block,
-    Column,
-    Figure,
-    Heading,
-    Note,
-    Prose,
-    Report,
-    ReportPart,
-    Section,
-    Table,
-    table_of,
-)
-from calm.report.provenance import date
+from calm.report import blocks
+from calm.report.blocks import Figure, Note, Prose, ReportPart, Table, number, table_of, words
+from calm.report.provenance import report_of
 from calm.report.result_files import members
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure as Drawing
     from numpy import datetime64
     from numpy.typing import NDArray
 
@@ -58,7 +48,7 @@ def motion_report(
     time: NDArray[datetime64],
     name: str,
     notes: Sequence[str],
-) -> Report:
+) -> blocks.Report:
     """Return the report: one page of the whole deployment, and the details.
 
     Parameters
@@ -68,29 +58,30 @@ def motion_report(
     notes : what was said of the input
     """
     bare = [one for one in series if not np.isfinite(one.measured).any()]
-    bare = sorted(bare, key=lambda one: -float(np.nan_to_num(one.spread).mean()))
-    bare = sorted(bare[:MOST_PANELS], key=lambda one: float(np.nan_to_num(one.estimated).mean()))
     sensors = [one for one in series if np.isfinite(one.measured).any()]
+    bare.sort(key=lambda one: -float(np.nan_to_num(one.spread).mean()))
+    bare = sorted(bare[:MOST_PANELS], key=lambda one: float(np.nan_to_num(one.estimated).mean()))
     hidden_first = sorted(sensors, key=lambda one: not one.hidden)[:MOST_PANELS]
     shown = [one for one in sensors if any(one is each for each in hidden_first)]
-    doubts = Prose(study.remarks, State.WARN) if study.remarks else Prose((_NOTHING,))
-    marks = (Figure(_FALSE, false_figure(time, study.false)),) if study.false else ()
+    doubts = blocks.warned(study.remarks) or (Prose((_NOTHING,)),)
     whole = Figure(_WHOLE, overview_figure([*sensors, *bare]))
     depths = [Figure(_BARE, depth_figure(bare), tall=True)] if bare else []
     depths.append(Figure(_DEPTHS, depth_figure(shown), tall=True))
     factors = factors_table(study.factors, study.task.common.datum)
-    held = [held_out_table(study.held_out)] if study.held_out else []
+    found = [sensors_table(study), *([held_out_table(study.held_out)] if study.held_out else [])]
     how = Note((PLAIN if study.plain else UNKNOWN,))
-    parts = (
-        ReportPart("The deployment", (whole, *judged_prose(study), doubts, health_table(study))),
+    marks = (Figure(_FALSE, false_figure(time, study.false)),) if study.false else ()
+    return report_of(
+        f"{name}: where it was",
+        f"{str(time[0])[:16]} to {str(time[-1])[:16]}, {len(time)} times",
+        ReportPart("The deployment", (whole, *judged_prose(study), *doubts, health_table(study))),
         ReportPart("For the methods of a cruise report", (Prose(methods_text(study, series)),)),
         ReportPart("Factors", (factors, Note((_ASSUMED,)))),
-        ReportPart("Measured against computed", (sensors_table(study), *held, how, *marks)),
+        ReportPart("Measured against computed", (*found, how, *marks)),
         ReportPart("Inputs", (Prose(tuple(notes) or ("Nothing was left out.",)),)),
         ReportPart("Depths", (*depths, Note((_LEGEND,)))),
+        name=name,
     )
-    span = f"{str(time[0])[:16]} to {str(time[-1])[:16]}, {len(time)} times"
-    return Report(f"{name}: where it was", span, (), (Section(name, parts),), date())
 
 
 MOST_PANELS = 12
@@ -122,11 +113,11 @@ def methods_text(study: Study, series: Sequence[SensorSeries]) -> tuple[str, ...
         f"deviation of the depths is {np.median(wide):.1f} m in the median and "
         f"{np.quantile(wide, 0.95):.1f} m in the 95th percentile.",
     ]
-    for one in study.held_out:
-        said.append(
-            f"Hidden from the estimate, {one.label} was found with an rms of {one.rms:.1f} m "
-            f"(interpolated: {one.linear_rms:.1f} m)."
-        )
+    said += [
+        f"Hidden from the estimate, {one.label} was found with an rms of {one.rms:.1f} m "
+        f"(interpolated: {one.linear_rms:.1f} m)."
+        for one in study.held_out
+    ]
     return (*said, *(f"{one.sentence()}." for one in study.diagnosis if one.corrected))
 
 
@@ -147,21 +138,19 @@ UNKNOWN = f"The currents are not known: they are inferred from these pressures. 
 
 def motion_part(study: Study, name: str) -> ReportPart:
     """Factors, sensors, sensors that were hidden, and what to doubt."""
-    blocks: list[Block] = [
-        Heading(name),
+    shown: tuple[blocks.Block, ...] = (
+        blocks.Heading(name),
         factors_table(study.factors, study.task.common.datum),
         sensors_table(study),
         Prose((PLAIN if study.plain else UNKNOWN,)),
-    ]
-    if study.held_out:
-        blocks.append(held_out_table(study.held_out))
-    blocks += judged_prose(study)
-    if study.remarks:
-        blocks.append(Prose(study.remarks, State.WARN))
-    return ReportPart("", tuple(blocks))
+        *([held_out_table(study.held_out)] if study.held_out else []),
+        *judged_prose(study),
+        *blocks.warned(study.remarks),
+    )
+    return ReportPart("", shown)
 
 
-def judged_prose(study: Study) -> list[Block]:
+def judged_prose(study: Study) -> list[Prose]:
     """Return what is said of the sensor that was judged, if one was."""
     one = study.judged
     if one is None:
@@ -170,14 +159,10 @@ def judged_prose(study: Study) -> list[Block]:
     return [Prose((one.sentence(),), state)]
 
 
-_HEALTH: Mapping[str, Column] = {
-    "clock": Column("clock late", "h", numeric=True),
-    "gain": Column("gain", numeric=True),
-    "offset": Column("offset", "m", numeric=True),
-    "drift": Column("drift", "m", numeric=True),
-    "slip": Column("slipped", "m", numeric=True),
-    "exchanged": Column("exchanged with"),
-}
+_HEALTH = {
+    "clock": ("clock late", "h"), "gain": ("gain", ""), "offset": ("offset", "m"),
+    "drift": ("drift", "m"), "slip": ("slipped", "m"),
+}  # fmt: skip
 
 
 def health_table(study: Study) -> Table:
@@ -186,14 +171,16 @@ def health_table(study: Study) -> Table:
     for one in study.diagnosis:
         text = one.other or format(one.value, ".3f" if one.kind == "gain" else "+.2f")
         found.setdefault(one.label, {})[one.kind] = text + ("" if one.certain else " ?")
+
+    def of(kind: str) -> Callable[[tuple[str, dict[str, str]]], str]:
+        return lambda row: row[1].get(kind, "-")
+
     return table_of(
         "",
         found.items(),
-        (Column("sensor"), lambda one: one[0]),
-        *(
-            (column, lambda one, kind=kind: one[1].get(kind, "-"))
-            for kind, column in _HEALTH.items()
-        ),
+        words("sensor", 0),
+        *(number(heading, of(kind), unit) for kind, (heading, unit) in _HEALTH.items()),
+        words("exchanged with", of("exchanged")),
         note="A question mark: another cause is nearly as likely; see above.",
     )
 
@@ -203,52 +190,44 @@ def diagnosis_document(diagnosis: Sequence[Fault]) -> list[dict[str, Any]]:
     said = []
     for one in diagnosis:
         unit = 3600.0 if one.kind == "clock" else 1.0
-        row: dict[str, Any] = {"label": one.label, "kind": one.kind}
-        for key in ("value", "low", "high"):
-            row[key] = None if one.other else unit * getattr(one, key)
-        row |= {"odds": one.odds, "corrected": one.corrected}
-        row |= {"with": one.other} if one.other else {}
-        row |= {
-            key: str(getattr(one, key))[:19]
-            for key in ("since", "until")
-            if not np.isnat(getattr(one, key))
-        }
-        said.append(row)
+        figures = {key: unit * getattr(one, key) for key in ("value", "low", "high")}
+        times = {key: getattr(one, key) for key in ("since", "until")}
+        said.append(
+            members(one, "label", "kind")
+            | (dict.fromkeys(figures) if one.other else figures)
+            | members(one, "odds", "corrected")
+            | ({"with": one.other} if one.other else {})
+            | {key: str(time)[:19] for key, time in times.items() if not np.isnat(time)}
+        )
     return said
 
 
 def factors_table(factors: Mapping[str, tuple[float, float, float]], datum: float) -> Table:
     """The common factors with their intervals."""
-
-    def title(one: tuple[str, tuple[float, float, float]]) -> str:
-        name, (value, *_) = one
-        return TITLES[name] + (": not drag, see below" if no_drag(name, value) else "")
-
-    return table_of(
-        "",
-        factors.items(),
-        (Column("factor for the whole record"), title),
-        (Column("value", numeric=True), lambda one: f"{one[1][0]:.3f}"),
-        (Column("95 % interval", numeric=True), lambda one: f"{one[1][1]:.3f}–{one[1][2]:.3f}"),
-        note=f"All depths are shifted by {datum:+.1f} m, the datum common to all pressures.",
-    )
+    rows = [
+        (TITLES[name] + (": not drag, see below" if no_drag(name, value) else ""),
+         f"{value:.3f}", f"{low:.3f}–{high:.3f}")
+        for name, (value, low, high) in factors.items()
+    ]  # fmt: skip
+    fields = words("factor for the whole record", 0), number("value", 1), number("95 % interval", 2)
+    note = f"All depths are shifted by {datum:+.1f} m, the datum common to all pressures."
+    return table_of("", rows, *fields, note=note)
 
 
 def sensors_table(study: Study) -> Table:
     """Return how sensors in use agree with the currents alone, and with what is estimated."""
-    alone = (
-        (Column("alone: bias", "m", numeric=True), lambda one: _said(one[1].bias)),
-        (Column("rms", "m", numeric=True), lambda one: _said(one[1].rms)),
-        (Column("r", numeric=True), lambda one: _said(one[1].r, 3)),
-        (Column("slope", numeric=True), lambda one: _said(one[1].slope, 3)),
-    )
+    rows = [(alone, label) for label, alone in (study.plain or study.fit).items()]
+    alone = blocks.of_first(
+        _figure("alone: bias", "bias"), _figure("rms", "rms"),
+        _figure("r", "r", "", 3), _figure("slope", "slope", "", 3),
+    )  # fmt: skip
     return table_of(
         "",
-        (study.plain or study.fit).items(),
-        (Column("sensor"), lambda one: one[0]),
-        (Column("times", numeric=True), lambda one: str(one[1].count)),
+        rows,
+        words("sensor", 1),
+        *blocks.of_first(number("times", "count")),
         *(alone if study.plain else ()),
-        (Column("estimated: rms", "m", numeric=True), lambda one: _said(study.fit[one[0]].rms)),
+        number("estimated: rms", lambda row: _said(study.fit[row[1]].rms), "m"),
     )
 
 
@@ -257,14 +236,18 @@ def held_out_table(held_out: Sequence[HeldOut]) -> Table:
     return table_of(
         "",
         held_out,
-        (Column("hidden sensor"), lambda one: one.label),
-        (Column("times", numeric=True), lambda one: str(one.count)),
-        (Column("bias", "m", numeric=True), lambda one: _said(one.bias)),
-        (Column("rms", "m", numeric=True), lambda one: _said(one.rms)),
-        (Column("interpolated: rms", "m", numeric=True), lambda one: _said(one.linear_rms)),
-        (Column("PCHIP: rms", "m", numeric=True), lambda one: _said(one.pchip_rms)),
-        (Column("within 95 % band", "%", numeric=True), lambda one: _said(100.0 * one.coverage, 0)),
+        words("hidden sensor", "label"),
+        number("times", "count"),
+        _figure("bias", "bias"),
+        _figure("rms", "rms"),
+        _figure("interpolated: rms", "linear_rms"),
+        _figure("PCHIP: rms", "pchip_rms"),
+        number("within 95 % band", lambda one: _said(100.0 * one.coverage, 0), "%"),
     )
+
+
+def _figure(heading: str, name: str, unit: str = "m", decimals: int = 2) -> blocks.Field:
+    return number(heading, lambda one: _said(getattr(one, name), decimals), unit)
 
 
 def _said(value: float, decimals: int = 2) -> str:
@@ -279,22 +262,17 @@ def motion_document(study: Study, name: str) -> dict[str, Any]:
     """
     from calm.version import __version__
 
+    sensors = [
+        {"label": label, **_agreement(fit), "offset": float(offset)}
+        | ({"plain": _agreement(study.plain[label])} if label in study.plain else {})
+        for (label, fit), offset in zip(study.fit.items(), study.task.common.offset, strict=True)
+    ]
     return {
         "calm": __version__,
         "name": name,
         "factors": factors_document(study.factors),
         "datum": study.task.common.datum,
-        "sensors": [
-            {
-                "label": label,
-                **_agreement(fit),
-                "offset": float(offset),
-                **({"plain": _agreement(study.plain[label])} if label in study.plain else {}),
-            }
-            for (label, fit), offset in zip(
-                study.fit.items(), study.task.common.offset, strict=True
-            )
-        ],
+        "sensors": sensors,
         "held_out": held_out_document(study.held_out),
         "diagnosis": diagnosis_document(study.diagnosis),
         "line": {"fits": study.fits, "causes": diagnosis_document(study.line)},
@@ -311,13 +289,9 @@ def factors_document(factors: Mapping[str, tuple[float, float, float]]) -> dict[
 
 def held_out_document(held_out: Sequence[HeldOut]) -> list[dict[str, Any]]:
     """The hidden sensors."""
+    names = ("bias", "rms", "linear_rms", "pchip_rms")
     return [
-        {
-            "label": one.label,
-            "n": one.count,
-            **members(one, "bias", "rms", "linear_rms", "pchip_rms"),
-            "coverage_95": one.coverage,
-        }
+        {"label": one.label, "n": one.count, **members(one, *names), "coverage_95": one.coverage}
         for one in held_out
     ]
 
@@ -334,10 +308,7 @@ _ESTIMATED = "#0b3c5d"
 
 def overview_figure(series: Sequence[SensorSeries]) -> str:
     """Depths of all instruments over time, with their bands: where and when the line went down."""
-    from matplotlib import figure as drawing
-
-    figure = drawing.Figure(figsize=(_WIDTH, 3.6))
-    figure.subplots_adjust(0.1, 0.09, 0.99, 0.98)
+    figure = _empty(3.6, 0.1, 0.09)
     axes = figure.subplots()
     for one in series:
         style = "--" if one.hidden else "-"
@@ -348,11 +319,8 @@ def overview_figure(series: Sequence[SensorSeries]) -> str:
 
 def depth_figure(series: Sequence[SensorSeries]) -> str:
     """Depths of each sensor over time: measured, estimated with its band, by the currents alone."""
-    from matplotlib import figure as drawing
-
     height = 1.25 * len(series) + 0.4
-    figure = drawing.Figure(figsize=(_WIDTH, height))
-    figure.subplots_adjust(0.1, 0.25 / height, 0.99, 0.98, hspace=0.25)
+    figure = _empty(height, 0.1, 0.25 / height, hspace=0.25)
     panels = figure.subplots(len(series), 1, sharex=True, squeeze=False)[:, 0]
     for axes, one in zip(panels, series, strict=True):
         time = _band(axes, one)
@@ -364,6 +332,14 @@ def depth_figure(series: Sequence[SensorSeries]) -> str:
         axes.set_title(title, fontsize=_FONT_SIZE, loc="left", pad=2, parse_math=False)
         _frame(axes)
     return figure_svg(figure)
+
+
+def _empty(height: float, left: float, bottom: float, top: float = 0.98, **more: float) -> Drawing:
+    from matplotlib.figure import Figure as Drawing
+
+    figure = Drawing(figsize=(_WIDTH, height))
+    figure.subplots_adjust(left, bottom, 0.99, top, **more)
+    return figure
 
 
 def _band(axes: Axes, one: SensorSeries) -> Any:
@@ -383,11 +359,8 @@ def _frame(axes: Axes) -> None:
 
 def false_figure(time: Any, false: Mapping[str, Any]) -> str:
     """A row of marks for each level whose current looks false at some of the times (n,)."""
-    from matplotlib import figure as drawing
-
     height = 0.2 * len(false) + 0.5
-    figure = drawing.Figure(figsize=(_WIDTH, height))
-    figure.subplots_adjust(0.2, 0.3 / height, 0.99, 0.97)
+    figure = _empty(height, 0.2, 0.3 / height, 0.97)
     axes = figure.subplots()
     for row, when in enumerate(false.values()):
         axes.plot(when.astype("datetime64[s]"), np.full(len(when), row), "|", color="#d55e00")

@@ -20,9 +20,9 @@ from calm.checks.finding import Finding, State
 from calm.errors import InputError, UsageError
 from calm.files import MooringFile, Position
 from calm.physics.line import Water
-from calm.quantities import QUANTITIES, bearing_of, say
-from calm.report.blocks import Cell, Column, Listing, Pairs, Prose, ReportPart, Table, table_of
-from calm.report.sheet import quantity_column
+from calm.quantities import bearing_of, say
+from calm.report import blocks
+from calm.report.blocks import Listing, Prose, Report, ReportPart, number, quantity, table_of, words
 from calm.whole_file import read_text
 
 _LIBRARIES = ("numpy", "pydantic", "matplotlib", "jinja2", "typst")
@@ -56,6 +56,11 @@ def date() -> str | None:
     """The day of `moment`, such as 2026-11-21."""
     when = moment()
     return None if when is None else when.date().isoformat()
+
+
+def report_of(title: str, subtitle: str, *parts: ReportPart, name: str = "") -> Report:
+    """A report of one thing, on the day of `date`; its section has a name where that is another."""
+    return Report(title, subtitle, (), (blocks.Section(name or title, parts),), date())
 
 
 def source_text(file: MooringFile) -> str | None:
@@ -133,32 +138,27 @@ def unseen(findings: Iterable[Finding]) -> tuple[str, ...]:
 _MOST_LEVELS = 40
 
 
-def environments_table(names: Sequence[str], waters: Sequence[Water]) -> Table:
+def environments_table(names: Sequence[str], waters: Sequence[Water]) -> blocks.Table:
     """Depth, density and the greatest current of each environment, and where it is."""
     rows = []
     for name, water in zip(names, waters, strict=True):
         speed = np.hypot(water.u, water.v)
         fastest = int(speed.argmax())
         densities = sorted({f"{density:.0f}" for density in water.density})
-        rows.append(
-            (
-                Cell(name),
-                Cell(QUANTITIES["depth"].format(water.depth) if np.isfinite(water.depth) else "-"),
-                Cell(densities[0] + (f"–{densities[-1]}" if len(densities) > 1 else "")),
-                Cell(QUANTITIES["speed"].format(float(speed[fastest]))),
-                Cell(QUANTITIES["depth"].format(float(water.level[fastest]))),
-                Cell(str(len(water.level))),
-            )
-        )
-    columns = (
-        Column("environment"),
-        quantity_column("depth", "water depth"),
-        Column("density", "kg/m³", numeric=True),
-        quantity_column("speed", "greatest current"),
-        quantity_column("depth", "at depth"),
-        Column("levels", numeric=True),
+        density = "–".join(dict.fromkeys((densities[0], densities[-1])))
+        depth = water.depth if np.isfinite(water.depth) else None
+        current = float(speed[fastest]), float(water.level[fastest])
+        rows.append((name, depth, density, *current, len(water.level)))
+    return table_of(
+        "Environments",
+        rows,
+        words("environment", 0),
+        quantity("depth", 1, "water depth"),
+        number("density", 2, "kg/m³"),
+        quantity("speed", 3, "greatest current"),
+        quantity("depth", 4, "at depth"),
+        number("levels", 5),
     )
-    return Table("Environments", columns, tuple(rows))
 
 
 def current_listing(name: str, water: Water) -> Listing:
@@ -179,22 +179,16 @@ def document_part(file: MooringFile) -> tuple[ReportPart, ...]:
     """The title block and the history of revisions; nothing where a file gives no document."""
     if file.document is None:
         return ()
-    return (ReportPart("Document", (Pairs(tuple(title_pairs(file))),)), *history_part(file))
+    return (ReportPart("Document", (blocks.Pairs(tuple(title_pairs(file))),)), *history_part(file))
 
 
 def history_part(file: MooringFile) -> tuple[ReportPart, ...]:
     """The history of revisions; nothing where a file gives none."""
     if file.document is None or not file.document.history:
         return ()
-    table = table_of(
-        "",
-        file.document.history,
-        (Column("revision", share=0.0), lambda one: one.revision),
-        (Column("date", share=0.0), lambda one: one.date or ""),
-        (Column("by"), lambda one: one.by or ""),
-        (Column("change", share=3.0), lambda one: one.change or ""),
-    )
-    return (ReportPart("History", (table,)),)
+    first = words("revision", share=0.0), words("date", share=0.0)
+    fields = (*first, words("by"), words("change", share=3.0))
+    return (ReportPart("History", (table_of("", file.document.history, *fields),)),)
 
 
 def title_pairs(file: MooringFile) -> list[tuple[str, str]]:

@@ -14,23 +14,8 @@ from numpy.typing import NDArray
 from calm.case import Result, TowResult
 from calm.case.net_result import AnyResult, NetResult
 from calm.case.result_tables import ClampRow, ComponentRow, Components, rows_down
-from calm.dataset.netcdf import (
-    CLAMPS,
-    OF_CLAMP,
-    OF_COMPONENT,
-    OF_ENDS,
-    OF_NODE,
-    PIECES,
-    Attributes,
-    ResultLayout,
-    down_the_line,
-    labels,
-    netcdf_of,
-    numbers,
-    of_net,
-    origin,
-    station,
-)
+from calm.dataset import netcdf
+from calm.dataset.netcdf import CLAMPS, OF_CLAMP, OF_COMPONENT, OF_ENDS, Attributes, labels, numbers
 from calm.files.legs import leg_numbers
 from calm.quantities import QUANTITIES
 from calm.records.delimited import table_csv
@@ -106,14 +91,14 @@ def result_netcdf(result: AnyResult) -> bytes:
     file, pieces, clamps = result.file, result.components, result.clamps
     ends = _ends(result)
     place = () if file.position is None else (file.position.latitude, file.position.longitude)
-    of_station, where = station(result.name or "mooring", place, "the anchor")
+    of_station, where = netcdf.station(result.name or "mooring", place, "the anchor")
     lines = result.legs if isinstance(result, NetResult) else (result,)
     of_node = {
         f"shape_{name}": np.concatenate([getattr(line.shape, name) for line in lines])
         for name in vars(lines[0].shape)
     }
     sizes = {"component": len(pieces), "node": len(of_node["shape_depth"])}
-    variables = [*of_station, labels("component_label", "component", pieces.label, PIECES)]
+    variables = [*of_station, labels("component_label", "component", pieces.label, netcdf.PIECES)]
     of_component = {name: getattr(pieces, name) for name in (*OF_COMPONENT, *_MORE)}
     of_clamp = {name: getattr(clamps, name.removeprefix("clamp_")) for name in OF_CLAMP}
     beside = f"component_label depth_top{where}"
@@ -123,28 +108,30 @@ def result_netcdf(result: AnyResult) -> bytes:
         variables.append(labels("clamp_label", "clamp", clamps.label, CLAMPS))
         beside = f"clamp_label clamp_depth{where}"
         variables += numbers(("clamp",), OF_CLAMP, beside, _floats(of_clamp))
-    variables += numbers(("node",), {**OF_NODE, **_TILT}, f"shape_depth{where}", _floats(of_node))
+    variables += numbers(
+        ("node",), {**netcdf.OF_NODE, **_TILT}, f"shape_depth{where}", _floats(of_node)
+    )
     accuracy = {f"accuracy_{name}": getattr(result.accuracy, name) for name in ("depth", "tension")}
     of_ends = _OF_TOW if isinstance(result, TowResult) else OF_ENDS
     along: tuple[str, ...] = ()
     if isinstance(result, NetResult):
         sizes["leg"], along = len(lines), ("leg",)
         own = leg_numbers(file)
-        variables = of_net(
+        variables = netcdf.of_net(
             variables, [line.name for line in lines], own, [own[row.index] for row in clamps],
             [n for n, line in enumerate(lines) for _ in line.shape.depth],
         )  # fmt: skip
     variables += numbers(along, of_ends, where.strip(), _floats(ends))
     variables += numbers((), _ACCURACY, where.strip(), _floats(accuracy))
-    variables += down_the_line(sizes)
+    variables += netcdf.down_the_line(sizes)
     attributes = {
-        **origin(file.path, result.name, file.description, "run"),
+        **netcdf.origin(file.path, result.name, file.description, "run"),
         "title": f"{result.name or Path(file.path).stem}: its equilibrium",
         "status": result.status,
         "notes": "\n".join(result.warnings),
     }
     known = {name: value for name, value in attributes.items() if value}
-    return netcdf_of(ResultLayout(sizes, tuple(variables), known))
+    return netcdf.netcdf_of(netcdf.ResultLayout(sizes, tuple(variables), known))
 
 
 def _ends(result: AnyResult) -> Mapping[str, object]:

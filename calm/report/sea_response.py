@@ -2,26 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import isnan
 
 from calm.checks.finding import State
 from calm.drawing.picture import figure_svg
 from calm.quantities import QUANTITIES, say
 from calm.records.sea_states import doubted
-from calm.report.blocks import (
-    Block,
-    Column,
-    Field,
-    Figure,
-    Prose,
-    Report,
-    ReportPart,
-    Section,
-    Span,
-    Table,
-    table_of,
-)
-from calm.report.provenance import date
+from calm.report import blocks
+from calm.report.blocks import Prose, ReportPart, Table, number, table_of, words
+from calm.report.provenance import report_of
 from calm.waves.analysis import SLACK, MooringInSea, PieceInWaves, WaveAnalysis
 from calm.waves.fatigue import PieceFatigue
 
@@ -37,14 +27,13 @@ _LIFE = (
 )
 
 
-def sea_response_report(analysis: WaveAnalysis) -> Report:
+def sea_response_report(analysis: WaveAnalysis) -> blocks.Report:
     """Return the tables with pictures of the tension: spectrum, along the line, over Hs."""
     said = "Tension in the highest sea: its spectrum at the top; along the line"
     if several := len(analysis.states) > 1:
         said += ". Tension at the top over Hs"
-    pictures = ReportPart("Tension", (Figure(said, _drawn(analysis, several)),))
-    section = Section(analysis.name, (sea_response_part(analysis), pictures))
-    return Report(analysis.name, "in waves", (), (section,), date())
+    pictures = ReportPart("Tension", (blocks.Figure(said, _drawn(analysis, several)),))
+    return report_of(analysis.name, "in waves", sea_response_part(analysis), pictures)
 
 
 def sea_response_part(analysis: WaveAnalysis) -> ReportPart:
@@ -52,89 +41,97 @@ def sea_response_part(analysis: WaveAnalysis) -> ReportPart:
     states, highest = analysis.states, _highest(analysis)
     title = f"Hs {highest.sea.significant_height:.1f} m, Tp {highest.sea.peak_period:.1f} s"
     told, several = Prose(tuple(_told(analysis, highest))), len(states) > 1
-    blocks: list[Block] = [
+    shown: list[blocks.Block] = [
         _pieces(highest, f"In the highest sea, {title}" if several else ""),
         told,
     ]
     if several:
-        blocks.insert(0, table_of("", states, *_SEAS))
+        shown.insert(0, _seas(states))
         title = f"{len(states)} seas"
-        known = [each for each in analysis.fatigue if each.life]
-        blocks.append(table_of("Fatigue over all seas", known, *_LIVES, note=_LIFE))
+        shown.append(_lives([each for each in analysis.fatigue if each.life]))
         unknown = [each.label for each in analysis.fatigue if each.unknown]
         if unknown:
-            blocks.append(Prose((f"Life unknown: {', '.join(unknown)}.",)))
+            shown.append(Prose((f"Life unknown: {', '.join(unknown)}.",)))
     doubts = [doubt for each in states if (doubt := doubted(each.sea)) is not None]
-    if said := (*analysis.warnings, *doubts[:1]):
-        blocks.append(Prose(said, State.WARN))
+    shown += blocks.warned((*analysis.warnings, *doubts[:1]))
     if analysis.status == SLACK:
         slack = ", ".join(dict.fromkeys(label for each in states for label in each.slack))
-        blocks.append(Prose((f"Slack: {slack}. Linear tensions are not valid there.",), State.FAIL))
-    return ReportPart(f"{analysis.name}: {title}", tuple(blocks))
+        said = f"Slack: {slack}. Linear tensions are not valid there."
+        shown += blocks.warned([said], State.FAIL)
+    return ReportPart(f"{analysis.name}: {title}", tuple(shown))
 
 
 def _highest(analysis: WaveAnalysis) -> MooringInSea:
     return max(analysis.states, key=lambda state: state.sea.significant_height)
 
 
-def _number(heading: str) -> Column:
-    return Column(heading, numeric=True)
+def _lives(known: Sequence[PieceFatigue]) -> Table:
+    def years(heading: str, name: str) -> blocks.Field:
+        def said(one: PieceFatigue) -> str:
+            count = getattr(one, name)
+            if count is None or count > 1000.0:
+                return "-" if count is None else "> 1000"
+            return f"{float(f'{count:.2g}'):g}"
 
+        return number(f"{heading}\nyears", said)
 
-_LIVES: tuple[Field[PieceFatigue], ...] = (
-    (Column(""), lambda one: one.label),
-    (_number("life\nyears"), lambda one: _years(one.life)),
-    (_number("low\nyears"), lambda one: _years(one.life_low)),
-    (_number("high\nyears"), lambda one: _years(one.life_high)),
-    (Column("curve"), lambda one: one.curve or ""),
-)
-
-
-def _years(count: float | None) -> str:
-    if count is None or count > 1000.0:
-        return "-" if count is None else "> 1000"
-    return f"{float(f'{count:.2g}'):g}"
+    return table_of(
+        "Fatigue over all seas",
+        known,
+        words("", "label"),
+        years("life", "life"),
+        years("low", "life_low"),
+        years("high", "life_high"),
+        words("curve"),
+        note=_LIFE,
+    )
 
 
 def _pieces(state: MooringInSea, title: str) -> Table:
-    tension, unit = QUANTITIES["tension"], QUANTITIES["tension"].display_unit
+    tension = QUANTITIES["tension"]
 
-    def named(one: PieceInWaves) -> str:
-        return f"{'!' if one.label in state.slack else ''}{one.label}"
+    def pull(heading: str, name: str) -> blocks.Field:
+        heading = f"{heading}\n{tension.display_unit}"
+        return number(heading, lambda one: tension.format(getattr(one, name)))
 
-    fields: tuple[Field[PieceInWaves], ...] = (
-        (Column(""), named),
-        (_number(f"mean\n{unit}"), lambda one: tension.format(one.tension_mean)),
-        (_number(f"std\n{unit}"), lambda one: tension.format(one.tension_std)),
-        (_number(f"max\n{unit}"), lambda one: tension.format(one.tension_max)),
-        (_number(f"min\n{unit}"), lambda one: tension.format(one.tension_min)),
-        (
-            _number("Tz\ns"),
-            lambda one: "-" if isnan(period := one.zero_crossing_period) else f"{period:.1f}",
-        ),
-        (_number("slack\n%"), lambda one: _percent(one.slack_probability)),
-        (_number("heave\nm"), lambda one: f"{one.heave_std:.2f}"),
-        (_number("tilt\n°"), lambda one: f"{one.tilt_std:.1f}"),
+    def period(one: PieceInWaves) -> str:
+        return "-" if isnan(one.zero_crossing_period) else f"{one.zero_crossing_period:.1f}"
+
+    return table_of(
+        title,
+        state.components,
+        words("", lambda one: f"{'!' if one.label in state.slack else ''}{one.label}"),
+        pull("mean", "tension_mean"),
+        pull("std", "tension_std"),
+        pull("max", "tension_max"),
+        pull("min", "tension_min"),
+        number("Tz\ns", period),
+        number("slack\n%", lambda one: _percent(one.slack_probability)),
+        number("heave\nm", lambda one: f"{one.heave_std:.2f}"),
+        number("tilt\n°", lambda one: f"{one.tilt_std:.1f}"),
+        note=_NOTE,
     )
-    return table_of(title, state.components, *fields, note=_NOTE)
 
 
 def _percent(share: float) -> str:
     return f"{round(100.0 * share, 2):.3g}"
 
 
-_SEAS: tuple[Field[MooringInSea], ...] = (
-    (_number("Hs\nm"), lambda state: f"{state.sea.significant_height:.1f}"),
-    (_number("Tp\ns"), lambda state: f"{state.sea.peak_period:.1f}"),
-    (_number("share\n%"), lambda state: _percent(state.sea.share)),
-    (_number("std at the top\nN"), lambda state: f"{state.components[0].tension_std:.0f}"),
-    (_number("max at the top\nN"), lambda state: f"{state.components[0].tension_max:.0f}"),
-    (Column("slack"), lambda state: ", ".join(state.slack) or "-"),
-)
+def _seas(states: Sequence[MooringInSea]) -> Table:
+    return table_of(
+        "",
+        states,
+        number("Hs\nm", lambda state: f"{state.sea.significant_height:.1f}"),
+        number("Tp\ns", lambda state: f"{state.sea.peak_period:.1f}"),
+        number("share\n%", lambda state: _percent(state.sea.share)),
+        number("std at the top\nN", lambda state: f"{state.components[0].tension_std:.0f}"),
+        number("max at the top\nN", lambda state: f"{state.components[0].tension_max:.0f}"),
+        words("slack", lambda state: ", ".join(state.slack) or "-"),
+    )
 
 
-def _told(analysis: WaveAnalysis, state: MooringInSea) -> list[str | tuple[Span, ...]]:
-    said: list[str | tuple[Span, ...]] = []
+def _told(analysis: WaveAnalysis, state: MooringInSea) -> list[blocks.Line]:
+    said: list[blocks.Line] = []
     top = state.components[0].tension_std
     if state.follower_std is not None and abs(state.follower_std - top) > 1e-3 * top:
         said.append(
@@ -151,7 +148,7 @@ def _told(analysis: WaveAnalysis, state: MooringInSea) -> list[str | tuple[Span,
         f"{one.frequencies:.1%} with twice the frequencies, by {one.linearisation:.0%} with a "
         "fifth less drag."
     ).replace("%", " %")
-    return [*said, (Span(good, quiet=True),)]
+    return [*said, (blocks.Span(good, quiet=True),)]
 
 
 def _drawn(analysis: WaveAnalysis, several: bool) -> str:

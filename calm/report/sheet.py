@@ -1,14 +1,16 @@
-"""What a result says: the table of its line, its marks, and the words around it."""
+"""What a result says: the table of its line, its marks, and the words around it.
+
+Of a net they are the table of its legs, its nodes, and what its ends bear.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import Any
 
 from calm.case import Result, TowResult
-from calm.case.net_result import AnyResult
+from calm.case.net_result import AnyResult, NetResult, legs_of
 from calm.case.profilers import ProfilerTravel
 from calm.case.result_tables import ClampRow, ComponentRow, rows_down
 from calm.case.strumming import StrummingBand
@@ -17,20 +19,11 @@ from calm.checks.posture import reaches_the_surface
 from calm.checks.strength import safety_factor
 from calm.drawing.schematic.shown_parts import place_text
 from calm.files import Component
+from calm.files.legs import EndKeys
 from calm.files.strumming_keys import BourgetMarichalKeys
-from calm.quantities import QUANTITIES, duration, say
-from calm.report.blocks import (
-    Block,
-    Cell,
-    Column,
-    Field,
-    Line,
-    Note,
-    Prose,
-    ReportPart,
-    Span,
-    Table,
-)
+from calm.quantities import duration, say
+from calm.report import blocks
+from calm.report.blocks import Cell, Column, Line, Note, Prose, ReportPart, Span, Table, words
 from calm.solve import Status
 
 NO_HEADS: Mapping[int, Cell] = {}
@@ -44,7 +37,7 @@ _TYPES = {"subsurface": "sub-surface mooring", "surface": "surface mooring"}
 
 
 def result_part(
-    result: Result | TowResult, facts: Sequence[Line] = (), *, verbose: bool = False
+    result: AnyResult, facts: Sequence[Line] = (), *, verbose: bool = False
 ) -> ReportPart:
     """A result in short: it fits 80 columns, where long labels wrap.
 
@@ -55,11 +48,13 @@ def result_part(
     facts : more about the line, after its summary
     verbose : say how the solution was reached
     """
-    table, (summary, *warned) = table_of_line(result), summary_of(result)
+    if isinstance(result, NetResult):
+        return net_part(result)
+    table, (summary, *warnings) = table_of_line(result), summary_of(result)
     quality = quality_of(result).lines if verbose else quality_of(result).lines[:1]
     ends = replace(summary, lines=(*summary.lines, *facts))
-    blocks: tuple[Block, ...] = (ends, *warned, Note((table.note, *map(str, quality))))
-    return ReportPart(title_of(result), (replace(table, note=""), *blocks))
+    shown: tuple[blocks.Block, ...] = (ends, *warnings, Note((table.note, *map(str, quality))))
+    return ReportPart(title_of(result), (replace(table, note=""), *shown))
 
 
 def title_of(result: Result | TowResult) -> str:
@@ -83,8 +78,7 @@ def table_of_line(result: Result | TowResult, title: str = "", *, places: bool =
 def summary_of(result: Result | TowResult) -> tuple[Prose, ...]:
     """The two ends of the line in words, the warnings below them."""
     ends = _tow_summary(result) if isinstance(result, TowResult) else _mooring_summary(result)
-    warned = (Prose(result.warnings, State.WARN),) if result.warnings else ()
-    return (Prose((*ends, *_strumming(result))), *warned)
+    return (Prose((*ends, *_strumming(result))), *blocks.warned(result.warnings))
 
 
 def quality_of(result: Result | TowResult) -> Prose:
@@ -148,17 +142,15 @@ def _mooring_summary(result: Result) -> tuple[Line, ...]:
 def _tow_summary(result: TowResult) -> tuple[Line, ...]:
     """The loads at the ship, and where the body is."""
     point, body = result.tow_point, result.body
-    way = "down" if point.vertical >= 0.0 else "up"
+    at_ship, at_body = (
+        f"{say('tension', end.tension)}, {say('angle', end.angle)} from the horizontal"
+        for end in (point, body)
+    )
+    vertical = f"{say('vertical', abs(point.vertical))} {'down' if point.vertical >= 0.0 else 'up'}"
+    there = f"Body {_level(result, body.depth)}, layback {say('layback', body.layback)}"
     return (
-        (
-            f"Tow point pulled by {_pull(point.tension, point.angle)}: "
-            f"{say('vertical', abs(point.vertical))} {way}, "
-            f"{say('horizontal', point.horizontal)} back"
-        ),
-        (
-            f"Body {_level(result, body.depth)}, layback {say('layback', body.layback)}; "
-            f"pulled by {_pull(body.tension, body.angle)}"
-        ),
+        f"Tow point pulled by {at_ship}: {vertical}, {say('horizontal', point.horizontal)} back",
+        f"{there}; pulled by {at_body}",
     )
 
 
@@ -191,28 +183,11 @@ def _with(result: Result | TowResult, band: StrummingBand) -> str:
     return f"{top}, anchor {say('tension', band.tension)}"
 
 
-def _pull(tension: float, angle: float) -> str:
-    return f"{say('tension', tension)}, {say('angle', angle)} from the horizontal"
-
-
 def _level(result: TowResult, depth: float) -> str:
     """Return how deep the body is, or how high it flies."""
     if result.file.environment.fluid == "air":
         return f"{say('depth', depth + result.tow.keys.height)} below the tow point"
     return f"{say('depth', depth)} deep" if depth >= 0.0 else f"{say('depth', -depth)} in the air"
-
-
-# Headings cut so that the whole table fits 80 columns.
-_SHORT = {
-    "height": "above\nseabed",
-    "knockdown": "knock-\ndown",
-    "safety_factor": "safety\nfactor\n",
-}
-_MARKED = ("tilt", "safety_factor")
-
-
-_MARKS = {State.WARN: "~", State.FAIL: "!"}
-"""The sign after a figure that is near its limit or beyond it: legible without colour."""
 
 
 def line_table(
@@ -233,45 +208,25 @@ def line_table(
     heads : what stands above pieces, by their index
     """
     columns = (Column("no.", numeric=True, narrow=False), Column("piece", short=""))
-    rows = tuple(_rows(result, names, places, heads))
-    return Table("", (*columns, *map(quantity_column, names)), rows, note, dense=True)
-
-
-def quantity_field(name: str, attribute: str = "", heading: str | None = None) -> Field[Any]:
-    """A column of a quantity for `table_of`.
-
-    Parameters
-    ----------
-    name : of the quantity
-    attribute : of the items, where it has another name
-    heading : where it is another
-    """
-    column = quantity_column(name, heading)
-    return column, lambda one: figure_cell(name, getattr(one, attribute or name))
-
-
-def quantity_column(name: str, heading: str | None = None) -> Column:
-    """The head of a column of a quantity, or another, with the unit that people read."""
-    quantity = QUANTITIES[name]
-    return Column(
-        heading or quantity.heading,
-        quantity.display_unit,
-        numeric=True,
-        short=None if heading else _SHORT.get(name),
-        marked=name in _MARKED,
-    )
-
-
-def figure_cell(name: str, value: float | None, state: State | None = None) -> Cell:
-    """Return a value of a quantity as it stands under its `quantity_column`.
-
-    Parameters
-    ----------
-    name : of the quantity
-    value : SI, degrees; None where it is not known
-    state : warns or fails where the figure is near a limit or beyond it, and marks it so
-    """
-    return Cell(QUANTITIES[name].format(value), state=state, mark=_MARKS[state] if state else "")
+    rows: list[tuple[Cell, ...]] = []
+    for number, (piece, clamps) in enumerate(rows_down(result)):
+        if piece.index in heads:
+            rows.append((heads[piece.index],))
+        component, upper = piece.part.component, (piece.depth_top, piece.x_top, piece.y_top)
+        states = {"tilt": tilt_state(component, piece.tilt)}
+        states["safety_factor"] = safety_state(result, piece)
+        label = Cell(piece.label, strong=piece.role == "instrument")
+        rows.append((Cell(str(number)), label, *_cells(result, names, piece, upper, states)))
+        for clamp in clamps:
+            component = clamp.part.component
+            states = {"tilt": tilt_state(component, clamp.tilt)}
+            there = clamp.depth, clamp.x, clamp.y
+            cells = [*_cells(result, names, clamp, there, states)]
+            if places:
+                cells[names.index("length")] = Cell(place_text(clamp.part.at))
+            label = Cell(clamp.label, indented=True, strong=component.role == "instrument")
+            rows.append((Cell(), label, *cells))
+    return Table("", (*columns, *map(blocks.quantity_column, names)), tuple(rows), note, dense=True)
 
 
 def tilt_state(component: Component, tilt: float) -> State | None:
@@ -296,50 +251,104 @@ def safety_state(result: AnyResult, record: ComponentRow) -> State | None:
     return State.FAIL if beyond else None
 
 
-def _rows(
-    result: AnyResult, names: tuple[str, ...], places: bool, heads: Mapping[int, Cell]
-) -> Iterator[tuple[Cell, ...]]:
-    for number, (piece, clamps) in enumerate(rows_down(result)):
-        if piece.index in heads:
-            yield (heads[piece.index],)
-        where = _where(result, piece.depth_top, piece.x_top, piece.y_top)
-        states = {
-            "tilt": tilt_state(piece.part.component, piece.tilt),
-            "safety_factor": safety_state(result, piece),
-        }
-        label = Cell(piece.label, strong=piece.role == "instrument")
-        yield Cell(str(number)), label, *_cells(names, piece, where, states)
-        for clamp in clamps:
-            component = clamp.part.component
-            where = _where(result, clamp.depth, clamp.x, clamp.y)
-            states = {"tilt": tilt_state(component, clamp.tilt)}
-            strong = component.role == "instrument"
-            label = Cell(clamp.label, indented=True, strong=strong)
-            cells = [*_cells(names, clamp, where, states)]
-            if places:
-                cells[names.index("length")] = Cell(place_text(clamp.part.at))
-            yield Cell(), label, *cells
-
-
-def _where(result: AnyResult, depth: float, x: float, y: float) -> dict[str, float]:
-    """Return where a clamped instrument is, or the upper end of a piece."""
-    bottom = result.file.environment.depth
-    return {
-        "depth": depth,
-        "height": math.nan if bottom is None else bottom - depth,
-        "offset": math.hypot(x, y),
-        "layback": math.hypot(x, y),
-        "x": x,
-        "y": y,
-    }
-
-
 def _cells(
+    result: AnyResult,
     names: tuple[str, ...],
     row: ComponentRow | ClampRow,
-    where: dict[str, float],
+    place: tuple[float, float, float],
     states: Mapping[str, State | None],
 ) -> Iterator[Cell]:
+    """The figures of a piece or a clamp, at a depth and a place east and north [m]."""
+    depth, x, y = place
+    bottom, distance = result.file.environment.depth, math.hypot(x, y)
+    where = {"depth": depth, "offset": distance, "layback": distance, "x": x, "y": y}
+    where["height"] = math.nan if bottom is None else bottom - depth
     for name in names:
         value = where[name] if name in where else getattr(row, name, None)
-        yield figure_cell(name, value, states.get(name))
+        yield blocks.figure_cell(name, value, states.get(name))
+
+
+_NET_COLUMNS = ("length", "depth", "x", "y", "knockdown", "tilt", "tension", "safety_factor")
+
+
+def net_part(result: NetResult) -> ReportPart:
+    """A net in short: a table of the pieces leg by leg, its nodes, its anchors and held ends."""
+    depth = say("depth", result.file.environment.depth)
+    count = len(result.legs)
+    title = f"{result.name}: net of {count} leg{'s' * (count != 1)}, {depth} of water"
+    heads = {leg.file.legs[0].first: Cell(leg_title(leg), strong=True) for leg in result.legs}
+    table = line_table(result, _NET_COLUMNS, "", heads=heads)
+    how = (
+        "Depth, east and north: of the upper end. Tension: the greatest in the piece. "
+        "~ near a limit, ! beyond it."
+    )
+    note = Note((how, _convergence(result)))
+    return ReportPart(title, (table, *_ends(result), *blocks.warned(result.warnings), note))
+
+
+def leg_title(leg: Result) -> str:
+    """Name of a leg and what holds its ends."""
+    (keys,) = leg.file.legs
+    top = "at the surface" if leg.type == "surface" else end_text(keys.top)
+    return f"{leg.name}: {top} to {end_text(keys.bottom)}"
+
+
+def leg_titles(result: Result | NetResult) -> dict[str, str]:
+    """The titles of the legs by their names; a single line has none."""
+    return {leg.name: f"leg {leg_title(leg)}" for leg in legs_of(result) if leg.file.legs}
+
+
+def ends_told(line: Result) -> tuple[str | None, str | None]:
+    """What a leg comes from and leads to; None where it ends at the sea and on the seabed."""
+    if not line.file.legs:
+        return None, None
+    top, bottom = line.file.legs[0].ends
+    return (
+        None if top.free else f"from {end_text(top)}",
+        None if bottom.anchor is not None else end_text(bottom),
+    )
+
+
+def end_text(end: EndKeys) -> str:
+    """What holds an end of a leg, in words."""
+    if end.join is not None:
+        return f"node {end.join}"
+    if end.held is not None:
+        return "held end"
+    return "free end" if end.anchor is None else "anchor"
+
+
+def _ends(result: NetResult) -> list[Table | Prose]:
+    """Nodes, anchors and held ends, and floats at the surface."""
+    found: list[Table | Prose] = []
+    if result.nodes:
+        places = map(blocks.quantity, ("depth", "x", "y"))
+        found.append(blocks.table_of("Nodes", result.nodes, words("", "name"), *places))
+    heads = {"tension": "pull", "vertical": "up", "horizontal": "sideways"}
+    heads |= {"depth": "depth", "x": "east", "y": "north", "required_weight": "needs"}
+    fields = [blocks.quantity(name, heading=head) for name, head in heads.items()]
+    if result.anchors:
+        found.append(blocks.table_of("Anchors", result.anchors, words("leg"), *fields))
+    if result.held:
+        found.append(blocks.table_of("Held ends", result.held, words("leg"), *fields[:-1]))
+    afloat = [
+        f"{leg.name}: float at the surface, {leg.top.used_buoyancy:.1%} of its buoyancy used, "
+        f"{say('reserve', leg.top.reserve)} in reserve"
+        for leg in result.legs
+        if leg.type == "surface"
+    ]
+    if afloat:
+        found.append(Prose(tuple(afloat)))
+    return found
+
+
+def _convergence(result: NetResult) -> str:
+    """How the net was solved and how good that is."""
+    accuracy = result.accuracy
+    left = max((node.imbalance for node in result.nodes), default=0.0)
+    return (
+        f"{result.status.capitalize()} in {result.iterations} marches of its legs, "
+        f"{result.segments} segments, good to {accuracy.depth:.2g} m and {accuracy.tension:.2g} N; "
+        f"ends missed by {result.miss:.1g} m, nodes in balance to {left:.1g} N, forces closed to "
+        f"{result.closure:.1g}."
+    )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import starmap
 from math import floor, log10
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +14,8 @@ from calm.errors import NoEquilibrium
 from calm.physics.strumming import BourgetMarichal
 from calm.quantities import QUANTITIES, Quantity
 from calm.records.delimited import table_csv
-from calm.report.blocks import Cell, Column, Pairs, Prose, ReportPart, Span, Table
+from calm.report import blocks
+from calm.report.blocks import Cell, Field, Pairs, ReportPart, number, quiet, table_of, warned
 
 if TYPE_CHECKING:
     from calm.case import Tow, TowResult
@@ -187,26 +189,29 @@ def tabulation_part(tabulation: Tabulation) -> ReportPart:
     all rows share stand below.
     """
     names = [name for name in FIGURES if name != "frequency" or tabulation.strumming]
-    columns = (
-        *(Column(heading, numeric=True) for heading in tabulation.headings),
-        *(Column(_HEADINGS.get(name, QUANTITIES[name].heading), QUANTITIES[name].display_unit,
-                 numeric=True) for name in names),
-        Column("", share=0.0),
-    )  # fmt: skip
-    quantities = [_fine(name, tabulation) for name in names]
-    remarks = [_remark(tabulation, row) for row in tabulation.rows]
-    rows = tuple(
-        (
-            *map(Cell, row.shown),
-            *(Cell(quantity.format(row.figures[quantity.name])) for quantity in quantities),
-            Cell(remark, state=State.FAIL if remark else None),
-        )
-        for row, remark in zip(tabulation.rows, remarks, strict=True)
+
+    def figure(name: str) -> Field:
+        shown, fine = QUANTITIES[name], _fine(name, tabulation)
+        heading = _HEADINGS.get(name, shown.heading)
+        return number(heading, lambda row: fine.format(row.figures[name]), shown.display_unit)
+
+    def chosen(at: int, heading: str) -> Field:
+        return number(heading, lambda row: row.shown[at])
+
+    def remark(row: TabulationRow) -> Cell:
+        text = _remark(tabulation, row)
+        return Cell(text, state=State.FAIL if text else None)
+
+    table = table_of(
+        "",
+        tabulation.rows,
+        *starmap(chosen, enumerate(tabulation.headings)),
+        *map(figure, names),
+        blocks.words("", remark, 0.0),
     )
-    note = f"{_NOTE} {_WARNED}" if "!" in remarks else _NOTE
-    warned = (Prose(tabulation.warnings, State.WARN),) if tabulation.warnings else ()
-    quiet = Prose(((Span(note, quiet=True),),))
-    return ReportPart(tabulation.title, (Table("", columns, rows), *warned, quiet))
+    marked = any(_remark(tabulation, row) == "!" for row in tabulation.rows)
+    note = quiet(f"{_NOTE} {_WARNED}" if marked else _NOTE)
+    return ReportPart(tabulation.title, (table, *warned(tabulation.warnings), note))
 
 
 def _fine(name: str, tabulation: Tabulation) -> Quantity:
@@ -253,10 +258,8 @@ def bare_cable_part(cable: BareCable) -> ReportPart:
             ("amplitude a", f"{1000.0 * amplitude * cable.diameter:.1f} mm"),
             ("frequency", f"{cable.frequency:.2f} Hz"),
         ]
-    notes = tuple(_notes(cable))
-    warned = (Prose(notes, State.WARN),) if notes else ()
     title = f"Bare cable at {cable.angle:g}° behind a ship at {cable.speed:.3g} m/s"
-    return ReportPart(title, (Pairs(tuple(pairs)), *warned))
+    return ReportPart(title, (Pairs(tuple(pairs)), *warned(_notes(cable))))
 
 
 def _notes(cable: BareCable) -> Iterator[str]:

@@ -17,18 +17,8 @@ from rich.text import Text
 
 from calm.checks.finding import State
 from calm.drawing.picture import in_ascii, printable
-from calm.report.blocks import (
-    Block,
-    Cell,
-    Column,
-    Heading,
-    Line,
-    Note,
-    Pairs,
-    Prose,
-    ReportPart,
-    Table,
-)
+from calm.report import blocks
+from calm.report.blocks import Block, Cell, Column, Heading, Line, Pairs, Prose, ReportPart, Table
 
 _STYLES = {
     State.PASS: "green",
@@ -79,7 +69,7 @@ class _Printer:
             return [self._pairs(block)]
         if isinstance(block, Prose):
             return [self._line(line, block.state) for line in block.lines]
-        if isinstance(block, Note):
+        if isinstance(block, blocks.Note):
             return [self._text(line, _QUIET) for line in block.lines]
         if isinstance(block, Heading):
             return [self._text(block.text, "bold")]

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
+from functools import partial
 from math import ceil, isnan, log10
 from typing import TYPE_CHECKING, Any
 
 from calm.checks.finding import State
-from calm.report.blocks import Block, Cell, Column, Heading, Line, Prose, ReportPart, Span, Table
+from calm.report import blocks
+from calm.report.blocks import Block, Cell, Heading, Line, Prose, ReportPart, Span, table_of, warned
 from calm.report.result_files import members
 
 if TYPE_CHECKING:
@@ -92,9 +94,7 @@ def _case(source: Source, outcome: CaseOutcome) -> dict[str, Any]:
     case = outcome.case
     return {
         "source": source.title,
-        "name": case.name,
-        "kind": case.kind.value,
-        "expected": case.expected,
+        **members(case, "name", "kind", "expected"),
         **members(outcome, "got", "difference"),
         **members(case, "tolerance", "unit", "why"),
         "within": outcome.within,
@@ -103,21 +103,21 @@ def _case(source: Source, outcome: CaseOutcome) -> dict[str, Any]:
 
 
 def _of_source(source: Source, outcomes: Sequence[CaseOutcome]) -> Iterator[Block]:
-    columns = tuple(Column(name, numeric=name not in ("case", "unit")) for name in COLUMNS)
+    def cell(outcome: CaseOutcome, name: str) -> Cell:
+        text = figures(outcome)[COLUMNS.index(name)]
+        if outcome.within:
+            return Cell(text)
+        return Cell(f"! {text}" if name == "case" else text, state=State.FAIL)
+
+    fields = [
+        blocks.words(name, partial(cell, name=name), numeric=name not in ("case", "unit"))
+        for name in COLUMNS
+    ]
     yield Heading(source.title)
     for kind in by_kind(outcome.case for outcome in outcomes):
-        rows = tuple(_row(outcome) for outcome in outcomes if outcome.case.kind is kind)
-        yield Table(_sentence(kind), columns, rows)
-    reasons = [f"{outcome.case.name}: {outcome.reason}" for outcome in outcomes if outcome.reason]
-    if reasons:
-        yield Prose(tuple(reasons), State.WARN)
-
-
-def _row(outcome: CaseOutcome) -> tuple[Cell, ...]:
-    name, *others = figures(outcome)
-    out = None if outcome.within else State.FAIL
-    label = name if outcome.within else f"! {name}"
-    return tuple(Cell(text, state=out) for text in (label, *others))
+        of_kind = (outcome for outcome in outcomes if outcome.case.kind is kind)
+        yield table_of(_sentence(kind), of_kind, *fields)
+    yield from warned(f"{one.case.name}: {one.reason}" for one in outcomes if one.reason)
 
 
 def _sentence(text: str) -> str:

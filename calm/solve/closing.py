@@ -13,8 +13,7 @@ from typing import NamedTuple
 from calm.physics.compiled import set_row
 from calm.physics.hull import Riding, riding_of
 from calm.physics.line import GOES_ON
-from calm.physics.passing import FAILURE, FX, FY, HANGING, LANDED, NODES, How, Z, pass_line
-from calm.physics.seabed import lay_line
+from calm.physics.passing import FAILURE, GROUNDED, HANGING, LANDED, NODES, How, Z, pass_line
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.physics.track import Load
 from calm.solve.least_change import bracketed_root, root_near
@@ -124,6 +123,7 @@ def miss_at(about: About, x: float) -> float:
         problem.limits.near,
         unknown.stages,
         unknown.lands,
+        problem.limits.bed,
         about.given,
         about.record != NOT_RECORDED,
     )
@@ -326,14 +326,8 @@ def close_near(search: Search, root: Root, cuts: int, record: int) -> Closed:
     if abs(found.miss) > max(limits.allowed, small):
         ending = MISSES if found.unknown.sought == BELOW else SLACK_ON_DIGITS
         return not_closed(ending, abs(found.miss), found)
-    nodes, landed, grounded = int(left[NODES]), left[LANDED] >= 0.0, 0.0
-    hanging = nodes - 1
-    if landed:
-        nodes, grounded = lay_line(
-            problem.course, problem.work.records[record], nodes, int(left[LANDED]), left[HANGING],
-            left[FX], left[FY], found.unknown.goal, limits.excess, limits.friction,
-        )  # fmt: skip
-    return Closed(FOUND, 0.0, -1, found, nodes, hanging, landed, grounded)
+    nodes, hanging = int(left[NODES]), int(left[HANGING]) - 1
+    return Closed(FOUND, 0.0, -1, found, nodes, hanging, left[LANDED] >= 0.0, left[GROUNDED])
 
 
 def not_closed(ending: int, value: float, root: Root) -> Closed:

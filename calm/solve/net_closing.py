@@ -14,7 +14,16 @@ from calm.physics.profile import Sea
 from calm.physics.referee import RefereeShape, find_ends
 from calm.solve import net_march
 from calm.solve.closing import halve
-from calm.solve.net_march import LANDS, STAGE, Marching, NetProblem, left_over, leg_of, place_of
+from calm.solve.net_march import (
+    LANDS,
+    STAGE,
+    Marching,
+    NetProblem,
+    above_bed,
+    left_over,
+    leg_of,
+    place_of,
+)
 from calm.solve.problem import CHOSEN, COARSE, FINE, HALVED
 
 MOST_STEPS, HALVINGS = 60, 9
@@ -96,12 +105,17 @@ def close_net(
     enough : what may be left, in shares
     known : whether the slopes are about right already, and need not be found first
     """
-    size, trial, fresh = len(x), net.trial, not known
-    failure = left_over(net, x, how, fresh)
+    failure = left_over(net, x, how, not known)
     if failure != GOES_ON:
         return NEEDS_ROOM if failure == NO_ROOM else NOT_CLOSED
-    plain = known
-    left = net.kept
+    return close_on(net, x, how, enough, known)
+
+
+def close_on(
+    net: NetProblem, x: MutableSequence[float], how: Marching, enough: float, known: bool
+) -> int:
+    """`close_net` from unknowns that were marched last, on these segments."""
+    size, trial, fresh, plain, left = len(x), net.trial, not known, known, net.kept
     keep(net.found, left)
     for _ in range(MOST_STEPS):
         if squares(left) <= enough * enough:
@@ -147,22 +161,22 @@ def close_net(
     return CAME_OUT
 
 
-def lies_otherwise(net: NetProblem, sea: Sea, record: int) -> bool:
+def lies_otherwise(net: NetProblem, x: Sequence[float], record: int) -> bool:
     """Whether a leg lies on the seabed but was taken to hang clear, or the other way round.
 
     It is taken to do so from then on.
     """
     changed = False
     for i in range(len(net.legs)):
-        leg, state, height = net.legs[i], net.state[i], net.lines.work.records[i][record][2]
+        leg, state, shape = net.legs[i], net.state[i], net.lines.work.records[i][record]
         if leg.kind == net_march.HANGING_DOWN or leg.seabed == -inf:
             continue
         lies = state[STAGE] >= 0.0
         if state[LANDS] == 0.0:
             lowest = inf
             for n in range(int(state[net_march.HUNG])):
-                lowest = min(lowest, height[n])
-            lies = lowest < leg.seabed - 1e-6 * net.lines.limits.depth
+                lowest = min(lowest, above_bed(net, i, x, shape, n))
+            lies = lowest < -1e-6 * net.lines.limits.depth
         changed = changed or lies != (state[LANDS] > 0.0)
         state[LANDS] = 1.0 if lies else 0.0
     return changed
@@ -199,12 +213,15 @@ def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, en
     """Close a net that about is to the last digits, on segments that are short enough."""
     for _ in range(MOST_HALVINGS):
         for left in range(len(net.legs), -1, -1):
-            left_over(net, x, Marching(sea, 2.0 * step, CHOSEN, False, COARSE), False)
+            choosing = Marching(sea, 2.0 * step, CHOSEN, False, COARSE)
+            failure = left_over(net, x, choosing, False)
+            if failure != GOES_ON:
+                return NEEDS_ROOM if failure == NO_ROOM else NOT_CLOSED
             coarse = Marching(sea, 2.0 * step, CHOSEN, True, COARSE)
-            ending = close_net(net, x, coarse, enough, True)
+            ending = close_on(net, x, coarse, enough, True)
             if ending != CAME_OUT:
                 return ending
-            if not lies_otherwise(net, sea, COARSE):
+            if not lies_otherwise(net, x, COARSE):
                 break
             roughly = Marching(sea, 4.0 * step, CHOSEN, False, COARSE)
             if left == 0 or close_net(net, x, roughly, NEAR, False) != CAME_OUT:

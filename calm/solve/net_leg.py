@@ -12,7 +12,7 @@ import numpy as np
 from calm.errors import NoEquilibrium
 from calm.physics.compiled import entry, record_type
 from calm.physics.hull import HullRow, SurfaceFloat
-from calm.physics.line import Floats, Line, Water
+from calm.physics.line import Bed, Floats, Line, Water, off_bed
 from calm.physics.referee import RefereeShape
 from calm.physics.stretch import Knot
 from calm.physics.strumming import AT_REST
@@ -27,6 +27,7 @@ from calm.solve.problem import (
     CHANGED,
     FINE,
     HALVED,
+    ROUGH_REACH,
     BuoyantPiece,
     LineProblem,
     SearchArrays,
@@ -48,11 +49,13 @@ class LegEnd:
     node : its number; -1 where it ends at none
     place : east, north and up [m] of an end that is held; None where it is not
     seabed : height of the seabed below an anchor [m]; -inf where the end stands on none
+    deeper : how much deeper it is there per metre to the east and to the north [-]
     """
 
     node: int = -1
     place: tuple[float, float, float] | None = None
     seabed: float = -inf
+    deeper: tuple[float, float] = (0.0, 0.0)
 
     @property
     def free(self) -> bool:
@@ -92,8 +95,8 @@ class LaidLeg:
         return 3 if self.kind == net_march.PULLED else 1
 
     @staticmethod
-    def of(leg: NetLeg, water: Water, settings: Settings) -> LaidLeg:
-        """Lay out a leg."""
+    def of(leg: NetLeg, water: Water, settings: Settings, rough: bool) -> LaidLeg:
+        """Lay out a leg; `rough` as of `problem_of`."""
         line = leg.line
         if leg.upper.free:
             kind = net_march.STANDING
@@ -101,19 +104,28 @@ class LaidLeg:
             kind, line = net_march.HANGING_DOWN, replace(line.reversed(), towed=True)
         else:
             kind, line = net_march.PULLED, replace(pulled(line, (0.0, 0.0, 0.0)), towed=True)
-        return LaidLeg(leg, line, kind, problem_of(line, water, settings, compiled=False, room=1))
+        problem = problem_of(line, water, settings, compiled=False, rough=rough, room=1)
+        return LaidLeg(leg, line, kind, problem)
 
     def row(self, first: int) -> LegRow:
         """The leg in numbers; `first` is the first of its unknowns."""
         (start, end), (course, limits) = self.ends, (self.problem.course, self.problem.limits)
         length, counted = self.leg.line.length, (len(course.stages), course.landing)
+        rough = ROUGH_REACH * limits.depth if limits.near > 0.0 else 0.0
         return LegRow(
-            self.kind, first, start.node, end.node, self.leg.lower.seabed,
-            max(float(length.sum()) * 0.01, min(0.01 * limits.depth, 50.0) * 0.1),
+            self.kind, first, start.node, end.node, self.leg.lower.seabed, *self.bed[:2],
+            max(float(length.sum()) * 0.01, min(0.01 * limits.depth, 50.0) * 0.1, rough),
             max(float(self.line.length[0]), 0.5) if len(length) else 0.5, self.highest,
             int(limits.rides), *counted, len(course.cables), len(self.problem.surfacing),
             len(self.problem.hull), len(self.line.length),
         )  # fmt: skip
+
+    @property
+    def bed(self) -> Bed:
+        """The seabed below it."""
+        lower, bed = self.leg.lower, self.problem.limits.bed
+        own = lower.deeper if isfinite(lower.seabed) else bed[:2]
+        return bed._replace(east=own[0], north=own[1])
 
     @property
     def highest(self) -> float:
@@ -276,16 +288,18 @@ def refuse_misplaced(laid: LaidLeg, leg: Solution, near: float, before: int) -> 
     """Refuse a leg that is out of the water, or in the seabed where it cannot lie."""
     depth = leg.water.depth
     near += 1e-6 * depth
-    height, hung = leg.position[:, 2], leg.position[: leg.hanging + 1, 2]
-    bed = laid.leg.lower.seabed if isfinite(laid.leg.lower.seabed) else -depth
-    worst, pieces = int(np.argmin(hung)), len(leg.line.length)
+    height, lower = leg.position[:, 2], laid.leg.lower
+    foot = (*lower.place[:2], lower.seabed) if lower.place and isfinite(lower.seabed) else None
+    hung = leg.position[: leg.hanging + 1] - np.array(foot or (0.0, 0.0, -depth))
+    above: Any = off_bed(laid.bed, *hung.T)
+    worst, pieces = int(np.argmin(above)), len(leg.line.length)
 
     def piece(node: int) -> int:
         own = leg.piece_at(node)
         return before + (pieces - 1 - own if laid.kind == net_march.HANGING_DOWN else own)
 
-    if hung[worst] < bed - near:
-        raise touching(piece(worst), float(bed - hung[worst]))
+    if above[worst] < -near:
+        raise touching(piece(worst), -float(above[worst]))
     if leg.afloat:
         height = np.where(np.arange(len(height)) > leg.piece_nodes[leg.afloat[0], 1], height, 0.0)
         if leg.buoyancy_used < 0.0:

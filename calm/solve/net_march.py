@@ -7,15 +7,15 @@ nodes; slopes are differences of marches on the same segments.
 from __future__ import annotations
 
 from collections.abc import MutableSequence, Sequence
-from math import degrees
+from math import degrees, inf
 from typing import Any, NamedTuple
 
 from calm.physics.compiled import set_row
 from calm.physics.hull import SurfaceFloat
-from calm.physics.line import GOES_ON
-from calm.physics.passing import FAILURE, FX, FY, HANGING, LANDED, NODES, How, Z, pass_line
+from calm.physics.line import GOES_ON, Bed, Record, off_bed
+from calm.physics.passing import FAILURE, HANGING, LANDED, NODES, How, Z, pass_line
+from calm.physics.passing import GROUNDED as LIES
 from calm.physics.profile import Sea
-from calm.physics.seabed import lay_line
 from calm.physics.track import Course, Load
 from calm.solve.closing import place
 from calm.solve.problem import (
@@ -46,6 +46,7 @@ class LegRow(NamedTuple):
     kind, first : how it is marched, and the first of its own unknowns
     start, end : numbers of the nodes where its march begins and ends; -1 for none
     seabed : height of the seabed below its anchor; -inf where it has none [m]
+    deeper_east, deeper_north : as of `Water`, below the leg
     longest : segment at an angle step of 1° [m]
     stands : length of a float that shows how much of it is out of the water [m]
     highest : how high it may come [m]
@@ -58,6 +59,8 @@ class LegRow(NamedTuple):
     start: int
     end: int
     seabed: float
+    deeper_east: float
+    deeper_north: float
     longest: float
     stands: float
     highest: float
@@ -145,6 +148,23 @@ def leg_of(net: NetProblem, sea: Sea, i: int) -> LineProblem:
     )  # fmt: skip
 
 
+def bed_of(net: NetProblem, i: int) -> Bed:
+    """The seabed below a leg."""
+    leg, bed = net.legs[i], net.lines.limits.bed
+    return Bed(leg.deeper_east, leg.deeper_north, bed.friction, bed.excess)
+
+
+def above_bed(net: NetProblem, i: int, x: Sequence[float], record: Record, n: int) -> float:
+    """Height of a node of a leg above the plane of the seabed through its anchor [m]; of one
+    without, through the origin."""
+    end, level = int(net.state[i][COUNT]) - 1, net.legs[i].seabed
+    east, north = record[0][n] - record[0][end], record[1][n] - record[1][end]
+    if level == -inf:
+        level, place = -net.lines.limits.depth, place_of(net, i, x, 1)
+        east, north = east + place[0], north + place[1]
+    return off_bed(bed_of(net, i), east, north, record[2][n] - level)
+
+
 def place_of(net: NetProblem, i: int, x: Sequence[float], end: int) -> tuple[float, float, float]:
     """Where the march of a leg is to begin (0) or to end (1) [m]."""
     leg, held = net.legs[i], net.held[i]
@@ -187,20 +207,15 @@ def march_leg(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int
     record, left = work.records[how.record], work.left
     reach = degrees(how.step) * leg.longest
     lands = state[LANDS] > 0.0
-    asked = How(how.step, reach, 0.0, leg.stages, lands, how.given, True)
+    near, bed = problem.limits.near, bed_of(net, i)
+    asked = How(how.step, reach, near, leg.stages, lands, bed, how.given, True)
     pass_line(course, how.sea, asked, depth, out, cuts, work.counts[how.cuts], record, left)
     state[MARCHES] += 1.0
     if left[FAILURE] != GOES_ON:
         return int(left[FAILURE])
-    nodes, grounded = int(left[NODES]), 0.0
-    state[STAGE], state[HUNG] = left[LANDED], nodes
-    if left[LANDED] >= 0.0:
-        nodes, grounded = lay_line(
-            course, record, nodes, int(left[LANDED]), left[HANGING], left[FX], left[FY],
-            leg.seabed, problem.limits.excess, problem.limits.friction,
-        )  # fmt: skip
-    state[COUNT], state[GROUNDED] = nodes, grounded
-    passed, n = net.passed[i], nodes - 1
+    state[STAGE], state[HUNG] = left[LANDED], left[HANGING]
+    state[COUNT], state[GROUNDED] = left[NODES], left[LIES]
+    passed, n = net.passed[i], int(left[NODES]) - 1
     passed[0], passed[1] = record[0][n] - record[0][0], record[1][n] - record[1][0]
     passed[2] = left[Z]
     passed[3], passed[4], passed[5] = record[3][n], record[4][n], record[5][n]

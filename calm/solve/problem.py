@@ -10,7 +10,7 @@ import numpy as np
 
 from calm.physics.compiled import record_type
 from calm.physics.hull import NEVER_AFLOAT, HullRow, SurfaceFloat
-from calm.physics.line import COLUMNS, Floats, Line, Water
+from calm.physics.line import COLUMNS, Bed, Floats, Line, Water
 from calm.physics.passing import LEFT
 from calm.physics.profile import Interval, Profile, Sea
 from calm.physics.track import ROD, Course, Load, Track
@@ -93,8 +93,7 @@ class Limits(NamedTuple):
     angle_step, coarse_step : turn of one segment [rad]
     allowed : the greatest miss of a solution [m]
     share_allowed : how well the share of a float's buoyancy in use is found [-]
-    friction : of a line on the seabed [-]
-    excess : what a displaced cubic metre lifts more at the seabed than in reference water [N/m³]
+    bed : the seabed
     near : as in `How`; where it is not 0 the line is one of many, whose shape is not audited
     length, standing : of the line, uncut, and standing upright in still water [m]
     lift : net force of all of it [N]
@@ -113,8 +112,7 @@ class Limits(NamedTuple):
     coarse_step: float
     allowed: float
     share_allowed: float
-    friction: float
-    excess: float
+    bed: Bed
     near: float
     length: float
     standing: float
@@ -268,9 +266,10 @@ def problem_of(
         standing = standing_length(line, lift)
         moving, at_rest = (support_of(lift, still)[0] for still in (False, True))
     blown = floating is not None and floating.blown
-    excess = 0.0
-    if np.isfinite(water.depth):
-        excess = profile.excess_at(water.depth)
+    excess = profile.excess_at(water.depth) if np.isfinite(water.depth) else 0.0
+    bed = Bed(
+        float(water.deeper_east), float(water.deeper_north), float(settings.seabed_friction), excess
+    )
     limits = Limits(
         span=float(span),
         depth=float(water.depth),
@@ -281,8 +280,7 @@ def problem_of(
         coarse_step=max(COARSE_STEP, 2.0 * settings.angle_step),
         allowed=float((ROUGH if rough else settings.tolerance) * span),
         share_allowed=ROUGH_SHARE if rough else SHARE_TOLERANCE,
-        friction=float(settings.seabed_friction),
-        excess=excess,
+        bed=bed,
         near=ROUGHLY_NEAR * span if rough else 0.0,
         length=float(line.length.sum()),
         standing=float(standing),

@@ -11,11 +11,11 @@ neighbours, and that is added.
 
 from __future__ import annotations
 
-from math import degrees, isnan, sqrt
+from math import degrees, inf, isnan, sqrt
 from typing import Any, NamedTuple
 
 from calm.physics.drag import Vector
-from calm.physics.line import Record
+from calm.physics.line import Record, off_bed
 from calm.physics.passing import FAILURE, NODES
 from calm.physics.profile import interval_at
 from calm.solve.closing import Closed, Root, halve, not_closed, planned, polish
@@ -47,8 +47,8 @@ LINEAR = 4e-7
 """Product of the misses of two shapes, in spans squared, between which a third is linear."""
 FAR = 3e-4
 """Miss, as a share of the span, that halving the cuts may lead to at most there."""
-FAR_BELOW = 1.01
-"""Depth, in depths of the water, at which a line need not be cut finer to be refused."""
+FAR_BELOW = 0.01
+"""How far below the seabed, in depths of the water, a line need not be cut finer to be refused."""
 
 
 class Errors(NamedTuple):
@@ -147,16 +147,22 @@ def refused_far_below(problem: LineProblem, closed: Closed, record: int, hangs: 
     """Return a closed line, refused where it is to hang and comes far below the seabed."""
     if not hangs or closed.ending != FOUND:
         return closed
-    depth, height = problem.limits.depth, problem.work.records[record]
-    lowest = 0
-    for n in range(closed.nodes):
-        if height[2][n] < height[2][lowest]:
-            lowest = n
-    below = -depth - height[2][lowest]
-    if height[2][lowest] < -FAR_BELOW * depth:
-        piece = int(height[6][max(lowest, 1)])
-        return Closed(BELOW_SEABED, below, piece, closed.root, 0, 0, False, 0.0)
+    lowest, above = lowest_node(problem, problem.work.records[record], closed.nodes)
+    if above < -FAR_BELOW * problem.limits.depth:
+        piece = int(problem.work.records[record][6][max(lowest, 1)])
+        return Closed(BELOW_SEABED, -above, piece, closed.root, 0, 0, False, 0.0)
     return closed
+
+
+def lowest_node(problem: LineProblem, record: Record, nodes: int) -> tuple[int, float]:
+    """The node that is lowest above the seabed, and how far above it [m]."""
+    lowest, least, end = 0, inf, nodes - 1
+    for n in range(nodes):
+        x, y = record[0][n] - record[0][end], record[1][n] - record[1][end]
+        above = off_bed(problem.limits.bed, x, y, record[2][n] + problem.limits.depth)
+        if above < least:
+            lowest, least = n, above
+    return lowest, least
 
 
 def closed_between(search: Search, root: Root) -> tuple[Closed, Closed]:

@@ -39,7 +39,7 @@ from calm.solve.problem import (
     Search,
     Unknown,
 )
-from calm.solve.refine import UNKNOWN_ERRORS, Errors, Refined, refine, tension_at
+from calm.solve.refine import UNKNOWN_ERRORS, Errors, Refined, lowest_node, refine, tension_at
 from calm.solve.solution import (
     ABOVE_SURFACE,
     BELOW_SEABED,
@@ -316,7 +316,7 @@ def residuals(
     """
     find_ends(shape)
     element_loads(moored, shape, elements)
-    off = closure(moored, shape, elements, landed, limits.friction, limits.excess)
+    off = closure(moored, shape, elements, landed, limits.bed)
     return off, worst_moment(moored, shape, elements)
 
 
@@ -353,22 +353,20 @@ def misplaced(problem: LineProblem, refined: Refined, depth_error: float) -> tup
 
     A float at the surface may stand out of it, however it is turned.
     """
-    closed, depth = refined.closed, problem.limits.depth
-    record = problem.work.records[FINE]
-    margin = max(depth_error, 1e-6 * depth)
+    closed, record = refined.closed, problem.work.records[FINE]
+    margin = max(depth_error, 1e-6 * problem.limits.depth)
     standing, unknown = 0.0, closed.root.unknown
     for k in range(unknown.sought + 1):
         standing += problem.surfacing[k].length
     if unknown.sought != BELOW and unknown.rides:
         standing = problem.surfacing[unknown.sought].upto
-    lowest = topmost = 0
+    topmost = 0
     for n in range(1, closed.nodes):
-        if record[2][n] < record[2][lowest]:
-            lowest = n
         if record[2][n] > record[2][topmost]:
             topmost = n
-    if record[2][lowest] < -depth - margin:
-        return int(record[6][max(lowest, 1)]), depth + record[2][lowest]
+    lowest, above = lowest_node(problem, record, closed.nodes)
+    if above < -margin:
+        return int(record[6][max(lowest, 1)]), above
     if record[2][topmost] > margin + standing:
         return int(record[6][max(topmost, 1)]), record[2][topmost]
     return -1, 0.0

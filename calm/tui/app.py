@@ -20,7 +20,7 @@ from textual.timer import Timer
 
 from calm.errors import CalmError
 from calm.files.editing import KeptWork, WorkingFile
-from calm.tui import saving
+from calm.tui import saving, workspace
 from calm.tui.dialogs import LongText, choose
 from calm.tui.key_table import Actions, Commands, all_keys
 from calm.tui.line.builder import BuilderScreen
@@ -30,15 +30,6 @@ from calm.tui.screen import DraftScreen
 from calm.tui.session import Session
 from calm.tui.theme import DARK, LIGHT, PICTURE_DARK, PICTURE_LIGHT, choose_theme, legible
 from calm.tui.turns import InTurn
-from calm.tui.workspace import (
-    CatalogueRead,
-    Edited,
-    Judged,
-    Judging,
-    JudgingFailed,
-    Told,
-    Workspace,
-)
 
 _AUTOSAVED_AFTER = 0.3  # seconds
 _LOOKED_AT_DISK = 2.0  # seconds between two looks
@@ -80,8 +71,10 @@ class BuildApp(InTurn):
     ) -> None:
         super().__init__()
         self.session = session
-        self.workspace = Workspace(session, self.tell, lambda: self.post_message(Edited()))
-        self.judging = Judging(self, self.workspace, self._show_views)
+        self.workspace = workspace.Workspace(
+            session, self.tell, lambda: self.post_message(workspace.Edited())
+        )
+        self.judging = workspace.Judging(self, self.workspace, self._show_views)
         self.saving = Saving(self, self.workspace)
         self.builder = BuilderScreen(self.workspace)
         self.not_kept = ""
@@ -171,8 +164,8 @@ class BuildApp(InTurn):
         screen = self.screen if isinstance(self.screen, DraftScreen) else self.builder
         screen.tell(text, wrong=wrong)
 
-    @on(Told)
-    def _say(self, event: Told) -> None:
+    @on(workspace.Told)
+    def _say(self, event: workspace.Told) -> None:
         self.tell(event.text, wrong=event.wrong)
 
     def draft_screens(self) -> list[DraftScreen]:
@@ -188,7 +181,7 @@ class BuildApp(InTurn):
         for screen in self.draft_screens():
             screen.replaced()
         self.tell(message)
-        self.post_message(Edited())
+        self.post_message(workspace.Edited())
 
     def action_save(self) -> None:
         """Save, and ask for a name where there is none."""
@@ -218,7 +211,7 @@ class BuildApp(InTurn):
         """Return whether the line that is shown has been solved, and nothing else is under way."""
         return self.judging.is_idle and self._is_catalogue_read
 
-    @on(Edited)
+    @on(workspace.Edited)
     def _after_an_edit(self) -> None:
         self._show_views()
         self._tell_lost_environment()
@@ -255,8 +248,8 @@ class BuildApp(InTurn):
             await self.pop_screen()
         self.builder.action_text()
 
-    @on(Judged)
-    def _take_view(self, event: Judged) -> None:
+    @on(workspace.Judged)
+    def _take_view(self, event: workspace.Judged) -> None:
         if not self.is_running:
             return
         is_first = self.workspace.view is None
@@ -264,8 +257,8 @@ class BuildApp(InTurn):
             self._show_views()
             self._mend(as_judged=is_first)
 
-    @on(JudgingFailed)
-    def _tell_failure(self, event: JudgingFailed) -> None:
+    @on(workspace.JudgingFailed)
+    def _tell_failure(self, event: workspace.JudgingFailed) -> None:
         if self.is_running:
             self.tell(f"internal error ({event.reason}); please report it", wrong=True)
             self.judging.failed()
@@ -277,12 +270,12 @@ class BuildApp(InTurn):
         from calm.files import Catalogue
 
         try:
-            self.post_message(CatalogueRead(Catalogue.load(self.session.catalogs)))
+            self.post_message(workspace.CatalogueRead(Catalogue.load(self.session.catalogs)))
         except CalmError as error:
-            self.post_message(CatalogueRead(None, str(error)))
+            self.post_message(workspace.CatalogueRead(None, str(error)))
 
-    @on(CatalogueRead)
-    def _take_catalogue(self, event: CatalogueRead) -> None:
+    @on(workspace.CatalogueRead)
+    def _take_catalogue(self, event: workspace.CatalogueRead) -> None:
         if not self.is_running:
             return
         self._is_catalogue_read = True

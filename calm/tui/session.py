@@ -9,17 +9,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from calm.files import Place
-from calm.files.editing import (
-    LINE,
-    Draft,
-    History,
-    KeptWork,
-    LineItem,
-    Value,
-    WorkingFile,
-    clamps_of,
-)
+from calm.files import Place, editing
+from calm.files.editing import LINE, Draft, History, LineItem, Value, WorkingFile, clamps_of
 from calm.tui.names import Named, Standing, followed, widened
 
 Location = tuple[str | int, ...]
@@ -347,7 +338,7 @@ class Session:
         self.file.unsaved = self.draft.text if self.changed else None
         return self.file
 
-    def recover(self, kept: KeptWork) -> None:
+    def recover(self, kept: editing.KeptWork) -> None:
         """Go on with work that an earlier session has left; undo leads back to the file."""
         self.file.adopt(kept)
         self.write(kept.text, "recover what was not saved")

@@ -13,23 +13,10 @@ import numpy as np
 
 from calm.physics.line import Floats, Integers, Line, Water
 from calm.solve import Settings, Solution, solve_mooring
-from calm.verification.published_case import (
-    GRAVITY,
-    HALF_DENSITY,
-    Case,
-    CaseColumn,
-    Kind,
-    LinePiece,
-    Source,
-    cable,
-    line_of,
-    point,
-    profile,
-    sphere_drag,
-    table,
-)
+from calm.verification import published_case
+from calm.verification.published_case import GRAVITY, Case, CaseColumn, Kind, LinePiece, table
 
-S1000_SEA = profile(1100.0, [(0.0, 1.0), (200.0, 0.6), (500.0, 0.2), (1100.0, 0.05)])
+S1000_SEA = published_case.profile(1100.0, [(0.0, 1.0), (200.0, 0.6), (500.0, 0.2), (1100.0, 0.05)])
 
 DEPTH, OFFSET, TENSION, KNOCKDOWN = 131.4256, 237.3218, 2068.154, 32.1756
 """Of the float [m], of the float [m], at the anchor [N], of the float [m]."""
@@ -39,8 +26,10 @@ _FINEST = 0.02
 
 def s1000_mooring(parts: int = 1) -> Line:
     """Return the line, its cable in equal parts."""
-    part = cable(1000.0 / parts, 0.01, 2.0, 1.3, 0.01, 1.0 / 4e6)
-    return line_of(point(4000.0, HALF_DENSITY * 0.6), *[part] * parts)
+    part = published_case.cable(1000.0 / parts, 0.01, 2.0, 1.3, 0.01, 1.0 / 4e6)
+    return published_case.line_of(
+        published_case.point(4000.0, published_case.HALF_DENSITY * 0.6), *[part] * parts
+    )
 
 
 @cache
@@ -76,7 +65,7 @@ def _order(coarse: float, fine: float) -> float:
 
 _EXPECTED = DEPTH, OFFSET, TENSION, KNOCKDOWN
 
-S1000 = Source(
+S1000 = published_case.Source(
     "S1000",
     """The reference case of accuracy and speed, `lines/s1000.yaml`: a float of 4000 N and 0.6 m² of
 drag area on 1000 m of cable, 10 mm, 2 N/m, Cn 1.3, Ct 0.01, EA 4 MN, in 1100 m of water, in a
@@ -150,20 +139,20 @@ class SolvedCdms1:
 
 
 def _sphere(diameter: float, lift: float, cx: float) -> LinePiece:
-    drag = sphere_drag(diameter, cx)
+    drag = published_case.sphere_drag(diameter, cx)
     return LinePiece(diameter, False, lift * GRAVITY, drag, directional=False)
 
 
 def _rope(length: float, diameter: float, weight: float, modulus: float, ct: float) -> LinePiece:
     compliance = 1.0 / (modulus * pi / 4.0 * diameter**2) if modulus else 0.0
-    return cable(length, diameter, weight * GRAVITY, 1.3, ct, compliance)
+    return published_case.cable(length, diameter, weight * GRAVITY, 1.3, ct, compliance)
 
 
 def cdms_1_mooring(ct: float = 0.0) -> Line:
     """Return the line, its cables with a Ct on their surface."""
-    meter = LinePiece(2.0, False, -20.0 * GRAVITY, HALF_DENSITY * 1.2 * 0.2 * 2.0)
+    meter = LinePiece(2.0, False, -20.0 * GRAVITY, published_case.HALF_DENSITY * 1.2 * 0.2 * 2.0)
     kevlar = [_rope(length, 0.007, 0.009, 6.9e10, ct) for length in (98.0, 98.0, 212.9)]
-    return line_of(
+    return published_case.line_of(
         _sphere(1.2, 682.0, 0.5),
         _rope(10.0, 0.007, 0.12, 1.38e11, ct),
         meter, kevlar[0], meter, kevlar[1], meter, kevlar[2],
@@ -225,7 +214,7 @@ _PROGRAM = (
 )
 _RANGE = "The programs' range, with half a unit of their last digit."
 
-CDMS_1 = Source(
+CDMS_1 = published_case.Source(
     "CDMS-1",
     """An intermediate mooring of the user manual of Berteaux's CDMS package (C16), with the answers
 of Berteaux's SSMOOR and of R. Dewey's *Mooring Design & Dynamics* (MD&D), both printed in the MD&D

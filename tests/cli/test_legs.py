@@ -520,7 +520,7 @@ legs:
     bottom: {held: {depth: 60 m, at: [40 m, 0 m]}}
 """
     )
-    with pytest.raises(NoEquilibrium, match=r"wire-jacketed-8 comes .* below the sloping seabed"):
+    with pytest.raises(NoEquilibrium, match=r"touch the seabed: wire-jacketed-8"):
         load(tmp_path / "slope.yaml", text=text).solve()
     level = text.replace("slope: 25 deg", "slope: 0 deg")
     assert load(tmp_path / "level.yaml", text=level).solve().status == "converged"
@@ -725,6 +725,45 @@ def test_a_grid_of_a_plane_is_the_plane(tmp_path: Path, name: str, sign: float) 
     for ours, theirs in zip(grid.anchors, plane.anchors, strict=True):
         assert ours.depth == pytest.approx(theirs.depth, abs=0.03)  # 5 m by 0.4 %: the sphere
         assert ours.required_weight == pytest.approx(theirs.required_weight, rel=0.01)
+
+
+LYING = (
+    "position: {latitude: 48 deg, longitude: -5 deg}\n"
+    + SLOPE[: SLOPE.index("legs:")].replace("toward: 0 deg}", "toward: 45 deg}")
+    + """\
+line:
+  - {use: sphere-steel-1250}
+  - {use: wire-jacketed-8, length: 60 m}
+  - {use: chain-buoy-16, length: 100 m}
+  - {use: anchor-wheels-4}
+"""
+)
+
+
+def test_a_line_lies_on_the_plane_of_a_grid(tmp_path: Path) -> None:
+    """In a plane as on that; in a bowl the grid is off it by up to x²/4000 where line lies."""
+    steep = np.tan(np.radians(10.0))
+    plane = load(tmp_path / "plane.yaml", text=LYING).solve()
+    assert plane.anchor.grounded_length > 40.0
+    assert not any("bight" in warning for warning in plane.warnings)
+    text = LYING.replace("{slope: 10 deg, toward: 90 deg}", "{file: grid.nc}")
+    for bowl, off in ((0.0, 0.0), (1.0 / 4000.0, 0.2)):
+        gridded(
+            tmp_path,
+            lambda e, n, b=bowl: 100.0 + steep * e - b * (e * e + n * n),
+        )
+        grid = load(tmp_path / "grid.yaml", text=text).solve()
+        there, where = (
+            np.array(
+                [one.components.x_top[0], one.components.y_top[0], one.components.depth_top[1]]
+            )
+            for one in (grid, plane)
+        )
+        assert there == pytest.approx(where, abs=0.3 + off)
+        said = [each for each in grid.warnings if "lies on the plane" in each]
+        assert len(said) == (bowl > 0.0)
+        told = float(re.search(r"up to ([\d.]+) m off", said[0])[1]) if said else 0.0
+        assert told == pytest.approx(bowl * grid.anchor.grounded_length**2, rel=0.05, abs=0.06)
 
 
 def test_an_export_says_that_its_seabed_is_level(

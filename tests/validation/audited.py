@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from calm.physics.line import Bed
 from calm.physics.referee import worst_moment
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.solve import Solution
@@ -13,13 +14,14 @@ from calm.solve.search import closure
 
 def closure_of(solution: Solution) -> float:
     """Relative departure of the sum of the loads from the force at the line's end."""
-    excess = 0.0
+    excess, water = 0.0, solution.water
     if solution.landed:
-        density = solution.water.density_at(np.array(solution.water.depth))
-        excess = (float(density) - REFERENCE_DENSITY) * solution.water.gravity
+        density = water.density_at(np.array(water.depth))
+        excess = (float(density) - REFERENCE_DENSITY) * water.gravity
+    bed = Bed(water.deeper_east, water.deeper_north, solution.settings.seabed_friction, excess)
     return closure(
         _moored(solution), shape_of(solution), loads_of(solution).T.tolist(), solution.landed,
-        solution.settings.seabed_friction, excess,
+        bed,
     )  # fmt: skip
 
 

@@ -132,9 +132,13 @@ def _greatest_tension(series: ResultColumns, part: JudgedPart, mooring: Mooring)
 
 def _least_tension(series: ResultColumns, part: JudgedPart, mooring: Mooring) -> Column:
     """Return the least at the ends of a piece; NaN where all of it lies on the seabed."""
-    lies = series.depth(_seat(part)) >= mooring.water.depth * (1.0 - _LYING)
-    least = series.least_tension(_seat(part))
-    least[lies] = np.nan
+    water, pieces, least = mooring.water, mooring.file.pieces, series.least_tension(_seat(part))
+    bed: Column | float = water.depth * (1.0 - _LYING)
+    for name, deeper in (("x_top", water.deeper_east), ("y_top", water.deeper_north)):
+        if deeper != 0.0 and pieces[-1].use != STAND_IN:
+            anchor = series.column(name, len(pieces) - 1)
+            bed = bed + deeper * (series.column(name, part.index) - anchor)
+    least[series.depth(_seat(part)) >= bed] = np.nan
     return least
 
 

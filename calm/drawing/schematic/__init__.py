@@ -12,20 +12,11 @@ from itertools import accumulate
 from math import isnan, log10
 from typing import TYPE_CHECKING, NamedTuple
 
+from calm.drawing.schematic import symbols
 from calm.drawing.schematic.pen import FAINT, INK, SOFT, Pen, picture, svg_text, text_width, wrapped
 from calm.drawing.schematic.shown_parts import HEADINGS, Schematic, ShownPart, TextRow, schematic_of
 from calm.drawing.schematic.sign import LINES
-from calm.drawing.schematic.symbols import (
-    SEABED_ROOM,
-    draw_cable,
-    draw_clamp,
-    draw_helicopter,
-    draw_seabed,
-    draw_ship,
-    draw_surface,
-    draw_water,
-    figure_of,
-)
+from calm.drawing.schematic.symbols import SEABED_ROOM, draw_cable, draw_clamp, figure_of
 from calm.quantities import QUANTITIES
 
 if TYPE_CHECKING:
@@ -130,9 +121,9 @@ def _draw_scene(
     if shown.towed_by is not None:
         pen = page.draw("g", stroke=INK, stroke_width=1.2)
         if shown.sea is None:
-            draw_helicopter(pen.group(column.line_at, surface, SYMBOL_SCALE))
+            symbols.draw_helicopter(pen.group(column.line_at, surface, SYMBOL_SCALE))
         else:
-            draw_ship(pen.group(column.line_at, surface - _SHEAVE, SYMBOL_SCALE))
+            symbols.draw_ship(pen.group(column.line_at, surface - _SHEAVE, SYMBOL_SCALE))
         draw_row(page, column, 0.0, surface - _SHEAVE, shown.towed_by)
 
 
@@ -291,15 +282,15 @@ def draw_sea(
 ) -> None:
     """The water between its levels, and the surface with its text where it has one."""
     pen = page.group(left, 0.0)
-    draw_water(pen, 2.0 * column.line_at, *levels)
-    draw_surface(pen, 2.0 * column.line_at, levels[0])
+    symbols.draw_water(pen, 2.0 * column.line_at, *levels)
+    symbols.draw_surface(pen, 2.0 * column.line_at, levels[0])
     if row is not None:
         draw_row(page, column, left, levels[0], row)
 
 
 def draw_ground(page: Pen, column: LineColumn, left: float, y: float, row: TextRow) -> None:
     """The seabed with its text."""
-    draw_seabed(page.group(left, 0.0, stroke=INK), 2.0 * column.line_at, y)
+    symbols.draw_seabed(page.group(left, 0.0, stroke=INK), 2.0 * column.line_at, y)
     draw_row(page, column, left, y + SEABED_ROOM / 2 + 1.0, row)
 
 

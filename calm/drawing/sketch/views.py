@@ -15,30 +15,12 @@ from calm.case import Result, TowResult
 from calm.case.net_result import AnyResult, NetResult
 from calm.checks.posture import reaches_the_surface
 from calm.checks.strength import allowable_load
+from calm.drawing import line_picture
 from calm.drawing.graph import number
-from calm.drawing.line_picture import (
-    LineKind,
-    LinePicture,
-    PictureMark,
-    along_the_line,
-    current_between,
-    elevation_of,
-    lines_of,
-    names,
-    plan_of,
-    plane_of,
-    spread,
-)
+from calm.drawing.line_picture import LineKind, LinePicture, PictureMark, along_the_line, plane_of
 from calm.drawing.schematic.pen import ELLIPSIS
-from calm.drawing.sketch.canvas import (
-    ACROSS,
-    AXIS,
-    DOWN,
-    PlotFrame,
-    header_rows,
-    levels,
-    scaled_frame,
-)
+from calm.drawing.sketch import canvas
+from calm.drawing.sketch.canvas import ACROSS, AXIS, DOWN, header_rows, levels, scaled_frame
 from calm.quantities import bearing_of, bearing_text, say
 
 if TYPE_CHECKING:
@@ -71,7 +53,7 @@ def elevation(
     not that of the depths. The line in still water is dotted. From 50 cells on parts are named.
     Shapes `beside` a mooring, of other environments or designs, are dashed.
     """
-    side = elevation_of(result, beside)
+    side = line_picture.elevation_of(result, beside)
     moored = not isinstance(result, TowResult)
     if moored:  # its seabed is the foot of the picture
         held = [line.y.min() for line in side.lines] if isinstance(result, NetResult) else []
@@ -93,7 +75,7 @@ def elevation(
     return frame.canvas.rows()
 
 
-def draw_picture(frame: PlotFrame, picture: LinePicture) -> None:
+def draw_picture(frame: canvas.PlotFrame, picture: LinePicture) -> None:
     """Draw the lines, the ship and the marks of a picture."""
     for line in picture.lines:
         style, dash, gap = STROKES[line.kind]
@@ -134,10 +116,10 @@ def _span(side: LinePicture) -> tuple[float, float]:
 def _names(side: LinePicture, rows: int, room: int) -> list[tuple[int, str]]:
     """Names of parts, each on a row of its own, near its part."""
     height = (side.bottom - side.top) / rows
-    found = sorted(names(list(side.marks), height), key=lambda each: each[1].depth)
+    found = sorted(line_picture.names(list(side.marks), height), key=lambda each: each[1].depth)
     while True:
         wanted = [(part.depth - side.top) / height - 0.5 for _, part in found]
-        places = spread(wanted, 1.0, 0.0, rows - 1.0)
+        places = line_picture.spread(wanted, 1.0, 0.0, rows - 1.0)
         strayed = [abs(place - each) for place, each in zip(places, wanted, strict=True)]
         if not found or max(strayed) <= _FARTHEST:
             break
@@ -250,7 +232,7 @@ def current_profile(water: Water, width: int, height: int) -> list[Text]:
     Depths are on the rows where `elevation` of the same height has them.
     """
     beside = 6 if width >= _DEGREES_FROM else 2
-    depths, u, v = current_between(water, 0.0, water.depth)
+    depths, u, v = line_picture.current_between(water, 0.0, water.depth)
     speeds = np.hypot(u, v)
     fastest = float(speeds.max())
     across = 0.0, 1.08 * fastest if fastest > 0.0 else 1.0
@@ -284,7 +266,7 @@ def plan(result: AnyResult, width: int, height: int, beside: Sequence[Shape] = (
 
     Shapes `beside` it, of other environments or designs, are dashed.
     """
-    shapes = [*(line.shape for line in lines_of(result)), *beside]
+    shapes = [*(line.shape for line in line_picture.lines_of(result)), *beside]
     rows = height - header_rows(height) - 2
     west, east = _range([0.0, *_ends(each.x for each in shapes)])
     south, north = _range([0.0, *_ends(each.y for each in shapes)])
@@ -299,7 +281,7 @@ def plan(result: AnyResult, width: int, height: int, beside: Sequence[Shape] = (
     frame = scaled_frame((width, height), _said(result), across, down, "m east", "m E")
     frame.line([(left, 0.0), (right, 0.0)], STILL, dash=1, gap=3)
     frame.line([(0.0, bottom), (0.0, top)], STILL, dash=1, gap=3)
-    draw_picture(frame, plan_of(result, beside))
+    draw_picture(frame, line_picture.plan_of(result, beside))
     frame.canvas.text(frame.column, frame.row, "N", AXIS)
     return frame.canvas.rows()
 

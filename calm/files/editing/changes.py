@@ -10,19 +10,9 @@ from unicodedata import category
 
 from calm.errors import CalmError
 from calm.files.composition import Node
+from calm.files.editing import writing
 from calm.files.editing.items import Items, Slot, items_of, snippet_of, worded_slot
-from calm.files.editing.writing import (
-    SECTIONS,
-    Patch,
-    Value,
-    Worded,
-    WritingStyle,
-    inline,
-    place_of,
-    set_scalar,
-    set_value,
-    written,
-)
+from calm.files.editing.writing import SECTIONS, Patch, Value, Worded, WritingStyle, inline, written
 from calm.files.yaml_document import Location
 
 _BLANK_LINE = re.compile(r"^[ \t]*\r?\n(?=(?:[ ]*#.*\n|[ \t]*\r?\n)*\S)", re.MULTILINE)
@@ -76,11 +66,11 @@ class Page:
     ) -> list[Patch]:
         if outer.kind == "mapping":
             at = [key.data for key in outer.keys].index(step)
-            return set_value(self.text, outer, at, value, self.style, open=open)
+            return writing.set_value(self.text, outer, at, value, self.style, open=open)
         old = outer.children[int(step)]
         if old.kind != "scalar" or not isinstance(value, str):
             raise EditError(f"line {old.line}: only a plain value can be changed here")
-        return [set_scalar(old, value, flow=outer.style == "flow")]
+        return [writing.set_scalar(old, value, flow=outer.style == "flow")]
 
     def remove(self, location: Location) -> list[Patch]:
         """Take a key out."""
@@ -97,7 +87,7 @@ class Page:
         inside = f"{written(name, flow=True)}: {inline(value)}"
         if not mapping.keys:
             return Patch(mapping.start, mapping.end, f"{{{inside}}}")
-        items, at = self._items(mapping), place_of(name, [key.data for key in mapping.keys])
+        items, at = self._items(mapping), writing.place_of(name, [key.data for key in mapping.keys])
         lines = self.style.entry(name, value, items.column, open=open)
         if at and mapping.column == 1 and name in SECTIONS and _BLANK_LINE.search(self.text):
             lines = self.style.line_break + lines

@@ -12,16 +12,7 @@ from typing import Any
 from calm.errors import InputError, Problem
 from calm.files import yaml_document
 from calm.files.composition import Node, compose
-from calm.files.editing.changes import (
-    GONE,
-    NAMED,
-    EditError,
-    Page,
-    cells_that_differ,
-    data_of,
-    has_control,
-    with_value,
-)
+from calm.files.editing import changes
 from calm.files.editing.items import LINE, LineItem, LineLists, item_of, items_of, read_snippet
 from calm.files.editing.writing import Patch, Value, Worded, WritingStyle, patched
 from calm.files.yaml_document import Location
@@ -178,7 +169,9 @@ class Draft:
         """
         places = [self.lists.place_in(rows, each, above=True) for each in (index, to)]
         if places[0][0] != places[1][0]:
-            raise EditError("a piece stays in its leg: cut it and paste it into the other one")
+            raise changes.EditError(
+                "a piece stays in its leg: cut it and paste it into the other one"
+            )
         (rows, index), (_, to) = places
         self._page.known(rows, [index, to])
         if index == to:
@@ -242,7 +235,7 @@ class Draft:
             if outer is None or len(outer.keys) > 1 or is_kept:
                 break
             location = location[:-1]
-        return self._changed(page.remove(location), location, GONE)
+        return self._changed(page.remove(location), location, changes.GONE)
 
     def put_table(
         self, location: Location, columns: Sequence[str], rows: Sequence[Sequence[str | None]]
@@ -262,7 +255,7 @@ class Draft:
         if old["columns"] != list(columns):
             draft = draft.put_at((*location, "columns"), columns)
         place = (*location, "rows")
-        cells = cells_that_differ(old["rows"], rows)
+        cells = changes.cells_that_differ(old["rows"], rows)
         if cells is not None:
             for i, j, text in cells:
                 draft = draft.put_at((*place, i, j), text)
@@ -272,14 +265,14 @@ class Draft:
 
     def put_component(self, id: str, values: Mapping[str, Value]) -> Draft:
         """Define a component used only here, in place of one of that id."""
-        return self.put_at((NAMED[0], id), values)
+        return self.put_at((changes.NAMED[0], id), values)
 
     def assemble(self, indices: Iterable[int], id: str) -> Draft:
         """Make items of the line that follow one another an assembly, used in their place."""
         known = sorted(set(indices))
         legs = {self.lists.place(index, above=True)[0] for index in known}
         if len(legs) != 1 or known != list(range(known[0], known[-1] + 1)):
-            raise EditError("an assembly is made of pieces that follow one another")
+            raise changes.EditError("an assembly is made of pieces that follow one another")
         parts = {"kind": "assembly", "parts": _worded(self.copy(known))}
         draft = self.put_component(id, parts).delete(known[1:])
         return draft.insert(known[0], {"use": id}, above=True).delete([known[0] + 1])
@@ -295,32 +288,32 @@ class Draft:
         page = self._page
         node = page.node(location)
         if node is not None and node.kind != "sequence" and node.data is not None:
-            raise EditError(f"line {node.line}: `{location[-1]}` is not a list")
+            raise changes.EditError(f"line {node.line}: `{location[-1]}` is not a list")
         data = list(node.data or ()) if node else []
         if not 0 <= index <= len(data):
-            raise EditError(f"there is no place {index} in a list of {len(data)}")
+            raise changes.EditError(f"there is no place {index} in a list of {len(data)}")
         patches = page.add(location, index, values)
-        data[index:index] = data_of(values)
+        data[index:index] = changes.data_of(values)
         return self._changed(patches, location, data)
 
     def _changed(self, patches: Iterable[Patch], location: Location, value: Any) -> Draft:
         """Return the draft with its text patched, which then differs at a location alone."""
-        data = with_value(self._data, location, value)
+        data = changes.with_value(self._data, location, value)
         text = patched(self._padded, patches)
         line_break = self._page.style.line_break
         if self._padded != self.text:
             text = text.removesuffix(line_break)
         draft = Draft(text)
         if draft._root is None or draft._root.data != data:
-            is_hidden = has_control(data) and not has_control(self._data)
-            raise EditError(_CONTROL if is_hidden else _ENTANGLED)
+            is_hidden = changes.has_control(data) and not changes.has_control(self._data)
+            raise changes.EditError(_CONTROL if is_hidden else _ENTANGLED)
         return draft
 
     @cached_property
-    def _page(self) -> Page:
+    def _page(self) -> changes.Page:
         if self._root is None:
-            raise EditError("the text has mistakes; correct them first")
-        return Page(self._padded, self._root, WritingStyle.of(self.text, self._root))
+            raise changes.EditError("the text has mistakes; correct them first")
+        return changes.Page(self._padded, self._root, WritingStyle.of(self.text, self._root))
 
     @cached_property
     def _padded(self) -> str:
@@ -337,7 +330,7 @@ def _worded(snippets: Iterable[str]) -> Worded:
     """Read items as `Draft.copy` gives them."""
     wordings = [read_snippet(snippet) for snippet in snippets]
     if None in wordings:
-        raise EditError("what is to be pasted is not a list of items")
+        raise changes.EditError("what is to be pasted is not a list of items")
     return Worded(one for one in wordings if one is not None)
 
 

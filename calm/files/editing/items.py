@@ -14,17 +14,8 @@ from itertools import groupby, pairwise
 from typing import Any, Literal, NamedTuple
 
 from calm.files.composition import Node, compose
-from calm.files.editing.writing import (
-    Patch,
-    Wording,
-    WritingStyle,
-    first_on_line,
-    inline,
-    line_end,
-    line_start,
-    own_end,
-    own_start,
-)
+from calm.files.editing import writing
+from calm.files.editing.writing import Patch, Wording, first_on_line, inline, line_start, own_start
 from calm.files.yaml_document import Location
 
 LINE: Location = ("line",)
@@ -149,7 +140,7 @@ def item_of(node: Node, text: str, *, lines: str = "") -> LineItem:
     )
 
 
-def worded_slot(wording: Wording, items: Items, style: WritingStyle) -> Slot:
+def worded_slot(wording: Wording, items: Items, style: writing.WritingStyle) -> Slot:
     """Place an item as it is worded; within brackets in one line it loses its comments.
 
     Parameters
@@ -242,7 +233,7 @@ class Items:
     ends_in_comma: bool = False
     on_a_dash: bool = False
 
-    def slot(self, lines: str, inside: str, style: WritingStyle) -> Slot:
+    def slot(self, lines: str, inside: str, style: writing.WritingStyle) -> Slot:
         """Write a new item after the form of the others: by its lines, or as within brackets."""
         if self.form == "block":
             return Slot(lines)
@@ -318,9 +309,9 @@ def _block(text: str, node: Node, spans: list[tuple[int, int]]) -> Items | None:
             first = line_start(text, node.start)  # those that a file begins with are about the file
     starts, ends = [first], []
     for (_, end), following in zip(spans, (*spans[1:], None), strict=True):
-        ends.append(own_end(text, end, node.column))
+        ends.append(writing.own_end(text, end, node.column))
         if following is not None:
-            found = dash.search(text, line_end(text, end)) if is_list else None
+            found = dash.search(text, writing.line_end(text, end)) if is_list else None
             if found is None and is_list:
                 return None
             head = found.start() if found else following[0]
@@ -342,7 +333,7 @@ def _rows(text: str, node: Node, spans: list[tuple[int, int]]) -> Items | None:
     for first, last in spans:
         if not first_on_line(text, first):
             return None
-        least = ends[-1] if ends else line_end(text, node.start)
+        least = ends[-1] if ends else writing.line_end(text, node.start)
         if line_start(text, first) < least:
             return None
         start = own_start(text, first, least)

@@ -19,16 +19,7 @@ from calm.tui.dialogs import Asked, InputSheet, ask
 from calm.tui.key_table import bindings
 from calm.tui.table import EditableTable, TableCells, TableColumn
 from calm.tui.theme import CURSOR
-from calm.tui.water.pasted import (
-    NoRows,
-    Rows,
-    UnknownColumns,
-    check_of,
-    half_way,
-    offered_headings,
-    previewed,
-    rows_in,
-)
+from calm.tui.water import pasted
 from calm.tui.workspace import Told
 
 _WIDTH = 14
@@ -62,7 +53,7 @@ class GridCells(TableCells, can_focus=True):
     def __init__(self) -> None:
         super().__init__()
         self.headings: tuple[str, ...] = ()
-        self.rows: Rows = ()
+        self.rows: pasted.Rows = ()
         self.seabed: float | None = None
 
     def show(self, headings: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
@@ -195,7 +186,9 @@ class GridCells(TableCells, can_focus=True):
             self.post_message(self.Wanted(event.character))
 
 
-def _between(columns: Sequence[str], rows: Rows, at: int, seabed: float | None) -> tuple[str, ...]:
+def _between(
+    columns: Sequence[str], rows: pasted.Rows, at: int, seabed: float | None
+) -> tuple[str, ...]:
     """Values half-way between those above and below, where both are numbers.
 
     Below the last row they are its own, a step deeper but not below the `seabed` [m].
@@ -210,7 +203,7 @@ def _between(columns: Sequence[str], rows: Rows, at: int, seabed: float | None) 
     if at == len(rows):
         deeper = pairs[0][0] + _STEP
         return (f"{deeper if seabed is None else min(deeper, seabed):g}", *above[1:])
-    halves = (half_way(column, *pair) for column, pair in zip(columns, pairs, strict=True))
+    halves = (pasted.half_way(column, *pair) for column, pair in zip(columns, pairs, strict=True))
     return tuple(f"{half:g}" for half in halves)
 
 
@@ -231,7 +224,7 @@ class Grid(EditableTable):
         super().__init__(self.cells, id=id)
         self._place = 0, 0  # row and column that are edited
         self._new = -1  # the row that was added last and is being filled
-        self._before: Rows | None = None  # the rows without the one that Enter has added
+        self._before: pasted.Rows | None = None  # the rows without the one that Enter has added
 
     def show(
         self, columns: Sequence[str], rows: Sequence[Sequence[str]], seabed: float | None = None
@@ -262,11 +255,11 @@ class Grid(EditableTable):
         columns = self.cells.headings
         try:
             copied = copied_table(text)
-            headings = offered_headings(copied.headings, columns)
-            rows_in(columns, headings, copied.rows)
-        except UnknownColumns:
+            headings = pasted.offered_headings(copied.headings, columns)
+            pasted.rows_in(columns, headings, copied.rows)
+        except pasted.UnknownColumns:
             pass  # the person says what they are
-        except (NoTableError, NoRows) as error:
+        except (NoTableError, pasted.NoRows) as error:
             self.tell_refusal(f"Nothing is pasted: {error}")
             return
         self._preview(copied, headings)
@@ -275,13 +268,13 @@ class Grid(EditableTable):
         """Show what would be taken, under which columns; these can be corrected."""
         columns = self.cells.headings
 
-        def taken(text: str) -> Rows:
-            return rows_in(columns, [one.strip() for one in text.split(",")], copied.rows)
+        def taken(text: str) -> pasted.Rows:
+            return pasted.rows_in(columns, [one.strip() for one in text.split(",")], copied.rows)
 
         def check(text: str) -> Reading:
             try:
-                return Reading(text, comes_to=previewed(columns, taken(text)))
-            except NoRows as error:
+                return Reading(text, comes_to=pasted.previewed(columns, taken(text)))
+            except pasted.NoRows as error:
                 return Reading(text, str(error))
 
         def take(answers: dict[str, str]) -> None:
@@ -309,7 +302,7 @@ class Grid(EditableTable):
             self.settle_cell()
         self._place = cells.cursor, cells.column
         self._new = cells.cursor if event.new else self._new
-        text, check = event.begin or cells.cell, check_of(cells.headings[cells.column])
+        text, check = event.begin or cells.cell, pasted.check_of(cells.headings[cells.column])
         self.open_editor(text, check, least_width=12, begun=event.begin is not None)
 
     def tell_reading(self, reading: Reading) -> None:

@@ -10,21 +10,9 @@ from dataclasses import replace
 
 from calm.errors import Problem
 from calm.files.definition import QuantityField
+from calm.records import profile_tables
 from calm.records.columns import QuantityTable
 from calm.records.headings import heading
-from calm.records.profile_tables import (
-    DIRECTION,
-    SALINITY,
-    TEMPERATURE,
-    WATER_DENSITY,
-    CurrentTable,
-    DepthTable,
-    SeaWater,
-    read_current,
-    read_profile,
-    read_water,
-    speed_and_direction,
-)
 from calm.tui.checking import Check, Reading, number, quantity
 from calm.tui.theme import ELLIPSIS
 from calm.units import DIMENSIONS, QuantityError, QuantityRange, unit_factor
@@ -115,28 +103,30 @@ def _by_name(
 
     names = {heading(column)[0] for column in columns}
     copied = QuantityTable(headings, rows, report, [])
-    table: CurrentTable | DepthTable | SeaWater | None
+    table: profile_tables.CurrentTable | profile_tables.DepthTable | profile_tables.SeaWater | None
     if names & _OF_A_CURRENT:
-        table = read_current(copied)
+        table = profile_tables.read_current(copied)
     elif names == {"depth", "density"} or {"temperature", "salinity"} <= names:
-        table = read_water(copied)
+        table = profile_tables.read_water(copied)
     else:
-        table = read_profile(next(iter(names - {"depth"})), copied)
+        table = profile_tables.read_profile(next(iter(names - {"depth"})), copied)
     if table is None:
         of_the_headings, message = min(problems, key=lambda one: not one[0])
         raise (UnknownColumns if of_the_headings else NoRows)(message)
-    if isinstance(table, SeaWater):
+    if isinstance(table, profile_tables.SeaWater):
         depth = table.temperature.depth
         return {
             "depth": depth,
             "temperature": table.temperature.value,
             "salinity": table.salinity.value,
         }
-    if isinstance(table, DepthTable):
+    if isinstance(table, profile_tables.DepthTable):
         return {"depth": table.depth, next(iter(names - {"depth"})): table.value}
     if "w" not in names and any(table.w):
         raise UnknownColumns("the current has an upward speed `w`, and the table no column for it")
-    flows = [speed_and_direction(u, v) for u, v in zip(table.u, table.v, strict=True)]
+    flows = [
+        profile_tables.speed_and_direction(u, v) for u, v in zip(table.u, table.v, strict=True)
+    ]
     speed = [flow for flow, _ in flows]
     toward = [round(way, 9) % 360.0 for _, way in flows]
     return {"depth": table.depth, "u": table.u, "v": table.v, "w": table.w,
@@ -162,10 +152,10 @@ _KINDS: dict[str, QuantityRange] = {
     "u": QuantityField("speed"),
     "v": QuantityField("speed"),
     "w": QuantityField("speed"),
-    "toward": DIRECTION,
-    "density": WATER_DENSITY,
-    "temperature": TEMPERATURE,
-    "salinity": SALINITY,
+    "toward": profile_tables.DIRECTION,
+    "density": profile_tables.WATER_DENSITY,
+    "temperature": profile_tables.TEMPERATURE,
+    "salinity": profile_tables.SALINITY,
 }
 
 
