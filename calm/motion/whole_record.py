@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.case import Mooring
-from calm.motion import common_unknowns
+from calm.motion import common_unknowns, line_response
 from calm.motion.common_unknowns import (
     RAMPS,
     Common,
@@ -19,7 +19,7 @@ from calm.motion.common_unknowns import (
     hanging_sensors,
     moves,
 )
-from calm.motion.estimate import Posterior, best_state, own_errors
+from calm.motion.estimate import Posterior, best_state
 from calm.motion.line_response import STEP, Forward, Linear, LineResponse, gap_errors
 from calm.motion.measurements import MooringMeasurements
 from calm.physics.line import Floats, Integers
@@ -223,7 +223,7 @@ def linear_law(
         currents,
         fixed,
         begun.fall(time, depth, still, part.point),
-        own_errors(depth, still, part.point)[:, part.point, :],
+        line_response.own_errors(depth, still)[:, part.point[:, None], part.point],
     )
 
 
