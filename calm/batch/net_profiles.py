@@ -21,8 +21,8 @@ from calm.batch.solving import lay_profile, read_profile
 from calm.batch.statuses import STATUSES
 from calm.case.measure import leaning_of
 from calm.case.net import Net, net_result
-from calm.case.net_result import NetResult
 from calm.case.parts import clamps_down
+from calm.case.result import NetResult
 from calm.dataset.netcdf import OF_CLAMP, OF_COMPONENT, OF_ENDS
 from calm.errors import NoEquilibrium
 from calm.files import CurrentTable

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from calm.case import Mooring
 from calm.case.net import Net
-from calm.case.net_result import legs_of
+from calm.case.result import legs_of
 from calm.checks.arrangement import unlike_metals
 from calm.deck.deck_items import Order
 from calm.errors import NoEquilibrium
@@ -21,7 +21,7 @@ from calm.solve import expect_many
 
 if TYPE_CHECKING:
     from calm.case import Result
-    from calm.case.net_result import NetResult
+    from calm.case.result import NetResult
     from calm.deck.deck_items import DeckItem
 
 LENGTH_ERROR = 0.005
