@@ -24,7 +24,11 @@ MOST_LEGS = 40
 NET_REFUSED = (
     "this is a net of legs, for `calm run`, `check`, `batch`, `deck`, `size`, `diff` and `export`; "
     "this takes a single line: one free end, one anchor. `calm batch` gives the depths of a net's "
-    "instruments in a record of currents"
+    "instruments in a record of currents; waves and a launch take a line of its most loaded leg"
+)
+NET_SURE = (
+    "single lines; `calm run --explain` says how far a net moves by more drag, buoyancy or "
+    "current, and a copy of its file, or `with_` in Python, solves it with other figures"
 )
 
 _Offset = Annotated[float, QuantityField("length")]
