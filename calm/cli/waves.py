@@ -96,8 +96,7 @@ def waves(
     from calm.case.mooring import load_line
     from calm.cli.progress import progress
     from calm.records.sea_states import OF_HEIGHT
-    from calm.report.folder import check_folder, printed, write_report
-    from calm.report.html import page
+    from calm.report.folder import check_folder, write_pages
     from calm.report.sea_response import sea_response_part, sea_response_report
     from calm.waves.analysis import SLACK, analyse
 
@@ -126,8 +125,7 @@ def waves(
         return ExitCode.NO_EQUILIBRIUM
     outputs.write_answer(analysis.to_dict, sea_response_part(analysis))
     if report is not None:
-        said = sea_response_report(analysis)
-        write_report(report, {"waves.html": page(said).encode(), "waves.pdf": printed(said)})
+        write_pages(report, "waves", sea_response_report(analysis))
     if analysis.status != SLACK:
         return ExitCode.DONE
     narrate(

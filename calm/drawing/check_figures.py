@@ -19,7 +19,6 @@ from calm.drawing.graph import (
     Stroke,
     counts,
     covering,
-    numbers,
     write_legend,
 )
 from calm.drawing.line_picture import NAMED_ROLES, LineKind, along_the_line, current_between
@@ -81,13 +80,15 @@ Place = tuple[float, float, float, float]
 
 def _legend(solved: Solved) -> list[LegendEntry]:
     """An entry for each environment, and for what else the panels show."""
-    entries = [LegendEntry(name, line=_stroke(number)) for number, (name, _) in enumerate(solved)]
     _, first = solved[0]
-    if first.still_shape is not None:
-        entries.append(LegendEntry("still water", line=_STILL))
     there = {part.role for part in line_picture.named_parts(first)}
-    entries += [LegendEntry(role, sign=SIGNS[role]) for role in NAMED_ROLES if role in there]
-    return [*entries, LegendEntry("limit", line=_LIMIT)]
+    still = [] if first.still_shape is None else [LegendEntry("still water", line=_STILL)]
+    return [
+        *(LegendEntry(name, line=_stroke(number)) for number, (name, _) in enumerate(solved)),
+        *still,
+        *(LegendEntry(role, sign=SIGNS[role]) for role in NAMED_ROLES if role in there),
+        LegendEntry("limit", line=_LIMIT),
+    ]
 
 
 def _stroke(number: int) -> Stroke:
@@ -120,10 +121,7 @@ def _draw_elevation(graph: Graph, place: Place, solved: Solved, depths: Scale) -
         axes.line(line.x, line.y, _stroke(number))
     for mark in side.marks:
         axes.mark(mark.x, mark.y, *SIGNS[mark.role])
-    axes.frame(
-        numbers(axes.across.low, axes.across.high, 5), numbers(depths.low, depths.high, 9),
-        below=QUANTITIES["offset"].label, beside=side.up,
-    )  # fmt: skip
+    axes.frame(5, 9, below=QUANTITIES["offset"].label, beside=side.up)
 
 
 def _draw_current(graph: Graph, place: Place, solved: Solved, depths: Scale) -> None:
@@ -136,10 +134,8 @@ def _draw_current(graph: Graph, place: Place, solved: Solved, depths: Scale) -> 
     axes = graph.axes(*place, Scale(0.0, 1.05 * fastest or 1.0), depths)
     for number, (speed, depth) in enumerate(profiles):
         axes.line(speed, depth, _stroke(number))
-    axes.frame(
-        numbers(0.0, axes.across.high, 3), numbers(depths.low, depths.high, 9),
-        below=f"current [{QUANTITIES['speed'].usual_unit}]", numbered=(True, False),
-    )  # fmt: skip
+    below = f"current [{QUANTITIES['speed'].usual_unit}]"
+    axes.frame(3, 9, below=below, numbered=(True, False))
 
 
 def _draw_tension(graph: Graph, place: Place, solved: Solved) -> None:
@@ -159,10 +155,7 @@ def _draw_tension(graph: Graph, place: Place, solved: Solved) -> None:
     for number, ((_, result), distance) in enumerate(zip(solved, distances, strict=True)):
         axes.line(result.shape.tension, distance, _stroke(number))
     axes.lines([np.minimum(loads, edge)] * 2, [ends[:-1], ends[1:]], _LIMIT)
-    axes.frame(
-        numbers(0.0, axes.across.high, 4), numbers(axes.up.low, axes.up.high, 9),
-        below=QUANTITIES["tension"].label, beside="distance along the line [m]",
-    )  # fmt: skip
+    axes.frame(4, 9, below=QUANTITIES["tension"].label, beside="distance along the line [m]")
 
 
 def _draw_plan(graph: Graph, place: Place, solved: Solved) -> None:
@@ -178,10 +171,7 @@ def _draw_plan(graph: Graph, place: Place, solved: Solved) -> None:
         axes.line(result.shape.x, result.shape.y, stroke)
         axes.mark(result.top.x, result.top.y, "o", 3.5, stroke.colour)
     axes.mark(0.0, 0.0, "v", 5.0, "black")
-    axes.frame(
-        numbers(axes.across.low, axes.across.high, 5), numbers(axes.up.low, axes.up.high, 6),
-        below=QUANTITIES["x"].label, beside=QUANTITIES["y"].label,
-    )  # fmt: skip
+    axes.frame(5, 6, below=QUANTITIES["x"].label, beside=QUANTITIES["y"].label)
 
 
 def _widened(scale: Scale, extent: float) -> Scale:
@@ -205,8 +195,5 @@ def _draw_breaks(graph: Graph, place: Place, backup: Sequence[Break]) -> None:
     axes.bars(number, margins, 0.8, colours)
     axes.lines([number - 0.5, number + 0.5], [required] * 2, _LIMIT)
     axes.level(0.0, Stroke("black", 0.6))
-    axes.frame(
-        counts(backup[0].break_after, backup[-1].break_after, 8),
-        numbers(axes.up.low, axes.up.high, 6),
-        below="break below piece no.", beside="back-up buoyancy left [N]",
-    )  # fmt: skip
+    numbered = counts(backup[0].break_after, backup[-1].break_after, 8)
+    axes.frame(numbered, 6, below="break below piece no.", beside="back-up buoyancy left [N]")

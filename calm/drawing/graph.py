@@ -279,8 +279,8 @@ class Axes:
 
     def frame(
         self,
-        across: Sequence[Tick],
-        up: Sequence[Tick],
+        across: Sequence[Tick] | int,
+        up: Sequence[Tick] | int,
         *,
         below: str = "",
         beside: str = "",
@@ -291,11 +291,16 @@ class Axes:
 
         Parameters
         ----------
+        across, up : the ticks, or about how many round numbers are to stand there
         below, beside : what the axis across and the upward one show; lines apart by line feeds
         grid : whether ticks go on as thin lines behind what is drawn
         numbered : whether the axis across, and the upward one, have their texts
         """
         pen, size = self.graph.pen, self.graph.size
+        across, up = (
+            numbers(scale.low, scale.high, ticks) if isinstance(ticks, int) else ticks
+            for ticks, scale in ((across, self.across), (up, self.up))
+        )
         right, bottom = self.left + self.width, self.top + self.height
         for tick in across:
             x = float(self.x(tick.value))

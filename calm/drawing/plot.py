@@ -214,16 +214,12 @@ def write_names(axes: Axes, written: list[tuple[str, PictureMark]], height: floa
     places = line_picture.spread(wanted, line, line / 2, 1.0 - line / 2)
     for (text, part), place in zip(written, places, strict=True):
         axes.annotate(
-            text,
-            xy=(part.x, part.depth),
-            xytext=(_SHARE_OF_LINE + 0.1, 1.0 - place),
-            textcoords="axes fraction",
-            fontsize=_FONT_SIZE * line * height / _LINE_HEIGHT,
-            verticalalignment="center",
-            parse_math=False,
+            text, (part.x, part.depth), (_SHARE_OF_LINE + 0.1, 1.0 - place),
+            textcoords="axes fraction", fontsize=_FONT_SIZE * line * height / _LINE_HEIGHT,
+            verticalalignment="center", parse_math=False,
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5},
             arrowprops={"arrowstyle": "-", "color": "grey", "linewidth": 0.5, "relpos": (0.0, 0.5)},
-        )
+        )  # fmt: skip
 
 
 _SWEEP_HEIGHT = 4.5  # inches

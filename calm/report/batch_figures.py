@@ -24,7 +24,6 @@ from calm.drawing.graph import (
     covering,
     decades,
     moments,
-    numbers,
     seconds,
     write_legend,
 )
@@ -68,7 +67,7 @@ def series_figure(summary: Summary) -> str:
         if limit is not None:
             axes.level(limit, _LIMIT)
         axes.frame(
-            ticks, numbers(up.low, up.high, 5),
+            ticks, 5,
             beside=f"{TITLES[response.name]}\n[{quantity.display_unit}]",
             grid=True, numbered=(number == len(RESPONSES) - 1, True),
         )  # fmt: skip
@@ -136,7 +135,7 @@ def _shares(title: str, panels: Sequence[_Shares], tall: float) -> str:
         if panel.limit is not None:
             axes.plumb(panel.limit, _LIMIT)
         axes.frame(
-            numbers(across.low, across.high, 6), decades(up.low, up.high),
+            6, decades(up.low, up.high),
             below=f"{panel.title} [{quantity.display_unit}]",
             beside="" if column else "reached or exceeded in [% of profiles]",
             grid=True, numbered=(True, not column),

@@ -91,6 +91,14 @@ def write_report(folder: Path, files: Mapping[str, bytes]) -> None:
                 folder.rmdir()  # which the system does only where nothing was written
 
 
+def write_pages(folder: Path, name: str, report: Report) -> None:
+    """Write a report as a page and as a PDF of a name, as a set like `write_report`."""
+    from calm.report.html import page
+
+    files = {f"{name}.html": page(report).encode(), f"{name}.pdf": printed(report)}
+    write_report(folder, files)
+
+
 def _restore(folder: Path, parts: Mapping[str, Path], kept: Mapping[str, Path]) -> None:
     """Take away the new files that have taken their place, and put the old ones back."""
     for name, part in parts.items():

@@ -242,8 +242,16 @@ def levels_of(file: MooringFile, result: Result | TowResult | None) -> Levels:
             result.type == "surface",
             _SOLVED,
         )
-    lengths = _cut_lengths(file)
-    depths = _upright(file, lengths)
+    known = sum(piece.length for piece in file.pieces if piece.length is not None)
+    rest, bottom = math.nan, file.environment.depth
+    for piece in file.pieces:
+        if piece.fit_top_depth is not None and bottom is not None:
+            rest = bottom - piece.fit_top_depth - known
+    lengths = tuple(rest if piece.length is None else piece.length for piece in file.pieces)
+    depths = (math.nan,) * len(lengths)
+    if file.tow is None and bottom is not None:  # upright, above an anchor on the seabed
+        heights = list(accumulate(reversed(lengths)))
+        depths = tuple(bottom - height for height in reversed(heights))
     top = file.pieces[0].component
     hulled = isinstance(top, Rigid) and not (top.hull is None and top.wind_area is None)
     surface = file.tow is None and (depths[0] <= 0.0 or hulled)
@@ -256,24 +264,6 @@ def levels_of(file: MooringFile, result: Result | TowResult | None) -> Levels:
     }
     note = _UNKNOWN if math.isnan(depths[0]) else _UPRIGHT
     return Levels(lengths, depths, clamps, file.pieces[0], surface, note)
-
-
-def _cut_lengths(file: MooringFile) -> tuple[float, ...]:
-    """As the file gives them; of a piece cut to fit, what is left for it."""
-    known = sum(piece.length for piece in file.pieces if piece.length is not None)
-    rest = math.nan
-    for piece in file.pieces:
-        if piece.fit_top_depth is not None and file.environment.depth is not None:
-            rest = file.environment.depth - piece.fit_top_depth - known
-    return tuple(rest if piece.length is None else piece.length for piece in file.pieces)
-
-
-def _upright(file: MooringFile, lengths: tuple[float, ...]) -> tuple[float, ...]:
-    """Depths of the upper ends above an anchor on the seabed."""
-    if file.tow is not None or file.environment.depth is None:
-        return (math.nan,) * len(lengths)
-    heights = list(accumulate(reversed(lengths)))
-    return tuple(file.environment.depth - height for height in reversed(heights))
 
 
 def place_text(at: float) -> str:

@@ -78,8 +78,7 @@ def elevation(
 def draw_picture(frame: canvas.PlotFrame, picture: LinePicture) -> None:
     """Draw the lines, the ship and the marks of a picture."""
     for line in picture.lines:
-        style, dash, gap = STROKES[line.kind]
-        frame.line(zip(line.x.tolist(), line.y.tolist(), strict=True), style, dash=dash, gap=gap)
+        frame.line(zip(line.x.tolist(), line.y.tolist(), strict=True), *STROKES[line.kind])
     if picture.ship is not None:
         frame.mark(*picture.ship, *SHIP)
     for role, (sign, style) in SIGNS.items():
