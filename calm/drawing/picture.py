@@ -87,27 +87,11 @@ _UNPRINTABLE = re.compile(
     "[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff\ufffe\uffff]"
 )
 _DEGREES = re.compile(r"(?<=[0-9])°")
-_IN_ASCII = str.maketrans(
-    {
-        "°": "deg",
-        "–": "-",
-        "−": "-",
-        "×": "x",
-        "·": "*",
-        "→": "->",
-        "…": "...",
-        "≤": "<=",
-        "≥": ">=",
-        "√": "sqrt",
-        "²": "^2",
-        "³": "^3",
-        "₀": "0",
-        "₁": "1",
-        "✓": "+",
-        "\u00a0": " ",
-        "\u2003": "  ",
-    }
-)
+_IN_ASCII = str.maketrans({
+    **dict(zip("–−×·₀₁✓\u00a0", "--x*01+ ", strict=True)),
+    "°": "deg", "→": "->", "…": "...", "≤": "<=", "≥": ">=", "√": "sqrt", "²": "^2", "³": "^3",
+    "\u2003": "  ",
+})  # fmt: skip
 
 
 def printable(text: str) -> str:

@@ -17,7 +17,7 @@ from calm.drawing.schematic import FONT, HEAD, LEADING, ColumnHead, PlacedPart, 
 from calm.drawing.schematic.deck_parts import parts_of
 from calm.drawing.schematic.pen import INK, SOFT, Pen, picture, svg_text, wrapped
 from calm.drawing.schematic.shown_parts import TextRow, one_line
-from calm.drawing.schematic.sign import LINES, WORDS, Sign
+from calm.drawing.schematic.sign import LINES, Sign
 from calm.drawing.schematic.symbols import draw_cable, figure_of
 from calm.quantities import QUANTITIES, say
 from calm.report.check_summary import short_verdict
@@ -213,7 +213,7 @@ class _Diagram:
             else:
                 figure = figure_of(Sign(sign.symbol))
                 figure.draw(pen.group(x, y, min(0.5, 20.0 / figure.height)))
-            page.letters(x + 18.0, y, WORDS[sign.symbol], size=FONT)
+            page.letters(x + 18.0, y, sign.symbol.value, size=FONT)
 
     def _draw_title_block(self, page: Pen, sheet: str) -> None:
         """Fields in a frame, what is not known blank; `sheet` is such as 2 of 5."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from enum import StrEnum, auto
+from enum import StrEnum
 from typing import TYPE_CHECKING
 
 from calm.physics.materials import fibre_of
@@ -14,43 +14,30 @@ if TYPE_CHECKING:
 
 
 class Symbol(StrEnum):
-    """What a schematic draws."""
+    """What a schematic draws, and what a legend calls it."""
 
-    SPHERE = auto()
-    BALL = auto()
-    GLASS = auto()
-    FOAM = auto()
-    STREAMLINED = auto()
-    BUOY = auto()
-    CURRENT_METER = auto()
-    ADCP = auto()
-    CTD = auto()
-    TRAP = auto()
-    INSTRUMENT = auto()
-    RELEASE = auto()
-    RELEASE_PAIR = auto()
-    SHACKLE = auto()
-    SWIVEL = auto()
-    LINK = auto()
-    CHAIN = auto()
-    WIRE = auto()
-    ROPE = auto()
-    WHEELS = auto()
-    BLOCK = auto()
-    BODY = auto()
-
-
-WORDS = {
-    Symbol.SPHERE: "float", Symbol.BALL: "ball", Symbol.GLASS: "glass float",
-    Symbol.FOAM: "foam float", Symbol.STREAMLINED: "streamlined float",
-    Symbol.BUOY: "surface buoy", Symbol.CURRENT_METER: "current meter", Symbol.ADCP: "ADCP",
-    Symbol.CTD: "CTD or logger", Symbol.TRAP: "sediment trap", Symbol.INSTRUMENT: "instrument",
-    Symbol.RELEASE: "release", Symbol.RELEASE_PAIR: "pair of releases",
-    Symbol.SHACKLE: "shackle", Symbol.SWIVEL: "swivel", Symbol.LINK: "link or ring",
-    Symbol.CHAIN: "chain", Symbol.WIRE: "wire", Symbol.ROPE: "rope",
-    Symbol.WHEELS: "anchor, wheels", Symbol.BLOCK: "anchor", Symbol.BODY: "body",
-}  # fmt: skip
-"""What a legend calls each symbol."""
+    SPHERE = "float"
+    BALL = "ball"
+    GLASS = "glass float"
+    FOAM = "foam float"
+    STREAMLINED = "streamlined float"
+    BUOY = "surface buoy"
+    CURRENT_METER = "current meter"
+    ADCP = "ADCP"
+    CTD = "CTD or logger"
+    TRAP = "sediment trap"
+    INSTRUMENT = "instrument"
+    RELEASE = "release"
+    RELEASE_PAIR = "pair of releases"
+    SHACKLE = "shackle"
+    SWIVEL = "swivel"
+    LINK = "link or ring"
+    CHAIN = "chain"
+    WIRE = "wire"
+    ROPE = "rope"
+    WHEELS = "anchor, wheels"
+    BLOCK = "anchor"
+    BODY = "body"
 
 
 BALLS = (Symbol.BALL, Symbol.GLASS)
