@@ -85,21 +85,20 @@ def cuts_of(result: Result | NetResult, parts: Sequence[DeckItem], order: Order)
     parts : every piece and clamp, down the line
     order : in which the line goes over the side
     """
-    cables = [one for one in parts if _is_cut(one)]
+    cables = [
+        one
+        for one in parts
+        if isinstance(one.part, Piece)
+        and (
+            isinstance(one.part.component, Cable)
+            or (isinstance(one.part.component, Chain) and one.part.clamps)
+        )
+    ]
     count = len(cables)
     expect_many(count * max(1.0, len(result.components) / ORDINARY))
     return tuple(
         _cut(result, one, number if order is Order.ANCHOR_LAST else count + 1 - number, count)
         for number, one in enumerate(cables, 1)
-    )
-
-
-def _is_cut(one: DeckItem) -> bool:
-    part = one.part
-    if not isinstance(part, Piece):
-        return False
-    return isinstance(part.component, Cable) or (
-        isinstance(part.component, Chain) and bool(part.clamps)
     )
 
 

@@ -64,7 +64,10 @@ def check_figure(assessment: Assessment) -> str:
         width=_WIDTH - 12.0, row=_LEGEND_ROW, columns=_LEGEND_COLUMNS, size=_SIZE,
     )  # fmt: skip
     top, lower = legend + 11.0, legend + 372.0
-    depths = _depths(solved)
+    depth = max(result.mooring.water.depth for _, result in solved)
+    highest = min(float(result.shape.depth.min()) for _, result in solved)
+    # of the elevation and the current: from below the seabed to above the surface
+    depths = Scale(1.03 * depth, min(-0.03 * depth, highest))
     _draw_elevation(graph, (42.0, top, 187.0, 310.0), solved, depths)
     _draw_current(graph, (240.0, top, 72.0, 310.0), solved, depths)
     _draw_tension(graph, (361.0, top, 165.0, 310.0), solved)
@@ -95,13 +98,6 @@ def _stroke(number: int) -> Stroke:
     """Colour and dashes of an environment: no two of the first twenty-one are alike."""
     dashes = _DASHES[number // len(_COLOURS) % len(_DASHES)]
     return Stroke(_COLOURS[number % len(_COLOURS)], 1.2, dashes)
-
-
-def _depths(solved: Solved) -> Scale:
-    """Of the elevation and the current: from below the seabed to above the surface."""
-    depth = max(result.mooring.water.depth for _, result in solved)
-    highest = min(float(result.shape.depth.min()) for _, result in solved)
-    return Scale(1.03 * depth, min(-0.03 * depth, highest))
 
 
 def _draw_elevation(graph: Graph, place: Place, solved: Solved, depths: Scale) -> None:

@@ -60,7 +60,10 @@ def schematic_svg(file: MooringFile, result: Result | TowResult | None = None) -
         those of the upright, unstretched line; unknown in a tow and of a float at the surface.
     """
     shown = schematic_of(file, result)
-    column = _column(shown)
+    rows = [row for part in shown.parts for row in part.rows]
+    rows += [row for row in (shown.towed_by, shown.sea, shown.seabed) if row is not None]
+    headings = [ColumnHead(HEADINGS[name], QUANTITIES[name].display_unit) for name in shown.columns]
+    column = column_of(rows, headings, _WIDTH, _TOWED_AT if shown.towed_by else _MOORED_AT)
     room = _WIDTH - 2 * _MARGIN
     words = [(text, _TITLE, INK) for text in wrapped(shown.title, room, _TITLE, bold=True)]
     words += [(text, FONT, SOFT) for text in wrapped(shown.subtitle, room, FONT)]
@@ -84,13 +87,6 @@ def schematic_svg(file: MooringFile, result: Result | TowResult | None = None) -
     for number, text in enumerate(notes):
         page.letters(_MARGIN, foot + LEADING * number, text, size=FONT, colour=SOFT)
     return svg_text(page)
-
-
-def _column(shown: Schematic) -> LineColumn:
-    rows = [row for part in shown.parts for row in part.rows]
-    rows += [row for row in (shown.towed_by, shown.sea, shown.seabed) if row is not None]
-    headings = [ColumnHead(HEADINGS[name], QUANTITIES[name].display_unit) for name in shown.columns]
-    return column_of(rows, headings, _WIDTH, _TOWED_AT if shown.towed_by else _MOORED_AT)
 
 
 def _hung(shown: Schematic, column: LineColumn, top: float) -> tuple[float, tuple[PlacedPart, ...]]:

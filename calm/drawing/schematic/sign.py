@@ -91,24 +91,23 @@ def sign_of(use: str, label: str, component: Component) -> Sign:
     elif symbol is Symbol.WHEELS:
         count = _first_number(component.name) or _first_number(use) or 1
     sounding = symbol is Symbol.ADCP or bool(_ADCP.search(own))
-    return Sign(
-        symbol,
-        count,
-        sounding,
-        up=sounding and bool(_UP.search(words)),
-        down=sounding and bool(_DOWN.search(words)),
-    )
+    up, down = (sounding and bool(way.search(words)) for way in (_UP, _DOWN))
+    return Sign(symbol, count, sounding, up, down)
 
 
 def _symbol(component: Component, own: str, words: str) -> Symbol:
     if component.kind == "chain":
         return Symbol.CHAIN
     if component.kind == "cable":
-        return _cable(f"{own} {(component.material or '').lower()}", words)
+        made_of = f"{own} {(component.material or '').lower()}"
+        rope = not _METAL.search(made_of) and ("rope" in words or fibre_of(made_of))
+        return Symbol.ROPE if rope else Symbol.WIRE
     if component.kind == "anchor":
         return Symbol.WHEELS if _WHEELS.search(words) else Symbol.BLOCK
     if component.role == "float":
-        return _float(component, own)
+        if _STREAMLINED.search(own) or "glass" in own:
+            return Symbol.STREAMLINED if _STREAMLINED.search(own) else Symbol.GLASS
+        return _sphere(component.diameter) if component.kind == "sphere" else Symbol.FOAM
     if component.role == "release":
         return Symbol.RELEASE_PAIR if _PAIR.search(own) else Symbol.RELEASE
     if component.role == "connector":
@@ -119,20 +118,6 @@ def _symbol(component: Component, own: str, words: str) -> Symbol:
     if component.kind == "sphere":
         other = _sphere(component.diameter)
     return _named(_NAMES, own, _named(_NAMES, words, other))
-
-
-def _cable(own: str, words: str) -> Symbol:
-    if _METAL.search(own):
-        return Symbol.WIRE
-    return Symbol.ROPE if "rope" in words or fibre_of(own) else Symbol.WIRE
-
-
-def _float(component: Component, own: str) -> Symbol:
-    if _STREAMLINED.search(own):
-        return Symbol.STREAMLINED
-    if "glass" in own:
-        return Symbol.GLASS
-    return _sphere(component.diameter) if component.kind == "sphere" else Symbol.FOAM
 
 
 def _sphere(diameter: float) -> Symbol:
