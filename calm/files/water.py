@@ -25,18 +25,9 @@ from calm.files.definition import (
 )
 from calm.files.yaml_document import SourceMapping
 from calm.physics import seawater
+from calm.records import profile_tables
 from calm.records.columns import QuantityTable
 from calm.records.current_terms import left_out
-from calm.records.profile_tables import (
-    DIRECTION,
-    SALINITY,
-    TEMPERATURE,
-    WATER_DENSITY,
-    DepthTable,
-    SeaWater,
-    read_profile,
-    read_water,
-)
 from calm.records.sea_states import (
     OF_HEIGHT,
     SPECTRA,
@@ -78,12 +69,12 @@ class SeaWaterKeys(Model):
     """Temperature [°C] and practical salinity, each a constant or a table by depth."""
 
     temperature: Annotated[
-        Annotated[float, QuantityField(**vars(TEMPERATURE)), Tag("constant")]
+        Annotated[float, QuantityField(**vars(profile_tables.TEMPERATURE)), Tag("constant")]
         | Annotated[TableKeys, Tag("table")],
         Discriminator(_table_or_constant),
     ] = described("in situ, a constant or a table", "10 degC")
     salinity: Annotated[
-        Annotated[float, QuantityField(**vars(SALINITY)), Tag("constant")]
+        Annotated[float, QuantityField(**vars(profile_tables.SALINITY)), Tag("constant")]
         | Annotated[TableKeys, Tag("table")],
         Discriminator(_table_or_constant),
     ] = described("practical, a constant or a table", 35)
@@ -98,7 +89,7 @@ Density = Annotated[
 """The value of `density:` as a person writes it."""
 
 
-_RANGES: Mapping[str, QuantityRange] = {"water": WATER_DENSITY, "air": DENSITY}
+_RANGES: Mapping[str, QuantityRange] = {"water": profile_tables.WATER_DENSITY, "air": DENSITY}
 _FALL = 0.1
 """Water that gets lighter by more than this with depth turns over [kg/m³]."""
 _RATIO = 0.05
@@ -112,7 +103,7 @@ def read_density(
     fluid: str,
     section: SourceMapping,
     problems: list[Problem],
-) -> float | DepthTable | SeaWater | None:
+) -> float | profile_tables.DepthTable | profile_tables.SeaWater | None:
     """Read the density of an environment; None where it has mistakes.
 
     Parameters
@@ -124,7 +115,9 @@ def read_density(
     """
     density = _RANGES[fluid]
     if isinstance(given, TableKeys):
-        return read_water(quantity_table(given, section, problems, "density"), density)
+        return profile_tables.read_water(
+            quantity_table(given, section, problems, "density"), density
+        )
     if not isinstance(given, SeaWaterKeys):
         try:
             return density.read(f"{given!r} kg/m^3")
@@ -134,7 +127,7 @@ def read_density(
             return None
     temperature = _profile("temperature", given.temperature, section, problems)
     salinity = _profile("salinity", given.salinity, section, problems)
-    return SeaWater(temperature, salinity) if temperature and salinity else None
+    return profile_tables.SeaWater(temperature, salinity) if temperature and salinity else None
 
 
 def table_of(value: object) -> TableKeys | None:
@@ -161,16 +154,18 @@ def quantity_table(
     )
 
 
-def density_notices(density: float | DepthTable | SeaWater, depth: float | None) -> Iterator[str]:
+def density_notices(
+    density: float | profile_tables.DepthTable | profile_tables.SeaWater, depth: float | None
+) -> Iterator[str]:
     """Yield what is odd about the density of the water as it was read, in sentences.
 
     Its depth [m] is None where it is not known.
     """
-    if isinstance(density, SeaWater):
+    if isinstance(density, profile_tables.SeaWater):
         profiles = {"temperature": density.temperature, "salinity": density.salinity}
         yield from _sea_water_notices(density)
     else:
-        profiles = {"density": density} if isinstance(density, DepthTable) else {}
+        profiles = {"density": density} if isinstance(density, profile_tables.DepthTable) else {}
         for table in profiles.values():
             yield from _falls(table)
     for name, table in profiles.items():
@@ -181,7 +176,7 @@ def density_notices(density: float | DepthTable | SeaWater, depth: float | None)
                 yield f"{missing[0].upper()}{missing[1:]}."
 
 
-def _sea_water_notices(water: SeaWater) -> Iterator[str]:
+def _sea_water_notices(water: profile_tables.SeaWater) -> Iterator[str]:
     """Yield what is odd about temperature and salinity beside each other."""
     warm, salt = water.temperature.value, water.salinity.value
     if max(salt) < _RATIO:
@@ -199,10 +194,10 @@ def _sea_water_notices(water: SeaWater) -> Iterator[str]:
         depth = np.union1d(*(each.depth for each in given))
         warmth, saltiness = (np.interp(depth, each.depth, each.value) for each in given)
         raised = seawater.potential_density(warmth, saltiness, depth)
-        yield from _falls(DepthTable(tuple(depth.tolist()), tuple(raised.tolist())))
+        yield from _falls(profile_tables.DepthTable(tuple(depth.tolist()), tuple(raised.tolist())))
 
 
-def _falls(table: DepthTable) -> Iterator[str]:
+def _falls(table: profile_tables.DepthTable) -> Iterator[str]:
     """Yield a notice where the density falls with depth."""
     greatest, depth = table.value[0], table.depth[0]
     for below, value in zip(table.depth, table.value, strict=True):
@@ -222,7 +217,7 @@ def check_density(section: SourceMapping, problems: list[Problem]) -> None:
     density = _RANGES["air" if section.data.get("fluid") == "air" else "water"]
     table = table_of(given)
     if table is not None:
-        read_water(quantity_table(table, section, problems, "density"), density)
+        profile_tables.read_water(quantity_table(table, section, problems, "density"), density)
     for name in SeaWaterKeys.model_fields:
         table = table_of(given.get(name)) if isinstance(given, dict) else None
         if table is not None:
@@ -231,14 +226,16 @@ def check_density(section: SourceMapping, problems: list[Problem]) -> None:
 
 def _profile(
     name: str, given: float | TableKeys, section: SourceMapping, problems: list[Problem]
-) -> DepthTable | None:
+) -> profile_tables.DepthTable | None:
     if isinstance(given, TableKeys):
-        return read_profile(name, quantity_table(given, section, problems, "density", name))
-    return DepthTable((0.0,), (given,))
+        return profile_tables.read_profile(
+            name, quantity_table(given, section, problems, "density", name)
+        )
+    return profile_tables.DepthTable((0.0,), (given,))
 
 
 _SPEED = QuantityField("speed", at_least=0)
-Toward = Annotated[float, QuantityField(**vars(DIRECTION))]
+Toward = Annotated[float, QuantityField(**vars(profile_tables.DIRECTION))]
 
 
 class Wind(Model):
