@@ -208,17 +208,13 @@ def _folders(designs: Sequence[DesignFile], output: Path) -> list[Path]:
     """
     if len(designs) == 1:
         return [output]
-    folders = [output / _file_name(design.name) for design in designs]
+    # signs that systems refuse become a stroke
+    plain = (re.sub(r'[\x00-\x1f<>:"/\\|?*]+', "-", each.name).strip(" .") for each in designs)
+    folders = [output / (name or "mooring") for name in plain]
     for folder in folders:
         if [str(one).casefold() for one in folders].count(str(folder).casefold()) > 1:
             raise UsageError(f"two moorings would go to {folder}; give them other names")
     return folders
-
-
-def _file_name(name: str) -> str:
-    """A name as a folder may have it: signs that systems refuse become a stroke."""
-    plain = re.sub(r'[\x00-\x1f<>:"/\\|?*]+', "-", name).strip(" .")
-    return plain or "mooring"
 
 
 DEFAULT_SPEED = "1500 m/s"

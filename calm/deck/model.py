@@ -180,9 +180,7 @@ def deck_of(
         recovery=surfacing(parts, rising, rise),
         rise=rise,
         cuts=cuts_of(result, parts, order),
-        hardware=hardware_of(
-            [[*leg] for _, leg in groupby(parts, key=lambda one: legs[one.index])]
-        ),
+        hardware=hardware_of([[*leg] for _, leg in groupby(parts, lambda one: legs[one.index])]),
         shipped=shipped_of(first.file, inventory),
         lifts=lifts_of(inventory, legs, rising, order),
         instruments=instruments_of(parts, results),

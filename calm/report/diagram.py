@@ -13,7 +13,7 @@ from calm.case import Result
 from calm.case.net_result import legs_of
 from calm.deck import Deck
 from calm.drawing import schematic
-from calm.drawing.schematic import FONT, HEAD, LEADING, ColumnHead, PlacedPart, placed
+from calm.drawing.schematic import FONT, HEAD, LEADING, PlacedPart, placed
 from calm.drawing.schematic.deck_parts import parts_of
 from calm.drawing.schematic.pen import INK, SOFT, Pen, picture, svg_text, wrapped
 from calm.drawing.schematic.shown_parts import TextRow, one_line
@@ -105,7 +105,7 @@ class _Diagram:
         parts = [part for leg in legs for part in leg]
         self.title, self.paper, self.fields = one_line(deck.file.name), paper, _fields(deck, paper)
         self.bottom = paper.size[1] - _MARGIN - sum(map(_height, self.fields))
-        headings = [ColumnHead(words, QUANTITIES[name].display_unit) for words, name in _HEADINGS]
+        headings = [(*words, QUANTITIES[name].display_unit) for words, name in _HEADINGS]
         rows = (row for part in parts for row in part.rows)
         self.column = column = schematic.column_of(rows, headings, paper.column_width)
         self.legend = tuple({part.sign.symbol: part.sign for part in parts}.values())

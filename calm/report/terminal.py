@@ -54,7 +54,8 @@ class _Printer:
             yield Text()
         before: Block | None = None
         for block in part.blocks:
-            if before is not None and not _together(before, block):
+            both = isinstance(before, Prose) and isinstance(block, Prose)
+            if before is not None and not both and not isinstance(before, Heading):
                 yield Text()
             if isinstance(before, Heading) and isinstance(block, Pairs):
                 yield Padding(self._pairs(block), (0, 0, 0, 2))
@@ -163,13 +164,6 @@ class _Words(Text):
 
 
 _BREAKS = re.compile("[-_./]")
-
-
-def _together(block: Block, following: Block) -> bool:
-    """Return whether nothing stands between two blocks."""
-    if isinstance(following, Prose):
-        return isinstance(block, Prose | Heading)
-    return isinstance(block, Heading)
 
 
 MANY = 100

@@ -62,7 +62,7 @@ def schematic_svg(file: MooringFile, result: Result | TowResult | None = None) -
     shown = schematic_of(file, result)
     rows = [row for part in shown.parts for row in part.rows]
     rows += [row for row in (shown.towed_by, shown.sea, shown.seabed) if row is not None]
-    headings = [ColumnHead(HEADINGS[name], QUANTITIES[name].display_unit) for name in shown.columns]
+    headings = [(*HEADINGS[name], QUANTITIES[name].display_unit) for name in shown.columns]
     column = column_of(rows, headings, _WIDTH, _TOWED_AT if shown.towed_by else _MOORED_AT)
     room = _WIDTH - 2 * _MARGIN
     words = [(text, _TITLE, INK) for text in wrapped(shown.title, room, _TITLE, bold=True)]
@@ -123,13 +123,6 @@ def _draw_scene(
         draw_row(page, column, 0.0, surface - _SHEAVE, shown.towed_by)
 
 
-class ColumnHead(NamedTuple):
-    """The words over a column of figures, line by line, and the unit below them."""
-
-    words: tuple[str, ...]
-    unit: str
-
-
 @dataclass(frozen=True)
 class LineColumn:
     """Where a line is drawn, and what stands beside it.
@@ -137,21 +130,24 @@ class LineColumn:
     Attributes
     ----------
     width : of all
-    headings : over the figures
+    headings : over the figures, line by line, the unit last
     rights : right edges of the columns of figures
     text : from where to where there is room for words
     line_at : where the line hangs, from the left edge
     """
 
     width: float
-    headings: tuple[ColumnHead, ...]
+    headings: tuple[Sequence[str], ...]
     rights: tuple[float, ...]
     text: tuple[float, float]
     line_at: float
 
 
 def column_of(
-    parts: Iterable[TextRow], headings: Sequence[ColumnHead], width: float, line_at: float = 26.0
+    parts: Iterable[TextRow],
+    headings: Sequence[tuple[str, ...]],
+    width: float,
+    line_at: float = 26.0,
 ) -> LineColumn:
     """A column of a width with room for its figures, as wide as the widest of them.
 
@@ -161,7 +157,7 @@ def column_of(
     headings : over their figures
     line_at : where the line hangs; the picture is twice as wide
     """
-    cells = [[*heading.words, heading.unit] for heading in headings]
+    cells = [[*heading] for heading in headings]
     for row in parts:
         for texts, text in zip(cells, row.cells, strict=False):
             texts.append(text)
@@ -265,8 +261,7 @@ def placed(
 
 def draw_headings(page: Pen, column: LineColumn, left: float, top: float) -> None:
     """The words over the figures, their last lines at one level, and a rule below."""
-    for heading, right in zip(column.headings, column.rights, strict=True):
-        lines = (*heading.words, heading.unit)
+    for lines, right in zip(column.headings, column.rights, strict=True):
         for number, word in enumerate(reversed(lines)):
             y = top + HEAD - 8.0 - 9.4 * number
             page.letters(left + right, y, word, size=FONT, colour=SOFT, anchor="end")

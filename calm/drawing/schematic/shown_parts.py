@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from itertools import accumulate
 from typing import TYPE_CHECKING
 
@@ -92,7 +91,12 @@ def schematic_of(file: MooringFile, result: Result | TowResult | None = None) ->
     """Return what the schematic of a line shows; as solved, where there is a result."""
     levels = levels_of(file, result)
     bottom = file.environment.depth
-    cells = partial(_figures, bottom)
+
+    def cells(length: str, depth: float) -> tuple[str, ...]:
+        """Length, depth, and the height where the depth of the seabed is known."""
+        heights = [] if bottom is None else [QUANTITIES["height"].format(bottom - depth)]
+        return length, QUANTITIES["depth"].format(depth), *heights
+
     stands = file.pieces[-1].use != STAND_IN
     pieces = file.pieces if stands else file.pieces[:-1]
     water = file.environment.fluid == "water"
@@ -119,12 +123,6 @@ def one_line(text: str) -> str:
 
 Cells = Callable[[str, float], tuple[str, ...]]
 """The figures of a row, by its length, or its place in its stead, and its depth [m]."""
-
-
-def _figures(bottom: float | None, length: str, depth: float) -> tuple[str, ...]:
-    """Length, depth, and the height where the depth of the seabed is known."""
-    heights = [] if bottom is None else [QUANTITIES["height"].format(bottom - depth)]
-    return length, QUANTITIES["depth"].format(depth), *heights
 
 
 def _parts(pieces: Sequence[Piece], cells: Cells, levels: Levels) -> Iterator[ShownPart]:

@@ -87,7 +87,9 @@ def sign_of(use: str, label: str, component: Component) -> Sign:
     symbol = _symbol(component, own, words)
     count = 1
     if symbol is Symbol.GLASS:
-        count = _balls(own)
+        named = (n for word, n in _NUMBERS.items() if re.search(rf"\b{word}\b", own))
+        counted = _COUNTED.search(own)
+        count = int(next(filter(None, counted.groups()))) if counted else next(named, 1)
     elif symbol is Symbol.WHEELS:
         count = _first_number(component.name) or _first_number(use) or 1
     sounding = symbol is Symbol.ADCP or bool(_ADCP.search(own))
@@ -127,13 +129,6 @@ def _sphere(diameter: float) -> Symbol:
 def _named(names: dict[Symbol, str], words: str, other: Symbol) -> Symbol:
     """The first symbol whose pattern the words have."""
     return next((symbol for symbol, name in names.items() if re.search(name, words)), other)
-
-
-def _balls(own: str) -> int:
-    counted = _COUNTED.search(own)
-    if counted:
-        return int(next(filter(None, counted.groups())))
-    return next((number for word, number in _NUMBERS.items() if re.search(rf"\b{word}\b", own)), 1)
 
 
 def _first_number(text: str | None) -> int | None:
