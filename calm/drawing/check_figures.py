@@ -50,10 +50,8 @@ def check_figure(assessment: Assessment) -> str:
     legend = ceil(len(entries) / _LEGEND_COLUMNS) * _LEGEND_ROW
     title = f"{assessment.name}: elevation, current, tension, plan and breaks"
     page = graph.Graph(_WIDTH, _HEIGHT + legend, title, _SIZE)
-    graph.write_legend(
-        page.pen, entries, 6.0, 3.0,
-        width=_WIDTH - 12.0, row=_LEGEND_ROW, columns=_LEGEND_COLUMNS, size=_SIZE,
-    )  # fmt: skip
+    across = (_WIDTH - 12.0) / _LEGEND_COLUMNS
+    page.legend(entries, (6.0, 3.0), across, _LEGEND_ROW, _LEGEND_COLUMNS)
     top, lower = legend + 11.0, legend + 372.0
     depth = max(result.mooring.water.depth for _, result in solved)
     highest = min(float(result.shape.depth.min()) for _, result in solved)

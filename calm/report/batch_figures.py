@@ -132,10 +132,7 @@ def _shares(title: str, panels: Sequence[_Shares], tall: float) -> str:
             grid=True, numbered=(True, not column),
         )  # fmt: skip
         named = [LegendEntry(each.label, line=each.stroke) for each in panel.curves if each.label]
-        graph.write_legend(
-            page.pen, named, left + 0.6 * wide, top + 4.0,
-            width=0.4 * wide, row=10.0, columns=1, size=_SIZE,
-        )  # fmt: skip
+        page.legend(named, (left + 0.6 * wide, top + 4.0), 0.4 * wide, 10.0)
     return page.svg()
 
 
