@@ -22,7 +22,6 @@ from calm.whole_file import read_text
 if TYPE_CHECKING:
     from calm.case.mooring import Mooring
     from calm.case.tow import Tow
-    from calm.files import MooringFile
 
 
 TOP = "top"

@@ -12,13 +12,12 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from calm.case.result_tables import Clamps, Components, Shape
 from calm.case.strumming import Strumming, StrummingBand, mooring_band
-from calm.files import Clamp, Piece
+from calm.files import Clamp, MooringFile, Piece
 
 if TYPE_CHECKING:
     from calm.case.mooring import Mooring
     from calm.case.profilers import ProfilerTravel
     from calm.case.tow import TowResult
-    from calm.files import Clamp, MooringFile, Piece
 
 
 def document_of(result: Result | TowResult, ends: dict[str, Any]) -> dict[str, Any]:

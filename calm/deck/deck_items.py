@@ -10,17 +10,14 @@ from enum import StrEnum
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from calm.case.net_result import legs_of
-from calm.case.result_tables import ClampRow, rows_by_place, rows_down
-from calm.files import Flexible
+from calm.case.net_result import NetResult, legs_of
+from calm.case.result_tables import ClampRow, ComponentRow, rows_by_place, rows_down
+from calm.files import Clamp, Flexible, Piece
 from calm.files.legs import leg_numbers
 from calm.quantities import QUANTITIES
 
 if TYPE_CHECKING:
     from calm.case import Result
-    from calm.case.net_result import NetResult
-    from calm.case.result_tables import ComponentRow
-    from calm.files import Clamp, Piece
     from calm.files.logbook import DeployedItem
 
 

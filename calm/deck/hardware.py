@@ -7,22 +7,16 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import ceil
-from typing import TYPE_CHECKING
 
-from calm.case import Mooring
+from calm.case import Mooring, Result
 from calm.case.net import Net
-from calm.case.net_result import legs_of
+from calm.case.net_result import NetResult, legs_of
 from calm.checks.arrangement import unlike_metals
-from calm.deck.deck_items import Order
+from calm.deck.deck_items import DeckItem, Order
 from calm.errors import NoEquilibrium
 from calm.files import Cable, Chain, Flexible, Piece
 from calm.files.legs import leg_numbers
 from calm.solve import expect_many
-
-if TYPE_CHECKING:
-    from calm.case import Result
-    from calm.case.net_result import NetResult
-    from calm.deck.deck_items import DeckItem
 
 LENGTH_ERROR = 0.005
 """Error of a length, as a share of it: the tolerance, and the error whose effect is reported."""

@@ -16,13 +16,12 @@ import numpy as np
 
 from calm.case import Result, TowResult
 from calm.case.net_result import AnyResult, NetResult, legs_of
-from calm.case.result_tables import rows_down
+from calm.case.result_tables import Shape, rows_down
 from calm.quantities import QUANTITIES, bearing_of, bearing_text
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from calm.case.result_tables import Shape
     from calm.case.uncertain import Uncertain
     from calm.physics.line import Water
 
