@@ -294,12 +294,7 @@ class DeckInstrument:
 def instruments_of(
     parts: Sequence[DeckItem], results: Sequence[tuple[str, Result | NetResult]]
 ) -> tuple[DeckInstrument, ...]:
-    """The instruments and releases, down the line.
-
-    Parameters
-    ----------
-    results : of each environment by its name, that of the sheets first
-    """
+    """The instruments and releases, down the line, in the environment that comes first and in all."""
     rows = [(name, rows_by_place(result)) for name, result in results]
     found = []
     for one in parts:

@@ -21,13 +21,7 @@ _METADATA: dict[str, dict[str, Any]] = {"svg": {"Date": None}, "pdf": {"Creation
 
 
 def check_format(path: Path, formats: Sequence[str] = FORMATS) -> None:
-    """Refuse a picture whose file name does not end in one of the formats.
-
-    Raises
-    ------
-    UsageError
-        Naming the endings that are allowed.
-    """
+    """Refuse a picture whose file name ends in none of the formats: UsageError, naming these."""
     if path.suffix.lower() not in formats:
         allowed = f"{', '.join(formats[:-1])} or {formats[-1]}"
         raise UsageError(f"cannot draw {path}: a picture's name ends in {allowed}")
@@ -36,10 +30,7 @@ def check_format(path: Path, formats: Sequence[str] = FORMATS) -> None:
 def image(figure: Figure, suffix: str) -> bytes:
     """The figure as a file: PNG at 150 dots per inch, or vectors with their texts as text.
 
-    Parameters
-    ----------
-    figure : what was drawn
-    suffix : ``.png``, ``.svg`` or ``.pdf``, in any case
+    The suffix is ``.png``, ``.svg`` or ``.pdf``, in any case.
     """
     import matplotlib
 

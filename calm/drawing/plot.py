@@ -68,11 +68,8 @@ def draw(result: AnyResult, uncertain: Uncertain | None = None) -> Figure:
     The elevation is in the vertical plane of the anchor and the free end, of a net in the one in
     which it is widest, with the same line in still water dashed, or in that of the tow, the ship at
     distance 0. Beside it stand the speed of the water and its part in that plane, past the line in
-    a tow; and the line from above, where it leaves the plane of a tow.
-
-    Parameters
-    ----------
-    uncertain : of a mooring; its band is drawn behind the line
+    a tow; and the line from above, where it leaves the plane of a tow. The band of an uncertain
+    mooring is drawn behind the line.
     """
     from matplotlib.figure import Figure
 

@@ -52,12 +52,8 @@ def schematic_svg(file: MooringFile, result: Result | TowResult | None = None) -
 
     It refers to nothing outside and has neither identifiers nor style sheets, so that it can stand
     in a page beside others. No text is cut: long ones wrap. The same line gives the same text.
-
-    Parameters
-    ----------
-    file : the line as read
-    result : its solution, which shows depths under load and in the current. Without it depths are
-        those of the upright, unstretched line; unknown in a tow and of a float at the surface.
+    With a result, depths are under load and in the current; without, those of the upright,
+    unstretched line, unknown in a tow and of a float at the surface.
     """
     shown = schematic_of(file, result)
     rows = [row for part in shown.parts for row in part.rows]
