@@ -294,7 +294,7 @@ class DeckInstrument:
 def instruments_of(
     parts: Sequence[DeckItem], results: Sequence[tuple[str, Result | NetResult]]
 ) -> tuple[DeckInstrument, ...]:
-    """The instruments and releases, down the line, in the environment that comes first and in all."""
+    """The instruments and releases, down the line; the first result is that of the sheets."""
     rows = [(name, rows_by_place(result)) for name, result in results]
     found = []
     for one in parts:
