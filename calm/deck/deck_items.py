@@ -247,21 +247,16 @@ def _deck_item(
     clamp = row.part if isinstance(row, ClampRow) else None
     depth = depth_of(row)
     return DeckItem(
-        part=part,
-        index=piece.index,
+        part=part, index=piece.index, serial=part.serial, remark=item.remark if item else None,
+        deployed_serial=(item.serial if item else None) or part.serial,
         on=None if clamp is None else piece.label,
         at=None if clamp is None else clamp.at,
         of_length=None if clamp is None else piece.cut_length,
         cut_length=piece.cut_length if clamp is None else None,
         stretched=piece.length if clamp is None else None,
-        depth=depth,
-        height=bottom - depth,
-        tilt=row.tilt,
         tension=piece.tension if clamp is None else None,
-        serial=part.serial,
-        deployed_serial=(item.serial if item else None) or part.serial,
-        remark=item.remark if item else None,
-    )
+        depth=depth, height=bottom - depth, tilt=row.tilt,
+    )  # fmt: skip
 
 
 @dataclass(frozen=True)
