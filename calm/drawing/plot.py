@@ -115,10 +115,10 @@ def draw_elevation(axes: Axes, side: LinePicture) -> None:
     if side.ship is not None:
         axes.plot(*side.ship, **_SHIP)
     mark_parts(axes, side.marks)
-    set_span(axes, *side.span(), side.height)
-    axes.set_ylim(side.bottom, side.top)
-    axes.set_xlabel(side.across)
-    axes.set_ylabel(side.up)
+    start, end = side.span()
+    span = max(end - start, _LEAST_SPAN * side.height)
+    across = start - 0.05 * span, start + span / _SHARE_OF_LINE
+    axes.set(xlim=across, ylim=(side.bottom, side.top), xlabel=side.across, ylabel=side.up)
 
 
 def draw_lines(axes: Axes, picture: LinePicture) -> None:
@@ -140,8 +140,7 @@ def draw_plan(axes: Axes, above: LinePicture) -> None:
     draw_lines(axes, above)
     mark_parts(axes, above.marks)
     axes.set_aspect("equal", adjustable="datalim")
-    axes.set_xlabel(above.across)
-    axes.set_ylabel(above.up)
+    axes.set(xlabel=above.across, ylabel=above.up)
     axes.legend(ncols=2, **LEGEND)
 
 
@@ -174,15 +173,6 @@ def draw_flow(axes: Axes, depth: Floats, u: Floats, v: Floats, plane: Floats) ->
         axes.plot(in_plane, depth, "--", color=WATER_COLOUR, linewidth=1, label="in the plane")
     axes.tick_params(labelleft=False)
     axes.legend(**LEGEND)
-
-
-def set_span(axes: Axes, start: float, end: float, height: float) -> None:
-    """Give the line, from `start` to `end` [m], its share of the width; plumb lines look plumb.
-
-    `height` [m] is that of the drawing.
-    """
-    span = max(end - start, _LEAST_SPAN * height)
-    axes.set_xlim(start - 0.05 * span, start + span / _SHARE_OF_LINE)
 
 
 def mark_parts(axes: Axes, marks: Sequence[PictureMark]) -> None:
@@ -258,8 +248,7 @@ def _draw_figure(
     axes.plot(speeds, values, linestyle=dashes, marker=marker, label=label, **LINE_STYLE)
     margin = 0.04 * (speeds[-1] - speeds[0]) or speeds[0]
     axes.set_xlim(speeds[0] - margin, speeds[-1] + margin)
-    axes.set_xlabel(QUANTITIES["speed"].label)
-    axes.set_ylabel(QUANTITIES[name].label)
+    axes.set(xlabel=QUANTITIES["speed"].label, ylabel=QUANTITIES[name].label)
     axes.grid(alpha=0.3)
     if not axes.child_axes:
         to_knots, from_knots = partial(np.multiply, 1.0 / KNOT), partial(np.multiply, KNOT)

@@ -108,8 +108,8 @@ def _frame(axes: Axes, points: CurvePoints, above: bool) -> None:
     low = float(points.height[points.phi >= _RIGHT].min()) if above else 0.0
     high = float(points.height.max())
     width, height = right - left, high - low
-    axes.set_xlim(left - 0.02 * width, right + 0.12 * width)
-    axes.set_ylim(low - 0.05 * height, high)
+    across = left - 0.02 * width, right + 0.12 * width
+    axes.set(xlim=across, ylim=(low - 0.05 * height, high))
 
 
 def _graduate(axes: Axes, labels: Labels, points: CurvePoints) -> None:
@@ -176,8 +176,7 @@ def _draw_family(
 
 def _write_frame(figure: Figure, axes: Axes, k: float, above: bool) -> None:
     side = "above" if above else "below"
-    axes.set_xlabel("y′ = y/H₀, downstream")
-    axes.set_ylabel("z′ = z/H₀, up;  T = wH₀ (1 + z′)")
+    axes.set(xlabel="y′ = y/H₀, downstream", ylabel="z′ = z/H₀, up;  T = wH₀ (1 + z′)")
     axes.grid(color="#dddddd", linewidth=0.4)
     axes.set_axisbelow(True)
     figure.text(0.1, 0.965, f"Cable in a uniform current, K = {k:g}", fontsize=14, weight="bold")

@@ -133,8 +133,7 @@ def located_figure(located: Located) -> Figure:
     near.set_title("the place, with its 95 % ellipse", fontsize=_FONT_SIZE)
     for axes, half in ((whole, max(reach, 2.0 * close)), (near, close)):
         axes.plot(0.0, 0.0, "+", color=_PLACE, markersize=10, markeredgewidth=1.6)
-        axes.set_xlim(-half, half)
-        axes.set_ylim(-half, half)
+        axes.set(xlim=(-half, half), ylim=(-half, half))
     return figure
 
 
