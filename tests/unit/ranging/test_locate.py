@@ -17,6 +17,7 @@ from calm.ranging.range_model import (
     FLOOR,
     RangeModel,
     _judged,
+    is_line,
     least_squares_of,
     mirrored,
     scatter,
@@ -284,3 +285,24 @@ def test_a_range_is_judged_by_its_residual_as_the_others_give_it(beyond, is_out)
     h = slopes[odd] @ np.linalg.inv(kept.T @ kept) @ slopes[odd]
     back = beyond * student.ppf(limit, count - 1 - 3) * FLOOR * np.sqrt(1.0 + h)
     assert judged(back, others)[0][odd] != is_out
+
+
+def test_the_mean_speed_of_sound_is_harmonic_over_every_level_between():
+    """A minimum at 900 m and a kink at 2000 m; by midpoints of 0.1 m, good to 1e-9."""
+    sound = Sound(
+        np.array([0.0, 900.0, 2000.0, 5000.0]), np.array([1520.0, 1482.0, 1493.0, 1546.0])
+    )
+    for above, below in ((5.0, 4200.0), (5.0, 1500.0), (300.0, 700.0)):
+        middle = np.arange(above, below, 0.1) + 0.05
+        slowness = np.mean(1.0 / np.interp(middle, sound.depth, sound.speed))
+        assert sound.mean(above, below) == pytest.approx(1.0 / slowness, rel=1e-8)
+
+
+@pytest.mark.parametrize(("width", "straight"), [(0.0, True), (140.0, True), (160.0, False)])
+def test_a_track_that_is_narrow_is_a_line(width, straight):
+    """A rectangle of stations, 1000 m long: the limit is 0.15 of that."""
+    corners = np.array([[x, y, 0.0] for x in (-500.0, 500.0) for y in (-0.5, 0.5)])
+    turned = np.array(
+        [[np.cos(0.7), np.sin(0.7), 0.0], [-np.sin(0.7), np.cos(0.7), 0.0], [0, 0, 1]]
+    )
+    assert is_line(corners * [1.0, width, 1.0] @ turned) is straight

@@ -9,13 +9,22 @@ from scipy.special import j1
 
 from calm.case import load
 from calm.errors import InputError
+from calm.files import Cable
 from calm.records import sea_states
 from calm.shipped import shipped_folder
 from calm.waves.analysis import analyse
 from calm.waves.buoy import END_LOSS, Buoy, buoy_of
 from calm.waves.fatigue import greatest_of, passing_probability
-from calm.waves.lumped_line import LumpedLine, lumped_line
-from calm.waves.response import Waves, _linearised, _slope, _solved, respond, wave_numbers
+from calm.waves.lumped_line import LumpedLine, _axial, lumped_line
+from calm.waves.response import (
+    Waves,
+    _Afloat,
+    _linearised,
+    _slope,
+    _solved,
+    respond,
+    wave_numbers,
+)
 
 DENSITY, GRAVITY = 1027.0, 9.81
 
@@ -139,6 +148,30 @@ def test_a_sea_that_is_all_but_flat_leaves_the_static_line():
         if row.index:
             assert row.tension_mean == pytest.approx(piece.tension_top, rel=1e-9)
             assert row.tension_max == pytest.approx(row.tension_mean, rel=1e-5)
+
+
+def test_the_spectrum_of_the_tension_holds_its_variance_and_a_piece_what_its_elements_reach():
+    mooring = load(f"{shipped_folder('lines')}/tidal-adcp.yaml")
+    (state,) = analyse(
+        mooring, [sea_states.spectrum_of("bretschneider", 2.0, 9.0, 3.3)], 90.0
+    ).states
+    omega, density = state.spectrum
+    _, mean, deviation, reached = state.along
+    # the moments are sums over bands of frequency: within 2 % of the trapezes
+    assert np.trapezoid(density, omega) == pytest.approx(float(deviation[0]) ** 2, rel=0.02)
+    rows = [row for row in state.components if row.index]
+    assert max(row.greatest for row in rows) >= float(reached[1:].max()) - 1e-6
+    assert min(row.least for row in rows) <= float((2.0 * mean - reached)[1:].min()) + 1e-6
+
+
+def test_a_rope_that_stretches_by_a_curve_is_as_stiff_as_its_slope():
+    """A tenth of its length at 100 kN, straight: EA is 1 MN at any tension."""
+    curve = [[0.1, 0.01], [0.5, 0.05], [1.0, 0.1]]
+    rope = Cable.model_validate(
+        {"kind": "cable", "diameter": "20 mm", "weight": "1 N/m", "breaking_load": "100 kN"}
+        | {"elongation": curve}
+    )
+    assert [_axial(rope, pull) for pull in (0.0, 5e3, 3e4)] == pytest.approx([1e6] * 3, rel=0.02)
 
 
 def test_without_drag_the_response_is_linear_in_the_height():
@@ -352,6 +385,32 @@ def test_a_pitching_hull_gives_no_energy():
         assert np.linalg.eigvalsh(lost).min() > -1e-6 * np.abs(lost).max()
 
 
+def test_what_the_surge_of_a_slender_spar_radiates():
+    """ω k ρ (π r² (1 - e^(-kT)))²: Haskind's relation with 2 ρ g π r² (1 - e^(-kT)) that pushes.
+
+    The pressure of the waves, and as much again of the water that the sections move (Morison); at
+    the bottom less of that, over `END_LOSS` radii: a share of 0.5 END_LOSS r / T at most.
+    """
+    omega, radius, draft = np.array([0.5, 1.0]), 0.02, 5.0
+    number = omega**2 / GRAVITY
+    buoy = upright(radius, draft, -2.0, 1.0)
+    held, _ = buoy.pitch(buoy.profile, omega, number, DENSITY, GRAVITY)
+    section = pi * radius**2 * (1.0 - np.exp(-number * draft))
+    expected = omega * number * DENSITY * section**2
+    lost = END_LOSS * radius / draft
+    assert held[0].imag / omega == pytest.approx(expected, rel=1.5 * lost)
+
+
+def test_the_water_at_the_bottom_of_a_hull_slopes_as_it_moves_there():
+    """By differences of its vertical motion fore and aft of the axis, at the draft."""
+    omega, apart = np.array([0.5, 1.5]), 0.01
+    buoy, sent = upright(*SPAR), waves(omega)
+    afloat = _Afloat.of(np.zeros(3), buoy, sent)
+    beside = np.array([[side * apart, 0.0, -buoy.draft] for side in (-1.0, 1.0)])
+    aft, fore = (sent.velocity(beside)[:, :, 2] / (1j * omega[:, None])).T
+    assert afloat.slope == pytest.approx((aft - fore) / (2.0 * apart), rel=1e-4)
+
+
 def test_drag_quiets_the_pitch_of_a_spar_in_high_seas():
     """Linear drag grows with the sea, and so the pitch less than that."""
     found = []
@@ -545,3 +604,5 @@ def test_drag_goes_with_the_density_and_a_rope_that_floats_is_slackest_on_top(tm
     (state,) = analyse(mooring, [sea], 90.0).states
     rope = state.components[2]
     assert rope.least == rope.tension_min < rope.tension_mean
+    # its lower end is pulled by 5 N/m over 60 m more, and by what the waves move below the middle
+    assert 300.0 < rope.greatest - rope.tension_max < 400.0
