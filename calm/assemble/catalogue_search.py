@@ -97,8 +97,7 @@ class Index:
         except InputError:
             return cls(catalogue)
         if isinstance(document.data.get("components"), dict):
-            definitions = SourceMapping.of(document, (), document.data).child("components")
-            catalogue = catalogue.under(definitions, [])
+            catalogue = catalogue.under(SourceMapping.of(document, []).child("components"))
         return cls(catalogue)
 
     def get(self, id: str) -> Listed | None:

@@ -1,7 +1,8 @@
 """Many current profiles of a net of legs, by the compiled search of `calm.solve.net_march`.
 
-Each is sought from where the net is in still water. Where that leads to nothing that stands, the
-seabed slopes, or an end is held above the water, the profile is solved as `calm run` does.
+Each is sought from where the net is in still water, or where it does not stand there in the current
+of its file. Where that leads to nothing that stands, or the seabed is a grid, the profile is solved
+as `calm run` does.
 """
 
 from __future__ import annotations
@@ -17,8 +18,15 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.batch.solving import lay_profile, read_profile
-from calm.batch.statuses import STATUSES
+from calm.batch.solving import (
+    LEVELS_COINCIDE,
+    NO_CURRENT,
+    ProfileLevels,
+    levels_for,
+    read_profile,
+    sea_of,
+)
+from calm.batch.statuses import OF_PROFILES, STATUSES
 from calm.case.measure import leaning_of
 from calm.case.net import Net, net_result
 from calm.case.net_result import NetResult
@@ -27,10 +35,11 @@ from calm.dataset.netcdf import OF_CLAMP, OF_COMPONENT, OF_ENDS
 from calm.errors import NoEquilibrium
 from calm.files import CurrentTable
 from calm.files.legs import nodes_of
-from calm.physics.compiled import by_address, entry, record_type
+from calm.physics.compiled import by_address, entry
 from calm.physics.line import Floats, Water
-from calm.physics.profile import Interval, Sea
+from calm.physics.profile import Sea
 from calm.physics.track import head_count
+from calm.records.seabed_grid import SeabedGrid
 from calm.solve import expect_many, net_closing, net_march
 from calm.solve.net import NetSearch, NetSolution
 from calm.solve.net_closing import AskedNet, ask_net, keep
@@ -41,10 +50,9 @@ ROUGHLY = 1e-6
 """What may be left of lengths and forces, in shares: a run leaves less, which takes longer."""
 BLOCK = 256
 """Profiles that a thread takes at a time."""
-NO_PROFILE, COINCIDING, TO_SOLVE = -1, -2, 1
-"""How a profile ends that has no current, or two at a level, and one that is to be solved alone."""
+TO_SOLVE = 1
+"""How a profile ends that is to be solved alone."""
 Column = tuple[float, ...]
-OWN = {NO_PROFILE: "no-current", COINCIDING: "levels-coincide"}
 
 
 class NetRows(NamedTuple):
@@ -67,21 +75,15 @@ class NetPaper(NamedTuple):
 
     Attributes
     ----------
-    read, joined, levels, intervals, fixed : as in `ProfileArrays`
-    strata, gravity : as in `Sea`
-    start, slopes, lands : the unknowns, slopes and legs on the seabed of the net in still water
+    still : the water without the profile
+    start, slopes, lands : the unknowns, slopes and legs on the seabed of the net there
     x : room for the unknowns
     piece, clamp : first of each leg in the rows
     weight : of the anchor of each leg, inf where it has none [N]
     """
 
-    read: Floats
-    joined: Floats
-    levels: Any
-    intervals: Any
-    fixed: Floats
-    strata: Any
-    gravity: float
+    on: ProfileLevels
+    still: Sea
     start: Any
     slopes: Any
     lands: Floats
@@ -115,17 +117,9 @@ def solve_net_rows(
     for case in range(endings.size):
         if endings[case] != 0:
             continue
-        levels_at = depth[case if depth.shape[0] > 1 else 0]
-        found = read_profile(levels_at, u[case], v[case], w[case], paper.read)
-        if found <= 0:
-            endings[case] = NO_PROFILE if found == 0 else COINCIDING
+        endings[case], sea = sea_of(paper.on, depth, u, v, w, case, paper.still)
+        if endings[case] != 0:
             continue
-        total = lay_profile(
-            paper.read, found, paper.fixed, paper.levels, paper.intervals, paper.joined
-        )
-        sea = Sea(
-            paper.levels[: total + 2], paper.intervals[: total + 1], paper.gravity, paper.strata
-        )
         keep(paper.start, paper.x)
         for k in range(len(paper.x)):
             keep(paper.slopes[k], net.slopes[k])
@@ -221,24 +215,31 @@ class NetProfiles:
         return None
 
     @cached_property
+    def base(self) -> NetSolution | None:
+        """From where profiles are sought: the net in still water, or else in that of its file."""
+        with suppress(NoEquilibrium):
+            return self.still or self.net.standing
+        return None
+
+    @cached_property
     def slopes(self) -> Floats | None:
-        """Slopes of the net in still water; None where profiles are to be solved alone."""
-        if self.still is None or self.at_rest is None or self.net.file.environment.seabed:
+        """Slopes of the net there; None where profiles are to be solved alone."""
+        if self.base is None or isinstance(self.net.file.environment.seabed, SeabedGrid):
             return None
         search, step = self.search(), 4.0 * self.net.settings.angle_step
-        if search.water.level[0] < 0.0:  # air
-            return None
+        search.put_in(self.net.water.still() if self.still else self.net.water)
         how = search.marching(step, CHOSEN, FINE, given=False)
-        search.asked(net_closing.SLOPES, self.still.unknowns, how)
+        search.asked(net_closing.SLOPES, self.base.unknowns, how)
         return np.array(search.net.slopes)
 
     def search(self) -> NetSearch:
         """The search for it, compiled."""
         settings = replace(self.net.settings, compiled=True)
         nodes = len(nodes_of(self.net.file.legs))
-        search = NetSearch(self.net.legs, nodes, self.water(*[(0.0,)] * 4), settings)
-        if self.still is not None:
-            search.lie_as(self.still.lands)
+        water = self.water(*[(0.0,)] * 4)
+        search = NetSearch(self.net.legs, nodes, water, settings, rough=True)
+        if self.base is not None:
+            search.lie_as(self.base.lands)
         return search
 
     def solve(
@@ -267,7 +268,7 @@ class NetProfiles:
                 list(pool.map(solve, [slice(at, at + BLOCK) for at in range(0, count, BLOCK)]))
         else:
             endings[endings == 0] = TO_SOLVE
-        for ending, name in OWN.items():
+        for ending, name in OF_PROFILES.items():
             status[endings == ending] = STATUSES.index(name)
         columns = self._columns(rows)
         for name in columns:
@@ -280,9 +281,7 @@ class NetProfiles:
         self, current: tuple[Floats, ...], rows: NetRows, endings: NDArray[np.int64]
     ) -> None:
         search, water = self.search(), self.water(*[(0.0,)] * 4)
-        levels = current[0].shape[1] + len(water.level) + 2
-        sea: Any = search.sea
-        assert self.still is not None
+        assert self.base is not None
         of_legs = self.net.file.legs
         weights = [
             line.anchor_weight if leg.bottom.anchor else inf
@@ -290,17 +289,12 @@ class NetProfiles:
         ]
         clamped = [len(piece.clamps) for piece in self.net.file.pieces]
         paper = NetPaper(
-            read=np.zeros((levels, 4)),
-            joined=np.zeros((levels + 2, 5)),
-            levels=np.zeros(levels + 2),
-            intervals=np.zeros(levels + 2, record_type(Interval)),
-            fixed=np.column_stack([water.level, water.u, water.v, water.density]),
-            strata=sea.strata,
-            gravity=water.gravity,
-            start=self.still.unknowns,
+            on=levels_for(current[0].shape[1], water),
+            still=search.sea,
+            start=self.base.unknowns,
             slopes=self.slopes,
             lands=np.array(search.lands, float),
-            x=np.zeros(len(self.still.unknowns)),
+            x=np.zeros(len(self.base.unknowns)),
             piece=np.array([leg.first for leg in of_legs]),
             clamp=np.array([sum(clamped[: leg.first]) for leg in of_legs]),
             weight=np.array(weights),
@@ -382,11 +376,12 @@ class NetProfiles:
         levels = depth[case if len(depth) > 1 else 0]
         count = read_profile(levels, u[case], v[case], w[case], read)
         if count <= 0:
-            status[case] = STATUSES.index(OWN[NO_PROFILE if count == 0 else COINCIDING])
+            ending = NO_CURRENT if count == 0 else LEVELS_COINCIDE
+            status[case] = STATUSES.index(OF_PROFILES[ending])
             return
         water = self.water(*(tuple(column) for column in read[:count].T.tolist()))
         try:
-            solution = self.net.equilibrium(water, still)
+            solution = self.net.equilibrium(water, self.base)
             before: Any = [None] * len(solution.legs) if still is None else still.legs
             result = net_result(self.net, solution, before)
         except NoEquilibrium as failure:

@@ -23,9 +23,8 @@ from calm.case.net import Net
 from calm.case.parts import clamps_down
 from calm.dataset import netcdf
 from calm.files import CurrentTable
-from calm.physics.compiled import by_address, entry, record_type
+from calm.physics.compiled import by_address, entry
 from calm.physics.line import Floats, Integers, Water
-from calm.physics.profile import Interval
 from calm.solve import Status
 from calm.solve.audit import referee_of
 from calm.solve.mooring import MORE_ROOM, AskedSearch, find_asked, search_of
@@ -271,10 +270,10 @@ class Batch:
         """Solve profiles, with room for so many segments; with more where that is too little."""
         line, water = mooring.line, self.water
         depth, *parts = current
-        levels = depth.shape[1] + len(water.level)
+        on = solving.levels_for(depth.shape[1], water)
         problem = problem_of(
             line, water, mooring.settings, compiled=True, rough=True, room=room,
-            intervals=levels + 2,
+            intervals=len(on.intervals),
         )  # fmt: skip
         # a profile without current is told apart from the others
         problem = problem._replace(limits=problem.limits._replace(at_rest=False))
@@ -284,14 +283,9 @@ class Batch:
             vars(self).update(_starts=problem.starts)
         known: Any = problem.starts
         known[:] = self._starts
-        intervals: Any = np.zeros(levels + 2, record_type(Interval))
         pieces = mooring.file.pieces[:-1]
         paper = ProfileArrays(
-            read=np.zeros((levels, 4)),
-            joined=np.zeros((levels, 5)),
-            levels=np.zeros(levels + 2),
-            intervals=intervals,
-            fixed=np.column_stack([water.level, water.u, water.v, water.density]),
+            on=on,
             first=np.zeros(len(pieces), np.int64),
             last=np.zeros(len(pieces), np.int64),
             may_lie=np.array([one.component.kind == "chain" for one in pieces], np.int64),

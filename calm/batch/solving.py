@@ -10,8 +10,10 @@ from collections.abc import Callable
 from math import atan2, inf, isfinite, pi, sqrt
 from typing import Any, NamedTuple
 
-from calm.physics.compiled import set_row
-from calm.physics.line import NO_ROOM, Floats, Integers
+import numpy as np
+
+from calm.physics.compiled import record_type, set_row
+from calm.physics.line import NO_ROOM, Floats, Integers, Water
 from calm.physics.passing import FAILURE
 from calm.physics.profile import Interval, Sea
 from calm.physics.referee import RefereeShape, find_ends
@@ -39,16 +41,14 @@ class Results(NamedTuple):
     ends: Floats
 
 
-class ProfileArrays(NamedTuple):
-    """What a profile is laid out on, and its shape measured.
+class ProfileLevels(NamedTuple):
+    """What a profile is laid out on.
 
     Attributes
     ----------
-    read, joined : its levels, and these joined with the others: see `calm.batch.solving`
+    read, joined : its levels, and these joined with the others: see `lay_profile`
     levels, intervals : as in `Sea`
     fixed : (f, 4) depth, what is added to u and to v, and density of the levels all profiles get
-    first, last : node of every piece in the coarse shape
-    may_lie : whether a piece may lie on the seabed below a line that stands under water
     """
 
     read: Floats
@@ -56,6 +56,28 @@ class ProfileArrays(NamedTuple):
     levels: Any
     intervals: Any
     fixed: Floats
+
+
+def levels_for(count: int, water: Water) -> ProfileLevels:
+    """What profiles of so many levels are laid out on, in the water of a mooring."""
+    most = count + len(water.level)
+    intervals: Any = np.zeros(most + 2, record_type(Interval))
+    fixed = np.column_stack([water.level, water.u, water.v, water.density])
+    return ProfileLevels(
+        np.zeros((most, 4)), np.zeros((most, 5)), np.zeros(most + 2), intervals, fixed
+    )
+
+
+class ProfileArrays(NamedTuple):
+    """What a profile is laid out on, and its shape measured.
+
+    Attributes
+    ----------
+    first, last : node of every piece in the coarse shape
+    may_lie : whether a piece may lie on the seabed below a line that stands under water
+    """
+
+    on: ProfileLevels
     first: Any
     last: Any
     may_lie: Integers
@@ -82,15 +104,10 @@ def solve_rows(
     endings : (n,) how each ends
     """
     for case in range(endings.size):
-        levels_at = depth[case if depth.shape[0] > 1 else 0]
-        found = read_profile(levels_at, u[case], v[case], w[case], paper.read)
-        if found <= 0:
-            endings[case] = NO_CURRENT if found == 0 else LEVELS_COINCIDE
+        endings[case], sea = sea_of(paper.on, depth, u, v, w, case, search.problem.sea)
+        if endings[case] != FOUND:
             continue
-        total = lay_profile(
-            paper.read, found, paper.fixed, paper.levels, paper.intervals, paper.joined
-        )
-        problem = in_current(search.problem, paper, total)
+        problem = in_current(search.problem, paper.on, sea)
         ending = refused_at_once(problem.limits)
         if ending == FOUND:
             ending = int(find(AskedSearch(Search(search.miss, problem), referee), 0.0))
@@ -103,24 +120,41 @@ def solve_rows(
             measure(problem, referee, paper, results, case)
 
 
-def in_current(problem: LineProblem, paper: ProfileArrays, total: int) -> LineProblem:
-    """Return the same problem in a profile's current of so many levels."""
-    given, sea = problem.limits, problem.sea
+def sea_of(
+    on: ProfileLevels, depth: Floats, u: Floats, v: Floats, w: Floats, case: int, still: Sea
+) -> tuple[int, Sea]:
+    """Lay out the water of a profile: FOUND, or NO_CURRENT or LEVELS_COINCIDE; and the water.
+
+    Parameters
+    ----------
+    depth, u, v, w : as of `solve_rows`; `case` is the row
+    still : of the same gravity and viscosity
+    """
+    at = depth[case if depth.shape[0] > 1 else 0]
+    found, ending, total = read_profile(at, u[case], v[case], w[case], on.read), FOUND, 0
+    if found > 0:
+        total = lay_profile(on.read, found, on.fixed, on.levels, on.intervals, on.joined)
+    else:
+        ending = NO_CURRENT if found == 0 else LEVELS_COINCIDE
+    levels, intervals = on.levels[: total + 2], on.intervals[: total + 1]
+    return ending, Sea(levels, intervals, still.gravity, still.strata)
+
+
+def in_current(problem: LineProblem, on: ProfileLevels, sea: Sea) -> LineProblem:
+    """Return the same problem in the water of the profile that was laid out last."""
+    given = problem.limits
     moving = False
-    for k in range(total):
-        moving |= paper.joined[k, 1] != 0.0 or paper.joined[k, 2] != 0.0
-        moving |= paper.joined[k, 3] != 0.0
+    for k in range(len(sea.intervals) - 1):
+        moving |= on.joined[k, 1] != 0.0 or on.joined[k, 2] != 0.0 or on.joined[k, 3] != 0.0
     limits = Limits(
         given.span, given.depth, given.anchor_height, given.tow_height, given.towed,
         given.angle_step, given.coarse_step, given.allowed, given.share_allowed, given.bed,
         given.near, given.length, given.standing, given.lift, given.rides,
         not (moving or given.blown), given.blown, given.refused, given.refused_at_rest,
     )  # fmt: skip
-    levels, intervals = paper.levels[: total + 2], paper.intervals[: total + 1]
     return LineProblem(
-        problem.course, Sea(levels, intervals, sea.gravity, sea.strata), problem.loads,
-        problem.flexible, problem.surfacing, problem.afloat, problem.hull, limits, problem.starts,
-        problem.work,
+        problem.course, sea, problem.loads, problem.flexible, problem.surfacing, problem.afloat,
+        problem.hull, limits, problem.starts, problem.work,
     )  # fmt: skip
 
 
@@ -333,9 +367,10 @@ def lay_profile(
         k = i - 1 if i > 0 and read[i - 1, 0] == depth else i
         f = j - 1 if j > 0 and fixed[j - 1, 0] == depth else j
         joined[total, 0] = depth
-        joined[total, 1] = value_at(read, count, k, depth, 1) + value_at(fixed, given, f, depth, 1)
-        joined[total, 2] = value_at(read, count, k, depth, 2) + value_at(fixed, given, f, depth, 2)
-        joined[total, 3] = value_at(read, count, k, depth, 3)
+        for c in range(1, 4):  # no current is in the air
+            joined[total, c] = value_at(read, count, k, depth, c) if depth >= 0.0 else 0.0
+        joined[total, 1] += value_at(fixed, given, f, depth, 1)
+        joined[total, 2] += value_at(fixed, given, f, depth, 2)
         joined[total, 4] = value_at(fixed, given, f, depth, 3)
         total += 1
     levels[0], levels[total + 1] = -inf, inf

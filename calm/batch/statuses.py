@@ -46,14 +46,15 @@ _ENDINGS = {
 }
 
 
-_OWN = {NO_CURRENT: "no-current", LEVELS_COINCIDE: "levels-coincide"}
+OF_PROFILES = {NO_CURRENT: "no-current", LEVELS_COINCIDE: "levels-coincide"}
+"""The status of a profile that is none, by how it ends."""
 
 
 def status_of(mooring: Mooring, ending: int) -> int:
     """The index in `STATUSES` of how the solver ended with a profile of a mooring."""
     if ending == HEAPED:
         return STATUSES.index(mooring.heaped("a piece").status)
-    return STATUSES.index(_OWN[ending] if ending in _OWN else STATUS_OF[ending].label)
+    return STATUSES.index(OF_PROFILES.get(ending) or STATUS_OF[ending].label)
 
 
 def ending_of(status: str) -> Ending:

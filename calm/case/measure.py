@@ -231,7 +231,8 @@ def with_anchor(above: Components, anchor: Piece, depth: float) -> Components:
     line_end = above[-1]
     pull, height = line_end.tension_bottom, anchor.length or 0.0
     breaking, working = anchor.component.breaking_load, anchor.component.working_load
-    row = ComponentRow(
+    row = replace(
+        line_end,
         part=anchor,
         index=anchor.index,
         use=anchor.use,
@@ -244,10 +245,7 @@ def with_anchor(above: Components, anchor: Piece, depth: float) -> Components:
         depth_bottom=depth,
         x_top=line_end.x_bottom,
         y_top=line_end.y_bottom,
-        x_bottom=line_end.x_bottom,
-        y_bottom=line_end.y_bottom,
         tension_top=pull,
-        tension_bottom=pull,
         tension=pull,
         least_tension=pull,
         tilt=0.0,

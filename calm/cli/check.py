@@ -97,7 +97,9 @@ def check(
         narrate(f"not checked, because they are tows: {', '.join(map(str, tows))}")
     nets = [design.path for design in designs if design.moorings[0].file.legs]
     if nets and uncertainty:
-        raise UsageError(f"--uncertainty is for single lines; {nets[0]} is a net of legs")
+        from calm.files.legs import NET_SURE
+
+        raise UsageError(f"--uncertainty is for {NET_SURE}: {nets[0]}")
     show_units(units, [one.file for design in designs for one in design.moorings])
     judged = _judged(designs, workers, drawn, draws)
     assessments = [each.assessment for each in judged]

@@ -100,12 +100,13 @@ def run(
     draws = draws_of(uncertainty, samples, seed)
     from calm.case import Tow
     from calm.case.net import Net, load
+    from calm.files.legs import NET_SURE
 
     lines = read_all(load, files, environment, catalog or [])
     show_units(units, [line.file for line in lines])
     drawn = {"--uncertainty": uncertainty}
     _refuse({"--explain": explain} | drawn, "moorings; these are tows", Tow, files, lines)
-    _refuse(drawn, "single lines; these are nets of legs", Net, files, lines)
+    _refuse(drawn, NET_SURE, Net, files, lines)
     return solve_and_show(
         lines, outputs, explain=explain, schematic=schematic, draws=draws, verbose=verbose
     )

@@ -83,9 +83,9 @@ class Catalogue:
         """Return the catalogue that comes with CALM."""
         return cls((UnreadLevel(_shipped_files()),))
 
-    def under(self, definitions: SourceMapping, problems: list[Problem]) -> Catalogue:
+    def under(self, definitions: SourceMapping) -> Catalogue:
         """Lay this catalogue under the `components:` of a mooring file."""
-        entries = entries_of(definitions, None, problems)
+        entries = entries_of(definitions, None)
         return Catalogue(({entry.id: entry for entry in entries}, *self.levels))
 
     def ids(self) -> list[str]:
@@ -136,7 +136,7 @@ class Catalogue:
         if entry is None:
             raise UsageError(unknown(f"no component is called `{id}`", id, self.ids()))
         problems: list[Problem] = []
-        definition = define(entry, entry.section, problems)
+        definition = define(entry, entry.section.into(problems))
         if definition is None:
             raise InputError(problems)
         return definition
@@ -150,7 +150,7 @@ class Catalogue:
         found = {
             id: definition
             for id, entry in self._all().items()
-            if (definition := define(entry, entry.section, problems)) is not None
+            if (definition := define(entry, entry.section.into(problems))) is not None
         }
         if problems:
             raise InputError(problems)
@@ -181,7 +181,6 @@ def user_folder() -> Path:
 def define(
     entry: CatalogueEntry,
     section: SourceMapping,
-    problems: list[Problem],
     *,
     also_allowed: Iterable[str] = (),
     context: Mapping[str, object] | None = None,
@@ -192,30 +191,27 @@ def define(
     ----------
     entry : CatalogueEntry
     section : of the entry, or laid over it
-    problems : mistakes are added to it
     also_allowed : keys that stand beside and belong to something else
     context : None or, where it is to be used in air, `IN_AIR`
     """
     kind = section.data.get("kind")
     if kind is None:
-        problems.append(section.problem((), f"`{entry.id}`: `kind` is missing ({_kinds()})"))
+        section.refuse((), f"`{entry.id}`: `kind` is missing ({_kinds()})")
         return None
     if not isinstance(kind, str) or kind not in (*KINDS, "assembly"):
         text = shown(kind)
         near = nearest(text, KINDS)
         offer = f"; did you mean `kind: {near}`?" if near else ""
-        message = f"`kind: {text}` must be one of {_kinds()}{offer}"
-        problems.append(section.problem(("kind",), message))
+        section.refuse(("kind",), f"`kind: {text}` must be one of {_kinds()}{offer}")
         return None
     role = FAMILY_ROLES.get(entry.family or "")
     if role and "role" not in section.data:
-        family_default = SourceMapping.of(section.document, section.location, {"role": role})
-        section = section.over(family_default)
+        section = section.over(section.holding({"role": role}))
     if kind == "assembly":
-        return validate(Assembly, section, problems)
+        return validate(Assembly, section)
     if lacking(section.data):
-        return validate(Outline, section, problems)
-    return validate(KINDS[kind], section, problems, also_allowed=also_allowed, context=context)
+        return validate(Outline, section)
+    return validate(KINDS[kind], section, also_allowed=also_allowed, context=context)
 
 
 def _kinds() -> str:
@@ -319,30 +315,21 @@ def read_level(paths: Iterable[Path], problems: list[Problem]) -> Level:
     return level
 
 
-def entries_of(
-    definitions: SourceMapping, family: str | None, problems: list[Problem]
-) -> list[CatalogueEntry]:
-    """Return the entries of a mapping of definitions by id.
-
-    Parameters
-    ----------
-    definitions : mapping of definitions by id
-    family : the name of their file; None in a mooring file
-    problems : mistakes are added to it
-    """
+def entries_of(definitions: SourceMapping, family: str | None) -> list[CatalogueEntry]:
+    """Return the entries of a mapping of definitions by id; the family is None in a mooring."""
     entries = []
     for id, fields in definitions.data.items():
         if isinstance(fields, dict):
             entries.append(CatalogueEntry(id, family, definitions.child(id)))
         else:
-            problems.append(definitions.problem((id,), f"`{id}` must hold `key: value` entries"))
+            definitions.refuse((id,), f"`{id}` must hold `key: value` entries")
     return entries
 
 
 def _entries_of(document: Document, problems: list[Problem]) -> list[CatalogueEntry]:
     stem = Path(document.path).stem
     family = stem if stem in FAMILY_ROLES else None
-    return entries_of(SourceMapping.of(document, (), document.data), family, problems)
+    return entries_of(SourceMapping.of(document, problems), family)
 
 
 def _cuts(path: Path) -> list[tuple[str | None, _Cut]]:
@@ -362,9 +349,9 @@ _LOADED: FileCache[Catalogue] = FileCache()
 
 def defined(id: str, values: Mapping[str, Any]) -> tuple[Component | None, tuple[Problem, ...]]:
     """Return the component that values define, None where they do not, and what is wrong."""
-    section = SourceMapping.of(Document(id, {id: dict(values)}), (id,), dict(values))
     problems: list[Problem] = []
-    definition = define(CatalogueEntry(id, None, section), section, problems)
+    section = SourceMapping.of(Document(id, {id: dict(values)}), problems).child(id)
+    definition = define(CatalogueEntry(id, None, section), section)
     return (definition if isinstance(definition, Component) else None), tuple(problems)
 
 

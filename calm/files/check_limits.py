@@ -15,7 +15,7 @@ from typing import Annotated
 from pydantic import AfterValidator, WithJsonSchema, model_validator
 from pydantic.fields import FieldInfo
 
-from calm.errors import Problem, shown, unknown
+from calm.errors import shown, unknown
 from calm.files import definition
 from calm.files.rule_texts import ACCEPTABLE, RULES
 from calm.files.yaml_document import SourceMapping
@@ -292,10 +292,7 @@ class Accept(AcceptKeys):
 
 
 def read_accepts(
-    keys: Sequence[AcceptKeys],
-    labels: Sequence[str] | None,
-    top: SourceMapping,
-    problems: list[Problem],
+    keys: Sequence[AcceptKeys], labels: Sequence[str] | None, top: SourceMapping
 ) -> tuple[Accept, ...]:
     """Return what a mooring file accepts, the most specific first.
 
@@ -304,33 +301,24 @@ def read_accepts(
     labels : of the line; None where the line has mistakes of its own
     top : the mooring file
     """
-    found = [
-        accept
-        for number, one in enumerate(keys)
-        if (accept := _accept(one, number, labels, top, problems)) is not None
-    ]
+    found = [_accept(one, number, labels, top) for number, one in enumerate(keys)]
     return tuple(sorted(found, key=lambda one: _breadth(one, labels or ())))
 
 
 def _accept(
-    keys: AcceptKeys,
-    number: int,
-    labels: Sequence[str] | None,
-    top: SourceMapping,
-    problems: list[Problem],
-) -> Accept | None:
-    def wrong(key: str, message: str) -> None:
-        problems.append(top.problem(("checks", "accept", number, key), message))
-
+    keys: AcceptKeys, number: int, labels: Sequence[str] | None, top: SourceMapping
+) -> Accept:
+    here = "checks", "accept", number
     if keys.rule not in ACCEPTABLE:
         rule = shown(keys.rule)
-        wrong("rule", unknown(f"no rule that can be accepted is called `{rule}`", rule, ACCEPTABLE))
+        message = unknown(f"no rule that can be accepted is called `{rule}`", rule, ACCEPTABLE)
+        top.refuse((*here, "rule"), message)
     covered = None
     if keys.component is not None and labels is not None:
         covered = tuple(matching(keys.component, labels))
         if not covered:
-            wrong("component", _nothing_called(keys.component, labels))
-    line = top.problem(("checks", "accept", number), "").line
+            top.refuse((*here, "component"), _nothing_called(keys.component, labels))
+    line = top.problem(here, "").line
     return Accept.model_construct(**dict(keys), labels=covered, line=line)
 
 

@@ -10,7 +10,7 @@ from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Discriminator, Tag
 
-from calm.errors import InputError, Problem, shown
+from calm.errors import InputError, shown
 from calm.files import definition, water
 from calm.files.definition import DENSITY, Model, QuantityField, Text, described, optional
 from calm.files.seabed import Seabed, SeabedGiven, read_seabed
@@ -198,44 +198,42 @@ class EnvironmentKeys(TowEnvironmentKeys):
 def read_environment(
     section: SourceMapping,
     name: str | None,
-    problems: list[Problem],
     notices: list[str],
     *,
     towed: bool = False,
     position: Position | None = None,
     open_files: bool = True,
 ) -> Environment | None:
-    """Read the environment of a mapping; None, with its mistakes in `problems`, if it has any.
+    """Read the environment of a mapping; None if it has mistakes.
 
     Parameters
     ----------
     section : the environment
     name : of the variant or file it is from; None for the file's own
-    problems, notices : what is wrong, and worth knowing, is added to them
+    notices : what is worth knowing is added to them
     towed : it may be air, and the water's depth need not be known
     position : chooses a column of a current file, which is looked for beside its mooring file
     open_files : read current files; where not, None is returned
     """
-    keys = validate(TowEnvironmentKeys if towed else EnvironmentKeys, section, problems)
+    keys = validate(TowEnvironmentKeys if towed else EnvironmentKeys, section)
     if keys is None:
-        _check_tables(section, problems)
+        _check_tables(section)
         return None
-    before = len(problems)
+    before = len(section.problems)
     given = keys.density if "density" in keys.model_fields_set else water.USUAL_DENSITY[keys.fluid]
-    density = water.read_density(given, keys.fluid, section, problems)
+    density = water.read_density(given, keys.fluid, section)
     if isinstance(density, SeaWater) and keys.fluid == "air":
-        message = "temperature and salinity are those of the sea, not of air"
-        problems.append(section.problem(("density",), message))
-    _check_wind(keys, section, problems)
+        section.refuse(("density",), "temperature and salinity are those of the sea, not of air")
+    _check_wind(keys, section)
     if open_files:  # otherwise the depth may be that of another section
-        _check_depth_range(keys, section, problems)
-    current = _current(keys, section, problems, notices, open_files, position)
+        _check_depth_range(keys, section)
+    current = _current(keys, section, notices, open_files, position)
     waves = getattr(keys, "waves", None)
-    seas = () if waves is None else water.read_waves(waves, section, problems, open_files)
+    seas = () if waves is None else water.read_waves(waves, section, open_files)
     where = None if position is None else (position.latitude, position.longitude)
     sloping = getattr(keys, "seabed", None) if open_files else None
-    seabed = read_seabed(sloping, where, keys.depth, section, problems)
-    if density is None or current is None or len(problems) > before:
+    seabed = read_seabed(sloping, where, keys.depth, section)
+    if density is None or current is None or len(section.problems) > before:
         return None
     notices.extend(water.density_notices(density, keys.depth))
     if isinstance(density, SeaWater) and position is None:
@@ -261,9 +259,7 @@ def read_environment(
     )
 
 
-def _check_depth_range(
-    keys: TowEnvironmentKeys, section: SourceMapping, problems: list[Problem]
-) -> None:
+def _check_depth_range(keys: TowEnvironmentKeys, section: SourceMapping) -> None:
     """Check that low water comes first, then high water, with the depth between them."""
     depth, levels = keys.depth, getattr(keys, "depth_range", None)
     if levels is None or depth is None:
@@ -274,25 +270,24 @@ def _check_depth_range(
             f"`depth_range` is low and high water, with `depth`, {depth:g} m, between them: "
             f"e.g. [{depth - 2:g} m, {depth + 2:g} m]"
         )
-        problems.append(section.problem(("depth_range",), message, key=True))
+        section.refuse(("depth_range",), message, key=True)
 
 
-def _check_wind(keys: TowEnvironmentKeys, section: SourceMapping, problems: list[Problem]) -> None:
+def _check_wind(keys: TowEnvironmentKeys, section: SourceMapping) -> None:
     """Check that wind blows over water, and drives it down to a known depth."""
     if keys.wind is None:
         return
     if keys.fluid == "air":
         message = "`wind` blows over water; in air the wind is the `current`"
-        problems.append(section.problem(("wind",), message, key=True))
+        section.refuse(("wind",), message, key=True)
     elif keys.wind.surface_drift and keys.wind.drift_depth is None and keys.depth is None:
         message = "`surface_drift` needs `drift_depth`, as `depth` is not given"
-        problems.append(section.problem(("wind", "surface_drift"), message, key=True))
+        section.refuse(("wind", "surface_drift"), message, key=True)
 
 
 def _current(
     keys: TowEnvironmentKeys,
     section: SourceMapping,
-    problems: list[Problem],
     notices: list[str],
     open_files: bool,
     position: Position | None,
@@ -301,17 +296,16 @@ def _current(
     maximum_speed = getattr(keys, "maximum_speed", math.inf)
     if isinstance(current, water.TableKeys):
         terms = Terms(maximum_speed=maximum_speed)
-        return read_current(water.quantity_table(current, section, problems, "current"), terms)
+        return read_current(water.quantity_table(current, section, "current"), terms)
     if isinstance(current, UniformCurrent):
         u, v = components(current.speed, current.toward)
         if reason := too_fast(u, v, current.w, maximum_speed):
-            problems.append(section.problem(("current", "speed"), reason))
+            section.refuse(("current", "speed"), reason)
             return None
         return CurrentTable((0.0,), (u,), (v,), (current.w,))
     path = Path(section.home("current").document.path).parent / current.file
     if not (os.path.isfile(path) or os.path.isdir(path)):
-        message = f"`file: {shown(current.file)}`: no such file"
-        problems.append(section.problem(("current", "file"), message))
+        section.refuse(("current", "file"), f"`file: {shown(current.file)}`: no such file")
         return None
     if not open_files:
         return None
@@ -326,18 +320,18 @@ def _current(
 
         table, remarks = read_current_file(path, current.time, terms)
     except TimeChoiceError as error:
-        problems.append(section.problem(("current", "time"), str(error)))
+        section.refuse(("current", "time"), str(error))
     except InputError as error:
-        problems.extend(error.problems)
+        section.problems.extend(error.problems)
     else:
         notices.extend(remarks)
         return table
     return None
 
 
-def _check_tables(section: SourceMapping, problems: list[Problem]) -> None:
+def _check_tables(section: SourceMapping) -> None:
     """Look into the tables although other keys are wrong, to report all mistakes at once."""
-    water.check_density(section, problems)
+    water.check_density(section)
     table = water.table_of(section.data.get("current"))
     if table is not None:
-        read_current(water.quantity_table(table, section, problems, "current"))
+        read_current(water.quantity_table(table, section, "current"))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import numpy as np
 from pydantic import BeforeValidator, Field
 
-from calm.errors import Problem, unknown
+from calm.errors import unknown
 from calm.files.components import Anchor
 from calm.files.definition import Model, QuantityField, Text, described, optional
 from calm.files.mooring_file import STAND_IN, MooringFile, Piece, Place, numbered
@@ -24,7 +24,11 @@ MOST_LEGS = 40
 NET_REFUSED = (
     "this is a net of legs, for `calm run`, `check`, `batch`, `deck`, `size`, `diff` and `export`; "
     "this takes a single line: one free end, one anchor. `calm batch` gives the depths of a net's "
-    "instruments in a record of currents"
+    "instruments in a record of currents; waves and a launch take a line of its most loaded leg"
+)
+NET_SURE = (
+    "single lines; `calm run --explain` says how far a net moves by more drag, buoyancy or "
+    "current, and a copy of its file, or `with_` in Python, solves it with other figures"
 )
 
 _Offset = Annotated[float, QuantityField("length")]
@@ -158,39 +162,31 @@ def stand_in_anchor(index: int, item: int) -> Piece:
     return Piece(index, STAND_IN, "anchor", component, 0.0, None, (), 0, 0, Place(item))
 
 
-def read_legs(
-    top: SourceMapping, reader: LineReader, problems: list[Problem]
-) -> tuple[tuple[Leg, ...], tuple[Piece, ...]]:
-    """Read the legs of a file, and the pieces of all of them one after another.
-
-    Parameters
-    ----------
-    top : the file; mistakes are added to `problems`
-    reader : of the items of a line
-    """
+def read_legs(top: SourceMapping, reader: LineReader) -> tuple[tuple[Leg, ...], tuple[Piece, ...]]:
+    """Read the legs of a file, and the pieces of all of them one after another."""
     if "line" in top.data:
         message = "`line` and `legs` in one file; give the line as one of the legs"
-        problems.append(top.problem(("line",), message, key=True))
+        top.refuse(("line",), message, key=True)
     if "tow" in top.data:
-        problems.append(top.problem(("tow",), "a tow has no `legs`", key=True))
+        top.refuse(("tow",), "a tow has no `legs`", key=True)
     found = top.data["legs"]
     if not isinstance(found, dict) or not found:
-        problems.append(top.problem(("legs",), "`legs` must name legs, each with its `line`"))
+        top.refuse(("legs",), "`legs` must name legs, each with its `line`")
         return (), ()
     if len(found) > MOST_LEGS:
-        problems.append(top.problem(("legs",), f"more than {MOST_LEGS} legs", key=True))
+        top.refuse(("legs",), f"more than {MOST_LEGS} legs", key=True)
         return (), ()
     legs: list[Leg] = []
     pieces: list[Piece] = []
     section, whole, items = top.child("legs"), True, 0
     for name in found:
         if not isinstance(found[name], dict):
-            problems.append(section.problem((name,), f"leg `{name}` must have a `line`"))
+            section.refuse((name,), f"leg `{name}` must have a `line`")
             whole = False
             continue
         own = section.child(name)
-        keys = validate(LegKeys, own, problems)
-        before, first = len(problems), len(pieces)
+        keys = validate(LegKeys, own)
+        before, first = len(top.problems), len(pieces)
         if isinstance(own.data.get("line"), list):
             read = reader.read(own, "line")
             pieces += [_moved(piece, items) for piece in read]
@@ -199,11 +195,11 @@ def read_legs(
             whole = False
             continue
         ends = keys.top, keys.bottom or _FREE
-        if len(problems) == before:
-            ends = _ends(keys, own, pieces[first:], problems)
+        if len(top.problems) == before:
+            ends = _ends(keys, own, pieces[first:])
         legs.append(Leg(str(name), first, len(pieces), *ends))
     if whole:
-        _check_net(legs, top, problems)
+        _check_net(legs, top)
     return tuple(legs), numbered(pieces)
 
 
@@ -216,13 +212,11 @@ def _moved(piece: Piece, items: int) -> Piece:
     return replace(piece, place=place, clamps=clamps)
 
 
-def _ends(
-    keys: LegKeys, own: SourceMapping, pieces: Sequence[Piece], problems: list[Problem]
-) -> tuple[EndKeys, EndKeys]:
+def _ends(keys: LegKeys, own: SourceMapping, pieces: Sequence[Piece]) -> tuple[EndKeys, EndKeys]:
     """Return the ends of a leg, one that ends in an anchor on the seabed."""
 
     def refuse(place: tuple[str | int, ...], message: str) -> None:
-        problems.append(own.problem(place, message, key=bool(place)))
+        own.refuse(place, message, key=bool(place))
 
     ends = []
     for name, end in (("top", keys.top), ("bottom", keys.bottom)):
@@ -239,7 +233,7 @@ def _ends(
         refuse(("top",), "the upper end of a leg is not anchored; list it the other way round")
     for anchor in anchors[: len(anchors) - stands]:
         message = f"anchor `{anchor.use}` is not the last item of its leg"
-        problems.append(Problem(own.document.path, anchor.line, anchor.column, message))
+        own.refuse_at(anchor.line, anchor.column, message)
     if stands and keys.bottom is None:
         lower = EndKeys(anchor=AnchoredKeys())
     elif stands and lower.anchor is None:
@@ -257,26 +251,22 @@ def _ends(
     for piece in pieces:
         here = piece.line, piece.column
         if piece.length is None:
-            message = "a piece of a net cannot be cut to fit; give its length"
-            problems.append(Problem(own.document.path, *here, message))
+            own.refuse_at(*here, "a piece of a net cannot be cut to fit; give its length")
         if any(isinstance(clamp.component, Profiler) for clamp in piece.clamps):
-            message = "a profiler in a net is not solved"
-            problems.append(Problem(own.document.path, *here, message))
+            own.refuse_at(*here, "a profiler in a net is not solved")
     return upper, lower
 
 
-def check_held_depths(
-    legs: Sequence[Leg], top: SourceMapping, depth: float | None, problems: list[Problem]
-) -> None:
+def check_held_depths(legs: Sequence[Leg], top: SourceMapping, depth: float | None) -> None:
     """Check that what is held is above the seabed, at a depth [m]."""
     for leg in legs:
         for name, end in zip(("top", "bottom"), leg.ends, strict=True):
             if end.held is not None and depth is not None and end.held.depth >= depth:
                 message = f"`depth` is not above the seabed, {depth:g} m deep"
-                problems.append(top.problem(("legs", leg.name, name, "held", "depth"), message))
+                top.refuse(("legs", leg.name, name, "held", "depth"), message)
 
 
-def _check_net(legs: Sequence[Leg], top: SourceMapping, problems: list[Problem]) -> None:
+def _check_net(legs: Sequence[Leg], top: SourceMapping) -> None:
     """Check that every node joins legs, and that something holds each of them."""
     section = top.child("legs")
     joins = [
@@ -287,30 +277,26 @@ def _check_net(legs: Sequence[Leg], top: SourceMapping, problems: list[Problem])
     ]
     known = top.data.get("nodes")
     if known is not None and not isinstance(known, dict):
-        message = "`nodes` must name nodes: `nodes: {A: {}}`"
-        problems.append(top.problem(("nodes",), message))
+        top.refuse(("nodes",), "`nodes` must name nodes: `nodes: {A: {}}`")
         known = None
     meeting = [join for *_, join in joins]
     for leg, end, join in joins:
         place = (leg.name, end, "join")
         if known is not None and join not in known:
-            message = unknown(f"no node is called `{join}`", join, known)
-            problems.append(section.problem(place, message))
+            section.refuse(place, unknown(f"no node is called `{join}`", join, known))
         elif meeting.count(join) == 1:
             others = dict.fromkeys(other for other in meeting if other != join)
-            message = unknown(f"no other leg joins at `{join}`", join, others)
-            problems.append(section.problem(place, message))
+            section.refuse(place, unknown(f"no other leg joins at `{join}`", join, others))
     for name, keys in (known or {}).items():
         if keys:
-            problems.append(top.problem(("nodes", name), "a node has no keys: `A: {}`"))
+            top.refuse(("nodes", name), "a node has no keys: `A: {}`")
         if name not in meeting:
-            message = f"no leg joins at node `{name}`"
-            problems.append(top.problem(("nodes", name), message, key=True))
-    if not problems:
-        _check_held(legs, section, problems)
+            top.refuse(("nodes", name), f"no leg joins at node `{name}`", key=True)
+    if not top.problems:
+        _check_held(legs, section)
 
 
-def _check_held(legs: Sequence[Leg], section: SourceMapping, problems: list[Problem]) -> None:
+def _check_held(legs: Sequence[Leg], section: SourceMapping) -> None:
     """Check that no part of the net is without a hold.
 
     Nor may an anchor whose place is not written stand where another does.
@@ -336,10 +322,10 @@ def _check_held(legs: Sequence[Leg], section: SourceMapping, problems: list[Prob
                 f"its anchor stands where that of leg `{before}` does; say where it is: "
                 "`bottom: {anchor: {at: [30 m, 0 m]}}`"
             )
-            problems.append(section.problem((leg.name,), message, key=True))
+            section.refuse((leg.name,), message, key=True)
         if leg.name not in held:
             message = f"nothing holds leg `{leg.name}`: no anchor, no held end"
-            problems.append(section.problem((leg.name,), message, key=True))
+            section.refuse((leg.name,), message, key=True)
 
 
 def leg_numbers(file: MooringFile) -> list[int]:

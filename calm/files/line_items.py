@@ -6,20 +6,11 @@ import math
 from collections.abc import Iterable
 from dataclasses import replace
 
-from calm.errors import Problem, about_quantity, shown, unknown
-from calm.files import logbook
+from calm.errors import about_quantity, shown, unknown
+from calm.files import components, logbook
 from calm.files.catalogue import Assembly, Catalogue, CatalogueEntry, Defined, define
 from calm.files.check_limits import GREATER_FLATTERS, LESSER_FLATTERS, LimitKey
-from calm.files.components import (
-    FLEXIBLE_KINDS,
-    KINDS,
-    Anchor,
-    Component,
-    Flexible,
-    Outline,
-    contradicted,
-    odd_overrides,
-)  # fmt: skip
+from calm.files.components import FLEXIBLE_KINDS, KINDS, Anchor, Component, Flexible, Outline
 from calm.files.definition import IN_AIR, LENGTH, POSITIVE_LENGTH, QuantityField, quantity_of
 from calm.files.logbook import MOST_PIECES
 from calm.files.mooring_file import Clamp, Piece, Place, placed
@@ -35,7 +26,7 @@ _WORDS = {"at": "place", "top_depth": "top depth", "body_depth": "body depth"}
 
 
 class LineReader:
-    """Expand line items; mistakes go to `problems`, what is worth knowing to `notices`.
+    """Expand line items; mistakes go to those of the file, what is worth knowing to `notices`.
 
     `towed` and `in_air` show which keys and figures the line may have.
     """
@@ -43,14 +34,14 @@ class LineReader:
     def __init__(
         self,
         catalogue: Catalogue,
-        problems: list[Problem],
+        top: SourceMapping,
         notices: list[str],
         *,
         towed: bool = False,
         in_air: bool = False,
     ) -> None:
         self._catalogue = catalogue
-        self._problems = problems
+        self._problems = top.problems
         self._notices = notices
         self.looser: list[LimitKey] = []
         self._towed = towed
@@ -64,9 +55,10 @@ class LineReader:
         for id in ids:
             entry = self._catalogue.entry(id)
             if entry is not None:
-                definition = self._defined[id] = self._define(entry, entry.section)
+                section = entry.section.into(self._problems)
+                definition = self._defined[id] = self._define(entry, section)
                 if isinstance(definition, Assembly):
-                    self._assembly(entry, entry.section)
+                    self._assembly(entry, section)
 
     def read(self, section: SourceMapping, key: str) -> tuple[Piece, ...]:
         """Read the items of the list under a key; those with mistakes are left out."""
@@ -75,7 +67,7 @@ class LineReader:
         for number, item in enumerate(items, 1):
             pieces += self._item(item)
             if max(number, len(pieces)) > MOST_PIECES:
-                self._refuse(item, (), f"the line has more than {MOST_PIECES} pieces")
+                item.refuse((), f"the line has more than {MOST_PIECES} pieces")
                 return ()
         return tuple(pieces)
 
@@ -83,20 +75,20 @@ class LineReader:
         """Return the items of a list, each a mapping."""
         found = section.data[key]
         if not isinstance(found, (list, tuple)):
-            self._refuse(section, (key,), f"`{key}` must be a list of items")
+            section.refuse((key,), f"`{key}` must be a list of items")
             return []
         items = []
         for i, item in enumerate(found[: MOST_PIECES + 1]):
             if isinstance(item, dict):
-                items.append(SourceMapping.of(section.document, (*section.location, key, i), item))
+                items.append(section.child(key, i))
             else:
                 message = f"`{shown(item)}` is not an item; write `{{use: {shown(item) or '…'}}}`"
-                self._refuse(section, (key, i), message)
+                section.refuse((key, i), message)
         return items
 
     def _item(self, item: SourceMapping) -> tuple[Piece, ...]:
         count = self._count(item)
-        logbook.check_serials(item, count, self._problems)
+        logbook.check_serials(item, count)
         entry = self._entry(item)
         definition = self._definition(entry, item, _ITEM_KEYS) if entry else None
         if entry is None or definition is None:
@@ -108,8 +100,7 @@ class LineReader:
         else:
             once = (self._piece(definition, item),)
         if len(once) * count > MOST_PIECES:
-            message = f"{count} times makes more than {MOST_PIECES} pieces"
-            self._refuse(item, ("count",), message)
+            item.refuse(("count",), f"{count} times makes more than {MOST_PIECES} pieces")
             return ()
         number = item.location[-1]
         assert isinstance(number, int)  # its place in a list
@@ -132,7 +123,7 @@ class LineReader:
             if not fields:
                 known = {name for kind in KINDS.values() for name in kind.model_fields} | _ITEM_KEYS
                 message = unknown_key(key, sorted(known))
-                self._refuse(item, (key,), message, key=True)
+                item.refuse((key,), message, key=True)
             elif len({each and each.dimension for each in quantities}) == 1:
                 for quantity in filter(None, [quantities.pop()]):
                     self._quantity(item, key, QuantityField(quantity.dimension), "")
@@ -142,7 +133,7 @@ class LineReader:
         load = 0.0
         if isinstance(component, Profiler):
             message = "a profiler rides on a wire: give it among the `clamps` of that"
-            self._refuse(item, ("use",), message)
+            item.refuse(("use",), message)
         if not isinstance(component, Flexible):
             length = component.length
         elif item.data.get("length") == "fit":
@@ -154,10 +145,10 @@ class LineReader:
             length = self._quantity(item, "length", POSITIVE_LENGTH, need) or math.nan
         if "length_at" in item.data and not isinstance(component, Flexible):
             message = "`length_at` is for cables and chains; this is as long as its definition says"
-            self._refuse(item, ("length_at",), message, key=True)
+            item.refuse(("length_at",), message, key=True)
         elif "length" in item.data and "length_at" in item.data:
             message = "gives both `length` and `length_at`; one says how long it is cut"
-            self._refuse(item, ("length_at",), message, key=True)
+            item.refuse(("length_at",), message, key=True)
         fit_depth = self._fit_depth(item, fits=length is None)
         clamps = self._clamps(item, length)
         place = item.problem((), "")
@@ -175,7 +166,7 @@ class LineReader:
             column=place.column,
             place=Place(0),
             fit_body_depth=fit_depth if self._towed else None,
-            equipment=logbook.read_equipment(item, self._problems),
+            equipment=logbook.read_equipment(item),
             measured_load=load,
         )
 
@@ -183,15 +174,15 @@ class LineReader:
         """Return the unstretched length of what is measured under a load [m], and that load [N]."""
         if not isinstance(item.data["length_at"], dict):
             example = "{load: 2 kN, length: 480 m}"
-            self._refuse(item, ("length_at",), f"`length_at` must be as `{example}`")
+            item.refuse(("length_at",), f"`length_at` must be as `{example}`")
             return math.nan, 0.0
-        measured = validate(logbook.LengthAt, item.child("length_at"), self._problems)
+        measured = validate(logbook.LengthAt, item.child("length_at"))
         if measured is None:
             return math.nan, 0.0
         breaking = component.breaking_load
         if breaking is not None and measured.load > breaking:
             message = f"`load` is above the breaking load of {breaking:g} N"
-            self._refuse(item, ("length_at", "load"), message)
+            item.refuse(("length_at", "load"), message)
         return measured.length / (1.0 + component.strain_under(measured.load)), measured.load
 
     def _fit_depth(self, item: SourceMapping, *, fits: bool) -> float | None:
@@ -201,13 +192,13 @@ class LineReader:
             key, foreign, home = ("body_depth", "top_depth", "moorings")
         if foreign in item.data:
             message = f"`{foreign}` belongs to {home}; here it is `{key}`"
-            self._refuse(item, (foreign,), message, key=True)
+            item.refuse((foreign,), message, key=True)
         if fits and (key in item.data or foreign not in item.data):
             # depths are counted from the water, above which a tow in air may end
             kind = QuantityField("length") if self._in_air else LENGTH
             return self._quantity(item, key, kind, "`length: fit` needs it")
         if key in item.data:
-            self._refuse(item, (key,), f"`{key}` goes with `length: fit`", key=True)
+            item.refuse((key,), f"`{key}` goes with `length: fit`", key=True)
         return None
 
     def _tell_of_mass(self, use: str, component: Component) -> None:
@@ -229,29 +220,29 @@ class LineReader:
                 at = self._quantity(clamp, "at", LENGTH, "the distance from the top of the piece")
             elif "at" in clamp.data:
                 message = "a profiler has no place of its own: it travels `between` two stops"
-                self._refuse(clamp, ("at",), message, key=True)
+                clamp.refuse(("at",), message, key=True)
             if at is not None and length is not None and at > length:
                 message = f"`at: {shown(clamp.data['at'])}` is beyond the piece, {length:g} m long"
-                self._refuse(clamp, ("at",), message)
+                clamp.refuse(("at",), message)
             if isinstance(component, Rigid) and at is not None:
                 self._tell_of_mass(clamp.data["use"], component)
                 where = Place(0, clamp=len(clamps))
-                own = logbook.read_equipment(clamp, self._problems)
+                own = logbook.read_equipment(clamp)
                 label = self._label(clamp)
                 clamps.append(Clamp(clamp.data["use"], label, component, at, where, own))
             elif component is not None and at is not None:
                 message = f"a component of kind {component.kind} cannot be clamped on a line"
-                self._refuse(clamp, ("use",), message)
+                clamp.refuse(("use",), message)
         return tuple(clamps)
 
     def _assembly(self, entry: CatalogueEntry, item: SourceMapping) -> tuple[Piece, ...]:
         """Return the pieces of an assembly, all at the place of the item that uses it."""
         if entry.id in self._open:
-            self._refuse(item, ("use",), f"assembly `{entry.id}` contains itself")
+            item.refuse(("use",), f"assembly `{entry.id}` contains itself")
             return ()
         if entry.id not in self._assemblies:
             self._open.append(entry.id)
-            self._assemblies[entry.id] = self.read(entry.section, "parts")
+            self._assemblies[entry.id] = self.read(entry.section.into(self._problems), "parts")
             self._open.pop()
         place = item.problem((), "")
         prefix = f"{self._label(item)} " if "label" in item.data else ""
@@ -266,7 +257,7 @@ class LineReader:
         if not isinstance(use, str):
             message = "`use` must be the id of a component" if "use" in item.data else None
             lacks = "" if message else "no component chosen"
-            self._refuse(item, ("use",), message or "`use` is missing", lacks=lacks)
+            item.refuse(("use",), message or "`use` is missing", lacks=lacks)
             return None
         entry = self._catalogue.entry(use)
         if entry is None:
@@ -276,7 +267,7 @@ class LineReader:
                 offer = (
                     f"; {use.rstrip('s')}s are {', '.join(some)} … (`calm catalog search {use}`)"
                 )
-            self._refuse(item, ("use",), f"`use: {shown(use)}`: no such component{offer}")
+            item.refuse(("use",), f"`use: {shown(use)}`: no such component{offer}")
             return None
         hidden = self._catalogue.hidden(use)
         if hidden:
@@ -289,12 +280,13 @@ class LineReader:
     ) -> Component | Assembly | None:
         """Return what an item uses, the item's overrides applied."""
         if entry.id not in self._defined:
-            self._defined[entry.id] = self._define(entry, entry.section)
+            own = entry.section.into(self._problems)
+            self._defined[entry.id] = self._define(entry, own)
         definition = self._defined[entry.id]
         if isinstance(definition, Assembly):
             for key in item.data.keys() - _ASSEMBLY_KEYS:
                 message = unknown(f"`{key}` cannot be set on an assembly", key, _ASSEMBLY_KEYS)
-                self._refuse(item, (key,), message, key=True)
+                item.refuse((key,), message, key=True)
             return definition
         if definition is None:
             return None
@@ -304,21 +296,22 @@ class LineReader:
             return definition
         if "kind" in overriding:
             message = "`kind` cannot be overridden; define a component of your own"
-            self._refuse(item, ("kind",), message, key=True)
+            item.refuse(("kind",), message, key=True)
             return None
-        void = contradicted(definition.kind, entry.section.data.keys(), overriding.keys())
-        override = SourceMapping.of(item.document, item.location, overriding)
-        section = override.over(entry.section, dropping=void)
+        void = components.contradicted(
+            definition.kind, entry.section.data.keys(), overriding.keys()
+        )
+        section = item.holding(overriding).over(entry.section, dropping=void)
         hinted = item_keys if definition.kind == "cable" else item_keys - {"termination"}
         component = self._define(entry, section, also_allowed=hinted)
         if isinstance(component, Outline):
-            self._refuse(item, ("use",), component.asks(entry.id))
+            item.refuse(("use",), component.asks(entry.id))
         if not isinstance(component, Component):
             return None
         self._keep_looser_limits(entry, item, definition, component)
         if not self._in_air and isinstance(definition, Component):
             place = f"line {item.problem((), '').line}: "
-            doubts = odd_overrides(entry.id, definition, component, overriding.keys())
+            doubts = components.odd_overrides(entry.id, definition, component, overriding.keys())
             self._notices += (place + doubt for doubt in doubts)
         return component
 
@@ -347,7 +340,7 @@ class LineReader:
         self, entry: CatalogueEntry, section: SourceMapping, *, also_allowed: Iterable[str] = ()
     ) -> Defined | None:
         context = IN_AIR if self._in_air else None
-        return define(entry, section, self._problems, also_allowed=also_allowed, context=context)
+        return define(entry, section, also_allowed=also_allowed, context=context)
 
     def _count(self, item: SourceMapping) -> int:
         text = item.data.get("count", "1")
@@ -356,7 +349,7 @@ class LineReader:
             if count != int(count):
                 raise QuantityError("must be a whole number")
         except QuantityError as error:
-            self._refuse(item, ("count",), about_quantity("count", text, error))
+            item.refuse(("count",), about_quantity("count", text, error))
             return 1
         return int(count)
 
@@ -368,27 +361,16 @@ class LineReader:
             message = f"`{key}` has no value" if there else f"`{key}` is missing: {need}"
             place = (key,) if there else ()
             label = item.data.get("label") or item.data.get("use") or "a piece"
-            self._refuse(item, place, message, lacks=f"no {_WORDS.get(key, key)} on {shown(label)}")
+            item.refuse(place, message, lacks=f"no {_WORDS.get(key, key)} on {shown(label)}")
             return None
         try:
             return kind.read(item.data[key])
         except QuantityError as error:
-            self._refuse(item, (key,), about_quantity(key, item.data[key], error))
+            item.refuse((key,), about_quantity(key, item.data[key], error))
             return None
 
     def _label(self, item: SourceMapping) -> str:
         label = item.data.get("label", item.data["use"])
         if not isinstance(label, str):
-            self._refuse(item, ("label",), "`label` must be plain text")
+            item.refuse(("label",), "`label` must be plain text")
         return str(label)
-
-    def _refuse(
-        self,
-        section: SourceMapping,
-        location: tuple[str | int, ...],
-        message: str,
-        *,
-        key: bool = False,
-        lacks: str = "",
-    ) -> None:
-        self._problems.append(section.problem(location, message, key=key, lacks=lacks))

@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal, TypeGuard
 
 from pydantic import AfterValidator, Field, WithJsonSchema, model_validator
 
-from calm.errors import Problem, shown, unknown
+from calm.errors import shown, unknown
 from calm.files.check_limits import Day
 from calm.files.definition import (
     LENGTH,
@@ -254,31 +254,23 @@ EQUIPMENT_KEYS = frozenset(Equipment.model_fields)
 NO_EQUIPMENT = Equipment()
 
 
-def read_equipment(item: SourceMapping, problems: list[Problem]) -> Equipment:
+def read_equipment(item: SourceMapping) -> Equipment:
     """Read what an item or a clamp says of the individual thing."""
     given = {key: item.data[key] for key in item.data.keys() & EQUIPMENT_KEYS}
     if not given:
         return NO_EQUIPMENT
-    section = SourceMapping.of(item.document, item.location, given)
-    return validate(Equipment, section, problems) or NO_EQUIPMENT
+    return validate(Equipment, item.holding(given)) or NO_EQUIPMENT
 
 
-def check_serials(item: SourceMapping, count: int, problems: list[Problem]) -> None:
-    """Check that serial numbers given as a list are as many as the item, and its clamps, count.
-
-    Parameters
-    ----------
-    item : of the line
-    count : of the item
-    problems : mistakes are added to it
-    """
+def check_serials(item: SourceMapping, count: int) -> None:
+    """Check that serial numbers given as a list are as many as the item, and its clamps, count."""
     clamps: Any = item.data.get("clamps")
     below = [(("clamps", i), one) for i, one in enumerate(clamps if _is_list(clamps) else ())]
     for place, data in [((), item.data), *below]:
         serials = data.get("serial") if isinstance(data, dict) else None
         if _is_list(serials) and len(serials) != count:
             message = f"`serial` has {len(serials)} numbers for a count of {count}"
-            problems.append(item.problem((*place, "serial"), message))
+            item.refuse((*place, "serial"), message)
 
 
 def _is_list(value: object) -> TypeGuard[Sequence[object]]:
@@ -286,11 +278,7 @@ def _is_list(value: object) -> TypeGuard[Sequence[object]]:
 
 
 def check_deployed(
-    deployed: Deployed,
-    labels: Sequence[str],
-    cables: Sequence[str],
-    top: SourceMapping,
-    problems: list[Problem],
+    deployed: Deployed, labels: Sequence[str], cables: Sequence[str], top: SourceMapping
 ) -> None:
     """Check that what was deployed is of the line, each part once, and that only cables are cut.
 
@@ -306,10 +294,10 @@ def check_deployed(
         text = shown(item.label)
         if item.label not in labels:
             message = unknown(f"no piece or clamp is called `{text}`", item.label, labels)
-            problems.append(top.problem((*where, "label"), message))
+            top.refuse((*where, "label"), message)
         elif item.label in seen:
-            problems.append(top.problem((*where, "label"), f"`{text}` is given twice"))
+            top.refuse((*where, "label"), f"`{text}` is given twice")
         elif item.length is not None and item.label not in cables:
             message = f"`length` of `{text}`: only a cable or chain is cut to length"
-            problems.append(top.problem((*where, "length"), message))
+            top.refuse((*where, "length"), message)
         seen.add(item.label)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Protocol
 
 from pydantic import AfterValidator
 
-from calm.errors import Problem, unknown
+from calm.errors import unknown
 from calm.files.check_limits import Accept, Checks, LimitKey
 from calm.files.components import Anchor, Component
 from calm.files.definition import LENGTH, Model, QuantityField, described, optional
@@ -320,21 +320,13 @@ def unknown_releases(
     ]
 
 
-def travelling(
-    pieces: Sequence[Piece], top: SourceMapping, problems: list[Problem]
-) -> tuple[Piece, ...]:
-    """Give each profiler the way that it travels, by the labels of its stops.
-
-    Parameters
-    ----------
-    pieces : of a line, numbered
-    top : the file; stops that cannot be are added to `problems`
-    """
+def travelling(pieces: Sequence[Piece], top: SourceMapping) -> tuple[Piece, ...]:
+    """Give each profiler the way that it travels, by the labels of its stops."""
     return tuple(
         replace(
             piece,
             clamps=tuple(
-                _travelling(clamp, piece, pieces, top, problems)
+                _travelling(clamp, piece, pieces, top)
                 if isinstance(clamp.component, Profiler)
                 else clamp
                 for clamp in piece.clamps
@@ -344,9 +336,7 @@ def travelling(
     )
 
 
-def _travelling(
-    clamp: Clamp, piece: Piece, pieces: Sequence[Piece], top: SourceMapping, problems: list[Problem]
-) -> Clamp:
+def _travelling(clamp: Clamp, piece: Piece, pieces: Sequence[Piece], top: SourceMapping) -> Clamp:
     stops = {each.label: 0.0 if each.index < piece.index else math.inf for each in pieces}
     del stops[piece.label]
     stops |= {each.label: each.at for each in piece.clamps if each.travel is None}
@@ -363,7 +353,8 @@ def _travelling(
     ]
     if not messages and between and not stops[between[0]] < stops[between[1]]:
         messages = [f"`{between[0]}` is not above `{between[1]}`: give the upper stop first"]
-    problems += [top.problem(row, message, lacks=lacks) for message in messages]
+    for message in messages:
+        top.refuse(row, message, lacks=lacks)
     if messages or not between:
         return clamp
     upper, lower = (stops[label] for label in between)

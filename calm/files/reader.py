@@ -131,18 +131,22 @@ def read_mooring(
     notices: list[str] = []
     catalogue = Catalogue.load(catalogs)
     document = read_document(Path(path)) if text is None else compose(str(path), text)
-    top = SourceMapping.of(document, (), document.data)
+    top = SourceMapping.of(document, problems)
     towed, legged = "tow" in top.data, "legs" in top.data
     if legged and not net:
-        problems.append(top.problem(("legs",), NET_REFUSED, key=True))
-    keys = _keys_of(top, problems, {"towed": towed}, legged=legged)
+        top.refuse(("legs",), NET_REFUSED, key=True)
+    given = top
+    if legged:  # one with legs has no line, and its legs are read one by one
+        ours = {key: value for key, value in top.data.items() if key not in ("legs", "nodes")}
+        given = top.holding({"line": ["legs"], **ours})
+    keys = validate(MooringKeys, given, context={"towed": towed})
     definitions = _child(top, "components")
     if definitions is not None:
-        catalogue = catalogue.under(definitions, problems)
-    chosen = choose_environment(top, environment, problems, towed=towed)
+        catalogue = catalogue.under(definitions)
+    chosen = choose_environment(top, environment, towed=towed)
     stands_in = chosen[0] if chosen else _child(top, "environment")
     in_air = stands_in is not None and stands_in.data.get("fluid") == "air"
-    reader = LineReader(catalogue, problems, notices, towed=towed, in_air=in_air)
+    reader = LineReader(catalogue, top, notices, towed=towed, in_air=in_air)
     reader.check(definitions.data if definitions is not None else ())
     before = len(problems)
     legs: tuple[Leg, ...] = ()
@@ -151,30 +155,30 @@ def read_mooring(
     if stand_in and not towed and pieces and not _anchored(pieces):
         pieces = (*pieces, stand_in_anchor(0, len(top.data["line"])))
     if legged:
-        legs, pieces = read_legs(top, reader, problems)
+        legs, pieces = read_legs(top, reader)
         line_is_whole = bool(pieces) and len(problems) == before
     else:
-        (_check_tow if towed else _check_anchor)(pieces, top, problems)
-        _check_one_fit(pieces, top, problems)
-        pieces = travelling(numbered(pieces), top, problems) if line_is_whole else numbered(pieces)
+        (_check_tow if towed else _check_anchor)(pieces, top)
+        _check_one_fit(pieces, top)
+        pieces = travelling(numbered(pieces), top) if line_is_whole else numbered(pieces)
     checks = (keys and keys.checks) or Checks()
     labels = labels_of(pieces) if line_is_whole else None
-    accepts = read_accepts(checks.accept, labels, top, problems)
+    accepts = read_accepts(checks.accept, labels, top)
     if keys and keys.deployed and labels is not None:
         cut = [p.label for p in pieces if isinstance(p.component, Flexible)]
-        check_deployed(keys.deployed, labels, cut, top, problems)
+        check_deployed(keys.deployed, labels, cut, top)
     if keys and keys.releases and labels is not None:
         notices += unknown_releases(keys.releases, pieces, keys.deployed)
     surroundings = None
     if chosen:
         position = keys.position if keys else None
-        surroundings = read_environment(*chosen, problems, notices, towed=towed, position=position)
+        surroundings = read_environment(*chosen, notices, towed=towed, position=position)
     if surroundings is not None and surroundings.seabed is not None:
-        check_anchors(surroundings.seabed, pieces, legs, checks, top, problems)
+        check_anchors(surroundings.seabed, pieces, legs, checks, top)
     if surroundings is not None and legged:
-        check_held_depths(legs, top, surroundings.depth, problems)
+        check_held_depths(legs, top, surroundings.depth)
     elif surroundings is not None:
-        _check_fit(pieces, surroundings.depth, keys.tow if keys else None, top, problems)
+        _check_fit(pieces, surroundings.depth, keys.tow if keys else None, top)
     if problems or keys is None or surroundings is None:
         raise InputError(_in_order(problems, str(path)))
     return MooringFile(
@@ -200,16 +204,6 @@ def read_mooring(
     )
 
 
-def _keys_of(
-    top: SourceMapping, problems: list[Problem], context: dict[str, Any], *, legged: bool
-) -> MooringKeys | None:
-    """Return the keys of a file; one with legs has no line, and its legs are read one by one."""
-    if legged:
-        ours = {key: value for key, value in top.data.items() if key not in ("legs", "nodes")}
-        top = SourceMapping.of(top.document, top.location, {"line": ["legs"], **ours})
-    return validate(MooringKeys, top, problems, context=context)
-
-
 def _child(section: SourceMapping, key: str) -> SourceMapping | None:
     """Return the mapping under a key, None where there is none."""
     return section.child(key) if isinstance(section.data.get(key), dict) else None
@@ -221,62 +215,54 @@ def _in_order(problems: list[Problem], path: str) -> list[Problem]:
     return sorted(once, key=lambda one: (one.path != path, one.path, one.line, one.column))
 
 
-def _check_tow(pieces: Sequence[Piece], top: SourceMapping, problems: list[Problem]) -> None:
+def _check_tow(pieces: Sequence[Piece], top: SourceMapping) -> None:
     """Check that nothing stands on the seabed in a tow."""
     for piece in pieces:
         if isinstance(piece.component, Anchor):
             message = f"anchor `{piece.use}` in a tow; its line ends in the towed body"
-            problems.append(_at(piece, top, message))
+            top.refuse_at(piece.line, piece.column, message)
 
 
-def _check_anchor(pieces: Sequence[Piece], top: SourceMapping, problems: list[Problem]) -> None:
+def _check_anchor(pieces: Sequence[Piece], top: SourceMapping) -> None:
     """Check that the line of a mooring ends in its only anchor."""
     if not pieces:
         return
     for piece in pieces[:-1]:
         if isinstance(piece.component, Anchor):
             message = f"anchor `{piece.use}` is not the last item; a line has one, at its end"
-            problems.append(_at(piece, top, message))
+            top.refuse_at(piece.line, piece.column, message)
     last_is_known = pieces[-1].place.item == len(top.data["line"]) - 1
     if last_is_known and not _anchored(pieces):
         message = "the line has no anchor; its last item must be one (`kind: anchor`)"
-        problems.append(top.problem(("line",), message, key=True, lacks="no anchor"))
+        top.refuse(("line",), message, key=True, lacks="no anchor")
     if len(pieces) == 1 and _anchored(pieces) and len(top.data["line"]) == 1:
-        lacks = "nothing above the anchor"
-        problems.append(_at(pieces[0], top, "nothing stands above the anchor", lacks))
+        here, lacks = (pieces[0].line, pieces[0].column), "nothing above the anchor"
+        top.refuse_at(*here, "nothing stands above the anchor", lacks=lacks)
 
 
 def _anchored(pieces: Sequence[Piece]) -> bool:
     return any(isinstance(piece.component, Anchor) for piece in pieces)
 
 
-def _check_one_fit(pieces: Sequence[Piece], top: SourceMapping, problems: list[Problem]) -> None:
+def _check_one_fit(pieces: Sequence[Piece], top: SourceMapping) -> None:
     fits = [piece for piece in pieces if piece.length is None]
     for piece in fits[1:]:
         message = f"only one piece can be cut to fit; line {fits[0].line} has one already"
-        problems.append(_at(piece, top, message))
+        top.refuse_at(piece.line, piece.column, message)
 
 
 def _check_fit(
-    pieces: Sequence[Piece],
-    seabed: float | None,
-    tow: TowKeys | None,
-    top: SourceMapping,
-    problems: list[Problem],
+    pieces: Sequence[Piece], seabed: float | None, tow: TowKeys | None, top: SourceMapping
 ) -> None:
     """Check that the depth to reach lies above the seabed, and below the ship."""
     for piece in pieces:
+        here = piece.line, piece.column
         for key, depth in (("top", piece.fit_top_depth), ("body", piece.fit_body_depth)):
             if depth is not None and seabed is not None and depth >= seabed:
-                message = f"`{key}_depth` is below the seabed, {seabed:g} m deep"
-                problems.append(_at(piece, top, message))
+                top.refuse_at(*here, f"`{key}_depth` is below the seabed, {seabed:g} m deep")
         if tow and piece.fit_body_depth is not None and piece.fit_body_depth <= -tow.height:
             message = f"`body_depth` is not below the tow point, {tow.height:g} m above the water"
-            problems.append(_at(piece, top, message))
-
-
-def _at(piece: Piece, top: SourceMapping, message: str, lacks: str = "") -> Problem:
-    return Problem(top.document.path, piece.line, piece.column, message, lacks)
+            top.refuse_at(*here, message)
 
 
 class EnvironmentFileKeys(Model):
@@ -287,7 +273,7 @@ class EnvironmentFileKeys(Model):
 
 
 def choose_environment(
-    top: SourceMapping, chosen: str | Path | None, problems: list[Problem], *, towed: bool
+    top: SourceMapping, chosen: str | Path | None, *, towed: bool
 ) -> tuple[SourceMapping, str | None] | None:
     """Return the `environment` of a file, or the chosen one laid over it, and its name; unread.
 
@@ -305,46 +291,37 @@ def choose_environment(
         if "environment" in top.data:
             return None
         if chosen is None and not towed:
-            message = "`environment` is missing"
-            problems.append(top.problem((), message, lacks="no environment"))
+            top.refuse((), "`environment` is missing", lacks="no environment")
             return None
-        own = SourceMapping.of(top.document, (), {})
+        own = top.holding({})
     variants = _child(top, "environments")
     known = {} if variants is None else {key: _child(variants, key) for key in variants.data}
     overlays = {key: overlay for key, overlay in known.items() if overlay is not None}
     for overlay in overlays.values():
-        _check(overlay, problems, towed)
+        _check(overlay, towed)
     if chosen is None:
         return own, None
-    _check(own, problems, towed)
+    _check(own, towed)
     if isinstance(chosen, str) and chosen in overlays:
         return overlays[chosen].over(own), chosen
     if isinstance(chosen, str) and not _is_file_name(chosen):
         message = unknown(f"no environment is called `{chosen}`", chosen, overlays)
-        problems.append(top.problem(("environments",), message, key=True))
+        top.refuse(("environments",), message, key=True)
         return None
-    return _from_file(Path(chosen), own, problems)
-
-
-def _from_file(
-    path: Path, own: SourceMapping, problems: list[Problem]
-) -> tuple[SourceMapping, str | None] | None:
+    path = Path(chosen)
     try:
-        document = read_document(path)
+        file = SourceMapping.of(read_document(path), top.problems)
     except InputError as error:
-        problems.extend(error.problems)
+        top.problems.extend(error.problems)
         return None
-    file = SourceMapping.of(document, (), document.data)
-    keys = validate(EnvironmentFileKeys, file, problems)
-    if keys is None:
-        return None
-    return file.child("environment").over(own), keys.name or path.stem
+    keys = validate(EnvironmentFileKeys, file)
+    return None if keys is None else (file.child("environment").over(own), keys.name or path.stem)
 
 
-def _check(section: SourceMapping, problems: list[Problem], towed: bool) -> None:
+def _check(section: SourceMapping, towed: bool) -> None:
     """Look for mistakes in keys that may stand over, or under, others: on any depth."""
-    section = section.over(SourceMapping.of(section.document, (), {"depth": "1 m"}))
-    read_environment(section, None, problems, [], open_files=False, towed=towed)
+    section = section.over(section.holding({"depth": "1 m"}))
+    read_environment(section, None, [], open_files=False, towed=towed)
 
 
 def _is_file_name(text: str) -> bool:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 from pydantic import Discriminator, Tag
 
-from calm.errors import InputError, Problem, shown
+from calm.errors import InputError, shown
 from calm.files.components import Anchor
 from calm.files.definition import Model, QuantityField, Text, described
 from calm.files.water import Toward
@@ -68,7 +68,6 @@ def read_seabed(
     where: tuple[float, float] | None,
     depth: float | None,
     section: SourceMapping,
-    problems: list[Problem],
 ) -> Seabed | None:
     """Return the seabed; a grid as far about the mooring as that may reach.
 
@@ -76,20 +75,20 @@ def read_seabed(
     ----------
     where : latitude and longitude [degrees]; None where nobody gives them
     depth : of the water [m]
-    section : the environment; mistakes are added to `problems`
+    section : the environment
     """
     if not isinstance(given, SeabedFile):
         return given
     path, key = Path(section.home("seabed").document.path).parent / given.file, ("seabed", "file")
     if not path.is_file():
-        problems.append(section.problem(key, f"`file: {shown(given.file)}`: no such file"))
+        section.refuse(key, f"`file: {shown(given.file)}`: no such file")
     elif where is None:
-        problems.append(section.problem(key, "a grid needs the `position` of the mooring"))
+        section.refuse(key, "a grid needs the `position` of the mooring")
     elif depth is not None:
         try:
             return SeabedGrid.of_file(path, *where, 2000.0 + 3.0 * depth)
         except InputError as error:
-            problems.extend(error.problems)
+            section.problems.extend(error.problems)
     return None
 
 
@@ -99,7 +98,6 @@ def check_anchors(
     legs: Sequence[Leg],
     checks: Checks,
     top: SourceMapping,
-    problems: list[Problem],
 ) -> None:
     """Check that no anchor slides down the seabed by its own weight, nor stands off the grid."""
     ends = {leg.end - 1: leg.bottom.anchor for leg in legs}
@@ -118,4 +116,5 @@ def check_anchors(
             )
         if np.isnan(here.deeper(np.zeros((1, 2)))[0]) and (place is None or place.depth is None):
             said.append("the grid of the seabed has no depth here; give the anchor its `depth`")
-        problems += [Problem(top.document.path, piece.line, piece.column, one) for one in said]
+        for one in said:
+            top.refuse_at(piece.line, piece.column, one)

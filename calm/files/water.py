@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os.path
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Self
@@ -13,16 +13,8 @@ import numpy as np
 from pydantic import Discriminator, Tag, ValidationError, model_validator
 
 from calm.errors import InputError, Problem, UsageError, about_quantity, nearest, shown
-from calm.files.definition import (
-    CATALOGUE_DENSITY,
-    DENSITY,
-    Model,
-    PositiveLength,
-    QuantityField,
-    Text,
-    described,
-    optional,
-)
+from calm.files import definition
+from calm.files.definition import DENSITY, Model, QuantityField, Text, described, optional
 from calm.files.yaml_document import SourceMapping
 from calm.physics import seawater
 from calm.records import profile_tables
@@ -39,7 +31,7 @@ from calm.records.sea_states import (
 )
 from calm.units import QuantityError, QuantityRange
 
-USUAL_DENSITY = {"water": CATALOGUE_DENSITY, "air": 1.225}
+USUAL_DENSITY = {"water": definition.CATALOGUE_DENSITY, "air": 1.225}
 """Where a file gives none [kg/m³]; that of air is the standard atmosphere's at sea level."""
 
 
@@ -102,7 +94,6 @@ def read_density(
     given: float | TableKeys | SeaWaterKeys,
     fluid: str,
     section: SourceMapping,
-    problems: list[Problem],
 ) -> float | profile_tables.DepthTable | profile_tables.SeaWater | None:
     """Read the density of an environment; None where it has mistakes.
 
@@ -111,22 +102,19 @@ def read_density(
     given : as the model has it
     fluid : "water" or "air"
     section : the environment
-    problems : what is wrong is added to them
     """
     density = _RANGES[fluid]
     if isinstance(given, TableKeys):
-        return profile_tables.read_water(
-            quantity_table(given, section, problems, "density"), density
-        )
+        return profile_tables.read_water(quantity_table(given, section, "density"), density)
     if not isinstance(given, SeaWaterKeys):
         try:
             return density.read(f"{given!r} kg/m^3")
         except QuantityError as error:
             message = about_quantity("density", f"{given:g} kg/m^3", error)
-            problems.append(section.problem(("density",), message))
+            section.refuse(("density",), message)
             return None
-    temperature = _profile("temperature", given.temperature, section, problems)
-    salinity = _profile("salinity", given.salinity, section, problems)
+    temperature = _profile("temperature", given.temperature, section)
+    salinity = _profile("salinity", given.salinity, section)
     return profile_tables.SeaWater(temperature, salinity) if temperature and salinity else None
 
 
@@ -138,20 +126,19 @@ def table_of(value: object) -> TableKeys | None:
         return None
 
 
-def quantity_table(
-    table: TableKeys, section: SourceMapping, problems: list[Problem], *place: str
-) -> QuantityTable:
+def quantity_table(table: TableKeys, section: SourceMapping, *place: str) -> QuantityTable:
     """Return a table below a key of a mapping, or a key under that, with places for its mistakes.
 
     Parameters
     ----------
     table : as the model has it
     section, place : the mapping, and the keys that lead to the table
-    problems : what is wrong is added to them
     """
-    return QuantityTable(
-        table.columns, table.rows, lambda at, said: section.problem((*place, *at), said), problems
-    )
+
+    def problem(at: Sequence[str | int], said: str) -> Problem:
+        return section.problem((*place, *at), said)
+
+    return QuantityTable(table.columns, table.rows, problem, section.problems)
 
 
 def density_notices(
@@ -211,26 +198,24 @@ def _falls(table: profile_tables.DepthTable) -> Iterator[str]:
             greatest, depth = value, below
 
 
-def check_density(section: SourceMapping, problems: list[Problem]) -> None:
+def check_density(section: SourceMapping) -> None:
     """Report the mistakes in the tables below `density:`, whatever else is wrong with it."""
     given = section.data.get("density")
     density = _RANGES["air" if section.data.get("fluid") == "air" else "water"]
     table = table_of(given)
     if table is not None:
-        profile_tables.read_water(quantity_table(table, section, problems, "density"), density)
+        profile_tables.read_water(quantity_table(table, section, "density"), density)
     for name in SeaWaterKeys.model_fields:
         table = table_of(given.get(name)) if isinstance(given, dict) else None
         if table is not None:
-            _profile(name, table, section, problems)
+            _profile(name, table, section)
 
 
 def _profile(
-    name: str, given: float | TableKeys, section: SourceMapping, problems: list[Problem]
+    name: str, given: float | TableKeys, section: SourceMapping
 ) -> profile_tables.DepthTable | None:
     if isinstance(given, TableKeys):
-        return profile_tables.read_profile(
-            name, quantity_table(given, section, problems, "density", name)
-        )
+        return profile_tables.read_profile(name, quantity_table(given, section, "density", name))
     return profile_tables.DepthTable((0.0,), (given,))
 
 
@@ -250,7 +235,9 @@ class Wind(Model):
     surface_drift: Annotated[float, QuantityField("number", at_least=0, at_most=0.1)] = described(
         "share of the wind's speed that the surface water drifts at", "2 %", default=0.0
     )
-    drift_depth: PositiveLength = optional("how deep the water that the wind drives goes", "50 m")
+    drift_depth: definition.PositiveLength = optional(
+        "how deep the water that the wind drives goes", "50 m"
+    )
 
     @model_validator(mode="after")
     def _depth_of_a_drift(self) -> Wind:
@@ -273,7 +260,7 @@ class SwellKeys(Model):
 class WaveKeys(Model):
     """The keys of `waves:`: one sea, a table of seas with their shares of the time, or both."""
 
-    significant_height: PositiveLength = optional("Hs of the sea to be survived", "5 m")
+    significant_height: definition.PositiveLength = optional("Hs of the sea to be survived", "5 m")
     peak_period: Annotated[float | None, QuantityField("time", above=0)] = optional(
         "Tp of that sea; pierson-moskowitz and ochi-hubble have their own", "8.4 s"
     )
@@ -312,10 +299,8 @@ class WaveKeys(Model):
         return self
 
 
-def read_waves(
-    keys: WaveKeys, section: SourceMapping, problems: list[Problem], open_files: bool
-) -> tuple[SeaState, ...]:
-    """Return the seas of `waves:`; none, with its mistakes in `problems`, if it has any.
+def read_waves(keys: WaveKeys, section: SourceMapping, open_files: bool) -> tuple[SeaState, ...]:
+    """Return the seas of `waves:`; none if it has mistakes.
 
     Those of a scatter table have their shares of the time; one beside them has a share of 0.
 
@@ -324,7 +309,7 @@ def read_waves(
     section : the environment
     open_files : read its files, which are beside the mooring file; where not, none is returned
     """
-    before = len(problems)
+    before = len(section.problems)
     measured = keys.spectrum not in SPECTRA
     files = {"scatter": keys.scatter, "spectrum": keys.spectrum if measured else None}
     paths: dict[str, Path] = {}
@@ -339,8 +324,8 @@ def read_waves(
         what = "no such file" if name == "scatter" else f"neither {', '.join(SPECTRA)} nor a file"
         meant = f"; did you mean `{near}`?" if near else ""
         message = f"`{name}: {shown(text)}`: {what}{meant}"
-        problems.append(section.problem(("waves", name), message))
-    if len(problems) > before or not open_files:
+        section.refuse(("waves", name), message)
+    if len(section.problems) > before or not open_files:
         return ()
     form = "bretschneider" if measured else keys.spectrum
     seas: list[SeaState] = []
@@ -355,7 +340,7 @@ def read_waves(
         if "spectrum" in paths:
             seas.append(replace(measured_spectrum(paths["spectrum"]), share=0.0 if seas else 1.0))
     except UsageError as error:
-        problems.append(section.problem(("waves",), str(error), key=True))
+        section.refuse(("waves",), str(error), key=True)
     except InputError as error:
-        problems.extend(error.problems)
+        section.problems.extend(error.problems)
     return tuple(seas)

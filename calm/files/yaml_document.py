@@ -9,7 +9,7 @@ What pydantic finds wrong is one line for people, with its place in the file.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal, TypeVar, get_args, get_origin
 
@@ -97,6 +97,7 @@ class SourceMapping:
         there
     data : the mapping, its own keys over those it overlays
     base : what lies below
+    problems : mistakes found in it; those of a file are all in one list
     """
 
     document: Document
@@ -104,28 +105,34 @@ class SourceMapping:
     data: dict[str, Any]
     base: SourceMapping | None = None
     own: frozenset[str] = field(default_factory=frozenset)
+    problems: list[Problem] = field(default_factory=list, repr=False, compare=False)
 
     @classmethod
-    def of(cls, document: Document, location: Location, data: dict[str, Any]) -> SourceMapping:
-        """Return the mapping `data` that stands at `location` of a document.
+    def of(cls, document: Document, problems: list[Problem]) -> SourceMapping:
+        """Return all of a document, whose mistakes are added to a list."""
+        return cls(document, (), document.data, None, frozenset(document.data), problems)
 
-        Parameters
-        ----------
-        document : that holds it
-        location : in the document
-        data : the mapping
-        """
-        return cls(document, location, data, None, frozenset(data))
+    def holding(self, data: dict[str, Any]) -> SourceMapping:
+        """Return a mapping of other data at the same place."""
+        own = frozenset(data)
+        return SourceMapping(self.document, self.location, data, None, own, self.problems)
+
+    def into(self, problems: list[Problem]) -> SourceMapping:
+        """Return the same, its mistakes to be added to another list."""
+        return replace(self, problems=problems)
 
     def over(self, base: SourceMapping, *, dropping: frozenset[str] = frozenset()) -> SourceMapping:
         """Lay this mapping over another one, of which some keys are dropped."""
         kept = {key: value for key, value in base.data.items() if key not in dropping}
-        return SourceMapping(self.document, self.location, {**kept, **self.data}, base, self.own)
+        return replace(self, data={**kept, **self.data}, base=base)
 
-    def child(self, key: str) -> SourceMapping:
-        """Return the mapping under a key."""
-        home = self.home(key)
-        return SourceMapping.of(home.document, (*home.location, key), self.data[key])
+    def child(self, key: str, *more: str | int) -> SourceMapping:
+        """Return the mapping under a key, or under others below it."""
+        home, data = self.home(key), self.data[key]
+        for step in more:
+            data = data[step]
+        place, own = (*home.location, key, *more), frozenset(data)
+        return SourceMapping(home.document, place, data, None, own, self.problems)
 
     def home(self, key: str | int) -> SourceMapping:
         """Return the layer that a key comes from."""
@@ -149,6 +156,16 @@ class SourceMapping:
         place = (*home.location, *location)
         return home.document.problem(place, message, key=key, lacks=lacks)
 
+    def refuse(
+        self, location: Sequence[str | int], message: str, *, key: bool = False, lacks: str = ""
+    ) -> None:
+        """Add a problem to those found; the parameters are those of `problem`."""
+        self.problems.append(self.problem(location, message, key=key, lacks=lacks))
+
+    def refuse_at(self, line: int, column: int, message: str, *, lacks: str = "") -> None:
+        """Add a problem at a line and a column of the file."""
+        self.problems.append(Problem(self.document.path, line, column, message, lacks))
+
 
 M = TypeVar("M", bound=BaseModel)
 
@@ -156,25 +173,23 @@ M = TypeVar("M", bound=BaseModel)
 def validate(
     model: type[M],
     section: SourceMapping,
-    problems: list[Problem],
     *,
     also_allowed: Iterable[str] = (),
     context: Mapping[str, object] | None = None,
 ) -> M | None:
-    """Return the model of a mapping, or None where it has mistakes.
+    """Return the model of a mapping, or None where it has mistakes, which are added to its own.
 
     Parameters
     ----------
     model : of the mapping
     section : the mapping
-    problems : mistakes are added to it
     also_allowed : keys that stand in the same mapping and belong to something else
     context : what the validators of the model may need to know
     """
     try:
         return model.model_validate(section.data, context=context)
     except ValidationError as error:
-        problems.extend(_explain(error, model, section, also_allowed))
+        _explain(error, model, section, also_allowed)
         return None
 
 
@@ -183,8 +198,7 @@ def _explain(
     model: type[BaseModel],
     section: SourceMapping,
     also_allowed: Iterable[str],
-) -> list[Problem]:
-    found: list[Problem] = []
+) -> None:
     missing: list[tuple[Location, str]] = []
     misspelt: set[tuple[Location, str]] = set()
     for details in error.errors(include_url=False):
@@ -204,19 +218,16 @@ def _explain(
                 misspelt.add((location[:-1], near))
             kind = _tag(model) if len(details["loc"]) == 1 else None
             message = _about_key(name, value, keys, kind)
-            found.append(section.problem(location, message, key=True))
+            section.refuse(location, message, key=True)
         else:
             field = next((part for part in reversed(location) if isinstance(part, str)), "")
             message = _about_value(details, field, value, model)
             lacks = f"no {field}" if value in (None, [], {}) else ""
-            found.append(section.problem(location, message, lacks=lacks))
+            section.refuse(location, message, lacks=lacks)
     # A required key that is there, misspelt, is one mistake and not two.
-    found += [
-        section.problem(location, f"`{name}` is missing", lacks=f"no {name}")
-        for location, name in missing
-        if (location, name) not in misspelt
-    ]
-    return found
+    for location, name in missing:
+        if (location, name) not in misspelt:
+            section.refuse(location, f"`{name}` is missing", lacks=f"no {name}")
 
 
 def _existing(data: Any, loc: tuple[int | str, ...]) -> tuple[Location, Any]:

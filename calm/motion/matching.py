@@ -21,6 +21,7 @@ from calm.motion.remarks import ALL, Fault
 from calm.motion.sensors import Sensor, parse_flags, read_sea_level, read_sensors
 from calm.physics.line import Floats
 from calm.records.instrument_series import split_label
+from calm.records.instrument_text import AIR as AIR_PRESSURE
 
 _MATCHES = ("label", "height", "depth")
 GAP = np.timedelta64(2, "h")
@@ -291,8 +292,8 @@ def plausible(sensor: Sensor, place: float, seabed: float) -> tuple[Sensor, list
     return sensor, notes
 
 
-AIR = 10.05
-"""What the pressure of the air adds to a depth by pressure [m]: 10.13 dbar."""
+AIR = AIR_PRESSURE / 1.0082
+"""What the pressure of the air adds to a depth by pressure [m], at 1.0082 dbar/m of sea water."""
 NEAR_AIR, ON_DECK = 2.5, 0.6
 """How near that is, to what sensors are off in calm water, and to what one reads on deck [m]."""
 

@@ -188,14 +188,12 @@ class Track:
     def _add_rod(self, rows: _Rows, pieces: range) -> None:
         first, top, total = len(self.loads), 0.0, sum([rows.length[piece] for piece in pieces])
         for piece in pieces:
-            length = rows.length[piece]
-            at = top + 0.5 * length
-            lever = 1.0 - at / total if total > 0.0 else 0.5
-            self.loads.append((piece, -1, at, lever, length, *rows.rigid[piece]))
-            for clamp in rows.clamps.get(piece, ()):
-                at = top + rows.clamp_at[clamp]
+            length, clamps = rows.length[piece], rows.clamps.get(piece, ())
+            hung = [(one, rows.clamp_at[one], 0.0, rows.clamp[one]) for one in clamps]
+            for one, down, size, load in [(-1, 0.5 * length, length, rows.rigid[piece]), *hung]:
+                at = top + down
                 lever = 1.0 - at / total if total > 0.0 else 0.5
-                self.loads.append((piece, clamp, at, lever, 0.0, *rows.clamp[clamp]))
+                self.loads.append((piece, one, at, lever, size, *load))
             top += length
         self.stages.append((ROD, first, len(self.loads) - first, total))
 

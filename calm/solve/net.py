@@ -73,10 +73,10 @@ class NetSearch:
 
     def __init__(
         self, legs: Sequence[NetLeg], nodes: int, water: Water, settings: Settings,
-        room: int = ROOM,
+        room: int = ROOM, rough: bool = False,
     ) -> None:  # fmt: skip
         self.compiled, self.settings = runs_compiled(settings), settings
-        self.laid = [LaidLeg.of(leg, water, settings) for leg in legs]
+        self.laid = [LaidLeg.of(leg, water, settings, rough) for leg in legs]
         self.nodes, self.room = nodes, room
         self.net = lay_net(self.laid, nodes, self.compiled, room)
         self.put_in(water)

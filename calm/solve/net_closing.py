@@ -105,12 +105,17 @@ def close_net(
     enough : what may be left, in shares
     known : whether the slopes are about right already, and need not be found first
     """
-    size, trial, fresh = len(x), net.trial, not known
-    failure = left_over(net, x, how, fresh)
+    failure = left_over(net, x, how, not known)
     if failure != GOES_ON:
         return NEEDS_ROOM if failure == NO_ROOM else NOT_CLOSED
-    plain = known
-    left = net.kept
+    return close_on(net, x, how, enough, known)
+
+
+def close_on(
+    net: NetProblem, x: MutableSequence[float], how: Marching, enough: float, known: bool
+) -> int:
+    """`close_net` from unknowns that were marched last, on these segments."""
+    size, trial, fresh, plain, left = len(x), net.trial, not known, known, net.kept
     keep(net.found, left)
     for _ in range(MOST_STEPS):
         if squares(left) <= enough * enough:
@@ -208,9 +213,12 @@ def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, en
     """Close a net that about is to the last digits, on segments that are short enough."""
     for _ in range(MOST_HALVINGS):
         for left in range(len(net.legs), -1, -1):
-            left_over(net, x, Marching(sea, 2.0 * step, CHOSEN, False, COARSE), False)
+            choosing = Marching(sea, 2.0 * step, CHOSEN, False, COARSE)
+            failure = left_over(net, x, choosing, False)
+            if failure != GOES_ON:
+                return NEEDS_ROOM if failure == NO_ROOM else NOT_CLOSED
             coarse = Marching(sea, 2.0 * step, CHOSEN, True, COARSE)
-            ending = close_net(net, x, coarse, enough, True)
+            ending = close_on(net, x, coarse, enough, True)
             if ending != CAME_OUT:
                 return ending
             if not lies_otherwise(net, x, COARSE):

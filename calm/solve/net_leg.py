@@ -27,6 +27,7 @@ from calm.solve.problem import (
     CHANGED,
     FINE,
     HALVED,
+    ROUGH_REACH,
     BuoyantPiece,
     LineProblem,
     SearchArrays,
@@ -94,8 +95,8 @@ class LaidLeg:
         return 3 if self.kind == net_march.PULLED else 1
 
     @staticmethod
-    def of(leg: NetLeg, water: Water, settings: Settings) -> LaidLeg:
-        """Lay out a leg."""
+    def of(leg: NetLeg, water: Water, settings: Settings, rough: bool) -> LaidLeg:
+        """Lay out a leg; `rough` as of `problem_of`."""
         line = leg.line
         if leg.upper.free:
             kind = net_march.STANDING
@@ -103,15 +104,17 @@ class LaidLeg:
             kind, line = net_march.HANGING_DOWN, replace(line.reversed(), towed=True)
         else:
             kind, line = net_march.PULLED, replace(pulled(line, (0.0, 0.0, 0.0)), towed=True)
-        return LaidLeg(leg, line, kind, problem_of(line, water, settings, compiled=False, room=1))
+        problem = problem_of(line, water, settings, compiled=False, rough=rough, room=1)
+        return LaidLeg(leg, line, kind, problem)
 
     def row(self, first: int) -> LegRow:
         """The leg in numbers; `first` is the first of its unknowns."""
         (start, end), (course, limits) = self.ends, (self.problem.course, self.problem.limits)
         length, counted = self.leg.line.length, (len(course.stages), course.landing)
+        rough = ROUGH_REACH * limits.depth if limits.near > 0.0 else 0.0
         return LegRow(
             self.kind, first, start.node, end.node, self.leg.lower.seabed, *self.bed[:2],
-            max(float(length.sum()) * 0.01, min(0.01 * limits.depth, 50.0) * 0.1),
+            max(float(length.sum()) * 0.01, min(0.01 * limits.depth, 50.0) * 0.1, rough),
             max(float(self.line.length[0]), 0.5) if len(length) else 0.5, self.highest,
             int(limits.rides), *counted, len(course.cables), len(self.problem.surfacing),
             len(self.problem.hull), len(self.line.length),

@@ -207,7 +207,8 @@ def march_leg(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int
     record, left = work.records[how.record], work.left
     reach = degrees(how.step) * leg.longest
     lands = state[LANDS] > 0.0
-    asked = How(how.step, reach, 0.0, leg.stages, lands, bed_of(net, i), how.given, True)
+    near, bed = problem.limits.near, bed_of(net, i)
+    asked = How(how.step, reach, near, leg.stages, lands, bed, how.given, True)
     pass_line(course, how.sea, asked, depth, out, cuts, work.counts[how.cuts], record, left)
     state[MARCHES] += 1.0
     if left[FAILURE] != GOES_ON:

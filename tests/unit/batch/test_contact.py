@@ -65,6 +65,16 @@ def test_made_lines_agree(tmp_path: Path, line: str, friction: float, strength: 
     assert_as_run(found, mooring, depth, *current)
 
 
+@pytest.mark.parametrize("line", MADE.values(), ids=MADE.keys())
+def test_made_lines_agree_on_a_slope(tmp_path: Path, line: str) -> None:
+    sea = SEA.replace("components:", "  seabed: {slope: 7 deg, toward: 140 deg}\ncomponents:")
+    mooring = made_mooring(tmp_path, sea + line + SETTINGS % 0.3)
+    depth, u, v, w = drawn(5, 2 * CHARACTERS, mooring.water.depth)
+    found = solve_profiles(mooring, u, v, depth, w)
+    assert (np.abs(found.anchor_vertical) < 0.2 * found.anchor_horizontal).any()
+    assert_as_run(found, mooring, depth, u, v, w)
+
+
 @pytest.mark.parametrize("name", ["braconnot-buoy", "chain-and-rope-surface"])
 def test_shipped_lines_agree_from_slack_to_taut(name: str) -> None:
     mooring = shipped(name)

@@ -16,9 +16,9 @@ G = 9.80665
 
 
 def parse(fields: dict[str, Any], family: str | None = None) -> tuple[Any, list[str]]:
-    section = SourceMapping.of(Document("file.yaml", {}), (), fields)
     problems: list[Problem] = []
-    component = define(CatalogueEntry("it", family, section), section, problems)
+    section = SourceMapping.of(Document("file.yaml", fields), problems)
+    component = define(CatalogueEntry("it", family, section), section)
     return component, [problem.message for problem in problems]
 
 

@@ -34,8 +34,8 @@ def towed(tmp_path: Path) -> Towed:
         path.write_text(text)
         document = read_document(path)
         problems: list[Problem] = []
-        section = SourceMapping.of(document, (), document.data)
-        environment = read_environment(section, None, problems, [], towed=True)
+        section = SourceMapping.of(document, problems)
+        environment = read_environment(section, None, [], towed=True)
         return environment, [problem.message for problem in problems]
 
     return read
