@@ -9,11 +9,29 @@ from typing import assert_never
 
 import numpy as np
 
-from calm import files
-from calm.files import strumming_keys
+from calm.files import (
+    Anchor,
+    Cable,
+    Chain,
+    Component,
+    Cylinder,
+    Environment,
+    Flexible,
+    Piece,
+    Rigid,
+    Shaped,
+    Solver,
+    Sphere,
+)
 from calm.files.components import FlexibleComponent, RigidComponent
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
 from calm.files.rigid import CylinderShape, Displacement, SphereShape
+from calm.files.strumming_keys import (
+    AmplitudeModel,
+    BourgetMarichalKeys,
+    ConstantCn,
+    StrummingFactor,
+)
 from calm.physics import drag
 from calm.physics.drag import Friction
 from calm.physics.hull import Floating, Hull, cylindrical_hull, spherical_hull, tabulated_hull
@@ -29,9 +47,7 @@ TOWED_SPHERE_CX = 0.90
 
 
 def assemble_line(
-    pieces: Sequence[files.Piece],
-    solver: files.Solver | None = None,
-    gravity: float = STANDARD_GRAVITY,
+    pieces: Sequence[Piece], solver: Solver | None = None, gravity: float = STANDARD_GRAVITY
 ) -> Line:
     """The line above the anchor, or the whole towed line, in the order of the pieces.
 
@@ -43,53 +59,55 @@ def assemble_line(
     solver : the laws of drag, friction and strumming; the usual ones where not given
     gravity : under which masses weigh [m/s²]
     """
-    solver = solver or files.Solver()
+    solver = solver or Solver()
     anchor = pieces[-1].component
-    moored = isinstance(anchor, files.Anchor)
+    moored = isinstance(anchor, Anchor)
     above = pieces[:-1] if moored else pieces
-    flexible = [isinstance(piece.component, files.Flexible) for piece in above]
-    drags = [drag_of(piece.component, solver) for piece in above]
-    curves = [_drag_curve(piece.component, solver) for piece in above]
-    if not moored and isinstance(anchor, files.Sphere) and anchor.cx is None:
+    parts = [piece.component for piece in above]
+    drags = [drag_of(part, solver) for part in parts]
+    curves = [_drag_curve(part, solver) for part in parts]
+    if not moored and isinstance(anchor, Sphere) and anchor.cx is None:
         k = drag.sphere_drag(anchor.diameter, TOWED_SPHERE_CX)
         drags[-1], curves[-1] = (k, k, False), None
     clamps = [(i, clamp) for i, piece in enumerate(above) for clamp in piece.clamps]
+    hung = [clamp.component for _, clamp in clamps]
     return Line(
         length=np.array([piece.length or 0.0 for piece in above]),
-        flexible=np.array(flexible),
-        buoyancy=np.array([net_buoyancy(piece.component, gravity) for piece in above]),
-        volume=np.array([piece.component.displaced_volume or 0.0 for piece in above]),
+        flexible=np.array([isinstance(part, Flexible) for part in parts]),
+        buoyancy=np.array([net_buoyancy(part, gravity) for part in parts]),
+        volume=np.array([part.displaced_volume or 0.0 for part in parts]),
         normal_drag=np.array([kn for kn, _, _ in drags]),
         tangential_drag=np.array([kt for _, kt, _ in drags]),
         directional=np.array([directional for _, _, directional in drags]),
-        compliance=np.array([_compliance(piece.component) for piece in above]),
-        thinning=np.array([0.5 if isinstance(p.component, files.Cable) else 0.0 for p in above]),
+        compliance=np.array(
+            [1.0 / stiff if (stiff := getattr(part, "stiffness", None)) else 0.0 for part in parts]
+        ),
+        thinning=np.array([0.5 if isinstance(part, Cable) else 0.0 for part in parts]),
         clamp_piece=np.array([i for i, _ in clamps]),
         clamp_at=np.array([clamp.at for _, clamp in clamps]),
-        clamp_buoyancy=np.array([net_buoyancy(clamp.component, gravity) for _, clamp in clamps]),
-        clamp_volume=np.array([clamp.component.displaced_volume or 0.0 for _, clamp in clamps]),
-        clamp_drag=np.array([_clamped_drag(clamp.component) for _, clamp in clamps]),
-        anchor_height=anchor.length if isinstance(anchor, files.Anchor) else 0.0,
-        lift=np.array([_lift(piece.component) for piece in above]),
-        clamp_lift=np.array([_lift(clamp.component) for _, clamp in clamps]),
-        diameter=np.array(
-            [p.component.diameter if isinstance(p.component, files.Cable) else 0.0 for p in above]
-        ),
+        clamp_buoyancy=np.array([net_buoyancy(part, gravity) for part in hung]),
+        clamp_volume=np.array([part.displaced_volume or 0.0 for part in hung]),
+        # what is clamped on is dragged as across its axis, whatever the inclination of the line
+        clamp_drag=np.array([drag_of(part)[0] for part in hung]),
+        anchor_height=anchor.length if isinstance(anchor, Anchor) else 0.0,
+        lift=np.array([getattr(part, "lift", None) or 0.0 for part in parts]),
+        clamp_lift=np.array([getattr(part, "lift", None) or 0.0 for part in hung]),
+        diameter=np.array([part.diameter if isinstance(part, Cable) else 0.0 for part in parts]),
         friction=Friction(solver.friction),
         strumming=vibration_law(solver),
-        elongation=tuple(_elongation(piece.component) for piece in above),
+        elongation=tuple(map(_elongation, parts)),
         drag_curve=tuple(curves),
-        clamp_drag_curve=tuple(_drag_curve(clamp.component, solver) for _, clamp in clamps),
+        clamp_drag_curve=tuple(_drag_curve(part, solver) for part in hung),
     )
 
 
-def net_buoyancy(component: files.Component, gravity: float) -> float:
+def net_buoyancy(component: Component, gravity: float) -> float:
     """Net force in reference water, + up [N, N/m]: given, or from masses under a gravity [m/s²]."""
     given = any(getattr(component, name, None) is not None for name in ("buoyancy", "weight"))
     return component.net_buoyancy * (1.0 if given else gravity / STANDARD_GRAVITY)
 
 
-def mass_in_air(component: files.Component) -> float | None:
+def mass_in_air(component: Component) -> float | None:
     """Mass, per metre of a cable or chain, as given or from the weight in water [kg, kg/m].
 
     It follows from the displaced volume, or from the density of the material: that of steel for a
@@ -100,10 +118,10 @@ def mass_in_air(component: files.Component) -> float | None:
     net = component.net_buoyancy / STANDARD_GRAVITY
     if component.displaced_volume is not None:
         return CATALOGUE_DENSITY * component.displaced_volume - net
-    density = component.density if isinstance(component, files.Flexible) else None
-    if isinstance(component, files.Anchor):
+    density = component.density if isinstance(component, Flexible) else None
+    if isinstance(component, Anchor):
         density = component.material_density
-    if density is None and isinstance(component, files.Chain | files.Anchor):
+    if density is None and isinstance(component, Chain | Anchor):
         density = STEEL_DENSITY
     if density is None or density == CATALOGUE_DENSITY:
         return None
@@ -111,9 +129,7 @@ def mass_in_air(component: files.Component) -> float | None:
     return mass if mass >= 0.0 else None
 
 
-def drag_of(
-    component: files.Component, solver: files.Solver | None = None
-) -> tuple[float, float, bool]:
+def drag_of(component: Component, solver: Solver | None = None) -> tuple[float, float, bool]:
     """Kn, Kt [N/(m/s)², per metre of cable or chain] and whether drag depends on the axis.
 
     Parameters
@@ -123,31 +139,31 @@ def drag_of(
     """
     if isinstance(component, SphereShape | CylinderShape):
         return _shape_drag(component)
-    if isinstance(component, files.Shaped):
+    if isinstance(component, Shaped):
         return _body_drag(component)
-    if isinstance(component, files.Flexible):
-        return *cable_drag(component, solver or files.Solver()), True
-    if isinstance(component, files.Anchor):
+    if isinstance(component, Flexible):
+        return *cable_drag(component, solver or Solver()), True
+    if isinstance(component, Anchor):
         return 0.0, 0.0, False
     assert_never(component)
 
 
-def _drag_curve(component: files.Component, solver: files.Solver) -> DragCurve | None:
+def _drag_curve(component: Component, solver: Solver) -> DragCurve | None:
     """The drag curve of a smooth sphere or cylinder; None where it gives a drag of its own."""
     if solver.drag == "constant":
         return None
-    if not isinstance(component, files.Sphere | files.Cylinder) or component.surface != "smooth":
+    if not isinstance(component, Sphere | Cylinder) or component.surface != "smooth":
         return None
-    given = component.cx if isinstance(component, files.Sphere) else component.cn
+    given = component.cx if isinstance(component, Sphere) else component.cn
     if given is not None or component.k_surface is not None:
         return None
-    if isinstance(component, files.Sphere):
+    if isinstance(component, Sphere):
         return DragCurve(component.diameter)
     return DragCurve(component.diameter, component.length / component.diameter)
 
 
-def _elongation(component: files.Component) -> ElongationCurve | None:
-    if not isinstance(component, files.Cable) or component.elongation is None:
+def _elongation(component: Component) -> ElongationCurve | None:
+    if not isinstance(component, Cable) or component.elongation is None:
         return None
     assert component.breaking_load is not None
     return ElongationCurve(
@@ -155,14 +171,11 @@ def _elongation(component: files.Component) -> ElongationCurve | None:
     )
 
 
-def _body_drag(body: files.Shaped) -> tuple[float, float, bool]:
+def _body_drag(body: Shaped) -> tuple[float, float, bool]:
     if body.made_of is not None:
-        kn = kt = 0.0
-        follows = False
-        for shape in body.made_of:
-            part_kn, part_kt, part_follows = _shape_drag(shape)
-            kn, kt, follows = kn + part_kn, kt + part_kt, follows or part_follows
-        return kn, kt, follows and body.inclination != "insensitive"
+        each = [_shape_drag(shape) for shape in body.made_of]
+        follows = any(along for *_, along in each) and body.inclination != "insensitive"
+        return sum(kn for kn, *_ in each), sum(kt for _, kt, _ in each), follows
     if body.drag_measurements is not None:
         kn = drag.measured_drag(
             [measured.speed for measured in body.drag_measurements],
@@ -188,7 +201,7 @@ def _shape_drag(shape: SphereShape | CylinderShape) -> tuple[float, float, bool]
     return kn, kt, True
 
 
-def axial_drag_of(component: files.Component) -> float:
+def axial_drag_of(component: Component) -> float:
     """K of what is clamped on a line in a flow along that line [N/(m/s)²].
 
     Its tangential drag; where its drag does not depend on the axis, that of any direction.
@@ -197,7 +210,7 @@ def axial_drag_of(component: files.Component) -> float:
     return kt if directional else kn
 
 
-def with_axial_clamps(line: Line, pieces: Sequence[files.Piece]) -> Line:
+def with_axial_clamps(line: Line, pieces: Sequence[Piece]) -> Line:
     """The line of some pieces with its clamps in a flow along it, as in a fall and a rise."""
     clamps = [clamp.component for piece in pieces for clamp in piece.clamps]
     axial = [drag_of(each)[2] for each in clamps]
@@ -208,21 +221,7 @@ def with_axial_clamps(line: Line, pieces: Sequence[files.Piece]) -> Line:
     return replace(line, clamp_drag=drags, clamp_drag_curve=curves)
 
 
-def _clamped_drag(component: files.Component) -> float:
-    """K of a clamped-on instrument: its normal drag, whatever the inclination of the line."""
-    return drag_of(component)[0]
-
-
-def _lift(component: files.Component) -> float:
-    return (component.lift or 0.0) if isinstance(component, files.Shaped) else 0.0
-
-
-def _compliance(component: files.Component) -> float:
-    stiffness = getattr(component, "stiffness", None)
-    return 1.0 / stiffness if stiffness else 0.0
-
-
-def cable_drag(component: FlexibleComponent, solver: files.Solver) -> tuple[float, float]:
+def cable_drag(component: FlexibleComponent, solver: Solver) -> tuple[float, float]:
     """Kn and Kt of a metre of cable or chain [N/(m/s)²].
 
     A cable's Kn includes its strumming; under Bourget & Marichal's law it is that of a cable at
@@ -230,9 +229,9 @@ def cable_drag(component: FlexibleComponent, solver: files.Solver) -> tuple[floa
     chain gives no Ct, that of this law is such that its friction is the same as under the other
     laws, Ct π/Cn: 0.012, 0.022 and 0.031 by finish.
     """
-    if isinstance(component, files.Cable):
+    if isinstance(component, Cable):
         usual = drag.CABLE_CN, drag.CABLE_CT[component.finish or "smooth"]
-    elif isinstance(component, files.Chain):
+    elif isinstance(component, Chain):
         usual = drag.CHAIN_CN, drag.CHAIN_CT
     else:
         assert_never(component)
@@ -241,27 +240,27 @@ def cable_drag(component: FlexibleComponent, solver: files.Solver) -> tuple[floa
     kn, kt = drag.line_drag(component.diameter, cn, ct)
     if solver.friction == "constant":
         kt = kn * (ct * pi / usual[0] if component.ct is None else ct)
-    if isinstance(component, files.Cable):
+    if isinstance(component, Cable):
         cn = _strumming_cn(component, cn, solver)
         kn, _ = drag.line_drag(component.diameter, cn, ct)
     return kn, kt
 
 
-def _strumming_cn(cable: files.Cable, cn: float, solver: files.Solver) -> float:
+def _strumming_cn(cable: Cable, cn: float, solver: Solver) -> float:
     law = solver.strumming
-    if isinstance(law, strumming_keys.StrummingFactor):
+    if isinstance(law, StrummingFactor):
         return cn * law.factor
-    if isinstance(law, strumming_keys.ConstantCn):
+    if isinstance(law, ConstantCn):
         return law.cn
-    if isinstance(law, strumming_keys.BourgetMarichalKeys):
+    if isinstance(law, BourgetMarichalKeys):
         return law.c0
-    if isinstance(law, strumming_keys.AmplitudeModel):
+    if isinstance(law, AmplitudeModel):
         amplitude = line_amplitude(_mass(cable), cable.diameter, CATALOGUE_DENSITY)
         return cn * AMPLIFICATIONS[law.name](amplitude)
     return cn
 
 
-def _mass(cable: files.Cable) -> float:
+def _mass(cable: Cable) -> float:
     """Return the mass of a metre [kg/m], if need be from its weight in water and its diameter."""
     if cable.mass is not None:
         return cable.mass
@@ -269,25 +268,16 @@ def _mass(cable: files.Cable) -> float:
     return max(displaced - cable.net_buoyancy / STANDARD_GRAVITY, 0.0)
 
 
-def vibration_law(solver: files.Solver) -> BourgetMarichal | None:
+def vibration_law(solver: Solver) -> BourgetMarichal | None:
     """The law by which the Cn of cables grows as they strum; None where the file chooses none."""
     keys = solver.strumming
-    if not isinstance(keys, strumming_keys.BourgetMarichalKeys):
+    if not isinstance(keys, BourgetMarichalKeys):
         return None
     return BourgetMarichal(keys.a1, keys.b1, keys.c1, rest=keys.c0, strouhal=keys.strouhal)
 
 
-def _first_float(pieces: Sequence[files.Piece]) -> files.Piece | None:
-    """The first rigid buoyant piece of a line, None where there is none."""
-    for piece in pieces:
-        component = piece.component
-        if isinstance(component, files.Rigid) and component.net_buoyancy > 0.0:
-            return piece
-    return None
-
-
 def assemble_floating(
-    pieces: Sequence[files.Piece], environment: files.Environment, water: Water
+    pieces: Sequence[Piece], environment: Environment, water: Water
 ) -> Floating | None:
     """Return how the first float rides at the surface; None where neither its draft nor its drag
     is known.
@@ -295,9 +285,10 @@ def assemble_floating(
     A hull is that of the component's `hull`, or of its kind for a sphere and a cylinder; without
     mass or volume there is no draft, and only a `k_surface` makes a difference.
     """
-    piece = _first_float(pieces)
-    component = None if piece is None else piece.component
-    if not isinstance(component, files.Rigid):
+    parts = (piece.component for piece in pieces)
+    floats = (part for part in parts if isinstance(part, Rigid) and part.net_buoyancy > 0.0)
+    component = next(floats, None)
+    if component is None:
         return None
     hull = _hull(component)
     if hull is None and component.k_surface is None:
@@ -333,9 +324,9 @@ def _hull(component: RigidComponent) -> Hull | None:
         return None
     if isinstance(hull, Displacement):
         return tabulated_hull(hull.displacement)
-    if isinstance(component, files.Sphere) and hull != "cylinder":
+    if isinstance(component, Sphere) and hull != "cylinder":
         return spherical_hull(component.diameter)
-    if isinstance(component, files.Cylinder) and hull != "sphere":
+    if isinstance(component, Cylinder) and hull != "sphere":
         return cylindrical_hull(component.diameter, component.length)
     # a body of no stated width is as wide as its volume makes it
     if hull == "sphere":

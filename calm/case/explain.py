@@ -12,8 +12,8 @@ from calm.case import attribution
 from calm.case.draws import Draw, drawn_water
 from calm.case.mooring import Mooring
 from calm.case.net import Net
-from calm.case.net_result import NetResult, legs_of
 from calm.case.parts import TOP, clamps_in, one_part
+from calm.case.result import NetResult, legs_of
 from calm.case.result_tables import ColumnTable
 from calm.case.targets import Figures, figures_of, leg_at
 from calm.errors import NoEquilibrium, UsageError

@@ -17,7 +17,7 @@ from calm.version import __version__
 
 if TYPE_CHECKING:
     from calm.case.explain import Explanation
-    from calm.case.net_result import AnyResult
+    from calm.case.result import AnyResult
     from calm.case.uncertain import Uncertain
     from calm.cli.tow import TabulatedTow
     from calm.drawing.schematic.in_terminal import TerminalSchematic

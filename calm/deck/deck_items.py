@@ -10,7 +10,7 @@ from enum import StrEnum
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from calm.case.net_result import NetResult, legs_of
+from calm.case.result import NetResult, legs_of
 from calm.case.result_tables import ClampRow, ComponentRow, rows_by_place, rows_down
 from calm.files import Clamp, Flexible, Piece
 from calm.files.legs import leg_numbers

@@ -10,7 +10,7 @@ from math import ceil
 
 from calm.case import Mooring, Result
 from calm.case.net import Net
-from calm.case.net_result import NetResult, legs_of
+from calm.case.result import NetResult, legs_of
 from calm.checks.arrangement import unlike_metals
 from calm.deck.deck_items import DeckItem, Order
 from calm.errors import NoEquilibrium

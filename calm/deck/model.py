@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from calm.case import Mooring, Result
 from calm.case.net import Net
-from calm.case.net_result import NetResult, legs_of
+from calm.case.result import NetResult, legs_of
 from calm.checks.finding import OWN
 from calm.checks.net_check import NetGraph, check
 from calm.checks.recovery import Recovery, recovery_of

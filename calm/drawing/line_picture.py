@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from calm.case import Result, TowResult
-from calm.case.net_result import AnyResult, NetResult, legs_of
+from calm.case.result import AnyResult, NetResult, legs_of
 from calm.case.result_tables import Shape, rows_down
 from calm.quantities import QUANTITIES, bearing_of, bearing_text
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
-    from calm.case.net_result import AnyResult
+    from calm.case.result import AnyResult
     from calm.case.uncertain import Uncertain
     from calm.report.tabulation import Tabulation
 

@@ -10,7 +10,7 @@ from itertools import accumulate, count
 from string import ascii_uppercase
 
 from calm.case import Result
-from calm.case.net_result import legs_of
+from calm.case.result import legs_of
 from calm.deck import Deck
 from calm.drawing import schematic
 from calm.drawing.schematic import FONT, HEAD, LEADING, PlacedPart, placed

@@ -12,8 +12,8 @@ from math import floor, hypot, log10
 from typing import TYPE_CHECKING, NamedTuple
 
 from calm.case import Result
-from calm.case.net_result import AnyResult, NetResult
 from calm.case.parts import parts_of
+from calm.case.result import AnyResult, NetResult
 from calm.checks.finding import State
 from calm.checks.inventory import inventory_of
 from calm.checks.recovery import recovery_of

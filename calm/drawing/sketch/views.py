@@ -12,7 +12,7 @@ from rich.cells import cell_len
 from rich.text import Text
 
 from calm.case import Result, TowResult
-from calm.case.net_result import AnyResult, NetResult
+from calm.case.result import AnyResult, NetResult
 from calm.checks.posture import reaches_the_surface
 from calm.checks.strength import allowable_load
 from calm.drawing import line_picture

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from calm.case import Mooring, Result
     from calm.case.net import Net
-    from calm.case.net_result import NetResult
+    from calm.case.result import NetResult
     from calm.tui.advice import Offer
     from calm.tui.live import View
 
@@ -168,7 +168,7 @@ def _write(pane: LinePane, what: str, path: Path, folder: Path) -> None:
 
 
 def _bill(result: Result | NetResult) -> RenderableType:
-    from calm.case.net_result import legs_of
+    from calm.case.result import legs_of
     from calm.checks.inventory import inventory_of
     from calm.files.mooring_file import STAND_IN
     from calm.quantities import QUANTITIES
