@@ -177,18 +177,12 @@ def solve_and_show(
         result, failure = _solved(file, line)
         mooring = result if isinstance(result, Result) else None
         moored = result if isinstance(result, Result | NetResult) else None
-        outcomes.append(
-            FileOutcome(
-                file,
-                line.file.name,
-                result,
-                failure,
-                explanation=_explained(moored) if moored and explain else None,
-                schematic=_schematic(line, result) if schematic else (),
-                uncertain=drawn_often(mooring) if mooring and drawn_often else None,
-                verbose=verbose,
-            )
-        )
+        outcomes.append(FileOutcome(
+            file, line.file.name, result, failure, verbose=verbose,
+            explanation=_explained(moored) if moored and explain else None,
+            schematic=_schematic(line, result) if schematic else (),
+            uncertain=drawn_often(mooring) if mooring and drawn_often else None,
+        ))  # fmt: skip
 
     def to_csv() -> str:
         from calm.report.result_files import to_csv

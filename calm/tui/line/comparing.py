@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from calm.errors import CalmError
-from calm.files.editing import WorkingFile
+from calm.files.editing import Draft, WorkingFile
 from calm.tui.checking import needed
 from calm.tui.dialogs import Answer, Asked, InputSheet, LongText, Question, ask, choose
 from calm.tui.line.line_pane import LinePane
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from calm.case import Mooring, Result
     from calm.case.net import Net
     from calm.case.result import NetResult
-    from calm.files.editing import Draft
     from calm.tui.advice import Offer
     from calm.tui.live import View
 
