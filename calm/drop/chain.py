@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from calm.drop.band import Band
 from calm.physics.line import Booleans, Floats, Integers, Line
 from calm.physics.reynolds import DragCurve
 from calm.physics.stretch import ElongationCurve
@@ -54,6 +55,11 @@ class BarChain:
     clamp_bar: Integers
     clamp_place: Floats
     afloat: FloatOnChain | None
+
+    @cached_property
+    def band(self) -> Band:
+        """The matrix of its motion."""
+        return Band(len(self.length))
 
 
 def chain_of(line: Line, count: int) -> BarChain:
@@ -220,8 +226,22 @@ class Elements:
 
     @cached_property
     def push(self) -> Floats:
-        """(k, 3) of the wind [N]."""
-        return np.column_stack([self.push_east, self.push_north, 0.0 * self.push_east])
+        """(3, k) of the wind [N]."""
+        return np.stack([self.push_east, self.push_north, 0.0 * self.push_east])
+
+    @cached_property
+    def share(self) -> Floats:
+        """(2, k) of what acts on a load that its bar's upper and its lower node take."""
+        return np.stack([1.0 - self.place, self.place])
+
+    def summed(self, per_load: Floats) -> Floats:
+        """(..., n) over the loads of every bar."""
+        total: Floats = np.add.reduceat(per_load, self._first, axis=-1)
+        return total
+
+    @cached_property
+    def _first(self) -> Integers:
+        return np.flatnonzero(np.diff(self.bar, prepend=-1))
 
     @staticmethod
     def of(rows: list[Element]) -> Elements:

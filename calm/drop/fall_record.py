@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from calm.case import Result
-from calm.case.parts import clamps_in
 from calm.drop.chain import BarChain
 from calm.drop.fall import Motion
 from calm.drop.motion import ChainState, Mover
 from calm.files import Clamp, Piece
+from calm.files.mooring_file import clamps_in
 from calm.physics.line import Floats, Integers
 
 REPORTED_ROLES = ("float", "instrument", "release")
@@ -125,16 +125,15 @@ def end_tensions(mover: Mover, state: ChainState, *, within: bool = False) -> Fl
     In the first moment the anchor pushes what is beside it, where a real line goes slack.
     """
     on = mover.chain.elements
-    loads, axis, _ = mover.loads(state.node, state.velocity, state.tension, mover.variation(state))
-    pull = state.tension[:, np.newaxis] * axis
+    loads, axis, _ = mover.loads(
+        state.node.T, state.velocity.T, state.tension, mover.variation(state)
+    )
     force = loads.force
     if within:
-        force = np.where(((on.place > 0.0) & (on.place < 1.0))[:, np.newaxis], force, 0.0)
-    lower = on.place[:, np.newaxis]
-    above, below = np.zeros_like(pull), np.zeros_like(pull)
-    np.add.at(above, on.bar, (1.0 - lower) * force)
-    np.add.at(below, on.bar, lower * force)
-    ends = np.linalg.norm(np.stack([pull + above, pull - below], axis=1), axis=2)
+        force = np.where((on.place > 0.0) & (on.place < 1.0), force, 0.0)
+    above, below = on.summed(on.share[:, np.newaxis] * force)
+    pull = state.tension * axis
+    ends = np.linalg.norm([pull + above, pull - below], axis=1).T
     return np.where(state.tension[:, np.newaxis] > 0.0, ends, 0.0)
 
 

@@ -33,33 +33,34 @@ class WaterColumn:
 
     @cached_property
     def _rows(self) -> tuple[Floats, Floats]:
-        """Columns u, v, w, density of every level, and their growth per metre below it."""
+        """Rows u, v, w, density at every level, and their growth per metre below it."""
         water = self.water
-        values = np.stack([water.u, water.v, water.w, water.density], axis=1)
-        slopes = np.zeros((len(values) + 1, 4))
-        slopes[1:-1] = np.diff(values, axis=0) / np.diff(water.level)[:, np.newaxis]
+        values = np.stack([water.u, water.v, water.w, water.density])
+        slopes = np.zeros((4, values.shape[1] + 1))
+        slopes[:, 1:-1] = np.diff(values) / np.diff(water.level)
         return values, slopes
 
     def at(self, depth: Floats) -> tuple[Floats, Floats, Floats]:
-        """Current (k, 3), its growth per metre of depth (k, 3), and density (k,)."""
+        """Current (3, k), its growth per metre of depth (3, k), and density (k,)."""
         values, slopes = self._rows
-        interval = np.searchsorted(self.water.level, depth, side="right")
+        interval = self.water.level.searchsorted(depth, side="right")
         origin = np.maximum(interval - 1, 0)
-        slope = slopes[interval]
-        found = values[origin] + slope * (depth - self.water.level[origin])[:, np.newaxis]
-        return found[:, :3], slope[:, :3], found[:, 3]
+        slope = slopes.take(interval, axis=1)
+        found = slope * (depth - self.water.level[origin])
+        found += values.take(origin, axis=1)
+        return found[:3], slope[:3], found[3]
 
 
 @dataclass(frozen=True)
 class Loads:
-    """Forces on the k loads of a chain (k, 3) [N] and what they change by.
+    """Forces on the k loads of a chain and what they change by.
 
     Attributes
     ----------
-    force : (k, 3) [N]
-    by_flow : (k, 3, 3) per metre per second of the water past the load
-    by_axis : (k, 3, 3) per unit of its bar's axis
-    by_height : (k, 3) per metre upward, the current it meets there included
+    force : (3, k) [N]
+    by_flow : (3, 3, k) per metre per second of the water past the load
+    by_axis : (3, 3, k) per unit of its bar's axis
+    by_height : (3, k) per metre upward, the current it meets there included
     """
 
     force: Floats
@@ -83,8 +84,8 @@ def loads_on(
     Parameters
     ----------
     height : (k,) of the loads above the surface [m]
-    velocity : (k, 3) over the ground [m/s]
-    axis : (k, 3) of their bars, unit, downward along the line
+    velocity : (3, k) over the ground [m/s]
+    axis : (3, k) of their bars, unit, downward along the line
     strain : (k,) of their bars
     variation : (k,) how many times its constant drag a smooth body has
     slowest : speed below which drag goes with the speed [m/s]
@@ -95,42 +96,39 @@ def loads_on(
     dense = density / REFERENCE_DENSITY
     grown = dense * (1.0 + 2.0 * on.thinning * (np.sqrt(1.0 + np.maximum(strain, 0.0)) - 1.0))
     lift, stiffness, wet, wetting, push = _afloat(chain, sea, height, density)
-    speed = np.sqrt(np.einsum("ij,ij->i", flow, flow) + slowest**2)
-    along = on.directional * np.einsum("ij,ij->i", flow, axis)
-    across = flow - along[:, np.newaxis] * axis
-    size = np.sqrt(np.einsum("ij,ij->i", across, across) + slowest**2)
+    speed = np.sqrt((flow * flow).sum(axis=0) + slowest**2)
+    along = on.directional * (flow * axis).sum(axis=0)
+    across = flow - along * axis
+    size = np.sqrt((across * across).sum(axis=0) + slowest**2)
     kn, kt = grown * variation * on.normal_drag, on.directional * grown * on.tangential_drag
     square, slope, aside, oblique = _friction(chain, kt, along, speed, slowest)
     sized = kn * size
-    drag = sized[:, np.newaxis] * across + square[:, np.newaxis] * axis
+    drag = sized * across + square * axis
     # d(s n)/dn of the normal drag is s + n n/s; n = V - (V.t) t is at right angles to t
-    held, skewed = wet * sized, (wet * (slope - on.directional * sized))[:, np.newaxis]
-    normal = _outer((wet * kn / size)[:, np.newaxis] * across, across)
-    by_flow = normal + _outer(skewed * axis, axis)
-    by_axis = _outer(skewed * axis, flow) - along[:, np.newaxis, np.newaxis] * normal
-    np.einsum("kii->ki", by_axis)[:] += (wet * square - along * held)[:, np.newaxis]
+    held, skewed = wet * sized, wet * (slope - on.directional * sized) * axis
+    normal = (wet * kn / size * across)[:, np.newaxis] * across
+    by_flow = normal + skewed[:, np.newaxis] * axis
+    by_axis = skewed[:, np.newaxis] * flow - along * normal
+    by_axis[_DIAGONAL] += wet * square - along * held
     if aside is not None:
-        by_flow += _outer((wet * aside)[:, np.newaxis] * axis, flow)
+        by_flow += (wet * aside * axis)[:, np.newaxis] * flow
     if oblique is not None:
-        drag += oblique[:, np.newaxis] * flow
-        by_flow += _outer((wet * oblique / speed**2)[:, np.newaxis] * flow, flow)
+        drag += oblique * flow
+        by_flow += (wet * oblique / speed**2 * flow)[:, np.newaxis] * flow
         held = held + wet * oblique
-    np.einsum("kii->ki", by_flow)[:] += held[:, np.newaxis]
-    force = wet[:, np.newaxis] * drag + push
-    force[:, 2] += lift
+    by_flow[_DIAGONAL] += held
+    force = wet * drag + push
+    force[2] += lift
     if on.lifts:
         raised = dense * on.lift * wet
-        force[:, 2] += raised * speed**2
-        by_flow[:, 2] += 2.0 * raised[:, np.newaxis] * flow
-    by_height = wetting[:, np.newaxis] * drag - np.einsum("ijk,ik->ij", by_flow, shear)
-    by_height[:, 2] += stiffness
+        force[2] += raised * speed**2
+        by_flow[2] += 2.0 * raised * flow
+    by_height = wetting * drag - (by_flow * shear).sum(axis=1)
+    by_height[2] += stiffness
     return Loads(force, by_flow, by_axis, by_height)
 
 
-def _outer(a: Floats, b: Floats) -> Floats:
-    """(k, 3, 3) of the products of two vectors, (k, 3) each."""
-    product: Floats = a[:, :, np.newaxis] * b[:, np.newaxis]
-    return product
+_DIAGONAL = np.arange(3), np.arange(3)
 
 
 def _friction(
@@ -193,7 +191,7 @@ def _afloat(
         )
         wet[i], wetting[i] = drag[1], growth * (drag[2] - drag[0])
         push = push.copy()
-        push[i, :2] += [np.interp(draft, hull.draft, hull.push[:, k]) for k in (0, 1)]
+        push[:2, i] += [np.interp(draft, hull.draft, hull.push[:, k]) for k in (0, 1)]
     return lift, stiffness, wet, wetting, push
 
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from calm.drop.chain import BarChain
 from calm.drop.loads import SLOWEST, Loads, WaterColumn, loads_on
-from calm.physics.line import Floats, Integers
+from calm.physics.line import Floats
 from calm.physics.reynolds import Smooth, drag_variation
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.solve import FallingAnchor
@@ -99,8 +99,7 @@ class Mover:
         slowest = GENTLE if gently else SLOWEST
         nearer = np.inf
         for _ in range(MOST_ROUNDS):
-            change = self._change(state.node, node, tension, variation, step, slowest)
-            moved = np.append(change, 0.0).reshape(-1, 4)
+            moved = self._change(state.node, node, tension, variation, step, slowest)
             farthest = float(np.abs(moved[:, :3]).max())
             if not np.isfinite(farthest):
                 break
@@ -130,17 +129,22 @@ class Mover:
         variation: Floats,
         slowest: float = SLOWEST,
     ) -> tuple[Loads, Floats, Floats]:
-        """The forces on the loads, the axes (n, 3) of the bars and their lengths (n,) [m]."""
-        bar, share = self.chain.elements.bar, self._shares
-        chord = node[1:] - node[:-1]
-        length = np.sqrt(np.einsum("ij,ij->i", chord, chord))
-        axis = chord / length[:, np.newaxis]
+        """The forces on the loads, the axes (3, n) of the bars and their lengths (n,) [m].
+
+        Of nodes and velocities (3, n+1).
+        """
+        on = self.chain.elements
+        bar, (above, below) = on.bar, on.share
+        chord = np.diff(node)
+        length = np.sqrt((chord * chord).sum(axis=0))
+        axis = chord / length
         strain, _ = self.strain(tension)
-        height = share[:, 0] * node[bar, 2] + share[:, 1] * node[bar + 1, 2]
-        moving = share[:, :1] * velocity[bar] + share[:, 1:] * velocity[bar + 1]
+        height = above * node[2].take(bar) + below * node[2].take(bar + 1)
+        moving = above * velocity.take(bar, axis=1) + below * velocity.take(bar + 1, axis=1)
         loads = loads_on(
-            self.chain, self.sea, height, moving, axis[bar], strain[bar], variation, slowest
-        )
+            self.chain, self.sea, height, moving, axis.take(bar, axis=1), strain[bar], variation,
+            slowest,
+        )  # fmt: skip
         return loads, axis, length
 
     def strain(self, tension: Floats) -> tuple[Floats, Floats]:
@@ -159,12 +163,12 @@ class Mover:
         self, node: Floats, velocity: Floats, slowest: float = SLOWEST
     ) -> tuple[Floats, Floats]:
         """Weight and drag of the falling anchor (3,) [N], and its change with velocity (3, 3)."""
-        current, _, density = self.sea.at(-node[-1:, 2])
-        flow = current[0] - velocity[-1]
+        current, _, density = self.sea.at(-node[2, -1:])
+        flow = current[:, 0] - velocity[:, -1]
         k = self.anchor.drag * float(density[0]) / REFERENCE_DENSITY
         speed = float(np.sqrt(flow @ flow + slowest**2))
         force = k * speed * flow - [0.0, 0.0, self.anchor.weight]
-        return force, -k * (speed * _UNIT + np.outer(flow, flow) / speed)
+        return force, -k * (speed * _UNIT + flow[:, np.newaxis] * flow / speed)
 
     def variation(self, state: ChainState) -> Floats:
         """(k,) by how much a smooth body's drag differs from the constant one, as it moved last."""
@@ -177,7 +181,7 @@ class Mover:
                 lever = np.array([1.0 - place, place])
                 depth = -(lever @ node)[2:]
                 current, _, _ = self.sea.at(depth)
-                flow = current[0] - lever @ velocity
+                flow = current[:, 0] - lever @ velocity
                 if on.directional[element]:
                     axis = (node[1] - node[0]) / np.linalg.norm(node[1] - node[0])
                     flow = flow - (flow @ axis) * axis
@@ -195,61 +199,46 @@ class Mover:
         step: float,
         slowest: float,
     ) -> Floats:
-        """Return what nodes and tensions are too much by, one of each after another."""
-        chain, share = self.chain, self._shares
-        velocity = (node - before) / step
+        """Return (n+1, 4) what nodes and tensions are too much by; the last tension is none's."""
+        chain, on = self.chain, self.chain.elements
+        node = np.ascontiguousarray(node.T)
+        velocity = (node - before.T) / step
         loads, axis, length = self.loads(node, velocity, tension, variation, slowest)
         strain, growth = self.strain(tension)
         bars = len(length)
-        # nodes and bars in turn, as the unknowns
-        residual = np.zeros((bars + 1, 4))
-        pull = tension[:, np.newaxis] * axis
-        ends = self._summed(share[:, :, np.newaxis] * loads.force[:, np.newaxis])
-        residual[:-1, :3] += ends[:, 0] + pull
-        residual[1:, :3] += ends[:, 1] - pull
-        residual[:-1, 3] = length - chain.length * (1.0 + strain)
-        turn = (_UNIT - axis[:, :, np.newaxis] * axis[:, np.newaxis]) / length[:, None, None]
-        stiff = tension[:, np.newaxis, np.newaxis] * turn
+        # of nodes and bars in turn, as the unknowns
+        residual = np.zeros((4, bars + 1))
+        pull = tension * axis
+        upper, lower = on.summed(on.share[:, np.newaxis] * loads.force)
+        residual[:3, :-1] = upper + pull
+        residual[:3, 1:] += lower - pull
+        residual[3, :-1] = length - chain.length * (1.0 + strain)
+        stiff = tension / length * (_UNIT[:, :, np.newaxis] - axis[:, np.newaxis] * axis)
         own = loads.by_flow / -step
-        own[:, :, 2] += loads.by_height
-        leaning = loads.by_axis @ turn[chain.elements.bar]
-        # by the upper and by the lower end, each shared between the two
-        by_end = share[:, :, np.newaxis, np.newaxis] * own[:, np.newaxis]
-        by_end[:, 0] -= leaning
-        by_end[:, 1] += leaning
-        blocks = self._summed(share[:, :, None, None, None] * by_end[:, np.newaxis])
-        blocks[:, (0, 1), (0, 1)] -= stiff[:, np.newaxis]
-        blocks[:, (0, 1), (1, 0)] += stiff[:, np.newaxis]
-        diagonal = np.zeros((bars + 1, 3, 3))
-        diagonal[:-1] += blocks[:, 0, 0]
-        diagonal[1:] += blocks[:, 1, 1]
+        own[:, 2] += loads.by_height
+        turned, bar_length = axis.take(on.bar, axis=1), length[on.bar]
+        along = (loads.by_axis * turned).sum(axis=1)
+        leaning = (loads.by_axis - along[:, np.newaxis] * turned) / bar_length
+        # by the place of the upper and of the lower end, each shared between the two
+        by_end = on.share[:, np.newaxis, np.newaxis] * own
+        by_end[0] -= leaning
+        by_end[1] += leaning
+        blocks = on.summed(on.share[:, np.newaxis, np.newaxis, np.newaxis] * by_end)
+        diagonal = np.zeros((3, 3, bars + 1))
+        diagonal[..., :-1] = blocks[0, 0] - stiff
+        diagonal[..., 1:] += blocks[1, 1] - stiff
         if self.bedded:
-            sunk = np.maximum(-self.sea.water.depth - node[:-1, 2], 0.0) / self._sinking
-            residual[:-1, 2] += self._bearing * sunk**2
-            diagonal[:-1, 2, 2] -= 2.0 * self._bearing * sunk / self._sinking
+            sunk = np.maximum(-self.sea.water.depth - node[2, :-1], 0.0) / self._sinking
+            residual[2, :-1] += self._bearing * sunk**2
+            diagonal[2, 2, :-1] -= 2.0 * self._bearing * sunk / self._sinking
         if not self.held:
             force, by_velocity = self.anchor_force(node, velocity, slowest)
-            residual[-1, :3] += force
-            diagonal[-1] += by_velocity / step
-        return self._band.solved(
-            residual, diagonal, (blocks[:, 0, 1], blocks[:, 1, 0]), axis, -chain.length * growth
+            residual[:3, -1] += force
+            diagonal[..., -1] += by_velocity / step
+        beside = blocks[0, 1] + stiff, blocks[1, 0] + stiff
+        return chain.band.solved(
+            residual, diagonal, beside, axis, -chain.length * growth, self._fixed
         )
-
-    def _summed(self, per_element: Floats) -> Floats:
-        """Over the loads of every bar."""
-        total: Floats = np.add.reduceat(per_element, self._first, axis=0)
-        return total
-
-    @cached_property
-    def _first(self) -> Integers:
-        bar = self.chain.elements.bar
-        return np.searchsorted(bar, np.arange(len(self.chain.length)))
-
-    @cached_property
-    def _shares(self) -> Floats:
-        """(k, 2) of what acts on a load that its bar's upper and its lower node take."""
-        place = self.chain.elements.place
-        return np.column_stack([1.0 - place, place])
 
     @cached_property
     def _sinking(self) -> float:
@@ -259,93 +248,14 @@ class Mover:
     def _bearing(self) -> Floats:
         """(n,) of the seabed on a node that has sunk in by `SINKING` [N]."""
         on = self.chain.elements
-        weight = self._summed(np.abs(on.buoyancy))
+        weight = on.summed(np.abs(on.buoyancy))
         weight[1:] += weight[:-1]
         bearing: Floats = np.maximum(0.5 * weight, 1e-4 * self.scale)
         return bearing
 
     @cached_property
-    def _band(self) -> Band:
-        """The matrix, and what of the unknowns is known: where the ends of the chain are held."""
-        bars = len(self.chain.length)
+    def _fixed(self) -> tuple[int, ...]:
+        """The rows of the unknowns that are known: where the ends of the chain are held."""
+        last = 4 * len(self.chain.length)
         upper = () if self.tether is None else (0, 1)
-        lower = (4 * bars, 4 * bars + 1, 4 * bars + 2) if self.held else ()
-        return Band(bars, (*upper, *lower))
-
-
-_SIDE = 6
-"""Diagonals of the band on either side."""
-_MIDDLE = 2 * _SIDE
-"""Row of the main diagonal."""
-
-
-@dataclass(frozen=True)
-class Band:
-    """Where the blocks of a chain's matrix stand.
-
-    Attributes
-    ----------
-    bars : how many the chain has
-    fixed : rows of the unknowns that are known
-    """
-
-    bars: int
-    fixed: tuple[int, ...]
-
-    def solved(
-        self,
-        residual: Floats,
-        diagonal: Floats,
-        beside: tuple[Floats, Floats],
-        axis: Floats,
-        slack: Floats,
-    ) -> Floats:
-        """(4 n + 3,) what the nodes and tensions are too much by.
-
-        Parameters
-        ----------
-        residual : (n+1, 4) of the forces on the nodes and of the lengths of the bars
-        diagonal : (n+1, 3, 3) change of the force on a node with its own place
-        beside : (n, 3, 3) each; that on the node above with the place of the one below, and the
-            other way round
-        axis : (n, 3) of the bars, downward
-        slack : (n,) by how much a bar is longer with its tension, negative
-        """
-        from scipy.linalg.lapack import dgbsv
-
-        size = 4 * self.bars + 3
-        # the rows above the band are for the factors
-        band = np.zeros((3 * _SIDE + 1, size))
-        flat = band.reshape(-1)
-        blocks = (diagonal, *beside, axis, -axis, -axis, axis)
-        for places, block in zip(self._places, blocks, strict=True):
-            flat[places] = block
-        band[_MIDDLE, 3::4] = slack
-        equations = residual.reshape(-1)[:-1]
-        for row in self.fixed:
-            columns = np.arange(max(row - _SIDE, 0), min(row + _SIDE + 1, size))
-            band[_MIDDLE + row - columns, columns] = 0.0
-            band[_MIDDLE, row], equations[row] = 1.0, 0.0
-        _, _, change, singular = dgbsv(_SIDE, _SIDE, band, equations)
-        return np.full(size, np.nan) if singular else change
-
-    @cached_property
-    def _places(self) -> tuple[Integers, ...]:
-        """Return where the blocks stand in the band, flat."""
-        width = 4 * self.bars + 3
-        node = 4 * np.arange(self.bars + 1)[:, np.newaxis] + np.arange(3)
-        pull = 4 * np.arange(self.bars)[:, np.newaxis] + 3
-
-        def at(row: Integers, column: Integers) -> Integers:
-            return (_MIDDLE + row - column) * width + column
-
-        above, below = node[:-1], node[1:]
-        return (
-            at(node[:, :, np.newaxis], node[:, np.newaxis]),
-            at(above[:, :, np.newaxis], below[:, np.newaxis]),
-            at(below[:, :, np.newaxis], above[:, np.newaxis]),
-            at(above, pull),
-            at(below, pull),
-            at(pull, above),
-            at(pull, below),
-        )
+        return (*upper, last, last + 1, last + 2) if self.held else upper
