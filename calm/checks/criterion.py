@@ -12,11 +12,11 @@ from itertools import groupby
 from math import hypot, isnan, nan
 
 from calm.case import Mooring, Result
-from calm.case.parts import clamps_down
 from calm.case.strumming import FACTOR
 from calm.checks.finding import Rule, State, Verdict, at_least, at_most, rule, unknown
 from calm.files import Component, MooringFile, Place, StrummingFactor
 from calm.files.check_limits import LimitKey, limit_keys
+from calm.files.mooring_file import clamps_down
 from calm.units import DIMENSIONS
 
 AT_SURFACE = 0.1
