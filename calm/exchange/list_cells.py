@@ -358,9 +358,9 @@ def _sheets(content: bytes) -> dict[str, SheetRows]:
     import python_calamine
 
     book = python_calamine.load_workbook(io.BytesIO(content))
-    sheets = {name: book.get_sheet_by_name(name).to_python() for name in book.sheet_names}
     return {
-        name: [[_shown(cell) for cell in row] for row in sheet] for name, sheet in sheets.items()
+        name: [[_shown(cell) for cell in row] for row in book.get_sheet_by_name(name).to_python()]
+        for name in book.sheet_names
     }
 
 

@@ -182,9 +182,7 @@ def check_given(sheets: Mapping[str, SheetRows], given: Mapping[str, str], path:
             raise refused(
                 path, unknown(f"--columns: `{what}` is nothing of a piece", what, COLUMNS)
             )
-    cells = {
-        _plain(cell) for rows in sheets.values() for row in rows[:_SEARCHED] for cell in row
-    }  # fmt: skip
+    cells = {_plain(cell) for rows in sheets.values() for row in rows[:_SEARCHED] for cell in row}
     for what, heading in given.items():
         if not any(cell.startswith(_plain(heading)) for cell in cells):
             raise refused(path, f"--columns: no column is called `{heading}` ({what})")
@@ -246,29 +244,15 @@ def _worded(below: SheetRows, index: int) -> bool:
 
 def _resolve(found: dict[str, ListColumn]) -> None:
     """Take a height for a missing length, and a weight beside a buoyancy as that in air."""
-    if (
-        "length" not in found
-        and "height" in found
-        and "above" not in _plain(found["height"].heading)
-        and re.match(
-            r"(height|hauteur|hohe|altura)\b(?!.*(bottom|btm|fond|grund))",
-            _plain_of(found, "height"),
-        )
-    ):
+    plain = {what: _plain(column.heading) for what, column in found.items()}
+    tall = r"(height|hauteur|hohe|altura)\b(?!.*(bottom|btm|fond|grund|above))"
+    if "length" not in found and re.match(tall, plain.get("height", "")):
         found["length"] = found.pop("height")
-    plain_weight = re.match(
-        rf"(weight|poids|gewicht|peso)\b(?!.*{_WET})", _plain_of(found, "weight")
-    )
-    if plain_weight and "buoyancy" in found and "mass" not in found:
+    in_air = re.match(rf"(weight|poids|gewicht|peso)\b(?!.*{_WET})", plain.get("weight", ""))
+    if in_air and "buoyancy" in found and "mass" not in found:
         weight = found.pop("weight")
-        found["mass"] = _column("mass", weight.index, weight.heading)
-        if weight.twin:
-            twin = _column("mass", weight.twin.index, weight.twin.heading)
-            found["mass"] = replace(found["mass"], twin=twin)
-
-
-def _plain_of(found: dict[str, ListColumn], what: str) -> str:
-    return _plain(found[what].heading) if what in found else ""
+        twin = weight.twin and _column("mass", weight.twin.index, weight.twin.heading)
+        found["mass"] = replace(_column("mass", weight.index, weight.heading), twin=twin)
 
 
 def _with_units(rows: SheetRows, i: int) -> list[str]:
@@ -350,9 +334,7 @@ def _plain(text: str, keep: str = "") -> str:
 
 def cell_of(row: list[str], column: ListColumn | None) -> str:
     """Return the cell of a row in a column; "" where it has none."""
-    if column is None or column.index >= len(row):
-        return ""
-    return row[column.index]
+    return row[column.index] if column and column.index < len(row) else ""
 
 
 def decimals_of(cells: SheetRows, headings: ListHeadings, problems: list[str]) -> tuple[str, str]:
