@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from calm.case import Mooring, Result, Tow, TowResult, load
     from calm.case.explain import explain
     from calm.case.net import Net
-    from calm.case.net_result import AnyResult, NetResult
+    from calm.case.result import AnyResult, NetResult
     from calm.case.size import size
     from calm.checks.net_check import check
     from calm.drop.plan import drop_plan
@@ -64,7 +64,7 @@ _HOMES = {
     "Mooring": "calm.case",
     "MotionEstimate": "calm.motion.motion_estimate",
     "Net": "calm.case.net",
-    "NetResult": "calm.case.net_result",
+    "NetResult": "calm.case.result",
     "Result": "calm.case",
     "Tow": "calm.case",
     "TowResult": "calm.case",

@@ -205,12 +205,8 @@ def _rank(each: Listed, words: Sequence[str], others: Sequence[str]) -> int:
     """Return how well a component fits: its id, beginning or end of it, all words in it, in what is
     written of it, in synonyms.
 
-    Of ids that have all words, one that begins with the first of them is nearer.
-
-    Parameters
-    ----------
-    words : small letters
-    others : those that are no sizes
+    Of ids that have all words, one that begins with the first of them is nearer. `others` are the
+    words that are no sizes.
     """
     if not words:
         return 0

@@ -63,39 +63,41 @@ def assemble_line(
     anchor = pieces[-1].component
     moored = isinstance(anchor, Anchor)
     above = pieces[:-1] if moored else pieces
-    flexible = [isinstance(piece.component, Flexible) for piece in above]
-    drags = [drag_of(piece.component, solver) for piece in above]
-    curves = [_drag_curve(piece.component, solver) for piece in above]
+    parts = [piece.component for piece in above]
+    drags = [drag_of(part, solver) for part in parts]
+    curves = [_drag_curve(part, solver) for part in parts]
     if not moored and isinstance(anchor, Sphere) and anchor.cx is None:
         k = drag.sphere_drag(anchor.diameter, TOWED_SPHERE_CX)
         drags[-1], curves[-1] = (k, k, False), None
     clamps = [(i, clamp) for i, piece in enumerate(above) for clamp in piece.clamps]
+    hung = [clamp.component for _, clamp in clamps]
     return Line(
         length=np.array([piece.length or 0.0 for piece in above]),
-        flexible=np.array(flexible),
-        buoyancy=np.array([net_buoyancy(piece.component, gravity) for piece in above]),
-        volume=np.array([piece.component.displaced_volume or 0.0 for piece in above]),
+        flexible=np.array([isinstance(part, Flexible) for part in parts]),
+        buoyancy=np.array([net_buoyancy(part, gravity) for part in parts]),
+        volume=np.array([part.displaced_volume or 0.0 for part in parts]),
         normal_drag=np.array([kn for kn, _, _ in drags]),
         tangential_drag=np.array([kt for _, kt, _ in drags]),
         directional=np.array([directional for _, _, directional in drags]),
-        compliance=np.array([_compliance(piece.component) for piece in above]),
-        thinning=np.array([0.5 if isinstance(p.component, Cable) else 0.0 for p in above]),
+        compliance=np.array(
+            [1.0 / stiff if (stiff := getattr(part, "stiffness", None)) else 0.0 for part in parts]
+        ),
+        thinning=np.array([0.5 if isinstance(part, Cable) else 0.0 for part in parts]),
         clamp_piece=np.array([i for i, _ in clamps]),
         clamp_at=np.array([clamp.at for _, clamp in clamps]),
-        clamp_buoyancy=np.array([net_buoyancy(clamp.component, gravity) for _, clamp in clamps]),
-        clamp_volume=np.array([clamp.component.displaced_volume or 0.0 for _, clamp in clamps]),
-        clamp_drag=np.array([_clamped_drag(clamp.component) for _, clamp in clamps]),
+        clamp_buoyancy=np.array([net_buoyancy(part, gravity) for part in hung]),
+        clamp_volume=np.array([part.displaced_volume or 0.0 for part in hung]),
+        # what is clamped on is dragged as across its axis, whatever the inclination of the line
+        clamp_drag=np.array([drag_of(part)[0] for part in hung]),
         anchor_height=anchor.length if isinstance(anchor, Anchor) else 0.0,
-        lift=np.array([_lift(piece.component) for piece in above]),
-        clamp_lift=np.array([_lift(clamp.component) for _, clamp in clamps]),
-        diameter=np.array(
-            [p.component.diameter if isinstance(p.component, Cable) else 0.0 for p in above]
-        ),
+        lift=np.array([getattr(part, "lift", None) or 0.0 for part in parts]),
+        clamp_lift=np.array([getattr(part, "lift", None) or 0.0 for part in hung]),
+        diameter=np.array([part.diameter if isinstance(part, Cable) else 0.0 for part in parts]),
         friction=Friction(solver.friction),
         strumming=vibration_law(solver),
-        elongation=tuple(_elongation(piece.component) for piece in above),
+        elongation=tuple(map(_elongation, parts)),
         drag_curve=tuple(curves),
-        clamp_drag_curve=tuple(_drag_curve(clamp.component, solver) for _, clamp in clamps),
+        clamp_drag_curve=tuple(_drag_curve(part, solver) for part in hung),
     )
 
 
@@ -171,12 +173,9 @@ def _elongation(component: Component) -> ElongationCurve | None:
 
 def _body_drag(body: Shaped) -> tuple[float, float, bool]:
     if body.made_of is not None:
-        kn = kt = 0.0
-        follows = False
-        for shape in body.made_of:
-            part_kn, part_kt, part_follows = _shape_drag(shape)
-            kn, kt, follows = kn + part_kn, kt + part_kt, follows or part_follows
-        return kn, kt, follows and body.inclination != "insensitive"
+        each = [_shape_drag(shape) for shape in body.made_of]
+        follows = any(along for *_, along in each) and body.inclination != "insensitive"
+        return sum(kn for kn, *_ in each), sum(kt for _, kt, _ in each), follows
     if body.drag_measurements is not None:
         kn = drag.measured_drag(
             [measured.speed for measured in body.drag_measurements],
@@ -220,20 +219,6 @@ def with_axial_clamps(line: Line, pieces: Sequence[Piece]) -> Line:
     )
     drags = np.array([axial_drag_of(each) for each in clamps])
     return replace(line, clamp_drag=drags, clamp_drag_curve=curves)
-
-
-def _clamped_drag(component: Component) -> float:
-    """K of a clamped-on instrument: its normal drag, whatever the inclination of the line."""
-    return drag_of(component)[0]
-
-
-def _lift(component: Component) -> float:
-    return (component.lift or 0.0) if isinstance(component, Shaped) else 0.0
-
-
-def _compliance(component: Component) -> float:
-    stiffness = getattr(component, "stiffness", None)
-    return 1.0 / stiffness if stiffness else 0.0
 
 
 def cable_drag(component: FlexibleComponent, solver: Solver) -> tuple[float, float]:
@@ -291,15 +276,6 @@ def vibration_law(solver: Solver) -> BourgetMarichal | None:
     return BourgetMarichal(keys.a1, keys.b1, keys.c1, rest=keys.c0, strouhal=keys.strouhal)
 
 
-def _first_float(pieces: Sequence[Piece]) -> Piece | None:
-    """The first rigid buoyant piece of a line, None where there is none."""
-    for piece in pieces:
-        component = piece.component
-        if isinstance(component, Rigid) and component.net_buoyancy > 0.0:
-            return piece
-    return None
-
-
 def assemble_floating(
     pieces: Sequence[Piece], environment: Environment, water: Water
 ) -> Floating | None:
@@ -309,9 +285,10 @@ def assemble_floating(
     A hull is that of the component's `hull`, or of its kind for a sphere and a cylinder; without
     mass or volume there is no draft, and only a `k_surface` makes a difference.
     """
-    piece = _first_float(pieces)
-    component = None if piece is None else piece.component
-    if not isinstance(component, Rigid):
+    parts = (piece.component for piece in pieces)
+    floats = (part for part in parts if isinstance(part, Rigid) and part.net_buoyancy > 0.0)
+    component = next(floats, None)
+    if component is None:
         return None
     hull = _hull(component)
     if hull is None and component.k_surface is None:

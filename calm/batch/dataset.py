@@ -15,33 +15,18 @@ from calm.batch.profiles import Profiles
 from calm.batch.statuses import STATUSES
 from calm.case import Mooring
 from calm.case.net import Net
-from calm.case.parts import clamps_down
-from calm.dataset.netcdf import (
-    CLAMPS,
-    OF_CLAMP,
-    OF_COMPONENT,
-    OF_ENDS,
-    OF_NODE,
-    PIECES,
-    Attributes,
-    ResultLayout,
-    Variable,
-    down_the_line,
-    labels,
-    numbers,
-    of_net,
-    origin,
-    station,
-)
+from calm.dataset import netcdf
+from calm.dataset.netcdf import CLAMPS, OF_CLAMP, ResultLayout, Variable, labels, numbers, station
 from calm.files import Clamp
 from calm.files.legs import leg_numbers
+from calm.files.mooring_file import clamps_down
 from calm.files.rigid import Body
 from calm.physics.line import Floats
 
 if TYPE_CHECKING:
     from calm.records.record import Record
 
-_ALONG = {"component": OF_COMPONENT, "clamp": OF_CLAMP, "node": OF_NODE}
+_ALONG = {"component": netcdf.OF_COMPONENT, "clamp": OF_CLAMP, "node": netcdf.OF_NODE}
 _LABELLED = {"component": "component_label", "clamp": "clamp_label", "node": "node_distance"}
 _TIME_UNITS = (("seconds", 10**9), ("milliseconds", 10**6), ("nanoseconds", 1))
 
@@ -85,7 +70,7 @@ def layout_of(mooring: Mooring | Net, record: Record, shape: ShapeNodes | None) 
     variables = [
         time_axis(record.time, "time of the profile"),
         *of_station,
-        labels("component_label", "component", [piece.label for piece in pieces], PIECES),
+        labels("component_label", "component", [piece.label for piece in pieces], netcdf.PIECES),
     ]  # fmt: skip
     if clamps:
         sizes["clamp"] = len(clamps)
@@ -99,11 +84,11 @@ def layout_of(mooring: Mooring | Net, record: Record, shape: ShapeNodes | None) 
             variables += numbers(("time", dimension), quantities, beside)
     legs = mooring.file.legs
     along = ("time", "leg") if legs else ("time",)
-    variables += numbers(along, OF_ENDS, where.strip())
+    variables += numbers(along, netcdf.OF_ENDS, where.strip())
     if legs:
         sizes["leg"], own = len(legs), leg_numbers(mooring.file)
         of_clamps = [own[piece.index] for piece in pieces for _ in piece.clamps]
-        variables = of_net(variables, [leg.name for leg in legs], own, of_clamps)
+        variables = netcdf.of_net(variables, [leg.name for leg in legs], own, of_clamps)
     variables.append(
         Variable("status", ("time",), "|i1", {
             "standard_name": "status_flag", "long_name": "whether there is an equilibrium",
@@ -111,10 +96,10 @@ def layout_of(mooring: Mooring | Net, record: Record, shape: ShapeNodes | None) 
             "coordinates": where.strip(),
         })
     )  # fmt: skip
-    variables += down_the_line(sizes)
+    variables += netcdf.down_the_line(sizes)
     file = mooring.file
-    attributes: Attributes = {
-        **origin(file.path, file.name, file.description, "batch"),
+    attributes: netcdf.Attributes = {
+        **netcdf.origin(file.path, file.name, file.description, "batch"),
         "title": f"{file.name or Path(file.path).stem}: the mooring in every current profile of a "
         "record",
         "currents": "; ".join(f"{key}: {value}" for key, value in record.source.items()),

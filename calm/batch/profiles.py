@@ -12,25 +12,17 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from calm.assemble import assemble_water
+from calm.batch import solving
 from calm.batch.net_profiles import NetProfiles
-from calm.batch.solving import (
-    LACKS_ROOM,
-    OF_CLAMP,
-    OF_ENDS,
-    OF_PIECE,
-    ProfileArrays,
-    Results,
-    levels_for,
-    solve_rows,
-)
+from calm.batch.solving import LACKS_ROOM, OF_CLAMP, OF_ENDS, OF_PIECE, ProfileArrays, Results
 from calm.batch.statuses import STATUSES, implausible, status_of
 from calm.batch.threads import processors
 from calm.case import Mooring
 from calm.case.measure import clamps_of, components_of
 from calm.case.net import Net
-from calm.case.parts import clamps_down
 from calm.dataset import netcdf
 from calm.files import CurrentTable
+from calm.files.mooring_file import clamps_down
 from calm.physics.compiled import by_address, entry
 from calm.physics.line import Floats, Integers, Water
 from calm.solve import Status
@@ -278,7 +270,7 @@ class Batch:
         """Solve profiles, with room for so many segments; with more where that is too little."""
         line, water = mooring.line, self.water
         depth, *parts = current
-        on = levels_for(depth.shape[1], water)
+        on = solving.levels_for(depth.shape[1], water)
         problem = problem_of(
             line, water, mooring.settings, compiled=True, rough=True, room=room,
             intervals=len(on.intervals),
@@ -300,7 +292,7 @@ class Batch:
         )
         find = by_address(find_asked, AskedSearch(search, referee))
         given = (find, search, referee, paper, depth, *parts, rows, endings)
-        entry(solve_rows, *given)(*given)
+        entry(solving.solve_rows, *given)(*given)
         again = np.flatnonzero(endings == LACKS_ROOM)
         if again.size:
             mine = depth if len(depth) == 1 else depth[again]

@@ -10,19 +10,8 @@ from pathlib import Path
 from threading import Event, Timer
 from typing import TYPE_CHECKING, TypeVar
 
+from calm.batch import finished
 from calm.batch.dataset import layout_of, nodes_of
-from calm.batch.finished import (
-    ENDINGS,
-    clear,
-    finish,
-    is_finished,
-    left_behind,
-    locked,
-    readable,
-    statuses_of,
-    store_folder,
-    stored_result,
-)
 from calm.batch.profiles import Batch
 from calm.batch.statuses import Ending, endings
 from calm.batch.threads import Stopped, go_on, processors
@@ -136,7 +125,7 @@ def run_batch(
             work.on_cluster(scheduler, say)
         except UsageError:
             if not work.counts:
-                clear(output)
+                finished.clear(output)
             raise
 
     return run_kept(output, identify, begin, solve, say)
@@ -166,29 +155,29 @@ def run_kept(
     UsageError
         As `run_batch`.
     """
-    if output.suffix not in ENDINGS:
+    if output.suffix not in finished.ENDINGS:
         raise UsageError(f"cannot write {output}: the name of a result must end in .nc or .zarr")
-    folder = store_folder(output)
+    folder = finished.store_folder(output)
     identity, work = "", None
     try:
         with _reported_when_long("reading the whole record, to check that it is unchanged", say):
             identity = identify()
-        if is_finished(output, identity):
-            if left_behind(output):
-                with suppress(UsageError), locked(folder, say):
-                    clear(output)
+        if finished.is_finished(output, identity):
+            if finished.left_behind(output):
+                with suppress(UsageError), finished.locked(folder, say):
+                    finished.clear(output)
             return _found(output)
-        with locked(folder, say):
-            if is_finished(output, identity):  # somebody else has done it meanwhile
-                clear(output)
+        with finished.locked(folder, say):
+            if finished.is_finished(output, identity):  # somebody else has done it meanwhile
+                finished.clear(output)
                 return _found(output)
             work = begin(folder, identity)
             _complete(work, output, solve, say)
-            clear(output)
+            finished.clear(output)
     except (KeyboardInterrupt, Stopped, OSError, MemoryError) as error:
         if work is None:
             return BatchOutcome({}, False, _reason(error))
-        if not is_finished(output, identity):
+        if not finished.is_finished(output, identity):
             return BatchOutcome(work.counts, False, _reason(error))
     return BatchOutcome(work.counts, True)
 
@@ -200,7 +189,7 @@ def _complete(
     for _ in range(ATTEMPTS):
         solve(work)
         go_on(work.stop)
-        damaged = finish(work.store, output, lambda: go_on(work.stop))
+        damaged = finished.finish(work.store, output, lambda: go_on(work.stop))
         if not damaged:
             return
         work.forget(damaged)
@@ -210,8 +199,8 @@ def _complete(
 
 def _found(output: Path) -> BatchOutcome:
     """Of a finished result."""
-    with stored_result(output) as result, readable(output):
-        return BatchOutcome(statuses_of(result), True)
+    with finished.stored_result(output) as result, finished.readable(output):
+        return BatchOutcome(finished.statuses_of(result), True)
 
 
 def _block_for(count: int) -> int:

@@ -8,24 +8,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from calm.case.attribution import (
-    FAIR,
-    Attribution,
-    SolverPart,
-    attribute,
-    of_a_line,
-    of_a_net,
-    with_drag,
-)
+from calm.case import attribution
 from calm.case.draws import Draw, drawn_water
 from calm.case.mooring import Mooring
 from calm.case.net import Net
-from calm.case.net_result import NetResult, legs_of
-from calm.case.parts import TOP, clamps_in, one_part
+from calm.case.parts import TOP, one_part
+from calm.case.result import NetResult, legs_of
 from calm.case.result_tables import ColumnTable
 from calm.case.targets import Figures, figures_of, leg_at
 from calm.errors import NoEquilibrium, UsageError
 from calm.files import Place
+from calm.files.mooring_file import clamps_in
 from calm.physics.line import Floats, Line, Water
 from calm.solve import expect_many, solve_mooring
 
@@ -184,7 +177,7 @@ def explain(result: Result | NetResult, label: str | None = None) -> Explanation
         miss = float(np.abs(shares.miss[columns]).max()) if mooring.water.moving else 0.0
         for name, column in zip(quantities, columns, strict=True):
             without_drag[name] = 0.0 if name == "knockdown" else float(shares.start[column])
-        if miss > FAIR:
+        if miss > attribution.FAIR:
             notes.append(
                 f"The shares are approximate: they do not grow steadily with the drag ({miss:.0%} "
                 "were scaled)."
@@ -229,24 +222,24 @@ def _notes(
 
 def _shares(
     result: Result | NetResult, figures: Figures, stands: bool, place: Place
-) -> Attribution:
+) -> attribution.Attribution:
     mooring, point = result.mooring, _point(result, place)
     lines = [leg.mooring.line for leg in legs_of(result)]
     whole = np.array([figures.depth, figures.excursion, figures.used_buoyancy])
     start = None
     if isinstance(mooring, Net):
-        near = of_a_net(mooring, point)
+        near = attribution.of_a_net(mooring, point)
         if stands:
-            bare = [with_drag(line, 0.0) for line in lines]
+            bare = [attribution.with_drag(line, 0.0) for line in lines]
             start = near(bare)(0, bare[0])
-        return attribute(lines, near, start, whole)
+        return attribution.attribute(lines, near, start, whole)
     if stands:
         assert figures.knockdown is not None
         start = np.array([figures.depth - figures.knockdown, 0.0, 1.0])
-    return attribute(lines, of_a_line(mooring.water, point), start, whole)
+    return attribution.attribute(lines, attribution.of_a_line(mooring.water, point), start, whole)
 
 
-def _point(result: Result | NetResult, place: Place) -> SolverPart:
+def _point(result: Result | NetResult, place: Place) -> attribution.SolverPart:
     """Leg, piece and clamp, or -1, by which the solver knows a part."""
     leg = leg_at(result, place)
     pieces, own = leg.file.pieces, replace(place, clamp=-1)
@@ -256,7 +249,7 @@ def _point(result: Result | NetResult, place: Place) -> SolverPart:
     return number, index, clamps.index(place) if place.is_clamp else -1
 
 
-def _causes(result: Result | NetResult, shares: Attribution) -> Causes:
+def _causes(result: Result | NetResult, shares: attribution.Attribution) -> Causes:
     legs = legs_of(result)
     labels = []
     for leg, piece, clamp in shares.parts:
@@ -274,7 +267,7 @@ def _causes(result: Result | NetResult, shares: Attribution) -> Causes:
     )
 
 
-def _drags(result: Result | NetResult, parts: list[SolverPart]) -> Floats:
+def _drags(result: Result | NetResult, parts: list[attribution.SolverPart]) -> Floats:
     """(p,) size of the horizontal force of the water on each part [N]."""
     mooring = result.mooring
     if isinstance(mooring, Net):
@@ -294,7 +287,7 @@ def _drags(result: Result | NetResult, parts: list[SolverPart]) -> Floats:
 def _variations(mooring: Mooring | Net) -> Iterator[tuple[str, Mooring | Net]]:
     percent = f"{CHANGE:.0%}".replace("%", " %")
     yield f"buoyancy +{percent}", _with(mooring, lambda line: _with_buoyancy(line, 1.0 + CHANGE))
-    yield f"drag −{percent}", _with(mooring, lambda line: with_drag(line, 1.0 - CHANGE))
+    yield f"drag −{percent}", _with(mooring, lambda line: attribution.with_drag(line, 1.0 - CHANGE))
     for sign, share in (("+", 1.0 + CHANGE), ("−", 1.0 - CHANGE)):
         flow = drawn_water(mooring.water, Draw(share))
         yield f"current {sign}{percent}", _with(mooring, lambda line: line, flow)

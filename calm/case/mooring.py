@@ -10,16 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from calm.assemble import assemble_floating, assemble_line, assemble_water
+from calm.case import parts
 from calm.case.measure import anchor_weight_of, result_of
 from calm.case.memory import Forgetful, Memory
-from calm.case.parts import (
-    Origin,
-    OtherEnvironment,
-    ReadFromFile,
-    as_read,
-    below_the_seabed,
-    naming_the_piece,
-)
 from calm.case.profilers import profilers_of
 from calm.case.result import Result
 from calm.case.tow import Tow
@@ -45,17 +38,21 @@ def load_line(
     InputError: with every mistake of the file, each with its line and column; of a net, that it is
     one.
     """
-    origin = Origin(path, environment, tuple(Path(each) for each in catalogs), text)
+    origin = parts.Origin(path, environment, tuple(Path(each) for each in catalogs), text)
     return line_of(origin.read(), origin)
 
 
-def line_of(file: MooringFile, origin: Origin) -> Mooring | Tow:
+def line_of(file: MooringFile, origin: parts.Origin) -> Mooring | Tow:
     """Return the mooring or the tow of a file, which knows what it was read from."""
-    return as_read(Mooring, file, origin) if file.tow is None else as_read(Tow, file, origin)
+    return (
+        parts.as_read(Mooring, file, origin)
+        if file.tow is None
+        else parts.as_read(Tow, file, origin)
+    )
 
 
 @dataclass(frozen=True, init=False)
-class Mooring(ReadFromFile):
+class Mooring(parts.ReadFromFile):
     """A mooring as read from its file; `line` and `water` are what the solver takes.
 
     They follow from the file where they are not given. `for_surface` says whether it is meant to
@@ -69,7 +66,7 @@ class Mooring(ReadFromFile):
     memory: Memory = field(repr=False, compare=False)
     _line: Line | None = field(repr=False, compare=False)
     _water: Water | None = field(repr=False, compare=False)
-    origin: Origin | None = field(default=None, repr=False, compare=False)
+    origin: parts.Origin | None = field(default=None, repr=False, compare=False)
 
     def __init__(
         self,
@@ -112,7 +109,7 @@ class Mooring(ReadFromFile):
             line = replace(line, floating=floating)
         for piece in self.file.pieces:
             if piece.fit_top_depth is not None:
-                with naming_the_piece(self.file.pieces):
+                with parts.naming_the_piece(self.file.pieces):
                     length = self.memory.of(
                         fit_length, line, self.water, piece.index, piece.fit_top_depth,
                         self.settings,
@@ -144,7 +141,7 @@ class Mooring(ReadFromFile):
         """Return another line in the same water, meant for what this one is meant for."""
         return Mooring(file, self.for_surface, self.memory, water=self._water)
 
-    def solve(self, environment: OtherEnvironment | None = None) -> Result:
+    def solve(self, environment: parts.OtherEnvironment | None = None) -> Result:
         """Find the static equilibrium, in another of its environments where one is given.
 
         NoEquilibrium: with status, message and advice, where there is none that passes every check.
@@ -160,7 +157,7 @@ class Mooring(ReadFromFile):
 
         NoEquilibrium: as `solve` does.
         """
-        with naming_the_piece(self.file.pieces):
+        with parts.naming_the_piece(self.file.pieces):
             solution = self.memory.of(solve_mooring, self.line, water, self.settings)
         self._refuse_a_lifted_anchor(solution)
         self._refuse_a_heap(solution)
@@ -230,7 +227,7 @@ def refuse_in_the_slope(file: MooringFile, solution: Solution, depth: float) -> 
     """
     if file.environment.seabed is None:
         return
-    below = np.nan_to_num(below_the_seabed(file, solution, depth), nan=-np.inf)
+    below = np.nan_to_num(parts.below_the_seabed(file, solution, depth), nan=-np.inf)
     lying = max(0.0, *below[solution.hanging :].tolist())
     worst = int(np.argmax(below[: solution.hanging + 1]))
     if below[worst] > lying + solution.depth_error + 1e-6 * depth:

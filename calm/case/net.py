@@ -15,9 +15,8 @@ import numpy as np
 from calm.assemble import assemble_water
 from calm.case.measure import result_of
 from calm.case.mooring import Mooring, line_of, refuse_in_the_slope
-from calm.case.net_result import EndLoad, NetResult, NodePlace
 from calm.case.parts import Origin, OtherEnvironment, ReadFromFile, as_read, naming_the_piece
-from calm.case.result import Accuracy, AnchorLoad, Result
+from calm.case.result import Accuracy, AnchorLoad, EndLoad, NetResult, NodePlace, Result
 from calm.case.tow import Tow
 from calm.errors import NoEquilibrium
 from calm.files import MooringFile, Piece

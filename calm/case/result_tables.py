@@ -258,6 +258,10 @@ class Shape:
         """Return how many nodes there are."""
         return f"Shape({len(self.depth)} nodes)"
 
+    def to_dict(self) -> dict[str, list[float]]:
+        """Return the columns as lists of plain numbers."""
+        return {name: column.tolist() for name, column in vars(self).items()}
+
     def to_pandas(self) -> pandas.DataFrame:
         """Return a pandas data frame with a row a node."""
         import pandas

@@ -10,8 +10,7 @@ from typing import Any
 from calm.case.adjustment import Adjustment, parse_change, parse_range
 from calm.case.mooring import Mooring
 from calm.case.net import Net
-from calm.case.net_result import NetResult
-from calm.case.result import Result
+from calm.case.result import NetResult, Result
 from calm.case.targets import Figures, Target, figures_of, parse_target
 from calm.errors import NoEquilibrium, UsageError
 from calm.files import Place

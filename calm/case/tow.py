@@ -12,7 +12,7 @@ from calm.assemble import assemble_line, assemble_water
 from calm.case.measure import clamps_of, components_of, shape_of
 from calm.case.memory import Forgetful, Memory
 from calm.case.parts import Origin, OtherEnvironment, ReadFromFile, cut_like, naming_the_piece
-from calm.case.result import Accuracy, Solved, document_of
+from calm.case.result import Accuracy, Solved, line_document
 from calm.case.strumming import StrummingBand, strumming_of, tow_band
 from calm.case.warnings import warnings_of
 from calm.errors import NoEquilibrium, UsageError, or_why_not
@@ -88,7 +88,7 @@ class TowResult(Solved):
             "tow_point": asdict(self.tow_point),
             "body": asdict(self.body),
         }
-        return document_of(self, ends)
+        return line_document(self, ends)
 
 
 @dataclass(frozen=True, init=False)

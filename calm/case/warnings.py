@@ -7,13 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from calm.case.parts import below_the_seabed, clamps_in, parts_of
+from calm.case.parts import below_the_seabed
 from calm.files import Cable, Component
+from calm.files.mooring_file import clamps_in, parts_of
 from calm.physics.line import Floats
 from calm.physics.materials import fibre_of, published_stiffnesses
 from calm.quantities import say
 from calm.solve import Solution
 from calm.solve.audit import flow_across
+from calm.solve.finish import doubted_depth
 
 if TYPE_CHECKING:
     from calm.case.result import Result
@@ -215,6 +217,18 @@ def _on_the_seabed(result: Result, solution: Solution) -> Iterator[str]:
         yield "In still water the line on the seabed may lie any way: the offset is the greatest."
 
 
+def _far_too_long(result: Result, solution: Solution) -> Iterator[str]:
+    line, depth, pieces = solution.line, solution.water.depth, result.file.pieces
+    times = float(line.length.sum()) / depth
+    lying = solution.element_piece[solution.hanging :].tolist()
+    ropes = [pieces[p].label for p in lying if isinstance(pieces[p].component, Cable)]
+    if solution.surface and not result.file.legs and times > 2.0 and ropes:
+        yield (
+            f"The line is {times:.1f} times as long as the water is deep, and {ropes[0]} lies on "
+            f"the seabed.{doubted_depth(depth)}"
+        )
+
+
 def _other_equilibrium(_: Result | TowResult, solution: Solution) -> Iterator[str]:
     if solution.other_depth is not None:
         lying = solution.other_grounded_length
@@ -289,6 +303,7 @@ _OF_A_MOORING: tuple[Callable[[Result, Solution], Iterator[str]], ...] = (
     _anchor_of_unknown_material,
     _bight,
     _on_the_seabed,
+    _far_too_long,
     _hull_unknown,
     _wind_ignored,
 )

@@ -9,12 +9,12 @@ from datetime import date
 from typing import TYPE_CHECKING, TypeVar
 
 from calm.case import Mooring, Result
-from calm.case.parts import parts_of
 from calm.checks.finding import AS_GIVEN, Finding, Rule, State, Verdict, worst_state
 from calm.errors import NoEquilibrium
 from calm.files import Accept, Clamp, MooringFile, Piece
 from calm.files.check_limits import LimitKey
 from calm.files.definition import EstimatedFigure
+from calm.files.mooring_file import parts_of
 from calm.files.rule_texts import RULES
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from typing import Any
 
 from calm.case import Mooring, Result, Tow, TowResult
 from calm.case.net import Net
-from calm.case.net_result import AnyResult, NetResult
+from calm.case.result import AnyResult, NetResult
 from calm.case.result_tables import ClampRow, ComponentRow, rows_by_place
 from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment

@@ -14,7 +14,7 @@ import numpy as np
 
 from calm.case import Mooring, Result
 from calm.case.net import Net
-from calm.case.net_result import NetResult
+from calm.case.result import NetResult
 from calm.checks.arrangement import clamp_place, hardware, metals, release_present, swivel
 from calm.checks.assess import (
     assessment_of,

@@ -132,6 +132,8 @@ def _write(folder: Path, path: Path, deck: Deck, paper: Paper) -> None:
 
 
 def _contents(deck: Deck, paper: Paper, notes: tuple[str, ...]) -> Mapping[str, bytes]:
+    from calm.checks.finding import State
+    from calm.report import check_summary
     from calm.report.deck_files import (
         deck_csvs,
         deck_report,
@@ -146,8 +148,10 @@ def _contents(deck: Deck, paper: Paper, notes: tuple[str, ...]) -> Mapping[str, 
     texts = {"diagram.svg": diagram_svg(deck, paper), **deck_csvs(deck)}
     if deck.file.legs:
         texts["net.svg"] = net_svg(deck)
-    plan = {"calm": __version__, **_plan(deck), "verdict": _verdict(deck)}
-    texts["plan.json"] = to_json([plan])
+    counts = check_summary.counted_states(deck.assessment.all_findings())
+    fails, unknown = counts[State.FAIL], counts[State.UNKNOWN]
+    verdict = {"state": str(deck.assessment.state), "fails": fails, "unknown": unknown}
+    texts["plan.json"] = to_json([{"calm": __version__, **_plan(deck), "verdict": verdict}])
     return {
         "deck.pdf": printed(deck_report(deck, paper, notes), paper, least=7.5),
         "deck.xlsx": deck_workbook(deck),
@@ -166,16 +170,6 @@ def _plan(deck: Deck) -> dict[str, Any]:
     if isinstance(deck.plan, NoEquilibrium):
         return {"name": deck.file.name, **deck.plan.to_dict()}
     return deck.plan.to_dict()
-
-
-def _verdict(deck: Deck) -> dict[str, Any]:
-    """What the design check says of the mooring that is laid."""
-    from calm.checks.finding import State
-    from calm.report.check_summary import counted_states
-
-    counts = counted_states(deck.assessment.all_findings())
-    state = str(deck.assessment.state)
-    return {"state": state, "fails": counts[State.FAIL], "unknown": counts[State.UNKNOWN]}
 
 
 def _signs_that_are_lacking(deck: Deck) -> tuple[str, ...]:
@@ -214,17 +208,13 @@ def _folders(designs: Sequence[DesignFile], output: Path) -> list[Path]:
     """
     if len(designs) == 1:
         return [output]
-    folders = [output / _file_name(design.name) for design in designs]
+    # signs that systems refuse become a stroke
+    plain = (re.sub(r'[\x00-\x1f<>:"/\\|?*]+', "-", each.name).strip(" .") for each in designs)
+    folders = [output / (name or "mooring") for name in plain]
     for folder in folders:
         if [str(one).casefold() for one in folders].count(str(folder).casefold()) > 1:
             raise UsageError(f"two moorings would go to {folder}; give them other names")
     return folders
-
-
-def _file_name(name: str) -> str:
-    """A name as a folder may have it: signs that systems refuse become a stroke."""
-    plain = re.sub(r'[\x00-\x1f<>:"/\\|?*]+', "-", name).strip(" .")
-    return plain or "mooring"
 
 
 DEFAULT_SPEED = "1500 m/s"

@@ -106,20 +106,12 @@ def solve(
 
     outputs = Outputs(json=json)
     known = quantities(
-        weight=(weight, "force per length"),
-        k=(k, "number"),
-        diameter=(diameter, "length"),
-        cd=(cd, "number"),
-        speed=(speed, "speed"),
-        density=(density, "density"),
-        phi_a=(phi_a, "angle"),
-        phi_b=(phi_b, "angle"),
-        tension_a=(tension_a, "force"),
-        tension_b=(tension_b, "force"),
-        height=(height, "length"),
-        distance=(distance, "length"),
-        length=(length, "length"),
-    )
+        weight=(weight, "force per length"), k=(k, "number"), diameter=(diameter, "length"),
+        cd=(cd, "number"), speed=(speed, "speed"), density=(density, "density"),
+        phi_a=(phi_a, "angle"), phi_b=(phi_b, "angle"),
+        tension_a=(tension_a, "force"), tension_b=(tension_b, "force"),
+        height=(height, "length"), distance=(distance, "length"), length=(length, "length"),
+    )  # fmt: skip
     cable = {name: known.pop(name) for name in _CABLE if name in known}
     for name in known.keys() & {"phi_a", "phi_b"}:
         known[name] = math.radians(known[name])

@@ -108,8 +108,13 @@ def check(
         for notice in dict.fromkeys((*of_files, *assessment.notices)):
             narrate(f"{design.path}: {notice}")
     drawings = [each.drawn for each in judged if each.drawn is not None]
-    if earlier is not None and against is not None:
-        drawings = [_beside(against, earlier, designs[0], assessments[0])]
+    if earlier is not None:
+        from calm.checks.comparison import comparison_of
+        from calm.report.check_report import mooring_section
+
+        names = str(against), str(designs[0].path)
+        compared = comparison_of(names, earlier, designs[0].moorings[0])
+        drawings = [_drawn(mooring_section(assessments[0], compared), 1)]
     _answer(assessments, drawings, outputs, report)
     return gravest(_code(each, allow_unknown) for each in assessments)
 
@@ -162,17 +167,6 @@ class CheckedMooring(NamedTuple):
 
     assessment: Assessment
     drawn: DrawnSection | None
-
-
-def _beside(
-    path: Path, earlier: Mooring | Net, design: DesignFile, assessment: Assessment
-) -> DrawnSection:
-    """The section of a mooring, with what differs from an earlier design."""
-    from calm.checks.comparison import comparison_of
-    from calm.report.check_report import mooring_section
-
-    names = str(path), str(design.path)
-    return _drawn(mooring_section(assessment, comparison_of(names, earlier, design.moorings[0])), 1)
 
 
 def _drawn(section: Section, number: int) -> DrawnSection:

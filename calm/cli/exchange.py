@@ -77,9 +77,8 @@ def import_(
 
     if not files:
         raise UsageError("calm import needs a file")
-    options = ImportOptions(
-        _pairs("--define", define or []), _columns(columns), elements, allow_include
-    )
+    headings = _pairs("--columns", columns.split(",") if columns else [])
+    options = ImportOptions(_pairs("--define", define or []), headings, elements, allow_include)
     targets = _targets(files, output)
     if json is not None and json != STDOUT:
         check_destination(json)
@@ -125,10 +124,6 @@ def _pairs(option: str, texts: list[str]) -> dict[str, str]:
             raise UsageError(f"{option}: `{text}` is not NAME=VALUE")
         pairs[name.strip()] = value.strip()
     return pairs
-
-
-def _columns(text: str | None) -> dict[str, str]:
-    return _pairs("--columns", text.split(",")) if text else {}
 
 
 def _is_folder(files: tuple[Path, ...], output: Path) -> bool:

@@ -83,9 +83,8 @@ def grid(
     from calm.motion.sensors import parse_flags
     from calm.records.instrument_series import files_given, read_series
     from calm.records.measured_quantities import QUANTITIES_MEASURED, chosen_quantities
-    from calm.report.folder import check_folder, printed, write_report
+    from calm.report.folder import check_folder, write_pages
     from calm.report.grid_report import grid_part, grid_report
-    from calm.report.html import page
 
     if method not in METHODS:
         raise UsageError(not_among("--method", method, METHODS))
@@ -118,8 +117,7 @@ def grid(
     )
     show_parts(grid_part(fields))
     if report is not None:
-        said = grid_report(output, fields, called, wanted)
-        write_report(report, {"grid.html": page(said).encode(), "grid.pdf": printed(said)})
+        write_pages(report, "grid", grid_report(output, fields, called, wanted))
     return ExitCode.DONE
 
 

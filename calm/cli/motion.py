@@ -132,8 +132,7 @@ def motion(
     from calm.motion.motion_estimate import RecoveredMooring
     from calm.motion.study import series_of
     from calm.records.instrument_series import split_label
-    from calm.report.folder import check_folder, printed, write_report
-    from calm.report.html import page
+    from calm.report.folder import check_folder, write_pages
     from calm.report.motion_report import motion_document, motion_part, motion_report
 
     if workers is not None and workers < 1:
@@ -196,8 +195,8 @@ def motion(
                 write_copies(instruments, result, apart, copy, inputs, recovery.source)
     name = mooring.file.name or file.stem
     if report is not None:
-        said = motion_report(study, series, recovery.measured.time, name, recovery.notes)
-        write_report(report, {"motion.html": page(said).encode(), "motion.pdf": printed(said)})
+        given = recovery.measured.time, name, recovery.notes
+        write_pages(report, "motion", motion_report(study, series, *given))
     outputs.write_answer(lambda: motion_document(study, name), motion_part(study, name))
     return code
 

@@ -156,10 +156,7 @@ def speed_range(text: str) -> list[float]:
             complaints.append(f"`{part.strip()}` {error}")
     if complaints:
         raise UsageError(f"--speeds: {'; '.join(complaints)}")
-    return _steps(text, *values)
-
-
-def _steps(text: str, first: float, last: float, step: float) -> list[float]:
+    first, last, step = values
     if first <= 0.0:
         raise UsageError(f"--speeds: `{text}` begins at {first:g} m/s; a tow needs a speed above 0")
     if last < first:

@@ -17,7 +17,7 @@ from calm.version import __version__
 
 if TYPE_CHECKING:
     from calm.case.explain import Explanation
-    from calm.case.net_result import AnyResult
+    from calm.case.result import AnyResult
     from calm.case.uncertain import Uncertain
     from calm.cli.tow import TabulatedTow
     from calm.drawing.schematic.in_terminal import TerminalSchematic
@@ -180,15 +180,8 @@ class Outputs:
     def write_answer(self, document: Callable[[], dict[str, Any]], part: ReportPart | None) -> None:
         """Write what a command without files answers: `json`, and the part unless that is shown.
 
-        Parameters
-        ----------
-        document : makes the JSON object; called only where it was asked for. The version of CALM,
-            and with it the units, are added where it has none
-
-        Raises
-        ------
-        UsageError
-            The system refuses to write.
+        What makes the document is called only where that was asked for; the version of CALM, and
+        with it the units, are added where it has none. UsageError: the system refuses to write.
         """
         from calm.report.folder import write_file
         from calm.report.result_files import to_json

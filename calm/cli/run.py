@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from calm.case import Mooring, Result, Tow
     from calm.case.explain import Explanation
     from calm.case.net import Net
-    from calm.case.net_result import AnyResult, NetResult
+    from calm.case.result import AnyResult, NetResult
     from calm.case.uncertain import Uncertain
     from calm.drawing.schematic.in_terminal import TerminalSchematic
 
@@ -169,7 +169,7 @@ def solve_and_show(
     verbose : say how each solution was reached
     """
     from calm.case import Result
-    from calm.case.net_result import NetResult
+    from calm.case.result import NetResult
 
     drawn_often = None if draws is None else _to_draw_often(*draws)
     outcomes = []
@@ -177,18 +177,12 @@ def solve_and_show(
         result, failure = _solved(file, line)
         mooring = result if isinstance(result, Result) else None
         moored = result if isinstance(result, Result | NetResult) else None
-        outcomes.append(
-            FileOutcome(
-                file,
-                line.file.name,
-                result,
-                failure,
-                explanation=_explained(moored) if moored and explain else None,
-                schematic=_schematic(line, result) if schematic else (),
-                uncertain=drawn_often(mooring) if mooring and drawn_often else None,
-                verbose=verbose,
-            )
-        )
+        outcomes.append(FileOutcome(
+            file, line.file.name, result, failure, verbose=verbose,
+            explanation=_explained(moored) if moored and explain else None,
+            schematic=_schematic(line, result) if schematic else (),
+            uncertain=drawn_often(mooring) if mooring and drawn_often else None,
+        ))  # fmt: skip
 
     def to_csv() -> str:
         from calm.report.result_files import to_csv
@@ -249,7 +243,7 @@ def _schematic(
 ) -> tuple[TerminalSchematic, ...]:
     """Draw a line, or its legs, in the signs that the standard output can carry."""
     from calm.case.net import Net
-    from calm.case.net_result import NetResult
+    from calm.case.result import NetResult
     from calm.drawing.schematic.in_terminal import TerminalSchematic, can_carry
 
     plain = not can_carry(getattr(sys.stdout, "encoding", None))

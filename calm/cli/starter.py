@@ -235,18 +235,13 @@ def build(
         if not 0.0 <= idle_timeout < inf:
             raise UsageError(f"--idle-timeout: {idle_timeout} is not a number of minutes from 0")
         return _serve(file, environment, catalog or [], port, allow_host or [], 60.0 * idle_timeout)
-    if not _has_terminal():
+    # it draws and reads keys in a terminal, or in the browser that started it
+    terminal = all(stream is not None and stream.isatty() for stream in (sys.stdin, sys.stderr))
+    if not (terminal or os.environ.get("TEXTUAL_DRIVER")):
         raise UsageError(_NO_TERMINAL)
     from calm.tui.start import build
 
     return ExitCode(build(file, environment, catalog or []))
-
-
-def _has_terminal() -> bool:
-    """Whether it can draw and read keys: in a terminal, or in the browser that started it."""
-    if os.environ.get("TEXTUAL_DRIVER"):
-        return True
-    return all(stream is not None and stream.isatty() for stream in (sys.stdin, sys.stderr))
 
 
 def _serve(

@@ -229,16 +229,12 @@ def strumming(
     from calm.report.tabulation import bare_cable_document, bare_cable_part
 
     outputs = Outputs(json=json)
-    cable = _cable(
-        quantities(
-            angle=(angle, "angle"),
-            speed=(speed, "speed"),
-            diameter=(diameter, "length"),
-            weight=(weight, "force per length"),
-            solid_density=(solid_density, "density"),
-            density=(density, "density"),
-        )
-    )
+    given = quantities(
+        angle=(angle, "angle"), speed=(speed, "speed"), diameter=(diameter, "length"),
+        weight=(weight, "force per length"), solid_density=(solid_density, "density"),
+        density=(density, "density"),
+    )  # fmt: skip
+    cable = _cable(given)
     outputs.write_answer(lambda: bare_cable_document(cable), bare_cable_part(cable))
     return ExitCode.DONE
 

@@ -12,7 +12,7 @@ from calm.cli.streams import ExitCode
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
-    from calm.verification import CaseOutcome, Source
+    from calm.verification import Source
 
 VERIFY_EXAMPLES = """Examples:
 
@@ -51,8 +51,10 @@ def verify(
             raise UsageError("--field takes no words")
         return verify_field(outputs)
     chosen = _chosen(words or [])
-    expect_many(sum(len(source.cases) for source in chosen))
-    findings = _checked(chosen)
+    cases = [case for source in chosen for case in source.cases]
+    expect_many(len(cases))
+    outcomes = iter([case.check() for case in progress(cases, "figures")])
+    findings = [(source, list(islice(outcomes, len(source.cases)))) for source in chosen]
     document = verification_document(findings)
     outputs.write_answer(lambda: document, verification_part(findings))
     return ExitCode.FINDING if document["out"] else ExitCode.DONE
@@ -70,13 +72,6 @@ def _chosen(words: Sequence[str]) -> list[Source]:
         titles = "; ".join(source.title for source in SOURCES)
         raise UsageError(f"no case has {' and '.join(words)}; the sources are: {titles}")
     return chosen
-
-
-def _checked(sources: Sequence[Source]) -> list[tuple[Source, list[CaseOutcome]]]:
-    """The outcomes of every case, source by source."""
-    cases = [case for source in sources for case in source.cases]
-    outcomes = iter([case.check() for case in progress(cases, "figures")])
-    return [(source, list(islice(outcomes, len(source.cases)))) for source in sources]
 
 
 HIDDEN = tuple(f"Aquadopp {height}" for height in (526, 426, 326, 226, 126))

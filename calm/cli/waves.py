@@ -7,14 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from calm.cli.options import (
-    CatalogFiles,
-    EnvironmentName,
-    Units,
-    option,
-    quantities,
-    show_units,
-)
+from calm.cli import options
+from calm.cli.options import option
 from calm.cli.outputs import OutputPath, Outputs
 from calm.cli.streams import ExitCode, narrate
 from calm.errors import NoEquilibrium, UsageError
@@ -37,8 +31,8 @@ def waves(
     file: Path,
     /,
     *,
-    environment: EnvironmentName = None,
-    catalog: CatalogFiles = None,
+    environment: options.EnvironmentName = None,
+    catalog: options.CatalogFiles = None,
     hs: Signed = None,
     tp: Signed = None,
     spectrum: str = "bretschneider",
@@ -50,7 +44,7 @@ def waves(
     duration: str = "3 h",
     json: OutputPath = None,
     report: Path | None = None,
-    units: Units = None,
+    units: options.Units = None,
 ) -> ExitCode:
     """Estimate tensions and motions of a mooring in waves, about its equilibrium.
 
@@ -96,8 +90,7 @@ def waves(
     from calm.case.mooring import load_line
     from calm.cli.progress import progress
     from calm.records.sea_states import OF_HEIGHT
-    from calm.report.folder import check_folder, printed, write_report
-    from calm.report.html import page
+    from calm.report.folder import check_folder, write_pages
     from calm.report.sea_response import sea_response_part, sea_response_report
     from calm.waves.analysis import SLACK, analyse
 
@@ -116,7 +109,7 @@ def waves(
         raise UsageError(f"{missing}; or give a --scatter table, or `waves:` in {file}")
     if way is None:
         way = 90.0 if given is None else given.toward
-    show_units(units, [mooring.file])
+    options.show_units(units, [mooring.file])
     try:
         analysis = analyse(mooring, seas, way, length, lambda each: progress(each, "seas"))
     except NoEquilibrium as failure:
@@ -126,8 +119,7 @@ def waves(
         return ExitCode.NO_EQUILIBRIUM
     outputs.write_answer(analysis.to_dict, sea_response_part(analysis))
     if report is not None:
-        said = sea_response_report(analysis)
-        write_report(report, {"waves.html": page(said).encode(), "waves.pdf": printed(said)})
+        write_pages(report, "waves", sea_response_report(analysis))
     if analysis.status != SLACK:
         return ExitCode.DONE
     narrate(
@@ -153,7 +145,7 @@ def _asked(
     from calm.errors import nearest
     from calm.records import sea_states
 
-    given = quantities(
+    given = options.quantities(
         hs=(waves["hs"], "length"),
         tp=(waves["tp"], "time"),
         swell=(waves["swell"], "length"),

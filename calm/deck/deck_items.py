@@ -10,17 +10,14 @@ from enum import StrEnum
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from calm.case.net_result import legs_of
-from calm.case.result_tables import ClampRow, rows_by_place, rows_down
-from calm.files import Flexible
+from calm.case.result import NetResult, legs_of
+from calm.case.result_tables import ClampRow, ComponentRow, rows_by_place, rows_down
+from calm.files import Clamp, Flexible, Piece
 from calm.files.legs import leg_numbers
 from calm.quantities import QUANTITIES
 
 if TYPE_CHECKING:
     from calm.case import Result
-    from calm.case.net_result import NetResult
-    from calm.case.result_tables import ComponentRow
-    from calm.files import Clamp, Piece
     from calm.files.logbook import DeployedItem
 
 
@@ -250,21 +247,16 @@ def _deck_item(
     clamp = row.part if isinstance(row, ClampRow) else None
     depth = depth_of(row)
     return DeckItem(
-        part=part,
-        index=piece.index,
+        part=part, index=piece.index, serial=part.serial, remark=item.remark if item else None,
+        deployed_serial=(item.serial if item else None) or part.serial,
         on=None if clamp is None else piece.label,
         at=None if clamp is None else clamp.at,
         of_length=None if clamp is None else piece.cut_length,
         cut_length=piece.cut_length if clamp is None else None,
         stretched=piece.length if clamp is None else None,
-        depth=depth,
-        height=bottom - depth,
-        tilt=row.tilt,
         tension=piece.tension if clamp is None else None,
-        serial=part.serial,
-        deployed_serial=(item.serial if item else None) or part.serial,
-        remark=item.remark if item else None,
-    )
+        depth=depth, height=bottom - depth, tilt=row.tilt,
+    )  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -297,12 +289,7 @@ class DeckInstrument:
 def instruments_of(
     parts: Sequence[DeckItem], results: Sequence[tuple[str, Result | NetResult]]
 ) -> tuple[DeckInstrument, ...]:
-    """The instruments and releases, down the line.
-
-    Parameters
-    ----------
-    results : of each environment by its name, that of the sheets first
-    """
+    """The instruments and releases, down the line; the first result is that of the sheets."""
     rows = [(name, rows_by_place(result)) for name, result in results]
     found = []
     for one in parts:

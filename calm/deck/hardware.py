@@ -7,22 +7,16 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import ceil
-from typing import TYPE_CHECKING
 
-from calm.case import Mooring
+from calm.case import Mooring, Result
 from calm.case.net import Net
-from calm.case.net_result import legs_of
+from calm.case.result import NetResult, legs_of
 from calm.checks.arrangement import unlike_metals
-from calm.deck.deck_items import Order
+from calm.deck.deck_items import DeckItem, Order
 from calm.errors import NoEquilibrium
 from calm.files import Cable, Chain, Flexible, Piece
 from calm.files.legs import leg_numbers
 from calm.solve import expect_many
-
-if TYPE_CHECKING:
-    from calm.case import Result
-    from calm.case.net_result import NetResult
-    from calm.deck.deck_items import DeckItem
 
 LENGTH_ERROR = 0.005
 """Error of a length, as a share of it: the tolerance, and the error whose effect is reported."""
@@ -85,21 +79,20 @@ def cuts_of(result: Result | NetResult, parts: Sequence[DeckItem], order: Order)
     parts : every piece and clamp, down the line
     order : in which the line goes over the side
     """
-    cables = [one for one in parts if _is_cut(one)]
+    cables = [
+        one
+        for one in parts
+        if isinstance(one.part, Piece)
+        and (
+            isinstance(one.part.component, Cable)
+            or (isinstance(one.part.component, Chain) and one.part.clamps)
+        )
+    ]
     count = len(cables)
     expect_many(count * max(1.0, len(result.components) / ORDINARY))
     return tuple(
         _cut(result, one, number if order is Order.ANCHOR_LAST else count + 1 - number, count)
         for number, one in enumerate(cables, 1)
-    )
-
-
-def _is_cut(one: DeckItem) -> bool:
-    part = one.part
-    if not isinstance(part, Piece):
-        return False
-    return isinstance(part.component, Cable) or (
-        isinstance(part.component, Chain) and bool(part.clamps)
     )
 
 

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, TypeVar
 
 from calm.case import Mooring, Result
 from calm.case.net import Net
-from calm.case.net_result import NetResult, legs_of
+from calm.case.result import NetResult, legs_of
 from calm.checks.finding import OWN
 from calm.checks.net_check import NetGraph, check
-from calm.checks.recovery import recovery_of
+from calm.checks.recovery import Recovery, recovery_of
 from calm.deck import deck_items
 from calm.deck.deck_items import DeckInstrument, DeckItem, Order, deck_items_of, instruments_of
 from calm.deck.hardware import Cut, Stock, cuts_of, hardware_of
@@ -21,14 +21,12 @@ from calm.deck.shipping import Lifts, ShippedComponent, lifts_of, shipped_of
 from calm.drop import DropPlan, drop_plan
 from calm.drop.launch import SHIP_SPEED
 from calm.errors import NoEquilibrium
-from calm.files import CurrentTable
+from calm.files import CurrentTable, MooringFile
 from calm.files.legs import leg_numbers
 from calm.solve import Status
 
 if TYPE_CHECKING:
     from calm.checks.assessment import Assessment
-    from calm.checks.recovery import Recovery
-    from calm.files import MooringFile
 
 HANDLED = ("float", "instrument", "release", "line")
 """Roles of what takes time on deck by itself; what joins pieces is shackled on with them."""
@@ -180,9 +178,7 @@ def deck_of(
         recovery=surfacing(parts, rising, rise),
         rise=rise,
         cuts=cuts_of(result, parts, order),
-        hardware=hardware_of(
-            [[*leg] for _, leg in groupby(parts, key=lambda one: legs[one.index])]
-        ),
+        hardware=hardware_of([[*leg] for _, leg in groupby(parts, lambda one: legs[one.index])]),
         shipped=shipped_of(first.file, inventory),
         lifts=lifts_of(inventory, legs, rising, order),
         instruments=instruments_of(parts, results),

@@ -11,17 +11,7 @@ from numpy.typing import NDArray
 
 from calm.checks.posture import reaches_the_surface
 from calm.checks.strength import allowable_load
-from calm.drawing import line_picture
-from calm.drawing.graph import (
-    Graph,
-    LegendEntry,
-    Scale,
-    Stroke,
-    counts,
-    covering,
-    numbers,
-    write_legend,
-)
+from calm.drawing import graph, line_picture
 from calm.drawing.line_picture import NAMED_ROLES, LineKind, along_the_line, current_between
 from calm.drawing.plot import SEABED_COLOUR, SIGNS, WATER_COLOUR
 from calm.quantities import QUANTITIES
@@ -42,8 +32,8 @@ _LEAST_SPAN = 0.1  # of the depth: a line that hardly leans is not drawn as if i
 _FURTHEST_LIMIT = 4.0  # times the greatest tension; what is beyond is drawn at the edge
 _COLOURS = ("#0b3c5d", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#a6761d", "#332288")
 _DASHES: tuple[tuple[float, ...], ...] = ((), (7.0, 2.5), (1.8, 1.8))
-_STILL = Stroke("grey", 1.0, (3.0, 2.0))
-_LIMIT = Stroke("#b3261e", 2.0, square=True)
+_STILL = graph.Stroke("grey", 1.0, (3.0, 2.0))
+_LIMIT = graph.Stroke("#b3261e", 2.0, square=True)
 _UNJUDGED, _ENOUGH, _SHORT = "#b8bec4", "#8fb3cf", "#d98880"
 
 
@@ -59,60 +49,56 @@ def check_figure(assessment: Assessment) -> str:
     entries = _legend(solved)
     legend = ceil(len(entries) / _LEGEND_COLUMNS) * _LEGEND_ROW
     title = f"{assessment.name}: elevation, current, tension, plan and breaks"
-    graph = Graph(_WIDTH, _HEIGHT + legend, title, _SIZE)
-    write_legend(
-        graph.pen, entries, 6.0, 3.0,
-        width=_WIDTH - 12.0, row=_LEGEND_ROW, columns=_LEGEND_COLUMNS, size=_SIZE,
-    )  # fmt: skip
+    page = graph.Graph(_WIDTH, _HEIGHT + legend, title, _SIZE)
+    across = (_WIDTH - 12.0) / _LEGEND_COLUMNS
+    page.legend(entries, (6.0, 3.0), across, _LEGEND_ROW, _LEGEND_COLUMNS)
     top, lower = legend + 11.0, legend + 372.0
-    depths = _depths(solved)
-    _draw_elevation(graph, (42.0, top, 187.0, 310.0), solved, depths)
-    _draw_current(graph, (240.0, top, 72.0, 310.0), solved, depths)
-    _draw_tension(graph, (361.0, top, 165.0, 310.0), solved)
-    _draw_plan(graph, (42.0, lower, 187.0, 173.0), solved)
+    depth = max(result.mooring.water.depth for _, result in solved)
+    highest = min(float(result.shape.depth.min()) for _, result in solved)
+    # of the elevation and the current: from below the seabed to above the surface
+    depths = graph.Scale(1.03 * depth, min(-0.03 * depth, highest))
+    _draw_elevation(page, (42.0, top, 187.0, 310.0), solved, depths)
+    _draw_current(page, (240.0, top, 72.0, 310.0), solved, depths)
+    _draw_tension(page, (361.0, top, 165.0, 310.0), solved)
+    _draw_plan(page, (42.0, lower, 187.0, 173.0), solved)
     if assessment.backup:
-        _draw_breaks(graph, (288.0, lower, 238.0, 173.0), assessment.backup)
-    return graph.svg()
+        _draw_breaks(page, (288.0, lower, 238.0, 173.0), assessment.backup)
+    return page.svg()
 
 
 Place = tuple[float, float, float, float]
 """Left and upper edge, width and height of axes [pt]."""
 
 
-def _legend(solved: Solved) -> list[LegendEntry]:
+def _legend(solved: Solved) -> list[graph.LegendEntry]:
     """An entry for each environment, and for what else the panels show."""
-    entries = [LegendEntry(name, line=_stroke(number)) for number, (name, _) in enumerate(solved)]
     _, first = solved[0]
-    if first.still_shape is not None:
-        entries.append(LegendEntry("still water", line=_STILL))
     there = {part.role for part in line_picture.named_parts(first)}
-    entries += [LegendEntry(role, sign=SIGNS[role]) for role in NAMED_ROLES if role in there]
-    return [*entries, LegendEntry("limit", line=_LIMIT)]
+    still = [] if first.still_shape is None else [graph.LegendEntry("still water", line=_STILL)]
+    return [
+        *(graph.LegendEntry(name, line=_stroke(number)) for number, (name, _) in enumerate(solved)),
+        *still,
+        *(graph.LegendEntry(role, sign=SIGNS[role]) for role in NAMED_ROLES if role in there),
+        graph.LegendEntry("limit", line=_LIMIT),
+    ]
 
 
-def _stroke(number: int) -> Stroke:
+def _stroke(number: int) -> graph.Stroke:
     """Colour and dashes of an environment: no two of the first twenty-one are alike."""
     dashes = _DASHES[number // len(_COLOURS) % len(_DASHES)]
-    return Stroke(_COLOURS[number % len(_COLOURS)], 1.2, dashes)
+    return graph.Stroke(_COLOURS[number % len(_COLOURS)], 1.2, dashes)
 
 
-def _depths(solved: Solved) -> Scale:
-    """Of the elevation and the current: from below the seabed to above the surface."""
-    depth = max(result.mooring.water.depth for _, result in solved)
-    highest = min(float(result.shape.depth.min()) for _, result in solved)
-    return Scale(1.03 * depth, min(-0.03 * depth, highest))
-
-
-def _draw_elevation(graph: Graph, place: Place, solved: Solved, depths: Scale) -> None:
+def _draw_elevation(page: graph.Graph, place: Place, solved: Solved, depths: graph.Scale) -> None:
     _, first = solved[0]
     side, depth = line_picture.elevation_of(first), depths.low / 1.03
     lines = [line_picture.from_the_side(one.shape, line_picture.plane_of(one)) for _, one in solved]
     start = min(0.0, *(float(line.x.min()) for line in lines))
     end = max(0.0, *(float(line.x.max()) for line in lines))
     span = max(end - start, _LEAST_SPAN * depth)
-    axes = graph.axes(*place, Scale(start - 0.08 * span, start + 1.08 * span), depths)
+    axes = page.axes(*place, graph.Scale(start - 0.08 * span, start + 1.08 * span), depths)
     axes.strip(depth, depths.low, SEABED_COLOUR)
-    axes.level(0.0, Stroke(WATER_COLOUR, 1.0))
+    axes.level(0.0, graph.Stroke(WATER_COLOUR, 1.0))
     for line in side.lines:
         if line.kind is LineKind.STILL:
             axes.line(line.x, line.y, _STILL)
@@ -120,29 +106,24 @@ def _draw_elevation(graph: Graph, place: Place, solved: Solved, depths: Scale) -
         axes.line(line.x, line.y, _stroke(number))
     for mark in side.marks:
         axes.mark(mark.x, mark.y, *SIGNS[mark.role])
-    axes.frame(
-        numbers(axes.across.low, axes.across.high, 5), numbers(depths.low, depths.high, 9),
-        below=QUANTITIES["offset"].label, beside=side.up,
-    )  # fmt: skip
+    axes.frame(5, 9, below=QUANTITIES["offset"].label, beside=side.up)
 
 
-def _draw_current(graph: Graph, place: Place, solved: Solved, depths: Scale) -> None:
+def _draw_current(page: graph.Graph, place: Place, solved: Solved, depths: graph.Scale) -> None:
     profiles = []
     for _, result in solved:
         water = result.mooring.water
         depth, u, v = current_between(water, 0.0, water.depth, samples=60)
         profiles.append((np.hypot(u, v), depth))
     fastest = max(float(speed.max()) for speed, _ in profiles)
-    axes = graph.axes(*place, Scale(0.0, 1.05 * fastest or 1.0), depths)
+    axes = page.axes(*place, graph.Scale(0.0, 1.05 * fastest or 1.0), depths)
     for number, (speed, depth) in enumerate(profiles):
         axes.line(speed, depth, _stroke(number))
-    axes.frame(
-        numbers(0.0, axes.across.high, 3), numbers(depths.low, depths.high, 9),
-        below=f"current [{QUANTITIES['speed'].usual_unit}]", numbered=(True, False),
-    )  # fmt: skip
+    below = f"current [{QUANTITIES['speed'].usual_unit}]"
+    axes.frame(3, 9, below=below, numbered=(True, False))
 
 
-def _draw_tension(graph: Graph, place: Place, solved: Solved) -> None:
+def _draw_tension(page: graph.Graph, place: Place, solved: Solved) -> None:
     """Tension over the stretched length, and what the pieces may bear, where that is known."""
     greatest = max(float(result.shape.tension.max()) for _, result in solved)
     _, first = solved[0]
@@ -155,48 +136,45 @@ def _draw_tension(graph: Graph, place: Place, solved: Solved) -> None:
     edge = min(np.nanmax([*loads, greatest]), _FURTHEST_LIMIT * greatest)
     distances = [along_the_line(result.shape) for _, result in solved]
     furthest = max(float(each[-1]) for each in (ends, *distances))
-    axes = graph.axes(*place, Scale(0.0, 1.04 * edge), Scale(1.02 * furthest, -0.02 * furthest))
+    axes = page.axes(
+        *place, graph.Scale(0.0, 1.04 * edge), graph.Scale(1.02 * furthest, -0.02 * furthest)
+    )
     for number, ((_, result), distance) in enumerate(zip(solved, distances, strict=True)):
         axes.line(result.shape.tension, distance, _stroke(number))
     axes.lines([np.minimum(loads, edge)] * 2, [ends[:-1], ends[1:]], _LIMIT)
-    axes.frame(
-        numbers(0.0, axes.across.high, 4), numbers(axes.up.low, axes.up.high, 9),
-        below=QUANTITIES["tension"].label, beside="distance along the line [m]",
-    )  # fmt: skip
+    axes.frame(4, 9, below=QUANTITIES["tension"].label, beside="distance along the line [m]")
 
 
-def _draw_plan(graph: Graph, place: Place, solved: Solved) -> None:
+def _draw_plan(page: graph.Graph, place: Place, solved: Solved) -> None:
     """Both axes to one scale: the one whose range needs less is drawn wider."""
     _, _, width, height = place
     across, up = (
-        covering([0.0], *(getattr(result.shape, name) for _, result in solved)) for name in "xy"
+        graph.covering([0.0], *(getattr(result.shape, name) for _, result in solved))
+        for name in "xy"
     )
     scale = max((across.high - across.low) / width, (up.high - up.low) / height)
-    axes = graph.axes(*place, _widened(across, scale * width), _widened(up, scale * height))
+    axes = page.axes(*place, _widened(across, scale * width), _widened(up, scale * height))
     for number, (_, result) in enumerate(solved):
         stroke = _stroke(number)
         axes.line(result.shape.x, result.shape.y, stroke)
         axes.mark(result.top.x, result.top.y, "o", 3.5, stroke.colour)
     axes.mark(0.0, 0.0, "v", 5.0, "black")
-    axes.frame(
-        numbers(axes.across.low, axes.across.high, 5), numbers(axes.up.low, axes.up.high, 6),
-        below=QUANTITIES["x"].label, beside=QUANTITIES["y"].label,
-    )  # fmt: skip
+    axes.frame(5, 6, below=QUANTITIES["x"].label, beside=QUANTITIES["y"].label)
 
 
-def _widened(scale: Scale, extent: float) -> Scale:
+def _widened(scale: graph.Scale, extent: float) -> graph.Scale:
     """So far from edge to edge about the same middle."""
     middle = (scale.low + scale.high) / 2
-    return Scale(middle - extent / 2, middle + extent / 2)
+    return graph.Scale(middle - extent / 2, middle + extent / 2)
 
 
-def _draw_breaks(graph: Graph, place: Place, backup: Sequence[Break]) -> None:
+def _draw_breaks(page: graph.Graph, place: Place, backup: Sequence[Break]) -> None:
     """What is left to lift after each break, and what is required; grey where it is not judged."""
     number = np.array([each.break_after for each in backup], dtype=np.float64)
     required = np.array([each.required for each in backup])
     margins = np.array([each.margin for each in backup])
-    axes = graph.axes(
-        *place, covering(number - 0.5, number + 0.5), covering([0.0], margins, required)
+    axes = page.axes(
+        *place, graph.covering(number - 0.5, number + 0.5), graph.covering([0.0], margins, required)
     )
     colours = [
         _UNJUDGED if not each.judged else _ENOUGH if each.margin >= each.required else _SHORT
@@ -204,9 +182,6 @@ def _draw_breaks(graph: Graph, place: Place, backup: Sequence[Break]) -> None:
     ]
     axes.bars(number, margins, 0.8, colours)
     axes.lines([number - 0.5, number + 0.5], [required] * 2, _LIMIT)
-    axes.level(0.0, Stroke("black", 0.6))
-    axes.frame(
-        counts(backup[0].break_after, backup[-1].break_after, 8),
-        numbers(axes.up.low, axes.up.high, 6),
-        below="break below piece no.", beside="back-up buoyancy left [N]",
-    )  # fmt: skip
+    axes.level(0.0, graph.Stroke("black", 0.6))
+    numbered = graph.counts(backup[0].break_after, backup[-1].break_after, 8)
+    axes.frame(numbered, 6, below="break below piece no.", beside="back-up buoyancy left [N]")

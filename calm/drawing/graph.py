@@ -178,6 +178,17 @@ _TICK = 3.0  # points
 _NEAREST = 0.05  # points: of two that are nearer one is drawn
 
 
+_SAMPLE, _GAP = 16.0, 5.0  # points: the line beside a text, and what is between them
+
+
+class LegendEntry(NamedTuple):
+    """A text with its line, or its sign: form, width [pt] and colour."""
+
+    text: str
+    line: Stroke | None = None
+    sign: tuple[str, float, str] | None = None
+
+
 class Graph:
     """An empty white graph of a width and height [pt]."""
 
@@ -193,6 +204,31 @@ class Graph:
     ) -> Axes:
         """Axes at a place [pt] of the graph, their ranges from left to right and upward."""
         return Axes(self, (left, top, width, height), across, up)
+
+    def legend(
+        self,
+        entries: Sequence[LegendEntry],
+        place: tuple[float, float],
+        across: float,
+        row: float,
+        columns: int = 1,
+    ) -> None:
+        """Entries row by row in columns; a text that is too long is cut short.
+
+        Parameters
+        ----------
+        place : the left upper corner [pt]
+        across, row : width of a column, height of a row [pt]
+        """
+        for number, entry in enumerate(entries):
+            x = place[0] + number % columns * across
+            y = place[1] + (number // columns + 0.5) * row
+            if entry.line is not None:
+                self.pen.line(x, y, x + _SAMPLE, y, **entry.line.attributes())
+            if entry.sign is not None:
+                draw_mark(self.pen, x + _SAMPLE / 2, y, *entry.sign)
+            text, room = " ".join(entry.text.split()), across - _SAMPLE - 2 * _GAP
+            self.pen.write(x + _SAMPLE + _GAP, y, text, room, size=self.size)
 
 
 class Axes:
@@ -279,8 +315,8 @@ class Axes:
 
     def frame(
         self,
-        across: Sequence[Tick],
-        up: Sequence[Tick],
+        across: Sequence[Tick] | int,
+        up: Sequence[Tick] | int,
         *,
         below: str = "",
         beside: str = "",
@@ -291,11 +327,16 @@ class Axes:
 
         Parameters
         ----------
+        across, up : the ticks, or about how many round numbers are to stand there
         below, beside : what the axis across and the upward one show; lines apart by line feeds
         grid : whether ticks go on as thin lines behind what is drawn
         numbered : whether the axis across, and the upward one, have their texts
         """
         pen, size = self.graph.pen, self.graph.size
+        across, up = (
+            numbers(scale.low, scale.high, ticks) if isinstance(ticks, int) else ticks
+            for ticks, scale in ((across, self.across), (up, self.up))
+        )
         right, bottom = self.left + self.width, self.top + self.height
         for tick in across:
             x = float(self.x(tick.value))
@@ -331,50 +372,13 @@ def _path(x: Floats, y: Floats) -> str:
     """Straight lines through points; a new one begins after what is not known."""
     parts: list[str] = []
     last: tuple[float, float] | None = None
-    for point in zip(x.tolist(), y.tolist(), strict=True):
-        if point[0] != point[0] or point[1] != point[1]:
+    for here in zip(x.tolist(), y.tolist(), strict=True):
+        if here[0] != here[0] or here[1] != here[1]:
             last = None
-        elif last is None:
-            parts.append(f"M{point[0]:.2f} {point[1]:.2f}")
-            last = point
-        elif abs(point[0] - last[0]) + abs(point[1] - last[1]) >= _NEAREST:
-            parts.append(f"L{point[0]:.2f} {point[1]:.2f}")
-            last = point
+        elif last is None or abs(here[0] - last[0]) + abs(here[1] - last[1]) >= _NEAREST:
+            parts.append(f"{'M' if last is None else 'L'}{here[0]:.2f} {here[1]:.2f}")
+            last = here
     return "".join(parts)
-
-
-_SAMPLE, _GAP = 16.0, 5.0  # points: the line beside a text, and what is between them
-
-
-class LegendEntry(NamedTuple):
-    """A text with its line, or its sign: form, width [pt] and colour."""
-
-    text: str
-    line: Stroke | None = None
-    sign: tuple[str, float, str] | None = None
-
-
-def write_legend(
-    pen: Pen,
-    entries: Sequence[LegendEntry],
-    left: float,
-    top: float,
-    *,
-    width: float,
-    row: float,
-    columns: int,
-    size: float,
-) -> None:
-    """Entries row by row in columns that share a width; a text that is too long is cut short."""
-    across = width / columns
-    for number, entry in enumerate(entries):
-        x, y = left + number % columns * across, top + (number // columns + 0.5) * row
-        if entry.line is not None:
-            pen.line(x, y, x + _SAMPLE, y, **entry.line.attributes())
-        if entry.sign is not None:
-            draw_mark(pen, x + _SAMPLE / 2, y, *entry.sign)
-        room = across - _SAMPLE - 2 * _GAP
-        pen.write(x + _SAMPLE + _GAP, y, " ".join(entry.text.split()), room, size=size)
 
 
 def draw_mark(pen: Pen, x: float, y: float, sign: str, size: float, colour: str) -> None:

@@ -15,14 +15,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from calm.case import Result, TowResult
-from calm.case.net_result import AnyResult, NetResult, legs_of
-from calm.case.result_tables import rows_down
+from calm.case.result import AnyResult, NetResult, legs_of
+from calm.case.result_tables import Shape, rows_down
 from calm.quantities import QUANTITIES, bearing_of, bearing_text
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from calm.case.result_tables import Shape
     from calm.case.uncertain import Uncertain
     from calm.physics.line import Water
 
@@ -115,25 +114,19 @@ def elevation_of(
     beside : shapes of the mooring in other environments, or of other designs
     uncertain : of a mooring; the band between its 5 and 95 %
     """
-    plane = plane_of(result)
+    plane, depth = plane_of(result), QUANTITIES["depth"].label
     marks = tuple(
         replace(part, x=float(along(part.x, part.y, plane)), y=part.depth)
         for part in named_parts(result)
     )
-    top, bottom = levels_of(result)
+    edges = levels_of(result)
     if isinstance(result, TowResult):
         line, environment = from_the_side(result.shape, plane), result.file.environment
+        across = f"distance behind the tow point [m], heading {result.toward:.0f}°"
+        ship, height = (float(line.x[-1]), float(line.y[-1])), float(np.ptp(line.y))
+        water = environment.fluid == "water"
         return LinePicture(
-            lines=(line,),
-            marks=marks,
-            across=f"distance behind the tow point [m], heading {result.toward:.0f}°",
-            up=QUANTITIES["depth"].label,
-            ship=(float(line.x[-1]), float(line.y[-1])),
-            top=top,
-            bottom=bottom,
-            height=float(np.ptp(result.shape.depth)),
-            surface=environment.fluid == "water",
-            seabed=environment.depth,
+            (line,), marks, across, depth, ship, *edges, height, water, environment.depth
         )
     lines = [] if uncertain is None else [_band(uncertain)]
     lines += [from_the_side(shape, plane, LineKind.BESIDE) for shape in beside]
@@ -145,17 +138,9 @@ def elevation_of(
     ):
         labels = (label, *[""] * len(shapes))  # a legend names each kind once
         lines += [from_the_side(*one) for one in zip(shapes, repeat(plane), repeat(kind), labels)]
-    return LinePicture(
-        lines=tuple(lines),
-        marks=marks,
-        across=f"{QUANTITIES['offset'].label}, towards {bearing_text(bearing_of(*plane))}",
-        up=QUANTITIES["depth"].label,
-        top=top,
-        bottom=bottom,
-        height=seabed_of(result),
-        surface=True,
-        seabed=seabed_of(result),
-    )
+    across = f"{QUANTITIES['offset'].label}, towards {bearing_text(bearing_of(*plane))}"
+    seabed = seabed_of(result)
+    return LinePicture(tuple(lines), marks, across, depth, None, *edges, seabed, True, seabed)
 
 
 def water_of(result: AnyResult) -> Water:
@@ -274,17 +259,17 @@ def along_the_line(shape: Shape) -> Floats:
 def named_parts(result: AnyResult) -> list[PictureMark]:
     """Return the floats, instruments, releases and the anchor, clamped ones too, in file order."""
     parts = []
-    for component, clamps in rows_down(result):
-        x = (component.x_top + component.x_bottom) / 2
-        y = (component.y_top + component.y_bottom) / 2
-        depth = (component.depth_top + component.depth_bottom) / 2
-        parts.append(PictureMark(component.use, component.label, component.role, x, y, depth))
-        parts += [
-            PictureMark(
-                clamp.use, clamp.label, clamp.part.component.role, clamp.x, clamp.y, clamp.depth
-            )
-            for clamp in clamps
-        ]
+    for row, clamps in rows_down(result):
+        ends = (
+            (row.x_top, row.x_bottom),
+            (row.y_top, row.y_bottom),
+            (row.depth_top, row.depth_bottom),
+        )
+        middle = (sum(each) / 2 for each in ends)
+        parts.append(PictureMark(row.use, row.label, row.role, *middle))
+        for one in clamps:
+            role = one.part.component.role
+            parts.append(PictureMark(one.use, one.label, role, one.x, one.y, one.depth))
     return [part for part in parts if part.role in NAMED_ROLES]
 
 

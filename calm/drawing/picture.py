@@ -21,13 +21,7 @@ _METADATA: dict[str, dict[str, Any]] = {"svg": {"Date": None}, "pdf": {"Creation
 
 
 def check_format(path: Path, formats: Sequence[str] = FORMATS) -> None:
-    """Refuse a picture whose file name does not end in one of the formats.
-
-    Raises
-    ------
-    UsageError
-        Naming the endings that are allowed.
-    """
+    """Refuse a picture whose file name ends in none of the formats: UsageError, naming these."""
     if path.suffix.lower() not in formats:
         allowed = f"{', '.join(formats[:-1])} or {formats[-1]}"
         raise UsageError(f"cannot draw {path}: a picture's name ends in {allowed}")
@@ -36,10 +30,7 @@ def check_format(path: Path, formats: Sequence[str] = FORMATS) -> None:
 def image(figure: Figure, suffix: str) -> bytes:
     """The figure as a file: PNG at 150 dots per inch, or vectors with their texts as text.
 
-    Parameters
-    ----------
-    figure : what was drawn
-    suffix : ``.png``, ``.svg`` or ``.pdf``, in any case
+    The suffix is ``.png``, ``.svg`` or ``.pdf``, in any case.
     """
     import matplotlib
 
@@ -87,27 +78,11 @@ _UNPRINTABLE = re.compile(
     "[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff\ufffe\uffff]"
 )
 _DEGREES = re.compile(r"(?<=[0-9])°")
-_IN_ASCII = str.maketrans(
-    {
-        "°": "deg",
-        "–": "-",
-        "−": "-",
-        "×": "x",
-        "·": "*",
-        "→": "->",
-        "…": "...",
-        "≤": "<=",
-        "≥": ">=",
-        "√": "sqrt",
-        "²": "^2",
-        "³": "^3",
-        "₀": "0",
-        "₁": "1",
-        "✓": "+",
-        "\u00a0": " ",
-        "\u2003": "  ",
-    }
-)
+_IN_ASCII = str.maketrans({
+    **dict(zip("–−×·₀₁✓\u00a0", "--x*01+ ", strict=True)),
+    "°": "deg", "→": "->", "…": "...", "≤": "<=", "≥": ">=", "√": "sqrt", "²": "^2", "³": "^3",
+    "\u2003": "  ",
+})  # fmt: skip
 
 
 def printable(text: str) -> str:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
-    from calm.case.net_result import AnyResult
+    from calm.case.result import AnyResult
     from calm.case.uncertain import Uncertain
     from calm.report.tabulation import Tabulation
 
@@ -68,11 +68,8 @@ def draw(result: AnyResult, uncertain: Uncertain | None = None) -> Figure:
     The elevation is in the vertical plane of the anchor and the free end, of a net in the one in
     which it is widest, with the same line in still water dashed, or in that of the tow, the ship at
     distance 0. Beside it stand the speed of the water and its part in that plane, past the line in
-    a tow; and the line from above, where it leaves the plane of a tow.
-
-    Parameters
-    ----------
-    uncertain : of a mooring; its band is drawn behind the line
+    a tow; and the line from above, where it leaves the plane of a tow. The band of an uncertain
+    mooring is drawn behind the line.
     """
     from matplotlib.figure import Figure
 
@@ -118,10 +115,10 @@ def draw_elevation(axes: Axes, side: LinePicture) -> None:
     if side.ship is not None:
         axes.plot(*side.ship, **_SHIP)
     mark_parts(axes, side.marks)
-    set_span(axes, *side.span(), side.height)
-    axes.set_ylim(side.bottom, side.top)
-    axes.set_xlabel(side.across)
-    axes.set_ylabel(side.up)
+    start, end = side.span()
+    span = max(end - start, _LEAST_SPAN * side.height)
+    across = start - 0.05 * span, start + span / _SHARE_OF_LINE
+    axes.set(xlim=across, ylim=(side.bottom, side.top), xlabel=side.across, ylabel=side.up)
 
 
 def draw_lines(axes: Axes, picture: LinePicture) -> None:
@@ -143,8 +140,7 @@ def draw_plan(axes: Axes, above: LinePicture) -> None:
     draw_lines(axes, above)
     mark_parts(axes, above.marks)
     axes.set_aspect("equal", adjustable="datalim")
-    axes.set_xlabel(above.across)
-    axes.set_ylabel(above.up)
+    axes.set(xlabel=above.across, ylabel=above.up)
     axes.legend(ncols=2, **LEGEND)
 
 
@@ -179,15 +175,6 @@ def draw_flow(axes: Axes, depth: Floats, u: Floats, v: Floats, plane: Floats) ->
     axes.legend(**LEGEND)
 
 
-def set_span(axes: Axes, start: float, end: float, height: float) -> None:
-    """Give the line, from `start` to `end` [m], its share of the width; plumb lines look plumb.
-
-    `height` [m] is that of the drawing.
-    """
-    span = max(end - start, _LEAST_SPAN * height)
-    axes.set_xlim(start - 0.05 * span, start + span / _SHARE_OF_LINE)
-
-
 def mark_parts(axes: Axes, marks: Sequence[PictureMark]) -> None:
     """Mark the named parts where they are, in one group for each role that occurs."""
     for role in line_picture.NAMED_ROLES:
@@ -214,16 +201,12 @@ def write_names(axes: Axes, written: list[tuple[str, PictureMark]], height: floa
     places = line_picture.spread(wanted, line, line / 2, 1.0 - line / 2)
     for (text, part), place in zip(written, places, strict=True):
         axes.annotate(
-            text,
-            xy=(part.x, part.depth),
-            xytext=(_SHARE_OF_LINE + 0.1, 1.0 - place),
-            textcoords="axes fraction",
-            fontsize=_FONT_SIZE * line * height / _LINE_HEIGHT,
-            verticalalignment="center",
-            parse_math=False,
+            text, (part.x, part.depth), (_SHARE_OF_LINE + 0.1, 1.0 - place),
+            textcoords="axes fraction", fontsize=_FONT_SIZE * line * height / _LINE_HEIGHT,
+            verticalalignment="center", parse_math=False,
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5},
             arrowprops={"arrowstyle": "-", "color": "grey", "linewidth": 0.5, "relpos": (0.0, 0.5)},
-        )
+        )  # fmt: skip
 
 
 _SWEEP_HEIGHT = 4.5  # inches
@@ -265,8 +248,7 @@ def _draw_figure(
     axes.plot(speeds, values, linestyle=dashes, marker=marker, label=label, **LINE_STYLE)
     margin = 0.04 * (speeds[-1] - speeds[0]) or speeds[0]
     axes.set_xlim(speeds[0] - margin, speeds[-1] + margin)
-    axes.set_xlabel(QUANTITIES["speed"].label)
-    axes.set_ylabel(QUANTITIES[name].label)
+    axes.set(xlabel=QUANTITIES["speed"].label, ylabel=QUANTITIES[name].label)
     axes.grid(alpha=0.3)
     if not axes.child_axes:
         to_knots, from_knots = partial(np.multiply, 1.0 / KNOT), partial(np.multiply, KNOT)

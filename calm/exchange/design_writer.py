@@ -12,8 +12,7 @@ from textwrap import wrap
 
 from calm.case import Tow
 from calm.case.net import Net, load
-from calm.case.net_result import EndLoad
-from calm.case.result import AnchorLoad
+from calm.case.result import AnchorLoad, EndLoad
 from calm.errors import CalmError
 from calm.exchange.design import (
     Design,

@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from calm.errors import nearest
+from calm.exchange import list_rows
 from calm.exchange.design import (
     MOST_PIECES,
     Design,
@@ -26,14 +27,6 @@ from calm.exchange.design import (
 )
 from calm.exchange.list_cells import SheetRows, number, read_sheets
 from calm.exchange.list_headings import ListHeadings, check_given, headings_of
-from calm.exchange.list_rows import (
-    TOTAL,
-    ListRow,
-    component_of,
-    count_lines,
-    rows_of,
-    weights_as_buoyancy,
-)
 from calm.exchange.mat_file import MatValue, is_mat, names, numbers, read_variables
 from calm.exchange.mdd_reader import GROUPS, read_water
 from calm.files.components import FLEXIBLE_KINDS
@@ -76,18 +69,18 @@ def read_list(path: Path, columns: Mapping[str, str], elements: Path | None = No
         problems += headings.problems
         said = _unit_remarks(headings)
         weighed = {"buoyancy", "weight"} & headings.columns.keys()
-        rows = rows_of(
+        rows = list_rows.rows_of(
             cells, headings, problems, design.dropped, said,
             bare=lambda name: bool(library) and (not weighed or key_of(name) in library),
         )  # fmt: skip
-        weights_as_buoyancy(rows, design.guessed)
+        list_rows.weights_as_buoyancy(rows, design.guessed)
         if headings.others:
             design.dropped.append(Remark("columns", ", ".join(headings.others)))
     else:
         rows = _names(sheets, design, path, library)
     if elements is not None:
         complete_rows(rows, library, elements.name)
-    count_lines(rows, headings.columns if headings else {})
+    list_rows.count_lines(rows, headings.columns if headings else {})
     if sum(row.count for row in rows) > MOST_PIECES:
         raise refused(path, f"has more than {MOST_PIECES} pieces")
     rows = _from_the_top(rows, path, design)
@@ -125,7 +118,7 @@ def _sheet(
 
 def _names(
     sheets: Mapping[str, SheetRows], design: Design, path: Path, library: Library
-) -> list[ListRow]:
+) -> list[list_rows.ListRow]:
     """Return the rows of a list that holds names alone, in the longest sheet.
 
     The first is the name of the mooring where the library has no such element.
@@ -150,7 +143,7 @@ def _names(
     return rows
 
 
-def _names_in(cells: SheetRows) -> list[ListRow]:
+def _names_in(cells: SheetRows) -> list[list_rows.ListRow]:
     """Return the rows of a sheet that holds names alone: the words of the column that has most."""
     counts: dict[int, int] = {}
     for row in cells:
@@ -158,9 +151,9 @@ def _names_in(cells: SheetRows) -> list[ListRow]:
             counts[index] = counts.get(index, 0) + bool(re.search(r"[^\W\d]{2}", cell))
     best = max(counts, key=lambda index: counts[index], default=0)
     return [
-        ListRow(place, row[best])
+        list_rows.ListRow(place, row[best])
         for place, row in enumerate(cells, 1)
-        if best < len(row) and row[best] and not TOTAL.match(row[best])
+        if best < len(row) and row[best] and not list_rows.TOTAL.match(row[best])
     ]
 
 
@@ -191,7 +184,9 @@ def _figure(row: list[str], index: int, path: Path) -> float:
     return found.value or 0.0
 
 
-def _from_the_top(rows: list[ListRow], path: Path, design: Design) -> list[ListRow]:
+def _from_the_top(
+    rows: list[list_rows.ListRow], path: Path, design: Design
+) -> list[list_rows.ListRow]:
     """Return the rows from the top down; lists run either way, clamps follow their piece."""
     pieces = [row for row in rows if "at" not in row.figures]
     if len(pieces) < 2:
@@ -213,11 +208,11 @@ def _from_the_top(rows: list[ListRow], path: Path, design: Design) -> list[ListR
         design.notes.append("The list runs from the lower end up: here it is reversed.")
         rows = _turned(rows)
     design.guessed.append(Remark("line.anchor", "the list has none"))
-    return [*rows, ListRow(0, "anchor", kind="anchor", role="anchor")]
+    return [*rows, list_rows.ListRow(0, "anchor", kind="anchor", role="anchor")]
 
 
-def _turned(rows: list[ListRow]) -> list[ListRow]:
-    groups: list[list[ListRow]] = []
+def _turned(rows: list[list_rows.ListRow]) -> list[list_rows.ListRow]:
+    groups: list[list[list_rows.ListRow]] = []
     for row in rows:
         if "at" in row.figures and groups:
             groups[-1].append(row)
@@ -226,10 +221,10 @@ def _turned(rows: list[ListRow]) -> list[ListRow]:
     return [row for group in reversed(groups) for row in group]
 
 
-def _items(rows: list[ListRow], problems: list[str]) -> list[ImportedPiece]:
+def _items(rows: list[list_rows.ListRow], problems: list[str]) -> list[ImportedPiece]:
     items: list[ImportedPiece] = []
     for row in rows:
-        component: ImportedComponent = component_of(
+        component: ImportedComponent = list_rows.component_of(
             row, problems, anchor=row is rows[-1] and row.is_anchor
         )
         at = row.figures.get("at")
@@ -256,7 +251,7 @@ _CENTIMETRE = 0.01
 _METRE = 100.0  # cm: the length of a line whose figures are those of a metre
 
 
-Library = Mapping[str, ListRow]
+Library = Mapping[str, list_rows.ListRow]
 """Elements by their name without capitals and blanks; figures of a line are those of a metre."""
 
 
@@ -268,7 +263,7 @@ def read_library(path: Path) -> Library:
     """
     content = read_content(path, largest=200_000_000)
     elements = _of_matrices(path) if is_mat(content) else _of_sheets(path)
-    library: dict[str, ListRow] = {}
+    library: dict[str, list_rows.ListRow] = {}
     for element in elements:
         library.setdefault(key_of(element.name), element)
     return library
@@ -288,7 +283,7 @@ def key_of(name: str) -> str:
     return "".join(name.lower().split())
 
 
-def complete_rows(rows: Iterable[ListRow], library: Library, source: str) -> None:
+def complete_rows(rows: Iterable[list_rows.ListRow], library: Library, source: str) -> None:
     """Give rows the figures that they lack, from the element of their name.
 
     Parameters
@@ -315,7 +310,7 @@ def complete_rows(rows: Iterable[ListRow], library: Library, source: str) -> Non
                 row.metre.add(what)
 
 
-def _of_matrices(path: Path) -> list[ListRow]:
+def _of_matrices(path: Path) -> list[list_rows.ListRow]:
     """Return the elements of character matrices, a row an element, as in `mdcodes.mat`."""
     variables = read_variables(path, [*GROUPS, "format"])
     entries = [
@@ -338,7 +333,7 @@ def _width(variables: Mapping[str, MatValue]) -> int:
     return int(columns[0, -1]) if columns.ndim == 2 and 0 < columns.size <= 100 else _NAME
 
 
-def _entry(text: str, group: str, end: int) -> ListRow | None:
+def _entry(text: str, group: str, end: int) -> list_rows.ListRow | None:
     """Return an element of a row; None for a row that cannot be read."""
     content = text.encode()
     try:
@@ -349,7 +344,7 @@ def _entry(text: str, group: str, end: int) -> ListRow | None:
         return None
     length, width, diameter, cd, material = figures[-5:]
     sizes = {"length": length, "width": width, "diameter": diameter}
-    return ListRow(
+    return list_rows.ListRow(
         0,
         content[:end].decode("utf-8", "replace").strip(),
         line=group in _LINES and length == _METRE,
@@ -362,7 +357,7 @@ def _entry(text: str, group: str, end: int) -> ListRow | None:
     )
 
 
-def _of_sheets(path: Path) -> Iterable[ListRow]:
+def _of_sheets(path: Path) -> Iterable[list_rows.ListRow]:
     found = False
     for title, cells in read_sheets(path).items():
         headings = headings_of(cells, {})
@@ -370,8 +365,8 @@ def _of_sheets(path: Path) -> Iterable[ListRow]:
             continue
         if headings.problems:
             raise refused(path, *headings.problems)
-        rows = rows_of(cells, headings, [], [], [])
-        weights_as_buoyancy(rows, [])
+        rows = list_rows.rows_of(cells, headings, [], [], [])
+        list_rows.weights_as_buoyancy(rows, [])
         for row in rows:
             found = True
             row.line = _is_line(row, title)
@@ -381,7 +376,7 @@ def _of_sheets(path: Path) -> Iterable[ListRow]:
         raise refused(path, "holds no elements: no sheet has headings that CALM knows")
 
 
-def _is_line(row: ListRow, title: str) -> bool:
+def _is_line(row: list_rows.ListRow, title: str) -> bool:
     """Return whether an element is a line, with figures per metre."""
     floats = row.figures.get("buoyancy", 0.0) > 0.0 and row.figures.get("diameter", 0.0) > 0.0
     if abs(row.figures.get("length", 1.0) - 1.0) > _A_METRE or (floats and "width" in row.figures):

@@ -13,7 +13,6 @@ from functools import cache
 from typing import Annotated
 
 from pydantic import AfterValidator, WithJsonSchema, model_validator
-from pydantic.fields import FieldInfo
 
 from calm.errors import shown, unknown
 from calm.files import definition
@@ -190,16 +189,15 @@ class LimitKey:
         return self.default is not None and self.value != self.default
 
 
-def limit_keys(checks: Checks) -> Iterator[LimitKey]:
-    """Return every limit of `checks:`, those that are not given with their default."""
-    yield from _limit_keys(checks, "")
+def limit_keys(checks: definition.Model, prefix: str = "") -> Iterator[LimitKey]:
+    """Return every limit of `checks:`, those that are not given with their default.
 
-
-def _limit_keys(model: definition.Model, prefix: str) -> Iterator[LimitKey]:
-    for name, default in _defaults(type(model)):
-        value = getattr(model, name)
+    `prefix` is that of the names where the model stands under a key of another one.
+    """
+    for name, default in _defaults(type(checks)).items():
+        value = getattr(checks, name)
         if isinstance(value, definition.Model):
-            yield from _limit_keys(value, f"{prefix}{name}.")
+            yield from limit_keys(value, f"{prefix}{name}.")
         elif default is not None:
             used = default.value if value is None else value
             own = prefix or used != default.value
@@ -207,18 +205,16 @@ def _limit_keys(model: definition.Model, prefix: str) -> Iterator[LimitKey]:
 
 
 @cache
-def _defaults(model: type[definition.Model]) -> tuple[tuple[str, LimitKey | None], ...]:
+def _defaults(model: type[definition.Model]) -> dict[str, LimitKey | None]:
     """Return for each field the limit that it is unless given; None of one that is no limit."""
-    return tuple((name, _default(name, field)) for name, field in model.model_fields.items())
-
-
-def _default(name: str, field: FieldInfo) -> LimitKey | None:
-    limit = next((one for one in field.metadata if isinstance(one, Limit)), None)
-    quantity = definition.quantity_of(field)
-    if limit is None or quantity is None:
-        return None
-    default = limit.default if field.default is None else field.default
-    return LimitKey(name, quantity.dimension, default, default, limit.source)
+    found: dict[str, LimitKey | None] = {}
+    for name, field in model.model_fields.items():
+        limit = next((one for one in field.metadata if isinstance(one, Limit)), None)
+        quantity, found[name] = definition.quantity_of(field), None
+        if limit is not None and quantity is not None:
+            default = limit.default if field.default is None else field.default
+            found[name] = LimitKey(name, quantity.dimension, default, default, limit.source)
+    return found
 
 
 def _day(text: str) -> str:

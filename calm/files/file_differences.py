@@ -20,7 +20,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from calm.files.components import Flexible
-from calm.files.definition import QuantityField
+from calm.files.definition import quantity_of
 from calm.files.mooring_file import Clamp, MooringFile, Piece
 from calm.quantities import bearing_of
 from calm.records.profile_tables import CurrentTable, DepthTable
@@ -96,40 +96,40 @@ _DIMENSIONS = {
 
 def differences(before: MooringFile, after: MooringFile) -> Differences:
     """Compare two files of the same kind."""
-    lines = [*before.pieces], [*after.pieces]
+    lines = before.pieces, after.pieces
+    hung = [[(piece.index, clamp) for piece in line for clamp in piece.clamps] for line in lines]
     pieces = align(*map(_known_pieces, lines))
     partner = dict(pieces.pairs)
-    clamps = [[(p.index, clamp) for p in line for clamp in p.clamps] for line in lines]
-    known = [_known_clamps(clamps[0], partner), _known_clamps(clamps[1], None)]
-    aligned = align(*known)
+    clamps = align(_known_clamps(hung[0], partner), _known_clamps(hung[1], None))
+    parts = [[clamp for _, clamp in each] for each in hung]
+    kinds: list[tuple[Alignment, Sequence[Piece | Clamp], Sequence[Piece | Clamp]]] = [
+        (pieces, *lines),
+        (clamps, parts[0], parts[1]),
+    ]
     changed = [*_changes("", _around(before), _around(after))]
-    names = [own_labels([piece.label for piece in line]) for line in lines]
-    for i, j in pieces.pairs:
-        label = lines[0][i].label
-        changed += _of_part(lines[0][i], lines[1][j], names[0][i], names[1][j], label)
-    names = [[one.label for one in each] for each in known]
-    for i, j in aligned.pairs:
-        (above, first), (below, second) = clamps[0][i], clamps[1][j]
-        changed += _of_part(first, second, names[0][i], names[1][j], first.label)
-        if partner.get(above) != below:
-            on = _text(lines[0][above].label), _text(lines[1][below].label)
-            changed.append(Change(f"{first.label}.on", *on))
+    for found, first, second in kinds:
+        names, others = (own_labels([part.label for part in each]) for each in (first, second))
+        for i, j in found.pairs:
+            changed += _of_part(first[i], second[j], names[i], others[j])
+            if found is clamps and partner.get(above := hung[0][i][0]) != (below := hung[1][j][0]):
+                on = _text(lines[0][above].label), _text(lines[1][below].label)
+                changed.append(Change(f"{first[i].label}.on", *on))
     return Differences(
         changed=tuple(changed),
-        moved=tuple(_moves(pieces, *lines)),
-        removed=(
-            *(lines[0][i].label for i in pieces.removed),
-            *(clamps[0][i][1].label for i in aligned.removed),
+        moved=tuple(
+            Change(lines[0][i].label, _above(lines[0], i), _above(lines[1], j))
+            for i, j in sorted(pieces.moved)
         ),
-        added=(
-            *(lines[1][j].label for j in pieces.added),
-            *(clamps[1][j][1].label for j in aligned.added),
-        ),
-        pairs=(
-            *((lines[0][i], lines[1][j]) for i, j in pieces.pairs),
-            *((clamps[0][i][1], clamps[1][j][1]) for i, j in aligned.pairs),
+        removed=tuple(first[i].label for found, first, _ in kinds for i in found.removed),
+        added=tuple(second[j].label for found, _, second in kinds for j in found.added),
+        pairs=tuple(
+            (first[i], second[j]) for found, first, second in kinds for i, j in found.pairs
         ),
     )
+
+
+def _above(line: Sequence[Piece], place: int) -> ComparedValue:
+    return _text(f"below {line[place - 1].label}" if place else "on top")
 
 
 def _known_pieces(pieces: Sequence[Piece]) -> list[Known]:
@@ -157,25 +157,14 @@ def _content(part: Piece | Clamp) -> tuple[str, str]:
     return part.use, part.component.model_dump_json()
 
 
-def _moves(
-    alignment: Alignment, before: Sequence[Piece], after: Sequence[Piece]
-) -> Iterator[Change]:
-    for i, j in sorted(alignment.moved):
-        places = [
-            f"below {line[place - 1].label}" if place else "on top"
-            for line, place in ((before, i), (after, j))
-        ]
-        yield Change(before[i].label, *map(_text, places))
-
-
 def _of_part(
-    before: Piece | Clamp, after: Piece | Clamp, name: str, other: str, label: str
+    before: Piece | Clamp, after: Piece | Clamp, name: str, other: str
 ) -> Iterator[Change]:
     first, second = _part_figures(before, name), _part_figures(after, other)
     if before.use == after.use:
         first |= _figures(before.component, _OF_THE_SOURCE)
         second |= _figures(after.component, _OF_THE_SOURCE)
-    yield from _changes(f"{label}.", first, second)
+    yield from _changes(f"{before.label}.", first, second)
 
 
 def _part_figures(part: Piece | Clamp, name: str) -> dict[str, ComparedValue]:
@@ -211,21 +200,24 @@ def _around(file: MooringFile) -> dict[str, ComparedValue]:
 def _figures(part: Any, left_out: frozenset[str] = frozenset()) -> dict[str, ComparedValue]:
     """Return the fields of a model, dotted where it holds others."""
     found: dict[str, ComparedValue] = {}
-    if isinstance(part, BaseModel):
-        model = type(part).model_fields
-        given = {name: (getattr(part, name), model[name].metadata) for name in model}
-    else:
-        given = {field.name: (getattr(part, field.name), []) for field in fields(part)}
-    for name, (value, metadata) in given.items():
+    model = type(part).model_fields if isinstance(part, BaseModel) else {}
+    for name, value in _fields(part).items():
         if name in left_out:
             continue
         if isinstance(value, BaseModel):
             found |= {f"{name}.{key}": one for key, one in _figures(value).items()}
             continue
-        quantity = next((one for one in metadata if isinstance(one, QuantityField)), None)
+        quantity = quantity_of(model[name]) if name in model else None
         dimension = quantity.dimension if quantity else _DIMENSIONS.get(name)
         found[name] = _figure(name, value, dimension)
     return found
+
+
+def _fields(part: Any) -> dict[str, Any]:
+    """Return what a model or a dataclass holds, by name."""
+    if isinstance(part, BaseModel):
+        return dict(part)
+    return {field.name: getattr(part, field.name) for field in fields(part)}
 
 
 def _figure(name: str, value: Any, dimension: str | None = None) -> ComparedValue:
@@ -257,16 +249,13 @@ def _of_current(table: CurrentTable) -> ComparedValue:
 
 def _said(value: Any) -> str:
     """Return a value that is neither a number nor None, in words."""
-    if isinstance(value, BaseModel):
-        given = {name: one for name, one in value if one is not None and one != ()}
-        return ", ".join(f"{name}: {_said(one)}" for name, one in given.items())
+    if isinstance(value, BaseModel) or is_dataclass(value):
+        given = {name: one for name, one in _fields(value).items() if one is not None}
+        value = {name: one for name, one in given.items() if not isinstance(one, tuple) or one}
     if isinstance(value, list | tuple):
         return "; ".join(map(_said, value))
     if isinstance(value, dict):
         return ", ".join(f"{key}: {_said(one)}" for key, one in value.items())
-    if is_dataclass(value):
-        named = ((each.name, getattr(value, each.name)) for each in fields(value))
-        return ", ".join(f"{name}: {_said(one)}" for name, one in named if one is not None)
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 

@@ -7,36 +7,21 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from calm.errors import about_quantity, shown, unknown
+from calm.files import components, logbook
 from calm.files.catalogue import Assembly, Catalogue, CatalogueEntry, Defined, define
 from calm.files.check_limits import GREATER_FLATTERS, LESSER_FLATTERS, LimitKey
-from calm.files.components import (
-    FLEXIBLE_KINDS,
-    KINDS,
-    Anchor,
-    Component,
-    Flexible,
-    Outline,
-    contradicted,
-    odd_overrides,
-)  # fmt: skip
+from calm.files.components import FLEXIBLE_KINDS, KINDS, Anchor, Component, Flexible, Outline
 from calm.files.definition import IN_AIR, LENGTH, POSITIVE_LENGTH, QuantityField, quantity_of
-from calm.files.logbook import (
-    MOST_PIECES,
-    ClampKeys,
-    ItemKeys,
-    LengthAt,
-    check_serials,
-    read_equipment,
-)
+from calm.files.logbook import MOST_PIECES
 from calm.files.mooring_file import Clamp, Piece, Place, placed
 from calm.files.rigid import Profiler, Rigid
 from calm.files.yaml_document import SourceMapping, unknown_key, validate
 from calm.units import QuantityError
 
 _COUNT = QuantityField("number", at_least=1, at_most=MOST_PIECES)
-_ITEM_KEYS = frozenset(ItemKeys.model_fields)
+_ITEM_KEYS = frozenset(logbook.ItemKeys.model_fields)
 _ASSEMBLY_KEYS = frozenset({"use", "label", "count"})
-_CLAMP_KEYS = frozenset(ClampKeys.model_fields)
+_CLAMP_KEYS = frozenset(logbook.ClampKeys.model_fields)
 _WORDS = {"at": "place", "top_depth": "top depth", "body_depth": "body depth"}
 
 
@@ -103,7 +88,7 @@ class LineReader:
 
     def _item(self, item: SourceMapping) -> tuple[Piece, ...]:
         count = self._count(item)
-        check_serials(item, count)
+        logbook.check_serials(item, count)
         entry = self._entry(item)
         definition = self._definition(entry, item, _ITEM_KEYS) if entry else None
         if entry is None or definition is None:
@@ -181,7 +166,7 @@ class LineReader:
             column=place.column,
             place=Place(0),
             fit_body_depth=fit_depth if self._towed else None,
-            equipment=read_equipment(item),
+            equipment=logbook.read_equipment(item),
             measured_load=load,
         )
 
@@ -191,7 +176,7 @@ class LineReader:
             example = "{load: 2 kN, length: 480 m}"
             item.refuse(("length_at",), f"`length_at` must be as `{example}`")
             return math.nan, 0.0
-        measured = validate(LengthAt, item.child("length_at"))
+        measured = validate(logbook.LengthAt, item.child("length_at"))
         if measured is None:
             return math.nan, 0.0
         breaking = component.breaking_load
@@ -242,7 +227,7 @@ class LineReader:
             if isinstance(component, Rigid) and at is not None:
                 self._tell_of_mass(clamp.data["use"], component)
                 where = Place(0, clamp=len(clamps))
-                own = read_equipment(clamp)
+                own = logbook.read_equipment(clamp)
                 label = self._label(clamp)
                 clamps.append(Clamp(clamp.data["use"], label, component, at, where, own))
             elif component is not None and at is not None:
@@ -313,7 +298,9 @@ class LineReader:
             message = "`kind` cannot be overridden; define a component of your own"
             item.refuse(("kind",), message, key=True)
             return None
-        void = contradicted(definition.kind, entry.section.data.keys(), overriding.keys())
+        void = components.contradicted(
+            definition.kind, entry.section.data.keys(), overriding.keys()
+        )
         section = item.holding(overriding).over(entry.section, dropping=void)
         hinted = item_keys if definition.kind == "cable" else item_keys - {"termination"}
         component = self._define(entry, section, also_allowed=hinted)
@@ -324,7 +311,7 @@ class LineReader:
         self._keep_looser_limits(entry, item, definition, component)
         if not self._in_air and isinstance(definition, Component):
             place = f"line {item.problem((), '').line}: "
-            doubts = odd_overrides(entry.id, definition, component, overriding.keys())
+            doubts = components.odd_overrides(entry.id, definition, component, overriding.keys())
             self._notices += (place + doubt for doubt in doubts)
         return component
 

@@ -13,30 +13,13 @@ import numpy as np
 from pydantic import Discriminator, Tag, ValidationError, model_validator
 
 from calm.errors import InputError, Problem, UsageError, about_quantity, nearest, shown
-from calm.files.definition import (
-    CATALOGUE_DENSITY,
-    DENSITY,
-    Model,
-    PositiveLength,
-    QuantityField,
-    Text,
-    described,
-    optional,
-)
+from calm.files import definition
+from calm.files.definition import DENSITY, Model, QuantityField, Text, described, optional
 from calm.files.yaml_document import SourceMapping
 from calm.physics import seawater
+from calm.records import profile_tables
 from calm.records.columns import QuantityTable
 from calm.records.current_terms import left_out
-from calm.records.profile_tables import (
-    DIRECTION,
-    SALINITY,
-    TEMPERATURE,
-    WATER_DENSITY,
-    DepthTable,
-    SeaWater,
-    read_profile,
-    read_water,
-)
 from calm.records.sea_states import (
     OF_HEIGHT,
     SPECTRA,
@@ -48,7 +31,7 @@ from calm.records.sea_states import (
 )
 from calm.units import QuantityError, QuantityRange
 
-USUAL_DENSITY = {"water": CATALOGUE_DENSITY, "air": 1.225}
+USUAL_DENSITY = {"water": definition.CATALOGUE_DENSITY, "air": 1.225}
 """Where a file gives none [kg/m³]; that of air is the standard atmosphere's at sea level."""
 
 
@@ -78,12 +61,12 @@ class SeaWaterKeys(Model):
     """Temperature [°C] and practical salinity, each a constant or a table by depth."""
 
     temperature: Annotated[
-        Annotated[float, QuantityField(**vars(TEMPERATURE)), Tag("constant")]
+        Annotated[float, QuantityField(**vars(profile_tables.TEMPERATURE)), Tag("constant")]
         | Annotated[TableKeys, Tag("table")],
         Discriminator(_table_or_constant),
     ] = described("in situ, a constant or a table", "10 degC")
     salinity: Annotated[
-        Annotated[float, QuantityField(**vars(SALINITY)), Tag("constant")]
+        Annotated[float, QuantityField(**vars(profile_tables.SALINITY)), Tag("constant")]
         | Annotated[TableKeys, Tag("table")],
         Discriminator(_table_or_constant),
     ] = described("practical, a constant or a table", 35)
@@ -98,7 +81,7 @@ Density = Annotated[
 """The value of `density:` as a person writes it."""
 
 
-_RANGES: Mapping[str, QuantityRange] = {"water": WATER_DENSITY, "air": DENSITY}
+_RANGES: Mapping[str, QuantityRange] = {"water": profile_tables.WATER_DENSITY, "air": DENSITY}
 _FALL = 0.1
 """Water that gets lighter by more than this with depth turns over [kg/m³]."""
 _RATIO = 0.05
@@ -111,7 +94,7 @@ def read_density(
     given: float | TableKeys | SeaWaterKeys,
     fluid: str,
     section: SourceMapping,
-) -> float | DepthTable | SeaWater | None:
+) -> float | profile_tables.DepthTable | profile_tables.SeaWater | None:
     """Read the density of an environment; None where it has mistakes.
 
     Parameters
@@ -122,7 +105,7 @@ def read_density(
     """
     density = _RANGES[fluid]
     if isinstance(given, TableKeys):
-        return read_water(quantity_table(given, section, "density"), density)
+        return profile_tables.read_water(quantity_table(given, section, "density"), density)
     if not isinstance(given, SeaWaterKeys):
         try:
             return density.read(f"{given!r} kg/m^3")
@@ -132,7 +115,7 @@ def read_density(
             return None
     temperature = _profile("temperature", given.temperature, section)
     salinity = _profile("salinity", given.salinity, section)
-    return SeaWater(temperature, salinity) if temperature and salinity else None
+    return profile_tables.SeaWater(temperature, salinity) if temperature and salinity else None
 
 
 def table_of(value: object) -> TableKeys | None:
@@ -158,16 +141,18 @@ def quantity_table(table: TableKeys, section: SourceMapping, *place: str) -> Qua
     return QuantityTable(table.columns, table.rows, problem, section.problems)
 
 
-def density_notices(density: float | DepthTable | SeaWater, depth: float | None) -> Iterator[str]:
+def density_notices(
+    density: float | profile_tables.DepthTable | profile_tables.SeaWater, depth: float | None
+) -> Iterator[str]:
     """Yield what is odd about the density of the water as it was read, in sentences.
 
     Its depth [m] is None where it is not known.
     """
-    if isinstance(density, SeaWater):
+    if isinstance(density, profile_tables.SeaWater):
         profiles = {"temperature": density.temperature, "salinity": density.salinity}
         yield from _sea_water_notices(density)
     else:
-        profiles = {"density": density} if isinstance(density, DepthTable) else {}
+        profiles = {"density": density} if isinstance(density, profile_tables.DepthTable) else {}
         for table in profiles.values():
             yield from _falls(table)
     for name, table in profiles.items():
@@ -178,7 +163,7 @@ def density_notices(density: float | DepthTable | SeaWater, depth: float | None)
                 yield f"{missing[0].upper()}{missing[1:]}."
 
 
-def _sea_water_notices(water: SeaWater) -> Iterator[str]:
+def _sea_water_notices(water: profile_tables.SeaWater) -> Iterator[str]:
     """Yield what is odd about temperature and salinity beside each other."""
     warm, salt = water.temperature.value, water.salinity.value
     if max(salt) < _RATIO:
@@ -196,10 +181,10 @@ def _sea_water_notices(water: SeaWater) -> Iterator[str]:
         depth = np.union1d(*(each.depth for each in given))
         warmth, saltiness = (np.interp(depth, each.depth, each.value) for each in given)
         raised = seawater.potential_density(warmth, saltiness, depth)
-        yield from _falls(DepthTable(tuple(depth.tolist()), tuple(raised.tolist())))
+        yield from _falls(profile_tables.DepthTable(tuple(depth.tolist()), tuple(raised.tolist())))
 
 
-def _falls(table: DepthTable) -> Iterator[str]:
+def _falls(table: profile_tables.DepthTable) -> Iterator[str]:
     """Yield a notice where the density falls with depth."""
     greatest, depth = table.value[0], table.depth[0]
     for below, value in zip(table.depth, table.value, strict=True):
@@ -219,21 +204,23 @@ def check_density(section: SourceMapping) -> None:
     density = _RANGES["air" if section.data.get("fluid") == "air" else "water"]
     table = table_of(given)
     if table is not None:
-        read_water(quantity_table(table, section, "density"), density)
+        profile_tables.read_water(quantity_table(table, section, "density"), density)
     for name in SeaWaterKeys.model_fields:
         table = table_of(given.get(name)) if isinstance(given, dict) else None
         if table is not None:
             _profile(name, table, section)
 
 
-def _profile(name: str, given: float | TableKeys, section: SourceMapping) -> DepthTable | None:
+def _profile(
+    name: str, given: float | TableKeys, section: SourceMapping
+) -> profile_tables.DepthTable | None:
     if isinstance(given, TableKeys):
-        return read_profile(name, quantity_table(given, section, "density", name))
-    return DepthTable((0.0,), (given,))
+        return profile_tables.read_profile(name, quantity_table(given, section, "density", name))
+    return profile_tables.DepthTable((0.0,), (given,))
 
 
 _SPEED = QuantityField("speed", at_least=0)
-Toward = Annotated[float, QuantityField(**vars(DIRECTION))]
+Toward = Annotated[float, QuantityField(**vars(profile_tables.DIRECTION))]
 
 
 class Wind(Model):
@@ -248,7 +235,9 @@ class Wind(Model):
     surface_drift: Annotated[float, QuantityField("number", at_least=0, at_most=0.1)] = described(
         "share of the wind's speed that the surface water drifts at", "2 %", default=0.0
     )
-    drift_depth: PositiveLength = optional("how deep the water that the wind drives goes", "50 m")
+    drift_depth: definition.PositiveLength = optional(
+        "how deep the water that the wind drives goes", "50 m"
+    )
 
     @model_validator(mode="after")
     def _depth_of_a_drift(self) -> Wind:
@@ -271,7 +260,7 @@ class SwellKeys(Model):
 class WaveKeys(Model):
     """The keys of `waves:`: one sea, a table of seas with their shares of the time, or both."""
 
-    significant_height: PositiveLength = optional("Hs of the sea to be survived", "5 m")
+    significant_height: definition.PositiveLength = optional("Hs of the sea to be survived", "5 m")
     peak_period: Annotated[float | None, QuantityField("time", above=0)] = optional(
         "Tp of that sea; pierson-moskowitz and ochi-hubble have their own", "8.4 s"
     )

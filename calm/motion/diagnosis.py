@@ -16,13 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.motion import common_unknowns
-from calm.motion.common_unknowns import (
-    NEVER,
-    Evidence,
-    chance_of,
-    first_time,
-    moves,
-)
 from calm.motion.correction import Task
 from calm.motion.estimate import best_state, posterior
 from calm.motion.line_response import LineResponse
@@ -282,8 +275,8 @@ class Diagnosis:
             if one.wide:
                 raw = raw - one.column * one.fault.size
         inverse = self.white.transpose(0, 2, 1) @ self.white
-        evidence = Evidence(raw, fixed, inverse, begun.weight, law.known)
-        first = first_time(evidence, law.fall, law.share, self.mean, self.spread)
+        evidence = common_unknowns.Evidence(raw, fixed, inverse, begun.weight, law.known)
+        first = common_unknowns.first_time(evidence, law.fall, law.share, self.mean, self.spread)
         for j, label in enumerate(self.label):
             mine = np.arange(len(self.label)) == j
             codes = dict.fromkeys(common_unknowns.RAMPS, "drift")
@@ -293,12 +286,14 @@ class Diagnosis:
             if first[j] > 0:
                 codes[int(first[j])] = "slip"
             for code, kind in codes.items():
-                if (label, kind) in had or first[j] == NEVER:
+                if (label, kind) in had or first[j] == common_unknowns.NEVER:
                     continue
-                column = moves(np.where(mine, code, NEVER), law.fall, law.share)
+                column = common_unknowns.moves(
+                    np.where(mine, code, common_unknowns.NEVER), law.fall, law.share
+                )
                 if kind == "offset":
                     column = np.broadcast_to(mine * 1.0, none.shape)
-                chance, wide = chance_of(code, len(law.time))
+                chance, wide = common_unknowns.chance_of(code, len(law.time))
                 since, until = law.time[code] if kind == "slip" else NO_TIME, NO_TIME
                 if kind == "drift":
                     since = self.measured.time[0]

@@ -16,18 +16,8 @@ from calm.motion.correction import ESTIMATED, MEASURED, MISSING
 from calm.motion.line_places import LinePlaces, points_of
 from calm.motion.measurements import interpolated
 from calm.motion.study import depths_at
-from calm.records.cf_files import (
-    UnreadableError,
-    engine_of,
-    groups_of,
-    holdings,
-    is_dataset,
-    is_netcdf,
-    labels_along,
-    open_current,
-    read_times,
-    reading,
-)
+from calm.records import cf_files
+from calm.records.cf_files import holdings
 from calm.records.instrument_series import Identity, files_given, who_along
 from calm.version import __version__
 from calm.whole_file import beside
@@ -105,21 +95,23 @@ def read_instruments(
 
 
 def _read(path: Path, seabed: float, replacing: bool) -> Instruments:
-    if not path.is_file() or not is_dataset(path):
+    if not path.is_file() or not cf_files.is_dataset(path):
         raise InputError([Problem(str(path), 0, 0, "is not NetCDF, RODB, .cnv or RBR's table")])
-    with reading(path), open_current(path) as dataset:
-        if groups := groups_of(path):
-            raise UnreadableError(
+    with cf_files.reading(path), cf_files.open_current(path) as dataset:
+        if groups := cf_files.groups_of(path):
+            raise cf_files.UnreadableError(
                 f"has groups, which a copy would lack: {', '.join(groups)}; give the variables of "
                 "its instruments as a file of their own"
             )
         clock = next((name for name in _TIMES if name in dataset.variables), None)
         if clock is None or dataset[clock].ndim != 1:
-            raise UnreadableError(f"has no times; it holds {holdings(dataset)}")
+            raise cf_files.UnreadableError(f"has no times; it holds {holdings(dataset)}")
         dimension = str(dataset[clock].dims[0])
         along, who = _who(dataset, dimension, seabed, path)
         _refuse_depths(dataset, path, dimension, along, replacing)
-        return Instruments(path, clock, dimension, along, read_times(dataset, clock), who, ())
+        return Instruments(
+            path, clock, dimension, along, cf_files.read_times(dataset, clock), who, ()
+        )
 
 
 def _who(
@@ -127,14 +119,14 @@ def _who(
 ) -> tuple[str | None, tuple[Identity, ...]]:
     """Return the dimension of the instruments and who they are; None of the one of a file."""
     others = [str(dim) for dim in dataset.sizes if dim != time]
-    for dim in sorted(others, key=lambda dim: labels_along(dataset, dim) is None):
-        if dataset.sizes[dim] > 1 or labels_along(dataset, dim) is not None:
+    for dim in sorted(others, key=lambda dim: cf_files.labels_along(dataset, dim) is None):
+        if dataset.sizes[dim] > 1 or cf_files.labels_along(dataset, dim) is not None:
             who = who_along(dataset, dim, seabed, path.name)
             if any(one.label or one.serial for one in who) or dim == "N_LEVELS":
                 return dim, tuple(who)
     alone = who_along(dataset, None, seabed, path.name)
     if not alone[0].known:
-        raise UnreadableError(
+        raise cf_files.UnreadableError(
             "has no labels of instruments (`instrument` or `label`), and no serial number or "
             f"nominal depth of one; it holds {holdings(dataset)}"
         )
@@ -197,17 +189,17 @@ def write_depths(
             continue
         depth[:, j], spread[:, j], flag[:, j] = at_own_times(result, point, instruments.time, gap)
     # values as they stand, but for texts: kept as characters they would be split once more
-    if is_netcdf(instruments.path):
+    if cf_files.is_netcdf(instruments.path):
         with xr.open_dataset(
             instruments.path,
-            engine=engine_of(instruments.path),
+            engine=cf_files.engine_of(instruments.path),
             mask_and_scale=False,
             decode_times=False,
             decode_coords=False,
         ) as own:
             copy = own.load()
     else:
-        copy = open_current(instruments.path)
+        copy = cf_files.open_current(instruments.path)
     one = instruments.along is None
     copy = _without_depths(copy, instruments)
     name, deviation, mark = instruments.names

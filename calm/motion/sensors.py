@@ -13,26 +13,11 @@ from numpy.typing import NDArray
 
 from calm.errors import InputError, Problem, UsageError
 from calm.physics.line import Floats
+from calm.records import cf_files, instrument_series
 from calm.records.attributes import words_of
-from calm.records.cf_files import (
-    UnreadableError,
-    factor_of,
-    find_times,
-    holdings,
-    known_values,
-    open_current,
-    read_times,
-    reading,
-)
+from calm.records.cf_files import UnreadableError, factor_of, find_times, holdings, open_current
 from calm.records.current_file import holds_arrays
 from calm.records.headings import read_time_columns
-from calm.records.instrument_series import (
-    INTERPOLATED,
-    named,
-    readings,
-    split_label,
-    who_along,
-)
 from calm.records.velocity import MISSING, flag_variable
 
 if TYPE_CHECKING:
@@ -96,7 +81,7 @@ def read_sensors(
     """
     found: list[Sensor] = []
     for text in given:
-        label, path = split_label(text)
+        label, path = instrument_series.split_label(text)
         if not path.exists():
             raise InputError([Problem(str(path), 0, 0, "no such file")])
         mine = (
@@ -128,7 +113,7 @@ def depth_of(dbar: Floats, latitude: float) -> Floats:
 
 
 def _from_arrays(path: Path, flags: frozenset[int], latitude: float, seabed: float) -> list[Sensor]:
-    with reading(path), open_current(path) as dataset:
+    with cf_files.reading(path), open_current(path) as dataset:
         try:
             return _understood(dataset, path, flags, latitude, seabed)
         except UnreadableError as error:
@@ -140,7 +125,7 @@ def _understood(
 ) -> list[Sensor]:
     name, is_pressure = _find(dataset)
     variable = dataset[name]
-    found = readings(dataset, [name], flags)
+    found = instrument_series.readings(dataset, [name], flags)
     words, note = words_of(variable, "long_name", "comment"), ""
     if _NOT_MEASURED.search(words):
         flagged = flag_variable(dataset, name)
@@ -162,14 +147,16 @@ def _understood(
             dropped=int(found.dropped[:, j].sum()),
             note=note,
         )
-        for j, who in enumerate(who_along(dataset, found.along, seabed, path.name))
+        for j, who in enumerate(
+            instrument_series.who_along(dataset, found.along, seabed, path.name)
+        )
         if not note or np.isfinite(depth[:, j]).any()
     ]
 
 
 def _find(dataset: xr.Dataset) -> tuple[str, bool]:
     """Return the variable of the pressures, or else of the depths; whether it is the former."""
-    if found := named(dataset, _PRESSURES, _USUAL):
+    if found := instrument_series.named(dataset, _PRESSURES, _USUAL):
         return found[0], True
     for name in map(str, dataset.cf.standard_names.get("depth", [])):
         clock = find_times(dataset, name)
@@ -210,7 +197,7 @@ def parse_flags(text: str) -> frozenset[int]:
         flags = frozenset(int(part) for part in text.split(","))
     except ValueError:
         raise UsageError(f"--flags: `{text[:40]}` is not a list of flags; write 1,2") from None
-    if INTERPOLATED in flags:
+    if instrument_series.INTERPOLATED in flags:
         raise UsageError("--flags: 8 marks what was interpolated, which is never a measurement")
     if not flags <= set(range(MISSING)):
         raise UsageError(f"--flags: `{text[:40]}`: flags are from 0 to 8")
@@ -243,16 +230,16 @@ def read_sea_level(path: Path) -> tuple[NDArray[np.datetime64], Floats]:
             raise InputError([Problem(str(path), 1, 1, message)])
         _refuse_far(path, table.time, table.values[:, 0])
         return table.time, table.values[:, 0]
-    with reading(path), open_current(path) as dataset:
+    with cf_files.reading(path), open_current(path) as dataset:
         for standard in _STANDARD:
             for name in map(str, dataset.cf.standard_names.get(standard, [])):
                 clock = find_times(dataset, name)
                 variable = dataset[name].squeeze()
                 if clock is None or variable.ndim != 1:
                     continue
-                times = read_times(dataset, clock)
+                times = cf_files.read_times(dataset, clock)
                 order = np.argsort(times, kind="stable")
-                level = known_values(variable) * factor_of(variable, "length")
+                level = cf_files.known_values(variable) * factor_of(variable, "length")
                 _refuse_far(path, times, level)
                 return times[order], level[order]
         raise UnreadableError(f"holds no height of the sea surface; it holds {holdings(dataset)}")

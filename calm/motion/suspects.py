@@ -12,16 +12,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from calm.motion import line_response
 from calm.motion.correction import Task
-from calm.motion.line_response import (
-    FACTORS,
-    STEP,
-    Forward,
-    Linear,
-    LineResponse,
-    ReadCurrents,
-    labels_of,
-)
+from calm.motion.line_response import FACTORS, STEP, Forward, Linear, LineResponse, ReadCurrents
 from calm.motion.measurements import MooringMeasurements, level_names
 from calm.motion.remarks import BAND, CURRENTS, LINE, Fault
 from calm.physics.line import Floats
@@ -129,7 +122,7 @@ def line_suspects(
     yield suspect(LINE, "fouling", share * drag, 1, dragged, share)
     slope = seen(at.slope)  # a meter reads less: the line is deeper than by its currents
     yield suspect(CURRENTS, "currents", -slope.sum(axis=2))
-    levels = level_names(task.measured, labels_of(task.mooring))
+    levels = level_names(task.measured, line_response.labels_of(task.mooring))
     if len(levels) == moments.groups > 1:
         for k, name in enumerate(levels):
             one_level, many = -slope[:, :, k], len(levels)

@@ -10,15 +10,7 @@ from numpy.typing import NDArray
 
 from calm.case import Mooring
 from calm.motion import common_unknowns
-from calm.motion.common_unknowns import (
-    RAMPS,
-    Common,
-    Evidence,
-    first_time,
-    fits,
-    hanging_sensors,
-    moves,
-)
+from calm.motion.common_unknowns import RAMPS, Common, Evidence, first_time, fits, hanging_sensors
 from calm.motion.estimate import Posterior, best_state, own_errors
 from calm.motion.line_response import STEP, Forward, Linear, LineResponse, gap_errors
 from calm.motion.measurements import MooringMeasurements
@@ -284,7 +276,7 @@ def _placed(
     """
     sensors = fall.shape[1]
     first = first_time(evidence, fall, share, *_unmoved(known))
-    gone = moves(first, fall, share)
+    gone = common_unknowns.moves(first, fall, share)
     seen = np.concatenate([evidence.seen, gone[:, :, None] * np.eye(sensors)], axis=2)
     normal, pull = evidence.normal(seen), evidence.pulls(seen, evidence.left).sum(axis=0)
     free = np.linalg.solve(normal + np.eye(len(normal)) / common_unknowns.ELSEWHERE**2, pull)

@@ -21,14 +21,7 @@ from calm.files.editing import Draft, EditError, WorkingFile
 from calm.physics.line import Booleans, Floats
 from calm.positions import Frame, read_as_minutes
 from calm.quantities import bearing_of, bearing_text
-from calm.ranging.range_model import (
-    FLOOR,
-    RangeModel,
-    another_place,
-    consistency,
-    fitted,
-    geometry_warnings,
-)
+from calm.ranging import range_model
 from calm.ranging.ranges import Sound, Survey, read_ranges
 
 CONFIDENCE = 0.95
@@ -169,9 +162,9 @@ def locate(
         )
     frame = survey.frame
     ships = frame.place(survey.latitude, survey.longitude, np.full(count, survey.transducer))
-    model = RangeModel(survey, sound, frame, ships, depth)
-    x, used = fitted(model)
-    inconsistent = consistency(model, x, used)  # a wrong unit is named for what it is
+    model = range_model.RangeModel(survey, sound, frame, ships, depth)
+    x, used = range_model.fitted(model)
+    inconsistent = range_model.consistency(model, x, used)  # a wrong unit is named for what it is
     missed, reach = (
         float(np.median(np.abs(each[used]))) for each in (model.residuals(x), model.measured(x))
     )
@@ -181,7 +174,7 @@ def locate(
             f"{missed:.0f} m, for ranges of {reach:.0f} m; are positions and ranges from one "
             "survey?"
         )
-    x, other, meant = _nearer(model, x, another_place(model, x, used), near)
+    x, other, meant = _nearer(model, x, range_model.another_place(model, x, used), near)
     residuals = model.residuals(x)
     freedom = int(used.sum()) - unknowns
     rms = _scatter(residuals[used], freedom)
@@ -204,7 +197,9 @@ def locate(
         doubts.append(f"{int((~used).sum())} of {count} ranges do not fit the others")
     warnings = [
         *inconsistent,
-        *geometry_warnings(ships[used], place, found - survey.transducer, depth is not None),
+        *range_model.geometry_warnings(
+            ships[used], place, found - survey.transducer, depth is not None
+        ),
         *(f"{doubt[0].upper()}{doubt[1:]}." for doubt in doubts),
     ]
     if second is not None:
@@ -240,7 +235,7 @@ def locate(
 
 
 def _nearer(
-    model: RangeModel, x: Floats, other: Floats | None, near: tuple[float, float] | None
+    model: range_model.RangeModel, x: Floats, other: Floats | None, near: tuple[float, float] | None
 ) -> tuple[Floats, Floats | None, bool]:
     """Return the place that is meant, the other one, and whether it is clear which is meant."""
     if other is None or near is None:
@@ -252,7 +247,7 @@ def _nearer(
     return x, other, away <= CLEARLY * its
 
 
-def _second(model: RangeModel, x: Floats, other: Floats, used: Booleans) -> SecondPlace:
+def _second(model: range_model.RangeModel, x: Floats, other: Floats, used: Booleans) -> SecondPlace:
     latitude, longitude, _ = model.frame.position(model.place(other))
     freedom = int(used.sum()) - model.unknowns
     distance = float(np.linalg.norm((other - x)[:2]))
@@ -283,14 +278,16 @@ def _intervals(
     lengths, ways = np.linalg.eigh(covariance[:2, :2])
     # as the residuals tell, and no less than ranges and ship are known to scatter
     of_residuals = rms * sqrt(2.0 * float(fisher.ppf(CONFIDENCE, 2, freedom)))
-    widest = max(of_residuals, FLOOR * sqrt(float(chi2.ppf(CONFIDENCE, 2))))
+    widest = max(of_residuals, range_model.FLOOR * sqrt(float(chi2.ppf(CONFIDENCE, 2))))
     reach = widest * np.sqrt(np.maximum(lengths, 0.0))
     bearing = degrees(atan2(ways[0, 1], ways[1, 1])) % 180.0
     depth = 0.0
     if not depth_given:
         side = 0.5 + 0.5 * CONFIDENCE
         of_residuals = rms * float(student.ppf(side, freedom))
-        depth = max(of_residuals, FLOOR * float(norm.ppf(side))) * sqrt(covariance[2, 2])
+        depth = max(of_residuals, range_model.FLOOR * float(norm.ppf(side))) * sqrt(
+            covariance[2, 2]
+        )
     known = reach[1] < farthest
     return (
         float(reach[1]) if known else nan,

@@ -16,14 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.errors import InputError, Problem, UsageError
-from calm.records import cf_files
+from calm.records import cf_files, measured_quantities
 from calm.records.cf_files import UnreadableError, factor_of, first_present, holdings, known_values
 from calm.records.level_depths import find_levels
-from calm.records.measured_quantities import (
-    QUANTITIES_MEASURED,
-    celsius_zero,
-    practical_factor,
-)
 from calm.records.velocity import (
     find_velocity,
     flag_variable,
@@ -184,7 +179,7 @@ def _of_file(
 
 def _find(dataset: xr.Dataset, name: str) -> tuple[str, ...]:
     """Return the variable of a quantity; of velocities the two that make it; nothing without."""
-    quantity = QUANTITIES_MEASURED[name]
+    quantity = measured_quantities.QUANTITIES_MEASURED[name]
     if quantity.dimension == "speed":
         try:
             velocity = find_velocity(dataset, regular=False)
@@ -227,15 +222,15 @@ def _instruments(
     flags: frozenset[int],
     seabed: float,
 ) -> list[InstrumentSeries]:
-    quantity, first = QUANTITIES_MEASURED[name], variables[0]
+    quantity, first = measured_quantities.QUANTITIES_MEASURED[name], variables[0]
     found = readings(dataset, variables, flags)
     parts, dropped, along = found.values, found.dropped, found.along
     if quantity.dimension == "speed":
         value = _velocity(dataset, variables, parts, name)
     elif quantity.dimension == "temperature":
-        value = parts[0] - celsius_zero(dataset[first])
+        value = parts[0] - measured_quantities.celsius_zero(dataset[first])
     elif quantity.dimension == "salinity":
-        value = parts[0] * practical_factor(dataset[first])
+        value = parts[0] * measured_quantities.practical_factor(dataset[first])
     else:
         value = parts[0] * factor_of(dataset[first], quantity.dimension)
     value = np.where(dropped, np.nan, value)

@@ -16,18 +16,8 @@ from calm.batch.statistics.summary import (
     Response,
     Summary,
 )
-from calm.drawing.graph import (
-    Graph,
-    LegendEntry,
-    Scale,
-    Stroke,
-    covering,
-    decades,
-    moments,
-    numbers,
-    seconds,
-    write_legend,
-)
+from calm.drawing import graph
+from calm.drawing.graph import Graph, LegendEntry, Scale, Stroke, covering, decades, seconds
 from calm.drawing.line_picture import LineKind, LinePicture, PictureMark, Polyline, along
 from calm.drawing.plot import LINE_STYLE, WIDTH, draw_elevation, draw_plan
 from calm.errors import UsageError
@@ -51,16 +41,16 @@ _COLOURS = ("#0b3c5d", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#a6761d", "#
 def series_figure(summary: Summary) -> str:
     """Least and greatest value of every response in each interval of time, as SVG."""
     tall = 108.0
-    graph = Graph(_WIDTH, len(RESPONSES) * (tall + _GAP) + 20.0, "responses through time", _SIZE)
+    page = Graph(_WIDTH, len(RESPONSES) * (tall + _GAP) + 20.0, "responses through time", _SIZE)
     begin = summary.responses[0].begin
     across = covering(seconds(begin))
-    ticks = moments(begin[0], begin[-1], 7)
+    ticks = graph.moments(begin[0], begin[-1], 7)
     for number, response in enumerate(summary.responses):
         quantity, limit = QUANTITIES[QUANTITY[response.name]], _limit_of(summary, response)
         low, high = (quantity.scale * edge for edge in (response.low, response.high))
         up = covering(low, high, [limit or np.nan])
         top = 6.0 + number * (tall + _GAP)
-        axes = graph.axes(_LEFT, top, _WIDTH - _LEFT - _RIGHT, tall, across, up)
+        axes = page.axes(_LEFT, top, _WIDTH - _LEFT - _RIGHT, tall, across, up)
         if np.array_equal(low, high, equal_nan=True):
             axes.line(seconds(begin), high, Stroke(_LINE, 0.8))
         else:
@@ -68,11 +58,11 @@ def series_figure(summary: Summary) -> str:
         if limit is not None:
             axes.level(limit, _LIMIT)
         axes.frame(
-            ticks, numbers(up.low, up.high, 5),
+            ticks, 5,
             beside=f"{TITLES[response.name]}\n[{quantity.display_unit}]",
             grid=True, numbered=(number == len(RESPONSES) - 1, True),
         )  # fmt: skip
-    return graph.svg()
+    return page.svg()
 
 
 class _Curve(NamedTuple):
@@ -121,7 +111,7 @@ def parts_figure(parts: list[PartDistributions]) -> str:
 def _shares(title: str, panels: Sequence[_Shares], tall: float) -> str:
     """Panels two by two, with one scale of shares."""
     rows, wide = -(-len(panels) // 2), (_WIDTH - _LEFT - _RIGHT - _GAP) / 2
-    graph = Graph(_WIDTH, rows * (tall + _BELOW) + 6.0, title, _SIZE)
+    page = Graph(_WIDTH, rows * (tall + _BELOW) + 6.0, title, _SIZE)
     least = min([0.1, *(each.distribution.share[-1] for one in panels for each in one.curves)])
     up = Scale(100.0 * 10.0 ** floor(log10(least) + 1e-9), 100.0, logarithmic=True)
     for number, panel in enumerate(panels):
@@ -130,23 +120,20 @@ def _shares(title: str, panels: Sequence[_Shares], tall: float) -> str:
         values = [each.distribution.value * quantity.scale for each in panel.curves]
         across = covering(*values, [np.nan if panel.limit is None else panel.limit])
         left, top = _LEFT + column * (wide + _GAP), 6.0 + row * (tall + _BELOW)
-        axes = graph.axes(left, top, wide, tall, across, up)
+        axes = page.axes(left, top, wide, tall, across, up)
         for value, each in zip(values, panel.curves, strict=True):
             axes.line(value, 100.0 * each.distribution.share, each.stroke)
         if panel.limit is not None:
             axes.plumb(panel.limit, _LIMIT)
         axes.frame(
-            numbers(across.low, across.high, 6), decades(up.low, up.high),
+            6, decades(up.low, up.high),
             below=f"{panel.title} [{quantity.display_unit}]",
             beside="" if column else "reached or exceeded in [% of profiles]",
             grid=True, numbered=(True, not column),
         )  # fmt: skip
         named = [LegendEntry(each.label, line=each.stroke) for each in panel.curves if each.label]
-        write_legend(
-            graph.pen, named, left + 0.6 * wide, top + 4.0,
-            width=0.4 * wide, row=10.0, columns=1, size=_SIZE,
-        )  # fmt: skip
-    return graph.svg()
+        page.legend(named, (left + 0.6 * wide, top + 4.0), 0.4 * wide, 10.0)
+    return page.svg()
 
 
 def _limit_of(summary: Summary, response: Response) -> float | None:

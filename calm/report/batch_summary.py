@@ -15,7 +15,6 @@ from calm.batch.statistics.summary import (
     PERCENTILES,
     STOP_SHARES,
     Distribution,
-    PartDistributions,
     Response,
     Summary,
     WorstProfile,
@@ -36,7 +35,17 @@ def summary_document(summary: Summary) -> dict[str, Any]:
     """
     from calm.version import __version__
 
-    parts = [(part.clamped, _part(part)) for part in summary.parts]
+    def told(*, clamped: bool) -> list[dict[str, Any]]:
+        return [
+            {"label": part.label}
+            | {
+                name: _distribution(getattr(part, name))
+                for name in ("knockdown", "tilt", "tension")
+            }
+            for part in summary.parts
+            if part.clamped is clamped
+        ]
+
     return {
         "calm": __version__,
         "name": summary.name,
@@ -49,8 +58,8 @@ def summary_document(summary: Summary) -> dict[str, Any]:
             "end": _time(summary.end),
             "years": summary.years,
         },
-        "components": [said for clamped, said in parts if not clamped],
-        "clamps": [said for clamped, said in parts if clamped],
+        "components": told(clamped=False),
+        "clamps": told(clamped=True),
         **({"profiler_stops": [vars(one) for one in summary.stops]} if summary.stops else {}),
         "rules": [_rule(rule) for rule in summary.rules],
         "limits": [_limit(rule, one) for rule in summary.rules for one in rule.exceedances],
@@ -62,11 +71,6 @@ def summary_document(summary: Summary) -> dict[str, Any]:
             for name, profiles in summary.worst.items()
         },
     }
-
-
-def _part(part: PartDistributions) -> dict[str, Any]:
-    quantities = members(part, "knockdown", "tilt", "tension")
-    return {"label": part.label, **{name: _distribution(one) for name, one in quantities.items()}}
 
 
 def _distribution(one: Distribution | None) -> dict[str, Any] | None:

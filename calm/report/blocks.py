@@ -308,6 +308,10 @@ def quantity_column(name: str, heading: str | None = None) -> Column:
     return Column(heading or shown.heading, shown.display_unit, True, short=short, marked=marked)
 
 
+_MARKS = {State.WARN: "~", State.FAIL: "!"}
+"""The sign after a figure that is near its limit or beyond it: legible without colour."""
+
+
 def figure_cell(name: str, value: float | None, state: State | None = None) -> Cell:
     """Return a value of a quantity as it stands under its `quantity_column`.
 
@@ -317,8 +321,7 @@ def figure_cell(name: str, value: float | None, state: State | None = None) -> C
     value : SI, degrees; None where it is not known
     state : warns or fails where the figure is near a limit or beyond it, and marks it so
     """
-    mark = {State.WARN: "~", State.FAIL: "!", None: ""}[state]
-    return Cell(QUANTITIES[name].format(value), state=state, mark=mark)
+    return Cell(QUANTITIES[name].format(value), state=state, mark=_MARKS[state] if state else "")
 
 
 def table_of(

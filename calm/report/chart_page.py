@@ -108,8 +108,8 @@ def _frame(axes: Axes, points: CurvePoints, above: bool) -> None:
     low = float(points.height[points.phi >= _RIGHT].min()) if above else 0.0
     high = float(points.height.max())
     width, height = right - left, high - low
-    axes.set_xlim(left - 0.02 * width, right + 0.12 * width)
-    axes.set_ylim(low - 0.05 * height, high)
+    across = left - 0.02 * width, right + 0.12 * width
+    axes.set(xlim=across, ylim=(low - 0.05 * height, high))
 
 
 def _graduate(axes: Axes, labels: Labels, points: CurvePoints) -> None:
@@ -123,7 +123,9 @@ def _graduate(axes: Axes, labels: Labels, points: CurvePoints) -> None:
             labels.tick(*place, size, "black")
             if long:
                 labels.beside(f"{value}°", *place, size + 2.0, "black", 8.5)
-    step = _round_step(float(points.arc[-1]) / 20.0)
+    size = float(points.arc[-1]) / 20.0
+    decade = 10.0 ** np.floor(np.log10(size))
+    step = float(next(each * decade for each in (1.0, 2.0, 5.0, 10.0) if each * decade >= size))
     for count in range(1, int(points.arc[-1] / (step / 5.0)) + 1):
         place = _place(points, points.arc, count * step / 5.0)
         size = -6.0 if count % 5 == 0 else -3.0
@@ -137,12 +139,6 @@ def _place(points: CurvePoints, scale: Floats, value: float) -> tuple[float, flo
     at = (float(np.interp(value, scale, getattr(points, name))) for name in _COORDINATES)
     phi, _, distance, height, _ = at
     return distance, height, phi
-
-
-def _round_step(size: float) -> float:
-    """The 1, 2 or 5 times a power of ten next above."""
-    decade = 10.0 ** np.floor(np.log10(size))
-    return float(next(step * decade for step in (1.0, 2.0, 5.0, 10.0) if step * decade >= size))
 
 
 def _draw_family(
@@ -180,8 +176,7 @@ def _draw_family(
 
 def _write_frame(figure: Figure, axes: Axes, k: float, above: bool) -> None:
     side = "above" if above else "below"
-    axes.set_xlabel("y′ = y/H₀, downstream")
-    axes.set_ylabel("z′ = z/H₀, up;  T = wH₀ (1 + z′)")
+    axes.set(xlabel="y′ = y/H₀, downstream", ylabel="z′ = z/H₀, up;  T = wH₀ (1 + z′)")
     axes.grid(color="#dddddd", linewidth=0.4)
     axes.set_axisbelow(True)
     figure.text(0.1, 0.965, f"Cable in a uniform current, K = {k:g}", fontsize=14, weight="bold")

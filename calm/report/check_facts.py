@@ -166,13 +166,13 @@ def key_pairs(facts: CheckFacts) -> Pairs:
     strongest = f"{speed}{depth}, environment {current.environment}\n{current.weak}".strip()
     held = "unknown"
     if anchor is not None:
-        figures = [anchor.margin, anchor.value, anchor.limit]
-        known = [each for each in figures if each is not None]
-        said = [_both("tension", each, KILOGRAM_FORCE, "kgf", 0) for each in known]
-        if len(said) == len(figures):
-            held = "{}: {} held, {} needed, environment {}".format(
-                *said, check_summary.place_of(anchor)
+        figures = [each for each in (anchor.margin, anchor.value, anchor.limit) if each is not None]
+        if len(figures) == 3:
+            margin, weight, needed = (
+                _both("tension", each, KILOGRAM_FORCE, "kgf", 0) for each in figures
             )
+            place = check_summary.place_of(anchor)
+            held = f"{margin}: {weight} held, {needed} needed, environment {place}"
     counts = counted_states(facts.findings)
     named = (State.FAIL, State.WARN, State.UNKNOWN, State.ESTIMATED, State.ACCEPTED)
     return Pairs((

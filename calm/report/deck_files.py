@@ -9,7 +9,7 @@ from io import BytesIO
 from operator import attrgetter
 from typing import Any
 
-from calm.case.net_result import NetResult
+from calm.case.result import NetResult
 from calm.deck import Deck
 from calm.drawing.picture import figure_svg
 from calm.drawing.plot import draw

@@ -10,18 +10,8 @@ from calm.deck.deck_items import DeckItem, DeckRow, Order, rows_on_paper
 from calm.deck.model import RecoveredItem
 from calm.drop import DropPlan
 from calm.quantities import QUANTITIES, say
-from calm.report.blocks import (
-    Block,
-    Cell,
-    Pairs,
-    Prose,
-    ReportPart,
-    Table,
-    blank,
-    number,
-    table_of,
-    words,
-)
+from calm.report import blocks
+from calm.report.blocks import Block, Cell, Prose, ReportPart, Table, blank, number, table_of, words
 from calm.report.drop_sheet import whereabouts
 from calm.report.provenance import position_text
 from calm.report.sheet import leg_titles
@@ -52,7 +42,7 @@ def deployment_part(deck: Deck) -> ReportPart:
         *(blank(heading, unit) for heading in ("uncorrected", "correction", "corrected")),
         by_hand=True,
     )
-    blocks: tuple[Block, ...] = (
+    shown: tuple[Block, ...] = (
         _station(deck, _deployed(deck)[0]),
         Prose((said,)),
         *_releases(deck, _TESTED, [_BOX] * len(_TESTED)),
@@ -60,7 +50,7 @@ def deployment_part(deck: Deck) -> ReportPart:
         _positions(deck),
         *_over_the_side(deck),
     )
-    return ReportPart("Deployment log", blocks, _LEAST)
+    return ReportPart("Deployment log", shown, _LEAST)
 
 
 def recovery_part(deck: Deck) -> ReportPart:
@@ -98,15 +88,15 @@ def recovery_part(deck: Deck) -> ReportPart:
         blank("remarks", share=1.5),
         by_hand=True,
     )
-    blocks: tuple[Block, ...] = (
+    shown: tuple[Block, ...] = (
         _station(deck, ""),
-        *([Pairs(known)] if known else []),
+        *([blocks.Pairs(known)] if known else []),
         Prose(tuple(said)),
         *_releases(deck, _FIRED, ()),
         events,
         *_surfacing(deck),
     )
-    return ReportPart("Recovery log", blocks, _LEAST)
+    return ReportPart("Recovery log", shown, _LEAST)
 
 
 _LEGS = (

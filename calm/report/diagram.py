@@ -10,14 +10,14 @@ from itertools import accumulate, count
 from string import ascii_uppercase
 
 from calm.case import Result
-from calm.case.net_result import legs_of
+from calm.case.result import legs_of
 from calm.deck import Deck
 from calm.drawing import schematic
-from calm.drawing.schematic import FONT, HEAD, LEADING, ColumnHead, PlacedPart, placed
+from calm.drawing.schematic import FONT, HEAD, LEADING, PlacedPart, placed
 from calm.drawing.schematic.deck_parts import parts_of
 from calm.drawing.schematic.pen import INK, SOFT, Pen, picture, svg_text, wrapped
 from calm.drawing.schematic.shown_parts import TextRow, one_line
-from calm.drawing.schematic.sign import LINES, WORDS, Sign
+from calm.drawing.schematic.sign import LINES, Sign
 from calm.drawing.schematic.symbols import draw_cable, figure_of
 from calm.quantities import QUANTITIES, say
 from calm.report.check_summary import short_verdict
@@ -105,7 +105,7 @@ class _Diagram:
         parts = [part for leg in legs for part in leg]
         self.title, self.paper, self.fields = one_line(deck.file.name), paper, _fields(deck, paper)
         self.bottom = paper.size[1] - _MARGIN - sum(map(_height, self.fields))
-        headings = [ColumnHead(words, QUANTITIES[name].display_unit) for words, name in _HEADINGS]
+        headings = [(*words, QUANTITIES[name].display_unit) for words, name in _HEADINGS]
         rows = (row for part in parts for row in part.rows)
         self.column = column = schematic.column_of(rows, headings, paper.column_width)
         self.legend = tuple({part.sign.symbol: part.sign for part in parts}.values())
@@ -213,7 +213,7 @@ class _Diagram:
             else:
                 figure = figure_of(Sign(sign.symbol))
                 figure.draw(pen.group(x, y, min(0.5, 20.0 / figure.height)))
-            page.letters(x + 18.0, y, WORDS[sign.symbol], size=FONT)
+            page.letters(x + 18.0, y, sign.symbol.value, size=FONT)
 
     def _draw_title_block(self, page: Pen, sheet: str) -> None:
         """Fields in a frame, what is not known blank; `sheet` is such as 2 of 5."""

@@ -47,9 +47,12 @@ def drop_part(plan: DropPlan) -> ReportPart:
 def _instructions(plan: DropPlan) -> Prose:
     """Return what the ship does."""
     beyond = "beyond" if plan.tow_past >= 0.0 else "before"
+    speed = say("speed", plan.ship_speed)
+    if QUANTITIES["speed"].display_unit != "kn":
+        speed += f" ({plan.ship_speed / KNOT:.1f} kn)"
     said = [
-        f"Steam towards {bearing_text(plan.course)} true at {_speed(plan.ship_speed)} over the "
-        "ground, and pay out the line, the float first."
+        f"Steam towards {bearing_text(plan.course)} true at {speed} over the ground, and pay out "
+        "the line, the float first."
     ]
     if plan.start is None:
         said.append(
@@ -68,11 +71,6 @@ def _instructions(plan: DropPlan) -> Prose:
         f"{_distance(plan.streamed)} behind it."
     )
     return Prose(tuple(said))
-
-
-def _speed(speed: float) -> str:
-    said = say("speed", speed)
-    return said if QUANTITIES["speed"].display_unit == "kn" else f"{said} ({speed / KNOT:.1f} kn)"
 
 
 def _figures(plan: DropPlan) -> tuple[tuple[str, str], ...]:

@@ -12,12 +12,12 @@ from math import floor, hypot, log10
 from typing import TYPE_CHECKING, NamedTuple
 
 from calm.case import Result
-from calm.case.net_result import AnyResult, NetResult
-from calm.case.parts import parts_of
+from calm.case.result import AnyResult, NetResult
 from calm.checks.finding import State
 from calm.checks.inventory import inventory_of
 from calm.checks.recovery import recovery_of
 from calm.errors import NoEquilibrium
+from calm.files.mooring_file import parts_of
 from calm.quantities import QUANTITIES, Quantity, duration, say
 from calm.report import blocks
 from calm.report.blocks import Block, Cell, Prose, ReportPart, Span, Table, number, table_of, words
@@ -215,7 +215,9 @@ def sizing_part(sizing: Sizing) -> ReportPart:
     lines: list[blocks.Line] = []
     if sizing.before.failure is not None:
         lines.append((Span(f"As it is: {sizing.before.failure}", State.WARN),))
-    lines += [(Span(f"! {text}", State.FAIL),) for text in _new_warnings(sizing)]
+    old = sizing.before.result.warnings if sizing.before.result is not None else ()
+    new = sizing.after.result.warnings if sizing.after.result is not None else ()
+    lines += [(Span(f"! {text}", State.FAIL),) for text in new if text not in old]
     effort = f"Found by {sizing.solves} solves, with the settings of the file."
     effort = "Solved as it is." if sizing.solves == 1 else effort
     lines += [*sizing.notes, (Span(effort, quiet=True),)]
@@ -271,13 +273,6 @@ def _place_told(trial: Trial) -> str:
     assert trial.result is not None
     parts = parts_of(trial.result.file.pieces)
     return next((part.label for part in parts if part.place == trial.place), parts[0].label)
-
-
-def _new_warnings(sizing: Sizing) -> list[str]:
-    """Return those of the mooring after the change that it did not have before."""
-    old = sizing.before.result.warnings if sizing.before.result is not None else ()
-    new = sizing.after.result.warnings if sizing.after and sizing.after.result else ()
-    return [warning for warning in new if warning not in old]
 
 
 def comparison_part(comparison: Comparison) -> ReportPart:

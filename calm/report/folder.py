@@ -51,15 +51,7 @@ def write_report(folder: Path, files: Mapping[str, bytes]) -> None:
 
     All are written under temporary names before the first takes its place. Where one cannot take
     it, or the program is interrupted meanwhile, the report that was there stands again, whole.
-
-    Parameters
-    ----------
-    files : of the name in the folder to the content
-
-    Raises
-    ------
-    UsageError
-        The system refuses: which file, and why. No temporary file is left behind.
+    UsageError: the system refuses; which file, and why. No temporary file is left behind.
     """
     parts = {name: folder / f".{name}-{os.getpid()}.part" for name in files}
     kept = {name: folder / f".{name}-{os.getpid()}.old" for name in files}
@@ -89,6 +81,14 @@ def write_report(folder: Path, files: Mapping[str, bytes]) -> None:
         if made:
             with contextlib.suppress(OSError):
                 folder.rmdir()  # which the system does only where nothing was written
+
+
+def write_pages(folder: Path, name: str, report: Report) -> None:
+    """Write a report as a page and as a PDF of a name, as a set like `write_report`."""
+    from calm.report.html import page
+
+    files = {f"{name}.html": page(report).encode(), f"{name}.pdf": printed(report)}
+    write_report(folder, files)
 
 
 def _restore(folder: Path, parts: Mapping[str, Path], kept: Mapping[str, Path]) -> None:

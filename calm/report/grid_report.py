@@ -68,6 +68,11 @@ def grid_part(fields: Mapping[str, GriddedQuantity]) -> ReportPart:
 
 def scales_table(fields: Mapping[str, GriddedQuantity]) -> Table:
     """Return the scales that each record has."""
+
+    def widened(one: tuple[str, GriddedQuantity]) -> str:
+        found = one[1].widened
+        return "-" if found is None else f"{found.within.max():.2f}, {found.beyond:.2f}"
+
     return table_of(
         "",
         fields.items(),
@@ -76,7 +81,7 @@ def scales_table(fields: Mapping[str, GriddedQuantity]) -> Table:
         number("depth scale", lambda one: f"{one[1].scales.depth:.3g}", "m"),
         number("time scale", lambda one: _hours(one[1]), "h"),
         number("rest", lambda one: f"{100.0 * one[1].scales.share:.2g}", "%"),
-        number("widened", lambda one: _widened(one[1])),
+        number("widened", widened),
         note="Correlation falls to 0.48 over one depth scale and to 0.37 over one time scale; "
         "the rest of the variance is uncorrelated. Widened: the factors that widen the bands "
         "between instruments (the greatest one) and beyond them, found by leaving out each "
@@ -112,12 +117,6 @@ def _used(field: GriddedQuantity) -> int:
 
 def _hours(field: GriddedQuantity) -> str:
     return f"{field.scales.time / 3600.0:.3g}" if field.in_time else "-"
-
-
-def _widened(field: GriddedQuantity) -> str:
-    if field.widened is None:
-        return "-"
-    return f"{field.widened.within.max():.2f}, {field.widened.beyond:.2f}"
 
 
 def _section(

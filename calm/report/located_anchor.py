@@ -47,7 +47,12 @@ def located_part(located: Located, water_depth: float) -> ReportPart:
 
 def _figures(located: Located, water_depth: float) -> tuple[tuple[str, str], ...]:
     major, minor, bearing = located.ellipse
-    known = np.isfinite(major)
+    within = "unknown"
+    if np.isfinite(major):
+        towards = f"{round(bearing) % 180:03d}°"
+        within = f"{major:.1f} m by {minor:.1f} m, the longer towards {towards}"
+    sure = f" ± {located.depth_95:.1f} m with 95 %" if np.isfinite(located.depth_95) else ""
+    sure = ", as given" if located.depth_given else sure
     latitude = degrees_text(located.latitude, "NS", 1)
     longitude = degrees_text(located.longitude, "EW", 1)
     pairs = [
@@ -55,23 +60,15 @@ def _figures(located: Located, water_depth: float) -> tuple[tuple[str, str], ...
         ("", f"{latitude}  {longitude}"),
         (
             "Within, with 95 %",
-            f"{major:.1f} m by {minor:.1f} m, the longer towards {round(bearing) % 180:03d}°"
-            if known
-            else "unknown",
+            within,
         ),
-        ("Depth", f"{water_depth:.1f} m{_interval(located)}"),
+        ("Depth", f"{water_depth:.1f} m{sure}"),
         ("Ranges in use", f"{int(located.used.sum())} of {len(located.used)}"),
         ("Scatter", f"{located.rms:.2f} m" if np.isfinite(located.rms) else "unknown"),
     ]
     if located.survey.timed:
         pairs.append(("Speed of sound", f"{located.sound_speed:.1f} m/s, harmonic mean"))
     return tuple(pairs)
-
-
-def _interval(located: Located) -> str:
-    if located.depth_given:
-        return ", as given"
-    return f" ± {located.depth_95:.1f} m with 95 %" if np.isfinite(located.depth_95) else ""
 
 
 def _residuals(located: Located) -> Table:
@@ -114,7 +111,11 @@ def located_figure(located: Located) -> Figure:
     ranges = located.residuals + np.linalg.norm(ships, axis=1)
     across = np.sqrt(np.maximum(ranges**2 - ships[:, 2] ** 2, 0.0))
     for axes in (whole, near):
-        _draw_circles(axes, located, ships, across)
+        for (x, y, _), radius, used in zip(ships, across, located.used, strict=True):
+            axes.plot(
+                x + radius * np.cos(_ROUND), y + radius * np.sin(_ROUND), linewidth=0.8,
+                color=_CIRCLE if used else _LEFT_OUT, linestyle="-" if used else "--",
+            )  # fmt: skip
         axes.set_aspect("equal")
         axes.tick_params(labelsize=_FONT_SIZE)
         axes.grid(alpha=0.3, linewidth=0.5)
@@ -132,17 +133,8 @@ def located_figure(located: Located) -> Figure:
     near.set_title("the place, with its 95 % ellipse", fontsize=_FONT_SIZE)
     for axes, half in ((whole, max(reach, 2.0 * close)), (near, close)):
         axes.plot(0.0, 0.0, "+", color=_PLACE, markersize=10, markeredgewidth=1.6)
-        axes.set_xlim(-half, half)
-        axes.set_ylim(-half, half)
+        axes.set(xlim=(-half, half), ylim=(-half, half))
     return figure
-
-
-def _draw_circles(axes: Axes, located: Located, ships: np.ndarray, across: np.ndarray) -> None:
-    for (x, y, _), radius, used in zip(ships, across, located.used, strict=True):
-        axes.plot(
-            x + radius * np.cos(_ROUND), y + radius * np.sin(_ROUND),
-            color=_CIRCLE if used else _LEFT_OUT, linewidth=0.8, linestyle="-" if used else "--",
-        )  # fmt: skip
 
 
 def _draw_ellipse(axes: Axes, located: Located) -> None:

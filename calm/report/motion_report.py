@@ -11,8 +11,8 @@ import numpy as np
 
 from calm.checks.finding import State
 from calm.drawing.picture import figure_svg
-from calm.motion.remarks import no_drag
-from calm.motion.study import knockdown
+from calm.motion.remarks import Agreement, Fault, no_drag
+from calm.motion.study import HeldOut, SensorSeries, Study, knockdown
 from calm.report import blocks
 from calm.report.blocks import Figure, Note, Prose, ReportPart, Table, number, table_of, words
 from calm.report.provenance import report_of
@@ -23,9 +23,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing
     from numpy import datetime64
     from numpy.typing import NDArray
-
-    from calm.motion.remarks import Agreement, Fault
-    from calm.motion.study import HeldOut, SensorSeries, Study
 
 
 _BARE, _DEPTHS = "Instruments without a pressure", "Depths over time"

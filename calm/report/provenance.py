@@ -87,11 +87,10 @@ def input_hash(files: Sequence[MooringFile]) -> str:
 
 def canonical(value: Any) -> str:
     """JSON with sorted keys and no blanks; models and records become objects."""
-    return json.dumps(value, sort_keys=True, separators=(",", ":"), default=_members)
-
-
-def _members(value: Any) -> dict[str, Any]:
-    return value.model_dump() if isinstance(value, BaseModel) else vars(value)
+    return json.dumps(
+        value, sort_keys=True, separators=(",", ":"),
+        default=lambda one: one.model_dump() if isinstance(one, BaseModel) else vars(one),
+    )  # fmt: skip
 
 
 _BESIDE = (

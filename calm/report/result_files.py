@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.case import Result, TowResult
-from calm.case.net_result import AnyResult, NetResult
+from calm.case.result import AnyResult, NetResult
 from calm.case.result_tables import ClampRow, ComponentRow, Components, rows_down
 from calm.dataset import netcdf
 from calm.dataset.netcdf import CLAMPS, OF_CLAMP, OF_COMPONENT, OF_ENDS, Attributes, labels, numbers

@@ -7,7 +7,7 @@ from math import isnan
 from typing import Any
 
 from calm.case import Result
-from calm.case.net_result import AnyResult, NetResult
+from calm.case.result import AnyResult, NetResult
 from calm.case.uncertain import Uncertain
 from calm.checks.criterion import limits_used
 from calm.checks.posture import reaches_the_surface

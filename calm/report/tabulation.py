@@ -105,36 +105,24 @@ def by_speed(
     outcomes : what came out at each speed
     """
     speed = QUANTITIES["speed"]
-    return Tabulation(
-        name=tow.file.name,
-        subject="speeds",
-        title=f"{tow.file.name}: tow at {len(speeds)} speed{'s' if len(speeds) != 1 else ''}",
-        headings=(f"speed\n{speed.display_unit}", _KNOTS.display),
-        rows=tuple(
-            TabulationRow({"speed": value}, (speed.format(value), _KNOTS.format(value)), outcome)
-            for value, outcome in zip(speeds, outcomes, strict=True)
-        ),
+    rows = (
+        TabulationRow({"speed": value}, (speed.format(value), _KNOTS.format(value)), outcome)
+        for value, outcome in zip(speeds, outcomes, strict=True)
     )
+    name, headings = tow.file.name, (f"speed\n{speed.display_unit}", _KNOTS.display)
+    title = f"{name}: tow at {len(speeds)} speed{'s' if len(speeds) != 1 else ''}"
+    return Tabulation(name, "speeds", title, headings, tuple(rows))
 
 
 def by_coefficient(tow: Tow, variations: Sequence[Variation]) -> Tabulation:
     """A row for each coefficient and change, after one for the tow as it is."""
-    return Tabulation(
-        name=tow.file.name,
-        subject="sensitivity",
-        title=f"{tow.file.name}: how A1, B1 and C1 affect its strumming",
-        headings=("changed",),
-        rows=tuple(
-            TabulationRow(
-                {"coefficient": variation.coefficient, "change": variation.change},
-                (f"{variation.coefficient.upper()} {variation.change:+.0%}",)
-                if variation.coefficient
-                else ("nothing",),
-                variation.outcome,
-            )
-            for variation in variations
-        ),
-    )
+    rows = []
+    for one in variations:
+        said = f"{one.coefficient.upper()} {one.change:+.0%}" if one.coefficient else "nothing"
+        chosen: dict[str, float | str] = {"coefficient": one.coefficient, "change": one.change}
+        rows.append(TabulationRow(chosen, (said,), one.outcome))
+    title = f"{tow.file.name}: how A1, B1 and C1 affect its strumming"
+    return Tabulation(tow.file.name, "sensitivity", title, ("changed",), tuple(rows))
 
 
 def to_document(tabulation: Tabulation) -> dict[str, Any]:
@@ -156,20 +144,14 @@ def to_document(tabulation: Tabulation) -> dict[str, Any]:
 def to_csv(tabulations: Sequence[Tabulation]) -> str:
     """The rows of one tow or several, of one subject, as CSV text (UTF-8, comma, point, LF)."""
     chosen = list(tabulations[0].rows[0].chosen) if tabulations else []
-    figures = [QUANTITIES[name].header for name in FIGURES]
-    return table_csv(
-        [
-            "tow",
-            *(QUANTITIES[name].header if name in QUANTITIES else name for name in chosen),
-            "status",
-            *figures,
-        ],
-        (
-            [tabulation.name, *row.chosen.values(), row.outcome.status, *row.figures.values()]
-            for tabulation in tabulations
-            for row in tabulation.rows
-        ),
+    names = [QUANTITIES[name].header if name in QUANTITIES else name for name in chosen]
+    figures = (QUANTITIES[name].header for name in FIGURES)
+    rows = (
+        [tabulation.name, *row.chosen.values(), row.outcome.status, *row.figures.values()]
+        for tabulation in tabulations
+        for row in tabulation.rows
     )
+    return table_csv(["tow", *names, "status", *figures], rows)
 
 
 def _row_document(tabulation: Tabulation, row: TabulationRow) -> dict[str, Any]:

@@ -21,13 +21,9 @@ from calm.report import blocks
 from calm.report.blocks import Block, Cell, Column, Heading, Line, Pairs, Prose, ReportPart, Table
 
 _STYLES = {
-    State.PASS: "green",
-    State.ACCEPTED: "",
-    State.ESTIMATED: "green",
-    State.WARN: "yellow",
-    State.UNKNOWN: "bold",
-    State.FAIL: "bold red",
-}
+    State.PASS: "green", State.ACCEPTED: "", State.ESTIMATED: "green", State.WARN: "yellow",
+    State.UNKNOWN: "bold", State.FAIL: "bold red",
+}  # fmt: skip
 """How a state looks; its word or its mark shows it without colour."""
 _QUIET = "dim"
 _WARNED = _STYLES[State.FAIL]
@@ -54,7 +50,8 @@ class _Printer:
             yield Text()
         before: Block | None = None
         for block in part.blocks:
-            if before is not None and not _together(before, block):
+            both = isinstance(before, Prose) and isinstance(block, Prose)
+            if before is not None and not both and not isinstance(before, Heading):
                 yield Text()
             if isinstance(before, Heading) and isinstance(block, Pairs):
                 yield Padding(self._pairs(block), (0, 0, 0, 2))
@@ -163,13 +160,6 @@ class _Words(Text):
 
 
 _BREAKS = re.compile("[-_./]")
-
-
-def _together(block: Block, following: Block) -> bool:
-    """Return whether nothing stands between two blocks."""
-    if isinstance(following, Prose):
-        return isinstance(block, Prose | Heading)
-    return isinstance(block, Heading)
 
 
 MANY = 100

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from math import ceil
 from typing import TYPE_CHECKING
 
-from calm.case import Result
+from calm.case import Mooring, Result
 from calm.case.adjustment import parse_change
 from calm.case.size import NOT_MET, size
 from calm.case.targets import parse_target
@@ -23,7 +23,6 @@ from calm.solve import Status
 from calm.tui.live import View, judge
 
 if TYPE_CHECKING:
-    from calm.case import Mooring
     from calm.case.net import Net
 
 _DIGITS = 3

@@ -19,7 +19,7 @@ from textual.widgets import Static
 from calm.tui.theme import CURSOR, ELLIPSIS
 
 if TYPE_CHECKING:
-    from calm.case.net_result import AnyResult
+    from calm.case.result import AnyResult
     from calm.case.result_tables import Shape
     from calm.tui.live import View
 

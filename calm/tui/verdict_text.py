@@ -14,7 +14,7 @@ from calm.tui.workspace import mistakes, place_of
 
 if TYPE_CHECKING:
     from calm.case import Result, TowResult
-    from calm.case.net_result import AnyResult, NetResult
+    from calm.case.result import AnyResult, NetResult
     from calm.checks.assessment import MooringInEnvironment
     from calm.files import Place
     from calm.tui.live import View
@@ -157,7 +157,7 @@ def _figures(
 ) -> Iterator[Saying]:
     """The ends of the line; whoever has a result has loaded what solves it, the start has not."""
     from calm.case import Result
-    from calm.case.net_result import NetResult
+    from calm.case.result import NetResult
 
     if isinstance(result, Result):
         yield from _mooring(result, findings, pending)

@@ -13,14 +13,12 @@ from textual.message import Message
 from textual.timer import Timer
 
 from calm.assemble.catalogue_search import Index
-from calm.errors import CalmError
-from calm.files import Place
+from calm.errors import CalmError, Problem
+from calm.files import Catalogue, Place
 from calm.files.editing import LineItem
 from calm.tui.session import Session
 
 if TYPE_CHECKING:
-    from calm.errors import Problem
-    from calm.files import Catalogue
     from calm.tui.live import View
 
 

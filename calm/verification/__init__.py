@@ -4,13 +4,8 @@ A `Source` holds the cases that come from one place; figures are inlined, so tha
 from a file. `calm.verification.published_case` defines a case.
 """
 
+from calm.verification import drag_and_sea_water
 from calm.verification.cable_papers import BOURGET_MARICHAL, BRACONNOT, VILLAIN_GUILLOT
-from calm.verification.drag_and_sea_water import (
-    CALM_PAPER,
-    DRAG_CURVES,
-    SEA_WATER,
-    STRUMMING_FACTORS,
-)
 from calm.verification.march_properties import CONVERGENCE, INVARIANTS
 from calm.verification.published_case import Case as Case
 from calm.verification.published_case import CaseOutcome as CaseOutcome
@@ -34,10 +29,10 @@ SOURCES: tuple[Source, ...] = (
     BRACONNOT,
     BOURGET_MARICHAL,
     VILLAIN_GUILLOT,
-    DRAG_CURVES,
-    STRUMMING_FACTORS,
-    SEA_WATER,
+    drag_and_sea_water.DRAG_CURVES,
+    drag_and_sea_water.STRUMMING_FACTORS,
+    drag_and_sea_water.SEA_WATER,
     ANCHOR_DROP,
-    CALM_PAPER,
+    drag_and_sea_water.CALM_PAPER,
 )
 """Every source, the solver's own first."""

@@ -10,13 +10,7 @@ from dataclasses import replace
 from functools import cache, partial
 from math import degrees, hypot, radians
 
-from calm.analytic.uniform import (
-    CableFunctions,
-    cable_functions,
-    critical_angle,
-    critical_weight_ratio,
-    tension_ratio,
-)
+from calm.analytic import uniform
 from calm.physics.drag import Friction
 from calm.physics.line import Line, Water
 from calm.solve import Settings
@@ -286,15 +280,15 @@ _PULL = 100.0
 
 
 @cache
-def _functions(critical: float, friction: float, angle: float) -> CableFunctions:
-    ratio = float(critical_weight_ratio(radians(critical)))
-    return cable_functions(radians(angle), ratio, friction)
+def _functions(critical: float, friction: float, angle: float) -> uniform.CableFunctions:
+    ratio = float(uniform.critical_weight_ratio(radians(critical)))
+    return uniform.cable_functions(radians(angle), ratio, friction)
 
 
 @cache
 def _march(critical: float, friction: float, arc: float) -> Wake:
     """Return a body of 100 N without drag on a cable whose normal drag is 1 N/m at 1 m/s."""
-    weight = float(critical_weight_ratio(radians(critical)))
+    weight = float(uniform.critical_weight_ratio(radians(critical)))
     cable = LinePiece(_PULL * arc, True, -weight, 1.0, friction)
     line = replace(line_of(cable, point(-_PULL, 0.0)), friction=Friction.CONSTANT)
     return towed(line, deep_water(), 1.0)
@@ -309,15 +303,15 @@ def _identity_missed() -> float:
     misses = []
     for critical, friction, angle, *_ in _TABLE:
         tau, sigma, _, eta = _functions(critical, friction, angle)
-        ratio = float(critical_weight_ratio(radians(critical)))
+        ratio = float(uniform.critical_weight_ratio(radians(critical)))
         misses.append(abs(float(tau - 1.0 - ratio * eta - friction * sigma)))
     return max(misses)
 
 
 def _tension(critical: float, angle: float, tau: float) -> Case:
     def got() -> float:
-        ratio = float(critical_weight_ratio(radians(critical)))
-        return float(tension_ratio(radians(angle), radians(90.0), ratio))
+        ratio = float(uniform.critical_weight_ratio(radians(critical)))
+        return float(uniform.tension_ratio(radians(angle), radians(90.0), ratio))
 
     return Case(
         f"{_name(critical, 0.0, angle)}: τ, closed form", tau, "", 5.5e-7, PRINTED, got,
@@ -327,7 +321,7 @@ def _tension(critical: float, angle: float, tau: float) -> Case:
 
 def _critical_angle(ratio: float) -> float:
     """[degrees]"""
-    return degrees(float(critical_angle(ratio)))
+    return degrees(float(uniform.critical_angle(ratio)))
 
 
 PODE = Source(
@@ -341,10 +335,10 @@ p²/4) − p/2, is also given by E. E. Zajac (Bell System Technical Journal 36, 
     (
         *table(
             [
-                CaseColumn[CableFunctions]("τ", "", 5.5e-7, lambda row: float(row.tau)),
-                CaseColumn[CableFunctions]("σ", "", 5.5e-7, lambda row: float(row.sigma)),
-                CaseColumn[CableFunctions]("ξ", "", 5.5e-7, lambda row: float(row.xi)),
-                CaseColumn[CableFunctions]("η", "", 5.5e-7, lambda row: float(row.eta)),
+                CaseColumn[uniform.CableFunctions]("τ", "", 5.5e-7, lambda row: float(row.tau)),
+                CaseColumn[uniform.CableFunctions]("σ", "", 5.5e-7, lambda row: float(row.sigma)),
+                CaseColumn[uniform.CableFunctions]("ξ", "", 5.5e-7, lambda row: float(row.xi)),
+                CaseColumn[uniform.CableFunctions]("η", "", 5.5e-7, lambda row: float(row.eta)),
             ],
             [(_name(*given), partial(_functions, *given), row)
              for *given, tau, sigma, xi, eta in _TABLE

@@ -10,13 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.assemble import mass_in_air
-from calm.files import Cable, Chain, Cylinder, Flexible
+from calm.files import Cable, Chain, Component, Cylinder, Flexible
 from calm.physics.line import Floats, Integers
 from calm.physics.seawater import REFERENCE_DENSITY
 
 if TYPE_CHECKING:
     from calm.case import Mooring
-    from calm.files import Component
     from calm.solve import Solution
 
 Complexes = NDArray[np.complex128]

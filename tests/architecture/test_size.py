@@ -6,9 +6,9 @@ from collections import Counter
 from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parents[2] / "calm"
-MOST_LINES = 90_870
-MOST_MODULES = 359
-MOST_IMPORTS = 0.105
+MOST_LINES = 89_700
+MOST_MODULES = 358
+MOST_IMPORTS = 0.093
 """Share of the lines of code that import something."""
 
 

@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 
 from calm.case.net import Net, load
-from calm.case.net_result import NetResult
+from calm.case.result import NetResult
 from calm.exchange.importing import import_file
 from calm.solve.net import solve_net
 from calm.solve.net_leg import LegEnd, NetLeg

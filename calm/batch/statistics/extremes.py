@@ -16,15 +16,9 @@ from math import ceil, log, log1p
 import numpy as np
 from numpy.typing import NDArray
 
+from calm.batch.statistics import tails
 from calm.batch.statistics.series import Column, Times
-from calm.batch.statistics.tails import (
-    CONFIDENCE,
-    LEAST_SHAPE,
-    NotFitted,
-    Tail,
-    fit_excesses,
-    fit_maxima,
-)
+from calm.batch.statistics.tails import CONFIDENCE, LEAST_SHAPE
 from calm.batch.statuses import IN_WEAK_CURRENT, Ending, ending_of
 
 PERIODS = (2, 10, 50, 100)
@@ -134,7 +128,7 @@ def return_levels(
     for method, fit in (("gev", _by_maxima), ("pot", _by_peaks)):
         try:
             fits.append(fit(time, values, step, years))
-        except NotFitted as reason:
+        except tails.NotFitted as reason:
             fits.append(LevelsRefused(method, str(reason)))
     return fits[0], fits[1]
 
@@ -177,7 +171,7 @@ def _by_maxima(
         )
     if maxima.max() == maxima.min():
         return LevelsRefused("gev", f"the {len(maxima)} annual maxima are all equal")
-    tail = fit_maxima(maxima)
+    tail = tails.fit_maxima(maxima)
     rules = (
         f"maxima of {len(maxima)} years of 365.25 days, counted from the first profile, "
         f"with at least {100 * WHOLE:.0f} % of their profiles{_gaps(time, values, step)}"
@@ -213,7 +207,7 @@ def _over(
 ) -> Fit | LevelsRefused:
     if peaks.max() == peaks.min():
         return LevelsRefused("pot", f"the {len(peaks)} peaks are all equal")
-    tail, rate = fit_excesses(peaks, threshold), len(peaks) / years
+    tail, rate = tails.fit_excesses(peaks, threshold), len(peaks) / years
     rules = (
         f"{len(peaks)} peaks over the {percentile:.0f} % percentile, the highest from "
         f"{THRESHOLDS[0]:.0f} % to {THRESHOLDS[-1]:.0f} % that leaves {LEAST_PEAKS} clusters; "
@@ -239,7 +233,7 @@ def _periods(years: float) -> list[int]:
     return [period for period in PERIODS if period <= EXTRAPOLATION * years]
 
 
-def _told(method: str, tail: Tail, rate: float, rules: str, growths: dict[int, float]) -> Fit:
+def _told(method: str, tail: tails.Tail, rate: float, rules: str, growths: dict[int, float]) -> Fit:
     """The levels; without intervals where the theory of the likelihood does not hold."""
     nothing = (None, None)
     sure = tail.shape > LEAST_SHAPE

@@ -11,16 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.batch.finished import Stored
+from calm.batch.statistics import limits
 from calm.batch.statistics.extremes import Fit, LevelsRefused, median_step, return_levels, years_of
-from calm.batch.statistics.limits import (
-    NOT_JUDGED,
-    RuleShare,
-    equilibrium_share,
-    limits_of,
-    shares_of,
-    top_knockdown,
-    top_offset,
-)
 from calm.batch.statistics.series import Column, LegSeats, ResultColumns, Seat, Times
 from calm.batch.statuses import Ending, endings
 from calm.case import Mooring
@@ -129,7 +121,7 @@ class Summary:
     parts: tuple[PartDistributions, ...]
     responses: tuple[Response, ...]
     worst: Mapping[str, tuple[WorstProfile, ...]]
-    rules: tuple[RuleShare, ...]
+    rules: tuple[limits.RuleShare, ...]
     not_judged: Mapping[str, str]
     source: Mapping[str, str]
     limits_used: tuple[LimitKey, ...] = ()
@@ -177,7 +169,7 @@ def summarize(
     """
     with ResultColumns(dataset, folder, check, source) as series:
         ended = endings(series.statuses)
-        equilibrium = equilibrium_share(ended)
+        equilibrium = limits.equilibrium_share(ended)
         unsolved = ended[Ending.NO_EQUILIBRIUM] + ended[Ending.NOT_CONVERGED]
         step = median_step(series.time)
         responses, worst = _responses(series, _columns_of(series, mooring), step)
@@ -192,8 +184,8 @@ def summarize(
             parts=tuple(_parts(series)),
             responses=responses,
             worst=worst,
-            rules=(equilibrium, *shares_of(series, limits_of(mooring), unsolved)),
-            not_judged=NOT_JUDGED,
+            rules=(equilibrium, *limits.shares_of(series, limits.limits_of(mooring), unsolved)),
+            not_judged=limits.NOT_JUDGED,
             source={name: str(dataset.attrs[name]) for name in SOURCE if name in dataset.attrs},
             limits_used=tuple(
                 dict.fromkeys(
@@ -245,10 +237,10 @@ def _greatest_tilt(series: ResultColumns) -> Column:
 
 
 RESPONSES: Mapping[str, Callable[[ResultColumns], Column]] = {
-    "knockdown": top_knockdown,
+    "knockdown": limits.top_knockdown,
     "anchor_tension": lambda series: series.column("tension_top", -1),
     "tilt": _greatest_tilt,
-    "offset": top_offset,
+    "offset": limits.top_offset,
 }
 """Knockdown of the top, tension at the anchor, greatest tilt of any part, offset of the top."""
 

@@ -52,15 +52,14 @@ def schematic_svg(file: MooringFile, result: Result | TowResult | None = None) -
 
     It refers to nothing outside and has neither identifiers nor style sheets, so that it can stand
     in a page beside others. No text is cut: long ones wrap. The same line gives the same text.
-
-    Parameters
-    ----------
-    file : the line as read
-    result : its solution, which shows depths under load and in the current. Without it depths are
-        those of the upright, unstretched line; unknown in a tow and of a float at the surface.
+    With a result, depths are under load and in the current; without, those of the upright,
+    unstretched line, unknown in a tow and of a float at the surface.
     """
     shown = schematic_of(file, result)
-    column = _column(shown)
+    rows = [row for part in shown.parts for row in part.rows]
+    rows += [row for row in (shown.towed_by, shown.sea, shown.seabed) if row is not None]
+    headings = [(*HEADINGS[name], QUANTITIES[name].display_unit) for name in shown.columns]
+    column = column_of(rows, headings, _WIDTH, _TOWED_AT if shown.towed_by else _MOORED_AT)
     room = _WIDTH - 2 * _MARGIN
     words = [(text, _TITLE, INK) for text in wrapped(shown.title, room, _TITLE, bold=True)]
     words += [(text, FONT, SOFT) for text in wrapped(shown.subtitle, room, FONT)]
@@ -84,13 +83,6 @@ def schematic_svg(file: MooringFile, result: Result | TowResult | None = None) -
     for number, text in enumerate(notes):
         page.letters(_MARGIN, foot + LEADING * number, text, size=FONT, colour=SOFT)
     return svg_text(page)
-
-
-def _column(shown: Schematic) -> LineColumn:
-    rows = [row for part in shown.parts for row in part.rows]
-    rows += [row for row in (shown.towed_by, shown.sea, shown.seabed) if row is not None]
-    headings = [ColumnHead(HEADINGS[name], QUANTITIES[name].display_unit) for name in shown.columns]
-    return column_of(rows, headings, _WIDTH, _TOWED_AT if shown.towed_by else _MOORED_AT)
 
 
 def _hung(shown: Schematic, column: LineColumn, top: float) -> tuple[float, tuple[PlacedPart, ...]]:
@@ -127,13 +119,6 @@ def _draw_scene(
         draw_row(page, column, 0.0, surface - _SHEAVE, shown.towed_by)
 
 
-class ColumnHead(NamedTuple):
-    """The words over a column of figures, line by line, and the unit below them."""
-
-    words: tuple[str, ...]
-    unit: str
-
-
 @dataclass(frozen=True)
 class LineColumn:
     """Where a line is drawn, and what stands beside it.
@@ -141,21 +126,24 @@ class LineColumn:
     Attributes
     ----------
     width : of all
-    headings : over the figures
+    headings : over the figures, line by line, the unit last
     rights : right edges of the columns of figures
     text : from where to where there is room for words
     line_at : where the line hangs, from the left edge
     """
 
     width: float
-    headings: tuple[ColumnHead, ...]
+    headings: tuple[Sequence[str], ...]
     rights: tuple[float, ...]
     text: tuple[float, float]
     line_at: float
 
 
 def column_of(
-    parts: Iterable[TextRow], headings: Sequence[ColumnHead], width: float, line_at: float = 26.0
+    parts: Iterable[TextRow],
+    headings: Sequence[tuple[str, ...]],
+    width: float,
+    line_at: float = 26.0,
 ) -> LineColumn:
     """A column of a width with room for its figures, as wide as the widest of them.
 
@@ -165,7 +153,7 @@ def column_of(
     headings : over their figures
     line_at : where the line hangs; the picture is twice as wide
     """
-    cells = [[*heading.words, heading.unit] for heading in headings]
+    cells = [[*heading] for heading in headings]
     for row in parts:
         for texts, text in zip(cells, row.cells, strict=False):
             texts.append(text)
@@ -269,8 +257,7 @@ def placed(
 
 def draw_headings(page: Pen, column: LineColumn, left: float, top: float) -> None:
     """The words over the figures, their last lines at one level, and a rule below."""
-    for heading, right in zip(column.headings, column.rights, strict=True):
-        lines = (*heading.words, heading.unit)
+    for lines, right in zip(column.headings, column.rights, strict=True):
         for number, word in enumerate(reversed(lines)):
             y = top + HEAD - 8.0 - 9.4 * number
             page.letters(left + right, y, word, size=FONT, colour=SOFT, anchor="end")

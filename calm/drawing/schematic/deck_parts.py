@@ -30,7 +30,9 @@ def parts_of(deck: Deck, listed: Sequence[DeckItem], *, surface: bool) -> tuple[
     joints: list[DeckItem] = []
     cable: Symbol | None = None
     for row in rows_on_paper(listed):
-        if _is_connector(row.first):
+        one = row.first
+        joins = one.role == "connector" and one.on is None and one.is_rigid
+        if joins and not getattr(one.part, "clamps", ()):
             joints += (*row.items, *row.joints)
             continue
         if joints:
@@ -54,11 +56,6 @@ def _own_labels(parts: Sequence[DeckItem]) -> dict[int, str]:
         id(one): "" if label == one.part.use else one.label
         for one, label in zip(parts, labels, strict=True)
     }
-
-
-def _is_connector(one: DeckItem) -> bool:
-    clamps = getattr(one.part, "clamps", ())
-    return one.role == "connector" and one.on is None and one.is_rigid and not clamps
 
 
 def _sign(one: DeckItem) -> Sign:
@@ -121,7 +118,11 @@ def _said(name: str, value: float | None) -> str:
 
 
 def _junction(parts: Sequence[DeckItem], own: Mapping[int, str], weights: _Weights) -> ShownPart:
-    words = [_connector(one, own[id(one)]) for one in parts]
+    words = []  # connectors as people write them, with their own labels and serial numbers
+    for one in parts:
+        hardware, label = one_line(one.hardware), one_line(own[id(one)])
+        text = f"{label} ({hardware})" if label else hardware
+        words.append(text if one.serial is None else f"{text} no. {one_line(one.serial)}")
     joined = " – ".join(
         word if count == 1 else f"{count} × {word}"
         for word, count in ((word, len([*same])) for word, same in groupby(words))
@@ -132,10 +133,3 @@ def _junction(parts: Sequence[DeckItem], own: Mapping[int, str], weights: _Weigh
     figures = (*(_said("length", length) for length in lengths), *_figures(parts, weights))
     sign = next((sign for sign in signs if sign.symbol is Symbol.SWIVEL), signs[0])
     return ShownPart(sign, (TextRow(joined, "", figures),), junction=True)
-
-
-def _connector(one: DeckItem, own: str) -> str:
-    """A connector as people write it, with its own label and serial number."""
-    hardware = one_line(one.hardware)
-    text = f"{one_line(own)} ({hardware})" if own else hardware
-    return text if one.serial is None else f"{text} no. {one_line(one.serial)}"

@@ -23,29 +23,13 @@ if TYPE_CHECKING:
     from calm.files import MooringFile
 
 _SYMBOLS = {
-    Symbol.SPHERE: "(   )",
-    Symbol.BALL: "(o)",
-    Symbol.GLASS: "(o)",
-    Symbol.FOAM: "[===]",
-    Symbol.STREAMLINED: "<===<",
-    Symbol.BUOY: r"\___/",
-    Symbol.CURRENT_METER: " [|]>",
-    Symbol.ADCP: "[:]",
-    Symbol.CTD: "[#]",
-    Symbol.TRAP: r"\_/",
-    Symbol.INSTRUMENT: "[ ]",
-    Symbol.RELEASE: "[R]",
-    Symbol.RELEASE_PAIR: "[R|R]",
-    Symbol.SHACKLE: "U",
-    Symbol.SWIVEL: "8",
-    Symbol.LINK: "O",
-    Symbol.CHAIN: "§",
-    Symbol.WIRE: "│",
-    Symbol.ROPE: "┊",
-    Symbol.WHEELS: "[#####]",
-    Symbol.BLOCK: "/###\\",
-    Symbol.BODY: "[x]",
-}
+    Symbol.SPHERE: "(   )", Symbol.BALL: "(o)", Symbol.GLASS: "(o)", Symbol.FOAM: "[===]",
+    Symbol.STREAMLINED: "<===<", Symbol.BUOY: r"\___/", Symbol.CURRENT_METER: " [|]>",
+    Symbol.ADCP: "[:]", Symbol.CTD: "[#]", Symbol.TRAP: r"\_/", Symbol.INSTRUMENT: "[ ]",
+    Symbol.RELEASE: "[R]", Symbol.RELEASE_PAIR: "[R|R]", Symbol.SHACKLE: "U", Symbol.SWIVEL: "8",
+    Symbol.LINK: "O", Symbol.CHAIN: "§", Symbol.WIRE: "│", Symbol.ROPE: "┊",
+    Symbol.WHEELS: "[#####]", Symbol.BLOCK: "/###\\", Symbol.BODY: "[x]",
+}  # fmt: skip
 _PACK = "(ooo)"
 _LOOKS = {(False, False): ":", (True, False): "^", (False, True): "v", (True, True): "X"}
 _SHIP, _HELICOPTER = r"\__|__/", "---+---"

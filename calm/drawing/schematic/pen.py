@@ -83,14 +83,9 @@ class Pen:
             return self
         weight = {"font_weight": "bold"} if bold else {}
         pen = self.draw(
-            "text",
-            x=x,
-            y=y + 0.35 * size,
-            font_size=size,
-            fill=colour,
-            text_anchor=anchor,
+            "text", x=x, y=y + 0.35 * size, font_size=size, fill=colour, text_anchor=anchor,
             **weight,
-        )
+        )  # fmt: skip
         pen.element.text = text
         return pen
 
@@ -109,18 +104,12 @@ def picture(width: float, height: float, title: str, size: tuple[str, str] | Non
     size : width and height in print
     """
     printed = size or (f"{width:g}pt", f"{height:g}pt")
-    element = ElementTree.Element(
-        "svg",
-        {
-            "xmlns": "http://www.w3.org/2000/svg",
-            "width": printed[0],
-            "height": printed[1],
-            "viewBox": f"0 0 {width:g} {height:g}",
-            "role": "img",
-            "font-family": FONTS,
-            "stroke-linejoin": "round",
-        },
-    )
+    attributes = {
+        "xmlns": "http://www.w3.org/2000/svg", "width": printed[0], "height": printed[1],
+        "viewBox": f"0 0 {width:g} {height:g}", "role": "img", "font-family": FONTS,
+        "stroke-linejoin": "round",
+    }  # fmt: skip
+    element = ElementTree.Element("svg", attributes)
     pen = Pen(element)
     pen.title(title)
     pen.draw("rect", width=width, height=height, fill="white")

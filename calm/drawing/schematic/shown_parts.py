@@ -5,20 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from itertools import accumulate
 from typing import TYPE_CHECKING
 
 from calm.drawing.line_picture import alike, together
 from calm.drawing.picture import printable
 from calm.drawing.schematic.sign import BALLS, LINES, Sign, Symbol, sign_of
-from calm.files import Place, Rigid
+from calm.files import Clamp, MooringFile, Piece, Place, Rigid
 from calm.files.mooring_file import STAND_IN
 from calm.quantities import QUANTITIES, say
 
 if TYPE_CHECKING:
     from calm.case import Result, TowResult
-    from calm.files import Clamp, MooringFile, Piece
 
 HEADINGS = {"cut_length": ("cut", "length"), "depth": ("", "depth"), "height": ("above", "seabed")}
 """The quantities beside each part, with the two lines of their headings."""
@@ -92,7 +90,12 @@ def schematic_of(file: MooringFile, result: Result | TowResult | None = None) ->
     """Return what the schematic of a line shows; as solved, where there is a result."""
     levels = levels_of(file, result)
     bottom = file.environment.depth
-    cells = partial(_figures, bottom)
+
+    def cells(length: str, depth: float) -> tuple[str, ...]:
+        """Length, depth, and the height where the depth of the seabed is known."""
+        heights = [] if bottom is None else [QUANTITIES["height"].format(bottom - depth)]
+        return length, QUANTITIES["depth"].format(depth), *heights
+
     stands = file.pieces[-1].use != STAND_IN
     pieces = file.pieces if stands else file.pieces[:-1]
     water = file.environment.fluid == "water"
@@ -119,12 +122,6 @@ def one_line(text: str) -> str:
 
 Cells = Callable[[str, float], tuple[str, ...]]
 """The figures of a row, by its length, or its place in its stead, and its depth [m]."""
-
-
-def _figures(bottom: float | None, length: str, depth: float) -> tuple[str, ...]:
-    """Length, depth, and the height where the depth of the seabed is known."""
-    heights = [] if bottom is None else [QUANTITIES["height"].format(bottom - depth)]
-    return length, QUANTITIES["depth"].format(depth), *heights
 
 
 def _parts(pieces: Sequence[Piece], cells: Cells, levels: Levels) -> Iterator[ShownPart]:
@@ -242,8 +239,16 @@ def levels_of(file: MooringFile, result: Result | TowResult | None) -> Levels:
             result.type == "surface",
             _SOLVED,
         )
-    lengths = _cut_lengths(file)
-    depths = _upright(file, lengths)
+    known = sum(piece.length for piece in file.pieces if piece.length is not None)
+    rest, bottom = math.nan, file.environment.depth
+    for piece in file.pieces:
+        if piece.fit_top_depth is not None and bottom is not None:
+            rest = bottom - piece.fit_top_depth - known
+    lengths = tuple(rest if piece.length is None else piece.length for piece in file.pieces)
+    depths = (math.nan,) * len(lengths)
+    if file.tow is None and bottom is not None:  # upright, above an anchor on the seabed
+        heights = list(accumulate(reversed(lengths)))
+        depths = tuple(bottom - height for height in reversed(heights))
     top = file.pieces[0].component
     hulled = isinstance(top, Rigid) and not (top.hull is None and top.wind_area is None)
     surface = file.tow is None and (depths[0] <= 0.0 or hulled)
@@ -256,24 +261,6 @@ def levels_of(file: MooringFile, result: Result | TowResult | None) -> Levels:
     }
     note = _UNKNOWN if math.isnan(depths[0]) else _UPRIGHT
     return Levels(lengths, depths, clamps, file.pieces[0], surface, note)
-
-
-def _cut_lengths(file: MooringFile) -> tuple[float, ...]:
-    """As the file gives them; of a piece cut to fit, what is left for it."""
-    known = sum(piece.length for piece in file.pieces if piece.length is not None)
-    rest = math.nan
-    for piece in file.pieces:
-        if piece.fit_top_depth is not None and file.environment.depth is not None:
-            rest = file.environment.depth - piece.fit_top_depth - known
-    return tuple(rest if piece.length is None else piece.length for piece in file.pieces)
-
-
-def _upright(file: MooringFile, lengths: tuple[float, ...]) -> tuple[float, ...]:
-    """Depths of the upper ends above an anchor on the seabed."""
-    if file.tow is not None or file.environment.depth is None:
-        return (math.nan,) * len(lengths)
-    heights = list(accumulate(reversed(lengths)))
-    return tuple(file.environment.depth - height for height in reversed(heights))
 
 
 def place_text(at: float) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from enum import StrEnum, auto
+from enum import StrEnum
 from typing import TYPE_CHECKING
 
 from calm.physics.materials import fibre_of
@@ -14,43 +14,30 @@ if TYPE_CHECKING:
 
 
 class Symbol(StrEnum):
-    """What a schematic draws."""
+    """What a schematic draws, and what a legend calls it."""
 
-    SPHERE = auto()
-    BALL = auto()
-    GLASS = auto()
-    FOAM = auto()
-    STREAMLINED = auto()
-    BUOY = auto()
-    CURRENT_METER = auto()
-    ADCP = auto()
-    CTD = auto()
-    TRAP = auto()
-    INSTRUMENT = auto()
-    RELEASE = auto()
-    RELEASE_PAIR = auto()
-    SHACKLE = auto()
-    SWIVEL = auto()
-    LINK = auto()
-    CHAIN = auto()
-    WIRE = auto()
-    ROPE = auto()
-    WHEELS = auto()
-    BLOCK = auto()
-    BODY = auto()
-
-
-WORDS = {
-    Symbol.SPHERE: "float", Symbol.BALL: "ball", Symbol.GLASS: "glass float",
-    Symbol.FOAM: "foam float", Symbol.STREAMLINED: "streamlined float",
-    Symbol.BUOY: "surface buoy", Symbol.CURRENT_METER: "current meter", Symbol.ADCP: "ADCP",
-    Symbol.CTD: "CTD or logger", Symbol.TRAP: "sediment trap", Symbol.INSTRUMENT: "instrument",
-    Symbol.RELEASE: "release", Symbol.RELEASE_PAIR: "pair of releases",
-    Symbol.SHACKLE: "shackle", Symbol.SWIVEL: "swivel", Symbol.LINK: "link or ring",
-    Symbol.CHAIN: "chain", Symbol.WIRE: "wire", Symbol.ROPE: "rope",
-    Symbol.WHEELS: "anchor, wheels", Symbol.BLOCK: "anchor", Symbol.BODY: "body",
-}  # fmt: skip
-"""What a legend calls each symbol."""
+    SPHERE = "float"
+    BALL = "ball"
+    GLASS = "glass float"
+    FOAM = "foam float"
+    STREAMLINED = "streamlined float"
+    BUOY = "surface buoy"
+    CURRENT_METER = "current meter"
+    ADCP = "ADCP"
+    CTD = "CTD or logger"
+    TRAP = "sediment trap"
+    INSTRUMENT = "instrument"
+    RELEASE = "release"
+    RELEASE_PAIR = "pair of releases"
+    SHACKLE = "shackle"
+    SWIVEL = "swivel"
+    LINK = "link or ring"
+    CHAIN = "chain"
+    WIRE = "wire"
+    ROPE = "rope"
+    WHEELS = "anchor, wheels"
+    BLOCK = "anchor"
+    BODY = "body"
 
 
 BALLS = (Symbol.BALL, Symbol.GLASS)
@@ -100,28 +87,29 @@ def sign_of(use: str, label: str, component: Component) -> Sign:
     symbol = _symbol(component, own, words)
     count = 1
     if symbol is Symbol.GLASS:
-        count = _balls(own)
+        named = (n for word, n in _NUMBERS.items() if re.search(rf"\b{word}\b", own))
+        counted = _COUNTED.search(own)
+        count = int(next(filter(None, counted.groups()))) if counted else next(named, 1)
     elif symbol is Symbol.WHEELS:
         count = _first_number(component.name) or _first_number(use) or 1
     sounding = symbol is Symbol.ADCP or bool(_ADCP.search(own))
-    return Sign(
-        symbol,
-        count,
-        sounding,
-        up=sounding and bool(_UP.search(words)),
-        down=sounding and bool(_DOWN.search(words)),
-    )
+    up, down = (sounding and bool(way.search(words)) for way in (_UP, _DOWN))
+    return Sign(symbol, count, sounding, up, down)
 
 
 def _symbol(component: Component, own: str, words: str) -> Symbol:
     if component.kind == "chain":
         return Symbol.CHAIN
     if component.kind == "cable":
-        return _cable(f"{own} {(component.material or '').lower()}", words)
+        made_of = f"{own} {(component.material or '').lower()}"
+        rope = not _METAL.search(made_of) and ("rope" in words or fibre_of(made_of))
+        return Symbol.ROPE if rope else Symbol.WIRE
     if component.kind == "anchor":
         return Symbol.WHEELS if _WHEELS.search(words) else Symbol.BLOCK
     if component.role == "float":
-        return _float(component, own)
+        if _STREAMLINED.search(own) or "glass" in own:
+            return Symbol.STREAMLINED if _STREAMLINED.search(own) else Symbol.GLASS
+        return _sphere(component.diameter) if component.kind == "sphere" else Symbol.FOAM
     if component.role == "release":
         return Symbol.RELEASE_PAIR if _PAIR.search(own) else Symbol.RELEASE
     if component.role == "connector":
@@ -134,20 +122,6 @@ def _symbol(component: Component, own: str, words: str) -> Symbol:
     return _named(_NAMES, own, _named(_NAMES, words, other))
 
 
-def _cable(own: str, words: str) -> Symbol:
-    if _METAL.search(own):
-        return Symbol.WIRE
-    return Symbol.ROPE if "rope" in words or fibre_of(own) else Symbol.WIRE
-
-
-def _float(component: Component, own: str) -> Symbol:
-    if _STREAMLINED.search(own):
-        return Symbol.STREAMLINED
-    if "glass" in own:
-        return Symbol.GLASS
-    return _sphere(component.diameter) if component.kind == "sphere" else Symbol.FOAM
-
-
 def _sphere(diameter: float) -> Symbol:
     return Symbol.BALL if diameter <= _LARGEST_BALL else Symbol.SPHERE
 
@@ -155,13 +129,6 @@ def _sphere(diameter: float) -> Symbol:
 def _named(names: dict[Symbol, str], words: str, other: Symbol) -> Symbol:
     """The first symbol whose pattern the words have."""
     return next((symbol for symbol, name in names.items() if re.search(name, words)), other)
-
-
-def _balls(own: str) -> int:
-    counted = _COUNTED.search(own)
-    if counted:
-        return int(next(filter(None, counted.groups())))
-    return next((number for word, number in _NUMBERS.items() if re.search(rf"\b{word}\b", own)), 1)
 
 
 def _first_number(text: str | None) -> int | None:

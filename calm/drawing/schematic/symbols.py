@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
+from operator import methodcaller
+from typing import Any
 
 from calm.drawing.schematic.pen import INK, Pen
 from calm.drawing.schematic.sign import BALLS, Sign, Symbol
@@ -97,124 +100,84 @@ def _wheels(count: int) -> SymbolFigure:
     return SymbolFigure(height, draw)
 
 
-def _sphere(pen: Pen) -> None:
-    pen.circle(0.0, 0.0, 17.0, fill=_FLOAT)
-    pen.path("M-17 0Q0 7 17 0", fill="none", stroke_width=0.9)
+_circle, _box, _path, _line, _element = (
+    partial(methodcaller, name) for name in ("circle", "box", "path", "line", "draw")
+)
+_HOLLOW: dict[str, Any] = {"fill": "white", "stroke_width": 0.9}
+_BARE: dict[str, Any] = {"fill": "none"}
 
 
-def _foam(pen: Pen) -> None:
-    pen.box(0.0, 0.0, 36.0, 32.0, rx=9.0, fill=_FLOAT)
-    for y in (-5.5, 5.5):
-        pen.line(-18.0, y, 18.0, y, stroke_width=0.9)
+def _figure(height: float, *parts: Callable[[Pen], None]) -> SymbolFigure:
+    """A figure of a height from parts about its origin, the first behind the others."""
 
+    def draw(pen: Pen) -> None:
+        for part in parts:
+            part(pen)
 
-def _streamlined(pen: Pen) -> None:
-    pen.path("M14 0L27 -10L27 10Z", fill=_DARK)
-    pen.path("M-25 0C-25 -9 -14 -12 -4 -12C8 -12 16 -6 21 0C16 6 8 12 -4 12C-14 12 -25 9 -25 0Z",
-             fill=_FLOAT)  # fmt: skip
-
-
-def _buoy(pen: Pen) -> None:
-    """A hull half in the water, which is at the origin, with a mast."""
-    pen.path("M-7 -9L-3 -31M7 -9L3 -31M-5 -20L5 -20", fill="none")
-    pen.box(0.0, -33.0, 10.0, 4.0, fill=_DARK)
-    pen.circle(0.0, -37.5, 2.4, fill=_FLOAT)
-    pen.path("M-32 -9L32 -9L27 5Q0 17 -27 5Z", fill=_FLOAT)
-
-
-def _current_meter(pen: Pen) -> None:
-    pen.box(0.0, 0.0, 12.0, 26.0, rx=2.5, fill=_INSTRUMENT)
-    pen.path("M6 -4L20 -11L25 -11L25 11L20 11L6 4Z", fill=_INSTRUMENT)
-    pen.line(0.0, -9.0, 0.0, 9.0, stroke_width=0.8)
-
-
-def _adcp(pen: Pen) -> None:
-    pen.box(0.0, 0.0, 15.0, 20.0, fill=_INSTRUMENT)
-    pen.path("M-7.5 -10L-11 -15L11 -15L7.5 -10Z", fill=_INSTRUMENT)
-    pen.path("M-7.5 10L-11 15L11 15L7.5 10Z", fill=_INSTRUMENT)
-
-
-def _ctd(pen: Pen) -> None:
-    pen.box(0.0, 0.0, 18.0, 28.0, fill="white", stroke_width=0.9)
-    pen.box(0.0, 2.0, 8.0, 20.0, rx=2.0, fill=_INSTRUMENT)
-    pen.box(0.0, -10.5, 4.0, 5.0, fill=_DARK)
-
-
-def _trap(pen: Pen) -> None:
-    pen.path("M-19 -19L19 -19L5 8L-5 8Z", fill=_INSTRUMENT)
-    for x in (-10.0, 0.0, 10.0):
-        pen.line(x, -19.0, 0.45 * x, -9.0, stroke_width=0.8)
-    for x in (-9.0, -3.0, 3.0, 9.0):
-        pen.box(x, 15.0, 4.0, 8.0, rx=1.5, fill="white", stroke_width=0.9)
-    pen.box(0.0, 9.5, 26.0, 3.0, fill=_DARK)
-
-
-def _instrument(pen: Pen) -> None:
-    pen.box(0.0, 0.0, 13.0, 28.0, rx=3.0, fill=_INSTRUMENT)
-    pen.line(-6.5, -7.0, 6.5, -7.0, stroke_width=0.9)
-
-
-def _release(pen: Pen) -> None:
-    pen.box(0.0, -4.0, 12.0, 28.0, rx=2.5, fill=_RELEASE)
-    pen.line(-6.0, -11.0, 6.0, -11.0, stroke_width=0.9)
-    pen.path("M0 10L0 13A3.2 3.2 0 1 1 -3.2 16", fill="none", stroke_width=1.8)
-
-
-def _release_pair(pen: Pen) -> None:
-    pen.box(0.0, -18.0, 30.0, 3.0, fill=_DARK)
-    pen.box(0.0, 18.0, 30.0, 3.0, fill=_DARK)
-    for x in (-9.0, 9.0):
-        pen.line(x, -17.0, x, 17.0)
-        pen.box(x, -2.0, 11.0, 26.0, rx=2.5, fill=_RELEASE)
-        pen.line(x - 5.5, -9.0, x + 5.5, -9.0, stroke_width=0.9)
-
-
-def _shackle(pen: Pen) -> None:
-    pen.path("M-4 -4.5L-4 1A4 4 0 0 0 4 1L4 -4.5", fill="white", stroke_width=1.8)
-    pen.line(-6.0, -4.0, 6.0, -4.0, stroke_width=2.0)
-
-
-def _swivel(pen: Pen) -> None:
-    pen.circle(0.0, -5.0, 3.4, fill="white", stroke_width=1.6)
-    pen.circle(0.0, 5.0, 3.4, fill="white", stroke_width=1.6)
-    pen.box(0.0, 0.0, 11.0, 4.0, fill=_STEEL)
-
-
-def _link(pen: Pen) -> None:
-    pen.draw("ellipse", cx=0.0, cy=0.0, rx=3.6, ry=5.0, fill="white", stroke_width=1.8)
-
-
-def _block(pen: Pen) -> None:
-    pen.path("M-17 -8L17 -8L21 12L-21 12Z", fill=_CONCRETE)
-    pen.path("M-4 -8A4 4 0 0 1 4 -8", fill="none", stroke_width=2.0)
-    for x, y in ((-10.0, -2.0), (-3.0, 5.0), (5.0, -3.0), (11.0, 4.0), (-13.0, 7.0), (3.0, 9.0)):
-        pen.circle(x, y, 0.9, fill=INK, stroke="none")
-
-
-def _body(pen: Pen) -> None:
-    pen.box(0.0, 0.0, 28.0, 24.0, rx=2.0, fill=_INSTRUMENT)
-    pen.path("M-14 -12L14 12M14 -12L-14 12", fill="none", stroke_width=0.7)
+    return SymbolFigure(height, draw)
 
 
 _CONNECTORS = (Symbol.SHACKLE, Symbol.SWIVEL, Symbol.LINK)
 _FIGURES = {
-    Symbol.SPHERE: SymbolFigure(36.0, _sphere),
-    Symbol.FOAM: SymbolFigure(34.0, _foam),
-    Symbol.STREAMLINED: SymbolFigure(28.0, _streamlined),
-    Symbol.BUOY: SymbolFigure(26.0, _buoy),
-    Symbol.CURRENT_METER: SymbolFigure(29.0, _current_meter),
-    Symbol.ADCP: SymbolFigure(32.0, _adcp),
-    Symbol.CTD: SymbolFigure(30.0, _ctd),
-    Symbol.TRAP: SymbolFigure(42.0, _trap),
-    Symbol.INSTRUMENT: SymbolFigure(30.0, _instrument),
-    Symbol.RELEASE: SymbolFigure(40.0, _release),
-    Symbol.RELEASE_PAIR: SymbolFigure(40.0, _release_pair),
-    Symbol.SHACKLE: SymbolFigure(12.0, _shackle),
-    Symbol.SWIVEL: SymbolFigure(18.0, _swivel),
-    Symbol.LINK: SymbolFigure(11.0, _link),
-    Symbol.BLOCK: SymbolFigure(24.0, _block),
-    Symbol.BODY: SymbolFigure(26.0, _body),
-}
+    Symbol.SPHERE: _figure(36.0,
+        _circle(0.0, 0.0, 17.0, fill=_FLOAT), _path("M-17 0Q0 7 17 0", **_BARE, stroke_width=0.9)),
+    Symbol.FOAM: _figure(34.0,
+        _box(0.0, 0.0, 36.0, 32.0, rx=9.0, fill=_FLOAT),
+        *(_line(-18.0, y, 18.0, y, stroke_width=0.9) for y in (-5.5, 5.5))),
+    Symbol.STREAMLINED: _figure(28.0,
+        _path("M14 0L27 -10L27 10Z", fill=_DARK),
+        _path("M-25 0C-25 -9 -14 -12 -4 -12C8 -12 16 -6 21 0C16 6 8 12 -4 12C-14 12 -25 9 -25 0Z",
+              fill=_FLOAT)),
+    Symbol.BUOY: _figure(26.0,  # a hull half in the water, which is at the origin, with a mast
+        _path("M-7 -9L-3 -31M7 -9L3 -31M-5 -20L5 -20", **_BARE),
+        _box(0.0, -33.0, 10.0, 4.0, fill=_DARK), _circle(0.0, -37.5, 2.4, fill=_FLOAT),
+        _path("M-32 -9L32 -9L27 5Q0 17 -27 5Z", fill=_FLOAT)),
+    Symbol.CURRENT_METER: _figure(29.0,
+        _box(0.0, 0.0, 12.0, 26.0, rx=2.5, fill=_INSTRUMENT),
+        _path("M6 -4L20 -11L25 -11L25 11L20 11L6 4Z", fill=_INSTRUMENT),
+        _line(0.0, -9.0, 0.0, 9.0, stroke_width=0.8)),
+    Symbol.ADCP: _figure(32.0,
+        _box(0.0, 0.0, 15.0, 20.0, fill=_INSTRUMENT),
+        _path("M-7.5 -10L-11 -15L11 -15L7.5 -10Z", fill=_INSTRUMENT),
+        _path("M-7.5 10L-11 15L11 15L7.5 10Z", fill=_INSTRUMENT)),
+    Symbol.CTD: _figure(30.0,
+        _box(0.0, 0.0, 18.0, 28.0, **_HOLLOW), _box(0.0, 2.0, 8.0, 20.0, rx=2.0, fill=_INSTRUMENT),
+        _box(0.0, -10.5, 4.0, 5.0, fill=_DARK)),
+    Symbol.TRAP: _figure(42.0,
+        _path("M-19 -19L19 -19L5 8L-5 8Z", fill=_INSTRUMENT),
+        *(_line(x, -19.0, 0.45 * x, -9.0, stroke_width=0.8) for x in (-10.0, 0.0, 10.0)),
+        *(_box(x, 15.0, 4.0, 8.0, rx=1.5, **_HOLLOW) for x in (-9.0, -3.0, 3.0, 9.0)),
+        _box(0.0, 9.5, 26.0, 3.0, fill=_DARK)),
+    Symbol.INSTRUMENT: _figure(30.0,
+        _box(0.0, 0.0, 13.0, 28.0, rx=3.0, fill=_INSTRUMENT),
+        _line(-6.5, -7.0, 6.5, -7.0, stroke_width=0.9)),
+    Symbol.RELEASE: _figure(40.0,
+        _box(0.0, -4.0, 12.0, 28.0, rx=2.5, fill=_RELEASE),
+        _line(-6.0, -11.0, 6.0, -11.0, stroke_width=0.9),
+        _path("M0 10L0 13A3.2 3.2 0 1 1 -3.2 16", **_BARE, stroke_width=1.8)),
+    Symbol.RELEASE_PAIR: _figure(40.0,
+        _box(0.0, -18.0, 30.0, 3.0, fill=_DARK), _box(0.0, 18.0, 30.0, 3.0, fill=_DARK),
+        *(part for x in (-9.0, 9.0) for part in (
+            _line(x, -17.0, x, 17.0), _box(x, -2.0, 11.0, 26.0, rx=2.5, fill=_RELEASE),
+            _line(x - 5.5, -9.0, x + 5.5, -9.0, stroke_width=0.9)))),
+    Symbol.SHACKLE: _figure(12.0,
+        _path("M-4 -4.5L-4 1A4 4 0 0 0 4 1L4 -4.5", fill="white", stroke_width=1.8),
+        _line(-6.0, -4.0, 6.0, -4.0, stroke_width=2.0)),
+    Symbol.SWIVEL: _figure(18.0,
+        *(_circle(0.0, y, 3.4, fill="white", stroke_width=1.6) for y in (-5.0, 5.0)),
+        _box(0.0, 0.0, 11.0, 4.0, fill=_STEEL)),
+    Symbol.LINK: _figure(11.0,
+        _element("ellipse", cx=0.0, cy=0.0, rx=3.6, ry=5.0, fill="white", stroke_width=1.8)),
+    Symbol.BLOCK: _figure(24.0,
+        _path("M-17 -8L17 -8L21 12L-21 12Z", fill=_CONCRETE),
+        _path("M-4 -8A4 4 0 0 1 4 -8", **_BARE, stroke_width=2.0),
+        *(_circle(x, y, 0.9, fill=INK, stroke="none") for x, y in (
+            (-10.0, -2.0), (-3.0, 5.0), (5.0, -3.0), (11.0, 4.0), (-13.0, 7.0), (3.0, 9.0)))),
+    Symbol.BODY: _figure(26.0,
+        _box(0.0, 0.0, 28.0, 24.0, rx=2.0, fill=_INSTRUMENT),
+        _path("M-14 -12L14 12M14 -12L-14 12", **_BARE, stroke_width=0.7)),
+}  # fmt: skip
+"""Heights and parts of the symbols that are always drawn alike."""
 
 
 SEABED_ROOM = 22.0

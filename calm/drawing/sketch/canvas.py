@@ -12,6 +12,8 @@ from rich.text import Text
 
 from calm.drawing.graph import number, round_numbers
 
+Points = Iterable[tuple[float, float]]
+
 ACROSS, DOWN = 2, 4
 """Dots of a cell."""
 
@@ -40,9 +42,7 @@ class Canvas:
             if self._signs[row][column] is None:
                 self._styles[row][column] = style
 
-    def line(
-        self, points: Iterable[tuple[float, float]], style: str, *, dash: int = 0, gap: int = 0
-    ) -> None:
+    def line(self, points: Points, style: str, dash: int = 0, gap: int = 0) -> None:
         """Straight lines from point to point, `dash` dots drawn and `gap` left out in turn."""
         drawn = 0
         last: tuple[int, int] | None = None
@@ -142,11 +142,9 @@ class PlotFrame:
             min(max(row, self.row), self.row + self.rows - 1),
         )
 
-    def line(
-        self, points: Iterable[tuple[float, float]], style: str, *, dash: int = 0, gap: int = 0
-    ) -> None:
+    def line(self, points: Points, style: str, dash: int = 0, gap: int = 0) -> None:
         """A line through points of the two quantities."""
-        self.canvas.line((self.point(x, y) for x, y in points), style, dash=dash, gap=gap)
+        self.canvas.line((self.point(x, y) for x, y in points), style, dash, gap)
 
     def mark(self, x: float, y: float, sign: str, style: str) -> None:
         """A sign at a point; beside it where another is there, once where the same is."""

@@ -12,7 +12,7 @@ from rich.cells import cell_len
 from rich.text import Text
 
 from calm.case import Result, TowResult
-from calm.case.net_result import AnyResult, NetResult
+from calm.case.result import AnyResult, NetResult
 from calm.checks.posture import reaches_the_surface
 from calm.checks.strength import allowable_load
 from calm.drawing import line_picture
@@ -78,8 +78,7 @@ def elevation(
 def draw_picture(frame: canvas.PlotFrame, picture: LinePicture) -> None:
     """Draw the lines, the ship and the marks of a picture."""
     for line in picture.lines:
-        style, dash, gap = STROKES[line.kind]
-        frame.line(zip(line.x.tolist(), line.y.tolist(), strict=True), style, dash=dash, gap=gap)
+        frame.line(zip(line.x.tolist(), line.y.tolist(), strict=True), *STROKES[line.kind])
     if picture.ship is not None:
         frame.mark(*picture.ship, *SHIP)
     for role, (sign, style) in SIGNS.items():
@@ -91,18 +90,29 @@ def draw_picture(frame: canvas.PlotFrame, picture: LinePicture) -> None:
 def _caption(result: AnyResult) -> str:
     """Return how deep and how far off the end is, in words."""
     if isinstance(result, NetResult):
-        return f"net of {len(result.legs)} legs"
+        return _distance(result)
     if isinstance(result, Result):
         top = result.top
-        offset = hypot(top.x, top.y)
         deep = "top afloat" if result.type == "surface" else f"top {say('depth', top.depth)}"
-        towards = f" to {bearing_text(bearing_of(top.x, top.y))}" if offset >= 0.05 else ""
-        return f"{deep}, {say('offset', offset)} off{towards}"
+        return f"{deep}, {_distance(result)}"
     body = result.body
     deep = say("depth", body.depth)
     if result.file.environment.fluid == "air":
         deep = f"{say('depth', body.depth + result.tow.keys.height)} below"
     return f"body {deep}, {say('layback', body.layback)} behind"
+
+
+def _distance(result: AnyResult) -> str:
+    """Return how far off the end is and where to; of a net how many legs it has."""
+    if isinstance(result, NetResult):
+        return f"net of {len(result.legs)} legs"
+    if isinstance(result, Result):
+        x, y = result.top.x, result.top.y
+    else:
+        x, y = float(result.shape.x[0]), float(result.shape.y[0])
+    distance = hypot(x, y)
+    towards = f" to {bearing_text(bearing_of(x, y))}" if distance >= 0.05 else ""
+    return f"{say('offset', distance)} off{towards}"
 
 
 def _span(side: LinePicture) -> tuple[float, float]:
@@ -247,14 +257,10 @@ def current_profile(water: Water, width: int, height: int) -> list[Text]:
         _, row = frame.cell(0.0, value)
         east, north = (float(np.interp(value, depths, each)) for each in (u, v))
         if hypot(east, north) > 0.0:
-            frame.canvas.text(width - beside + 1, row, _direction(east, north, beside), _STYLE)
+            way = _ARROWS[round(np.degrees(np.arctan2(east, north)) / 45.0) % 8]
+            way = f"{bearing_text(bearing_of(east, north))}{way}" if beside > 2 else way
+            frame.canvas.text(width - beside + 1, row, way, _STYLE)
     return frame.canvas.rows()
-
-
-def _direction(u: float, v: float, room: int) -> str:
-    """Return where it flows to: an arrow, and the degrees where there is room."""
-    arrow = _ARROWS[round(np.degrees(np.arctan2(u, v)) / 45.0) % 8]
-    return arrow if room == 2 else f"{bearing_text(bearing_of(u, v))}{arrow}"
 
 
 _LEAST_RANGE = 1.0  # metres
@@ -278,24 +284,14 @@ def plan(result: AnyResult, width: int, height: int, beside: Sequence[Shape] = (
         gutter = max(map(len, map(number, levels(bottom, top, rows))))
     left, right = _centred(west, east, metres * (width - gutter - 1) * ACROSS)
     across, down = (left, right), (top, bottom)
-    frame = scaled_frame((width, height), _said(result), across, down, "m east", "m E")
+    what = "" if isinstance(result, NetResult) else "top " if isinstance(result, Result) else "end "
+    said = f"{what}{_distance(result)}"
+    frame = scaled_frame((width, height), said, across, down, "m east", "m E")
     frame.line([(left, 0.0), (right, 0.0)], STILL, dash=1, gap=3)
     frame.line([(0.0, bottom), (0.0, top)], STILL, dash=1, gap=3)
     draw_picture(frame, line_picture.plan_of(result, beside))
     frame.canvas.text(frame.column, frame.row, "N", AXIS)
     return frame.canvas.rows()
-
-
-def _said(result: AnyResult) -> str:
-    if isinstance(result, NetResult):
-        return f"net of {len(result.legs)} legs"
-    if isinstance(result, Result):
-        x, y, what = result.top.x, result.top.y, "top"
-    else:
-        x, y, what = float(result.shape.x[0]), float(result.shape.y[0]), "end"
-    distance = hypot(x, y)
-    towards = f" to {bearing_text(bearing_of(x, y))}" if distance >= 0.05 else ""
-    return f"{what} {say('offset', distance)} off{towards}"
 
 
 def _ends(coordinates: Iterable[Floats]) -> list[float]:

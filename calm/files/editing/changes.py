@@ -235,23 +235,17 @@ def cells_that_differ(
 
     None where they have not the same shape, or a value goes without another in its place.
     """
-    if _shape(old) != _shape(new):
+    rows = old if isinstance(old, list | tuple) else []
+    if [len(row) if isinstance(row, list | tuple) else -1 for row in rows] != [*map(len, new)]:
         return None
-    cells = [
-        (i, j, text)
-        for i, (before, row) in enumerate(zip(old, new, strict=True))
-        for j, (value, text) in enumerate(zip(before, row, strict=True))
-        if value != text
-    ]
-    texts = [(i, j, text) for i, j, text in cells if text is not None]
-    return texts if len(texts) == len(cells) else None
-
-
-def _shape(rows: Any) -> list[int]:
-    """Return how many values each row has, -1 where it is no row."""
-    if not isinstance(rows, list | tuple):
-        return []
-    return [len(row) if isinstance(row, list | tuple) else -1 for row in rows]
+    cells: list[tuple[int, int, str]] = []
+    for i, (before, row) in enumerate(zip(rows, new, strict=True)):
+        for j, (value, text) in enumerate(zip(before, row, strict=True)):
+            if value != text and text is None:
+                return None
+            if value != text and text is not None:
+                cells.append((i, j, text))
+    return cells
 
 
 _ENDINGS = ("\r\n", "\n", "\r")
@@ -296,7 +290,7 @@ def _taken_from(old: Sequence[str], new: Sequence[str]) -> list[int | None]:
     """Return for each new line the old one that it is, or that it took the place of."""
     # Comparing is slow, and most often only a line differs.
     head = _alike(old, new)
-    tail = min(_alike(old[::-1], new[::-1]), len(old) - head, len(new) - head)
+    tail = _alike(old[head:][::-1], new[head:][::-1])
     middle = old[head : len(old) - tail], new[head : len(new) - tail]
     found: list[int | None] = [*range(head)]
     for _, start, end, new_start, new_end in SequenceMatcher(None, *middle, False).get_opcodes():

@@ -16,12 +16,7 @@ from calm.templates import TEMPLATES, Template, template
 from calm.tui.cell_editor import CellEditor
 from calm.tui.dialogs import Answer, InputSheet, Question, ask, choose
 from calm.tui.key_table import bindings, hints
-from calm.tui.line.comparing import (
-    compare_with_file,
-    compare_with_saved,
-    offer_advice,
-    offer_papers,
-)
+from calm.tui.line import comparing
 from calm.tui.line.filling import ask_figures
 from calm.tui.line.line_pane import LinePane
 from calm.tui.line.line_screen import LineScreen
@@ -110,15 +105,15 @@ class BuilderScreen(LineScreen):
 
     def action_advise(self) -> None:
         """Offer changes that mend what was found."""
-        offer_advice(self.line)
+        comparing.offer_advice(self.line)
 
     def action_compare(self) -> None:
         """Show what has changed since the file was saved."""
-        compare_with_saved(self.line, self.pictures)
+        comparing.compare_with_saved(self.line, self.pictures)
 
     def action_compare_file(self) -> None:
         """Show what is different in another file."""
-        compare_with_file(self.line, self.pictures)
+        comparing.compare_with_file(self.line, self.pictures)
 
     def action_overlay(self) -> None:
         """Draw the line in all its environments, or in its own alone."""
@@ -137,7 +132,7 @@ class BuilderScreen(LineScreen):
 
     def action_papers(self) -> None:
         """Show the bill, or have report and sheets written."""
-        offer_papers(self.line)
+        comparing.offer_papers(self.line)
 
     def action_begin(self) -> None:
         """Begin an empty line with a mooring."""

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from calm.errors import CalmError
-from calm.files.editing import WorkingFile
+from calm.files.editing import Draft, WorkingFile
 from calm.tui.checking import needed
 from calm.tui.dialogs import Answer, Asked, InputSheet, LongText, Question, ask, choose
 from calm.tui.line.line_pane import LinePane
@@ -21,8 +21,7 @@ if TYPE_CHECKING:
 
     from calm.case import Mooring, Result
     from calm.case.net import Net
-    from calm.case.net_result import NetResult
-    from calm.files.editing import Draft
+    from calm.case.result import NetResult
     from calm.tui.advice import Offer
     from calm.tui.live import View
 
@@ -169,7 +168,7 @@ def _write(pane: LinePane, what: str, path: Path, folder: Path) -> None:
 
 
 def _bill(result: Result | NetResult) -> RenderableType:
-    from calm.case.net_result import legs_of
+    from calm.case.result import legs_of
     from calm.checks.inventory import inventory_of
     from calm.files.mooring_file import STAND_IN
     from calm.quantities import QUANTITIES

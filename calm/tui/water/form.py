@@ -15,14 +15,8 @@ from calm.files.definition import DENSITY, POSITIVE_LENGTH, QuantityField
 from calm.files.editing import Draft, Value
 from calm.files.water import USUAL_DENSITY
 from calm.files.yaml_document import Location
+from calm.records import profile_tables
 from calm.records.headings import heading
-from calm.records.profile_tables import (
-    DIRECTION,
-    SALINITY,
-    TEMPERATURE,
-    WATER_DENSITY,
-    speed_and_direction,
-)
 from calm.tui.checking import needed, quantity
 from calm.tui.field import Cycle, Field
 from calm.tui.key_table import bindings
@@ -42,17 +36,17 @@ USUAL_DEPTH = 100.0
 _CURRENT = ("0.5", "90")
 _CONSTANTS = {
     ("density",): (DENSITY, "kg/m^3", f"{USUAL_DENSITY['water']:g}"),
-    ("density", "temperature"): (TEMPERATURE, "degC", "10"),
-    ("density", "salinity"): (SALINITY, "", "35"),
+    ("density", "temperature"): (profile_tables.TEMPERATURE, "degC", "10"),
+    ("density", "salinity"): (profile_tables.SALINITY, "", "35"),
 }
 """What can be a constant or a table: kind, unit, and the figure to begin with."""
 
 _DEPTH = quantity(POSITIVE_LENGTH, optional=True)
-_DENSITY = quantity(WATER_DENSITY, optional=True)
+_DENSITY = quantity(profile_tables.WATER_DENSITY, optional=True)
 _SPEED = quantity(QuantityField("speed", at_least=0))
 _WIND = quantity(QuantityField("speed", at_least=0), optional=True)
-_ANGLE = quantity(DIRECTION)
-_TOWARD = quantity(DIRECTION, optional=True)
+_ANGLE = quantity(profile_tables.DIRECTION)
+_TOWARD = quantity(profile_tables.DIRECTION, optional=True)
 
 Place = tuple[str, ...]
 """Keys that lead to something within an environment: ``("density", "salinity")``."""
@@ -199,7 +193,7 @@ class WaterForm:
         )
         toward = _read(QuantityField("angle"), place["toward"])
         if u is not None and v is not None:
-            speed, toward = speed_and_direction(u, v)
+            speed, toward = profile_tables.speed_and_direction(u, v)
         return _CURRENT if speed is None or toward is None else (f"{speed:g}", f"{toward:g}")
 
     @property
@@ -301,7 +295,10 @@ def fields_of_water() -> Iterator[Widget]:
     yield FormChoice("Density", DENSITY_FORMS, id="density-form")
     yield Field("density", "", _DENSITY, id="density", placeholder="else 1025 kg/m^3")
     yield Grid(id="density-table")
-    for name, kind in (("temperature", TEMPERATURE), ("salinity", SALINITY)):
+    for name, kind in (
+        ("temperature", profile_tables.TEMPERATURE),
+        ("salinity", profile_tables.SALINITY),
+    ):
         yield FormChoice(f"  {name}", PROFILE_FORMS, id=f"density-{name}-form")
         yield Field(name, "", quantity(kind), id=f"density-{name}")
         yield Grid(id=f"density-{name}-table")

@@ -136,6 +136,16 @@ def test_warnings_tell_what_to_look_at(solve):
     assert "is required to hold the line" in told
 
 
+@pytest.mark.parametrize(("depth", "told"), [("40 m", True), ("70 m", False)])
+def test_a_line_that_is_far_too_long_for_its_water_is_doubted(solve, depth, told):
+    """Of 122 m of line at the surface, wire lies in 40 m of water; in 70 m it may be meant."""
+    text = FILE.replace("depth: 200 m", f"depth: {depth}").replace("weight: 1 N/m", "weight: 9 N/m")
+    text = FILE.replace("depth: 200 m", f"depth: {depth}").replace("weight: 1 N/m", "weight: 9 N/m")
+    warnings = " ".join(solve(text).warnings)
+    assert ("3.0 times as long as the water is deep, and thin" in warnings) is told
+    assert ("check `depth` and its unit" in warnings) is told
+
+
 def test_an_anchor_that_is_too_light_is_lifted(solve):
     with pytest.raises(calm.NoEquilibrium) as caught:
         solve(FILE.replace("6 kN", "2 kN"))
