@@ -37,6 +37,7 @@ BLOCK = re.compile(
 )
 PICTURE = re.compile(r"!\[[^\]]*\]\(pictures/([^)]+)\)")
 ELISION = "…"
+RUNS = "<!-- runs -->"
 
 
 class PageError(Exception):
@@ -59,7 +60,7 @@ def pages() -> list[Path]:
     """The pages that run."""
     books = (DOCS / book for book in ("tutorial", "how-to"))
     found = sorted(page for book in books for page in book.glob("*.md"))
-    return [page for page in found if "<!-- runs -->" in page.read_text(encoding="utf-8")]
+    return [page for page in found if RUNS in page.read_text(encoding="utf-8")]
 
 
 def blocks(page: str) -> list[Block]:
@@ -214,6 +215,8 @@ def main(arguments: list[str]) -> int:
     failed = 0
     for page in chosen:
         try:
+            if RUNS not in page.read_text(encoding="utf-8"):
+                raise PageError(f"does not run: it has no `{RUNS}`, its commands are examples")
             follow(page, check=check)
         except PageError as error:
             failed += 1

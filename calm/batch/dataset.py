@@ -15,11 +15,11 @@ from calm.batch.profiles import Profiles
 from calm.batch.statuses import STATUSES
 from calm.case import Mooring
 from calm.case.net import Net
-from calm.case.parts import clamps_down
 from calm.dataset import netcdf
 from calm.dataset.netcdf import CLAMPS, OF_CLAMP, ResultLayout, Variable, labels, numbers, station
 from calm.files import Clamp
 from calm.files.legs import leg_numbers
+from calm.files.mooring_file import clamps_down
 from calm.files.rigid import Body
 from calm.physics.line import Floats
 

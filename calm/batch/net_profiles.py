@@ -29,12 +29,12 @@ from calm.batch.solving import (
 from calm.batch.statuses import OF_PROFILES, STATUSES
 from calm.case.measure import leaning_of
 from calm.case.net import Net, net_result
-from calm.case.parts import clamps_down
 from calm.case.result import NetResult
 from calm.dataset.netcdf import OF_CLAMP, OF_COMPONENT, OF_ENDS
 from calm.errors import NoEquilibrium
 from calm.files import CurrentTable
 from calm.files.legs import nodes_of
+from calm.files.mooring_file import clamps_down
 from calm.physics.compiled import by_address, entry
 from calm.physics.line import Floats, Water
 from calm.physics.profile import Sea

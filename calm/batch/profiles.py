@@ -20,9 +20,9 @@ from calm.batch.threads import processors
 from calm.case import Mooring
 from calm.case.measure import clamps_of, components_of
 from calm.case.net import Net
-from calm.case.parts import clamps_down
 from calm.dataset import netcdf
 from calm.files import CurrentTable
+from calm.files.mooring_file import clamps_down
 from calm.physics.compiled import by_address, entry
 from calm.physics.line import Floats, Integers, Water
 from calm.solve import Status

@@ -90,15 +90,16 @@ def _buoyancy(text: str, file: MooringFile, parts: Parts) -> Adjustment:
         gone = "weight" if cable else "volume"
         lifted = component.model_copy(update={"buoyancy": value, gone: None})
 
-        def changed(piece: Piece) -> Piece:
-            clamps = tuple(
-                replace(clamp, component=lifted) if clamp.place in places else clamp
-                for clamp in piece.clamps
-            )
-            own = lifted if piece.place in places else piece.component
-            return replace(piece, component=own, clamps=clamps)
+        def changed(clamp: Clamp) -> Clamp:
+            return replace(clamp, component=lifted) if clamp.place in places else clamp
 
-        return replace(file, pieces=tuple(map(changed, file.pieces)))
+        pieces = (
+            piece.with_clamps(
+                changed, component=lifted if piece.place in places else piece.component
+            )
+            for piece in file.pieces
+        )
+        return replace(file, pieces=tuple(pieces))
 
     return Adjustment(
         *(text, file, parts, "force per length" if cable else "force", now),
@@ -146,8 +147,10 @@ def _count(text: str, file: MooringFile, parts: Parts) -> Adjustment:
     if any(each.length is None for each in item):
         raise LookupError("it is cut to fit (`length: fit`), which only one piece can be")
     if len(item) > 1:  # labels of several are numbered
-        clamps = tuple(replace(c, label=c.label.rpartition(" ")[0]) for c in one.clamps)
-        one = replace(one, label=one.label.rpartition(" ")[0], clamps=clamps)
+        one = one.with_clamps(
+            lambda clamp: replace(clamp, label=clamp.label.rpartition(" ")[0]),
+            label=one.label.rpartition(" ")[0],
+        )
 
     def to(value: float) -> MooringFile:
         repeats = (placed(one, replace(one.place, repeat=number)) for number in range(int(value)))

@@ -12,12 +12,13 @@ from calm.case import attribution
 from calm.case.draws import Draw, drawn_water
 from calm.case.mooring import Mooring
 from calm.case.net import Net
-from calm.case.parts import TOP, clamps_in, one_part
+from calm.case.parts import TOP, one_part
 from calm.case.result import NetResult, legs_of
 from calm.case.result_tables import ColumnTable
 from calm.case.targets import Figures, figures_of, leg_at
 from calm.errors import NoEquilibrium, UsageError
 from calm.files import Place
+from calm.files.mooring_file import clamps_in
 from calm.physics.line import Floats, Line, Water
 from calm.solve import expect_many, solve_mooring
 

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from calm.assemble import net_buoyancy
-from calm.case.parts import clamps_down, clamps_in, parts_of
 from calm.case.result import Accuracy, AnchorLoad, Result, Top
 from calm.case.result_tables import ClampRow, Clamps, ComponentRow, Components, Shape
 from calm.case.strumming import strumming_of
 from calm.case.warnings import warnings_of
 from calm.files import Clamp, Piece
+from calm.files.mooring_file import clamps_down, clamps_in, parts_of
 from calm.physics.line import Floats, Water
 from calm.physics.seabed import required_weight
 from calm.physics.seawater import REFERENCE_DENSITY

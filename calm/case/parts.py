@@ -14,6 +14,7 @@ import numpy as np
 from calm.errors import NoEquilibrium, UsageError, unknown
 from calm.files import Clamp, MooringFile, Piece, read_mooring
 from calm.files.editing import LINE, Draft, clamps_of
+from calm.files.mooring_file import parts_of
 from calm.files.yaml_document import Location
 from calm.physics.line import Floats
 from calm.solve import Solution
@@ -26,24 +27,6 @@ if TYPE_CHECKING:
 
 TOP = "top"
 """The free end of the line, whatever its label."""
-
-
-def parts_of(pieces: Sequence[Piece]) -> list[Piece | Clamp]:
-    """Every piece of a line, each with its clamps after it."""
-    parts: list[Piece | Clamp] = []
-    for piece in pieces:
-        parts += (piece, *piece.clamps)
-    return parts
-
-
-def clamps_in(pieces: Sequence[Piece]) -> list[Clamp]:
-    """List the clamps of a line in the order of the file, which is that of the solver."""
-    return [clamp for piece in pieces for clamp in piece.clamps]
-
-
-def clamps_down(pieces: Sequence[Piece]) -> list[Clamp]:
-    """List the clamps of a mooring's line from its top to its anchor, the order of its results."""
-    return [clamp for piece in pieces for clamp in sorted(piece.clamps, key=lambda clamp: clamp.at)]
 
 
 def cut_like(file: MooringFile, case: Mooring | Tow) -> MooringFile:

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from calm.case.parts import clamps_in, cut_like
+from calm.case.parts import cut_like
 from calm.errors import NoEquilibrium
 from calm.files import Clamp, MooringFile, Place, Profiler
+from calm.files.mooring_file import clamps_in
 
 if TYPE_CHECKING:
     from calm.case.mooring import Mooring
@@ -112,14 +113,8 @@ def held(file: MooringFile, place: Place | None = None, at: float = 0.0) -> Moor
     place : of that profiler in the line; None where all stay
     at : distance from the top of its wire, without load [m]
     """
-    pieces = tuple(
-        replace(
-            piece,
-            clamps=tuple(
-                replace(clamp, at=at if clamp.place == place else clamp.at, travel=None)
-                for clamp in piece.clamps
-            ),
-        )
-        for piece in file.pieces
-    )
-    return replace(file, pieces=pieces)
+
+    def stays(clamp: Clamp) -> Clamp:
+        return replace(clamp, at=at if clamp.place == place else clamp.at, travel=None)
+
+    return replace(file, pieces=tuple(piece.with_clamps(stays) for piece in file.pieces))

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from calm.case.parts import below_the_seabed, clamps_in, parts_of
+from calm.case.parts import below_the_seabed
 from calm.files import Cable, Component
+from calm.files.mooring_file import clamps_in, parts_of
 from calm.physics.line import Floats
 from calm.physics.materials import fibre_of, published_stiffnesses
 from calm.quantities import say

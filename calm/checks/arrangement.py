@@ -12,8 +12,6 @@ import numpy as np
 
 from calm.assemble import axial_drag_of, drag_of, net_buoyancy
 from calm.case import Mooring, Result
-from calm.case.parts import clamps_in
-from calm.case.parts import parts_of as every_part
 from calm.case.profilers import ProfilerTravel
 from calm.case.result_tables import ClampRow
 from calm.case.warnings import is_synthetic
@@ -32,6 +30,8 @@ from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Recovery
 from calm.drop.launch import Launch
 from calm.files import Cable, Clamp, Component, Flexible, Piece, Profiler
+from calm.files.mooring_file import clamps_in
+from calm.files.mooring_file import parts_of as every_part
 from calm.physics.materials import materials_in, potential_of
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.quantities import duration, say

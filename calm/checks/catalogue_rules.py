@@ -12,7 +12,6 @@ from math import pi
 from typing import TYPE_CHECKING
 
 from calm.assemble import drag_of, mass_in_air
-from calm.case.parts import parts_of
 from calm.checks.criterion import said
 from calm.checks.finding import State, Verdict, rule, unknown, verdict_on
 from calm.checks.posture import JUDGED_ROLES
@@ -21,6 +20,7 @@ from calm.files import Anchor, Cable, Chain, Component, Cylinder, Flexible, Sphe
 from calm.files.catalogue import Assembly, Defined
 from calm.files.components import KINDS, Outline
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
+from calm.files.mooring_file import parts_of
 from calm.files.rigid import Shaped
 from calm.physics.materials import (
     LEAD_DENSITY,

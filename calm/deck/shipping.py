@@ -8,10 +8,10 @@ from itertools import groupby
 from math import pi
 from typing import TYPE_CHECKING
 
-from calm.case.parts import parts_of
 from calm.deck.deck_items import Order
 from calm.files import Cable, Chain, Component, Cylinder, MooringFile, Sphere
 from calm.files.components import FLEXIBLE_KINDS
+from calm.files.mooring_file import parts_of
 
 if TYPE_CHECKING:
     from calm.checks.inventory import InventoryItem

@@ -12,7 +12,7 @@ from pydantic import BeforeValidator, Field
 from calm.errors import unknown
 from calm.files.components import Anchor
 from calm.files.definition import Model, QuantityField, Text, described, optional
-from calm.files.mooring_file import STAND_IN, MooringFile, Piece, Place, numbered
+from calm.files.mooring_file import STAND_IN, MooringFile, Piece, Place, numbered, placed
 from calm.files.rigid import Profiler
 from calm.files.yaml_document import SourceMapping, validate
 from calm.units import QuantityError
@@ -189,7 +189,9 @@ def read_legs(top: SourceMapping, reader: LineReader) -> tuple[tuple[Leg, ...], 
         before, first = len(top.problems), len(pieces)
         if isinstance(own.data.get("line"), list):
             read = reader.read(own, "line")
-            pieces += [_moved(piece, items) for piece in read]
+            for piece in read:  # places count the items of the legs before
+                place = replace(piece.place, item=piece.place.item + items)
+                pieces.append(placed(piece, place))
             items += len(own.data["line"])
         if keys is None:
             whole = False
@@ -201,15 +203,6 @@ def read_legs(top: SourceMapping, reader: LineReader) -> tuple[tuple[Leg, ...], 
     if whole:
         _check_net(legs, top)
     return tuple(legs), numbered(pieces)
-
-
-def _moved(piece: Piece, items: int) -> Piece:
-    """Return a piece whose place counts the items of the legs before its own."""
-    place = replace(piece.place, item=piece.place.item + items)
-    clamps = tuple(
-        replace(clamp, place=replace(place, clamp=clamp.place.clamp)) for clamp in piece.clamps
-    )
-    return replace(piece, place=place, clamps=clamps)
 
 
 def _ends(keys: LegKeys, own: SourceMapping, pieces: Sequence[Piece]) -> tuple[EndKeys, EndKeys]:

@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Protocol
 
 from pydantic import AfterValidator
@@ -181,6 +182,10 @@ class Piece:
         """Return the serial number of this piece, where the file gives it."""
         return _serial(self.equipment)
 
+    def with_clamps(self, changed: Callable[[Clamp], Clamp], **own: Any) -> Piece:
+        """Return the piece with each of its clamps changed, and with other fields of its own."""
+        return replace(self, clamps=tuple(map(changed, self.clamps)), **own)
+
 
 def _serial(equipment: Equipment) -> str | None:
     assert not isinstance(equipment.serial, tuple)  # one was chosen as the item was expanded
@@ -254,27 +259,24 @@ class MooringFile:
 
 def placed(piece: Piece, place: Place) -> Piece:
     """Put a piece, with its clamps and the serial numbers there, at a place of the line."""
-    clamps = tuple(
-        replace(
-            clamp, place=replace(place, clamp=number), equipment=clamp.equipment.of(place.repeat)
-        )
-        for number, clamp in enumerate(piece.clamps)
-    )
-    return replace(piece, place=place, clamps=clamps, equipment=piece.equipment.of(place.repeat))
+
+    def moved(clamp: Clamp) -> Clamp:
+        own = replace(place, clamp=clamp.place.clamp)
+        return replace(clamp, place=own, equipment=clamp.equipment.of(place.repeat))
+
+    return piece.with_clamps(moved, place=place, equipment=piece.equipment.of(place.repeat))
 
 
 def numbered(pieces: Iterable[Piece]) -> tuple[Piece, ...]:
     """Give the pieces their index, and number labels that occur more than once down the line."""
     pieces = tuple(pieces)
-    groups = [[piece.label, *(clamp.label for clamp in piece.clamps)] for piece in pieces]
-    labels = iter(numbered_labels([label for group in groups for label in group]))
+    labels = iter(numbered_labels(labels_of(pieces)))
+
+    def relabelled(clamp: Clamp) -> Clamp:
+        return replace(clamp, label=next(labels))
+
     return tuple(
-        replace(
-            piece,
-            index=index,
-            label=next(labels),
-            clamps=tuple(replace(clamp, label=next(labels)) for clamp in piece.clamps),
-        )
+        piece.with_clamps(relabelled, index=index, label=next(labels))
         for index, piece in enumerate(pieces)
     )
 
@@ -294,23 +296,35 @@ def numbered_labels(texts: Sequence[str]) -> list[str]:
     return [numbered_label(text) for text in texts]
 
 
-def labels_of(pieces: Sequence[Piece]) -> list[str]:
+def parts_of(pieces: Iterable[Piece]) -> list[Piece | Clamp]:
+    """Every piece of a line, each with its clamps after it."""
+    parts: list[Piece | Clamp] = []
+    for piece in pieces:
+        parts += (piece, *piece.clamps)
+    return parts
+
+
+def clamps_in(pieces: Iterable[Piece]) -> list[Clamp]:
+    """List the clamps of a line in the order of the file, which is that of the solver."""
+    return [clamp for piece in pieces for clamp in piece.clamps]
+
+
+def clamps_down(pieces: Iterable[Piece]) -> list[Clamp]:
+    """List the clamps of a mooring's line from its top to its anchor, the order of its results."""
+    return [clamp for piece in pieces for clamp in sorted(piece.clamps, key=lambda clamp: clamp.at)]
+
+
+def labels_of(pieces: Iterable[Piece]) -> list[str]:
     """Return the labels of pieces and clamps, down the line."""
-    return [
-        label
-        for piece in pieces
-        for label in (piece.label, *(clamp.label for clamp in piece.clamps))
-    ]
+    return [part.label for part in parts_of(pieces)]
 
 
 def unknown_releases(
     releases: Sequence[ReleaseKeys], pieces: Sequence[Piece], deployed: Deployed | None
 ) -> list[str]:
     """Note the releases whose serial number nothing in the line has, designed or deployed."""
-    parts: list[Piece | Clamp] = []
-    for piece in pieces:
-        parts += (piece, *piece.clamps)
-    designed = {part.label: part.serial for part in parts if part.component.role == "release"}
+    parts = [part for part in parts_of(pieces) if part.component.role == "release"]
+    designed = {part.label: part.serial for part in parts}
     items = () if deployed is None else deployed.items
     serials = {*designed.values(), *(one.serial for one in items if one.label in designed)}
     return [
@@ -322,26 +336,16 @@ def unknown_releases(
 
 def travelling(pieces: Sequence[Piece], top: SourceMapping) -> tuple[Piece, ...]:
     """Give each profiler the way that it travels, by the labels of its stops."""
-    return tuple(
-        replace(
-            piece,
-            clamps=tuple(
-                _travelling(clamp, piece, pieces, top)
-                if isinstance(clamp.component, Profiler)
-                else clamp
-                for clamp in piece.clamps
-            ),
-        )
-        for piece in pieces
-    )
+    return tuple(piece.with_clamps(partial(_travelling, piece, pieces, top)) for piece in pieces)
 
 
-def _travelling(clamp: Clamp, piece: Piece, pieces: Sequence[Piece], top: SourceMapping) -> Clamp:
+def _travelling(piece: Piece, pieces: Sequence[Piece], top: SourceMapping, clamp: Clamp) -> Clamp:
+    if not isinstance(clamp.component, Profiler):
+        return clamp
     stops = {each.label: 0.0 if each.index < piece.index else math.inf for each in pieces}
     del stops[piece.label]
     stops |= {each.label: each.at for each in piece.clamps if each.travel is None}
     stops.pop(clamp.label, None)
-    assert isinstance(clamp.component, Profiler)
     between = clamp.component.between or ()
     place, lacks = clamp.place, "" if between else f"no stops of {clamp.label}"
     row = ("line", place.item, *(() if place.part >= 0 else ("clamps", place.clamp)))

@@ -20,9 +20,9 @@ from calm.batch.threads import processors
 from calm.batch.work import BatchWork, Progress
 from calm.batch.work_store import Store
 from calm.case import Mooring
-from calm.case.parts import clamps_down
 from calm.dataset.discovery import coverage, with_flags, written
 from calm.dataset.netcdf import Attributes, ResultLayout, down_the_line, labels, numbers
+from calm.files.mooring_file import clamps_down
 from calm.motion.common_unknowns import Common
 from calm.motion.estimate import estimated
 from calm.motion.line_places import serials_of

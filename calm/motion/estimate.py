@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 from calm.motion import common_unknowns
 from calm.motion.common_unknowns import Common
-from calm.motion.line_response import Linear, LineResponse, ReadCurrents, between
+from calm.motion.line_response import Linear, LineResponse, ReadCurrents, between, own_errors
 from calm.motion.measurements import MooringMeasurements
-from calm.physics.line import Floats, Integers
+from calm.physics.line import Floats
 
 NEGLIGIBLE = 0.02
 """An explanation is not tried that would not reach this share of the first one's weight if it left
@@ -66,8 +66,9 @@ def estimated(
     mixture = Mixture(moments, known.way, first)
     if not len(one.label):
         return mixture.estimate()
+    own = own_errors(at.depth, still)
     for sensor in range(len(one.label)):
-        spike = posterior(one, at, known.way.spread, common, still, sensor, furthest)
+        spike = posterior(one, at, known.way.spread, common, still, sensor, furthest, own)
         chance = np.full(len(every), np.log(common_unknowns.SPIKES))
         if neighbours is not None:
             beside = (part[:, sensor] for part in neighbours)
@@ -284,6 +285,7 @@ def posterior(
     still: Floats,
     spike: int = -1,
     furthest: float = FURTHEST,
+    own: Floats | None = None,
 ) -> Posterior:
     """Return the best state by a linear law, and what is known of all depths then.
 
@@ -293,6 +295,7 @@ def posterior(
     still : (p,) depths in still water [m]
     spike : a sensor whose pressures are taken for spikes
     furthest : of a logarithm, at most
+    own : `own_errors` of the state, where they are known
     """
     n, p, g = at.slope.shape
     s, f = len(one.point), at.common.shape[2]
@@ -323,7 +326,8 @@ def posterior(
     noise = np.where(known, common_unknowns.NOISE**2, UNMEASURED**2)
     if spike >= 0:
         noise[:, spike] = np.maximum(noise[:, spike], common_unknowns.SPIKE**2)
-    bent = common.worst**2 * own_errors(there, still, one.point)
+    own = common.worst**2 * (own_errors(at.depth, still) if own is None else own)
+    bent = own[:, :, one.point]
     spread_of = slope @ state
     turned = seen.transpose(0, 2, 1)
     beside = spread_of @ turned + bent
@@ -335,7 +339,7 @@ def posterior(
     logs = np.clip(gain[:, :g], -furthest, furthest)
     # what the state cannot take up is spread along the line as its own errors are
     depth = base + (beside @ solved[:, :, None])[:, :, 0]
-    whole = (spread_of * slope).sum(axis=2) + (common.worst * np.maximum(there - still, 0.0)) ** 2
+    whole = (spread_of * slope).sum(axis=2) + np.einsum("npp->np", own)
     taken = ((beside @ inverse) * beside).sum(axis=2)
     _, size = np.linalg.slogdet(expected)
     misfit = (innovation * solved).sum(axis=1)
@@ -350,19 +354,6 @@ def posterior(
         expected,
         logs.sum(axis=1) / max(g, 1),
     )
-
-
-def own_errors(depth: Floats, still: Floats, point: Integers) -> Floats:
-    """Return (n, p, s) covariance of the errors of the line at points and sensors, of a share of 1.
-
-    Parameters
-    ----------
-    depth, still, point : (n, p), (p,) in still water [m]; (s,) of the sensors
-    """
-    down = np.maximum(depth - still, 0.0)
-    alike = np.exp(-np.abs(still[:, None] - still[point]) / max(0.25 * float(np.ptp(still)), 1.0))
-    errors: Floats = down[:, :, None] * alike * down[:, None, point]
-    return errors
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from calm.case import Mooring
-from calm.case.parts import clamps_down
 from calm.errors import UsageError, nearest
+from calm.files.mooring_file import clamps_down
 from calm.motion.line_response import Forward, labels_of
 from calm.physics.line import Floats
 from calm.records.instrument_series import Identity

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from calm.batch.profiles import Batch, Profiles
 from calm.case import Mooring
-from calm.case.parts import clamps_down
+from calm.files.mooring_file import clamps_down
 from calm.motion import common_unknowns
 from calm.motion.common_unknowns import Common
 from calm.motion.measurements import FREE, MooringMeasurements
@@ -227,8 +227,7 @@ class Forward:
 
         Parameters
         ----------
-        depth : (n, k) of the levels [m]
-        u, v : (n, k) to the east and to the north [m/s]
+        depth, u, v : see `solve`
         """
         return points(self.solve(depth, u, v))
 
@@ -253,6 +252,35 @@ def instruments_of(mooring: Mooring) -> list[int]:
     clamps = len(clamps_down(pieces))
     inline = [clamps + i for i, piece in enumerate(pieces) if piece.component.role == "instrument"]
     return [*range(clamps), *inline]
+
+
+SPAN, LOCAL = 0.25, 0.3
+"""Share of the line over which the errors of its knockdown are alike, and what a point is wrong by
+for itself, as floats and clamps bend the line there, beside all that is below it."""
+
+
+def own_errors(depth: Floats, still: Floats) -> Floats:
+    """Return (n, p, p) covariance of the errors of the line at its points, of a share of 1 [m²].
+
+    The knockdown of each stretch is wrong by a share that is alike over a quarter of the line; a
+    point is wrong by all that is below it, so that between two sensors the error is smooth, and
+    by a lesser share of its own knockdown.
+
+    Parameters
+    ----------
+    depth, still : (n, p), (p,) of the points, and in still water [m]; of NaN they are 0
+    """
+    order = np.argsort(-still, kind="stable")
+    back, place = np.argsort(order, kind="stable"), still[order]
+    down = np.maximum(np.nan_to_num(depth - still), 0.0)[:, order]
+    part = np.diff(down, axis=1, prepend=0.0)
+    middle = place - 0.5 * np.diff(place, prepend=place[0])
+    far = np.abs(middle[:, None] - middle) / max(SPAN * float(np.ptp(still)), 1.0)
+    alike = np.exp(-far)
+    errors = (part[:, :, None] * alike * part[:, None, :]).cumsum(axis=1).cumsum(axis=2)
+    errors += LOCAL**2 * down[:, :, None] * alike * down[:, None, :]
+    ordered: Floats = errors[:, back[:, None], back]
+    return ordered
 
 
 FEWEST = 20

@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from calm.case import Mooring
-from calm.case.parts import clamps_down
 from calm.dataset.discovery import hashed
 from calm.errors import UsageError, nearest, not_among
+from calm.files.mooring_file import clamps_down
 from calm.motion.common_unknowns import FEWEST
 from calm.motion.line_places import aligned
 from calm.motion.line_response import Forward, instruments_of, labels_of

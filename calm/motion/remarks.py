@@ -27,7 +27,7 @@ FAR_LENGTH = 5.0
 """The same of a length where currents are not known: these take up much of it."""
 FAR_FACTOR = 3.0
 """Deviations from 1 beyond which a factor on a drag is something else."""
-WORST = 0.15
+WORST = 0.3
 """Share of the knockdown from which the error of the line itself is named."""
 
 
@@ -292,14 +292,12 @@ def agreement(
     among : (n,) times that count
     """
     both = among & np.isfinite(computed) & np.isfinite(measured)
-    count = int(both.sum())
+    count, nan = int(both.sum()), float("nan")
     if count < 2:
-        nan = float("nan")
         return Agreement(count, nan, nan, nan, nan)
     x, y = measured[both], computed[both]
     spread_x, spread_y = x - x.mean(), y - y.mean()
     across, own, other = spread_x @ spread_y, spread_x @ spread_x, spread_y @ spread_y
-    nan = float("nan")
     return Agreement(
         count,
         float((y - x).mean()),

@@ -53,9 +53,9 @@ STRONGER = 0.5
 by the tide."""
 LONGEST = 1.0
 """Step of a logarithm, at most."""
-SHARES = (0.01, 0.02, 0.03, 0.05, 0.07, 0.1, 0.15)
-"""Errors of the line that are tried, as shares of the knockdown."""
-USUAL, WITHIN = 0.05, 0.7
+SHARES = (0.03, 0.05, 0.07, 0.1, 0.15, 0.2, 0.3, 0.4)
+"""Errors of the line that are tried, as shares of the knockdown of each stretch."""
+USUAL, WITHIN = 0.07, 0.7
 """The one that is assumed, and the deviation of its logarithm."""
 SEABED = 0.0005
 """Of the depth of the water, as a share of it: where pressures alone place a line, a wrong length
@@ -287,14 +287,20 @@ def _chosen(measured: MooringMeasurements) -> Integers:
 
 
 def _worst(fit: _Fit, at: Linear, common: Common, used: Integers) -> Common:
-    """Return the error of the line under which the pressures are most likely."""
-    log = []
+    """Return the error of the line by the pressures: its mean square over all that are likely.
+
+    Times that follow each other have the same error, and count as one.
+    """
+    now, log = fit.posterior(at), []
+    white = np.linalg.solve(np.linalg.cholesky(now.expected), now.innovation[:, :, None])
+    alike = max(repeated(column) for column in white[:, :, 0].T)
     for share in SHARES:
         found = fit.posterior(at, replace(fit.common, worst=share))
         beside = -0.5 * (np.log(share / USUAL) / WITHIN) ** 2
         known = found.evidence[used]
-        log.append(float(known[np.isfinite(known)].sum()) + beside)
-    return replace(common, worst=SHARES[int(np.argmax(log))])
+        log.append(float(known[np.isfinite(known)].sum()) / alike + beside)
+    weight = np.exp(np.array(log) - max(log))
+    return replace(common, worst=float(np.sqrt(weight @ np.square(SHARES) / weight.sum())))
 
 
 def _placed(begun: Common, known: Common, fit: _Fit, at: Linear, found: Posterior) -> Common:

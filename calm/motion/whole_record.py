@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.case import Mooring
-from calm.motion import common_unknowns
+from calm.motion import common_unknowns, line_response
 from calm.motion.common_unknowns import RAMPS, Common, Evidence, first_time, fits, hanging_sensors
-from calm.motion.estimate import Posterior, best_state, own_errors
+from calm.motion.estimate import Posterior, best_state
 from calm.motion.line_response import STEP, Forward, Linear, LineResponse, gap_errors
 from calm.motion.measurements import MooringMeasurements
 from calm.physics.line import Floats, Integers
@@ -215,7 +215,7 @@ def linear_law(
         currents,
         fixed,
         begun.fall(time, depth, still, part.point),
-        own_errors(depth, still, part.point)[:, part.point, :],
+        line_response.own_errors(depth, still)[:, part.point[:, None], part.point],
     )
 
 

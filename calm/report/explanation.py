@@ -12,12 +12,12 @@ from math import floor, hypot, log10
 from typing import TYPE_CHECKING, NamedTuple
 
 from calm.case import Result
-from calm.case.parts import parts_of
 from calm.case.result import AnyResult, NetResult
 from calm.checks.finding import State
 from calm.checks.inventory import inventory_of
 from calm.checks.recovery import recovery_of
 from calm.errors import NoEquilibrium
+from calm.files.mooring_file import parts_of
 from calm.quantities import QUANTITIES, Quantity, duration, say
 from calm.report import blocks
 from calm.report.blocks import Block, Cell, Prose, ReportPart, Span, Table, number, table_of, words

@@ -31,9 +31,9 @@ MOST_STEPS, HALVINGS = 60, 9
 NEAR, CLOSED = 1e-4, 1e-10
 """What is left of lengths and forces, as shares of the longest leg and of a typical force: before
 segments are kept, and in a shape."""
-WORTH = 5e-5
+WORTH, WORTH_OF_MANY = 5e-5, 2e-5
 """Errors, as shares of the water depth and of the greatest tension, above which segments are
-halved once more, `MOST_HALVINGS` times."""
+halved once more, `MOST_HALVINGS` times; of one of many, whose segments are longer."""
 MOST_HALVINGS = 3
 LEADS_ON = 0.25
 """What a step leaves of the sum of squares, at most, for slopes to be kept."""
@@ -211,6 +211,7 @@ def moved_ends(net: NetProblem, x: Sequence[float], record: int) -> float:
 
 def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float) -> int:
     """Close a net that about is to the last digits, on segments that are short enough."""
+    worth = WORTH_OF_MANY if net.lines.limits.near > 0.0 else WORTH
     for _ in range(MOST_HALVINGS):
         for left in range(len(net.legs), -1, -1):
             choosing = Marching(sea, 2.0 * step, CHOSEN, False, COARSE)
@@ -232,9 +233,9 @@ def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, en
         ending = close_net(net, x, Marching(sea, step, HALVED, True, FINE), enough, True)
         if ending != CAME_OUT:
             return ending
-        tension = WORTH * moved_ends(net, x, FINE)
+        tension = worth * moved_ends(net, x, FINE)
         if (
-            net.errors[DEPTH_ERROR] <= WORTH * net.lines.limits.depth
+            net.errors[DEPTH_ERROR] <= worth * net.lines.limits.depth
             and net.errors[TENSION_ERROR] <= tension
         ):
             break

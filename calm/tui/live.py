@@ -16,7 +16,7 @@ from pathlib import Path
 from calm.case import Mooring, Result, Tow, TowResult
 from calm.case.memory import Memory
 from calm.case.net import Net
-from calm.case.parts import cut_like, parts_of
+from calm.case.parts import cut_like
 from calm.case.result import AnyResult, NetResult, legs_of
 from calm.checks.assess import findings_of
 from calm.checks.assessment import MooringInEnvironment, Situation
@@ -26,7 +26,7 @@ from calm.checks.strength import strength
 from calm.errors import InputError, NoEquilibrium, Problem, internal_failure
 from calm.files import MooringFile, Piece, Place, read_mooring
 from calm.files.editing import Draft, LineItem
-from calm.files.mooring_file import STAND_IN
+from calm.files.mooring_file import STAND_IN, parts_of
 from calm.files.yaml_document import compose
 from calm.quantities import show_in
 

@@ -84,6 +84,16 @@ def test_the_table_goes_leg_by_leg(net: Path, capsys: pytest.CaptureFixture[str]
     assert max(map(len, said.splitlines())) <= 80
 
 
+def test_json_has_the_title_block_and_serial_numbers(
+    net: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = NET.replace("{use: rcm11}", "{use: rcm11, serial: 1729}")
+    net.write_text(text + "document: {id: M-2026-17}\n")
+    found = document(net, capsys)
+    assert found["document"] == {"id": "M-2026-17"}
+    assert [row["serial"] for row in found["components"] if "serial" in row] == ["1729"]
+
+
 def test_json_has_the_legs(net: Path, capsys: pytest.CaptureFixture[str]) -> None:
     found = document(net, capsys)
     assert (found["type"], found["status"]) == ("net", "converged")

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 
 from textual.events import Paste
 
-from calm.case.parts import parts_of
 from calm.checks.finding import State
 from calm.files import Place
 from calm.files.editing import Draft, Value
+from calm.files.mooring_file import parts_of
 from calm.files.rule_texts import RULES
 from calm.files.yaml_document import Location
 from calm.tui.catalogue.component_screen import FormField, form_fields

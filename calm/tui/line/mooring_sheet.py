@@ -6,10 +6,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
-from calm.case.parts import parts_of
 from calm.files import Clamp, Flexible, MooringFile, Piece, Place
 from calm.files.definition import LENGTH, POSITIVE_LENGTH, QuantityField
 from calm.files.editing import Draft, EditError, Value
+from calm.files.mooring_file import parts_of
 from calm.files.yaml_document import Location
 from calm.tui.checking import Reading, anything, day, moment, quantity
 from calm.tui.dialogs import Asked, InputSheet

@@ -44,9 +44,11 @@ def test_the_posterior_is_that_of_all_unknowns_written_out(tide):
     # unknowns: two logarithms, sea, factor, datum, two offsets, two steps, three errors of the line
     sea = common_unknowns.TIDE if tide is None else common_unknowns.RESIDUAL_TIDE
     down = 0.07 * (THERE - STILL)
-    alike = np.exp(-np.abs(STILL[:, None] - STILL[None]) / (0.25 * np.ptp(STILL)))
-    # the law is of the exponential kind only between a point and a sensor
-    bent = np.outer(down, down) * alike
+    # three stretches, each alike to the others by its middle, and all of those below a point
+    part, middle = down - np.append(down[1:], 0.0), 0.5 * (STILL + np.append(STILL[1:], STILL[2]))
+    alike = np.exp(-np.abs(middle[:, None] - middle) / (0.25 * np.ptp(STILL)))
+    bent = np.triu(np.ones((3, 3))) @ (np.outer(part, part) * alike) @ np.tri(3)
+    bent += 0.3**2 * np.outer(down, down) * alike  # and each point for itself
     covariance = np.zeros((12, 12))
     covariance[:2, :2], covariance[2, 2] = SPREAD, sea**2
     covariance[3:9, 3:9], covariance[9:, 9:] = common.covariance, bent
