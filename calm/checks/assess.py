@@ -11,7 +11,7 @@ the first `HANDLED` samples. A sample without equilibrium breaks every limit.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from datetime import date
 from functools import partial
@@ -88,7 +88,8 @@ def judged_stand(
     graver = [each for each in others if each.state.severity > states.get(_of(each), -1)]
     listed = (*given, *graver)
     worst = worst_of_each_rule((*listed, *others))
-    tighter = tuple(finding for finding in worst if finding not in listed)
+    shown = {id(finding) for finding in listed}
+    tighter = tuple(finding for finding in worst if id(finding) not in shown)
     accepted = tuple(one for one in (*given, *others) if one.accept is not None)
     return MooringInEnvironment(environment, mooring, situations, listed, tighter, accepted)
 
@@ -113,18 +114,13 @@ def assessment_of(
     first = next((stand for stand in stands if stand.result is not None), stands[0])
     handling = _handled(first)
     acceptance = Acceptance.of_file(first.mooring.file, day)
-    findings = [
-        acceptance.of(rule.find(verdict, name, first.environment, rule.situation))
-        for rule in ONCE
-        for verdict in rule.judge(handling)
-    ]
     standing = [stand.mooring for stand in stands if stand.result is not None]
-    findings[:0] = [
-        acceptance.of(currents.find(verdict, name, mooring.file.environment.name or OWN))
-        for mooring, verdict in (currents.judge(standing) if standing else ())
-    ]
-    if first.result is not None and not any(_moved(stand.mooring) for stand in stands):
-        findings.insert(0, equilibrium.find(STILL_ONLY, name, first.environment, AS_GIVEN))
+    findings = list(findings_of_currents(standing, name, acceptance)) if standing else []
+    for each in ONCE:
+        verdicts = each.judge(handling)
+        findings += acceptance.findings(each, verdicts, name, first.environment, each.situation)
+    if first.result is not None and not moving(stand.mooring for stand in stands):
+        findings.insert(0, equilibrium.find(STILL_ONLY, name, first.environment))
     return Assessment(
         name=name,
         stands=tuple(stands),
@@ -141,10 +137,22 @@ def assessment_of(
     )
 
 
-def _moved(mooring: Mooring) -> bool:
-    water = mooring.water
-    greatest = float(np.hypot(water.u, water.v).max())
-    return greatest >= LEAST_CURRENT or mooring.file.environment.wind is not None
+def findings_of_currents(
+    moorings: Sequence[Mooring], name: str, acceptance: Acceptance
+) -> Iterator[Finding]:
+    """Return what the rule of the currents finds in the environments of a mooring of a name."""
+    for mooring, verdict in currents.judge(moorings):
+        environment = mooring.file.environment.name or OWN
+        yield acceptance.of(currents.find(verdict, name, environment))
+
+
+def moving(moorings: Iterable[Mooring]) -> bool:
+    """Return whether current or wind moves any of them."""
+    return any(
+        np.hypot(each.water.u, each.water.v).max() >= LEAST_CURRENT
+        or each.file.environment.wind is not None
+        for each in moorings
+    )
 
 
 def findings_of(
@@ -165,12 +173,12 @@ def findings_of(
             yield equilibrium.find(verdict, mooring, environment, situation.name)
     if situation.result is not None:
         file, result = situation.result.file, estimated_result(situation.result)
-        end, acceptance = file.pieces[-1].place, Acceptance.of_file(file, day)
+        end, anchored = file.pieces[-1].place, file.pieces[-1].use != STAND_IN
+        acceptance = Acceptance.of_file(file, day)
         for rule in STANDING:
-            for verdict in rule.judge(result) if is_judged(file, rule) else ():
-                if verdict.place != end or file.pieces[-1].use != STAND_IN:
-                    finding = rule.find(verdict, mooring, environment, situation.name)
-                    yield acceptance.of(finding)
+            if is_judged(file, rule):
+                verdicts = (one for one in rule.judge(result) if anchored or one.place != end)
+                yield from acceptance.findings(rule, verdicts, mooring, environment, situation.name)
 
 
 def is_judged(file: MooringFile, rule: Rule, piece: int = 0) -> bool:
@@ -188,8 +196,7 @@ def _findings_in_waves(
     acceptance = Acceptance.of_file(given.result.file, day)
     evidence = MooringInWaves.of(estimated_result(given.result).mooring)
     for each in IN_WAVES:
-        for verdict in each.judge(evidence):
-            yield acceptance.of(each.find(verdict, mooring, environment))
+        yield from acceptance.findings(each, each.judge(evidence), mooring, environment)
 
 
 def _of(finding: Finding) -> tuple[str, Place | None]:

@@ -9,7 +9,7 @@ from datetime import date
 from typing import TYPE_CHECKING, TypeVar
 
 from calm.case import Mooring, Result
-from calm.checks.finding import Finding, State, worst_state
+from calm.checks.finding import AS_GIVEN, Finding, Rule, State, Verdict, worst_state
 from calm.errors import NoEquilibrium
 from calm.files import Accept, Clamp, MooringFile, Piece
 from calm.files.check_limits import LimitKey
@@ -158,6 +158,17 @@ class Acceptance:
             if accept.counts_on(self.day) and accept.covers(finding.rule, finding.component):
                 return replace(finding, state=State.ACCEPTED, accept=accept)
         return finding
+
+    def findings(
+        self,
+        rule: Rule,
+        verdicts: Iterable[Verdict],
+        mooring: str,
+        environment: str,
+        situation: str = AS_GIVEN,
+    ) -> Iterator[Finding]:
+        """What a rule says of a mooring in an environment, accepted where it is."""
+        return (self.of(rule.find(one, mooring, environment, situation)) for one in verdicts)
 
     def _estimated(self, finding: Finding) -> Finding:
         """What passes by the least that a figure can be is estimated; what fails is unknown."""

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from math import hypot
 from typing import Any
 
-from calm.case import Mooring, Tow, TowResult
+from calm.case import Mooring, Result, Tow, TowResult
 from calm.case.net import Net
 from calm.case.result import AnyResult, NetResult
 from calm.case.result_tables import ClampRow, ComponentRow, rows_by_place
 from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment
-from calm.checks.finding import State
+from calm.checks.finding import State, worst_of_each_rule
 from calm.checks.inventory import total_of
 from calm.checks.net_check import check
 from calm.errors import NoEquilibrium, or_why_not
@@ -81,15 +81,8 @@ class Comparison:
         }
 
 
-@dataclass(frozen=True)
-class _Design:
-    """A design solved: `failure` says why it has no result."""
-
-    result: AnyResult | None
-    failure: str
-    assessment: Assessment | None
-
-
+_Design = tuple[AnyResult | NoEquilibrium, Assessment | None]
+"""Its result or why it has none, and the judgement on what is no tow."""
 _Figures = dict[str, tuple[str, str, Number | str]]
 """Title, quantity and value by name."""
 
@@ -111,9 +104,10 @@ def comparison_of(
         for name, (title, quantity, _) in (sides[0] | sides[1]).items()
     ]
     notes = (
-        f"{name}: {design.failure}" for name, design in zip(names, designs, strict=True)
-        if design.failure
-    )  # fmt: skip
+        f"{name}: {result}"
+        for name, (result, _) in zip(names, designs, strict=True)
+        if isinstance(result, NoEquilibrium)
+    )
     return Comparison(
         names, found, (*figures, *_parts(found, designs), *_margins(designs)), tuple(notes)
     )
@@ -124,21 +118,18 @@ _NONE = "", "", None
 
 def _solved(line: Mooring | Tow | Net) -> _Design:
     assessment = None if isinstance(line, Tow) else check(line)
-    found: AnyResult | NoEquilibrium | None
     if isinstance(line, Mooring) and assessment is not None:
         given = assessment.stands[0].situations[0]
-        found = given.result or given.failure
-    else:
-        found = or_why_not(line.solve)
-    if isinstance(found, NoEquilibrium):
-        return _Design(None, str(found), assessment)
-    return _Design(found, "", assessment)
+        if solved := given.result or given.failure:
+            return solved, assessment
+    return or_why_not(line.solve), assessment
 
 
 def _figures_of(design: _Design) -> _Figures:
     """The figures of the whole, in the order in which they are read."""
-    found: _Figures = {"status": ("status", "", "stands" if design.result else "does not stand")}
-    result = design.result
+    result, assessment = design
+    stands = not isinstance(result, NoEquilibrium)
+    found: _Figures = {"status": ("status", "", "stands" if stands else "does not stand")}
     if isinstance(result, TowResult):
         found |= {
             "body.depth": ("depth of the body", "depth", result.body.depth),
@@ -148,7 +139,7 @@ def _figures_of(design: _Design) -> _Figures:
         }
     elif isinstance(result, NetResult):
         found |= _figures_of_net(result)
-    elif result is not None:
+    elif isinstance(result, Result):
         top, anchor = result.top, result.anchor
         found |= {
             "top.depth": ("depth of the top", "depth", top.depth),
@@ -165,14 +156,14 @@ def _figures_of(design: _Design) -> _Figures:
         }  # fmt: skip
         if result.type != "surface":
             del found["top.reserve"]
-    if result is not None:
+    if not isinstance(result, NoEquilibrium):
         greatest = max(row.tension for row in result.components)
         factors = [row.safety_factor for row in result.components]
         least = min((factor for factor in factors if factor == factor), default=None)
         found["greatest_tension"] = ("greatest tension", "tension", greatest)
         found["least_safety_factor"] = ("least safety factor", "safety_factor", least)
-    if design.assessment is not None:
-        total = total_of(design.assessment.inventory)
+    if assessment is not None:
+        total = total_of(assessment.inventory)
         found |= {
             "mass_in_air": ("mass in air, as far as known", "dry_mass", total.dry_mass),
             "weight_in_water": ("weight in water", "wet_weight", total.wet_weight),
@@ -200,7 +191,9 @@ def _figures_of_net(result: NetResult) -> _Figures:
 
 def _parts(found: Differences, designs: tuple[_Design, _Design]) -> Iterator[Compared]:
     """Of what measures or is cut: where it is, and how long it was cut."""
-    first, second = ({} if each.result is None else rows_by_place(each.result) for each in designs)
+    first, second = (
+        {} if isinstance(each, NoEquilibrium) else rows_by_place(each) for each, _ in designs
+    )
     for before, after in found.pairs:
         if before.place not in first or after.place not in second:
             continue
@@ -221,30 +214,22 @@ def _parts(found: Differences, designs: tuple[_Design, _Design]) -> Iterator[Com
 
 def _margins(designs: tuple[_Design, _Design]) -> Iterator[Compared]:
     """The worst that each rule finds in each design."""
-    first, second = (each.assessment for each in designs)
-    if first is None or second is None:
+    judged = [assessment for _, assessment in designs if assessment is not None]
+    if len(judged) < 2:
         return
+    worst = [
+        {one.rule: one for one in worst_of_each_rule([*assessment.all_findings()])}
+        for assessment in judged
+    ]
     for rule in RULES.values():
-        worst = [
-            min(
-                (one for one in assessment.all_findings() if one.rule == rule.name),
-                key=lambda one: one.rank,
-                default=None,
+        sides = [each.get(rule.name) for each in worst]
+        if sides != [None, None]:
+            before, after = (
+                (one.margin, one.state) if one else (None, State.PASS) for one in sides
             )
-            for assessment in (first, second)
-        ]
-        if worst == [None, None]:
-            continue
-        margins = [None if one is None else one.margin for one in worst]
-        states = [State.PASS if one is None else one.state for one in worst]
-        yield Compared(
-            f"margin.{rule.name}",
-            f"margin: {rule.title}",
-            rule.quantity,
-            margins[0],
-            margins[1],
-            (states[0], states[1]),
-        )
+            title, states = f"margin: {rule.title}", (before[1], after[1])
+            name = f"margin.{rule.name}"
+            yield Compared(name, title, rule.quantity, before[0], after[0], states)
 
 
 def _change(change: Change) -> dict[str, Any]:

@@ -8,14 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from itertools import groupby
 from math import hypot, isnan, nan
 
 from calm.case import Mooring, Result
 from calm.case.strumming import FACTOR
-from calm.checks.finding import Rule, State, Verdict, at_least, at_most, rule, unknown
+from calm.checks.finding import Rule, State, Verdict, rule, unknown, verdict_on
 from calm.files import Component, MooringFile, Place, StrummingFactor
-from calm.files.check_limits import LimitKey, limit_keys
+from calm.files.check_limits import Checks, LimitKey, limit_keys
 from calm.files.mooring_file import clamps_down
 from calm.units import DIMENSIONS
 
@@ -96,10 +97,10 @@ class Criterion:
         message, remedy = self.words(value, result)
         if isnan(value) or self.limit is None:
             return unknown(self.part, message, remedy, None if isnan(value) else value)
+        margin = value - self.limit if self.least else self.limit - value
+        state, said = (State.PASS, None) if margin >= 0.0 else (self.beyond, remedy)
         shown, limit = (value, self.limit) if self.stated is None else self.stated(value, result)
-        judge = at_least if self.least else at_most
-        found = judge(self.part, value, self.limit, message, remedy, self.beyond, self.source)
-        return replace(found, value=shown, limit=limit)
+        return verdict_on(self.part, state, message, said, shown, limit, margin, self.source)
 
 
 def verdicts(criteria: Iterable[Criterion], result: Result) -> Iterator[Verdict]:
@@ -180,7 +181,7 @@ def limits_used(file: MooringFile, surface: bool) -> tuple[LimitKey, ...]:
     given = file.checks.minimum_top_depth is not None
     used = (
         key
-        for key in _keys(file)
+        for key in _keys(file.checks, file.anchor.friction)
         if key.value is not None and (key.name != "minimum_top_depth" or given or not surface)
     )
     return (*used, *file.looser, *_flattering(file))
@@ -201,32 +202,23 @@ def _flattering(file: MooringFile) -> Iterator[LimitKey]:
             yield LimitKey(name, "force", 0.0, wire, "`slack: allowed` exempts it")
 
 
-def _keys(file: MooringFile) -> Iterator[LimitKey]:
-    friction = file.anchor.friction
-    for key in limit_keys(file.checks):
-        own = key.name == "anchor_friction" and friction is not None
-        yield replace(key, value=friction) if own else key
+@lru_cache
+def _keys(checks: Checks, friction: float | None) -> tuple[LimitKey, ...]:
+    """The limits of a file, with the friction that its anchor gives."""
+    keys = limit_keys(checks)
+    if friction is None:
+        return tuple(keys)
+    return tuple(replace(k, value=friction) if k.name == "anchor_friction" else k for k in keys)
 
 
-@dataclass(frozen=True)
-class Citing:
-    """Who is cited for a limit: the source of its default, or the design that departs from it."""
-
-    departed: dict[str, LimitKey]
-
-    @classmethod
-    def of(cls, file: MooringFile) -> Citing:
-        """For the limits of a mooring file."""
-        return cls({key.name: key for key in _keys(file) if key.departs})
-
-    def __call__(self, *names: str) -> str:
-        """Of the limits of some names: the design where one departs; "" where none does."""
-        own = [self.departed[name] for name in names if name in self.departed]
-        return "; ".join(
-            f"The design's own `{key.name}`, {said(key, key.value)} in place of "
-            f"{said(key, key.default)}"
-            for key in own
-        )
+def cited(file: MooringFile, *names: str) -> str:
+    """The design, where a limit of one of these names departs from its default; else ""."""
+    return "; ".join(
+        f"The design's own `{key.name}`, {said(key, key.value)} in place of "
+        f"{said(key, key.default)}"
+        for key in _keys(file.checks, file.anchor.friction)
+        if key.name in names and key.departs
+    )
 
 
 def said(key: LimitKey, value: float | None) -> str:

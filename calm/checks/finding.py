@@ -220,8 +220,7 @@ class Finding(Verdict):
 
 def worst_of_each_rule(findings: Sequence[Finding]) -> list[Finding]:
     """The first of those that are as bad as any of their rule."""
-    worst: dict[str, Finding] = {}
+    found: dict[str, list[Finding]] = {}
     for finding in findings:
-        if finding.rule not in worst or finding.rank < worst[finding.rule].rank:
-            worst[finding.rule] = finding
-    return list(worst.values())
+        found.setdefault(finding.rule, []).append(finding)
+    return [min(each, key=lambda one: one.rank) for each in found.values()]

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from math import isnan
 
 from calm.case import Mooring
-from calm.checks.criterion import Citing
+from calm.checks.criterion import cited
 from calm.checks.finding import (
     State,
     Verdict,
@@ -52,7 +52,6 @@ def backup(handling: Handling) -> Iterator[Verdict]:
     Breaks are those above the back-up floats; lost is any one buoyant element. It should be a tenth
     of the weight it lifts, and 250 N.
     """
-    cite = Citing.of(handling.mooring.file)
     if handling.mooring.file.release is None:
         if reaches_the_surface(handling.mooring):
             message = "Without a release the line is hauled in; what is below a break stays there."
@@ -87,7 +86,7 @@ def backup(handling: Handling) -> Iterator[Verdict]:
         f"{say('tension', worst.margin)}; {say('tension', worst.required)} would raise it.",
         f"Add {say('tension', worst.required - worst.margin)} of buoyancy above the release.",
         State.WARN if alone else State.FAIL,
-        source=cite("backup_margin"),
+        source=cited(handling.mooring.file, "backup_margin"),
     )
 
 
@@ -98,36 +97,29 @@ def launch_strength(handling: Handling) -> Iterator[Verdict]:
     It may be `launch_working_factor` times the working load, and the breaking load over
     `launch_safety_factor`, whichever is less.
     """
-    launch, checks = handling.launch, handling.mooring.file.checks
-    factors = checks.launch_working_factor, checks.launch_safety_factor
-    cite = Citing.of(handling.mooring.file)
+    launch, file = handling.launch, handling.mooring.file
     if isinstance(launch, NoEquilibrium):
         yield _unsolved("fall", launch)
         return
+    times, over = file.checks.launch_working_factor, file.checks.launch_safety_factor
     most = "" if launch.anchor_drag_known else "at most "
-    greatest = launch.greatest_tension.tolist()
-    pieces = handling.mooring.file.pieces
-    for piece, tension in zip(pieces, greatest, strict=False):
-        limit = lesser_load(piece.component, *factors)
-        if limit is None and not passes_load_on(handling.mooring.file, piece.index):
-            continue
+    for piece, tension in zip(file.pieces, launch.greatest_tension.tolist(), strict=False):
+        limit, working = lesser_load(piece.component, times, over), piece.component.working_load
         bears = f"{piece.label} bears {most}{say('tension', tension)} in the fall"
         if limit is None:
-            yield unknown(
-                piece,
-                f"{bears}; neither its working nor its breaking load is known.",
-                "Give its `working_load` or `breaking_load`.",
-                tension,
-            )
+            if passes_load_on(file, piece.index):
+                message = f"{bears}; neither its working nor its breaking load is known."
+                yield unknown(
+                    piece, message, "Give its `working_load` or `breaking_load`.", tension
+                )
             continue
-        working = piece.component.working_load
-        if working is not None and limit == factors[0] * working:
-            times = "" if factors[0] == 1.0 else f" times {factors[0]:g}"
-            message = f"{bears}; its working load{times} is {say('tension', limit)}."
-            source = cite("launch_working_factor")
+        if working is not None and limit == times * working:
+            load = "working load" if times == 1.0 else f"working load times {times:g}"
+            source = cited(file, "launch_working_factor")
         else:
-            source = cite("launch_safety_factor")
-            message = f"{bears}; its breaking load over {factors[1]:g} is {say('tension', limit)}."
+            load = f"breaking load over {over:g}"
+            source = cited(file, "launch_safety_factor")
+        message = f"{bears}; its {load} is {say('tension', limit)}."
         if tension > limit and not launch.anchor_drag_known:
             message += " This assumes an anchor without drag; its own is not known."
             yield unknown(piece, message, "Give the anchor's `kt`.", tension)
@@ -183,7 +175,7 @@ def recovery(handling: Handling) -> Iterator[Verdict]:
     if rise.in_still_water:
         message += " That is in still water: in the current no steady rise was found."
     remedy = "Add buoyancy above the release, or remove weight."
-    source = Citing.of(handling.mooring.file)("minimum_rise_speed")
+    source = cited(handling.mooring.file, "minimum_rise_speed")
     verdict = at_least(lowest, rise.rise_speed, limit, message, remedy, source=source)
     if verdict.state is State.PASS and rise.rise_speed < USUAL_RISE_SPEED:
         verdict = replace(verdict, state=State.WARN, remedy=remedy)

@@ -16,7 +16,14 @@ from calm.case import Mooring, Result
 from calm.case.net import Net
 from calm.case.result import NetResult
 from calm.checks.arrangement import clamp_place, hardware, metals, release_present, swivel
-from calm.checks.assess import assessment_of, equilibrium, failed_stand, judged_stand, stand_of
+from calm.checks.assess import (
+    assessment_of,
+    equilibrium,
+    failed_stand,
+    findings_of_currents,
+    judged_stand,
+    stand_of,
+)
 from calm.checks.assessment import (
     Acceptance,
     Assessment,
@@ -38,7 +45,6 @@ from calm.checks.situations import (
     SOLVES,
     STILL_ONLY,
     STRUMMING,
-    currents,
     deployed_file,
     in_other_waters,
     strumming_file,
@@ -163,15 +169,9 @@ def assessment_of_net(
         once += [(each, each.judge(leg), stand.environment)
                  for each in (swivel, clamp_place, metals)]  # fmt: skip
     waters = {stand.mooring.file.environment.name: stand.mooring for stand in stands}
-    findings = [
-        acceptance.of(rule.find(verdict, name, environment))
-        for rule, verdicts, environment in once
-        for verdict in verdicts
-    ]
-    findings[:0] = [
-        acceptance.of(currents.find(verdict, name, mooring.file.environment.name or OWN))
-        for mooring, verdict in currents.judge(list(waters.values()))
-    ]
+    findings = list(findings_of_currents(list(waters.values()), name, acceptance))
+    for rule, verdicts, environment in once:
+        findings += acceptance.findings(rule, verdicts, name, environment)
     fast = (float(np.hypot(each.water.u, each.water.v).max()) for each in waters.values())
     if legs and max(fast) < LEAST_CURRENT:
         findings.insert(0, equilibrium.find(STILL_ONLY, name, first, AS_GIVEN))

@@ -10,9 +10,9 @@ from calm.case import Mooring, Result
 from calm.case.warnings import is_synthetic, unknown_stretch
 from calm.checks.criterion import (
     AT_SURFACE,
-    Citing,
     Criterion,
     JudgedPart,
+    cited,
     criteria,
     parts_of,
     pieces_of,
@@ -115,7 +115,7 @@ def depth_rating(mooring: Mooring) -> Iterator[Criterion]:
 
     A float that is knocked down below its rating is crushed, and the line with it.
     """
-    margin, source = mooring.file.checks.rating_margin, Citing.of(mooring.file)("rating_margin")
+    margin, source = mooring.file.checks.rating_margin, cited(mooring.file, "rating_margin")
     for part in parts_of(mooring):
         rating = part.component.depth_rating
         if rating is None and part.component.role not in JUDGED_ROLES:
@@ -189,7 +189,7 @@ def top_depth(mooring: Mooring) -> Iterator[Criterion]:
         return
     limit = LEAST_TOP_DEPTH if given is None else given
     beyond = State.WARN if given is None else State.FAIL
-    source = Citing.of(mooring.file)("minimum_top_depth")
+    source = cited(mooring.file, "minimum_top_depth")
 
     def words(depth: float, _: Result) -> tuple[str, str]:
         return (
@@ -221,7 +221,7 @@ def fish_bite(result: Result) -> Iterator[Verdict]:
                 f"down to {say('depth', limit)}."
             )
             remedy = "Use jacketed wire there; `fishbite_depth` sets how deep they bite."
-            source = Citing.of(result.file)("fishbite_depth")
+            source = cited(result.file, "fishbite_depth")
             yield at_least(piece, highest, limit, message, remedy, State.WARN, source)
 
 
@@ -289,7 +289,7 @@ def reserve(mooring: Mooring) -> Iterator[Criterion]:
             "Take a larger float, a lighter line, or more length.",
         )
 
-    source = Citing.of(mooring.file)("minimum_reserve")
+    source = cited(mooring.file, "minimum_reserve")
     top = pieces_of(mooring)[0]
     yield Criterion(top, "reserve", limit, words, least=True, source=source)
 

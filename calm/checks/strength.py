@@ -9,7 +9,7 @@ import numpy as np
 
 from calm.case import Mooring, Result
 from calm.case.warnings import is_synthetic
-from calm.checks.criterion import Citing, Criterion, JudgedPart, criteria, pieces_of
+from calm.checks.criterion import Criterion, JudgedPart, cited, criteria, pieces_of
 from calm.checks.finding import State, Verdict, at_least, rule
 from calm.checks.inventory import anchor_dry_mass
 from calm.checks.posture import reaches_the_surface
@@ -81,7 +81,6 @@ def strength(mooring: Mooring) -> Iterator[Criterion]:
     practice for 3 to 5, synthetics and surface moorings at the upper end.
     """
     factors, surface = mooring.file.checks.safety_factor, reaches_the_surface(mooring)
-    cite = Citing.of(mooring.file)
     for part in pieces_of(mooring):
         component = part.component
         limit = allowable_load(component, factors, surface)
@@ -89,7 +88,7 @@ def strength(mooring: Mooring) -> Iterator[Criterion]:
             continue
         name = safety_factor_name(component, surface)
         of_factor = limit is not None and limit != component.working_load
-        source = cite(f"safety_factor.{name}") if of_factor else ""
+        source = cited(mooring.file, f"safety_factor.{name}") if of_factor else ""
         words = partial(_strength_words, part, limit, getattr(factors, name))
         yield Criterion(part, "tension", limit, words, source=source)
 
@@ -204,7 +203,7 @@ def slack(mooring: Mooring) -> Iterator[Criterion]:
     above the release at slack water; no rule is published, so 500 N of wire and 300 N of rope are
     the defaults. A piece with ``slack: allowed`` is not judged, nor what lies on the seabed.
     """
-    file, cite = mooring.file, Citing.of(mooring.file)
+    file = mooring.file
     lowest = len(file.pieces) - 1 if file.release is None else file.release
     for part in pieces_of(mooring)[:lowest]:
         if not isinstance(part.component, Cable) or part.component.slack == "allowed":
@@ -212,7 +211,7 @@ def slack(mooring: Mooring) -> Iterator[Criterion]:
         name = "rope" if is_synthetic(part.component) else "wire"
         limit = getattr(file.checks.minimum_tension, name)
         words = partial(_words, part, limit, name)
-        source = cite(f"minimum_tension.{name}")
+        source = cited(file, f"minimum_tension.{name}")
         yield Criterion(part, "least_tension", limit, words, least=True, silent=True, source=source)
 
 
@@ -244,7 +243,7 @@ def anchor_weight(mooring: Mooring) -> Iterator[Criterion]:
         "required_weight",
         weight,
         words,
-        source=Citing.of(mooring.file)("anchor_factor", "anchor_friction"),
+        source=cited(mooring.file, "anchor_factor", "anchor_friction"),
         stated=lambda required, result: (result.anchor.weight, required),
     )
 
@@ -264,7 +263,7 @@ def anchor_uplift(mooring: Mooring) -> Iterator[Criterion]:
             _heavier(mooring, factor * vertical),
         )
 
-    source = Citing.of(mooring.file)("anchor_factor")
+    source = cited(mooring.file, "anchor_factor")
     yield Criterion(pieces_of(mooring)[-1], "vertical", limit, words, source=source)
 
 
@@ -294,7 +293,7 @@ def anchor_sliding(mooring: Mooring) -> Iterator[Criterion]:
         "slide",
         None if weight is None else friction * weight / factor,
         words,
-        source=Citing.of(mooring.file)("anchor_factor", "anchor_friction"),
+        source=cited(mooring.file, "anchor_factor", "anchor_friction"),
         stated=lambda _, result: (result.anchor.horizontal, held(result)),
     )
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from calm.case import Mooring
-from calm.checks.criterion import Citing
+from calm.checks.criterion import cited
 from calm.checks.finding import State, Verdict, at_least, at_most, rule, unknown
 from calm.checks.posture import reaches_the_surface
 from calm.checks.strength import lesser_load, passes_load_on
@@ -52,7 +52,7 @@ def wave_strength(evidence: MooringInWaves) -> Iterator[Verdict]:
             yield unknown(None, "Waves are not judged: no `waves:` are given.", _HOW)
         return
     checks = mooring.file.checks
-    factor, source = checks.waves_safety_factor, Citing.of(mooring.file)("waves_safety_factor")
+    factor, source = checks.waves_safety_factor, cited(mooring.file, "waves_safety_factor")
     for piece in mooring.file.pieces[:-1]:
         state = max(waves.states, key=lambda each: each.components[piece.index].greatest)
         tension = state.components[piece.index].greatest
@@ -101,7 +101,7 @@ def fatigue(evidence: MooringInWaves) -> Iterator[Verdict]:
         )
         return
     limit = checks.fatigue_factor * checks.service_time
-    source = Citing.of(mooring.file)("fatigue_factor", "service_time")
+    source = cited(mooring.file, "fatigue_factor", "service_time")
     for one in waves.fatigue:
         piece = mooring.file.pieces[one.index]
         if one.unknown is not None:

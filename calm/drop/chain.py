@@ -13,7 +13,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from calm.drop.band import Band
 from calm.physics.line import Booleans, Floats, Integers, Line
 from calm.physics.reynolds import DragCurve
 from calm.physics.stretch import ElongationCurve
@@ -55,11 +54,6 @@ class BarChain:
     clamp_bar: Integers
     clamp_place: Floats
     afloat: FloatOnChain | None
-
-    @cached_property
-    def band(self) -> Band:
-        """The matrix of its motion."""
-        return Band(len(self.length))
 
 
 def chain_of(line: Line, count: int) -> BarChain:

@@ -9,13 +9,13 @@ matrix is a band.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
 from calm.drop.chain import BarChain
 from calm.drop.loads import SLOWEST, Loads, WaterColumn, loads_on
-from calm.physics.line import Floats
+from calm.physics.line import Floats, Integers
 from calm.physics.reynolds import Smooth, drag_variation
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.solve import FallingAnchor
@@ -236,9 +236,7 @@ class Mover:
             residual[:3, -1] += force
             diagonal[..., -1] += by_velocity / step
         beside = blocks[0, 1] + stiff, blocks[1, 0] + stiff
-        return chain.band.solved(
-            residual, diagonal, beside, axis, -chain.length * growth, self._fixed
-        )
+        return _solved(residual, diagonal, beside, axis, -chain.length * growth, self._fixed)
 
     @cached_property
     def _sinking(self) -> float:
@@ -259,3 +257,70 @@ class Mover:
         last = 4 * len(self.chain.length)
         upper = () if self.tether is None else (0, 1)
         return (*upper, last, last + 1, last + 2) if self.held else upper
+
+
+_SIDE = 6
+"""Diagonals of the band on either side."""
+_MIDDLE = 2 * _SIDE
+"""Row of the main diagonal; those above the band are for the factors."""
+_ROWS = 3 * _SIDE + 1
+
+
+def _solved(
+    residual: Floats,
+    diagonal: Floats,
+    beside: tuple[Floats, Floats],
+    axis: Floats,
+    slack: Floats,
+    fixed: tuple[int, ...],
+) -> Floats:
+    """(n+1, 4) what the nodes and tensions are too much by; 0 at the very last.
+
+    Parameters
+    ----------
+    residual : (4, n+1) of the forces on the nodes and of the lengths of the bars
+    diagonal : (3, 3, n+1) change of the force on a node with its own place
+    beside : (3, 3, n) each; that on the node above with the place of the one below, and the
+        other way round
+    axis : (3, n) of the bars, downward
+    slack : (n,) by how much a bar is longer with its tension, negative
+    fixed : rows of the unknowns that are known
+    """
+    from scipy.linalg.lapack import dgbsv
+
+    size = 4 * len(slack) + 4
+    band = np.zeros((size, _ROWS))
+    blocks = (diagonal, *beside, axis, -axis, -axis, axis, slack)
+    band.reshape(-1)[_places(len(slack))] = np.concatenate([block.reshape(-1) for block in blocks])
+    equations = residual.T.reshape(-1)
+    band[-1, _MIDDLE], equations[-1] = 1.0, 0.0
+    for row in fixed:
+        columns = np.arange(max(row - _SIDE, 0), min(row + _SIDE + 1, size))
+        band[columns, _MIDDLE + row - columns] = 0.0
+        band[row, _MIDDLE], equations[row] = 1.0, 0.0
+    _, _, change, singular = dgbsv(
+        _SIDE, _SIDE, band.T, equations, overwrite_ab=True, overwrite_b=True
+    )
+    found: Floats = change.reshape(-1, 4)
+    return np.full_like(found, np.nan) if singular else found
+
+
+@lru_cache
+def _places(bars: int) -> Integers:
+    """Where the blocks stand in the band, one column after another."""
+    node = np.arange(3)[:, np.newaxis] + 4 * np.arange(bars + 1)
+    pull = 4 * np.arange(bars) + 3
+    above, below = node[:, :-1], node[:, 1:]
+    rows_and_columns = (
+        (node[:, np.newaxis], node),
+        (above[:, np.newaxis], below),
+        (below[:, np.newaxis], above),
+        (above, pull),
+        (below, pull),
+        (pull, above),
+        (pull, below),
+        (pull, pull),
+    )
+    return np.concatenate(
+        [(column * _ROWS + _MIDDLE + row - column).reshape(-1) for row, column in rows_and_columns]
+    )

@@ -16,7 +16,6 @@ from calm.drawing.graph import (
     decades,
     moments,
     numbers,
-    write_legend,
 )
 
 NAN = float("nan")
@@ -137,7 +136,7 @@ def test_a_legend_shortens_what_is_too_long_and_any_sign_is_text():
         LegendEntry("a\tstorm <b>\x07 $x$", line=LINE),
         LegendEntry("long " * 20, sign=("o", 4, "red")),
     ]
-    write_legend(graph.pen, entries, 0.0, 0.0, width=200.0, row=10.0, columns=2, size=7.0)
+    graph.legend(entries, (0.0, 0.0), 100.0, 10.0, columns=2)
     first, second = drawn(graph)["text"]
     assert "".join(first.itertext()) == "a storm <b>\ufffd $x$"
     assert "".join(second.itertext()).endswith("…")
