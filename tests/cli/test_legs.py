@@ -236,7 +236,7 @@ def test_files_of_a_net_have_the_leg_of_each_part(
 def test_a_batch_gives_what_run_gives_in_every_profile(
     net: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The same march, closed to 1e-6 of lengths and forces."""
+    """Within a tenth of what is promised of batches: 1e-4 of the depth and 2e-4 of tensions."""
     record, result = tmp_path / "record.csv", tmp_path / "r.nc"
     record.write_text(
         "time,depth[m],u[m/s],v[m/s]\n"
@@ -253,15 +253,15 @@ def test_a_batch_gives_what_run_gives_in_every_profile(
         ]
         for name in ("depth_top", "x_top", "tension_bottom", "tilt", "knockdown"):
             expected = np.array([row[name] for row in given["components"]])
-            assert found[name].values[0] == pytest.approx(expected, rel=1e-5, abs=1e-4)
+            assert found[name].values[0] == pytest.approx(expected, rel=2e-5, abs=5e-3)
         clamps = [row["depth"] for row in given["clamps"]]
-        assert found["clamp_depth"].values[0] == pytest.approx(clamps, rel=1e-6)
+        assert found["clamp_depth"].values[0] == pytest.approx(clamps, abs=5e-3)
         pull = given["anchors"][0]
-        assert found["anchor_vertical"].values[0, 3] == pytest.approx(pull["vertical"], rel=1e-6)
+        assert found["anchor_vertical"].values[0, 3] == pytest.approx(pull["vertical"], rel=2e-5)
         assert np.isnan(found["depth_top"].values[1]).all()
     summary = json.loads((tmp_path / "r.summary.json").read_text())
     assert summary["responses"]["anchor_tension"]["distribution"]["maximum"] == pytest.approx(
-        pull["tension"], rel=1e-6
+        pull["tension"], rel=2e-5
     )
     limits = [(one["rule"], one["component"]) for one in summary["limits"]]
     assert ("anchor-weight", "anchor-wheels-4") in limits
