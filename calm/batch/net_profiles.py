@@ -75,7 +75,7 @@ class NetPaper(NamedTuple):
 
     Attributes
     ----------
-    still : the water without the profile
+    on, still : what a profile is laid out on; the water without it
     start, slopes, lands : the unknowns, slopes and legs on the seabed of the net there
     x : room for the unknowns
     piece, clamp : first of each leg in the rows

@@ -81,7 +81,7 @@ class Comparison:
         }
 
 
-_Design = tuple[AnyResult | NoEquilibrium, Assessment | None]
+_Design = tuple["AnyResult | NoEquilibrium", Assessment | None]
 """Its result or why it has none, and the judgement on what is no tow."""
 _Figures = dict[str, tuple[str, str, Number | str]]
 """Title, quantity and value by name."""

@@ -45,7 +45,7 @@ def test_a_port_that_is_taken(calm_process, write_mooring):
 @pytest.fixture
 def in_terminal(monkeypatch):
     """As if there were one; nothing is to be opened in it."""
-    monkeypatch.setattr(command, "_has_terminal", lambda: True)
+    monkeypatch.setenv("TEXTUAL_DRIVER", "textual.drivers.headless_driver:HeadlessDriver")
     monkeypatch.setattr("calm.tui.app.BuildApp.run", lambda _: pytest.fail("it was opened"))
 
 
