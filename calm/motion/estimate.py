@@ -66,7 +66,7 @@ def estimated(
     mixture = Mixture(moments, known.way, first)
     if not len(one.label):
         return mixture.estimate()
-    own = own_errors(at.depth, still)
+    own = own_errors(at.depth, still, common.law is not None)
     for sensor in range(len(one.label)):
         spike = posterior(one, at, known.way.spread, common, still, sensor, furthest, own)
         chance = np.full(len(every), np.log(common_unknowns.SPIKES))
@@ -326,7 +326,9 @@ def posterior(
     noise = np.where(known, common_unknowns.NOISE**2, UNMEASURED**2)
     if spike >= 0:
         noise[:, spike] = np.maximum(noise[:, spike], common_unknowns.SPIKE**2)
-    own = common.worst**2 * (own_errors(at.depth, still) if own is None else own)
+    if own is None:
+        own = own_errors(at.depth, still, common.law is not None)
+    own = common.worst**2 * own
     bent = own[:, :, one.point]
     spread_of = slope @ state
     turned = seen.transpose(0, 2, 1)

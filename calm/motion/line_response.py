@@ -256,20 +256,27 @@ def instruments_of(mooring: Mooring) -> list[int]:
 
 SPAN, LOCAL = 0.25, 0.3
 """Share of the line over which the errors of its knockdown are alike, and what a point is wrong by
-for itself, as floats and clamps bend the line there, beside all that is below it."""
+for itself where currents are inferred, as floats and clamps bend the line there."""
 
 
-def own_errors(depth: Floats, still: Floats) -> Floats:
+def own_errors(depth: Floats, still: Floats, inferred: bool) -> Floats:
     """Return (n, p, p) covariance of the errors of the line at its points, of a share of 1 [m²].
 
-    The knockdown of each stretch is wrong by a share that is alike over a quarter of the line; a
-    point is wrong by all that is below it, so that between two sensors the error is smooth, and
-    by a lesser share of its own knockdown.
+    With measured currents a point is wrong by a share of its own knockdown, alike over a quarter of
+    the line. Where they are inferred, which takes up what is so, the knockdown of each stretch is
+    wrong by such a share, a point by all that is below it, so that between two sensors the error is
+    smooth, and by a lesser share of its own knockdown.
 
     Parameters
     ----------
     depth, still : (n, p), (p,) of the points, and in still water [m]; of NaN they are 0
+    inferred : whether the currents are
     """
+    if not inferred:
+        own = np.maximum(np.nan_to_num(depth - still), 0.0)
+        span = max(SPAN * float(np.ptp(still)), 1.0)
+        errors = own[:, :, None] * np.exp(-np.abs(still[:, None] - still) / span) * own[:, None, :]
+        return errors
     order = np.argsort(-still, kind="stable")
     back, place = np.argsort(order, kind="stable"), still[order]
     down = np.maximum(np.nan_to_num(depth - still), 0.0)[:, order]

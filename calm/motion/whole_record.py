@@ -215,7 +215,9 @@ def linear_law(
         currents,
         fixed,
         begun.fall(time, depth, still, part.point),
-        line_response.own_errors(depth, still)[:, part.point[:, None], part.point],
+        line_response.own_errors(depth, still, common.law is not None)[
+            :, part.point[:, None], part.point
+        ],
     )
 
 

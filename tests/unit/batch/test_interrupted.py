@@ -13,6 +13,7 @@ from threading import Event
 
 import pytest
 
+from calm.batch import finished
 from calm.batch import run as run_module
 from calm.batch import work as work_module
 from calm.batch.run import BatchOutcome, run_batch
@@ -154,7 +155,7 @@ def test_a_block_damaged_at_the_last_moment_is_solved_again(
 ):
     output, told = tmp_path / f"r{ending}", []
     undamaged = undisturbed(tmp_path, mooring, record, ending)
-    finish = run_module.finish
+    finish = finished.finish
 
     def damaged(store, output, check):
         if not told:
@@ -164,7 +165,7 @@ def test_a_block_damaged_at_the_last_moment_is_solved_again(
                 chunk.write_bytes(data[:-2] if size else data[:-1] + bytes([data[-1] ^ 1]))
         return finish(store, output, check)
 
-    monkeypatch.setattr(run_module, "finish", damaged)
+    monkeypatch.setattr(finished, "finish", damaged)
     outcome = run_batch(mooring, record, output, block=4, tell=told.append)
     assert outcome.done
     assert sum(outcome.counts.values()) == 40
@@ -173,7 +174,7 @@ def test_a_block_damaged_at_the_last_moment_is_solved_again(
 
 
 def test_a_disk_that_keeps_nothing_is_given_up(tmp_path, mooring, record, monkeypatch):
-    monkeypatch.setattr(run_module, "finish", lambda *_: [0])
+    monkeypatch.setattr(finished, "finish", lambda *_: [0])
     outcome = run_batch(mooring, record, tmp_path / "r.nc", block=8)
     assert not outcome.done
     assert "does not keep what is written" in outcome.reason
@@ -200,7 +201,7 @@ def test_the_lock_is_held_until_the_last_thread_has_ended(tmp_path, mooring, rec
             raise KeyboardInterrupt
         join(thread, timeout)
 
-    locked = run_module.locked
+    locked = finished.locked
 
     def watched(*arguments):
         class Watched:
@@ -217,7 +218,7 @@ def test_the_lock_is_held_until_the_last_thread_has_ended(tmp_path, mooring, rec
     with monkeypatch.context() as patched:
         patched.setattr(work_module.BatchWork, "_keep", slowly)
         patched.setattr("calm.batch.threads.Thread.join", interrupt)
-        patched.setattr(run_module, "locked", watched)
+        patched.setattr(finished, "locked", watched)
         outcome = run_batch(mooring, record, output, workers=1, block=8)
     assert (outcome.done, outcome.reason) == (False, "interrupted")
     assert alive == [False, False]
@@ -248,7 +249,7 @@ def test_what_happens_behind_the_end_is_no_failure(tmp_path, mooring, record, mo
             raise error
 
         with monkeypatch.context() as patched:
-            patched.setattr(run_module, "clear", fail)
+            patched.setattr(finished, "clear", fail)
             assert run_batch(mooring, record, output, block=8).done
         assert list(output.rglob(".batch")) or list(tmp_path.glob("*.part"))
         (tmp_path / f"r{ending}.part.lock").touch()  # as of a process killed at its very last
@@ -267,15 +268,15 @@ def test_an_empty_folder_of_work_goes_with_the_result(tmp_path, mooring, record)
 
 
 def test_a_result_of_somebody_else_in_the_meantime_is_taken(tmp_path, mooring, record, monkeypatch):
-    output, locked = tmp_path / "r.nc", run_module.locked
+    output, locked = tmp_path / "r.nc", finished.locked
 
     def later(folder, tell):
         with monkeypatch.context() as patched:
-            patched.setattr(run_module, "locked", locked)
+            patched.setattr(finished, "locked", locked)
             run_batch(mooring, record, output, block=8)
         return locked(folder, tell)
 
-    monkeypatch.setattr(run_module, "locked", later)
+    monkeypatch.setattr(finished, "locked", later)
     monkeypatch.setattr(run_module, "BatchWork", None)
     with pytest.raises(TypeError):
         run_batch(mooring, record, tmp_path / "other.nc", block=8)
@@ -290,7 +291,7 @@ def test_a_result_of_somebody_else_in_the_meantime_is_taken(tmp_path, mooring, r
         return locked(folder, tell)
 
     before = []
-    monkeypatch.setattr(run_module, "locked", once)
+    monkeypatch.setattr(finished, "locked", once)
     assert run_batch(mooring, record, output, block=8).counts["converged"] == 39
     assert output.stat().st_mtime_ns == before[0]
     assert not (tmp_path / "r.nc.part").exists()
