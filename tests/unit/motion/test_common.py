@@ -61,9 +61,8 @@ def best(one, start=None):
     own = np.hypot(0.05, 0.01 / one.u)
     currents = 0.05**2 * np.ones((2, 2)) + 0.05**2 * np.array([[1.0, -1.0], [-1.0, 1.0]])
     spread = currents + own[:, :, None] ** 2 * np.eye(2)
-    below = np.append(STILL[1:], STILL[-1])
-    middle, under = 0.5 * (STILL + below), np.triu(np.ones((3, 3)))[SENSORS]
-    alike_down = np.exp(-np.abs(middle[:, None] - middle) / (0.25 * np.ptp(STILL)))
+    apart = np.abs(STILL[SENSORS][:, None] - STILL[SENSORS])
+    alike_down = np.exp(-apart / (0.25 * np.ptp(STILL)))
     state, scale, worst = np.zeros(len(prior_of)), 1.0, 0.07
     for _ in range(12):
         factor = np.exp(state[0])
@@ -71,11 +70,7 @@ def best(one, start=None):
         slope = factor * (np.exp(0.1) - 1.0) / 0.05 * GAIN[SENSORS] * square[:, None, :]
         by_currents = scale**2 * slope @ spread @ slope.transpose(0, 2, 1)
         rest = common_unknowns.TIDE**2 + common_unknowns.NOISE**2 * np.eye(2)
-        gone = factor * square @ GAIN.T
-        part = gone - np.append(gone[:, 1:], np.zeros((TIMES, 1)), axis=1)
-        bent = under @ (part[:, :, None] * alike_down * part[:, None, :]) @ under.T
-        whole = 0.3**2 * gone[:, :, None] * alike_down * gone[:, None, :]
-        bent = bent + whole[:, SENSORS[:, None], SENSORS]
+        bent = down[:, :, None] * alike_down * down[:, None, :]
         rest = rest + worst**2 * bent
         rest = rest + np.where(known, 0.0, 1e8)[:, :, None] * np.eye(2)
         bend = 0.5 * np.einsum("nss->ns", by_currents) / np.maximum(down, 1.0)

@@ -9,7 +9,7 @@ import pytest
 from calm.motion import common_unknowns
 from calm.motion.common_unknowns import Common
 from calm.motion.estimate import Linear, between, posterior
-from calm.motion.line_response import LineResponse
+from calm.motion.line_response import LineResponse, own_errors
 from calm.motion.measurements import MooringMeasurements
 
 STILL = np.array([50.0, 100.0, 180.0])  # of three points; the first and the last have sensors
@@ -44,11 +44,9 @@ def test_the_posterior_is_that_of_all_unknowns_written_out(tide):
     # unknowns: two logarithms, sea, factor, datum, two offsets, two steps, three errors of the line
     sea = common_unknowns.TIDE if tide is None else common_unknowns.RESIDUAL_TIDE
     down = 0.07 * (THERE - STILL)
-    # three stretches, each alike to the others by its middle, and all of those below a point
-    part, middle = down - np.append(down[1:], 0.0), 0.5 * (STILL + np.append(STILL[1:], STILL[2]))
-    alike = np.exp(-np.abs(middle[:, None] - middle) / (0.25 * np.ptp(STILL)))
-    bent = np.triu(np.ones((3, 3))) @ (np.outer(part, part) * alike) @ np.tri(3)
-    bent += 0.3**2 * np.outer(down, down) * alike  # and each point for itself
+    alike = np.exp(-np.abs(STILL[:, None] - STILL[None]) / (0.25 * np.ptp(STILL)))
+    # the law is of the exponential kind only between a point and a sensor
+    bent = np.outer(down, down) * alike
     covariance = np.zeros((12, 12))
     covariance[:2, :2], covariance[2, 2] = SPREAD, sea**2
     covariance[3:9, 3:9], covariance[9:, 9:] = common.covariance, bent
@@ -179,3 +177,14 @@ def test_slopes_are_those_of_the_line():
     assert at.slope[0] == pytest.approx(slope, rel=0.03)
     rest = moments.linear(way, 0.0 * logs)
     assert rest.common[0, :, 0] == pytest.approx(gain @ [1.3, 0.4], rel=0.03)
+
+
+def test_errors_of_the_line_where_currents_are_inferred():
+    """Of three stretches, alike by their middles: all below a point, and 0.3 of its own."""
+    down = 0.07 * (THERE - STILL)
+    part, middle = down - np.append(down[1:], 0.0), 0.5 * (STILL + np.append(STILL[1:], STILL[2]))
+    alike = np.exp(-np.abs(middle[:, None] - middle) / (0.25 * np.ptp(STILL)))
+    expected = np.triu(np.ones((3, 3))) @ (np.outer(part, part) * alike) @ np.tri(3)
+    expected += 0.3**2 * np.outer(down, down) * alike
+    found = own_errors(THERE[None], STILL, True)[0]
+    assert 0.07**2 * found == pytest.approx(expected)
