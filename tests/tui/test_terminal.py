@@ -233,7 +233,7 @@ class SlowLink:
 
     def __init__(self, file, folder):
         self.terminal = Terminal(file, columns=80, rows=24, folder=folder)
-        self._coming, self._answers, self._credit = b"", [], 0.0
+        self._coming, self._tail, self._answers, self._credit = b"", b"", [], 0.0
         self._last = time.monotonic()
         self.bytes = 0
 
@@ -256,7 +256,9 @@ class SlowLink:
             self._credit -= len(taken)
             if taken:
                 self.terminal._stream.feed(taken)
-                self._answers += [now + self.ROUND] * taken.count(b"[6n")
+                asked = self._tail + taken  # a question may come in two pieces
+                self._answers += [now + self.ROUND] * asked.count(b"[6n")
+                self._tail = asked[-2:]
             while self._answers and self._answers[0] <= now:
                 self._answers.pop(0)
                 self.terminal.child.send("\x1b[1;1R")
