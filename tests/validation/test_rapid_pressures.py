@@ -2,9 +2,9 @@
 
 Source: see tests/validation/rapid/README.md. Each case hides all sensors but a few, and the
 estimate at the hidden ones is compared with what processing toolboxes do without a line: PCHIP of
-the knockdown over the height between the same sensors, the anchor being a point. Knots and deviations
-of the estimate were chosen on the months before these, which it has never seen. The limits are what
-was set as a goal beforehand, 0.07 to 0.3 above what is found.
+the knockdown over the height between the same sensors, the anchor being a point. Knots and
+deviations of the estimate were chosen on the months before these. The limits are what was set as a
+goal beforehand, 0.07 to 0.3 above what is found.
 """
 
 from functools import cache
