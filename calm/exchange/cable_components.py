@@ -6,8 +6,15 @@ import math
 from dataclasses import dataclass
 from itertools import pairwise
 
+from calm.errors import refused
 from calm.exchange.cable_grammar import CableDefinition, KeyValue, KeyValues
-from calm.exchange.design import FigureOrWord, ImportedComponent, Remark, is_chain, refused, role_of
+from calm.exchange.design import (
+    FigureOrWord,
+    ImportedComponent,
+    Remark,
+    is_chain,
+    role_of,
+)
 from calm.files.definition import CATALOGUE_DENSITY
 from calm.units import KILOGRAM_FORCE
 

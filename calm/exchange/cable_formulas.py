@@ -7,9 +7,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
-from calm.errors import InputError, Problem
+from calm.errors import InputError, Problem, one_line
 from calm.exchange.cable_source import SourceLine, Token, tokens_of
-from calm.exchange.design import one_line
 
 Formula: TypeAlias = Callable[[Mapping[str, float]], float]
 """A value, computed from the values of the names it depends on."""

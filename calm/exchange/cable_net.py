@@ -4,10 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from calm.errors import refused
 from calm.exchange.cable_components import ComponentMaker
 from calm.exchange.cable_grammar import CableBranch, CableProblem, CableSegment, CableTerminal
 from calm.exchange.cable_reader import defined, pieces_of
-from calm.exchange.design import Design, ImportedLeg, ImportedPiece, refused
+from calm.exchange.design import (
+    Design,
+    ImportedLeg,
+    ImportedPiece,
+)
 
 _ON_THE_BED = 0.05
 """Share of the depth: an anchor no higher above the seabed stands on it."""

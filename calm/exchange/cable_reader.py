@@ -7,7 +7,7 @@ import re
 from collections.abc import Mapping
 from pathlib import Path
 
-from calm.errors import InputError, Problem
+from calm.errors import InputError, Problem, refused
 from calm.exchange import cable_grammar
 from calm.exchange.cable_components import ComponentMaker, counts_on_depth, varies
 from calm.exchange.cable_formulas import UnknownNameError
@@ -21,7 +21,6 @@ from calm.exchange.design import (
     ImportedTow,
     ImportedWater,
     Remark,
-    refused,
 )
 from calm.files.definition import CATALOGUE_DENSITY
 from calm.quantities import bearing_of

@@ -11,8 +11,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from calm.errors import refused
 from calm.exchange.cable_grammar import KeyValue, KeyValues
-from calm.exchange.design import ImportedWater, Remark, refused
+from calm.exchange.design import (
+    ImportedWater,
+    Remark,
+)
 from calm.quantities import bearing_of
 from calm.whole_file import read_text
 

@@ -14,18 +14,13 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.errors import InputError, Problem
+from calm.errors import one_line
 
 MOST_PIECES = 2_000
 """Most pieces of a line, and most levels of its water."""
 
 FigureOrWord = float | str
 """A number in SI, or a word of the mooring file such as ``insensitive``."""
-
-
-def one_line(text: str) -> str:
-    """Return a text in one line, without control signs."""
-    return " ".join("".join(c if c.isprintable() else " " for c in text).split())
 
 
 @dataclass(frozen=True)
@@ -221,23 +216,6 @@ class Design:
             yield item.component
             for clamp in item.clamps:
                 yield clamp.component
-
-
-def refused(path: object, *messages: str) -> InputError:
-    """Return why a file cannot be read, or what in it CALM cannot represent."""
-    return InputError([Problem(str(path), 0, 0, one_line(message)) for message in messages])
-
-
-def refused_at(path: object, line: int, column: int, message: str) -> InputError:
-    """Return why a file cannot be read, with the place in its text.
-
-    Parameters
-    ----------
-    path : of the file
-    line, column : from 1
-    message : what is wrong there
-    """
-    return InputError([Problem(str(path), line, column, one_line(message))])
 
 
 _RELEASE = re.compile(

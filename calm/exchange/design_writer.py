@@ -13,7 +13,7 @@ from textwrap import wrap
 from calm.case import Tow
 from calm.case.net import Net, load
 from calm.case.result import AnchorLoad, EndLoad
-from calm.errors import CalmError
+from calm.errors import CalmError, one_line
 from calm.exchange.design import (
     Design,
     FigureOrWord,
@@ -22,7 +22,6 @@ from calm.exchange.design import (
     ImportedWater,
     Remark,
     ids_of,
-    one_line,
 )
 from calm.files import Catalogue
 from calm.files.components import FLEXIBLE_KINDS

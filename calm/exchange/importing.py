@@ -15,7 +15,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from calm.assemble.line_arrays import drag_of
-from calm.errors import InputError, Problem, UsageError
+from calm.errors import InputError, Problem, UsageError, one_line, refused
 from calm.exchange.cable_reader import is_cbl, read_cbl
 from calm.exchange.design import (
     MOST_PIECES,
@@ -23,8 +23,6 @@ from calm.exchange.design import (
     Design,
     ImportedComponent,
     Remark,
-    one_line,
-    refused,
 )
 from calm.exchange.design_writer import figure_text, mooring_text, secure_anchors
 from calm.exchange.list_cells import is_table

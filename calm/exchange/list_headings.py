@@ -8,8 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from calm.errors import unknown
-from calm.exchange.design import refused
+from calm.errors import refused, unknown
 from calm.exchange.list_cells import SheetRows, decimal_sign, number, unit_called, unit_of_heading
 from calm.units import KILOGRAM_FORCE
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from calm.errors import nearest
+from calm.errors import nearest, refused
 from calm.exchange import list_rows
 from calm.exchange.design import (
     MOST_PIECES,
@@ -23,7 +23,6 @@ from calm.exchange.design import (
     ImportedWater,
     Remark,
     is_line,
-    refused,
 )
 from calm.exchange.list_cells import SheetRows, number, read_sheets
 from calm.exchange.list_headings import ListHeadings, check_given, headings_of

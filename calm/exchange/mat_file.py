@@ -16,7 +16,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.exchange.design import refused
+from calm.errors import refused
 from calm.exchange.foreign_process import read_apart
 from calm.whole_file import read_content
 

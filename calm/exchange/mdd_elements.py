@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
+from calm.errors import refused
 from calm.exchange import design
 from calm.exchange.design import MOST_PIECES, FigureOrWord, ImportedComponent, ImportedPiece
 from calm.exchange.mat_file import MatValue, RealArray, names, numbers
@@ -309,15 +310,15 @@ def read_moords(path: Path) -> design.Design:
     """Read a design (InputError: its headings or figures are not those of that program)."""
     rows = list(csv.DictReader(io.StringIO(read_text(path))))
     if not rows or not rows[0].keys() >= _MARKS:
-        raise design.refused(path, "is not a design of moords: its headings are others")
+        raise refused(path, "is not a design of moords: its headings are others")
     if len(rows) > MOST_PIECES:
-        raise design.refused(path, f"has {len(rows)} rows; more than {MOST_PIECES} are not read")
+        raise refused(path, f"has {len(rows)} rows; more than {MOST_PIECES} are not read")
     problems: list[str] = []
     elements = [_element(row, place, problems) for place, row in enumerate(rows, 2)]
     if not problems and rows[0].get("bool_clampon") == "True":
         problems.append("row 2: a clamp stands before the first piece")
     if problems:
-        raise design.refused(path, *problems)
+        raise refused(path, *problems)
     anchor = anchor_of(elements[0])
     if not elements[0].lift:
         del anchor.figures["weight"]

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from calm.errors import refused
 from calm.exchange.design import (
     CurrentRecord,
     Design,
@@ -16,7 +17,6 @@ from calm.exchange.design import (
     ImportedTow,
     ImportedWater,
     Remark,
-    refused,
 )
 from calm.exchange.mat_file import MatValue, RealArray, numbers, read_variables
 from calm.exchange.mdd_elements import (

@@ -9,6 +9,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+from calm.errors import refused
 from calm.exchange.design import (
     MOST_PIECES,
     Design,
@@ -19,8 +20,6 @@ from calm.exchange.design import (
     ImportedWater,
     Remark,
     is_chain,
-    refused,
-    refused_at,
 )
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
 from calm.whole_file import read_text
@@ -280,7 +279,7 @@ class _Row:
 
     def refuse(self, message: str) -> Exception:
         """Return a problem in this row."""
-        return refused_at(self.path, self.line, 1, message)
+        return refused(self.path, message, line=self.line)
 
 
 def is_moordyn(content: bytes) -> bool:
@@ -311,7 +310,7 @@ def _read_sections(path: Path) -> tuple[dict[str, list[_Row]], dict[str, str]]:
         else:
             words = line.split()
             if len(words) < min(len(headings), 4):
-                raise refused_at(str(path), number, 1, f"the row has {len(words)} words")
+                raise refused(path, f"the row has {len(words)} words", line=number)
             kept = dict(zip(headings, words, strict=False))
             tables[current].append(_Row(str(path), number, kept))
     return tables, options

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.errors import InputError, Problem
+from calm.errors import refused
 from calm.records import cf_files
 from calm.records.attributes import remarks_in_texts
 from calm.records.cf_files import holdings
@@ -310,8 +310,7 @@ class ArrayRecord(Record):
                 self._current = understand(self._dataset, terms)
             times = self._current.times
             if times is None:
-                message = "has no times: it is one profile, for `calm run`"
-                raise InputError([Problem(str(path), 0, 0, message)])
+                raise refused(path, "has no times: it is one profile, for `calm run`")
             self._index, chosen = choose_profiles(times, period, every, path)
             with cf_files.reading(path):
                 remarks = self._current.remarks(self._index)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from calm.errors import InputError, Problem
+from calm.errors import InputError, Problem, refused
 from calm.records import current_terms
 from calm.records.cf_files import UnreadableError, is_dataset, open_current, reading
 from calm.records.current_dataset import ArrayRecord, CurrentArrays, understand
@@ -84,9 +84,9 @@ def open_record(
         No profile of it is asked for.
     """
     if not path.exists():
-        raise InputError([Problem(str(path), 0, 0, "no such file")])
+        raise refused(path, "no such file")
     if not (path.is_file() or path.is_dir()):
-        raise InputError([Problem(str(path), 0, 0, "is not a regular file")])
+        raise refused(path, "is not a regular file")
     terms = Terms(seabed, at, declination, on_the_line=on_the_line)
     if holds_arrays(path):
         return ArrayRecord(path, terms, time, every)
@@ -101,8 +101,7 @@ def holds_arrays(path: Path) -> bool:
     if not path.is_dir():
         return is_dataset(path)
     if not any((path / name).is_file() for name in _ZARR):
-        message = "is a folder, and not a zarr store; join its files into one first"
-        raise InputError([Problem(str(path), 0, 0, message)])
+        raise refused(path, "is a folder, and not a zarr store; join its files into one first")
     return True
 
 
@@ -154,7 +153,7 @@ def _from_text(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable
         rows, notices = _rows_of(rows, time, path)
         known = [rows[i] for i in header.known(rows)]
         if rows and not known:
-            raise InputError([Problem(str(path), rows[0].number, 1, "no level has a value")])
+            raise refused(path, "no level has a value", line=rows[0].number)
         if left_out := len(rows) - len(known):
             levels = f"{left_out} level{'s' * (left_out > 1)}"
             notices.append(f"{levels} without a value left out of the current")

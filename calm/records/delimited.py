@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from calm.errors import InputError, Problem, shown
+from calm.errors import Problem, refused, shown
 from calm.physics.line import Floats
 from calm.whole_file import decoded, read_content
 
@@ -212,19 +212,18 @@ def table_lines(
     lines = _content(lines)
     sample = list(islice(lines, _SAMPLE))
     if not sample:
-        raise InputError([Problem(str(path), 0, 0, "is empty")])
+        raise refused(path, "is empty")
     dialect = dialect_of([line for _, line in sample])
     number, line = sample[0]
     cells = dialect.cells(line)
     if len(cells) > 1 and not cells[-1]:
         message = f"the line ends in a {dialect.name}; take it off every line"
-        raise InputError([Problem(str(path), number, len(line.rstrip(" ")), message)])
+        raise refused(path, message, line=number, column=len(line.rstrip(" ")))
     if all(NUMBER.fullmatch(cell) for cell in cells):
-        message = f"there is no header; did you mean `{example}`?"
-        raise InputError([Problem(str(path), number, 1, message)])
+        raise refused(path, f"there is no header; did you mean `{example}`?", line=number)
     if len(cells) < 2:
         message = f"`{shown(line[:40])}` is not a header such as `{example}`"
-        raise InputError([Problem(str(path), number, 1, message)])
+        raise refused(path, message, line=number)
     skipped = int(not cells[0])
     header = CellRow(number, line, cells[skipped:], dialect, skipped)
     return header, chain(sample[1:], lines)

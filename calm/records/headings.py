@@ -15,7 +15,7 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.errors import InputError, Problem, about_quantity, shown, unknown
+from calm.errors import InputError, Problem, about_quantity, refused, shown, unknown
 from calm.physics.line import Floats
 from calm.positions import HEMISPHERES
 from calm.records import delimited
@@ -271,7 +271,7 @@ def read_time_columns(path: Path, dimensions: Sequence[str], example: str) -> Ti
     header = table.header
     if not is_time(header.cells[0]):
         message = f"is not a table over time; its heading should be `time,{example}`"
-        raise InputError([Problem(str(path), header.number, 1, message)])
+        raise refused(path, message, line=header.number)
     problems: list[Problem] = []
     if complaint := zone_complaint(header.cells[0]):
         problems.append(Problem(str(path), header.number, header.column(0), complaint))

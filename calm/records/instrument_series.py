@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.errors import InputError, Problem, UsageError
+from calm.errors import InputError, Problem, UsageError, refused
 from calm.records import cf_files, measured_quantities
 from calm.records.cf_files import UnreadableError, factor_of, first_present, holdings, known_values
 from calm.records.level_depths import find_levels
@@ -161,7 +161,7 @@ def _of_file(
     path: Path, names: Sequence[str], flags: frozenset[int], seabed: float
 ) -> dict[str, list[InstrumentSeries]]:
     if not path.is_dir() and not cf_files.is_dataset(path):
-        raise InputError([Problem(str(path), 0, 0, "is not NetCDF, RODB, .cnv or RBR's table")])
+        raise refused(path, "is not NetCDF, RODB, .cnv or RBR's table")
     with cf_files.reading(path), cf_files.open_current(path) as dataset:
         try:
             whole = with_components(dataset)

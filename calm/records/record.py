@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.errors import InputError, Problem, UsageError
+from calm.errors import UsageError, refused
 from calm.physics.line import Floats
 from calm.positions import plain_degrees
 from calm.records.current_terms import TimeChoiceError, parse_time
@@ -163,7 +163,7 @@ def choose_profiles(
     if every < 1:
         raise UsageError(f"every {every} profiles: at least one is needed")
     if not len(times):
-        raise InputError([Problem(str(path), 0, 0, "has no times")])
+        raise refused(path, "has no times")
     notes = []
     order: NDArray[np.intp] | None = None
     if np.any(times[1:] < times[:-1]):
@@ -238,7 +238,7 @@ def _refuse_repeats(times: Times, path: Path) -> None:
     if len(again):
         more = f", and {len(again) - 1} more times" if len(again) > 1 else ""
         message = f"has two profiles of {time_text(times[again[0]])}{more}; leave one of them out"
-        raise InputError([Problem(str(path), 0, 0, message)])
+        raise refused(path, message)
 
 
 DAYS = 30

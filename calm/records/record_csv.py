@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from calm.errors import InputError, Problem, UsageError
+from calm.errors import InputError, Problem, UsageError, refused
 from calm.physics.line import Floats, Integers
 from calm.records import delimited
 from calm.records.attributes import refused_by_comments, remarks_in_comments
@@ -68,16 +68,15 @@ class CsvRecord(Record):
                 )
                 return self._keep(path, *delimited.table_lines(path, lines, f"time,{EXAMPLE}"))
         except UnicodeDecodeError:
-            raise InputError([Problem(str(path), 0, 0, "is not UTF-8 text")]) from None
+            raise refused(path, "is not UTF-8 text") from None
         except OSError as error:
-            message = f"cannot be read: {error.strerror or error}"
-            raise InputError([Problem(str(path), 0, 0, message)]) from None
+            raise refused(path, f"cannot be read: {error.strerror or error}") from None
 
     def _keep(self, path: Path, first: CellRow, lines: Iterator[NumberedLine]) -> CurrentHeader:
         header = CurrentHeader(path, first)
         if not header.timed:
             message = "has no column `time`: it is one profile, for `calm run`"
-            raise InputError([Problem(str(path), first.number, 1, message)])
+            raise refused(path, message, line=first.number)
         problems: list[Problem] = []
         times: list[np.datetime64] = []
         counts: list[int] = []
@@ -143,7 +142,7 @@ def comment_notices(path: Path, header: CurrentHeader) -> list[str]:
         comments = [line.lstrip("# ") for line in above if line.startswith("#")]
     magnetic = bool(magnetic_columns(header.columns)[1])
     if reason := refused_by_comments(comments, magnetic=magnetic):
-        raise InputError([Problem(str(path), 1, 1, f"its current {reason}")])
+        raise refused(path, f"its current {reason}", line=1)
     return remarks_in_comments(comments)
 
 
@@ -182,8 +181,8 @@ class CurrentHeader:
     def __post_init__(self) -> None:
         complaint = zone_complaint(self.row.cells[0]) if self.timed else None
         if complaint:
-            column = self.row.column(0)
-            raise InputError([Problem(str(self.path), self.row.number, column, complaint)])
+            place = {"line": self.row.number, "column": self.row.column(0)}
+            raise refused(self.path, complaint, **place)
 
     @property
     def timed(self) -> bool:
