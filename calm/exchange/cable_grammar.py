@@ -112,6 +112,11 @@ class CableSegment:
 class CableTerminal(CableDefinition):
     """Represent an end of the line."""
 
+    @property
+    def buoy(self) -> KeyValue | None:
+        """The buoy or platform that it names."""
+        return self.values.get("buoy") or self.values.get("platform")
+
 
 @dataclass
 class CableBranch:
