@@ -39,7 +39,7 @@ _MOST = 20_000_000
 RealArray = NDArray[np.float64]
 
 
-def read_variables(path: Path, wanted: Collection[str]) -> dict[str, MatValue]:
+def read_variables(path: Path, wanted: Collection[str]) -> MatVariables:
     """Return the wanted variables that a file has.
 
     InputError: the file is no `.mat` file, or a damaged one.
@@ -50,7 +50,7 @@ def read_variables(path: Path, wanted: Collection[str]) -> dict[str, MatValue]:
     if content.startswith(_OCTAVE_BINARY):
         raise refused(path, "is in Octave's binary format; save it there with -v7, -hdf5 or -text")
     try:
-        return read_apart(_variables, content, list(wanted))
+        return MatVariables(read_apart(_variables, content, list(wanted)))
     except ValueError as error:
         raise refused(path, f"is not a MATLAB or Octave file, or a damaged one ({error})") from None
 
@@ -285,18 +285,32 @@ def _text_of(value: object) -> str:
     return value.decode("ascii", "replace") if isinstance(value, bytes) else str(value)
 
 
-def numbers(value: MatValue | None) -> RealArray:
-    """Return a variable as numbers; an empty array where there is none.
+class MatVariables(dict[str, MatValue]):
+    """Hold variables of a file by their names."""
 
-    ValueError: it holds no real numbers.
-    """
-    if value is None:
-        return np.zeros((0, 0))
-    if isinstance(value, np.ndarray) and value.dtype.kind in "biuf":
-        return np.asarray(value, np.float64)
-    if isinstance(value, list) and not value:
-        return np.zeros((0, 0))
-    raise ValueError("holds no real numbers")
+    def reals(self, name: str) -> RealArray:
+        """Return a variable as numbers; an empty array where there is none.
+
+        ValueError: it holds no real numbers.
+        """
+        value = self.get(name)
+        if isinstance(value, np.ndarray) and value.dtype.kind in "biuf":
+            return np.asarray(value, np.float64)
+        if value is None or (isinstance(value, list) and not value):
+            return np.zeros((0, 0))
+        raise ValueError(f"`{name}` holds no real numbers")
+
+    def row(self, name: str) -> RealArray:
+        """Return a variable as numbers in a row; none where it holds something else."""
+        try:
+            return self.reals(name).ravel()
+        except ValueError:
+            return np.zeros(0)
+
+    def first(self, name: str) -> float:
+        """Return the first number of a variable; 0 where it has none."""
+        row = self.row(name)
+        return float(row[0]) if row.size else 0.0
 
 
 def _fits(name: str, shape: tuple[int, ...]) -> bool:

@@ -9,7 +9,6 @@ import csv
 import io
 import math
 import re
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,7 +17,7 @@ import numpy as np
 from calm.errors import refused
 from calm.exchange import design
 from calm.exchange.design import MOST_PIECES, FigureOrWord, ImportedComponent, ImportedPiece
-from calm.exchange.mat_file import MatValue, RealArray, names, numbers
+from calm.exchange.mat_file import MatVariables, RealArray, names
 from calm.files.definition import CATALOGUE_DENSITY
 from calm.units import KILOGRAM_FORCE
 from calm.whole_file import read_text
@@ -28,6 +27,7 @@ _FLAT = 1e-3  # m: height of a float that the file gives none
 _SOFT = 1e10  # Pa: the modulus of a rope is below, of a wire above
 _HARD = re.compile(r"\bwire|\bchain|\bsteel", re.I)
 _LARGEST = 1e9  # m, kg: of no piece
+_ROWS = ("B", "Cd", "ME", "Wt")
 MODULI = (1.38e11, 3.45e8, 8.0e8, 3.45e8, 6.9e8, 6.9e10, 7.6e10, 1.0e11)
 """Of the materials that the program numbers from 1: steel, nylon, Dacron, polypropylene,
 polyethylene, Kevlar, aluminium, Dyneema [Pa]."""
@@ -169,9 +169,7 @@ class MddElement:
         return self.width or self.diameter
 
 
-def read_elements(
-    variables: Mapping[str, MatValue], suffix: str
-) -> tuple[list[MddElement], list[str]]:
+def read_elements(variables: MatVariables, suffix: str) -> tuple[list[MddElement], list[str]]:
     """Return the elements of a line in the order of the file, and what is wrong with them.
 
     The suffix is ``t`` for the matrices of a tow, ``CO`` for what is clamped on, or nothing.
@@ -179,22 +177,24 @@ def read_elements(
     problems: list[str] = []
     size = _matrix(variables, f"H{suffix}", problems)
     count = size.shape[1]
-    lift = _row(variables, f"B{suffix}", count, problems)
-    drag = _row(variables, f"Cd{suffix}", count, problems)
+    for name in (f"B{suffix}", f"Cd{suffix}"):
+        try:
+            if (given := variables.reals(name).size) != count:
+                problems.append(f"`{name}` has {given} values for {count} elements")
+        except ValueError as error:
+            problems.append(str(error))
     if count > MOST_PIECES:
         problems.append(f"`H{suffix}` has {count} elements; more than {MOST_PIECES} are not read")
     if problems or not count:
         return [], problems
-    modulus = _optional(variables, f"ME{suffix}")
-    mass = _optional(variables, f"Wt{suffix}")
+    lift, drag, modulus, mass = (variables.row(f"{name}{suffix}") for name in _ROWS)
     density = _densities(variables, size[0])
-    called = _names(variables, f"moorele{suffix}", count)
     elements = []
-    for i in range(count):
+    for i, name in enumerate(_names(variables, f"moorele{suffix}", count)):
         length, width, diameter, flag = (float(value) for value in size[:, i])
         elements.append(
             MddElement(
-                name=called[i],
+                name=name,
                 length=length,
                 width=width,
                 diameter=diameter,
@@ -208,7 +208,7 @@ def read_elements(
                 density=float(density[i]),
             )
         )
-        problems += mistakes_of(elements[-1], f"element {i + 1}, {called[i]}")
+        problems += mistakes_of(elements[-1], f"element {i + 1}, {name}")
     return elements, problems
 
 
@@ -228,19 +228,14 @@ def mistakes_of(element: MddElement, where: str) -> list[str]:
     return wrong
 
 
-def _reals(variables: Mapping[str, MatValue], name: str, problems: list[str]) -> RealArray | None:
-    """Return a variable as numbers; None, and a problem, where it holds something else."""
-    try:
-        return numbers(variables.get(name))
-    except ValueError as error:
-        problems.append(f"`{name}` {error}")
-        return None
-
-
-def _matrix(variables: Mapping[str, MatValue], name: str, problems: list[str]) -> RealArray:
+def _matrix(variables: MatVariables, name: str, problems: list[str]) -> RealArray:
     """Return ``H``: four rows, one column an element; the flag is 0 where a row is missing."""
-    size = _reals(variables, name, problems)
-    if size is None or size.size == 0:
+    try:
+        size = variables.reals(name)
+    except ValueError as error:
+        problems.append(str(error))
+        return np.zeros((4, 0))
+    if size.size == 0:
         return np.zeros((4, 0))
     size = np.atleast_2d(size)
     if size.ndim == 2 and size.shape[0] not in (3, 4) and size.shape[1] in (3, 4):
@@ -252,25 +247,9 @@ def _matrix(variables: Mapping[str, MatValue], name: str, problems: list[str]) -
     return size if size.shape[0] == 4 else np.vstack([size, np.zeros(size.shape[1])])
 
 
-def _row(
-    variables: Mapping[str, MatValue], name: str, count: int, problems: list[str]
-) -> RealArray:
-    row = _reals(variables, name, problems)
-    if row is not None and row.size == count:
-        return row.ravel()
-    if row is not None:
-        problems.append(f"`{name}` has {row.size} values for {count} elements")
-    return np.zeros(count)
-
-
-def _optional(variables: Mapping[str, MatValue], name: str) -> RealArray:
-    row = _reals(variables, name, [])
-    return np.zeros(0) if row is None else row.ravel()
-
-
-def _densities(variables: Mapping[str, MatValue], length: RealArray) -> RealArray:
+def _densities(variables: MatVariables, length: RealArray) -> RealArray:
     """Return the density of the water at every element of a line that stands upright [kg/m³]."""
-    levels, density = _optional(variables, "z"), _optional(variables, "rho")
+    levels, density = variables.row("z"), variables.row("rho")
     if not density.size == levels.size > 0 or not density.min() > 0.0:
         return np.full(length.size, CATALOGUE_DENSITY)
     order = np.argsort(levels)
@@ -278,10 +257,10 @@ def _densities(variables: Mapping[str, MatValue], length: RealArray) -> RealArra
     return np.interp(heights, levels[order], density[order])
 
 
-def _names(variables: Mapping[str, MatValue], name: str, count: int) -> list[str]:
+def _names(variables: MatVariables, name: str, count: int) -> list[str]:
     """Return a name for every element, also where the file has none."""
     value = variables.get(name)
-    found = names(value) if value is not None else []
+    found = names(value)
     if len(found) != count and isinstance(value, np.ndarray) and value.ndim == 2:
         found = names(value.T)
     found = (found + [""] * count)[:count]

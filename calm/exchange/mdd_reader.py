@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,7 +17,7 @@ from calm.exchange.design import (
     ImportedWater,
     Remark,
 )
-from calm.exchange.mat_file import MatValue, RealArray, numbers, read_variables
+from calm.exchange.mat_file import MatVariables, RealArray, read_variables
 from calm.exchange.mdd_elements import (
     MddElement,
     anchor_of,
@@ -53,7 +52,7 @@ def read_mdd(path: Path) -> Design:
     InputError: the file is damaged, is none of that program, or holds what CALM cannot represent.
     """
     variables = read_variables(path, _WANTED)
-    sized = [name for name in ("H", "Ht") if name in variables and len(_flat(variables[name]))]
+    sized = [name for name in ("H", "Ht") if variables.row(name).size]
     if not sized and any(group in variables for group in GROUPS):
         raise refused(
             path,
@@ -89,15 +88,8 @@ def read_mdd(path: Path) -> Design:
     return design
 
 
-def _flat(value: MatValue) -> list[float]:
-    try:
-        return [float(each) for each in numbers(value).ravel()]
-    except ValueError:
-        return []
-
-
 def _lay_mooring(
-    design: Design, elements: list[MddElement], variables: Mapping[str, MatValue], path: Path
+    design: Design, elements: list[MddElement], variables: MatVariables, path: Path
 ) -> None:
     last = elements[-1]
     if last.is_line or len(elements) < 2 or last.lift == 0.0:
@@ -111,19 +103,19 @@ def _lay_mooring(
 
 
 def _lay_tow(
-    design: Design, elements: list[MddElement], variables: Mapping[str, MatValue], path: Path
+    design: Design, elements: list[MddElement], variables: MatVariables, path: Path
 ) -> None:
     """Lay a tow: the file runs from the body up, and ends with a mark for the ship."""
     end = elements[-1]
     if not end.is_line and end.length <= 0.01 and abs(end.lift) <= 0.011 and len(elements) > 1:
         elements = elements[:-1]
     design.items = [_item(element) for element in reversed(elements)]
-    east, north = (next(iter(_flat(variables.get(name, []))), 0.0) for name in ("Usp", "Vsp"))
+    east, north = variables.first("Usp"), variables.first("Vsp")
     speed = math.hypot(east, north)
     if speed == 0.0:
         raise refused(path, "the ship of this tow does not move (`Usp`, `Vsp`)")
     design.tow = ImportedTow(speed, bearing_of(east, north))
-    height = next(iter(_flat(variables.get("afh", []))), 0.0)
+    height = variables.first("afh")
     if height > 0.0:
         what = f"an A-frame of {height:g} m is only drawn: the wire counts from the water"
         design.dropped.append(Remark("afh", what))
@@ -137,14 +129,14 @@ def _item(element: MddElement) -> ImportedPiece:
 def _clamp(
     design: Design,
     clamped: list[MddElement],
-    variables: Mapping[str, MatValue],
+    variables: MatVariables,
     towed: bool,
     path: Path,
 ) -> None:
     """Hang what is clamped on: by element and share of its length, counted from its lower end."""
     if not clamped:
         return
-    host, share, height = (_flat(variables.get(name, [])) for name in ("Jobj", "Pobj", "ZCO"))
+    host, share, height = (variables.row(name).tolist() for name in ("Jobj", "Pobj", "ZCO"))
     by_share = len(host) == len(share) == len(clamped)
     by_height = len(height) == len(clamped)
     if not by_share and not by_height:
@@ -199,7 +191,7 @@ def _agree(one: tuple[int, float], other: tuple[int, float]) -> bool:
 
 
 def read_water(
-    variables: Mapping[str, MatValue], towed: bool, guessed: list[Remark]
+    variables: MatVariables, towed: bool, guessed: list[Remark]
 ) -> tuple[ImportedWater | None, CurrentRecord | None]:
     """Return the environment of a file, and the record where it has several profiles.
 
@@ -217,7 +209,7 @@ def read_water(
     ValueError
         The sizes of the variables do not go together.
     """
-    levels = _numbers(variables, "z").ravel()
+    levels = variables.reals("z").ravel()
     if levels.size == 0 or not np.any(levels > 0.0):
         return None, None
     if not np.all(np.isfinite(levels)) or np.any(levels < 0.0):
@@ -252,20 +244,13 @@ def read_water(
         water.current = tuple((float(d), float(e), float(n), float(up)) for d, e, n, up in first)
     if times == 1:
         return water, None
-    days, epoch = _days(_numbers(variables, "time").ravel(), times, guessed)
+    days, epoch = _days(variables.reals("time").ravel(), times, guessed)
     return water, CurrentRecord(days, epoch, depth[keep], u[keep].T, v[keep].T, w[keep].T)
 
 
-def _numbers(variables: Mapping[str, MatValue], name: str) -> RealArray:
-    try:
-        return numbers(variables.get(name))
-    except ValueError as error:
-        raise ValueError(f"`{name}` {error}") from None
-
-
-def _profiles(variables: Mapping[str, MatValue], name: str, levels: int) -> RealArray | None:
+def _profiles(variables: MatVariables, name: str, levels: int) -> RealArray | None:
     """Speeds by level and time: one profile lies down or stands, several have a row a level."""
-    values = _numbers(variables, name)
+    values = variables.reals(name)
     if values.size == 0:
         return None
     values = np.atleast_2d(values)
