@@ -161,13 +161,13 @@ def _profile(arrays: CurrentArrays, terms: Terms, notices: list[str]) -> Current
 
 def _from_text(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable, list[str]]:
     table = read_table(path, EXAMPLE)
-    header, rows = CurrentHeader(path, table.header), list(table.rows)
+    header, rows = CurrentHeader(table.header), list(table.rows)
     notices: list[str] = []
     if header.timed:
-        rows, notices = _rows_of(rows, time, path)
+        rows, notices = _rows_of(rows, time)
         known = [rows[i] for i in header.known(rows)]
         if rows and not known:
-            raise refused(path, "no level has a value", line=rows[0].number)
+            raise InputError([rows[0].problem("no level has a value")])
         if left_out := len(rows) - len(known):
             levels = f"{left_out} level{'s' * (left_out > 1)}"
             notices.append(f"{levels} without a value left out of the current")
@@ -178,15 +178,15 @@ def _from_text(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable
     depth, u, v, w = header.currents(rows, problems, terms).T
     if problems:
         raise InputError(abridged(problems))
-    notices += [*comment_notices(path, header), *turned_notices(header.columns, terms)]
+    notices += [*_comment_notices(header), *turned_notices(header.columns, terms)]
     notices += current_notices((depth, u[np.newaxis], v[np.newaxis]), None, terms.water_depth)
     return CurrentTable(*(tuple(each.tolist()) for each in (depth, u, v, w))), notices
 
 
-def _rows_of(rows: list[CellRow], time: str | None, path: Path) -> tuple[list[CellRow], list[str]]:
+def _rows_of(rows: list[CellRow], time: str | None) -> tuple[list[CellRow], list[str]]:
     """Return the rows of the time nearest to the one wanted, and the notice that says so."""
     problems: list[Problem] = []
-    moments = [_moment_of(row, path, problems) for row in rows]
+    moments = [_moment_of(row, problems) for row in rows]
     if problems:
         raise InputError(abridged(problems))
     times = sorted({moment for moment in moments if moment is not None})
@@ -195,12 +195,12 @@ def _rows_of(rows: list[CellRow], time: str | None, path: Path) -> tuple[list[Ce
     return chosen, [notice] if notice else []
 
 
-def _moment_of(row: CellRow, path: Path, problems: list[Problem]) -> datetime | None:
+def _moment_of(row: CellRow, problems: list[Problem]) -> datetime | None:
     """Return the time of a row; None, with its mistake added, where it has none."""
     try:
         return current_terms.parse_time(row.cells[0])
     except TimeChoiceError as error:
-        problems.append(Problem(str(path), row.number, row.column(0), str(error)))
+        problems.append(row.problem(str(error), 0))
         return None
 
 
@@ -215,7 +215,7 @@ class CsvRecord(Record):
         self._kept = tempfile.TemporaryFile()  # noqa: SIM115 (until it is closed)
         try:
             header = self._read(path)
-            told = comment_notices(path, header)
+            told = _comment_notices(header)
             self._index, chosen = choose_profiles(self._times, period, every, path)
         except BaseException:
             self._kept.close()
@@ -235,17 +235,17 @@ class CsvRecord(Record):
                     (i, line.decode("utf-8-sig" if i == 1 else "utf-8").rstrip("\r\n"))
                     for i, line in enumerate(bare, 1)
                 )
-                return self._keep(path, *delimited.table_lines(path, lines, f"time,{EXAMPLE}"))
+                return self._keep(*delimited.table_lines(path, lines, f"time,{EXAMPLE}"))
         except UnicodeDecodeError:
             raise refused(path, "is not UTF-8 text") from None
         except OSError as error:
             raise refused(path, f"cannot be read: {error.strerror or error}") from None
 
-    def _keep(self, path: Path, first: CellRow, lines: Iterator[NumberedLine]) -> CurrentHeader:
-        header = CurrentHeader(path, first)
+    def _keep(self, first: CellRow, lines: Iterator[NumberedLine]) -> CurrentHeader:
+        header = CurrentHeader(first)
         if not header.timed:
             message = "has no column `time`: it is one profile, for `calm run`"
-            raise refused(path, message, line=first.number)
+            raise InputError([first.problem(message)])
         problems: list[Problem] = []
         times: list[np.datetime64] = []
         counts: list[int] = []
@@ -253,7 +253,7 @@ class CsvRecord(Record):
             begins = [
                 i for i, row in enumerate(rows) if not i or row.cells[0] != rows[i - 1].cells[0]
             ]
-            moments = [_moment_of(rows[i], path, problems) for i in begins]
+            moments = [_moment_of(rows[i], problems) for i in begins]
             times += [np.datetime64(each.replace(tzinfo=None)) for each in moments if each]
             sizes = np.diff([*begins, len(rows)])
             which = np.repeat(np.arange(len(begins)), sizes)
@@ -293,17 +293,17 @@ class CsvRecord(Record):
         self._kept.close()
 
 
-def comment_notices(path: Path, header: CurrentHeader) -> list[str]:
+def _comment_notices(header: CurrentHeader) -> list[str]:
     """Return what the comments above a table of currents say that a person should know.
 
     InputError: they say that it is a part of the current, or in other coordinates than its columns.
     """
-    with path.open("rb") as file:
+    with header.row.path.open("rb") as file:
         above = (line.decode(errors="replace").strip() for line in islice(file, header.row.number))
         comments = [line.lstrip("# ") for line in above if line.startswith("#")]
     magnetic = bool(magnetic_columns(header.columns)[1])
     if reason := refused_by_comments(comments, magnetic=magnetic):
-        raise refused(path, f"its current {reason}", line=1)
+        raise refused(header.row.path, f"its current {reason}", line=1)
     return remarks_in_comments(comments)
 
 
@@ -314,7 +314,7 @@ def _whole_profiles(lines: Iterable[NumberedLine], header: CellRow) -> Iterator[
     """
     gathered: list[CellRow] = []
     for line in lines:
-        row = delimited.row_below(header, *line)
+        row = header.below(*line)
         if len(gathered) >= AT_ONCE and row.cells[0] != gathered[-1].cells[0]:
             yield gathered
             gathered = []
@@ -336,13 +336,11 @@ def _refuse(problems: list[Problem], header: CurrentHeader, *, at_least: int = 0
 class CurrentHeader:
     """Know the columns of a table of currents after its time, if it has one."""
 
-    path: Path
     row: CellRow
 
     def __post_init__(self) -> None:
         if self.timed and (complaint := zone_complaint(self.row.cells[0])):
-            line, column = self.row.number, self.row.column(0)
-            raise refused(self.path, complaint, line=line, column=column)
+            raise InputError([self.row.problem(complaint, 0)])
 
     @property
     def timed(self) -> bool:
@@ -376,12 +374,11 @@ class CurrentHeader:
         def report(location: Sequence[str | int], message: str) -> Problem:
             place = [int(part) for part in location[1:]]
             row = rows[place.pop(0)] if location[0] == "rows" and place else self.row
-            column = row.column(place[0] + first if place else 0)
-            return Problem(str(self.path), row.number, column, message)
+            return row.problem(message, place[0] + first if place else 0)
 
         before = len(problems)
         for row in rows if self.row.dialect.decimal == "," else ():
-            problems += row.mixed_decimals(self.path)
+            problems += row.mixed_decimals()
         cells = [[cell or None for cell in row.cells[first:]] for row in rows]
         table = QuantityTable(self.columns, cells, report, problems)
         found = read_currents(table, terms, profile)
