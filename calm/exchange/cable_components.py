@@ -8,13 +8,7 @@ from itertools import pairwise
 
 from calm.errors import refused
 from calm.exchange.cable_grammar import CableDefinition, KeyValue, KeyValues
-from calm.exchange.design import (
-    FigureOrWord,
-    ImportedComponent,
-    Remark,
-    is_chain,
-    role_of,
-)
+from calm.exchange.design import FigureOrWord, ImportedComponent, Remark, role_of
 from calm.files.definition import CATALOGUE_DENSITY
 from calm.units import KILOGRAM_FORCE
 
@@ -66,7 +60,7 @@ class ComponentMaker:
             "ct": self._drag(values, "cdt", depth, speed),
         }
         weight, mass = self._at_reference(wet, mass)
-        component = ImportedComponent.of_line(name, weight, figures, chain=is_chain(name))
+        component = ImportedComponent.of_line(name, weight, figures)
         if mass:
             component.figures["mass"] = mass
         if (

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from math import atan2, degrees, hypot, pi, sqrt
 
-from calm.exchange.design import is_chain
+from calm.exchange.design import is_called
 from calm.exchange.exported_parts import ExportedLine, ExportedPart, PartLoad, unique_name
 from calm.files import Chain, Cylinder, Rigid, Sphere
 from calm.files.rigid import Displacement
@@ -179,7 +179,7 @@ def _material(problem: _Problem, part: ExportedPart) -> str:
         f"{along:.9g}  EA = {part.stiffness or _RIGID:.9g}  EI = 1e-4  GJ = 1e-4"
     )
     name = _word(part.use)
-    if isinstance(part.component, Chain) and not is_chain(name):
+    if isinstance(part.component, Chain) and not is_called(name, "chain"):
         name = f"chain_{name}"
     return unique_name(problem.materials, name, figures)
 

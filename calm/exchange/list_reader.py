@@ -21,7 +21,7 @@ from calm.exchange.design import (
     ImportedPiece,
     ImportedWater,
     Remark,
-    is_line,
+    is_called,
 )
 from calm.exchange.list_cells import SheetRows, number, read_sheets
 from calm.exchange.list_headings import ListHeadings, check_given, headings_of
@@ -366,4 +366,4 @@ def _is_line(row: list_rows.ListRow, title: str) -> bool:
     floats = row.figures.get("buoyancy", 0.0) > 0.0 and row.figures.get("diameter", 0.0) > 0.0
     if abs(row.figures.get("length", 1.0) - 1.0) > _A_METRE or (floats and "width" in row.figures):
         return False
-    return bool(row.metre) or row.is_line or is_line(title)
+    return bool(row.metre) or row.is_line or is_called(title, "line")

@@ -11,13 +11,8 @@ from calm.exchange.design import (
     FigureOrWord,
     ImportedComponent,
     Remark,
-    is_anchor,
-    is_chain,
-    is_connector,
-    is_line,
+    is_called,
     is_long,
-    is_release,
-    is_rigid,
     role_of,
     size_in,
 )
@@ -83,22 +78,25 @@ class ListRow:
     @property
     def is_anchor(self) -> bool:
         """Tell whether it is the anchor."""
-        return bool(_ANCHOR_KINDS.search(f"{self.kind} {self.role}")) or is_anchor(self.name)
+        said = _ANCHOR_KINDS.search(f"{self.kind} {self.role}")
+        return said is not None or is_called(self.name, "anchor")
 
     @property
     def sinks(self) -> bool:
         """Tell whether it is a line, an anchor, or what sinks by its name."""
-        return is_connector(self.name) or is_release(self.name) or self.is_line or self.is_anchor
+        named = is_called(self.name, "connector", "release")
+        return named or self.is_line or self.is_anchor
 
     @property
     def is_line(self) -> bool:
         """Tell whether it is a cable or a chain."""
         if self.line is not None:
             return self.line
-        if self.role in _ROLES or is_rigid(self.kind):
+        if self.role in _ROLES or is_called(self.kind, "rigid"):
             return False
-        fitting = is_connector(self.name) and self.figure("length") < _FITTING
-        return self.role == "line" or (is_line(f"{self.kind} {self.name}") and not fitting)
+        if is_called(self.name, "connector") and self.figure("length") < _FITTING:
+            return self.role == "line"
+        return self.role == "line" or is_called(f"{self.kind} {self.name}", "line")
 
 
 def rows_of(
@@ -140,7 +138,7 @@ def rows_of(
             dropped.append(Remark(f"row {place}", f"`{name}`, without length and weight"))
             continue
         size = row.figure("diameter") or row.figure("width") or size_in(name)
-        fixed = row.is_line or row.is_anchor or row.role in _ROLES or is_rigid(row.kind)
+        fixed = row.is_line or row.is_anchor or row.role in _ROLES or is_called(row.kind, "rigid")
         if not fixed and is_long(name, row.figure("length"), size):
             row.line = True
             guessed.append(Remark(row.where, "taken as a rope, since it is long and thin"))
@@ -337,7 +335,7 @@ def _line(row: ListRow) -> _Definition:
     if "buoyancy" not in row.figures:
         row.refuse(f"its weight in water is missing{row.hint}")
     across, lift = row.figure("diameter") or row.figure("width"), row.figure("buoyancy")
-    kind = "chain" if lift <= 0.0 and is_chain(f"{row.name} {row.kind}") else "cable"
+    kind = "chain" if lift <= 0.0 and is_called(f"{row.name} {row.kind}", "chain") else "cable"
     if across <= 0.0:
         across = size_in(row.name)
         if across <= 0.0:

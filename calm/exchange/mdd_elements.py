@@ -16,7 +16,12 @@ import numpy as np
 
 from calm.errors import refused
 from calm.exchange import design
-from calm.exchange.design import MOST_PIECES, FigureOrWord, ImportedComponent, ImportedPiece
+from calm.exchange.design import (
+    MOST_PIECES,
+    FigureOrWord,
+    ImportedComponent,
+    ImportedPiece,
+)
 from calm.exchange.mat_file import MatVariables, RealArray, names
 from calm.files.definition import CATALOGUE_DENSITY
 from calm.units import KILOGRAM_FORCE
@@ -103,10 +108,9 @@ def _is_too_small(element: MddElement) -> bool:
 
 def _flexible(element: MddElement) -> ImportedComponent:
     """Return the definition of a wire, rope or chain; its Cd is of its width."""
-    chain = design.is_chain(element.name)
     figures: dict[str, FigureOrWord] = {"diameter": element.across, "cn": element.cd, "ct": 0.0}
     weight = 0.0 - element.lift * KILOGRAM_FORCE
-    component = ImportedComponent.of_line(element.name, weight, figures, chain=chain)
+    component = ImportedComponent.of_line(element.name, weight, figures)
     modulus = element.modulus
     if modulus is not None and math.isfinite(modulus):
         component.figures["stiffness"] = modulus * math.pi / 4.0 * element.across**2

@@ -19,7 +19,6 @@ from calm.exchange.design import (
     ImportedPiece,
     ImportedWater,
     Remark,
-    is_chain,
 )
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
 from calm.whole_file import read_text
@@ -208,7 +207,7 @@ def _cable(kind: _Row, gravity: float) -> ImportedComponent:
         "diameter": across, "cn": kind.number("cd", 0.0), "ct": kind.number("cdt", 0.0),
     }  # fmt: skip
     name = kind.words["name"]
-    component = ImportedComponent.of_line(name, wet, figures, chain=is_chain(name))
+    component = ImportedComponent.of_line(name, wet, figures)
     component.figures["mass"] = mass
     if (stiffness := kind.number("ea", 0.0)) > 0.0:
         component.figures["stiffness"] = stiffness

@@ -162,7 +162,7 @@ def check_depths(
                 reason = f"depth {depth:g} m is above the surface"
             elif deep := too_deep(depth):
                 reason = deep
-            elif depth > previous:
+            elif not depth <= previous:
                 reason = ""
             if reason:
                 table.refuse(("rows", i, column), reason)
