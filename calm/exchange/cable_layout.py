@@ -11,6 +11,7 @@ from calm.exchange.cable_components import ComponentMaker, counts_on_depth, vari
 from calm.exchange.cable_grammar import (
     CableBranch,
     CableDefinition,
+    CableItems,
     CableProblem,
     CableSegment,
     CableTerminal,
@@ -211,7 +212,7 @@ class CableLayout:
             raise token.refuse(f"the connector `{token.text}` is defined nowhere")
         return self.makers.connector(found)
 
-    def _lay(self, layout: list[CableTerminal | CableSegment | CableBranch], start: _Start) -> None:
+    def _lay(self, layout: CableItems, start: _Start) -> None:
         """Lay what follows a terminal or a node, and the branches at the nodes on the way."""
         segments: list[CableSegment] = []
         branched = any(isinstance(each, CableBranch) for each in layout)
