@@ -14,7 +14,7 @@ from calm.case.net import Net, load
 from calm.errors import NoEquilibrium, UsageError, unknown
 from calm.exchange.cable_writer import cbl_file
 from calm.exchange.exported_parts import ExportedLine, ExportedPart, ExportedTow, Levels
-from calm.exchange.mdd_writer import mdd_file
+from calm.exchange.mdd_file import mdd_file
 from calm.exchange.moordyn_writer import CURRENTS, current_profile, moordyn_file
 from calm.physics.line import Water
 from calm.physics.seawater import REFERENCE_DENSITY

@@ -29,7 +29,7 @@ from calm.exchange.list_cells import is_table
 from calm.exchange.list_reader import read_list
 from calm.exchange.mat_file import is_mat
 from calm.exchange.mdd_elements import is_moords, read_moords
-from calm.exchange.mdd_reader import read_mdd
+from calm.exchange.mdd_file import read_mdd
 from calm.exchange.moordyn_reader import is_moordyn, read_moordyn
 from calm.files import Anchor, Catalogue, Rigid, read_mooring
 from calm.files.components import FLEXIBLE_KINDS, KINDS, Component

@@ -26,7 +26,7 @@ from calm.exchange.design import (
 from calm.exchange.list_cells import SheetRows, number, read_sheets
 from calm.exchange.list_headings import ListHeadings, check_given, headings_of
 from calm.exchange.mat_file import MatVariables, is_mat, names, read_variables
-from calm.exchange.mdd_reader import GROUPS, read_water
+from calm.exchange.mdd_file import GROUPS, read_water
 from calm.files.components import FLEXIBLE_KINDS
 from calm.units import KILOGRAM_FORCE
 from calm.whole_file import read_content

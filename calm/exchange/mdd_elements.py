@@ -38,9 +38,11 @@ MODULI = (1.38e11, 3.45e8, 8.0e8, 3.45e8, 6.9e8, 6.9e10, 7.6e10, 1.0e11)
 polyethylene, Kevlar, aluminium, Dyneema [Pa]."""
 
 
-def component_of(element: MddElement) -> ImportedComponent:
-    """Return the definition of an element that is not the anchor."""
-    return _flexible(element) if element.is_line else rigid(element)
+def piece_of(element: MddElement) -> ImportedPiece:
+    """Return the piece of an element that is not the anchor."""
+    if element.is_line:
+        return ImportedPiece(_flexible(element), element.length)
+    return ImportedPiece(rigid(element))
 
 
 def rigid(element: MddElement) -> ImportedComponent:
@@ -310,9 +312,7 @@ def read_moords(path: Path) -> design.Design:
         if row.get("bool_clampon") == "True":
             _hang(items[-1], element, float(row["height_along_inline"] or 0.0))
         else:
-            items.append(
-                ImportedPiece(component_of(element), element.length if element.is_line else None)
-            )
+            items.append(piece_of(element))
     name = rows[0].get("mooring") or path.stem
     return design.Design("moords", name, items[::-1], None, notes=[_NOTE], in_kilograms=True)
 

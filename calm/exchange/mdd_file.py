@@ -1,7 +1,8 @@
-"""Read a `.mat` file of Mooring Design & Dynamics as a design."""
+"""Read a `.mat` file of Mooring Design & Dynamics as a design, and write a line as one."""
 
 from __future__ import annotations
 
+import io
 import math
 from dataclasses import replace
 from pathlib import Path
@@ -17,16 +18,20 @@ from calm.exchange.design import (
     ImportedWater,
     Remark,
 )
+from calm.exchange.exported_parts import ExportedLine, ExportedPart
 from calm.exchange.mat_file import MatVariables, RealArray, read_variables
 from calm.exchange.mdd_elements import (
     MddElement,
     anchor_of,
-    component_of,
+    piece_of,
     read_elements,
     rides_by_buoyancy,
     rigid,
 )
+from calm.files import Chain, Cylinder, Sphere
+from calm.physics.seawater import REFERENCE_DENSITY
 from calm.quantities import bearing_of
+from calm.units import KILOGRAM_FORCE
 
 GROUPS = ("floats", "wires", "chains", "acrels", "cms", "anchors", "miscs")
 """The variables of a library that hold elements."""
@@ -66,39 +71,32 @@ def read_mdd(path: Path) -> Design:
     clamped, more = read_elements(variables, "CO")
     if problems or more:
         raise refused(path, *problems, *more)
-    guessed: list[Remark] = []
+    program = "Mooring Design & Dynamics"
+    design = Design(program, path.stem, [], None, notes=[_NOTE], in_kilograms=True)
     try:
-        water, record = read_water(variables, towed, guessed)
+        design.water, design.record = read_water(variables, towed, design.guessed)
     except ValueError as error:
         raise refused(path, str(error)) from None
-    design = Design(
-        program="Mooring Design & Dynamics",
-        name=path.stem,
-        items=[],
-        water=water,
-        record=record,
-        guessed=guessed,
-        notes=[_NOTE],
-        in_kilograms=True,
-    )
-    if record is not None:
+    if design.record is not None:
         design.notes.append("The current is the first profile of the record beside this file.")
-    (_lay_tow if towed else _lay_mooring)(design, elements, variables, path)
-    _clamp(design, clamped, variables, towed, path)
+    if towed:
+        _lay_tow(design, elements, variables, path)
+    else:
+        _lay_mooring(design, elements, path)
+    if clamped:
+        _clamp(design, clamped, variables, path)
     return design
 
 
-def _lay_mooring(
-    design: Design, elements: list[MddElement], variables: MatVariables, path: Path
-) -> None:
+def _lay_mooring(design: Design, elements: list[MddElement], path: Path) -> None:
     last = elements[-1]
     if last.is_line or len(elements) < 2 or last.lift == 0.0:
         raise refused(path, f"element {last.number}, {last.name}, is not an anchor with a weight")
-    design.items = [_item(element) for element in elements[:-1]]
+    design.items = [piece_of(element) for element in elements[:-1]]
     design.items.append(ImportedPiece(anchor_of(last)))
     depth = design.water.depth if design.water is not None else None
     if depth is None or _STRETCHED * sum(item.extent for item in design.items) >= depth:
-        design.items[0] = _item(replace(elements[0], mass=None))
+        design.items[0] = piece_of(replace(elements[0], mass=None))
         rides_by_buoyancy(design.items[0].component)
 
 
@@ -109,7 +107,7 @@ def _lay_tow(
     end = elements[-1]
     if not end.is_line and end.length <= 0.01 and abs(end.lift) <= 0.011 and len(elements) > 1:
         elements = elements[:-1]
-    design.items = [_item(element) for element in reversed(elements)]
+    design.items = [piece_of(element) for element in reversed(elements)]
     east, north = variables.first("Usp"), variables.first("Vsp")
     speed = math.hypot(east, north)
     if speed == 0.0:
@@ -121,21 +119,8 @@ def _lay_tow(
         design.dropped.append(Remark("afh", what))
 
 
-def _item(element: MddElement) -> ImportedPiece:
-    component = component_of(element)
-    return ImportedPiece(component, element.length if element.is_line else None)
-
-
-def _clamp(
-    design: Design,
-    clamped: list[MddElement],
-    variables: MatVariables,
-    towed: bool,
-    path: Path,
-) -> None:
+def _clamp(design: Design, clamped: list[MddElement], variables: MatVariables, path: Path) -> None:
     """Hang what is clamped on: by element and share of its length, counted from its lower end."""
-    if not clamped:
-        return
     host, share, height = (variables.row(name).tolist() for name in ("Jobj", "Pobj", "ZCO"))
     by_share = len(host) == len(share) == len(clamped)
     by_height = len(height) == len(clamped)
@@ -143,39 +128,32 @@ def _clamp(
         counts = f"`Jobj` {len(host)}, `Pobj` {len(share)}, `ZCO` {len(height)}"
         raise refused(path, f"{len(clamped)} clamps without their places: {counts}")
     for i, element in enumerate(clamped):
-        above = _by_height(design.items, height[i], towed) if by_height else None
+        above = _by_height(design.items, height[i]) if by_height else None
+        place, guess = above, "from its height alone"
         if by_share:
-            place = _by_share(design.items, host[i], share[i], towed)
+            place, guess = _by_share(design, host[i], share[i]), ""
             if place is None:
                 raise refused(path, f"{element.name} is clamped on element {host[i]:g}: none")
-        else:
-            place = above
+            if above is not None and not _agree(place, above):
+                guess = f"`ZCO` has it at {height[i]:g} m, elsewhere than `Jobj` and `Pobj`"
         if place is None:
             raise refused(path, f"{element.name} is clamped at {height[i]:g} m, off the line")
-        number, at = place
-        guess = ""
-        if by_share and above is not None and not _agree(place, above):
-            guess = f"`ZCO` has it at {height[i]:g} m, elsewhere than `Jobj` and `Pobj`"
-        elif not by_share:
-            guess = "from its height alone"
-        design.items[number].clamp(rigid(element), at, guess)
+        design.items[place[0]].clamp(rigid(element), place[1], guess)
 
 
-def _by_share(
-    items: list[ImportedPiece], host: float, share: float, towed: bool
-) -> tuple[int, float] | None:
+def _by_share(design: Design, host: float, share: float) -> tuple[int, float] | None:
     """Return the piece that an element became, and how far below its upper end a share of it is."""
-    number = round(host) - 1
-    if towed:
-        number = len(items) - 1 - number
-    if not (0 <= number < len(items)) or not -1e-6 <= share <= 1.0 + 1e-6:
+    count, number = len(design.items), round(host) - 1
+    if design.tow is not None:
+        number = count - 1 - number
+    if not (0 <= number < count) or not -1e-6 <= share <= 1.0 + 1e-6:
         return None
     # in a tow the program counts from the body up: from the lower end, too
-    length = items[number].extent
+    length = design.items[number].extent
     return number, min(max((1.0 - share) * length, 0.0), length)
 
 
-def _by_height(items: list[ImportedPiece], height: float, towed: bool) -> tuple[int, float] | None:
+def _by_height(items: list[ImportedPiece], height: float) -> tuple[int, float] | None:
     """Return the piece at a height above the seabed (in a tow above the lower end of the body)."""
     below = 0.0
     for number in range(len(items) - 1, -1, -1):
@@ -229,9 +207,8 @@ def read_water(
             raise ValueError("`rho` has gaps in its first profile")
         what = f"the first of {densities.shape[1]} profiles; a mooring has one density"
         guessed.append(Remark("environment.density", what))
-    depth = np.sort(levels) if towed else seabed - levels
-    order = np.arange(levels.size) if towed else np.argsort(depth, kind="stable")
-    depth = depth if towed else depth[order]
+    order = np.arange(levels.size) if towed else np.argsort(seabed - levels, kind="stable")
+    depth = np.sort(levels) if towed else (seabed - levels)[order]
     u, v, w = u[order], v[order], w[order]
     keep = np.append(True, np.diff(depth) > 0.0)
     water = ImportedWater(None if towed else seabed)
@@ -281,3 +258,144 @@ def _days(time: RealArray, times: int, guessed: list[Remark]) -> tuple[RealArray
         return time - _MATLAB_EPOCH, "1970-01-01"
     guessed.append(Remark("record.time", "days from 2000-01-01"))
     return time - time[0], "2000-01-01"
+
+
+_HALF_DENSITY = 0.5 * REFERENCE_DENSITY
+_LONGEST = 32  # characters of a name
+_LEAST_USED = 1e-3  # share of the buoyancy, for a float that hardly any is used of
+
+
+def mdd_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
+    """Return the content of the file, MATLAB 5, and what it cannot hold."""
+    from scipy.io import savemat
+
+    lost: list[str] = []
+    parts = list(design.parts)
+    rows = [_column(part, lost) for part in parts]
+    if design.afloat:
+        used, seen = design.riding
+        rows[0] = (*rows[0][:5], rows[0][5] * seen / max(used, _LEAST_USED), *rows[0][6:])
+    names = [_name(part) for part in parts]
+    variables: dict[str, object] = {}
+    suffix = ""
+    if design.tow is not None:
+        suffix = "t"
+        rows = [*rows[::-1], (0.0, 0.0, 0.0, 0.0, 0.01, 0.01, np.inf, 0.0)]
+        names = [*names[::-1], "Top of Tow Rope"]
+        variables |= {"Usp": design.tow.east, "Vsp": design.tow.north, "afh": design.tow.height}
+        if design.tow.height:
+            lost.append("the height of the sheave: there the wire counts from the water")
+    else:
+        assert design.anchor is not None
+        anchor, weight = design.anchor
+        rows.append((anchor.length, 1.0, 0.0, 0.0, -weight / KILOGRAM_FORCE, 1.3, np.inf, 0.0))
+        names.append("anchor")
+    figures = np.array(rows, np.float64).T
+    variables |= {
+        f"H{suffix}": figures[:4],
+        f"B{suffix}": figures[4:5],
+        f"Cd{suffix}": figures[5:6],
+        f"ME{suffix}": figures[6:7],
+        f"moorele{suffix}": _texts(names),
+        "time": np.zeros((0, 0)),
+    }
+    if not suffix:
+        variables["Wt"] = figures[7:8]
+    depth, *columns = np.array(design.levels).T
+    heights = depth if suffix else design.depth - depth  # above the seabed, in a tow depths
+    levels = zip(("z", "U", "V", "W", "rho"), (heights, *columns), strict=True)
+    variables |= {name: values.reshape(-1, 1) for name, values in levels}
+    variables |= _clamped(design, lost)
+    if any(design.wind):
+        lost.append("wind")
+    if design.afloat:
+        lost.append(
+            "the hull of the float: there it sinks, and drags, in proportion to the buoyancy it "
+            "uses; its Cd is such that it drags as here in this current"
+        )
+    losses = design.losses(lost)
+    variables["lost"] = _texts([f"by CALM from {design.name}; lost:", *losses])
+    content = io.BytesIO()
+    savemat(content, variables, format="5", oned_as="row")
+    return content.getvalue(), losses
+
+
+def _column(part: ExportedPart, lost: list[str]) -> tuple[float, ...]:
+    """Length, width, diameter, flag, buoyancy [kg], Cd, modulus and mass of a column."""
+    lift = part.net / KILOGRAM_FORCE
+    if part.flexible:
+        if part.kt > 0.0:
+            lost.append("drag along cables and chains (ct)")
+        across = part.diameter
+        modulus = part.stiffness / (math.pi / 4.0 * across**2) if part.stiffness else np.inf
+        return part.length, across, 0.0, 1.0, lift, part.kn / (_HALF_DENSITY * across), modulus, 0.0
+    width, diameter, drag = _size(part, lost)
+    flag = 2.0 if part.role == "connector" else 0.0
+    mass = part.mass if part.mass is not None and lift > 0.0 else 0.0
+    return part.length, width, diameter, flag, lift, drag, np.inf, mass
+
+
+def _size(part: ExportedPart, lost: list[str]) -> tuple[float, float, float]:
+    """Width, diameter and Cd with which an element drags as the rigid part does."""
+    component = part.component
+    if part.kn == 0.0:
+        return 0.0, 0.0, 0.0
+    if isinstance(component, Sphere):
+        across = component.diameter
+        return 0.0, across, part.kn / (_HALF_DENSITY * math.pi / 4.0 * across**2)
+    if part.directional and part.length > 0.0:
+        if part.kt > 0.0:
+            lost.append("drag on the ends of cylinders (ct), and of bodies along the line (kt)")
+        if isinstance(component, Cylinder):
+            across = component.diameter
+            return across, 0.0, part.kn / (_HALF_DENSITY * across * part.length)
+        return part.area() / part.length, 0.0, 1.0
+    if not isinstance(component, Cylinder):
+        lost.append("bodies: each is a sphere, or a cylinder, of its drag with Cd 1")
+    return 0.0, math.sqrt(4.0 * part.area() / math.pi), 1.0
+
+
+def _clamped(design: ExportedLine, lost: list[str]) -> dict[str, object]:
+    """Return what is clamped on, from the top down, by element and share from its lower end."""
+    rows, names, places = [], [], []
+    count = len(design.parts)
+    top = 0.0 if design.anchor is None else design.anchor[0].length
+    below = top + sum(part.length for part in design.parts)
+    for i, part in enumerate(design.parts):
+        below -= part.length
+        for clamp, at in part.clamps:
+            width, diameter, drag = _size(clamp, lost)
+            lift = clamp.net / KILOGRAM_FORCE
+            rows.append((clamp.length, width, diameter, 0.0, lift, drag))
+            names.append(_name(clamp))
+            number = i + 1 if design.tow is None else count - i
+            share = 1.0 - at / part.length if part.length > 0.0 else 0.0
+            places.append((number, share, below + part.length - at))
+    if not rows:
+        return {}
+    columns, where = np.array(rows).T, np.array(places).T
+    return {
+        "HCO": columns[:4],
+        "BCO": columns[4:5],
+        "CdCO": columns[5:6],
+        "mooreleCO": _texts(names),
+        "Jobj": where[:1],
+        "Pobj": where[1:2],
+        "ZCO": where[2:],
+        "Iobj": np.zeros((0, 0)),
+    }
+
+
+def _name(part: ExportedPart) -> str:
+    """Its id; that of a chain with the word "chain", by which it is recognised."""
+    name = part.use
+    if isinstance(part.component, Chain) and "chain" not in name:
+        name = f"chain {name}"
+    return name[:_LONGEST]
+
+
+def _texts(texts: list[str]) -> np.ndarray[tuple[int, ...], np.dtype[np.str_]]:
+    """Texts as a character matrix."""
+    width = max(len(text) for text in texts)
+    plain = [text.encode("ascii", "replace").decode() for text in texts]
+    return np.array([text.ljust(width) for text in plain])
