@@ -11,7 +11,6 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from datetime import UTC, datetime
 from itertools import islice
 from pathlib import Path
 
@@ -125,9 +124,7 @@ def _from_arrays(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTab
         notices = [*current.notices, *current.turned]
         index = 0
         if current.times is not None:
-            seconds = current.times.astype("datetime64[us]").tolist()
-            moments = [moment.replace(tzinfo=UTC) for moment in seconds]
-            index, notice = choose_time(moments, time)
+            index, notice = choose_time(current.times.astype("datetime64[us]"), time)
             notices = [*([notice] if notice else []), *notices]
         elif time is not None:
             raise TimeChoiceError("the file has no times")
@@ -186,16 +183,16 @@ def _from_text(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable
 def _rows_of(rows: list[CellRow], time: str | None) -> tuple[list[CellRow], list[str]]:
     """Return the rows of the time nearest to the one wanted, and the notice that says so."""
     problems: list[Problem] = []
-    moments = [_moment_of(row, problems) for row in rows]
+    moments = np.array([_moment_of(row, problems) for row in rows], "datetime64[us]")
     if problems:
         raise InputError(abridged(problems))
-    times = sorted({moment for moment in moments if moment is not None})
+    times = np.unique(moments)
     index, notice = choose_time(times, time)
-    chosen = [row for row, moment in zip(rows, moments, strict=True) if moment == times[index]]
-    return chosen, [notice] if notice else []
+    chosen = np.flatnonzero(moments == times[index])
+    return [rows[i] for i in chosen], [notice] if notice else []
 
 
-def _moment_of(row: CellRow, problems: list[Problem]) -> datetime | None:
+def _moment_of(row: CellRow, problems: list[Problem]) -> np.datetime64 | None:
     """Return the time of a row; None, with its mistake added, where it has none."""
     try:
         return current_terms.parse_time(row.cells[0])
@@ -254,7 +251,7 @@ class CsvRecord(Record):
                 i for i, row in enumerate(rows) if not i or row.cells[0] != rows[i - 1].cells[0]
             ]
             moments = [_moment_of(rows[i], problems) for i in begins]
-            times += [np.datetime64(each.replace(tzinfo=None)) for each in moments if each]
+            times += [each for each in moments if each is not None]
             sizes = np.diff([*begins, len(rows)])
             which = np.repeat(np.arange(len(begins)), sizes)
             try:

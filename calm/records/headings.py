@@ -260,7 +260,7 @@ def read_time_columns(path: Path, dimensions: Sequence[str], example: str) -> Ti
     values = np.full((len(rows), len(columns)), np.nan)
     for i, row in enumerate(rows):
         try:
-            times[i] = np.datetime64(parse_time(row.cells[0]).replace(tzinfo=None), "ns")
+            times[i] = parse_time(row.cells[0])
         except TimeChoiceError as error:
             problems.append(row.problem(str(error), 0))
         for k, (j, labelled) in enumerate(columns.items()):

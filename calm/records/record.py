@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from calm.errors import UsageError, refused
 from calm.physics.line import Floats
 from calm.positions import plain_degrees
-from calm.records.current_terms import TimeChoiceError, parse_time
+from calm.records.current_terms import TimeChoiceError, parse_time, time_text
 from calm.records.water_column import Place
 
 Times = NDArray[np.datetime64]
@@ -202,12 +202,6 @@ def part(index: Index, start: int, stop: int) -> Index:
     return slice(index.start + start * index.step, index.start + stop * index.step, index.step)
 
 
-def time_text(time: np.datetime64) -> str:
-    """Return a time as a person reads it."""
-    text: str = np.datetime_as_string(time.astype("datetime64[s]"))
-    return text.removesuffix(":00")
-
-
 def _end(text: str, *, whole: bool) -> np.datetime64 | None:
     """One end of a period [ns]."""
     text = text.strip()
@@ -219,7 +213,7 @@ def _end(text: str, *, whole: bool) -> np.datetime64 | None:
             if whole:
                 return _in_reach((date + 1).astype("M8[us]")) - np.timedelta64(1, "ns")
             return _in_reach(date.astype("M8[us]"))
-        return _in_reach(np.datetime64(parse_time(text).replace(tzinfo=None), "us"))
+        return _in_reach(parse_time(text))
     except TimeChoiceError as error:
         raise UsageError(str(error)) from None
     except ValueError:
