@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import os
-import secrets
 import stat
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Generic, TypeVar
 
@@ -40,7 +38,7 @@ def beside(target: Path) -> Iterator[Path]:
     OSError
         The system refuses; what was there is untouched, and no part is left.
     """
-    part = target.with_name(f".{target.name[:_LONGEST]}.{secrets.token_hex(6)}{UNFINISHED}")
+    part = target.with_name(f".{target.name[:_LONGEST]}.{os.urandom(6).hex()}{UNFINISHED}")
     part.touch(exist_ok=False)
     try:
         yield part
@@ -93,6 +91,8 @@ def flush_to_disk(paths: Iterable[Path]) -> None:
     OSError
         The disk has not taken them.
     """
+    from concurrent.futures import ThreadPoolExecutor
+
     with ThreadPoolExecutor(_TOGETHER) as pool:
         for _ in pool.map(_flush, paths):
             pass

@@ -868,6 +868,21 @@ def test_a_net_that_sinks_is_refused_as_such(tmp_path: Path) -> None:
         load(tmp_path / "net.yaml", text=text).solve()
 
 
+def test_a_leg_that_lies_in_a_heap_is_refused_as_such(tmp_path: Path) -> None:
+    """300 m down from the ship and 400 m along the seabed to the anchor are no 890 m of chain."""
+    text = """
+environment: {depth: 300 m}
+legs:
+  moor:
+    line: [{use: chain-buoy-16, length: 890 m}, {use: anchor-wheels-4}]
+    top: {held: {depth: 0 m}}
+    bottom: {anchor: {at: [-400 m, 0 m]}}
+"""
+    with pytest.raises(NoEquilibrium, match=r"Leg moor is 890.*, and some 700\.00 m") as refused:
+        load(tmp_path / "net.yaml", text=text).solve()
+    assert refused.value.status == "slack"
+
+
 def test_what_names_no_part_of_a_net_is_a_mistake(tmp_path: Path) -> None:
     """As of a line: in `deployed:` and in what is accepted."""
     text = NET + "deployed: {items: [{label: nobody, serial: '3'}]}\n"
