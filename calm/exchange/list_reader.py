@@ -7,6 +7,7 @@ or workbook whose sheets have headings.
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
@@ -132,11 +133,9 @@ def _names(
 
 def _names_in(cells: SheetRows) -> list[list_rows.ListRow]:
     """Return the rows of a sheet that holds names alone: the words of the column that has most."""
-    counts: dict[int, int] = {}
-    for row in cells:
-        for index, cell in enumerate(row):
-            counts[index] = counts.get(index, 0) + bool(re.search(r"[^\W\d]{2}", cell))
-    best = max(counts, key=lambda index: counts[index], default=0)
+    words = (i for row in cells for i, cell in enumerate(row) if re.search(r"[^\W\d]{2}", cell))
+    counts = Counter(words)
+    best = max(range(max(map(len, cells), default=1)), key=counts.__getitem__)
     return [
         list_rows.ListRow(place, row[best])
         for place, row in enumerate(cells, 1)

@@ -281,6 +281,7 @@ def _modulus(value: float) -> float | None:
 
 
 _MARKS = {"name", "length", "buoyancy", "bool_line", "bool_clampon", "height_along_inline"}
+_FIGURES = ("length", "buoyancy", "material", "width", "diameter", "drag")
 _OFF = 1e-6  # m by which a clamp may stand off its piece
 _NOTE = "It solves the equations of Mooring Design & Dynamics. See `calm docs import-table`."
 
@@ -310,58 +311,50 @@ def read_moords(path: Path) -> design.Design:
     items = [ImportedPiece(anchor)]
     for row, element in zip(rows[1:], elements[1:], strict=True):
         if row.get("bool_clampon") == "True":
-            _hang(items[-1], element, float(row["height_along_inline"] or 0.0))
+            host, length = items[-1], items[-1].extent
+            at = length - float(row["height_along_inline"] or 0.0)
+            guess = "" if -_OFF <= at <= length + _OFF else "its place was off the piece"
+            host.clamp(rigid(element), min(max(at, 0.0), length), guess)
         else:
             items.append(piece_of(element))
     name = rows[0].get("mooring") or path.stem
     return design.Design("moords", name, items[::-1], None, notes=[_NOTE], in_kilograms=True)
 
 
-def _hang(host: ImportedPiece, element: MddElement, height: float) -> None:
-    """Clamp an element on a piece, at a height above its lower end [m]."""
-    length = host.extent
-    at = length - height
-    guess = "" if -_OFF <= at <= length + _OFF else "its place was off the piece"
-    host.clamp(rigid(element), min(max(at, 0.0), length), guess)
-
-
 def _element(row: dict[str, str], place: int, problems: list[str]) -> MddElement:
-    is_line = row.get("bool_line") == "True"
-    length = _number(row, "length", place, problems)
-    lift = _number(row, "buoyancy", place, problems)
+    clamped = row.get("bool_clampon") == "True"
+    keys = (*_FIGURES, "height_along_inline") if clamped else _FIGURES
+    figures = {key: _number(row, key, place, problems) for key in keys}
+    is_line, length, lift = row.get("bool_line") == "True", figures["length"], figures["buoyancy"]
     if is_line and length <= 0.0:
         problems.append(f"row {place}, {row['name']}: a line needs its length")
         length = 1.0
-    material = _number(row, "material", place, problems)
+    material = figures["material"]
     known = is_line and 1.0 <= material <= len(MODULI)
     element = MddElement(
         name=row["name"] or f"row {place}",
         length=length,
-        width=_number(row, "width", place, problems),
-        diameter=_number(row, "diameter", place, problems),
+        width=figures["width"],
+        diameter=figures["diameter"],
         is_line=is_line,
         is_fastener=row.get("type") == "rigging",
         lift=lift / length if is_line else lift,
-        cd=_number(row, "drag", place, problems),
+        cd=figures["drag"],
         mass=None,
         modulus=MODULI[round(material) - 1] if known else None,
         number=place,
     )
     problems += mistakes_of(element, f"row {place}, {element.name}")
-    if row.get("bool_clampon") == "True":
-        _number(row, "height_along_inline", place, problems)
     return element
 
 
 def _number(row: dict[str, str], key: str, place: int, problems: list[str]) -> float:
     text = (row.get(key) or "").strip()
-    if not text or text.lower() in ("nan", "none"):
-        return 0.0
     try:
-        value = float(text)
+        value = float(text) if text and text.lower() not in ("nan", "none") else 0.0
     except ValueError:
         value = math.nan
-    if not math.isfinite(value):
-        problems.append(f"row {place}, {row.get('name')}: {key} is `{text}`")
-        return 0.0
-    return value
+    if math.isfinite(value):
+        return value
+    problems.append(f"row {place}, {row.get('name')}: {key} is `{text}`")
+    return 0.0

@@ -69,8 +69,8 @@ def read_mdd(path: Path) -> Design:
     towed = sized[0] == "Ht"
     elements, problems = read_elements(variables, "t" if towed else "")
     clamped, more = read_elements(variables, "CO")
-    if problems or more:
-        raise refused(path, *problems, *more)
+    if problems := [*problems, *more]:
+        raise refused(path, *problems)
     program = "Mooring Design & Dynamics"
     design = Design(program, path.stem, [], None, notes=[_NOTE], in_kilograms=True)
     try:
@@ -188,7 +188,7 @@ def read_water(
         The sizes of the variables do not go together.
     """
     levels = variables.reals("z").ravel()
-    if levels.size == 0 or not np.any(levels > 0.0):
+    if not np.any(levels > 0.0):
         return None, None
     if not np.all(np.isfinite(levels)) or np.any(levels < 0.0):
         raise ValueError("`z` must be heights of 0 and more")
@@ -388,10 +388,8 @@ def _clamped(design: ExportedLine, lost: list[str]) -> dict[str, object]:
 
 def _name(part: ExportedPart) -> str:
     """Its id; that of a chain with the word "chain", by which it is recognised."""
-    name = part.use
-    if isinstance(part.component, Chain) and "chain" not in name:
-        name = f"chain {name}"
-    return name[:_LONGEST]
+    bare = isinstance(part.component, Chain) and "chain" not in part.use
+    return (f"chain {part.use}" if bare else part.use)[:_LONGEST]
 
 
 def _texts(texts: list[str]) -> np.ndarray[tuple[int, ...], np.dtype[np.str_]]:

@@ -206,15 +206,18 @@ def _unpacked(limit: Any, variable: xr.DataArray, absent: float) -> float:
     return value * scale + offset
 
 
+def texts_of(variable: xr.DataArray) -> list[str]:
+    """Return the values of a variable as texts."""
+    values = np.atleast_1d(variable.values).tolist()
+    return [(one.decode() if isinstance(one, bytes) else str(one)).strip() for one in values]
+
+
 def labels_along(dataset: xr.Dataset, dimension: str) -> tuple[str, ...] | None:
     """Return the labels of what a dimension counts; None where it has none."""
-    for name in (*_LABELS, dimension):
-        if name not in dataset.variables or dataset[name].dims != (dimension,):
-            continue
-        values = np.asarray(dataset[name].values)
-        if values.dtype.kind in "SUO":
-            texts = [one.decode() if isinstance(one, bytes) else str(one) for one in values]
-            return tuple(text.strip() for text in texts)
+    for name in first_present(dataset, (*_LABELS, dimension)):
+        variable = dataset[name]
+        if variable.dims == (dimension,) and variable.dtype.kind in "SUO":
+            return tuple(texts_of(variable))
     return None
 
 

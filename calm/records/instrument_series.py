@@ -359,9 +359,7 @@ def _serials(dataset: xr.Dataset, dims: tuple[str, ...]) -> list[str]:
     """Return the serial numbers over some dimensions; none where the file has none."""
     for name in first_present(dataset, _SERIALS):
         if dataset[name].dims == dims:
-            values = np.atleast_1d(dataset[name].values).tolist()
-            texts = [one.decode() if isinstance(one, bytes) else str(one) for one in values]
-            return [text.strip().rstrip("*") for text in texts]
+            return [text.rstrip("*") for text in cf_files.texts_of(dataset[name])]
     return []
 
 
