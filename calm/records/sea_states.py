@@ -380,7 +380,7 @@ def _figures(path: Path, names: tuple[str, ...]) -> list[tuple[int, tuple[float,
         message = f"no column `{'`, `'.join(missing)}`; write {example}, not {','.join(header)}"
         if "peak_period[s]" in missing:
             message += f" ({PEAK_BY_MEAN})"
-        raise refused(path, message, line=table.header.number)
+        raise InputError([table.header.problem(message)])
     places = [header.index(name) for name in names]
     rows, problems = [], []
     for row in table.rows:
@@ -390,7 +390,7 @@ def _figures(path: Path, names: tuple[str, ...]) -> list[tuple[int, tuple[float,
             figures = (nan,)
         rows.append((row.number, figures))
         if not all(isfinite(each) for each in figures):
-            problems.append(Problem(str(path), row.number, 1, f"not numbers as in {example}"))
+            problems.append(row.problem(f"not numbers as in {example}"))
     if problems:
         raise InputError(problems)
     return rows
