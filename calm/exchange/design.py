@@ -90,6 +90,8 @@ class ImportedClamp:
     component: ImportedComponent
     at: float
     guess: str = ""
+    label: str = ""
+    serial: str = ""
 
 
 @dataclass(eq=False)
@@ -102,13 +104,17 @@ class ImportedPiece:
     guess: str = ""
     label: str = ""
     count: int = 1
+    serial: str = ""
 
     @property
     def extent(self) -> float:
         """The length of a line, or that of its component [m]."""
         return self.component.number("length") if self.length is None else self.length
 
-    def clamp(self, component: ImportedComponent, at: float, guess: str = "") -> None:
+    def clamp(
+        self, component: ImportedComponent, at: float, guess: str = "", label: str = "",
+        serial: str = "",
+    ) -> None:  # fmt: skip
         """Clamp a component on it, after those that sit above.
 
         Parameters
@@ -116,8 +122,9 @@ class ImportedPiece:
         component : that is clamped on
         at : distance from its upper end [m]
         guess : why the place is not from the file
+        label, serial : its name in results, and its number
         """
-        self.clamps.append(ImportedClamp(component, at, guess))
+        self.clamps.append(ImportedClamp(component, at, guess, label, serial))
         self.clamps.sort(key=lambda clamp: clamp.at)
 
 
@@ -193,6 +200,7 @@ class Design:
     guessed : guesses that belong to no figure; figures carry their own
     dropped : what the file says and CALM cannot use
     notes : what else the heading of the mooring file says
+    heading : further keys of the mooring file, as it has them
     in_kilograms : whether the file counts forces in kilograms-force
     """
 
@@ -207,6 +215,7 @@ class Design:
     guessed: list[Remark] = field(default_factory=list)
     dropped: list[Remark] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+    heading: dict[str, str] = field(default_factory=dict)
     in_kilograms: bool = False
     legs: list[ImportedLeg] = field(default_factory=list)
 

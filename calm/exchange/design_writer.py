@@ -18,6 +18,7 @@ from calm.errors import CalmError, one_line
 from calm.exchange.design import (
     Design,
     FigureOrWord,
+    ImportedClamp,
     ImportedComponent,
     ImportedPiece,
     ImportedWater,
@@ -87,6 +88,7 @@ def mooring_text(
     page.add(f"name: {quoted(design.name)}")
     if design.description:
         page.add(f"description: {quoted(design.description)}")
+    page.lines += [f"{key}: {value}" for key, value in design.heading.items()]
     page.add()
     if design.tow is not None:
         height = f", height: {_number(design.tow.height)} m" if design.tow.height else ""
@@ -176,7 +178,7 @@ def _counted(items: list[ImportedPiece]) -> list[ImportedPiece]:
     """Equal items that follow each other as one with a count."""
 
     def what(item: ImportedPiece) -> object:
-        if item.clamps or item.guess or item.label:
+        if item.clamps or item.guess or item.label or item.serial:
             return id(item)
         return item.component.identity(), item.length, item.component.entry
 
@@ -191,8 +193,7 @@ def _write_item(page: _Page, item: ImportedPiece, ids: dict[int, str]) -> None:
         pairs.append(f"length: {_number(item.length)} m")
     if item.count > 1:
         pairs.append(f"count: {item.count}")
-    if item.label:
-        pairs.append(f"label: {quoted(item.label)}")
+    pairs += _called(item)
     where = f"line.{item.label or use}"
     if not item.clamps:
         page.add(f"  - {{{', '.join(pairs)}}}", item.guess, where)
@@ -201,8 +202,14 @@ def _write_item(page: _Page, item: ImportedPiece, ids: dict[int, str]) -> None:
     page.lines += [*(f"    {pair}" for pair in pairs[1:]), "    clamps:"]
     for clamp in item.clamps:
         clamped = ids[id(clamp.component)]
-        line = f"      - {{use: {clamped}, at: {_number(clamp.at)} m}}"
-        page.add(line, clamp.guess, f"{where}.clamps.{clamped}")
+        pairs = [f"use: {clamped}", f"at: {_number(clamp.at)} m", *_called(clamp)]
+        where_clamped = f"{where}.clamps.{clamp.label or clamped}"
+        page.add(f"      - {{{', '.join(pairs)}}}", clamp.guess, where_clamped)
+
+
+def _called(item: ImportedPiece | ImportedClamp) -> list[str]:
+    named = (("label", item.label), ("serial", item.serial))
+    return [f"{key}: {quoted(text)}" for key, text in named if text]
 
 
 def _write_component(

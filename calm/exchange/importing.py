@@ -31,6 +31,7 @@ from calm.exchange.mat_file import is_mat
 from calm.exchange.mdd_elements import is_moords, read_moords
 from calm.exchange.mdd_file import read_mdd
 from calm.exchange.moordyn_reader import is_moordyn, read_moordyn
+from calm.exchange.oceanarray_reader import is_oceanarray, read_oceanarray
 from calm.files import Anchor, Catalogue, Rigid, read_mooring
 from calm.files.components import FLEXIBLE_KINDS, KINDS, Component
 from calm.files.editing.writing import WritingStyle
@@ -46,7 +47,7 @@ class ImportOptions:
 
     Attributes
     ----------
-    defines : macros of WHOI Cable
+    defines : macros of WHOI Cable; ids of the catalogue by the names of oceanarray
     columns : the headings of a table, by what they hold
     elements : a library with the figures that a table lacks
     allow_include : whether a file may include another from outside its folder
@@ -80,6 +81,10 @@ FORMATS = (
     ),
     ImportFormat(
         "moordyn", "MoorDyn or MoorPy", is_moordyn, lambda path, options: read_moordyn(path)
+    ),
+    ImportFormat(
+        "oceanarray", "oceanarray", is_oceanarray,
+        lambda path, options: read_oceanarray(path, options.defines, options.elements),
     ),
     ImportFormat("moords", "moords", is_moords, lambda path, options: read_moords(path)),
     ImportFormat(
@@ -139,7 +144,7 @@ def import_file(
     """
     options = options or ImportOptions()
     chosen = _format_of(path, format, listed=options.elements is not None)
-    if options.elements is not None and chosen.name != "table":
+    if options.elements is not None and chosen.name not in ("table", "oceanarray"):
         raise refused(path, f"is of {chosen.program}; --elements is for lists")
     design = chosen.read(path, options)
     levels = 0 if design.water is None else len(design.water.current)

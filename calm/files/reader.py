@@ -155,7 +155,7 @@ def read_mooring(
     if stand_in and not towed and pieces and not _anchored(pieces):
         pieces = (*pieces, stand_in_anchor(0, len(top.data["line"])))
     if legged:
-        legs, pieces = read_legs(top, reader)
+        legs, pieces = read_legs(top, reader, keys.position if keys else None)
         line_is_whole = bool(pieces) and len(problems) == before
     else:
         (_check_tow if towed else _check_anchor)(pieces, top)

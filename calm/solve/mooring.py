@@ -9,7 +9,6 @@ root: two or three marches close it.
 from __future__ import annotations
 
 from collections.abc import Callable, MutableSequence, Sequence
-from dataclasses import replace
 from math import isnan
 from typing import NamedTuple
 
@@ -51,9 +50,6 @@ from calm.solve.solution import (
 
 MOST_DEPTHS = 500
 """The longest line that is solved, in depths: segments are no longer than a hundredth of one."""
-BREATH = 1e-6
-"""Speed that water has at least where a slack line hangs [m/s]: in none it folds to the vertical,
-which is the limit of a weak current, but how it turns there no march can say."""
 MORE_ROOM = 8
 """How many times as much room a line gets that needs more segments."""
 
@@ -89,8 +85,7 @@ def solve_mooring(line: Line, water: Water, settings: Settings | None = None) ->
         if not lacks_room(problem):
             break
         room *= MORE_ROOM
-    if found.ending == SLACK_ON_DIGITS and (still := np.hypot(water.u, water.v) < BREATH).any():
-        stirred = replace(water, u=np.where(still, BREATH, water.u))
+    if found.ending == SLACK_ON_DIGITS and (stirred := water.stirred()):
         return solve_mooring(line, stirred, settings)
     return solution_found(found, problem, line, water, settings)
 

@@ -868,6 +868,20 @@ def test_a_net_that_sinks_is_refused_as_such(tmp_path: Path) -> None:
         load(tmp_path / "net.yaml", text=text).solve()
 
 
+def test_places_may_be_latitudes_and_longitudes(tmp_path: Path) -> None:
+    """On the equator a minute of longitude is 6 378 137 m x π / 10 800 = 1855.325 m."""
+    leg = """
+    line: [{use: sphere-steel-1250}, {use: wire-jacketed-8, length: 60 m}, {use: anchor-wheels-4}]
+"""
+    place = "    bottom: {anchor: {at: [0 deg, 5 13.0 W]}}\n"
+    text = f"environment: {{depth: 100 m}}\nlegs:\n  one:{leg}  two:{leg}{place}"
+    origin = "position: {latitude: 0 deg, longitude: 5 12.0 W}\n"
+    _, two = load(tmp_path / "two.yaml", text=origin + text).solve().anchors
+    assert (two.x, two.y) == pytest.approx((-1855.325, 0.0), abs=2e-3)
+    with pytest.raises(InputError, match="the file needs a `position` for it"):
+        load(tmp_path / "two.yaml", text=text)
+
+
 def test_a_leg_that_lies_in_a_heap_is_refused_as_such(tmp_path: Path) -> None:
     """300 m down from the ship and 400 m along the seabed to the anchor are no 890 m of chain."""
     text = """
