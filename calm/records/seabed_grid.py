@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.errors import InputError, Problem
+from calm.errors import refused
 from calm.positions import SEMI_MAJOR, Frame
 from calm.records.cf_files import UnreadableError, factor_of, holdings, open_current, reading
 
@@ -44,8 +44,7 @@ class SeabedGrid:
         """Return that of a file at a position; InputError where it cannot be understood."""
         if path.suffix.lower() in (".tif", ".tiff"):
             turn = f"gdal_translate -of netCDF {path.name} {path.stem}.nc"
-            message = f"is a GeoTIFF, which is not read; turn it into NetCDF: `{turn}`"
-            raise InputError([Problem(str(path), 0, 0, message)])
+            raise refused(path, f"is a GeoTIFF, which is not read; turn it into NetCDF: `{turn}`")
         digest = hashlib.sha256(path.read_bytes()).hexdigest()
         grid = cls(str(path), digest, latitude, longitude, reach)
         with reading(path):

@@ -11,8 +11,8 @@ from dataclasses import replace
 from calm.errors import Problem
 from calm.files.definition import QuantityField
 from calm.records import profile_tables
-from calm.records.columns import QuantityTable
 from calm.records.headings import heading
+from calm.records.profile_tables import QuantityTable
 from calm.tui.checking import Check, Reading, number, quantity
 from calm.tui.theme import ELLIPSIS
 from calm.units import DIMENSIONS, QuantityError, QuantityRange, unit_factor
