@@ -60,7 +60,10 @@ def test_rows_are_those_of_run(name: str) -> None:
     assert rows == figures(result)
 
 
-@pytest.mark.parametrize("name", MOORINGS)
+@pytest.mark.parametrize(
+    "name",
+    [MOORINGS[0], *(pytest.param(name, marks=pytest.mark.thorough) for name in MOORINGS[1:])],
+)
 def test_findings_are_those_of_check(name: str) -> None:
     path = LINES / f"{name}.yaml"
     view, mooring = judge(text_of(name), path), calm.load(path)

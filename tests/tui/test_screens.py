@@ -126,7 +126,12 @@ def test_what_is_typed_in_the_text_is_one_step_to_undo(drive, small):
 
 
 @pytest.mark.parametrize(
-    "before, after", [("\n", "\r\n"), ("60 m\n", "60 m\r\n"), ("# A", "\ufeff# A")]
+    "before, after",
+    [
+        pytest.param("\n", "\r\n", marks=pytest.mark.thorough),
+        ("60 m\n", "60 m\r\n"),
+        ("# A", "\ufeff# A"),
+    ],
 )
 def test_to_look_at_the_text_changes_nothing_of_it(drive, small, before, after):
     small.write_bytes(MOORING.replace(before, after).encode())
