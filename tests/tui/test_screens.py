@@ -187,8 +187,8 @@ def test_the_verdict_gives_figures_with_signs(drive, small):
     "key, words",
     [
         ("1", ["top float", "deep logger", "current, m/s", "▒"]),
-        ("2", ["m east", "N"]),
-        ("3", ["at most", "2000 N"]),
+        pytest.param("2", ["m east", "N"], marks=pytest.mark.thorough),
+        pytest.param("3", ["at most", "2000 N"], marks=pytest.mark.thorough),
         ("4", ["├─[#]     deep logger", "sea surface"]),
     ],
 )
@@ -342,6 +342,7 @@ def test_where_it_was_deployed(drive, small):
     drive(story, small)
 
 
+@pytest.mark.thorough
 def test_what_was_deployed_at_a_row(drive, small):
     async def story(driver):
         await driver.settle()
@@ -374,6 +375,7 @@ def test_what_was_deployed_at_a_row(drive, small):
     drive(story, small)
 
 
+@pytest.mark.thorough
 def test_a_tow_is_edited_the_same_way(drive, folder):
     from calm.shipped import shipped_folder
 
