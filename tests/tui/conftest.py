@@ -9,6 +9,7 @@ from textual._context import active_app
 from textual.css.stylesheet import Stylesheet
 from textual.pilot import Pilot
 
+from calm.case.memory import Memory
 from calm.tui.app import BuildApp
 from calm.tui.line.table import LineTable
 from calm.tui.start import open_session
@@ -84,6 +85,15 @@ def no_clock(monkeypatch):
     """Nothing is waited for by the clock."""
     monkeypatch.setattr("textual.pilot.wait_for_idle", at_rest)
     monkeypatch.setattr("textual.app.wait_for_idle", at_once)
+
+
+@pytest.fixture(autouse=True, scope="session")
+def solved_once():
+    """What several tests solve is solved for the first of them."""
+    shared = Memory()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Memory, "__init__", lambda memory: vars(memory).update(vars(shared)))
+        yield
 
 
 @pytest.fixture(autouse=True)
