@@ -41,6 +41,7 @@ components:
 """
 
 PAINT = Compositor.render_update
+REMEMBER = Memory.__init__
 PARSE = Stylesheet._parse_rules
 PARSED = {}
 """The rules of style sheets by text and variables, alike for all applications."""
@@ -94,6 +95,12 @@ def solved_once():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Memory, "__init__", lambda memory: vars(memory).update(vars(shared)))
         yield
+
+
+@pytest.fixture
+def own_memory(monkeypatch, solved_once):
+    """What is solved is forgotten with the session, as in the program."""
+    monkeypatch.setattr(Memory, "__init__", REMEMBER)
 
 
 @pytest.fixture(autouse=True)

@@ -223,6 +223,7 @@ def test_a_failure_of_calm_itself_is_told(monkeypatch: pytest.MonkeyPatch) -> No
     assert judge(WHOLE).failure.status == "internal-error"
 
 
+@pytest.mark.usefixtures("own_memory")
 def test_what_has_not_changed_is_not_solved_again(monkeypatch: pytest.MonkeyPatch) -> None:
     import calm.case.mooring as case
 
