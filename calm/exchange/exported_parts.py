@@ -16,6 +16,12 @@ from calm.files.legs import EndKeys
 from calm.files.rigid import Displacement
 from calm.physics.seawater import REFERENCE_DENSITY
 
+AS_A_POINT = (
+    "that the drag of the float acts at its middle and by its axis: its point has the pull found "
+    "here"
+)
+"""What is said where a float is written as `ExportedLine.float_as_point` has it."""
+
 _LEAST_MASS = 0.1  # of what its net force weighs
 
 Coordinates = tuple[float, float, float]
