@@ -174,7 +174,7 @@ def read_mooring(
         position = keys.position if keys else None
         surroundings = read_environment(*chosen, notices, towed=towed, position=position)
     if surroundings is not None and surroundings.seabed is not None:
-        check_anchors(surroundings.seabed, pieces, legs, checks, top)
+        check_anchors(surroundings.seabed, pieces, legs, checks, top, surroundings.depth)
     if surroundings is not None and legged:
         check_held_depths(legs, top, surroundings.depth)
     elif surroundings is not None:

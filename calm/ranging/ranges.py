@@ -311,11 +311,13 @@ def _survey_table(path: Path) -> tuple[delimited.TextTable, float | None, list[s
         )
         table = delimited.read_table(path, EXAMPLE, [(1, "latitude,longitude,time[s]"), *lines])
         return table, None, [said]
-    transducer = float(rows[1].cells[2])
-    lines = [(row.number, ",".join(row.cells)) for row in rows[3:]]
+    above = 1 if _are_near(rows[1:]) else 2  # rows with the depths, and before them the target
+    depth, release, transducer = map(float, rows[above - 1].cells)
+    lines = [(row.number, ",".join(row.cells)) for row in rows[above + 1 :]]
     said = (
-        "has no heading: read as range, latitude and longitude below the target, the depths and "
-        f"the drop; its transducer is {transducer:g} m deep"
+        "has no heading: read as range, latitude and longitude below the depths and the drop; its "
+        f"transducer is {transducer:g} m deep; the depth of the water in it, {depth:g} m, and the "
+        f"release {release:g} m above the seabed count when given: --depth, --above-seabed"
     )
     table = delimited.read_table(path, EXAMPLE, [(1, "range[m],latitude,longitude"), *lines])
     return table, transducer, [said]
@@ -331,8 +333,11 @@ def _without_heading(path: Path) -> tuple[list[delimited.CellRow], int] | None:
     if not there:
         return None
     dialect: delimited.Dialect = delimited.dialect_of([line for _, line in there])
+    blanks = not any(sign in line for _, line in there for sign in ",;")  # of any kind and number
     rows = [
-        delimited.CellRow(path, number, line, dialect.cells(line), dialect)
+        delimited.CellRow(
+            path, number, line, line.split() if blanks else dialect.cells(line), dialect
+        )
         for number, line in there
     ]
     counts = {len(row.cells) for row in rows}
@@ -344,11 +349,16 @@ def _without_heading(path: Path) -> tuple[list[delimited.CellRow], int] | None:
     values = [[float(cell) for cell in row.cells] for row in rows]
     if count == 5 and all(0.0 <= row[1] < 60.0 and 0.0 <= row[3] < 60.0 for row in values):
         return rows, count
-    places = [row[1:] for row in values[:1] + values[2:]]
-    together = count == 3 and len(rows) > 4 and all(
-        max(each) - min(each) < _NEAR for each in zip(*places, strict=True)
-    )  # fmt: skip
-    return (rows, count) if together else None
+    in_form = count == 3 and len(rows) > 4
+    if in_form and (_are_near(rows[1:]) or _are_near([rows[0], *rows[2:]])):
+        return rows, count
+    return None
+
+
+def _are_near(rows: Sequence[delimited.CellRow]) -> bool:
+    """Return whether the last two of three cells are places of one survey."""
+    places = zip(*(map(float, row.cells[1:]) for row in rows), strict=True)
+    return all(max(each) - min(each) < _NEAR for each in places)
 
 
 def _placed(cells: Sequence[str]) -> str:

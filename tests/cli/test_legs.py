@@ -737,6 +737,38 @@ def test_a_grid_of_a_plane_is_the_plane(tmp_path: Path, name: str, sign: float) 
         assert ours.required_weight == pytest.approx(theirs.required_weight, rel=0.01)
 
 
+def test_a_grid_is_read_in_its_unit_and_its_sign(tmp_path: Path) -> None:
+    """Feet; depths by the name of elevations, as land or by `positive`; a doubtful depth."""
+    file = gridded(tmp_path, lambda east, north: (90.0 + 0.1 * east) / 0.3048)
+    feet = load(tmp_path / "grid.yaml", text=GRIDDED)
+    assert any("295.3 m deep" in each for each in feet.solve().warnings)
+    grid = xarray.load_dataset(file, engine="h5netcdf")
+    grid["elevation"].attrs["units"] = "ft"
+    grid.to_netcdf(file, engine="h5netcdf")
+    metres = load(tmp_path / "grid.yaml", text=GRIDDED).solve()
+    west, east = (anchor.depth for anchor in metres.anchors)
+    away = metres.anchors[1].x - metres.anchors[0].x
+    assert abs(east - west) == pytest.approx(0.1 * abs(away), rel=0.01)
+    assert not any("m deep" in each for each in metres.warnings)
+    (-grid).to_netcdf(file, engine="h5netcdf")
+    with pytest.raises(InputError, match=r"has land, .* m high, .* say `down`"):
+        load(tmp_path / "grid.yaml", text=GRIDDED)
+    turned = -grid
+    turned["elevation"].attrs |= {"units": "ft", "positive": "down"}
+    turned.to_netcdf(file, engine="h5netcdf")
+    again = load(tmp_path / "grid.yaml", text=GRIDDED).solve()
+    assert [each.depth for each in again.anchors] == [west, east]
+
+
+def test_an_anchor_up_the_slope_stands_in_water(tmp_path: Path) -> None:
+    """500 m up a slope of 25° the seabed is 233 m higher, where the water is 100 m deep."""
+    text = SLOPE.replace("slope: 10 deg", "slope: 25 deg")
+    at = re.search(r"at: \[.*?\]", text)
+    assert at is not None
+    with pytest.raises(InputError, match=r"the seabed is \d+ m above the water here"):
+        load(tmp_path / "slope.yaml", text=text.replace(at[0], "at: [-500 m, 0 m]"))
+
+
 LYING = (
     "position: {latitude: 48 deg, longitude: -5 deg}\n"
     + SLOPE[: SLOPE.index("legs:")].replace("toward: 0 deg}", "toward: 45 deg}")
