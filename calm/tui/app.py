@@ -6,11 +6,10 @@ import os
 import sys
 import time
 from collections.abc import Iterable, Mapping, Sequence
-from functools import partial
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from rich.console import RenderableType
-from textual import on, work
+from textual import work
 from textual._compositor import CompositorUpdate
 from textual.app import SystemCommand
 from textual.command import CommandPalette
@@ -20,8 +19,7 @@ from textual.timer import Timer
 
 from calm.errors import CalmError
 from calm.files.editing import KeptWork, WorkingFile
-from calm.tui import saving, workspace
-from calm.tui.dialogs import LongText, choose
+from calm.tui.dialogs import LongText
 from calm.tui.key_table import Actions, Commands, all_keys
 from calm.tui.line.builder import BuilderScreen
 from calm.tui.painted import Pace, Painted, PlainSigns, shows_all_signs
@@ -30,6 +28,10 @@ from calm.tui.screen import DraftScreen
 from calm.tui.session import Session
 from calm.tui.theme import DARK, LIGHT, PICTURE_DARK, PICTURE_LIGHT, choose_theme, legible
 from calm.tui.turns import InTurn
+from calm.tui.workspace import Judging, Workspace
+
+if TYPE_CHECKING:
+    from calm.files import Catalogue
 
 _AUTOSAVED_AFTER = 0.3  # seconds
 _LOOKED_AT_DISK = 2.0  # seconds between two looks
@@ -71,10 +73,8 @@ class BuildApp(InTurn):
     ) -> None:
         super().__init__()
         self.session = session
-        self.workspace = workspace.Workspace(
-            session, self.tell, lambda: self.post_message(workspace.Edited())
-        )
-        self.judging = workspace.Judging(self, self.workspace, self._show_views)
+        self.workspace = Workspace(session, self.tell, self._edited)
+        self.judging = Judging(self, self.workspace, self._show_views)
         self.saving = Saving(self, self.workspace)
         self.builder = BuilderScreen(self.workspace)
         self.not_kept = ""
@@ -107,9 +107,9 @@ class BuildApp(InTurn):
         self._read_catalogue()
         self.judging.ask()
         if self._offered is not None:
-            self._offer(self._offered)
+            self.saving.offer(self._offered)
         else:
-            self._mend()
+            self.mend()
         is_unsaved = self.session.file.is_open_elsewhere()
         others = self.saving.presence.say(self.session.file.path)
         if is_unsaved or others:
@@ -164,10 +164,6 @@ class BuildApp(InTurn):
         screen = self.screen if isinstance(self.screen, DraftScreen) else self.builder
         screen.tell(text, wrong=wrong)
 
-    @on(workspace.Told)
-    def _say(self, event: workspace.Told) -> None:
-        self.tell(event.text, wrong=event.wrong)
-
     def draft_screens(self) -> list[DraftScreen]:
         """The open ones, the top one last."""
         return [each for each in self.screen_stack if isinstance(each, DraftScreen)]
@@ -181,7 +177,7 @@ class BuildApp(InTurn):
         for screen in self.draft_screens():
             screen.replaced()
         self.tell(message)
-        self.post_message(workspace.Edited())
+        self._edited()
 
     def action_save(self) -> None:
         """Save, and ask for a name where there is none."""
@@ -211,20 +207,22 @@ class BuildApp(InTurn):
         """Return whether the line that is shown has been solved, and nothing else is under way."""
         return self.judging.is_idle and self._is_catalogue_read
 
-    @on(workspace.Edited)
+    def _edited(self) -> None:
+        self.call_later(self._after_an_edit)
+
     def _after_an_edit(self) -> None:
         self._show_views()
         self._tell_lost_environment()
         self.judging.after_an_edit()
         if self._autosaving is None:
             self._autosaving = self.set_timer(_AUTOSAVED_AFTER, self._autosave)
-        self._mend()
 
-    def _show_views(self) -> None:
+    def _show_views(self, *, is_first: bool = False) -> None:
         if self.is_running:  # else the screens are being taken apart
             for screen in self.draft_screens():
                 if screen.is_mounted and screen.is_attached:  # there, and not on the way out
                     screen.show_view()
+            self.mend(as_judged=is_first)
 
     def _tell_lost_environment(self) -> None:
         before, self._lost = self._lost, self.session.standing.lost_environment
@@ -232,7 +230,7 @@ class BuildApp(InTurn):
             message = f"There is no environment {self._lost} now; the line stands in the file's own"
             self.tell(message)
 
-    def _mend(self, *, as_judged: bool = False) -> None:
+    def mend(self, *, as_judged: bool = False) -> None:
         """Open the text where the draft cannot be read; or, `as_judged`, has mistakes."""
         judged = self.workspace.view if as_judged and self.screen is self.builder else None
         if (judged and judged.problems) or self.session.draft.problems:
@@ -248,21 +246,6 @@ class BuildApp(InTurn):
             await self.pop_screen()
         self.builder.action_text()
 
-    @on(workspace.Judged)
-    def _take_view(self, event: workspace.Judged) -> None:
-        if not self.is_running:
-            return
-        is_first = self.workspace.view is None
-        if self.judging.take(event):
-            self._show_views()
-            self._mend(as_judged=is_first)
-
-    @on(workspace.JudgingFailed)
-    def _tell_failure(self, event: workspace.JudgingFailed) -> None:
-        if self.is_running:
-            self.tell(f"internal error ({event.reason}); please report it", wrong=True)
-            self.judging.failed()
-
     # the catalogue
 
     @work(thread=True, exit_on_error=False)
@@ -270,19 +253,16 @@ class BuildApp(InTurn):
         from calm.files import Catalogue
 
         try:
-            self.post_message(workspace.CatalogueRead(Catalogue.load(self.session.catalogs)))
+            self.call_later(self._take_catalogue, Catalogue.load(self.session.catalogs))
         except CalmError as error:
-            self.post_message(workspace.CatalogueRead(None, str(error)))
+            self.call_later(self._take_catalogue, None, str(error))
 
-    @on(workspace.CatalogueRead)
-    def _take_catalogue(self, event: workspace.CatalogueRead) -> None:
-        if not self.is_running:
-            return
+    def _take_catalogue(self, catalogue: Catalogue | None, reason: str = "") -> None:
         self._is_catalogue_read = True
-        if event.catalogue is None:
-            self.tell(event.reason, wrong=True)
-        else:
-            self.workspace.take_catalogue(event.catalogue)
+        if catalogue is None:
+            self.tell(reason, wrong=True)
+        elif self.is_running:
+            self.workspace.take_catalogue(catalogue)
             self.builder.show_catalogue()
 
     # what is kept, and the way out
@@ -336,17 +316,3 @@ class BuildApp(InTurn):
             self.set_timer(0.02, self._exit_answered)
         else:
             self.exit(0)
-
-    def _offer(self, kept: KeptWork) -> None:
-        def recover() -> None:
-            self.session.recover(kept)
-            self.taken_over("Recovered; save it to keep it")
-
-        def throw_away() -> None:
-            self.session.file.discard(kept)
-            go_on()
-
-        go_on = partial(self._mend, as_judged=True)
-        sure = saving.confirmation(kept, throw_away, partial(self._offer, kept))
-        discard = partial(choose, self, sure)
-        choose(self, saving.offer(self.session, kept, recover, go_on, discard))

@@ -47,9 +47,9 @@ _TABLE = """
 [line] The line
 edit | enter,f2 | edit | 1 | Edit the value under the cursor in place; on the component, choose
   another one.
-add(1) | a,insert | add | 0 | Add a piece below, from the catalogue.
-add(0) | A | add above |  | Add a piece above.
-clamp | i | clamp on | 5 | Clamp an instrument on this piece.
+search('below') | a,insert | add | 0 | Add a piece below, from the catalogue.
+search('above') | A | add above |  | Add a piece above.
+search('clamp') | i | clamp on | 5 | Clamp an instrument on this piece.
 duplicate | d | duplicate | 6 | Repeat the piece, or those marked, below.
 delete | delete,backspace | delete | 7 | Delete the piece, or those marked.
 move_piece(-1) | alt+up,ctrl+up,K | move up | 8 | Move the piece up the line.
@@ -67,8 +67,8 @@ edit_column('label') | n | label |  | Edit its label.
 edit_column('count') | equals_sign,asterisk | count |  | Edit its count.
 assemble | k | assembly |  | Make the marked pieces an assembly of the file, to be used again
   under one name.
-change_component | O | change component |  | Change the component of the row, one of the file's
-  own, in its form.
+screen.change_component | O | change component |  | Change the component of the row, one of the
+  file's own, in its form.
 equipment | N | serial number |  | Serial number, calibration, sampling, battery and termination
   of the row.
 find | slash | find | 12 | Find words in the line: id, label, serial number, maker.
@@ -84,7 +84,7 @@ repeat | R | repeat |  | Repeat the piece, or those marked, as often as you say.
 next_finding | f8,g | next finding |  | To the next row with the most serious finding; the last
   line of the screen shows it.
 why | y | why |  | All findings of this row, with remedies.
-replace | r | replace |  | Use another component in its place.
+search('replace') | r | replace |  | Use another component in its place.
 move_cursor(-1) | up | up | - | To the row above.
 move_cursor(1) | down | down | - | To the row below.
 move_page(-1) | pageup | page up | - | A page up.
@@ -93,7 +93,7 @@ move_to_end(-1) | home | top | - | To the top of the line.
 move_to_end(1) | end | bottom | - | To the bottom.
 move_column(-1) | left | left | - | To the column on the left.
 move_column(1) | right | right | - | To the one on the right.
-back | escape | back | - | Back to the line of the verdict that led here.
+screen.back | escape | back | - | Back to the line of the verdict that led here.
 [anywhere] Anywhere on the first screen
 undo | u | undo | 3 | Undo the last change, as often as there is one.
 suspend | ctrl+z | suspend |  | Suspend to the shell, `fg` returns; while a value is edited, and
@@ -112,7 +112,7 @@ figures | f | missing figures |  | Fill in the figures that are not known, piece
   their source.
 verdict | G | verdict |  | The verdict line by line: Enter goes to the row that a line is about,
   Esc back.
-search | B | catalogue |  | Browse the catalogue.
+search('below') | B | catalogue |  | Browse the catalogue.
 define | o | own component |  | Define a component of your own.
 picture('elevation') | 1 | elevation |  | The line seen from the side.
 picture('plan') | 2 | plan |  | The line seen from above.
@@ -200,8 +200,8 @@ end(-1) | ctrl+home | top |  | To the beginning of the text.
 end(1) | ctrl+end | bottom |  | To the end of the text.
 indent | tab | indent |  | Blanks to the next even column.
 [form] A component of your own
-accept | ctrl+s | keep it | 0 | Write the component into the file.
-cancel | escape | leave | 1 | Leave without it.
+take | ctrl+s | keep it | 0 | Write the component into the file.
+leave | escape | leave | 1 | Leave without it.
 app.help | f1 | help | 2 | All keys.
 app.focus_next | down | next |  | To the next figure.
 app.focus_previous | up | last |  | To the one before.
@@ -358,8 +358,10 @@ class Actions(Provider):
     def _run(self, action: Action) -> Callable[[], Awaitable[bool]]:
         from calm.tui.line.line_pane import LinePane
 
-        owner = self.screen.query_one(LinePane) if action.place == "line" else self.screen
-        return partial(self.app.run_action, action.name, owner)
+        name = action.name.removeprefix("screen.")
+        is_of_line = action.place == "line" and name == action.name
+        owner = self.screen.query_one(LinePane) if is_of_line else self.screen
+        return partial(self.app.run_action, name, owner)
 
 
 def _shown(action: Action) -> str:

@@ -10,12 +10,12 @@ from collections.abc import Sequence
 
 from rich.console import RenderableType
 from rich.segment import Segment
-from textual.events import Paste
 from textual.geometry import Size
 from textual.reactive import Reactive
 from textual.scroll_view import ScrollView
 from textual.strip import Strip
-from textual.widgets import Input
+
+Row = list[Segment]
 
 
 class Scrolled(ScrollView, inherit_bindings=False):
@@ -30,7 +30,38 @@ class Scrolled(ScrollView, inherit_bindings=False):
             self.scroll_to(y=self.max_scroll_y, animate=False)
 
 
-class ScrolledText(Scrolled, can_focus=False):
+class DrawnRows(Scrolled, can_focus=False):
+    """Rows that are drawn for the cells there are, anew where these are others."""
+
+    def __init__(self, *, id: str | None = None) -> None:
+        super().__init__(id=id)
+        self._drawn: tuple[Size | None, list[Row]] = (None, [])  # the size that the rows are for
+
+    def rows_for(self, size: Size) -> list[Row]:
+        """Draw the rows for a size."""
+        raise NotImplementedError
+
+    def draw_again(self) -> None:
+        """Draw what is shown now."""
+        self._drawn = (None, self._drawn[1])
+        self.refresh()
+
+    def drawn(self) -> list[Row]:
+        """Return the rows for the size of now."""
+        size = self.scrollable_content_region.size
+        if size.width > 0 and size != self._drawn[0]:
+            self._drawn = (size, self.rows_for(size))
+        return self._drawn[1]
+
+    def render_line(self, y: int) -> Strip:
+        """A row of the screen."""
+        rows, number, left = self.drawn(), y + self.scroll_offset.y, self.scroll_offset.x
+        width, style = self.scrollable_content_region.width, self.rich_style
+        strip = Strip(rows[number] if number < len(rows) else []).apply_style(style)
+        return strip.adjust_cell_length(left + width, style).crop(left, left + width)
+
+
+class ScrolledText(DrawnRows):
     """Texts for people below each other, wrapped to the width; others begin at the top."""
 
     DEFAULT_CSS = "ScrolledText { overflow-x: hidden; scrollbar-size-vertical: 1; }"
@@ -38,54 +69,32 @@ class ScrolledText(Scrolled, can_focus=False):
     def __init__(self, *, id: str | None = None) -> None:
         super().__init__(id=id)
         self._texts: Sequence[RenderableType] = ()
-        self._drawn: tuple[int, list[tuple[list[Segment], int]]] = (-1, [])  # the width and lines
+        self._numbers: list[int] = []  # of the text that each row is of
 
     def show(self, *texts: RenderableType) -> None:
         """Show other texts."""
-        self._texts, self._drawn = texts, (-1, [])
+        self._texts = texts
         self.scroll_to(y=0, animate=False)
-        self._lines()
-        self.refresh()
+        self.draw_again()
+        self.drawn()
 
     def on_resize(self) -> None:
         """Wrap it to the new width."""
-        self._lines()
+        self.drawn()
 
-    def _lines(self) -> list[tuple[list[Segment], int]]:
-        """Return the lines in the width of now, each with the number of its text."""
-        width = self.scrollable_content_region.width
-        if width > 0 and self._drawn[0] != width:
-            self._drawn = (width, self._wrapped(width))
-            self.virtual_size = Size(width, len(self._drawn[1]))
-        return self._drawn[1]
+    def rows_for(self, size: Size) -> list[Row]:
+        """Wrap the texts."""
+        wrapped = self._wrapped(size.width)
+        self._numbers = [number for number, _ in wrapped]
+        self.virtual_size = Size(size.width, len(wrapped))
+        return [row for _, row in wrapped]
 
-    def _wrapped(self, width: int) -> list[tuple[list[Segment], int]]:
+    def _wrapped(self, width: int) -> list[tuple[int, Row]]:
+        """Return the rows in a width, each with the number of its text."""
         console = self.app.console
         options = console.options.update(width=width, height=None)
         return [
-            (line, number)
+            (number, row)
             for number, text in enumerate(self._texts)
-            for line in console.render_lines(text, options, pad=False)
+            for row in console.render_lines(text, options, pad=False)
         ]
-
-    def render_line(self, y: int) -> Strip:
-        """A row of the screen."""
-        lines, number = self._lines(), y + self.scroll_offset.y
-        segments = lines[number][0] if number < len(lines) else []
-        strip = Strip(segments).apply_style(self.rich_style)
-        return strip.adjust_cell_length(self.scrollable_content_region.width, self.rich_style)
-
-
-class ScrolledEntry(Input):
-    """A line of input; a text of several lines that is pasted is left to what is around it."""
-
-    virtual_size = Reactive(Size(0, 0), repaint=False)
-
-    def on_mount(self) -> None:
-        """Its cursor stands still: nothing is sent while nobody types."""
-        self.cursor_blink = False
-
-    def on_paste(self, event: Paste) -> None:
-        """Rows of a table are no value: textual would take the first of them."""
-        if len(event.text.splitlines()) > 1:
-            event.prevent_default()

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from calm.files import Place, editing
 from calm.files.editing import LINE, Draft, History, LineItem, Value, WorkingFile, clamps_of
@@ -87,6 +88,12 @@ class Session:
         """The file's name, for people."""
         path = self.file.path
         return "unnamed" if path is None else path.name
+
+    @property
+    def components(self) -> dict[str, Any]:
+        """The components that the file defines, as written."""
+        defined = self.draft.value(("components",))
+        return defined if isinstance(defined, dict) else {}
 
     # the line
 

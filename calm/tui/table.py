@@ -1,4 +1,4 @@
-"""A table with a cursor on one cell, and the line of input that edits its cells.
+"""A table with a cursor on one cell.
 
 The line, the tables of the water and the list of the catalogue are drawn, scrolled and pressed
 here; each says what its columns are and what stands in them.
@@ -13,19 +13,14 @@ from typing import Any, ClassVar
 from rich.cells import cell_len, set_cell_size
 from rich.segment import Segment
 from rich.style import Style
-from textual import events, on
-from textual.app import ComposeResult
-from textual.containers import Vertical
+from textual import events
 from textual.geometry import Region, Size
 from textual.message import Message
 from textual.reactive import reactive
 from textual.strip import Strip
 
-from calm.tui.cell_editor import CellEditor
-from calm.tui.checking import Check, Reading
 from calm.tui.scrolled import Scrolled
 from calm.tui.theme import ELLIPSIS
-from calm.tui.workspace import Told
 
 
 @dataclass(frozen=True)
@@ -106,6 +101,10 @@ class TableCells(Scrolled, inherit_bindings=False):
     def lead(self, number: int, style: Style) -> list[Segment]:
         """Return what stands in front of the first column of a row."""
         raise NotImplementedError
+
+    def look(self, name: str) -> Style:
+        """Return what one of the component classes adds to a style."""
+        return self.get_component_rich_style(name, partial=True)
 
     def row_style(self, number: int) -> Style:
         """Return how a row looks."""
@@ -237,114 +236,7 @@ class TableCells(Scrolled, inherit_bindings=False):
         for each in self.columns:
             own = self.cell_style(number, each, style)
             if each.name == cursor:
-                own = style + self.get_component_rich_style("table--cursor", partial=True)
+                own = style + self.look("table--cursor")
             segments.append(Segment(each.fitted(self.text_of(number, each)), own))
             segments.append(Segment(" " * self.GAP, style))
         return segments
-
-
-class EditableTable(Vertical):
-    """A table, and over it the line of input that edits the cell under its cursor.
-
-    What is made of it begins with `open_editor`, and says how a text is written, what is told of
-    one as it is typed, and where the cursor goes from one that was taken.
-    """
-
-    DEFAULT_CSS = "EditableTable { layers: table over; }"
-
-    def __init__(
-        self, table: TableCells, *, editor_id: str | None = None, id: str | None = None
-    ) -> None:
-        super().__init__(id=id)
-        self.table, self.editor = table, CellEditor(id=editor_id)
-
-    def compose(self) -> ComposeResult:
-        """The rows, and over them what is edited."""
-        yield self.table
-        yield self.editor
-
-    def write(self, text: str) -> None:
-        """Write a good text into the cell that is edited."""
-        raise NotImplementedError
-
-    def tell_reading(self, reading: Reading) -> None:
-        """Tell what the text typed so far comes to."""
-        raise NotImplementedError
-
-    def tell_refusal(self, reason: str) -> None:
-        """Tell why something is not done."""
-        self.post_message(Told(reason, wrong=True))
-
-    def go_on(self, done: CellEditor.Done) -> None:
-        """Go on from a cell whose text was taken."""
-        raise NotImplementedError
-
-    @property
-    def is_typing(self) -> bool:
-        """Return whether a value is typed that is not written yet."""
-        return self.editor.is_typing
-
-    def open_editor(
-        self, text: str, check: Check, *, least_width: int, begun: bool = False
-    ) -> None:
-        """Edit the cell under the cursor.
-
-        Parameters
-        ----------
-        text, check : what is edited, and what judges it
-        least_width : of the line of input [cells]
-        begun : whether the text is what was typed already
-        """
-        region = self.table.cell_region()
-        self.editor.open(text, check, region, least_width=least_width, begun=begun)
-
-    def settle_cell(self) -> Reading:
-        """Write what is typed; a bad value stays to be corrected."""
-        reading = self.editor.settle()
-        if not reading.is_good:
-            self.editor.focus()
-        elif self.editor.is_open:
-            self._take_typed()
-        return reading
-
-    def _take_typed(self) -> None:
-        """Write the good text that is typed, if any, where it was typed."""
-        text = self.editor.text
-        self.leave_cell()
-        if text is not None:
-            self.write(text)
-
-    def leave_cell(self) -> None:
-        """Edit nothing any more; what is typed is not taken."""
-        if self.editor.is_open:
-            had_focus = self.editor.has_focus
-            self.editor.close()
-            if had_focus:
-                self.table.focus()
-
-    def abandoned(self) -> None:
-        """Do what follows where a value is left as it was."""
-
-    @on(CellEditor.Judged)
-    def _judged(self, event: CellEditor.Judged) -> None:
-        event.stop()
-        if self.editor.is_open:
-            self.tell_reading(event.reading)
-
-    @on(CellEditor.Done)
-    def _done(self, event: CellEditor.Done) -> None:
-        event.stop()
-        if not self.editor.is_open:
-            return
-        is_here = self.editor.has_focus
-        self._take_typed()
-        if is_here:  # else it was left for another place
-            self.go_on(event)
-
-    @on(CellEditor.Abandoned)
-    def _abandon(self, event: CellEditor.Abandoned) -> None:
-        event.stop()
-        self.leave_cell()
-        self.abandoned()
-        if event.reason:
-            self.tell_refusal(event.reason)

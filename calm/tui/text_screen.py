@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 from typing import ClassVar
 
 from textual import on
@@ -15,7 +14,8 @@ from textual.widgets import Static, TextArea
 
 from calm.errors import Problem
 from calm.files.editing.changes import retyped
-from calm.tui.dialogs import Asked, InputSheet, ask
+from calm.tui.dialogs import InputSheet, ask
+from calm.tui.field import Asked
 from calm.tui.key_table import bindings, hints
 from calm.tui.screen import DraftScreen, KeyBar
 from calm.tui.workspace import Workspace, is_elsewhere, mistakes, said
@@ -108,7 +108,7 @@ class TextScreen(DraftScreen):
         known = self.workspace.is_fresh
         self._problems = tuple(draft.problems) or (view.problems if known and view else ())
         if self._problems:
-            lines = [said(each, self._path) for each in self._problems]
+            lines = [said(each, self.workspace.path) for each in self._problems]
         elif known and view is not None and view.missing:
             lines = [Content(f"? {each}") for each in view.missing]
         elif known:
@@ -120,17 +120,12 @@ class TextScreen(DraftScreen):
 
     def titles(self) -> tuple[str, str]:
         """Return what is shown, and how many mistakes it has."""
-        return f"The text of {self.workspace.called}", mistakes(self._problems, self._path)
+        return f"The text of {self.workspace.called}", mistakes(self._problems, self.workspace.path)
 
     @property
     def _here(self) -> list[Problem]:
         """The mistakes in this text, not in a file that it names."""
-        return [each for each in self._problems if not is_elsewhere(each, self._path)]
-
-    @property
-    def _path(self) -> Path:
-        """Return that of the file, as its problems have it."""
-        return Path() if self.workspace.view is None else self.workspace.view.path
+        return [each for each in self._problems if not is_elsewhere(each, self.workspace.path)]
 
     @on(TextArea.Changed)
     def _take(self) -> None:

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
-from functools import partial
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from textual.events import Paste
@@ -15,25 +14,23 @@ from calm.files.editing import Draft, Value
 from calm.files.mooring_file import parts_of
 from calm.files.rule_texts import RULES
 from calm.files.yaml_document import Location
-from calm.tui.catalogue.component_screen import FormField, form_fields
-from calm.tui.checking import anything, count
-from calm.tui.dialogs import Answer, Asked, InputSheet, Question, ask, choose
-from calm.tui.field import Field
+from calm.tui.catalogue.component_screen import form_fields
+from calm.tui.checking import anything
+from calm.tui.dialogs import InputSheet
+from calm.tui.field import Asked
 from calm.tui.line.mooring_sheet import (
     RELEASES,
     entered,
     equipment_changes,
-    equipment_sheet,
     said,
     serial_of_equipment,
     texts_of_equipment,
 )
 from calm.tui.line.rows import LineCell
-from calm.tui.line.table import Column, LineTable, location
+from calm.tui.line.table import Column, location
 from calm.tui.workspace import Workspace
 
 if TYPE_CHECKING:
-    from calm.tui.line.line_pane import LinePane
     from calm.tui.live import View
 
 
@@ -46,7 +43,7 @@ class ColumnSheet(InputSheet):
     def on_paste(self, event: Paste) -> None:
         """Fill the fields from the one that is edited on."""
         lines = [line.split("\t")[0].strip() for line in event.text.splitlines()]
-        fields = list(self.query(Field))
+        fields = self.fields
         first = next((i for i, field in enumerate(fields) if field.input.has_focus), 0)
         if len(lines) < 2:
             return
@@ -57,59 +54,6 @@ class ColumnSheet(InputSheet):
         fields[last].input.focus()
         if len(lines) > len(fields) - first:
             self.app.bell()
-
-
-def ask_column(pane: LinePane, spots: Sequence[Place]) -> None:
-    """Ask which column of some rows is to be filled, and for its values."""
-
-    def fill(column: str) -> None:
-        filling = ColumnFilling(pane.workspace, spots, column)
-        if (sheet := filling.sheet) is None:
-            pane.workspace.tell("None of these rows has such a value")
-        else:
-            ask(pane.app, sheet, lambda texts: pane.attempt(lambda: filling.write(texts)))
-
-    answers = [
-        Answer("s", "serial numbers", partial(fill, "serial")),
-        Answer("l", "lengths", partial(fill, "length")),
-        Answer("n", "labels", partial(fill, "label")),
-        Answer("c", "codes of releases that have serial numbers", partial(fill, "codes")),
-    ]
-    text = f"Of {len(spots)} rows, one below the other; a list copied elsewhere can be pasted."
-    choose(pane.app, Question("Fill a column", text, answers))
-
-
-def ask_times(pane: LinePane, chosen: Sequence[Place]) -> None:
-    """Ask how often rows are to be repeated, and do it."""
-
-    def take(texts: dict[str, str]) -> None:
-        pane.attempt(lambda: pane.session.duplicate(chosen, times=int(texts["count"])))
-
-    ask(pane.app, InputSheet("Repeat", "", [Asked("count", "Copies below", check=count)]), take)
-
-
-def ask_equipment(pane: LinePane, spot: Place) -> None:
-    """Ask for the equipment of a row: serial number, calibration and more."""
-    values = pane.session.draft.value(location(spot))
-    label = str(values.get("label") or values.get("use") or "")
-    if pane.workspace.is_assembly(pane.session.item(spot)):
-        pane.workspace.tell(f"{label} is an assembly, whose parts have serial numbers; it has none")
-        return
-
-    def take(texts: dict[str, str]) -> None:
-        changed = equipment_changes(values, texts)
-        if changed:
-            pane.attempt(lambda: pane.session.put(spot, changed, f"equipment of {label}"))
-
-    ask(pane.app, equipment_sheet(label, values, is_clamp=spot.is_clamp), take)
-
-
-def rows_meant(table: LineTable) -> tuple[Place, ...]:
-    """Those marked; else all of the component under the cursor."""
-    if table.marked or table.row is None:
-        return table.chosen
-    use = table.row.texts["component"]
-    return tuple(row.spot for row in table.rows if row.texts["component"] == use)
 
 
 class ColumnFilling:
@@ -179,34 +123,6 @@ _ELSEWHERE = "part of an assembly of the catalogue: use its parts, or define it 
 _SOURCE = "data sheet, test certificate …"
 
 
-def ask_figures(pane: LinePane) -> None:
-    """Ask for all that is missing, once the line is judged, and write what is given."""
-    workspace, session = pane.workspace, pane.session
-    if not pane.settle():
-        return
-    if workspace.view is None or not workspace.is_fresh:
-        workspace.tell("Missing figures are known once the line is judged")
-        return
-    missing = missing_figures(workspace.view, session.draft)
-    if not missing:
-        workspace.tell("No figure of a component is missing")
-        return
-
-    def take(texts: dict[str, str]) -> None:
-        source = texts.pop("source", "")
-        figures = {asked: text for asked, text in texts.items() if text}
-        if figures:
-            count = f"{len(figures)} figure{'s' * (len(figures) != 1)} filled in"
-            pane.attempt(
-                lambda: session.do(
-                    filled(session.draft, missing, figures, source), "fill in figures"
-                ),
-                count,
-            )
-
-    ask(pane.app, figures_sheet(missing), take)
-
-
 def figures_sheet(missing: Sequence[Missing]) -> InputSheet:
     """Ask for all figures of each component, and for their source; any may stay empty."""
     asked: list[Asked] = []
@@ -215,7 +131,7 @@ def figures_sheet(missing: Sequence[Missing]) -> InputSheet:
         for number, figure in enumerate(each.fields):
             above = "" if number else each.called
             key, title = f"{each.use}.{figure.key}", figure.key.replace("_", " ")
-            asked.append(Asked(key, title, "", figure.check, takes=figure.takes, above=above))
+            asked.append(replace(figure, key=key, title=title, above=above))
     asked.append(Asked("source", "source", takes=_SOURCE, above="Of the figures"))
     count = len(missing)
     title = f"Figures missing of {count} component{'s' * (count != 1)}; any may stay empty"
@@ -248,7 +164,7 @@ class Missing:
         return self.use if labels == self.use else f"{self.use}: {labels}"
 
     @property
-    def fields(self) -> list[FormField]:
+    def fields(self) -> list[Asked]:
         """Return what would do and can be filled in, as the form of a component has it."""
         return [each for each in form_fields(self.kind) if self.targets.get(each.key)]
 
@@ -262,7 +178,7 @@ def missing_figures(view: View, draft: Draft) -> list[Missing]:
         if finding.state is State.UNKNOWN and finding.place and RULES[finding.rule].figures:
             asked = wanted.setdefault(finding.place, {})
             asked.update(dict.fromkeys(RULES[finding.rule].figures))
-    own = draft.value(("components",))
+    own = draft.value(("components",)) or ()
     found: dict[str, Missing] = {}
     for part in parts_of(view.file.pieces):
         if part.place not in wanted:
@@ -271,7 +187,7 @@ def missing_figures(view: View, draft: Draft) -> list[Missing]:
         missing.labels[part.label] = None
         for key in wanted[part.place]:
             targets = missing.targets.setdefault(key, {})
-            if isinstance(own, dict) and part.use in own:
+            if part.use in own:
                 targets["components", part.use] = None
             elif part.place.part < 0:
                 targets[location(part.place)] = None

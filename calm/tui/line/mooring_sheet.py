@@ -12,7 +12,8 @@ from calm.files.editing import Draft, EditError, Value
 from calm.files.mooring_file import parts_of
 from calm.files.yaml_document import Location
 from calm.tui.checking import Reading, anything, day, moment, quantity
-from calm.tui.dialogs import Asked, InputSheet
+from calm.tui.dialogs import InputSheet
+from calm.tui.field import Asked
 
 _HISTORY: Location = ("document", "history")
 

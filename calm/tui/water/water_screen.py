@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from pathlib import Path
+from functools import partial
 from typing import TYPE_CHECKING, ClassVar
 
 from textual import events, on
@@ -19,23 +19,21 @@ from textual.widgets import Static
 from calm.files.editing import Draft, Value
 from calm.tui.cell_editor import CellEditor
 from calm.tui.checking import needed
-from calm.tui.dialogs import Asked, InputSheet, ask
-from calm.tui.field import Field
+from calm.tui.dialogs import InputSheet, ask
+from calm.tui.field import Asked, Field
 from calm.tui.key_table import bindings, hints
 from calm.tui.pictures import ProfilePicture
 from calm.tui.screen import DraftScreen, KeyBar
 from calm.tui.verdict_pane import state_word
-from calm.tui.water.currents_to_begin import Currents
 from calm.tui.water.form import (
-    CURRENT_COLUMNS,
     DENSITY_FORMS,
-    USUAL_DEPTH,
     FormChoice,
     Place,
     WaterForm,
     fields_of_water,
 )
 from calm.tui.water.grid import Grid, GridCells
+from calm.tui.water.tables_to_begin import CURRENT_COLUMNS, USUAL_DEPTH, Currents
 from calm.tui.workspace import Workspace, said
 
 if TYPE_CHECKING:
@@ -46,9 +44,6 @@ _ELSEWHERE = (
     "environment; what {0} gives takes its place."
 )
 _INHERITED = "as in the file's own environment"
-
-
-_CURRENT: Place = ("current",)
 
 
 class WaterScreen(DraftScreen):
@@ -72,9 +67,8 @@ class WaterScreen(DraftScreen):
         self._currents = Currents(self)
         # what was written in forms that others took the place of, to be had back
         self._left: dict[tuple[str | None, Place, str], Value | None] = {}
-        self._goes_on = (
-            False  # to the first value of a form, which leaves the message that is shown
-        )
+        # to the first value of a form, which leaves the message that is shown
+        self._goes_on = False
 
     def parts(self) -> ComposeResult:
         """Return the form at the left, the profile of the current at the right."""
@@ -82,7 +76,7 @@ class WaterScreen(DraftScreen):
             with VerticalScroll(id="water-form", can_focus=False):
                 yield Static(id="environment-names", markup=False)
                 yield Static(id="water-notes")
-                yield from fields_of_water()
+                yield from fields_of_water(partial(Grid, self.workspace, self._take_rows))
             with Vertical(id="water-profile"):
                 yield ProfilePicture()
 
@@ -119,9 +113,7 @@ class WaterScreen(DraftScreen):
 
     def _show_notes(self, problems: Sequence[Problem]) -> None:
         """Do what keeps the line from standing in the water that the form shows."""
-        file, path = self.environment_file, Path()
-        if self.workspace.view is not None:
-            path = self.workspace.view.path
+        file, path = self.environment_file, self.workspace.path
         notes = [Content.styled(_ELSEWHERE.format(file), "$text-warning")] if file else []
         notes += [said(each, path) for each in problems]
         shown = self.query_one("#water-notes", Static)
@@ -219,13 +211,10 @@ class WaterScreen(DraftScreen):
     def settle(self) -> bool:
         """Take what is typed; the first bad value stays to be corrected, and is reported."""
         for grid in self.query(Grid):
-            typed = grid.is_typing
-            reading = grid.settle()
+            reading = grid.settle_cell()
             if not reading.is_good:
                 self.workspace.tell(f"Not taken yet: {reading.note}", wrong=True)
                 return False
-            if typed:
-                self._take_rows(grid.cells, "a value")
         for field in self.query(Field):
             if not field.is_typing:
                 continue
@@ -257,12 +246,8 @@ class WaterScreen(DraftScreen):
     def _onward(self) -> None:
         self.focus_next()
 
-    @on(GridCells.Changed)
-    def _commit_table(self, event: GridCells.Changed) -> None:
-        self._take_rows(event.cells, event.label)
-
-    def _take_rows(self, cells: GridCells, label: str) -> None:
-        place = _place(cells.parent)
+    def _take_rows(self, grid: Grid, label: str) -> None:
+        place, cells = _place(grid), grid.cells
         self.change(lambda water: water.put_rows(place, cells.headings, cells.rows), label)
 
     def on_paste(self, event: events.Paste) -> None:
@@ -323,7 +308,7 @@ class WaterScreen(DraftScreen):
                 self.workspace.tell(f"There is an environment {name} already", wrong=True)
                 return
             known = water.value("current")
-            current = known or water.begun(_CURRENT, "uniform")
+            current = known or water.begun(("current",), "uniform")
             place = ("environments", name, "current")
             if self.change(lambda _: water.draft.put_at(place, current), f"environment {name}"):
                 self._stand_in(name)
