@@ -12,7 +12,7 @@ from textual.containers import Vertical
 from calm.tui.checking import Check, Reading, anything
 from calm.tui.field import ScrolledEntry
 from calm.tui.key_table import bindings
-from calm.tui.table import TableCells
+from calm.tui.scrolled import TableCells
 from calm.tui.workspace import Workspace
 
 Then = Literal["stay", "edit next", "right", "up", "down"]
@@ -223,4 +223,4 @@ class CellEditor(ScrolledEntry):
         else:
             # behind what follows the focus, which takes away what is told
             reason = f"`{self.value}` is not taken: {reading.note}"
-            self._owner.call_later(self._owner.abandon, reason)
+            self.call_after_refresh(self._owner.abandon, reason)

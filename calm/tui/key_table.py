@@ -119,12 +119,12 @@ picture('plan') | 2 | plan |  | The line seen from above.
 picture('tension') | 3 | tension |  | Tension along the line.
 picture('schematic') | 4 | schematic |  | The parts, not to scale.
 zoom | z | zoom |  | Give the picture the whole screen, or take it back.
-mooring | m | name, place |  | Name, description and position.
-document | M | document |  | Number, revision and what it changed, author, ship and cruise, for
-  the title block.
-deployed | L | as deployed |  | Date, position and depth of the deployment; of the row its number,
-  length, remark, codes.
-tow | T | tow |  | Speed and course of a tow; makes the line one, which hangs from a ship.
+sheet('mooring') | m | name, place |  | Name, description and position.
+sheet('document') | M | document |  | Number, revision and what it changed, author, ship and cruise,
+  for the title block.
+sheet('deployed') | L | as deployed |  | Date, position and depth of the deployment; of the row its
+  number, length, remark, codes.
+sheet('tow') | T | tow |  | Speed and course of a tow; makes the line one, which hangs from a ship.
 begin | b | begin |  | Begin an empty line with a mooring: deep, shelf, ADCP, taut or slack
   surface; a tow.
 papers | P | papers |  | Bill and totals; write the report of the check, or the sheets for the
@@ -237,23 +237,9 @@ for _section in _TABLE.strip("\n[").replace("\n  ", " ").split("\n["):
     ACTIONS[_place] = [_action(_place, _row) for _row in _rows]
 
 
-_KEYS = {
-    "up": "↑",
-    "down": "↓",
-    "left": "←",
-    "right": "→",
-    "enter": "Enter",
-    "escape": "Esc",
-    "delete": "Del",
-    "insert": "Ins",
-    "space": "Space",
-    "tab": "Tab",
-    "home": "Home",
-    "end": "End",
-    "pageup": "PgUp",
-    "pagedown": "PgDn",
-    "slash": "/",
-}
+_ARROWS = {"up": "↑", "down": "↓", "left": "←", "right": "→"}
+_SHORT = {"escape": "Esc", "delete": "Del", "insert": "Ins", "pageup": "PgUp", "pagedown": "PgDn"}
+_KEYS = {**_ARROWS, **_SHORT, "slash": "/", "space": "Space"}
 
 
 def shown_key(key: str) -> str:

@@ -41,20 +41,11 @@ class Saving:
         self.presence = Presence()
         self._told: tuple[object] | None = None  # the state of the file on the disk, told already
 
-    def save(self) -> None:
-        """Save, and ask for a name where there is none."""
-        if self._app.is_settled():
-            self._save()
-
-    def save_as(self) -> None:
-        """Save under another name."""
-        if self._app.is_settled():
-            self._ask_for_name()
-
-    def _save(self, then: Then | None = None) -> None:
+    def save(self, then: Then | None = None) -> None:
+        """Save, and ask for a name where there is none; `then` follows where it was done."""
         file = self._session.file
         if file.path is None:
-            self._ask_for_name(then)
+            self.save_as(then)
         elif file.is_protected or (file.stamp is not None and file.changed_on_disk()):
             self._ask_to_overwrite(file.path, then)
         else:
@@ -91,13 +82,14 @@ class Saving:
                 return f"it cannot be opened as it is: {said}"
         return ""
 
-    def _ask_for_name(self, then: Then | None = None, begin: Path | None = None) -> None:
+    def save_as(self, then: Then | None = None, begin: Path | None = None) -> None:
+        """Save under another name, which is asked for; `begin` is offered."""
         path = self._session.file.path
 
         def take(texts: dict[str, str]) -> None:
             chosen = chosen_path(texts["path"])
             if path is not None and os.path.realpath(chosen) == os.path.realpath(path):
-                self._save(then)
+                self.save(then)
             elif chosen.exists():
                 self._ask_to_overwrite(chosen, then)
             else:
@@ -122,7 +114,7 @@ class Saving:
             Answer(
                 "n",
                 f"save{mine} under another name",
-                lambda: self._ask_for_name(then, _free_name(path)),
+                lambda: self.save_as(then, _free_name(path)),
             ),
         ]
         title = f"{path.name} is write-protected" if is_own else f"{path.name} is there already"
@@ -214,8 +206,6 @@ class Saving:
 
     def quit(self) -> None:
         """Leave; unsaved work is asked about."""
-        if not self._app.is_settled():
-            return
         self.look_at_disk()
         if not self._session.changed:
             self._app.leave()
@@ -228,7 +218,7 @@ class Saving:
             self._app.leave()
 
         answers = [
-            Answer("s", "save and leave", lambda: self._save(self._app.leave)),
+            Answer("s", "save and leave", lambda: self.save(self._app.leave)),
             Answer("d", "leave without saving", discard),
         ]
         name, file = self._session.name, self._session.file
@@ -256,22 +246,15 @@ class Presence:
         with contextlib.suppress(OSError):
             folder.mkdir(parents=True, exist_ok=True)
             for place in folder.glob(f"open-{sign}-*.json"):
-                keeper = _keeper(place)
-                if keeper is not None and keeper.is_here and not keeper.is_running:
-                    place.unlink(missing_ok=True)
-                elif keeper is not None and keeper != own:
-                    others.append(keeper.process)
+                with contextlib.suppress(OSError, ValueError, TypeError):
+                    keeper = Keeper(**json.loads(place.read_text(encoding="utf-8")))
+                    if keeper.is_here and not keeper.is_running:
+                        place.unlink(missing_ok=True)
+                    elif keeper != own:
+                        others.append(keeper.process)
             self._place = folder / f"open-{sign}-{own.process}.json"
             whole_file.put(self._place, json.dumps(asdict(own)).encode())
         return others
-
-
-def _keeper(place: Path) -> Keeper | None:
-    """Who wrote a file of the state folder; None where it cannot be read."""
-    try:
-        return Keeper(**json.loads(place.read_text(encoding="utf-8")))
-    except (OSError, ValueError, TypeError):
-        return None
 
 
 def chosen_path(text: str) -> Path:

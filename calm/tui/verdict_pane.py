@@ -141,20 +141,14 @@ def _parts(view: View | None, note: str) -> Iterator[tuple[Saying, RenderableTyp
         table = Table.grid(padding=(0, 1, 0, 0), expand=True)
         table.add_column(width=1)
         table.add_column(overflow="fold", ratio=1)
-        style = "" if saying.pending or not saying.state else LOOKS[saying.state].style
-        table.add_row(Text(saying.sign, style), _text(saying))
+        look = LOOKS[saying.state].style if saying.state else ""
+        grave = saying.state in (State.FAIL, State.WARN)
+        heading = (f"{saying.heading}  " if saying.heading else "", look if grave else "dim")
+        told = Text.assemble(heading, (saying.text, "dim" if saying.faint else ""))
+        table.add_row(Text(saying.sign, "" if saying.pending else look), told)
         yield saying, table
     if note:
         yield Saying(note), Text(note, style="dim italic")
-
-
-def _text(saying: Saying) -> Text:
-    text = Text()
-    if saying.heading:
-        grave = saying.state in (State.FAIL, State.WARN)
-        style = LOOKS[saying.state].style if grave and saying.state else "dim"
-        text.append(f"{saying.heading}  ", style=style)
-    return text.append(saying.text, style="dim" if saying.faint else "")
 
 
 def state_word(view: View | None, *, old: bool = False) -> str:

@@ -13,7 +13,6 @@ from textual.timer import Timer
 from calm.assemble.catalogue_search import Index
 from calm.errors import CalmError, Problem
 from calm.files import Catalogue, Place
-from calm.files.editing import LineItem
 from calm.tui.session import Session
 
 if TYPE_CHECKING:
@@ -103,11 +102,6 @@ class Workspace:
         if self._catalogue is not None and (self.index is None or defined != self._defined):
             self._defined = defined
             self.index = Index.of(self._catalogue, draft.text)
-
-    def is_assembly(self, item: LineItem) -> bool:
-        """Return whether a row is one of several parts, as far as the catalogue is read."""
-        listed = None if self.index is None else self.index.get(item.values.get("use", ""))
-        return listed is not None and listed.kind == "assembly"
 
     @property
     def is_fresh(self) -> bool:

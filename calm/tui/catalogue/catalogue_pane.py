@@ -27,8 +27,7 @@ from calm.tui.checking import distance, length
 from calm.tui.dialogs import InputSheet, ask
 from calm.tui.field import Asked, ScrolledEntry
 from calm.tui.key_table import bindings
-from calm.tui.scrolled import ScrolledText
-from calm.tui.table import TableCells, TableColumn
+from calm.tui.scrolled import ScrolledText, TableCells, TableColumn
 from calm.tui.theme import CURSOR, FAVOURITE, ROLES
 from calm.tui.workspace import Workspace
 

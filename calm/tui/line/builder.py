@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from functools import partial
 from typing import TYPE_CHECKING, ClassVar
 
@@ -11,23 +10,13 @@ from textual.binding import BindingType
 from textual.events import DescendantFocus, Key
 
 from calm.files.components import KINDS
-from calm.files.editing import Draft
 from calm.templates import TEMPLATES, Template, template
 from calm.tui.cell_editor import CellEditor
-from calm.tui.dialogs import InputSheet, Question, ask, choose, numbered
+from calm.tui.dialogs import Question, ask, choose, numbered
 from calm.tui.key_table import bindings, hints
 from calm.tui.line.comparing import ComparingScreen
 from calm.tui.line.filling import figures_sheet, filled, missing_figures
-from calm.tui.line.mooring_sheet import (
-    as_deployed,
-    deployed_sheet,
-    document_sheet,
-    documented,
-    hung_at,
-    mooring_sheet,
-    tow_sheet,
-    written,
-)
+from calm.tui.line.mooring_sheet import SHEETS, hung_at
 from calm.tui.pictures import Picture, Tab
 from calm.tui.screen import KeyBar
 from calm.tui.session import Location
@@ -251,33 +240,11 @@ class BuilderScreen(ComparingScreen):
         self.tell("")
         self.workspace.edited()
 
-    def action_mooring(self) -> None:
-        """Ask for name, description and position."""
-        self._ask(mooring_sheet(self.session.draft), "name and place", written)
-
-    def action_document(self) -> None:
-        """Ask for what the title block of the drawings says, and what the revision changed."""
-        self._ask(document_sheet(self.session.draft), "the document", documented)
-
-    def action_deployed(self) -> None:
-        """Ask when and where the mooring was deployed, and what of it hangs at the row."""
-        view = self.workspace.view if self.workspace.is_fresh else None
+    def action_sheet(self, name: str) -> None:
+        """Ask for what the file says of the whole of it, and write what is entered."""
+        session, view = self.session, self.workspace.view if self.workspace.is_fresh else None
         hung = hung_at(None if view is None else view.file, self.line.table.spot)
-
-        def deployed(draft: Draft, texts: Mapping[str, str]) -> Draft:
-            return as_deployed(draft, hung, texts)
-
-        self._ask(deployed_sheet(self.session.draft, hung), "the deployment", deployed)
-
-    def action_tow(self) -> None:
-        """Ask for speed and course of a tow; a mooring becomes one."""
-        self._ask(tow_sheet(self.session.draft), "the tow", written)
-
-    def _ask(
-        self, sheet: InputSheet, label: str, changed: Callable[[Draft, Mapping[str, str]], Draft]
-    ) -> None:
-        """Show a sheet, and write what is entered."""
-        session = self.session
+        sheet, label, changed = SHEETS[name](session.draft, hung)
 
         def take(texts: dict[str, str]) -> None:
             self.line.attempt(lambda: session.do(changed(session.draft, texts), label))

@@ -10,24 +10,20 @@ from textual.events import Paste
 
 from calm.checks.finding import State
 from calm.files import Place
-from calm.files.editing import Draft, Value
+from calm.files.editing import Draft
 from calm.files.mooring_file import parts_of
 from calm.files.rule_texts import RULES
 from calm.files.yaml_document import Location
 from calm.tui.catalogue.component_screen import form_fields
-from calm.tui.checking import anything
 from calm.tui.dialogs import InputSheet
 from calm.tui.field import Asked
 from calm.tui.line.mooring_sheet import (
     RELEASES,
     entered,
-    equipment_changes,
     said,
-    serial_of_equipment,
-    texts_of_equipment,
 )
 from calm.tui.line.rows import LineCell
-from calm.tui.line.table import Column, location
+from calm.tui.line.table import location
 from calm.tui.workspace import Workspace
 
 if TYPE_CHECKING:
@@ -60,62 +56,39 @@ class ColumnFilling:
     """A column of some rows: what it has now, and what is entered."""
 
     def __init__(self, workspace: Workspace, spots: Sequence[Place], column: str) -> None:
-        self._workspace, self._session, self.column = workspace, workspace.session, column
-        self._spots = {str(number): spot for number, spot in enumerate(spots)}
-        self._asked = [each for key in self._spots if (each := self._ask(key)) is not None]
+        self._session, self._column = workspace.session, column
+        held = "serial" if column == "codes" else column  # by which codes are known
+        self._cells = {str(i): LineCell(workspace, spot, held) for i, spot in enumerate(spots)}
+        self._asked = [each for key in self._cells if (each := self._ask(key)) is not None]
 
     @property
     def sheet(self) -> ColumnSheet | None:
         """Where it is entered; None where none of the rows has such a value."""
-        return ColumnSheet(_TITLES[self.column], "", self._asked) if self._asked else None
+        return ColumnSheet(_TITLES[self._column], "", self._asked) if self._asked else None
 
     def write(self, texts: Mapping[str, str]) -> None:
         """Write what is another now, in one step."""
-        begun, session = {each.key: each.text for each in self._asked}, self._session
-        texts = {key: text for key, text in texts.items() if text != begun[key]}
-        label = f"fill in {_TITLES[self.column].lower()}"
-        if self.column == "codes":
-            draft = session.draft
-            for key, text in texts.items():
-                draft = entered(draft, RELEASES, ("serial", self._serial(key)), {"codes": text})
-            session.do(draft, label)
+        begun, draft = {each.key: each.text for each in self._asked}, self._session.draft
+        new = {self._cells[key]: text for key, text in texts.items() if text != begun[key]}
+        label = f"fill in {_TITLES[self._column].lower()}"
+        if self._column == "codes":
+            for cell, text in new.items():
+                draft = entered(draft, RELEASES, ("serial", cell.text), {"codes": text})
+            self._session.do(draft, label)
         else:
-            rows = {self._spots[key]: self._values(key, text) for key, text in texts.items()}
-            session.put_rows(rows, label)
+            rows = {cell.spot: cell.values_of(text) for cell, text in new.items()}
+            self._session.put(rows, label)
 
     def _ask(self, key: str) -> Asked | None:
-        item = self._session.item(self._spots[key])
-        title = item.values.get("label") or item.values.get("use", "")
-        if self.column == "serial":
-            if self._workspace.is_assembly(item):
-                return None
-            text = texts_of_equipment(self._written(key), "serial")
-            return Asked(key, title, text, serial_of_equipment)
-        if self.column == "codes":
-            listed = self._workspace.index and self._workspace.index.get(item.values.get("use", ""))
-            serial = self._serial(key)
-            if not (listed and listed.role == "release" and serial):
-                return None
-            return Asked(
-                key, title, said(self._session.draft, RELEASES, ("serial", serial), "codes")
-            )
-        if self.column == "label":
-            return Asked(key, title, item.values.get("label", ""), anything)
-        cell = LineCell(self._workspace, self._spots[key], "length")
-        return None if cell.refused else Asked(key, title, cell.text, cell.check)
-
-    def _values(self, key: str, text: str) -> Mapping[str, Value | None]:
-        if self.column == "serial":
-            return equipment_changes(self._written(key), {"serial": text})
-        column: Column = "label" if self.column == "label" else "length"
-        return LineCell(self._workspace, self._spots[key], column).values_of(text)
-
-    def _serial(self, key: str) -> str:
-        return texts_of_equipment(self._written(key), "serial")
-
-    def _written(self, key: str) -> dict[str, Value]:
-        values = self._session.draft.value(location(self._spots[key]))
-        return values if isinstance(values, dict) else {}
+        cell = self._cells[key]
+        values = self._session.item(cell.spot).values
+        title = values.get("label") or values.get("use", "")
+        if self._column != "codes":
+            return None if cell.refused else Asked(key, title, cell.text, cell.check)
+        if cell.listed is None or cell.listed.role != "release" or not cell.text:
+            return None
+        codes = said(self._session.draft, RELEASES, ("serial", cell.text), "codes")
+        return Asked(key, title, codes)
 
 
 _MOST_LABELS = 4

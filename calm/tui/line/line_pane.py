@@ -26,7 +26,7 @@ from calm.tui.names import Named, namings
 from calm.tui.verdict_text import Saying, why
 from calm.tui.workspace import Workspace
 
-_LEAST_WIDTHS: dict[Column, int] = {"length": 16}
+_LEAST_WIDTHS = {"length": 16}
 _LEAST_WIDTH = 6
 _MIXED = "Pieces are marked, and clamps of other pieces; mark pieces only, or clamps only"
 _FROM_A_ROW = frozenset(
@@ -169,15 +169,14 @@ class LinePane(LineSearch):
         spot = self.table.chosen_here
         values = self.session.draft.value(location(spot))
         label = str(values.get("label") or values.get("use") or "")
-        if self.workspace.is_assembly(self.session.item(spot)):
-            told = f"{label} is an assembly, whose parts have serial numbers; it has none"
-            self.workspace.tell(told)
+        if refused := LineCell(self.workspace, spot, "serial").refused:
+            self.workspace.tell(f"{label} {refused}")
             return
 
         def take(texts: dict[str, str]) -> None:
             changed = equipment_changes(values, texts)
             if changed:
-                self.attempt(lambda: self.session.put(spot, changed, f"equipment of {label}"))
+                self.attempt(lambda: self.session.put({spot: changed}, f"equipment of {label}"))
 
         ask(self.app, equipment_sheet(label, values, is_clamp=spot.is_clamp), take)
 
@@ -281,7 +280,7 @@ class LinePane(LineSearch):
 
     def action_paste(self, below: int) -> None:
         """Put in what was copied."""
-        if not len(self.session.copied):
+        if not self.session.copied:
             self.workspace.tell("Nothing was copied yet")
         else:
             self.attempt(lambda: self.session.paste(self.table.spot, below=bool(below)))

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from calm.files import Clamp, Flexible, MooringFile, Piece, Place
@@ -49,22 +50,31 @@ _BEGIN_A_TOW = (
 )
 
 
-def mooring_sheet(draft: Draft) -> InputSheet:
+Sheet = tuple[InputSheet, str, Callable[[Draft, Mapping[str, str]], Draft]]
+"""What is asked, the label of the change, and the file with what is entered."""
+
+
+def mooring_sheet(draft: Draft, hung: Piece | Clamp | None) -> Sheet:
     """Name and place, as the file has them."""
-    return InputSheet("Name and place", "", filled(draft, _NAME_AND_PLACE))
+    sheet = InputSheet("Name and place", "", filled(draft, _NAME_AND_PLACE))
+    return sheet, "name and place", written
 
 
-def document_sheet(draft: Draft) -> InputSheet:
-    """Return what the title block of the drawings says, as the file has it."""
+def document_sheet(draft: Draft, hung: Piece | Clamp | None) -> Sheet:
+    """Return what the title block of the drawings says, as the file has it, and what the revision
+    changed.
+    """
     revision = draft.text_at(("document", "revision"))
     change = said(draft, _HISTORY, ("revision", revision), "change")
     asked = [*filled(draft, _DOCUMENT), Asked("change", "What it changed", change)]
-    return InputSheet("The document", "For the title block of drawings, and its history.", asked)
+    sheet = InputSheet("The document", "For the title block of drawings, and its history.", asked)
+    return sheet, "the document", _documented
 
 
-def tow_sheet(draft: Draft) -> InputSheet:
+def tow_sheet(draft: Draft, hung: Piece | Clamp | None) -> Sheet:
     """Speed, course and sheave of a tow, as the file has them; a mooring becomes one by them."""
-    return InputSheet("The tow", "" if draft.is_tow else _BEGIN_A_TOW, filled(draft, _TOW))
+    sheet = InputSheet("The tow", "" if draft.is_tow else _BEGIN_A_TOW, filled(draft, _TOW))
+    return sheet, "the tow", written
 
 
 def filled(draft: Draft, asked: Iterable[Asked]) -> list[Asked]:
@@ -81,7 +91,7 @@ def written(draft: Draft, texts: Mapping[str, str]) -> Draft:
     return draft
 
 
-def documented(draft: Draft, texts: Mapping[str, str]) -> Draft:
+def _documented(draft: Draft, texts: Mapping[str, str]) -> Draft:
     """The file with the texts of the document, and in its history what the revision changed."""
     revision, change = texts["document.revision"], texts["change"]
     if change and not revision:
@@ -124,13 +134,14 @@ def hung_at(file: MooringFile | None, spot: Place | None) -> Piece | Clamp | Non
     return found[0] if len(found) == 1 else None
 
 
-def deployed_sheet(draft: Draft, hung: Piece | Clamp | None) -> InputSheet:
+def deployed_sheet(draft: Draft, hung: Piece | Clamp | None) -> Sheet:
     """Return when and where the mooring was deployed, and what hangs at a row, as the file has
     them.
     """
-    asked = filled(draft, _WHOLE)
+    asked, text = filled(draft, _WHOLE), _COMPARED
+    changed = partial(_deployed, hung)
     if hung is None:
-        return InputSheet("As deployed", _COMPARED, asked)
+        return InputSheet("As deployed", text, asked), "the deployment", changed
     for key, title, check in _OF_A_ROW:
         if key != "length" or isinstance(hung.component, Flexible):
             text = said(draft, _ITEMS, ("label", hung.label), key)
@@ -138,11 +149,11 @@ def deployed_sheet(draft: Draft, hung: Piece | Clamp | None) -> InputSheet:
     if hung.component.role == "release":
         codes = said(draft, RELEASES, ("serial", _serial(draft, hung)), "codes")
         asked.append(Asked("codes", "Codes", codes, placeholder="arm 0A1B, release 0A55"))
-    return InputSheet("As deployed", f"{_COMPARED} Below the depth: {hung.label}.", asked)
+    text += f" Below the depth: {hung.label}."
+    return InputSheet("As deployed", text, asked), "the deployment", changed
 
 
-def as_deployed(draft: Draft, hung: Piece | Clamp | None, texts: Mapping[str, str]) -> Draft:
-    """The file with what was entered."""
+def _deployed(hung: Piece | Clamp | None, draft: Draft, texts: Mapping[str, str]) -> Draft:
     draft = written(draft, {each.key: texts[each.key] for each in _WHOLE})
     if hung is None:
         return draft
@@ -251,3 +262,12 @@ def _index(draft: Draft, rows: Location, called: tuple[str, str]) -> int | None:
     listed: Any = draft.value(rows)
     entries = enumerate(listed if isinstance(listed, list) else ())
     return next((i for i, one in entries if isinstance(one, dict) and called in one.items()), None)
+
+
+SHEETS = {
+    "mooring": mooring_sheet,
+    "document": document_sheet,
+    "deployed": deployed_sheet,
+    "tow": tow_sheet,
+}
+"""What is asked about a whole file, and of what hangs at the row under the cursor."""

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from calm.assemble.catalogue_search import Index
+from calm.assemble.catalogue_search import Index, Listed
 from calm.checks.finding import State
 from calm.files import Place
 from calm.files.components import FLEXIBLE_KINDS
 from calm.files.editing import Draft, LineItem, Value
 from calm.quantities import QUANTITIES
 from calm.tui.checking import Check, anything, count, distance, length, length_text, length_values
-from calm.tui.line.table import EDITABLE, Column, TableRow
+from calm.tui.line.mooring_sheet import equipment_changes, serial_of_equipment, texts_of_equipment
+from calm.tui.line.table import EDITABLE, TableRow, location
 from calm.tui.theme import CLAMP, ROLES, UNKNOWN_MARGIN, UNKNOWN_ROLE, worst
 from calm.tui.workspace import Workspace
 
@@ -133,6 +134,7 @@ def _told(found: Sequence[FoundRow]) -> dict[str, str]:
 
 
 _NO_COUNT = "A clamp has no count; duplicate it instead"
+_NO_SERIAL = "is an assembly, whose parts have serial numbers; it has none"
 _NO_LENGTH = "Its length is set by the component"
 
 
@@ -142,34 +144,41 @@ class LineCell:
 
     workspace: Workspace
     spot: Place
-    column: Column
+    column: str
+    """One of the table that can be edited, or the serial number."""
+
+    @property
+    def listed(self) -> Listed | None:
+        """Return its component, where the catalogue is read and has it."""
+        index = self.workspace.index
+        return None if index is None else index.get(self._values.get("use", ""))
 
     @property
     def refused(self) -> str:
         """Return why it cannot be edited; empty where it can."""
+        listed = self.listed
+        if self.column == "serial" and listed is not None and listed.kind == "assembly":
+            return _NO_SERIAL
         if self.spot.is_clamp:
             return _NO_COUNT if self.column == "count" else ""
-        index = self.workspace.index
-        if self.column != "length" or index is None:
-            return ""
-        listed = index.get(self._values.get("use", ""))
         is_rigid = listed is not None and listed.kind not in FLEXIBLE_KINDS
-        return _NO_LENGTH if is_rigid and "length" not in self._values else ""
+        is_set = self.column == "length" and is_rigid and "length" not in self._values
+        return _NO_LENGTH if is_set else ""
 
     @property
     def text(self) -> str:
         """As it is edited."""
         if self._is_length:
             return length_text(self._values)
+        if self.column == "serial":
+            return texts_of_equipment(self._written, "serial")
         return self._values.get("at" if self.column == "length" else self.column, "")
 
     @property
     def check(self) -> Check:
         """Return what judges another text of it."""
-        if self.column == "count":
-            return count
         if self.column != "length":
-            return anything
+            return {"count": count, "serial": serial_of_equipment}.get(self.column, anything)
         if self.spot.is_clamp:
             return distance(self.text)
         return length(self._values.get("length", ""), towed=self._is_towed)
@@ -183,13 +192,15 @@ class LineCell:
         """
         if given := self.values_of(text):
             name = "place" if self.spot.is_clamp and self.column == "length" else self.column
-            self.workspace.session.put(self.spot, given, f"change the {name}")
+            self.workspace.session.put({self.spot: given}, f"change the {name}")
 
     def values_of(self, text: str) -> dict[str, Value | None]:
         """The keys of the file that another text changes; None takes one away."""
         written = self._values
         if text == self.text:
             return {}
+        if self.column == "serial":
+            return equipment_changes(self._written, {"serial": text})
         given = {k: new for k, new in self._keys(text).items() if new is not None or k in written}
         return given if any(written.get(key) != new for key, new in given.items()) else {}
 
@@ -218,6 +229,12 @@ class LineCell:
     @property
     def _values(self) -> dict[str, str]:
         return self.workspace.session.item(self.spot).values
+
+    @property
+    def _written(self) -> dict[str, Any]:
+        """All that the file says of the row."""
+        values = self.workspace.session.draft.value(location(self.spot))
+        return values if isinstance(values, dict) else {}
 
     @property
     def _is_towed(self) -> bool:

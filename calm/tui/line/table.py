@@ -20,7 +20,7 @@ from calm.tui.cell_editor import EditableTable
 from calm.tui.checking import needed
 from calm.tui.dialogs import InputSheet, ask
 from calm.tui.field import Asked
-from calm.tui.table import TableCells, TableColumn
+from calm.tui.scrolled import TableCells, TableColumn
 from calm.tui.theme import CURSOR, LOOKS, MARK
 
 _TAIL = 4

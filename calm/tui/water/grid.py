@@ -16,7 +16,7 @@ from calm.tui.checking import Reading
 from calm.tui.dialogs import InputSheet, ask
 from calm.tui.field import Asked
 from calm.tui.key_table import bindings
-from calm.tui.table import TableCells, TableColumn
+from calm.tui.scrolled import TableCells, TableColumn
 from calm.tui.theme import CURSOR
 from calm.tui.water.tables_to_begin import (
     NoRows,
