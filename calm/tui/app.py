@@ -194,9 +194,7 @@ class BuildApp(InTurn):
         yield SystemCommand("colours", "Choose other colours.", self.action_change_theme)
 
     def get_line_filters(self) -> Sequence[LineFilter]:
-        """Return those of textual and one for colours that can be read; or one that takes all
-        colours off; and one for terminals of plain signs.
-        """
+        """Those of textual, and one for legible colours or for none, and one for plain signs."""
         if self.no_color:
             return [_COLOURLESS, *self._plain]
         theme = self.current_theme

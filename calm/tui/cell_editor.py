@@ -163,9 +163,7 @@ class CellEditor(ScrolledEntry):
 
     @property
     def text(self) -> str | None:
-        """Return what is to be written; None where nothing is: it stays, or what was typed is
-        bad.
-        """
+        """Return what is to be written; None where it stays, or what was typed is bad."""
         reading = self._check(self.value)
         # a value that nobody touched has its unit added, and is not tidied
         is_completed = reading.text.startswith(f"{self.value.strip()} ")

@@ -56,9 +56,7 @@ class Asked:
 
 
 def all_settled(fields: Iterable[Field]) -> bool:
-    """Return whether all texts are good, and taken; of those that are not the first gets the
-    focus.
-    """
+    """Return whether all texts are good, and taken; the first that is not gets the focus."""
     wrong = [field for field in fields if not field.settle()]
     if wrong:
         wrong[0].input.focus()

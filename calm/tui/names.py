@@ -154,9 +154,7 @@ class Standing:
 
     @property
     def environment(self) -> str | None:
-        """Return what the line stands in: the own one, too, where that chosen is in the file no
-        more.
-        """
+        """Return what the line stands in; its own where the chosen one is gone from the file."""
         return None if self.lost_environment else self._environment
 
     @environment.setter

@@ -95,6 +95,11 @@ class Session:
         item = self.draft.items[spot.item]
         return item.clamps[spot.clamp] if spot.is_clamp else item
 
+    def written(self, spot: Place) -> dict[str, Any]:
+        """All that the file says of a row."""
+        values = self.draft.value(location(spot))
+        return values if isinstance(values, dict) else {}
+
     def do(self, draft: Draft, label: str) -> None:
         """Take a draft as the next state; one that changes nothing is no step."""
         if draft.text != self.draft.text:
@@ -148,11 +153,9 @@ class Session:
 
     def replace(self, spot: Place, values: Mapping[str, str]) -> list[str]:
         """Put another component on a row; returns what the row still overrides of the old one."""
-        rows, index = _listed(spot)
-        written = self.draft.value((*rows, index))
         kept = [
             f"{key} {value}" if isinstance(value, str) else key
-            for key, value in (written if isinstance(written, dict) else {}).items()
+            for key, value in self.written(spot).items()
             if key not in _OF_THE_ROW
         ]
         self.put({spot: values}, f"use {values['use']}")
@@ -346,6 +349,12 @@ def _whole(spots: Iterable[Place]) -> list[Place]:
     chosen = sorted(set(spots))
     pieces = {spot.item for spot in chosen if not spot.is_clamp}
     return [spot for spot in chosen if not spot.is_clamp or spot.item not in pieces]
+
+
+def location(spot: Place) -> Location:
+    """Where a row stands in the file."""
+    rows, index = _listed(spot)
+    return (*rows, index)
 
 
 def _listed(spot: Place) -> tuple[Location, int]:

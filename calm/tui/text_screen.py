@@ -107,14 +107,11 @@ class TextScreen(DraftScreen):
         view, draft = self.workspace.view, self.session.draft
         known = self.workspace.is_fresh
         self._problems = tuple(draft.problems) or (view.problems if known and view else ())
-        if self._problems:
-            lines = [said(each, self.workspace.path) for each in self._problems]
-        elif known and view is not None and view.missing:
-            lines = [Content(f"? {each}") for each in view.missing]
-        elif known:
-            lines = [Content.from_markup("[$text-success]✓[/] The text can be read.")]
-        else:
-            lines = [Content("…")]
+        lines = [said(each, self.workspace.path) for each in self._problems]
+        if not lines and known and view is not None:
+            good = Content.from_markup("[$text-success]✓[/] The text can be read.")
+            lines = [Content(f"? {each}") for each in view.missing] or [good]
+        lines = lines or [Content("…")]
         self.query_one("#mistakes-text", Static).update(Content("\n").join(lines))
         self.show_title()
 
@@ -211,8 +208,6 @@ class TextScreen(DraftScreen):
 
 
 def _row(text: str, line: int) -> int:
-    """Return where the editor has a line of the file, both counted as they count: it knows more
-    breaks.
-    """
+    """Return where the editor, which knows more line breaks, has a line of the file."""
     ends = [0, *(found.end() for found in _LINE_BREAK.finditer(text))]
     return len(text[: ends[min(line, len(ends)) - 1]].splitlines())

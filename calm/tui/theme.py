@@ -136,9 +136,7 @@ def legible(dark: bool, sixteen: bool) -> Legible:
 
 @lru_cache(1024)
 def _of_sixteen(style: Style, dark: bool) -> Style:
-    """Return a style of the terminal's own colours; on a ground of colour, and dimmed, none are
-    sure.
-    """
+    """A style of the terminal's own colours; on a coloured ground, and dimmed, none are sure."""
     ink = style.color or _OWN
     if style.bgcolor is not None and not style.bgcolor.is_default:
         return style + Style(color=_OWN, bgcolor=_OWN, reverse=True, dim=False)

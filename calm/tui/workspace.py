@@ -26,9 +26,7 @@ class Shown(Protocol):
 
 
 def is_elsewhere(problem: Problem, path: Path) -> bool:
-    """Return whether a mistake is in another file than the one that is edited, which has this
-    path.
-    """
+    """Return whether a mistake is in another file than that of the path, which is edited."""
     return problem.path not in ("", str(path))
 
 
@@ -105,9 +103,7 @@ class Workspace:
 
     @property
     def is_fresh(self) -> bool:
-        """Return whether the view is of what is edited: the text, the file's place and the
-        environment.
-        """
+        """Return whether the view is of the text, the path and the environment of now."""
         session, view = self.session, self.view
         return view is not None and view.is_of(
             session.draft.text, session.file.path, session.standing.environment

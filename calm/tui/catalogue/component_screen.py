@@ -207,9 +207,7 @@ def _one_of(words: tuple[str, ...]) -> Check:
 
 
 def id_check(own: Collection[str]) -> Check:
-    """Return whether a text can be the id of a component; `own` are those that the file has
-    already.
-    """
+    """Return whether a text can be an id; `own` are those that the file has already."""
 
     def check(text: str) -> Reading:
         tidy = text.strip()

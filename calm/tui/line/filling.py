@@ -23,7 +23,7 @@ from calm.tui.line.mooring_sheet import (
     said,
 )
 from calm.tui.line.rows import LineCell
-from calm.tui.line.table import location
+from calm.tui.session import location
 from calm.tui.workspace import Workspace
 
 if TYPE_CHECKING:

@@ -21,7 +21,7 @@ from calm.tui.key_table import bindings
 from calm.tui.line.filling import ColumnFilling
 from calm.tui.line.mooring_sheet import equipment_changes, equipment_sheet
 from calm.tui.line.rows import LineCell, table_rows
-from calm.tui.line.table import EDITABLE, Column, LineSearch, LineTable, location
+from calm.tui.line.table import EDITABLE, Column, LineSearch, LineTable
 from calm.tui.names import Named, namings
 from calm.tui.verdict_text import Saying, why
 from calm.tui.workspace import Workspace
@@ -167,7 +167,7 @@ class LinePane(LineSearch):
     def action_equipment(self) -> None:
         """Serial number, calibration and more of the row."""
         spot = self.table.chosen_here
-        values = self.session.draft.value(location(spot))
+        values = self.session.written(spot)
         label = str(values.get("label") or values.get("use") or "")
         if refused := LineCell(self.workspace, spot, "serial").refused:
             self.workspace.tell(f"{label} {refused}")

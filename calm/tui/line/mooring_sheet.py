@@ -61,9 +61,7 @@ def mooring_sheet(draft: Draft, hung: Piece | Clamp | None) -> Sheet:
 
 
 def document_sheet(draft: Draft, hung: Piece | Clamp | None) -> Sheet:
-    """Return what the title block of the drawings says, as the file has it, and what the revision
-    changed.
-    """
+    """What the title block says, as the file has it, and what the revision changed."""
     revision = draft.text_at(("document", "revision"))
     change = said(draft, _HISTORY, ("revision", revision), "change")
     asked = [*filled(draft, _DOCUMENT), Asked("change", "What it changed", change)]
@@ -135,9 +133,7 @@ def hung_at(file: MooringFile | None, spot: Place | None) -> Piece | Clamp | Non
 
 
 def deployed_sheet(draft: Draft, hung: Piece | Clamp | None) -> Sheet:
-    """Return when and where the mooring was deployed, and what hangs at a row, as the file has
-    them.
-    """
+    """When and where the mooring was deployed and what hangs at a row, as in the file."""
     asked, text = filled(draft, _WHOLE), _COMPARED
     changed = partial(_deployed, hung)
     if hung is None:

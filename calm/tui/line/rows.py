@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from calm.assemble.catalogue_search import Index, Listed
 from calm.checks.finding import State
@@ -14,7 +14,7 @@ from calm.files.editing import Draft, LineItem, Value
 from calm.quantities import QUANTITIES
 from calm.tui.checking import Check, anything, count, distance, length, length_text, length_values
 from calm.tui.line.mooring_sheet import equipment_changes, serial_of_equipment, texts_of_equipment
-from calm.tui.line.table import EDITABLE, TableRow, location
+from calm.tui.line.table import EDITABLE, TableRow
 from calm.tui.theme import CLAMP, ROLES, UNKNOWN_MARGIN, UNKNOWN_ROLE, worst
 from calm.tui.workspace import Workspace
 
@@ -171,7 +171,7 @@ class LineCell:
         if self._is_length:
             return length_text(self._values)
         if self.column == "serial":
-            return texts_of_equipment(self._written, "serial")
+            return texts_of_equipment(self.workspace.session.written(self.spot), "serial")
         return self._values.get("at" if self.column == "length" else self.column, "")
 
     @property
@@ -200,7 +200,7 @@ class LineCell:
         if text == self.text:
             return {}
         if self.column == "serial":
-            return equipment_changes(self._written, {"serial": text})
+            return equipment_changes(self.workspace.session.written(self.spot), {"serial": text})
         given = {k: new for k, new in self._keys(text).items() if new is not None or k in written}
         return given if any(written.get(key) != new for key, new in given.items()) else {}
 
@@ -229,12 +229,6 @@ class LineCell:
     @property
     def _values(self) -> dict[str, str]:
         return self.workspace.session.item(self.spot).values
-
-    @property
-    def _written(self) -> dict[str, Any]:
-        """All that the file says of the row."""
-        values = self.workspace.session.draft.value(location(self.spot))
-        return values if isinstance(values, dict) else {}
 
     @property
     def _is_towed(self) -> bool:

@@ -324,12 +324,6 @@ class LineSearch(EditableTable):
         """What a row says, and the catalogue of its component."""
         index, use = self.workspace.index, row.texts["component"].split()[-1:]
         listed = index.get(use[0]) if index and use else None
-        values = self.workspace.session.draft.value(location(row.spot))
-        serial = values.get("serial", "") if isinstance(values, dict) else ""
+        serial = self.workspace.session.written(row.spot).get("serial", "")
         own = f"{row.texts['component']} {row.texts.get('label', '')} {serial}".casefold()
         return f"{own} {listed.searched}" if listed else own
-
-
-def location(spot: Place) -> tuple[str | int, ...]:
-    """Where a row stands in the file."""
-    return ("line", spot.item, *(("clamps", spot.clamp) if spot.is_clamp else ()))

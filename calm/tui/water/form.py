@@ -87,11 +87,6 @@ class WaterForm:
         """The depth [m], above 0; None where none is given or it cannot be read."""
         return _read(POSITIVE_LENGTH, self.text("depth"))
 
-    @property
-    def lacks_direction(self) -> bool:
-        """Return whether there is a wind without a direction."""
-        return bool(self.text("wind", "speed")) and not self.text("wind", "toward")
-
     def form(self, *keys: str) -> str:
         """Return how the current, the density, or the temperature or salinity of that is given."""
         value = self.value(*keys)
@@ -161,29 +156,25 @@ class WaterForm:
         return {name[-1]: self.begun(name, "constant") for name in _CONSTANTS if len(name) > 1}
 
     def _begun_current(self, form: str) -> Value | None:
-        speed, toward = self._current_at_the_surface()
-        if form == "table":
-            rows = [["0", speed, toward], [self._down_to, speed, toward]]
-            return {"columns": [*CURRENT_COLUMNS], "rows": rows}
-        if form == "uniform":
-            return {"speed": f"{speed} m/s", "toward": f"{toward} deg"}
-        # one that flows in the file's own environment would be there in this one, too
-        return {"speed": "0 m/s", "toward": "0 deg"} if self.variant else None
-
-    def _current_at_the_surface(self) -> tuple[str, str]:
-        """Speed [m/s] and direction [degrees] of a uniform current, or of a table's first row."""
+        """Begin with a uniform current as it is, or with what a table has in its first row."""
         place = {name: self.text("current", name) for name in ("speed", "toward")}
         columns, rows = self.table("current")
         for column, text in zip(columns, rows[0] if rows else (), strict=False):
             name, unit = heading(column)
             place[name] = f"{text} {unit}".strip()
-        speed, u, v = (
-            _read(QuantityField("speed"), place.get(name, "")) for name in ("speed", "u", "v")
-        )
-        toward = _read(QuantityField("angle"), place["toward"])
-        if u is not None and v is not None:
-            speed, toward = profile_tables.speed_and_direction(u, v)
-        return _CURRENT if speed is None or toward is None else (f"{speed:g}", f"{toward:g}")
+        found = [_read(QuantityField("speed"), place.get(name, "")) for name in ("speed", "u", "v")]
+        flow = found[0], _read(QuantityField("angle"), place["toward"])
+        if found[1] is not None and found[2] is not None:
+            flow = profile_tables.speed_and_direction(found[1], found[2])
+        known = [f"{each:g}" for each in flow if each is not None]
+        speed, toward = known if len(known) == 2 else _CURRENT
+        if form == "table":
+            rows_begun = [["0", speed, toward], [self._down_to, speed, toward]]
+            return {"columns": [*CURRENT_COLUMNS], "rows": rows_begun}
+        if form == "uniform":
+            return {"speed": f"{speed} m/s", "toward": f"{toward} deg"}
+        # one that flows in the file's own environment would be there in this one, too
+        return {"speed": "0 m/s", "toward": "0 deg"} if self.variant else None
 
     @property
     def _down_to(self) -> str:
@@ -278,9 +269,7 @@ class FormChoice(Cycle):
 
 
 def fields_of_water(grid: Callable[..., Grid]) -> Iterator[Widget]:
-    """The parts of the form, its tables made by `grid`; the id of each tells its place in an
-    environment.
-    """
+    """The parts of the form, tables made by `grid`; ids tell their places in an environment."""
 
     def field(place: str, title: str, check: Check = anything, placeholder: str = "") -> Field:
         key = place.rpartition("-")[2]

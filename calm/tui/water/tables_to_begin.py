@@ -360,9 +360,7 @@ _KINDS: dict[str, QuantityRange] = {
 
 
 def check_of(column: str) -> Check:
-    """Return what judges the values of a column: numbers where it gives its unit, else
-    quantities.
-    """
+    """Return what judges values of a column: numbers where it gives its unit, else quantities."""
     name, unit = heading(column)
     kind = _KINDS.get(name)
     if kind is None:

@@ -141,7 +141,8 @@ class WaterScreen(DraftScreen):
             field.set_class(not self._is_shown(place, "constant"), "gone")
             if not field.is_typing:
                 field.reset(water.text(*place))
-            is_lacking = place == ("wind", "toward") and water.lacks_direction
+            is_blown = place == ("wind", "toward") and water.text("wind", "speed")
+            is_lacking = is_blown and not water.text(*place)
             note = "is needed: where the wind blows" if is_lacking else ""
             field.tell(note if water.is_own(place[0]) else _INHERITED)
         for grid in self.query(Grid):
@@ -150,19 +151,13 @@ class WaterScreen(DraftScreen):
             grid.show(*water.table(*place), seabed=water.depth)
 
     def _is_shown(self, place: Place, form: str = "") -> bool:
-        """Return whether a part of the form is of use as the water is given, in this form of its
-        own.
-        """
-        match place:
-            case ("density", _) if self.water.form("density") != DENSITY_FORMS[2]:
-                return False
-            case ("current", "speed" | "toward"):
-                return self.water.form("current") == "uniform"
-            case ("current", "file" | "time"):
-                return self.water.form("current") == "file"
-            case ("density",) | ("density", _) | ("current",):
-                return not form or self.water.form(*place) == form
-        return True
+        """Return whether a part of the form is of use as the water is given."""
+        water, key = self.water, place[0]
+        if key == "density" and place[1:] and water.form(key) != DENSITY_FORMS[2]:
+            return False
+        if key == "current" and place[1:]:
+            return water.form(key) == ("file" if place[1] in ("file", "time") else "uniform")
+        return not form or key not in ("density", "current") or water.form(*place) == form
 
     def replaced(self) -> None:
         """Show another draft; what is typed, and what other forms held, was of the one before."""
@@ -184,22 +179,6 @@ class WaterScreen(DraftScreen):
     def put_table(self, columns: Sequence[str], rows: Sequence[Sequence[str]], label: str) -> None:
         """Make the current a table of these rows."""
         self.change(lambda water: water.put_rows(("current",), columns, rows), label)
-
-    def give_in_form(self, place: Place, form: str) -> None:
-        """Give the current or the density in another form: as it was in it, or begun anew."""
-        if not self.settle():
-            return
-        water = self.water
-        self._left[water.variant, place, water.form(*place)] = water.own(*place)
-        key = (water.variant, place, form)
-        is_new = key not in self._left
-        value = water.begun(place, form) if is_new else self._left[key]
-        message = ""
-        if is_new and value is not None:
-            message = "Filled with typical figures, to be replaced"
-            if water.depth is None:
-                message += f"; no depth is given, so tables go down to {USUAL_DEPTH:g} m"
-        self.change(lambda water: water.put_form(place, value), f"{place[-1]}: {form}", message)
 
     # what is typed
 
@@ -260,13 +239,25 @@ class WaterScreen(DraftScreen):
 
     @on(FormChoice.Taken)
     def _take_form(self, event: FormChoice.Taken) -> None:
-        place = _place(event.choice)
-        if event.form == "file":
+        """Give the current or the density in another form: as it was in it, or begun anew."""
+        place, form, message = _place(event.choice), event.form, ""
+        if form == "file":
             self._currents.ask_for_file()
-        else:
-            self.give_in_form(place, event.form)
-            self._goes_on = True
-            self.call_after_refresh(self._first_of(place, event.form).focus)
+            return
+        if not self.settle():
+            return
+        water = self.water
+        self._left[water.variant, place, water.form(*place)] = water.own(*place)
+        key = (water.variant, place, form)
+        is_new = key not in self._left
+        value = water.begun(place, form) if is_new else self._left[key]
+        if is_new and value is not None:
+            message = "Filled with typical figures, to be replaced"
+            if water.depth is None:
+                message += f"; no depth is given, so tables go down to {USUAL_DEPTH:g} m"
+        self.change(lambda water: water.put_form(place, value), f"{place[-1]}: {form}", message)
+        self._goes_on = True
+        self.call_after_refresh(self._first_of(place, form).focus)
 
     def _first_of(self, place: Place, form: str) -> Widget:
         """Return where the value of a form begins; below it, where it has none."""
@@ -282,14 +273,12 @@ class WaterScreen(DraftScreen):
 
     @on(DescendantFocus)
     def _show_keys(self) -> None:
-        bar = self.query_one(KeyBar)
-        focused = self.focused
+        bar, focused = self.query_one(KeyBar), self.focused
         if isinstance(focused, CellEditor):
             bar.show_keys(hints("cell"))
-        elif isinstance(focused, GridCells):
-            bar.show_keys([*hints("grid"), *hints("water")])
         else:
-            bar.show_keys(hints("water"))
+            grid = hints("grid") if isinstance(focused, GridCells) else []
+            bar.show_keys([*grid, *hints("water")])
         if not self._goes_on:
             bar.tell("")
         self._goes_on = False
