@@ -43,26 +43,74 @@ _MOST_ROUNDS = 50  # what sends itself messages without an end is not waited for
 _COLOURLESS = NoColor()
 
 
-class InTurn(App[int]):
-    """An application that handles keys, pastes and the mouse one after the other.
+class BuildApp(App[int]):
+    """The line builder.
 
-    What a key opens is there before the next one is pressed. Keys that are typed ahead, or come in
-    one parcel over a slow line, would otherwise go to what has the focus when they arrive: to the
-    line instead of the field that the first of them opens.
+    It handles keys, pastes and the mouse one after the other: what a key opens is there before the
+    next one is pressed. Keys that are typed ahead, or come in one parcel over a slow line, would
+    otherwise go to what has the focus when they arrive: to the line instead of the field that the
+    first of them opens.
 
     A key is done when everything that it may have set going has come to rest. Each part of the
     screen handles what it is sent in the order of its queue: a call that is sent after the key
     comes back when the key is handled, and a second round finds what the key made the parts send
     each other. Rounds are made until one of them finds no queue with anything left in it.
 
-    `has_keys_waiting` tells whether a key is not handled yet.
+    Parameters
+    ----------
+    session : the file that is built
+    kept : work that an earlier session has kept and not saved, to be offered
+    environ : describes the terminal
+
+    Attributes
+    ----------
+    not_kept : why unsaved work could not be kept at the end; empty as a rule
+    has_keys_waiting : whether a key is not handled yet
     """
 
-    def __init__(self, *arguments: Any, **options: Any) -> None:
-        super().__init__(*arguments, **options)
+    TITLE = "calm build"
+    COMMANDS: ClassVar[set[Any]] = {*App.COMMANDS, Actions}
+    CSS = """
+    * { scrollbar-size: 1 1; }
+    Input > .input--placeholder { text-style: italic dim; }
+    Input:nocolor > .input--cursor, Input:nocolor > .input--selection,
+    TextArea:nocolor .text-area--cursor, TextArea:nocolor .text-area--selection {
+        text-style: reverse;
+    }
+    """
+
+    def __init__(
+        self,
+        session: Session,
+        *,
+        kept: KeptWork | None = None,
+        environ: Mapping[str, str] = os.environ,
+    ) -> None:
+        super().__init__()
+        self.session = session
+        self.workspace = Workspace(session, self.tell, self._edited)
+        self.judging = Judging(self, self.workspace, self._show_views)
+        self.saving = Saving(self, self.workspace)
+        self.builder = BuilderScreen(self.workspace)
+        self.not_kept = ""
+        self._painted, self._pace = Painted(), Pace()
+        self._offered = kept
+        self._plain = [] if shows_all_signs(environ, sys.__stderr__) else [PlainSigns()]
+        self._is_catalogue_read = False
+        self._autosaving: Timer | None = None
+        self._late: Timer | None = None
+        self._is_left = False
+        self._lost: str | None = None
         self._waiting: deque[events.Event] = deque()
         self.has_keys_waiting = False
         self._rounds = 0
+
+        for theme in (DARK, LIGHT):
+            self.register_theme(theme)
+        self.ansi_theme_dark, self.ansi_theme_light = PICTURE_DARK, PICTURE_LIGHT
+        self.theme = choose_theme(environ)
+
+    # the turns of the keys
 
     async def on_event(self, event: events.Event) -> None:
         """Let what a person does wait for what was done before, but for the mouse that moves."""
@@ -110,59 +158,7 @@ class InTurn(App[int]):
         else:
             self.has_keys_waiting = False
 
-
-class BuildApp(InTurn):
-    """The line builder.
-
-    Parameters
-    ----------
-    session : the file that is built
-    kept : work that an earlier session has kept and not saved, to be offered
-    environ : describes the terminal
-
-    Attributes
-    ----------
-    not_kept : why unsaved work could not be kept at the end; empty as a rule
-    """
-
-    TITLE = "calm build"
-    COMMANDS: ClassVar[set[Any]] = {*InTurn.COMMANDS, Actions}
-    CSS = """
-    * { scrollbar-size: 1 1; }
-    Input > .input--placeholder { text-style: italic dim; }
-    Input:nocolor > .input--cursor, Input:nocolor > .input--selection,
-    TextArea:nocolor .text-area--cursor, TextArea:nocolor .text-area--selection {
-        text-style: reverse;
-    }
-    """
-
-    def __init__(
-        self,
-        session: Session,
-        *,
-        kept: KeptWork | None = None,
-        environ: Mapping[str, str] = os.environ,
-    ) -> None:
-        super().__init__()
-        self.session = session
-        self.workspace = Workspace(session, self.tell, self._edited)
-        self.judging = Judging(self, self.workspace, self._show_views)
-        self.saving = Saving(self, self.workspace)
-        self.builder = BuilderScreen(self.workspace)
-        self.not_kept = ""
-        self._painted, self._pace = Painted(), Pace()
-        self._offered = kept
-        self._plain = [] if shows_all_signs(environ, sys.__stderr__) else [PlainSigns()]
-        self._is_catalogue_read = False
-        self._autosaving: Timer | None = None
-        self._late: Timer | None = None
-        self._is_left = False
-        self._lost: str | None = None
-
-        for theme in (DARK, LIGHT):
-            self.register_theme(theme)
-        self.ansi_theme_dark, self.ansi_theme_light = PICTURE_DARK, PICTURE_LIGHT
-        self.theme = choose_theme(environ)
+    # the terminal
 
     def get_default_screen(self) -> Screen[Any]:
         """The line as the lowest screen: a screen below it would be painted too."""

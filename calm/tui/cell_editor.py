@@ -52,6 +52,10 @@ class EditableTable(Vertical):
     def abandoned(self) -> None:
         """Do what follows where a value is left as it was."""
 
+    def action_move_column(self, by: int) -> None:
+        """Go to the left or the right."""
+        self.table.column += by
+
     @property
     def is_typing(self) -> bool:
         """Return whether a value is typed that is not written yet."""
@@ -73,14 +77,15 @@ class EditableTable(Vertical):
         editor.styles.width = max(region.width, least_width)
         editor.open(text, check, begun=begun)
 
-    def settle_cell(self) -> Reading:
-        """Write what is typed; a bad value stays to be corrected."""
+    def settle(self) -> bool:
+        """Write what is typed; a bad value, which is told, stays to be corrected."""
         reading = self.editor.settle()
         if not reading.is_good:
             self.editor.focus()
+            self.workspace.tell(f"Not taken yet: {reading.note}", wrong=True)
         elif self.editor.is_open:
             self._take_typed()
-        return reading
+        return reading.is_good
 
     def _take_typed(self) -> str | None:
         """Write the good text that is typed, if any, where it was typed."""

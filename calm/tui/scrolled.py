@@ -37,6 +37,14 @@ class Scrolled(ScrollView, inherit_bindings=False):
         if self.scroll_offset.y > self.max_scroll_y:
             self.scroll_to(y=self.max_scroll_y, animate=False)
 
+    def on_focus(self) -> None:
+        """The cursor is drawn where the focus is."""
+        self.refresh()
+
+    def on_blur(self) -> None:
+        """And only there."""
+        self.refresh()
+
 
 class DrawnRows(Scrolled, can_focus=False):
     """Rows that are drawn for the cells there are, anew where these are others."""
@@ -263,14 +271,6 @@ class TableCells(Scrolled, inherit_bindings=False):
         column = shown.get(self.editable[self.column], self.columns[0])
         y = self.cursor + self.HEADING - self.scroll_offset.y
         return Region(column.start, y, column.width, 1)
-
-    def on_focus(self) -> None:
-        """The cursor is drawn where the focus is."""
-        self.refresh()
-
-    def on_blur(self) -> None:
-        """And only there."""
-        self.refresh()
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
         """Put the cursor where the mouse is; a press on the cursor itself is told.

@@ -84,11 +84,6 @@ class VerdictPane(ScrolledText, can_focus=True):
         """The line that is chosen is shown where the focus is."""
         if not self._is_a_way(self._chosen):
             self.action_move(1)
-        self.refresh()
-
-    def on_blur(self) -> None:
-        """And only there."""
-        self.refresh()
 
     def action_move(self, by: int) -> None:
         """To the next line that leads to a row, or scroll where there is none."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from textual.app import App
 from textual.content import Content
@@ -17,12 +17,6 @@ from calm.tui.session import Session
 
 if TYPE_CHECKING:
     from calm.tui.live import View
-
-
-class Shown(Protocol):
-    """Shows the workspace as it is; `is_first` where its first view is there."""
-
-    def __call__(self, *, is_first: bool = False) -> object: ...
 
 
 def is_elsewhere(problem: Problem, path: Path) -> bool:
@@ -152,10 +146,10 @@ class Judging:
     ----------
     app : whose workers they are
     workspace : takes what they find
-    show : shows the workspace as it is
+    show : shows the workspace as it is; `is_first` where its first view is there
     """
 
-    def __init__(self, app: App[int], workspace: Workspace, show: Shown) -> None:
+    def __init__(self, app: App[int], workspace: Workspace, show: Callable[..., object]) -> None:
         self._app, self._workspace, self._show = app, workspace, show
         self._is_judging = False
         self._is_stale = False  # a change is not asked about yet

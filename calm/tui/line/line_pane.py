@@ -68,14 +68,10 @@ class LinePane(LineSearch):
     def show_draft(self, spot: Place | None = None) -> None:
         """Show the draft, another one now; the cursor goes to a row, or stays where it is."""
         here = self.table.spot if spot is None else spot
-        self.forget()
-        self.show_rows()
-        self.table.go_to(here)
-
-    def forget(self) -> None:
-        """The piece that is marked or edited may be another one now."""
         self.leave_cell()
         self.table.mark(frozenset())
+        self.show_rows()
+        self.table.go_to(here)
 
     def attempt(self, change: Callable[[], object], message: str = "") -> bool:
         """Make a change, after what is typed in place is taken. Whether it was made."""
@@ -106,10 +102,6 @@ class LinePane(LineSearch):
     def action_move_to_end(self, way: int) -> None:
         """Go to the top or the bottom."""
         self.table.cursor = 0 if way < 0 else len(self.table.rows) - 1
-
-    def action_move_column(self, by: int) -> None:
-        """Go to the left or the right."""
-        self.table.column += by
 
     def action_mark(self, by: int) -> None:
         """Mark the row or not, and go on."""
@@ -328,13 +320,6 @@ class LinePane(LineSearch):
         self._cell = cell
         least = _LEAST_WIDTHS.get(cell.column, _LEAST_WIDTH)
         self.open_editor(cell.text, cell.check, least_width=least)
-
-    def settle(self) -> bool:
-        """Take what is typed in a cell; a bad value stays to be corrected."""
-        reading = self.settle_cell()
-        if not reading.is_good:
-            self.workspace.tell(f"Not taken yet: {reading.note}", wrong=True)
-        return reading.is_good
 
     def write(self, text: str) -> None:
         """Write a good text into the draft."""

@@ -53,12 +53,10 @@ def _wrong_items(draft: Draft, view: View | None) -> set[int]:
     if view is None or view.text != draft.text or not view.problems:
         return set()
     lines = {problem.line for problem in view.problems if problem.path == str(view.path)}
-    starts = [(item.line, number) for number, item in enumerate(draft.items)]
-    ends = {number: line + draft.items[number].text.count("\n") for line, number in starts}
     return {
         number
-        for line, number in starts
-        if any(line <= wrong < max(ends[number], line + 1) for wrong in lines)
+        for number, item in enumerate(draft.items)
+        if not lines.isdisjoint(range(item.line, item.line + max(item.text.count("\n"), 1)))
     }
 
 

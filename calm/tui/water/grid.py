@@ -161,10 +161,6 @@ class Grid(EditableTable):
         else:
             self.screen.focus_next()
 
-    def action_move_column(self, by: int) -> None:
-        """Go left or right."""
-        self.cells.column += by
-
     def on_key(self, event: events.Key) -> None:
         """A digit begins a new value."""
         if event.character in _DIGITS and event.is_printable and self.cells.rows:
@@ -180,8 +176,8 @@ class Grid(EditableTable):
     def _edit(self, begun: str | None = None) -> None:
         """Edit the cell under the cursor, beginning with what it has or with what is `begun`."""
         cells = self.cells
-        if self.is_typing:
-            self.settle_cell()
+        if not self.settle():
+            return
         self._place = row, column = cells.cursor, cells.column
         text, check = begun or cells.rows[row][column], check_of(cells.headings[column])
         self.open_editor(text, check, least_width=12, begun=begun is not None)

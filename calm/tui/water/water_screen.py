@@ -189,11 +189,8 @@ class WaterScreen(DraftScreen):
 
     def settle(self) -> bool:
         """Take what is typed; the first bad value stays to be corrected, and is reported."""
-        for grid in self.query(Grid):
-            reading = grid.settle_cell()
-            if not reading.is_good:
-                self.workspace.tell(f"Not taken yet: {reading.note}", wrong=True)
-                return False
+        if not all(grid.settle() for grid in self.query(Grid)):
+            return False
         for field in self.query(Field):
             if not field.is_typing:
                 continue
