@@ -15,8 +15,13 @@ from calm.tui.cell_editor import CellEditor
 from calm.tui.dialogs import Question, ask, choose, numbered
 from calm.tui.key_table import bindings, hints
 from calm.tui.line.comparing import ComparingScreen
-from calm.tui.line.filling import figures_sheet, filled, missing_figures
-from calm.tui.line.mooring_sheet import SHEETS, hung_at
+from calm.tui.line.mooring_sheet import (
+    SHEETS,
+    figures_sheet,
+    hung_at,
+    missing_figures,
+    with_figures,
+)
 from calm.tui.pictures import Picture, Tab
 from calm.tui.screen import KeyBar
 from calm.tui.session import Location
@@ -122,7 +127,7 @@ class BuilderScreen(ComparingScreen):
                 count = f"{len(figures)} figure{'s' * (len(figures) != 1)} filled in"
                 self.line.attempt(
                     lambda: session.do(
-                        filled(session.draft, missing, figures, source), "fill in figures"
+                        with_figures(session.draft, missing, figures, source), "fill in figures"
                     ),
                     count,
                 )

@@ -18,9 +18,8 @@ from calm.tui.checking import Reading, count
 from calm.tui.dialogs import Answer, InputSheet, Question, ask, choose
 from calm.tui.field import Asked
 from calm.tui.key_table import bindings
-from calm.tui.line.filling import ColumnFilling
 from calm.tui.line.mooring_sheet import equipment_changes, equipment_sheet
-from calm.tui.line.rows import LineCell, table_rows
+from calm.tui.line.rows import ColumnFilling, LineCell, table_rows
 from calm.tui.line.table import EDITABLE, Column, LineSearch, LineTable
 from calm.tui.names import Named, namings
 from calm.tui.verdict_text import Saying, why

@@ -1,6 +1,18 @@
-"""What is asked about a whole file: name and place, document, speed of a tow."""
+"""What is asked about a whole file: name and place, document, deployment, tow, missing figures."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from calm.checks.finding import State
+from calm.files.rule_texts import RULES
+from calm.tui.catalogue.component_screen import form_fields
+from calm.tui.session import location
+
+if TYPE_CHECKING:
+    from calm.tui.live import View
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
@@ -267,3 +279,104 @@ SHEETS = {
     "tow": tow_sheet,
 }
 """What is asked about a whole file, and of what hangs at the row under the cursor."""
+
+
+_MOST_LABELS = 4
+_ELSEWHERE = "part of an assembly of the catalogue: use its parts, or define it in the file (o)"
+_SOURCE = "data sheet, test certificate …"
+
+
+def figures_sheet(missing: Sequence[Missing]) -> InputSheet:
+    """Ask for all figures of each component, and for their source; any may stay empty."""
+    asked: list[Asked] = []
+    elsewhere = [f"{each.called}: {_ELSEWHERE}" for each in missing if not each.fields]
+    for each in missing:
+        for number, figure in enumerate(each.fields):
+            above = "" if number else each.called
+            key, title = f"{each.use}.{figure.key}", figure.key.replace("_", " ")
+            asked.append(replace(figure, key=key, title=title, above=above))
+    asked.append(Asked("source", "source", takes=_SOURCE, above="Of the figures"))
+    count = len(missing)
+    title = f"Figures missing of {count} component{'s' * (count != 1)}; any may stay empty"
+    return InputSheet(title, "\n".join(elsewhere), asked)
+
+
+@dataclass
+class Missing:
+    """What is not known of a component, once for all rows that use it.
+
+    Attributes
+    ----------
+    use, kind : of the component
+    labels : of the pieces and clamps that it is missing of, as the keys of a dict
+    targets : by key where in the file it is written: in the definition, where the file has it,
+        else in every row that lacks it; nowhere where that stands in an assembly
+    """
+
+    use: str
+    kind: str
+    labels: dict[str, None] = field(default_factory=dict)
+    targets: dict[str, dict[Location, None]] = field(default_factory=dict)
+
+    @property
+    def called(self) -> str:
+        """Return the component, with the labels of the first rows that lack a figure."""
+        labels = ", ".join(list(self.labels)[:_MOST_LABELS])
+        more = len(self.labels) - _MOST_LABELS
+        labels += f" and {more} more" if more > 0 else ""
+        return self.use if labels == self.use else f"{self.use}: {labels}"
+
+    @property
+    def fields(self) -> list[Asked]:
+        """Return what would do and can be filled in, as the form of a component has it."""
+        return [each for each in form_fields(self.kind) if self.targets.get(each.key)]
+
+
+def missing_figures(view: View, draft: Draft) -> list[Missing]:
+    """Return what the unknown findings of a line ask for, down the line."""
+    if view.file is None:
+        return []
+    wanted: dict[Place, dict[str, None]] = {}
+    for finding in view.findings:
+        if finding.state is State.UNKNOWN and finding.place and RULES[finding.rule].figures:
+            asked = wanted.setdefault(finding.place, {})
+            asked.update(dict.fromkeys(RULES[finding.rule].figures))
+    own = draft.value(("components",)) or ()
+    found: dict[str, Missing] = {}
+    for part in parts_of(view.file.pieces):
+        if part.place not in wanted:
+            continue
+        missing = found.setdefault(part.use, Missing(part.use, part.component.kind))
+        missing.labels[part.label] = None
+        for key in wanted[part.place]:
+            targets = missing.targets.setdefault(key, {})
+            if part.use in own:
+                targets["components", part.use] = None
+            elif part.place.part < 0:
+                targets[location(part.place)] = None
+    return list(found.values())
+
+
+def with_figures(
+    draft: Draft, missing: Iterable[Missing], texts: Mapping[str, str], source: str
+) -> Draft:
+    """The draft with figures filled in.
+
+    Parameters
+    ----------
+    texts : by ``component.key``; what is empty stays unknown
+    source : of all of them; may be empty
+
+    Raises
+    ------
+    EditError
+        The file does not allow it.
+    """
+    for each in missing:
+        for key, targets in each.targets.items():
+            text = texts.get(f"{each.use}.{key}", "")
+            for target in targets if text else ():
+                draft = draft.put_at((*target, key), text)
+                if source:
+                    draft = draft.put_at((*target, "sources", key), source)
+    return draft

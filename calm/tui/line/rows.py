@@ -1,10 +1,12 @@
-"""The rows of the line: what the file says beside what was found, and a value as it is edited."""
+"""The rows of the line: what the file says beside what was found; how values and columns are edited."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
+
+from textual.events import Paste
 
 from calm.assemble.catalogue_search import Index, Listed
 from calm.checks.finding import State
@@ -13,7 +15,16 @@ from calm.files.components import FLEXIBLE_KINDS
 from calm.files.editing import Draft, LineItem, Value
 from calm.quantities import QUANTITIES
 from calm.tui.checking import Check, anything, count, distance, length, length_text, length_values
-from calm.tui.line.mooring_sheet import equipment_changes, serial_of_equipment, texts_of_equipment
+from calm.tui.dialogs import InputSheet
+from calm.tui.field import Asked
+from calm.tui.line.mooring_sheet import (
+    RELEASES,
+    entered,
+    equipment_changes,
+    said,
+    serial_of_equipment,
+    texts_of_equipment,
+)
 from calm.tui.line.table import EDITABLE, TableRow
 from calm.tui.theme import CLAMP, ROLES, UNKNOWN_MARGIN, UNKNOWN_ROLE, worst
 from calm.tui.workspace import Workspace
@@ -231,3 +242,64 @@ class LineCell:
     @property
     def _is_towed(self) -> bool:
         return self.workspace.session.draft.is_tow
+
+
+_TITLES = {"serial": "Serial numbers", "length": "Lengths", "label": "Labels", "codes": "Codes"}
+
+
+class ColumnSheet(InputSheet):
+    """A field for each row; a list that is pasted fills them downwards."""
+
+    def on_paste(self, event: Paste) -> None:
+        """Fill the fields from the one that is edited on."""
+        lines = [line.split("\t")[0].strip() for line in event.text.splitlines()]
+        fields = self.fields
+        first = next((i for i, field in enumerate(fields) if field.input.has_focus), 0)
+        if len(lines) < 2:
+            return
+        event.stop()
+        for each, text in zip(fields[first:], lines, strict=False):
+            each.input.value = text
+        last = min(first + len(lines), len(fields)) - 1
+        fields[last].input.focus()
+        if len(lines) > len(fields) - first:
+            self.app.bell()
+
+
+class ColumnFilling:
+    """A column of some rows: what it has now, and what is entered."""
+
+    def __init__(self, workspace: Workspace, spots: Sequence[Place], column: str) -> None:
+        self._session, self._column = workspace.session, column
+        held = "serial" if column == "codes" else column  # by which codes are known
+        self._cells = {str(i): LineCell(workspace, spot, held) for i, spot in enumerate(spots)}
+        self._asked = [each for key in self._cells if (each := self._ask(key)) is not None]
+
+    @property
+    def sheet(self) -> ColumnSheet | None:
+        """Where it is entered; None where none of the rows has such a value."""
+        return ColumnSheet(_TITLES[self._column], "", self._asked) if self._asked else None
+
+    def write(self, texts: Mapping[str, str]) -> None:
+        """Write what is another now, in one step."""
+        begun, draft = {each.key: each.text for each in self._asked}, self._session.draft
+        new = {self._cells[key]: text for key, text in texts.items() if text != begun[key]}
+        label = f"fill in {_TITLES[self._column].lower()}"
+        if self._column == "codes":
+            for cell, text in new.items():
+                draft = entered(draft, RELEASES, ("serial", cell.text), {"codes": text})
+            self._session.do(draft, label)
+        else:
+            rows = {cell.spot: cell.values_of(text) for cell, text in new.items()}
+            self._session.put(rows, label)
+
+    def _ask(self, key: str) -> Asked | None:
+        cell = self._cells[key]
+        values = self._session.item(cell.spot).values
+        title = values.get("label") or values.get("use", "")
+        if self._column != "codes":
+            return None if cell.refused else Asked(key, title, cell.text, cell.check)
+        if cell.listed is None or cell.listed.role != "release" or not cell.text:
+            return None
+        codes = said(self._session.draft, RELEASES, ("serial", cell.text), "codes")
+        return Asked(key, title, codes)
