@@ -287,24 +287,22 @@ _OF_TEXTUAL: dict[str, Iterable[BindingType]] = {
 
 def all_keys() -> RenderableType:
     """Every key, by where it works."""
-    parts: list[RenderableType] = [Text("Keys", style="bold"), Text(_GROUND), Text(_SIGNS)]
-    for place, title in PLACES.items():
-        rows = [(action.keys, action.meaning) for action in ACTIONS[place]]
-        parts += _listed(title, rows)
+    listed = {
+        title: [(action.keys, action.meaning) for action in ACTIONS[place]]
+        for place, title in PLACES.items()
+    }
     for title, inherited in _OF_TEXTUAL.items():
         bound = [each for each in inherited if isinstance(each, Binding)]
-        told = [(each.key, f"{each.description.capitalize()}.") for each in bound]
-        parts += _listed(title, told)
+        listed[title] = [(each.key, f"{each.description.capitalize()}.") for each in bound]
+    parts: list[RenderableType] = [Text("Keys", style="bold"), Text(_GROUND), Text(_SIGNS)]
+    for title, rows in listed.items():
+        table = Table.grid(padding=(0, 2, 0, 0))
+        table.add_column(width=20, overflow="fold")
+        table.add_column(overflow="fold")
+        for keys, meaning in rows:
+            table.add_row(Text(shown_keys(keys), style="bold"), Text(meaning))
+        parts += [Text(f"\n{title}", style="bold underline"), table]
     return Group(*parts)
-
-
-def _listed(title: str, rows: Iterable[tuple[str, str]]) -> list[RenderableType]:
-    table = Table.grid(padding=(0, 2, 0, 0))
-    table.add_column(width=20, overflow="fold")
-    table.add_column(overflow="fold")
-    for keys, meaning in rows:
-        table.add_row(Text(shown_keys(keys), style="bold"), Text(meaning))
-    return [Text(f"\n{title}", style="bold underline"), table]
 
 
 class Commands(CommandPalette):

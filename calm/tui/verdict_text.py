@@ -13,7 +13,7 @@ from calm.tui.theme import ELLIPSIS, LOOKS, worst
 from calm.tui.workspace import mistakes, place_of
 
 if TYPE_CHECKING:
-    from calm.case import Result, TowResult
+    from calm.case import Result
     from calm.case.result import AnyResult, NetResult
     from calm.checks.assessment import MooringInEnvironment
     from calm.files import Place
@@ -159,7 +159,11 @@ def _figures(
     elif isinstance(result, NetResult):
         yield from _net(result)
     elif result is not None:
-        yield from _tow(result)
+        point, body = result.tow_point, result.body
+        pull = f"{say('tension', point.tension)}, {say('angle', point.angle)} below the horizontal"
+        yield Saying(pull, "Tow point")
+        behind = f"{say('depth', body.depth)} deep, {say('layback', body.layback)} behind"
+        yield Saying(behind, "Body")
 
 
 def _mooring(result: Result, findings: Sequence[Finding], pending: bool) -> Iterator[Saying]:
@@ -229,13 +233,6 @@ def _net(result: NetResult) -> Iterator[Saying]:
         yield Saying(f"{say('tension', end.tension)}{said}", heading)
     for node in result.nodes:
         yield Saying(f"{say('depth', node.depth)} deep", f"Node {node.name}")
-
-
-def _tow(result: TowResult) -> Iterator[Saying]:
-    point, body = result.tow_point, result.body
-    pull = f"{say('tension', point.tension)}, {say('angle', point.angle)} below the horizontal"
-    yield Saying(pull, "Tow point")
-    yield Saying(f"{say('depth', body.depth)} deep, {say('layback', body.layback)} behind", "Body")
 
 
 def _found(findings: Sequence[Finding], *, pending: bool) -> Iterator[Saying]:

@@ -133,23 +133,15 @@ RELEASES: Location = ("releases",)
 
 def hung_at(file: MooringFile | None, spot: Place | None) -> Piece | Clamp | None:
     """Return what hangs at a row of a line; None where that is several things, or not known."""
-    if file is None or spot is None:
-        return None
-    found = [
-        part
-        for piece in file.pieces
-        for part in parts_of([piece])
-        if (part.place.item, part.place.clamp) == (spot.item, spot.clamp)
-    ]
+    found = [part for part in parts_of(file.pieces if file else ()) if part.place.row == spot]
     return found[0] if len(found) == 1 else None
 
 
 def deployed_sheet(draft: Draft, hung: Piece | Clamp | None) -> Sheet:
     """When and where the mooring was deployed and what hangs at a row, as in the file."""
-    asked, text = filled(draft, _WHOLE), _COMPARED
-    changed = partial(_deployed, hung)
+    asked, changed = filled(draft, _WHOLE), partial(_deployed, hung)
     if hung is None:
-        return InputSheet("As deployed", text, asked), "the deployment", changed
+        return InputSheet("As deployed", _COMPARED, asked), "the deployment", changed
     for key, title, check in _OF_A_ROW:
         if key != "length" or isinstance(hung.component, Flexible):
             text = said(draft, _ITEMS, ("label", hung.label), key)
@@ -157,8 +149,8 @@ def deployed_sheet(draft: Draft, hung: Piece | Clamp | None) -> Sheet:
     if hung.component.role == "release":
         codes = said(draft, RELEASES, ("serial", _serial(draft, hung)), "codes")
         asked.append(Asked("codes", "Codes", codes, placeholder="arm 0A1B, release 0A55"))
-    text += f" Below the depth: {hung.label}."
-    return InputSheet("As deployed", text, asked), "the deployment", changed
+    about = f"{_COMPARED} Below the depth: {hung.label}."
+    return InputSheet("As deployed", about, asked), "the deployment", changed
 
 
 def _deployed(hung: Piece | Clamp | None, draft: Draft, texts: Mapping[str, str]) -> Draft:

@@ -1,4 +1,4 @@
-"""The rows of the line: what the file says beside what was found; how values and columns are edited."""
+"""The rows of the line: what the file says beside what was found; values and columns as edited."""
 
 from __future__ import annotations
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
+from itertools import chain
 from math import exp, isclose
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -28,6 +29,7 @@ from calm.tui.theme import ELLIPSIS
 from calm.units import DIMENSIONS, QuantityError, QuantityRange, unit_factor
 
 if TYPE_CHECKING:
+    from calm.tui.water.form import WaterForm
     from calm.tui.water.water_screen import WaterScreen
 
 CURRENT_COLUMNS = ("depth m", "speed m/s", "toward deg")
@@ -75,50 +77,45 @@ class Currents:
 
     def ask_for_file(self) -> None:
         """A current from CSV or NetCDF: referred to, or its profile copied."""
+        screen = self._screen
 
         def take(texts: dict[str, str] | None) -> None:
             if texts is None:
-                self._screen.show_draft()
+                screen.show_draft()
                 return
-            path, time, water = texts["file"], texts["time"], self._screen.water
+            path, time = texts["file"], texts["time"]
             if texts["how"] == "refer":
                 given = {"file": path} | ({"time": time} if time else {})
                 message = f"current of {path}"
-                self._screen.change(lambda water: water.put_form(("current",), given), message)
-                return
-            self._workspace.tell(f"Reading {path} …")
-            read = partial(self._read, water.variant, path, time, water.depth or USUAL_DEPTH)
-            self._screen.run_worker(read, thread=True, exit_on_error=False)
+                screen.change(lambda water: water.put_form(("current",), given), message)
+            else:
+                self._workspace.tell(f"Reading {path} …")
+                read = partial(self._read, screen.water, path, time)
+                screen.run_worker(read, thread=True, exit_on_error=False)
 
-        if self._screen.settle():
-            self._screen.app.push_screen(import_sheet(self._folder), take)
+        if screen.settle():
+            screen.app.push_screen(import_sheet(self._folder), take)
 
-    def _read(self, variant: str | None, path: str, time: str, depth: float) -> None:
+    def _read(self, water: WaterForm, path: str, time: str) -> None:
         """Read a file for an environment in a thread; what comes of it is taken by the form."""
-        tell, later = self._workspace.tell, self._screen.call_later
+        screen, tell = self._screen, self._workspace.tell
+
+        def put(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+            if water.variant != screen.water.variant:
+                tell(f"{path} was read for another environment; read it again", wrong=True)
+            else:
+                screen.put_table(columns, rows, f"current of {path}")
+                tell(f"The current of {path} is in the table")
+
         try:
-            columns, rows = imported(self._folder / path, time, depth)
+            table = imported(self._folder / path, time, water.depth or USUAL_DEPTH)
         except CalmError as error:
-            later(tell, str(error).partition("\n")[0], wrong=True)
+            screen.call_later(tell, str(error).partition("\n")[0], wrong=True)
         except Exception as error:  # the libraries that read NetCDF raise whatever they like
             reason = f"{type(error).__name__}: {error}"
-            later(tell, f"{path} cannot be read: {reason}", wrong=True)
+            screen.call_later(tell, f"{path} cannot be read: {reason}", wrong=True)
         else:
-            later(self._take, variant, path, columns, rows)
-
-    def _take(
-        self,
-        variant: str | None,
-        path: str,
-        columns: Sequence[str],
-        rows: Sequence[Sequence[str]],
-    ) -> None:
-        if variant != self._screen.water.variant:
-            message = f"{path} was read for another environment; read it again"
-            self._workspace.tell(message, wrong=True)
-        else:
-            self._screen.put_table(columns, rows, f"current of {path}")
-            self._workspace.tell(f"The current of {path} is in the table")
+            screen.call_later(put, *table)
 
     @property
     def _folder(self) -> Path:
@@ -172,17 +169,13 @@ def imported(path: Path, time: str, depth: float) -> tuple[Sequence[str], Sequen
         table, _ = read_current_file(path, time or None, Terms(water_depth=depth))
     except TimeChoiceError as error:
         raise UsageError(f"{path.name}: {error}") from None
-    levels = list(zip(table.depth, table.u, table.v, table.w, strict=True))
-    by_components = [[_written(each) for each in level] for level in levels]
+    levels = [*zip(table.depth, table.u, table.v, table.w, strict=True)]
     if any(table.w):
-        return _SPEEDS, by_components
-    plain = [row[:3] for row in by_components]
-    by_direction = [
-        [*map(_written, (depth, *speed_and_direction(u, v)))] for depth, u, v, _ in levels
-    ]
-    if _signs(plain) < _signs(by_direction):
-        return _SPEEDS[:3], plain
-    return CURRENT_COLUMNS, by_direction
+        return _SPEEDS, [[*map(_written, level)] for level in levels]
+    flows = [[*map(_written, level[:3])] for level in levels]
+    ways = [[*map(_written, (deep, *speed_and_direction(u, v)))] for deep, u, v, _ in levels]
+    signs = [len("".join(chain.from_iterable(rows))) for rows in (flows, ways)]
+    return (_SPEEDS[:3], flows) if signs[0] < signs[1] else (CURRENT_COLUMNS, ways)
 
 
 def _written(value: float) -> str:
@@ -191,10 +184,6 @@ def _written(value: float) -> str:
     if isclose(short, value, rel_tol=_NOISE):
         return f"{float(str(short)) + 0.0:.12g}"
     return f"{round(value, 12) + 0.0:.12g}"
-
-
-def _signs(rows: Sequence[Sequence[str]]) -> int:
-    return sum(len(text) for row in rows for text in row)
 
 
 def _existing(folder: Path) -> Check:

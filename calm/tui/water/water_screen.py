@@ -297,10 +297,9 @@ class WaterScreen(DraftScreen):
             current = known or water.begun(("current",), "uniform")
             place = ("environments", name, "current")
             if self.change(lambda _: water.draft.put_at(place, current), f"environment {name}"):
+                told = "" if known else "Filled with a typical current, to be replaced"
                 self._stand_in(name)
-                self.workspace.tell(
-                    "" if known else "Filled with a typical current, to be replaced"
-                )
+                self.workspace.tell(told)
 
         if self.settle():
             asked = [Asked("name", "Name", check=needed("a name"), placeholder="e.g. storm")]
