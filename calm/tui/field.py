@@ -106,20 +106,17 @@ class Field(Horizontal):
 
     def __init__(self, asked: Asked, *, id: str | None = None) -> None:
         super().__init__(id=id)
-        self._asked, self._note = asked, asked.takes
         self.key, self.check = asked.key, asked.check
+        self._title, self._note = asked.title, asked.takes
         self.begun = self._shown = asked.text  # what it began with, and was last filled with
+        self.input = ScrolledEntry(asked.text, placeholder=asked.placeholder, compact=True)
+        self._told = Static(asked.takes, classes="field-note", markup=False)
 
     def compose(self) -> ComposeResult:
         """Name, input, note."""
-        yield Static(self._asked.title, classes="field-title", markup=False)
-        yield ScrolledEntry(self.begun, placeholder=self._asked.placeholder, compact=True)
-        yield Static(self._note, classes="field-note", markup=False)
-
-    @property
-    def input(self) -> ScrolledEntry:
-        """The input."""
-        return self.query_one(ScrolledEntry)
+        yield Static(self._title, classes="field-title", markup=False)
+        yield self.input
+        yield self._told
 
     @property
     def is_typing(self) -> bool:
@@ -147,7 +144,7 @@ class Field(Horizontal):
         """Show another note, as long as nothing is wrong."""
         self._note = note
         if not self.has_class("-wrong"):
-            self.query_one(".field-note", Static).update(note, layout=False)
+            self._told.update(note, layout=False)
 
     def note(self, reading: Reading) -> str:
         """Return what is said of the typed text: what is wrong, or what is added."""
@@ -160,7 +157,7 @@ class Field(Horizontal):
 
     def _tell(self, reading: Reading) -> None:
         self.set_class(not reading.is_good, "-wrong")
-        self.query_one(".field-note", Static).update(self.note(reading), layout=False)
+        self._told.update(self.note(reading), layout=False)
 
     @on(Input.Changed)
     def _judge(self, event: Input.Changed) -> None:

@@ -146,12 +146,14 @@ class Pictures(Vertical):
         self._note = ""
         self._overlaid = False
         self._other: tuple[str, Shape] | None = None
+        self._tabs, self._picture = Tabs(), Picture()
+        self._caption = Static(id="beside", markup=False)
 
     def compose(self) -> ComposeResult:
         """The names, and the picture."""
-        yield Tabs()
-        yield Static(id="beside", markup=False)
-        yield Picture()
+        yield self._tabs
+        yield self._caption
+        yield self._picture
 
     def on_mount(self) -> None:
         """Nothing is solved yet."""
@@ -192,19 +194,18 @@ class Pictures(Vertical):
     def _show(self) -> None:
         shapes, named = self._beside()
         self._say_where_keys_go()
-        caption = self.query_one("#beside", Static)
-        caption.update(f"dashed: {named}")
-        caption.display = bool(named) and self.tab in ("elevation", "plan")
-        self.query_one(Picture).show(self._view, self.tab, shapes)
+        self._caption.update(f"dashed: {named}")
+        self._caption.display = bool(named) and self.tab in ("elevation", "plan")
+        self._picture.show(self._view, self.tab, shapes)
 
     @on(events.DescendantFocus)
     @on(events.DescendantBlur)
     def _say_where_keys_go(self) -> None:
-        self.query_one(Tabs).show(self.tab, self._note, focused=self.query_one(Picture).has_focus)
+        self._tabs.show(self.tab, self._note, focused=self._picture.has_focus)
 
     def on_click(self, event: events.Click) -> None:
         """Give the picture the focus."""
-        self.query_one(Picture).focus()
+        self._picture.focus()
 
 
 class ProfilePicture(DrawnRows):

@@ -78,11 +78,12 @@ class TextScreen(DraftScreen):
         self._problems: tuple[Problem, ...] = ()
         self._next = 0
         self._begun = self.session.draft.text
+        self.text_area = YamlArea(self._begun, show_line_numbers=True, compact=True)
         self._edited = False
 
     def parts(self) -> ComposeResult:
         """Text and mistakes."""
-        yield YamlArea(self.session.draft.text, show_line_numbers=True, compact=True)
+        yield self.text_area
         with VerticalScroll(id="mistakes", can_focus=False):
             yield Static(id="mistakes-text")
 
@@ -96,11 +97,6 @@ class TextScreen(DraftScreen):
         else:
             row = _row(self.session.draft.text, self._line)
             self.text_area.move_cursor((row, 0), center=True)
-
-    @property
-    def text_area(self) -> TextArea:
-        """Return where one writes."""
-        return self.query_one(TextArea)
 
     def show_view(self) -> None:
         """List the mistakes that a worker has found."""

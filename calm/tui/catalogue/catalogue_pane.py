@@ -230,6 +230,9 @@ class CataloguePane(Vertical):
         super().__init__(id="catalogue")
         self.workspace, self._take, self._close = workspace, take, close
         self.index: Index | None = None  # what was searched last
+        self.listing, self._card = ComponentList(), ScrolledText(id="catalogue-card")
+        words = "words of id, name, maker, kind, role; breaking>50kN"
+        self.search = ScrolledEntry(id="catalogue-search", compact=True, placeholder=words)
         self.remembered = Remembered()
         self.purpose: Purpose = "below"
         self.clampable = False
@@ -241,24 +244,10 @@ class CataloguePane(Vertical):
     def compose(self) -> ComposeResult:
         """Title, search, and the list with its card."""
         yield Static(id="catalogue-title", markup=False)
-        yield ScrolledEntry(
-            id="catalogue-search",
-            compact=True,
-            placeholder="words of id, name, maker, kind, role; breaking>50kN",
-        )
+        yield self.search
         with Horizontal(id="catalogue-found"):
-            yield ComponentList()
-            yield ScrolledText(id="catalogue-card")
-
-    @property
-    def listing(self) -> ComponentList:
-        """Return what was found."""
-        return self.query_one(ComponentList)
-
-    @property
-    def search(self) -> ScrolledEntry:
-        """The words."""
-        return self.query_one("#catalogue-search", ScrolledEntry)
+            yield self.listing
+            yield self._card
 
     def refresh_index(self) -> None:
         """Search the catalogue, where it is another one now."""
@@ -319,7 +308,7 @@ class CataloguePane(Vertical):
 
     @on(ComponentList.Moved)
     def _show_card(self) -> None:
-        card, chosen = self.query_one("#catalogue-card", ScrolledText), self.listing.chosen
+        card, chosen = self._card, self.listing.chosen
         if chosen is self._shown and chosen is not None:
             return
         self._shown = chosen

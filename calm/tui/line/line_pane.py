@@ -25,8 +25,6 @@ from calm.tui.names import Named, namings
 from calm.tui.verdict_text import Saying, why
 from calm.tui.workspace import Workspace
 
-_LEAST_WIDTHS = {"length": 16}
-_LEAST_WIDTH = 6
 _MIXED = "Pieces are marked, and clamps of other pieces; mark pieces only, or clamps only"
 _FROM_A_ROW = frozenset(
     {"mark", "why", "alike", "equipment", "assemble", "column", "repeat", "duplicate", "delete",
@@ -293,7 +291,7 @@ class LinePane(LineSearch):
 
     def action_edit(self) -> None:
         """Edit the value under the cursor."""
-        self.action_edit_column(self.table.cell)
+        self.action_edit_column(EDITABLE[self.table.column])
 
     @on(LineTable.Pressed)
     def _pressed(self) -> None:
@@ -317,7 +315,7 @@ class LinePane(LineSearch):
             return
         self.table.column = EDITABLE.index(cell.column)
         self._cell = cell
-        least = _LEAST_WIDTHS.get(cell.column, _LEAST_WIDTH)
+        least = 16 if cell.column == "length" else 6
         self.open_editor(cell.text, cell.check, least_width=least)
 
     def write(self, text: str) -> None:

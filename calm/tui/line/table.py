@@ -107,11 +107,6 @@ class LineTable(TableCells, can_focus=True):
         return self.rows[self.cursor].spot
 
     @property
-    def cell(self) -> Column:
-        """The column of the cursor."""
-        return EDITABLE[self.column]
-
-    @property
     def chosen(self) -> tuple[Place, ...]:
         """The rows marked, or that under the cursor."""
         if self.marked:
