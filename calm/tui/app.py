@@ -227,8 +227,9 @@ class BuildApp(App[int]):
 
     def tell(self, text: str, *, wrong: bool = False) -> None:
         """Say something in the last line of the screen."""
-        screen = self.screen if isinstance(self.screen, DraftScreen) else self.builder
-        screen.tell(text, wrong=wrong)
+        if self.is_running:  # else the screens are being taken apart
+            screen = self.screen if isinstance(self.screen, DraftScreen) else self.builder
+            screen.tell(text, wrong=wrong)
 
     def draft_screens(self) -> list[DraftScreen]:
         """The open ones, the top one last."""

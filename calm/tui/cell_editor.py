@@ -22,8 +22,8 @@ Then = Literal["stay", "edit next", "right", "up", "down"]
 class EditableTable(Vertical):
     """A table, and over it the line of input that edits the cell under its cursor.
 
-    What is made of it begins with `open_editor`, and says how a text is written, what is told of
-    one as it is typed, and where the cursor goes from one that was taken.
+    What is made of it begins with `open_editor`, and says how a text is written, and where the
+    cursor goes from one that was taken.
     """
 
     DEFAULT_CSS = "EditableTable { layers: table over; }"
@@ -43,7 +43,9 @@ class EditableTable(Vertical):
 
     def tell_reading(self, reading: Reading) -> None:
         """Tell what the text typed so far comes to."""
-        raise NotImplementedError
+        completed = reading.text if reading.text != self.editor.value.strip() else ""
+        note = reading.note or (f"= {completed}" if completed and reading.is_good else "")
+        self.workspace.tell(note, wrong=not reading.is_good)
 
     def go_on(self, then: Then, text: str | None) -> None:
         """Go on from a cell whose text was taken, None where it stays as it was."""
@@ -101,6 +103,7 @@ class EditableTable(Vertical):
             self.editor.remove_class("-open", "-wrong")
             if self.editor.is_here:
                 self.table.focus()
+            self.workspace.tell("")
 
     def done(self, then: Then) -> None:
         """Take the good text that is typed, and go on where it was not left for another place."""

@@ -170,7 +170,11 @@ class Session:
         first = rows.index(chosen[0])
         pieces = {spot.item for spot in chosen if not spot.is_clamp}
         gone = [spot for spot in rows if spot in chosen or spot.item in pieces]
-        self._edit(self._without(chosen), f"delete {self._called(chosen)}", gone=gone)
+        draft = self.draft
+        for spot in reversed(chosen):
+            if spot.is_clamp:
+                draft = draft.delete([spot.clamp], clamps_of(spot.item))
+        self._edit(draft.delete(pieces), f"delete {self._called(chosen)}", gone=gone)
         left = self.spots()
         return left[min(first, len(left) - 1)] if left else None
 
@@ -270,13 +274,6 @@ class Session:
         """The text of clamps, of one piece or of several."""
         copied = (self.draft.copy([spot.clamp], clamps_of(spot.item)) for spot in chosen)
         return tuple(text for texts in copied for text in texts)
-
-    def _without(self, chosen: Sequence[Place]) -> Draft:
-        draft = self.draft
-        for spot in reversed(chosen):
-            if spot.is_clamp:
-                draft = draft.delete([spot.clamp], clamps_of(spot.item))
-        return draft.delete(spot.item for spot in chosen if not spot.is_clamp)
 
     def _called(self, chosen: Sequence[Place]) -> str:
         return _label(self.item(chosen[0])) if len(chosen) == 1 else f"{len(chosen)} rows"

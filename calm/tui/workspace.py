@@ -140,7 +140,7 @@ _FULLY_AFTER = 0.5  # seconds without a change before launch, recovery and break
 
 
 class Judging:
-    """Starts workers that judge the draft of a workspace and post messages to the application.
+    """Has workers of the application judge the draft of a workspace, and takes what they find.
 
     Parameters
     ----------

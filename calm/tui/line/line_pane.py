@@ -14,7 +14,7 @@ from calm.files import Place
 from calm.tui.catalogue.catalogue_pane import Purpose
 from calm.tui.catalogue.component_screen import id_check
 from calm.tui.cell_editor import Then
-from calm.tui.checking import Reading, count
+from calm.tui.checking import count
 from calm.tui.dialogs import Answer, InputSheet, Question, ask, choose
 from calm.tui.field import Asked
 from calm.tui.key_table import bindings
@@ -324,18 +324,6 @@ class LinePane(LineSearch):
         is_put = cell is not None and self.workspace.attempt(lambda: cell.put(text))[0]
         if is_put and self.session.draft is not before:
             self._show_edited()
-
-    def leave_cell(self) -> None:
-        """Edit nothing any more; what is typed is not taken."""
-        if self.editor.is_open:
-            super().leave_cell()
-            self.workspace.tell("")
-
-    def tell_reading(self, reading: Reading) -> None:
-        """Tell what the text typed so far comes to."""
-        completed = reading.text if reading.text != self.editor.value.strip() else ""
-        note = reading.note or (f"= {completed}" if completed and reading.is_good else "")
-        self.workspace.tell(note, wrong=not reading.is_good)
 
     def go_on(self, then: Then, text: str | None) -> None:
         """Go to the next value of the row, or to another row."""

@@ -210,7 +210,13 @@ class LineCell:
             return {}
         if self.column == "serial":
             return equipment_changes(self.workspace.session.written(self.spot), {"serial": text})
-        given = {k: new for k, new in self._keys(text).items() if new is not None or k in written}
+        if self._is_length:
+            keys = length_values(text, towed=self._is_towed)
+        elif self.column == "length":
+            keys = {"at": text}
+        else:
+            keys = {self.column: None if self.column == "count" and text == "1" else text or None}
+        given = {key: new for key, new in keys.items() if new is not None or key in written}
         return given if any(written.get(key) != new for key, new in given.items()) else {}
 
     def onward(self) -> LineCell | None:
@@ -220,16 +226,6 @@ class LineCell:
             if not cell.refused:
                 return cell
         return None
-
-    def _keys(self, text: str) -> dict[str, Value | None]:
-        """The keys of the file that a text stands for."""
-        if self._is_length:
-            return dict(length_values(text, towed=self._is_towed))
-        if self.column == "length":
-            return {"at": text}
-        if self.column == "count":
-            return {"count": None if text == "1" else text}
-        return {self.column: text or None}
 
     @property
     def _is_length(self) -> bool:

@@ -213,11 +213,6 @@ class Grid(EditableTable):
 
     # what is typed
 
-    def tell_reading(self, reading: Reading) -> None:
-        """Tell what is wrong with the text typed so far."""
-        if not reading.is_good:
-            self.workspace.tell(reading.note, wrong=True)
-
     def go_on(self, then: Then, text: str | None) -> None:
         """Go up or down, or to the next value; add a row below one that was added and is filled."""
         cells = self.cells
