@@ -8,7 +8,7 @@ from functools import cached_property
 from itertools import combinations, permutations, product
 from math import dist, inf, nan
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -28,8 +28,10 @@ from calm.physics.line import Floats, Line, Water
 from calm.quantities import say
 from calm.records.seabed_grid import SeabedGrid
 from calm.solve import Settings, Solution, Status
-from calm.solve.net import NetSolution, solve_net
-from calm.solve.net_leg import LegEnd, NetLeg
+
+if TYPE_CHECKING:
+    from calm.solve.net import NetSolution
+    from calm.solve.net_leg import LegEnd, NetLeg
 
 _SKIN = 1e-3  # m above the surface, in which water turns into air
 
@@ -80,6 +82,8 @@ class Net(ReadFromFile):
     @cached_property
     def legs(self) -> tuple[NetLeg, ...]:
         """The legs as the solver takes them."""
+        from calm.solve.net_leg import NetLeg
+
         nodes = nodes_of(self.file.legs)
         found = []
         for leg, mooring in zip(self.file.legs, self.lines, strict=True):
@@ -133,6 +137,8 @@ class Net(ReadFromFile):
         return self.equilibrium(self.water, vars(self).get("near"))
 
     def _end(self, end: EndKeys, nodes: Mapping[str, int], mooring: Mooring) -> LegEnd:
+        from calm.solve.net_leg import LegEnd
+
         if end.join is not None:
             return LegEnd(node=nodes[end.join])
         if end.held is not None:
@@ -151,16 +157,19 @@ class Net(ReadFromFile):
         ------
         NoEquilibrium
         """
+        from calm.solve.net import solve_net
+
         solved_for = [piece for line in self.lines for piece in line.file.pieces[:-1]]
         try:
             with naming_the_piece(solved_for):
                 nodes = len(nodes_of(self.file.legs))
                 return solve_net(self.legs, nodes, water, self.settings, near)
         except NoEquilibrium as failure:
-            raise self._why_not() or failure from None
+            raise self._why_not(water) or failure from None
 
-    def _why_not(self) -> NoEquilibrium | None:
-        """Why it sinks, or held ends cannot be reached, where weights or lengths say so.
+    def _why_not(self, water: Water) -> NoEquilibrium | None:
+        """Why it sinks, held ends are out of reach, or a leg lies in a heap, if weights or lengths
+        say so.
 
         Between every two ends the shortest way through the net counts (Floyd and Warshall).
         """
@@ -192,6 +201,20 @@ class Net(ReadFromFile):
                     f"{legs} {say('length', length)} long in all, but its ends are held "
                     f"{say('length', dist(first, last))} apart.",
                     advice="Lengthen a leg, or bring the ends closer together.",
+                )
+        from calm.solve.net_start import start_of
+
+        tops = start_of(self.legs, len(nodes_of(self.file.legs)), water).first.tolist()
+        for leg, keys, (*at, up) in zip(self.legs, self.file.legs, tops, strict=True):
+            length = float(leg.line.length.sum())
+            foot, height = leg.lower.place, up - leg.lower.seabed  # inf where nothing anchors it
+            over = inf if foot is None else height + dist(at, foot[:2])
+            if length > over:
+                return Status.SLACK.because(
+                    f"Leg {keys.name} is {say('length', length)} long, and some "
+                    f"{say('length', over)} lead down from its upper end and along the seabed to "
+                    "its anchor: the rest lies there in no shape that a pull would give it.",
+                    advice="Shorten it, or anchor it farther away.",
                 )
         return None
 

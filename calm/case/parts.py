@@ -13,7 +13,6 @@ import numpy as np
 
 from calm.errors import NoEquilibrium, UsageError, unknown
 from calm.files import Clamp, MooringFile, Piece, read_mooring
-from calm.files.editing import LINE, Draft, clamps_of
 from calm.files.mooring_file import parts_of
 from calm.files.yaml_document import Location
 from calm.physics.line import Floats
@@ -148,6 +147,8 @@ class Origin:
         UsageError
             No piece and no clamp has the label.
         """
+        from calm.files.editing import Draft
+
         draft = Draft(read_text(Path(self.path)) if self.text is None else self.text)
         place: Location = () if label is None else _place_of(file, label)
         own = environment if isinstance(environment, Mapping) else {}
@@ -163,6 +164,8 @@ class Origin:
 
 
 def _place_of(file: MooringFile, label: str) -> Location:
+    from calm.files.editing import LINE, clamps_of
+
     places = {part.label: part.place for part in parts_of(file.pieces)}
     if label not in places:
         raise UsageError(unknown(f"no piece or clamp is labelled `{label}`", label, places))

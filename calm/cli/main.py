@@ -252,6 +252,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         CALM_DEBUG is 1.
     """
     prepare()
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # to look for them takes time
     if arguments is None:
         gc.set_threshold(_SELDOM)
         if not sys.warnoptions:

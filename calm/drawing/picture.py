@@ -46,11 +46,11 @@ def image(figure: Figure, suffix: str) -> bytes:
     return content.getvalue()
 
 
-_PROLOGUE = re.compile(r"^.*?(?=<svg\b)", re.DOTALL)
-_ASIDE = re.compile(r"<metadata>.*?</metadata>|<style\b.*?</style>|<!--.*?-->\s*", re.DOTALL)
-_TAG = re.compile(r"<[^<>]+>")
-_IDENTIFIER = re.compile(r'\b(id="|href="#|url\(#)')
-_NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+# patterns are compiled where they are first used: most commands use none
+_PROLOGUE = r"(?s)^.*?(?=<svg\b)"
+_ASIDE = r"(?s)<metadata>.*?</metadata>|<style\b.*?</style>|<!--.*?-->\s*"
+_IDENTIFIER = r'\b(id="|href="#|url\(#)'
+_NOT_XML = "[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]"
 
 
 def figure_svg(figure: Figure) -> str:
@@ -59,25 +59,22 @@ def figure_svg(figure: Figure) -> str:
     Its style sheet would hold for all of a page; the drawing carries what it says as attributes.
     """
     text = image(figure, ".svg").decode("utf-8")
-    text = within_xml(_ASIDE.sub("", _PROLOGUE.sub("", text, count=1)))
+    text = within_xml(re.sub(_ASIDE, "", re.sub(_PROLOGUE, "", text, count=1)))
     return text.replace("<svg ", '<svg stroke-linejoin="round" ', 1)
 
 
 def within_xml(text: str) -> str:
     """A drawing whose texts may hold any sign, with � for those that XML does not know."""
-    return _NOT_XML.sub("\ufffd", text)
+    return re.sub(_NOT_XML, "\ufffd", text)
 
 
 def set_apart(svg: str, prefix: str) -> str:
     """The drawing with its identifiers under a prefix: those of one page must differ."""
-    return _TAG.sub(lambda tag: _IDENTIFIER.sub(rf"\g<1>{prefix}-", tag[0]), svg)
+    return re.sub(r"<[^<>]+>", lambda tag: re.sub(_IDENTIFIER, rf"\g<1>{prefix}-", tag[0]), svg)
 
 
 # Signs that XML has no place for, that command a terminal, or that turn other signs around.
-_UNPRINTABLE = re.compile(
-    "[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff\ufffe\uffff]"
-)
-_DEGREES = re.compile(r"(?<=[0-9])°")
+_UNPRINTABLE = "[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff\ufffe\uffff]"
 _IN_ASCII = str.maketrans({
     **dict(zip("–−×·₀₁✓\u00a0", "--x*01+ ", strict=True)),
     "°": "deg", "→": "->", "…": "...", "≤": "<=", "≥": ">=", "√": "sqrt", "²": "^2", "³": "^3",
@@ -87,7 +84,7 @@ _IN_ASCII = str.maketrans({
 
 def printable(text: str) -> str:
     """A text in which a mark stands for what XML or a terminal cannot carry."""
-    return _UNPRINTABLE.sub("\ufffd", text)
+    return re.sub(_UNPRINTABLE, "\ufffd", text)
 
 
 def in_ascii(text: str) -> str:
@@ -95,7 +92,7 @@ def in_ascii(text: str) -> str:
 
     Letters stay as they are.
     """
-    return _DEGREES.sub(" deg", text).translate(_IN_ASCII)
+    return re.sub(r"(?<=[0-9])°", " deg", text).translate(_IN_ASCII)
 
 
 def encodable(encoding: str | None, signs: str) -> bool:

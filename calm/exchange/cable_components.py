@@ -6,8 +6,9 @@ import math
 from dataclasses import dataclass
 from itertools import pairwise
 
+from calm.errors import refused
 from calm.exchange.cable_grammar import CableDefinition, KeyValue, KeyValues
-from calm.exchange.design import FigureOrWord, ImportedComponent, Remark, is_chain, refused, role_of
+from calm.exchange.design import FigureOrWord, ImportedComponent, Remark, role_of
 from calm.files.definition import CATALOGUE_DENSITY
 from calm.units import KILOGRAM_FORCE
 
@@ -59,7 +60,7 @@ class ComponentMaker:
             "ct": self._drag(values, "cdt", depth, speed),
         }
         weight, mass = self._at_reference(wet, mass)
-        component = ImportedComponent.of_line(name, weight, figures, chain=is_chain(name))
+        component = ImportedComponent.of_line(name, weight, figures)
         if mass:
             component.figures["mass"] = mass
         if (

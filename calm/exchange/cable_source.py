@@ -12,8 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from calm.errors import InputError, UsageError
-from calm.exchange.design import refused_at
+from calm.errors import InputError, UsageError, refused
 from calm.whole_file import decoded, read_content
 
 _NAME = re.compile(r"[A-Za-z_]\w*")
@@ -102,9 +101,9 @@ class Preprocessor:
                 ):
                     self._directive(word, rest, path, root, within)
             except ValueError as error:
-                raise refused_at(shown, number, 1, str(error)) from None
+                raise refused(shown, str(error), line=number) from None
         if conditions:
-            raise refused_at(shown, len(text.splitlines()), 1, "an `#if` has no `#endif`")
+            raise refused(shown, "an `#if` has no `#endif`", line=len(text.splitlines()))
 
     def _condition(self, word: str, rest: str, conditions: list[tuple[bool, bool]]) -> bool:
         """Follow `#if` and the directives that go with it; False for another directive."""
@@ -190,10 +189,10 @@ class Preprocessor:
         try:
             expanded = self._expanded(line)
         except ValueError as error:
-            raise refused_at(path, number, 1, str(error)) from None
+            raise refused(path, str(error), line=number) from None
         self._size += len(expanded) + 1
         if self._size > _MOST_TEXT:
-            raise refused_at(path, number, 1, "macros and includes make the text too long")
+            raise refused(path, "macros and includes make the text too long", line=number)
         self._lines.append(SourceLine(expanded, path, number))
 
     def _expanded(self, text: str, hidden: frozenset[str] = frozenset()) -> str:
@@ -262,7 +261,7 @@ def _without_comments(text: str, path: str) -> list[str]:
             end = text.find("*/", at)
             if end < 0:
                 start = text.count("\n", 0, found.start()) + 1
-                raise refused_at(path, start, 1, "a comment has no end")
+                raise refused(path, "a comment has no end", line=start)
             pieces.append(" " + "\n" * text.count("\n", at, end))
             at = end + 2
         elif found[0] == "//":
@@ -301,7 +300,7 @@ class Token:
 
     def refuse(self, message: str) -> Exception:
         """Return a problem at this word."""
-        return refused_at(self.path, self.line, self.column, message)
+        return refused(self.path, message, line=self.line, column=self.column)
 
 
 def tokens_of(lines: Iterable[SourceLine]) -> Iterator[Token]:
@@ -325,7 +324,8 @@ def _words(line: SourceLine) -> Iterator[Token]:
         place = line.path, line.number, at + 1
         found = _TOKEN.match(text, at)
         if found is None:
-            raise refused_at(*place, f"`{text[at]}` has no place in a problem of WHOI Cable")
+            message = f"`{text[at]}` has no place in a problem of WHOI Cable"
+            raise refused(line.path, message, line=line.number, column=at + 1)
         kind = found.lastgroup or ""
         word, at = found[kind], found.end()
         if kind == "key":

@@ -10,7 +10,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
-from calm.exchange.design import refused
+from calm.errors import refused
 from calm.exchange.foreign_process import read_apart
 from calm.records.delimited import cells_in
 from calm.units import DIMENSIONS, KILOGRAM_FORCE, QuantityError, unit_factor

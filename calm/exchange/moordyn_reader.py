@@ -9,6 +9,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+from calm.errors import refused
 from calm.exchange.design import (
     MOST_PIECES,
     Design,
@@ -18,9 +19,6 @@ from calm.exchange.design import (
     ImportedPiece,
     ImportedWater,
     Remark,
-    is_chain,
-    refused,
-    refused_at,
 )
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
 from calm.whole_file import read_text
@@ -209,7 +207,7 @@ def _cable(kind: _Row, gravity: float) -> ImportedComponent:
         "diameter": across, "cn": kind.number("cd", 0.0), "ct": kind.number("cdt", 0.0),
     }  # fmt: skip
     name = kind.words["name"]
-    component = ImportedComponent.of_line(name, wet, figures, chain=is_chain(name))
+    component = ImportedComponent.of_line(name, wet, figures)
     component.figures["mass"] = mass
     if (stiffness := kind.number("ea", 0.0)) > 0.0:
         component.figures["stiffness"] = stiffness
@@ -280,7 +278,7 @@ class _Row:
 
     def refuse(self, message: str) -> Exception:
         """Return a problem in this row."""
-        return refused_at(self.path, self.line, 1, message)
+        return refused(self.path, message, line=self.line)
 
 
 def is_moordyn(content: bytes) -> bool:
@@ -311,7 +309,7 @@ def _read_sections(path: Path) -> tuple[dict[str, list[_Row]], dict[str, str]]:
         else:
             words = line.split()
             if len(words) < min(len(headings), 4):
-                raise refused_at(str(path), number, 1, f"the row has {len(words)} words")
+                raise refused(path, f"the row has {len(words)} words", line=number)
             kept = dict(zip(headings, words, strict=False))
             tables[current].append(_Row(str(path), number, kept))
     return tables, options

@@ -32,6 +32,8 @@ State = tuple[float, float, float, float, float, float, float, int]
 last axis's rise, the interval of the water. A bare tuple: in CPython a named one costs as much as
 half of a segment's balance."""
 
+BREATH = 1e-3
+"""A current that turns a slack line and moves nothing else [m/s]."""
 GOES_ON, RUNS_OFF, SEGMENT_UNBALANCED, ROD_UNBALANCED, ENDLESS, NO_ROOM = range(6)
 """Whether a march can go on, or why it cannot."""
 FAILURES = (
@@ -375,6 +377,15 @@ class Water(_Arrays):
         """Return the same water without current."""
         zero = np.zeros_like(self.u)
         return replace(self, u=zero, v=zero, w=zero)
+
+    def stirred(self) -> Water | None:
+        """Return the same water with a breath of current wherever it has less; None if nowhere.
+
+        A slack line that hangs in still water folds plumb, which is the limit of a weak current;
+        but how it turns where nothing pulls it sideways no march can say.
+        """
+        still = np.hypot(self.u, self.v) < BREATH
+        return replace(self, u=np.where(still, BREATH, self.u)) if still.any() else None
 
     def current_at(self, depth: Floats) -> Floats:
         """Current (..., 3) [m/s] at depths of any shape [m]."""

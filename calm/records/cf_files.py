@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.errors import CalmError, InputError, Problem
+from calm.errors import CalmError, refused
 from calm.records.current_terms import ZONES_OF_UTC, TimeChoiceError
 from calm.records.instrument_text import is_instrument_text, read_instrument_text
 from calm.units import QuantityError, unit_factor
@@ -66,7 +66,7 @@ def is_dataset(path: Path) -> bool:
         signature = file.read(8)
     for begin, kind in _KINDS.items():
         if signature.startswith(begin):
-            raise InputError([Problem(str(path), 0, 0, f"is {kind}; NetCDF, zarr or CSV is read")])
+            raise refused(path, f"is {kind}; NetCDF, zarr or CSV is read")
     return is_netcdf(path) or is_instrument_text(path)
 
 
@@ -84,13 +84,12 @@ def reading(path: Path) -> Iterator[None]:
     except (CalmError, TimeChoiceError):
         raise
     except UnreadableError as error:
-        raise InputError([Problem(str(path), 0, 0, str(error))]) from None
+        raise refused(path, str(error)) from None
     # Damaged files leave the libraries by exceptions of many kinds.
     except Exception as error:
         kind = "zarr" if path.is_dir() else "NetCDF"
         reason = str(error).partition("\n")[0]
-        message = f"cannot be read as {kind}: {reason}"
-        raise InputError([Problem(str(path), 0, 0, message)]) from None
+        raise refused(path, f"cannot be read as {kind}: {reason}") from None
 
 
 def open_current(path: Path) -> xr.Dataset:
@@ -207,15 +206,18 @@ def _unpacked(limit: Any, variable: xr.DataArray, absent: float) -> float:
     return value * scale + offset
 
 
+def texts_of(variable: xr.DataArray) -> list[str]:
+    """Return the values of a variable as texts."""
+    values = np.atleast_1d(variable.values).tolist()
+    return [(one.decode() if isinstance(one, bytes) else str(one)).strip() for one in values]
+
+
 def labels_along(dataset: xr.Dataset, dimension: str) -> tuple[str, ...] | None:
     """Return the labels of what a dimension counts; None where it has none."""
-    for name in (*_LABELS, dimension):
-        if name not in dataset.variables or dataset[name].dims != (dimension,):
-            continue
-        values = np.asarray(dataset[name].values)
-        if values.dtype.kind in "SUO":
-            texts = [one.decode() if isinstance(one, bytes) else str(one) for one in values]
-            return tuple(text.strip() for text in texts)
+    for name in first_present(dataset, (*_LABELS, dimension)):
+        variable = dataset[name]
+        if variable.dims == (dimension,) and variable.dtype.kind in "SUO":
+            return tuple(texts_of(variable))
     return None
 
 

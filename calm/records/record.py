@@ -15,10 +15,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.errors import InputError, Problem, UsageError
+from calm.errors import UsageError, refused
 from calm.physics.line import Floats
 from calm.positions import plain_degrees
-from calm.records.current_terms import TimeChoiceError, parse_time
+from calm.records.current_terms import TimeChoiceError, parse_time, time_text
 from calm.records.water_column import Place
 
 Times = NDArray[np.datetime64]
@@ -163,7 +163,7 @@ def choose_profiles(
     if every < 1:
         raise UsageError(f"every {every} profiles: at least one is needed")
     if not len(times):
-        raise InputError([Problem(str(path), 0, 0, "has no times")])
+        raise refused(path, "has no times")
     notes = []
     order: NDArray[np.intp] | None = None
     if np.any(times[1:] < times[:-1]):
@@ -202,12 +202,6 @@ def part(index: Index, start: int, stop: int) -> Index:
     return slice(index.start + start * index.step, index.start + stop * index.step, index.step)
 
 
-def time_text(time: np.datetime64) -> str:
-    """Return a time as a person reads it."""
-    text: str = np.datetime_as_string(time.astype("datetime64[s]"))
-    return text.removesuffix(":00")
-
-
 def _end(text: str, *, whole: bool) -> np.datetime64 | None:
     """One end of a period [ns]."""
     text = text.strip()
@@ -219,7 +213,7 @@ def _end(text: str, *, whole: bool) -> np.datetime64 | None:
             if whole:
                 return _in_reach((date + 1).astype("M8[us]")) - np.timedelta64(1, "ns")
             return _in_reach(date.astype("M8[us]"))
-        return _in_reach(np.datetime64(parse_time(text).replace(tzinfo=None), "us"))
+        return _in_reach(parse_time(text))
     except TimeChoiceError as error:
         raise UsageError(str(error)) from None
     except ValueError:
@@ -238,7 +232,7 @@ def _refuse_repeats(times: Times, path: Path) -> None:
     if len(again):
         more = f", and {len(again) - 1} more times" if len(again) > 1 else ""
         message = f"has two profiles of {time_text(times[again[0]])}{more}; leave one of them out"
-        raise InputError([Problem(str(path), 0, 0, message)])
+        raise refused(path, message)
 
 
 DAYS = 30

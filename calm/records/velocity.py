@@ -230,14 +230,8 @@ def with_components(dataset: xr.Dataset) -> xr.Dataset:
     east, north and up. A dataset without such a variable is returned as it is. UnreadableError: its
     directions are those of the beams or of the instrument.
     """
-    name = next(
-        (
-            name
-            for name in _NAMES
-            if name in dataset.data_vars and _DIRECTIONS in dataset[name].dims
-        ),
-        None,
-    )
+    vectors = [name for name in _NAMES if name in dataset.data_vars]
+    name = next((name for name in vectors if _DIRECTIONS in dataset[name].dims), None)
     if name is None:
         return dataset
     vector = dataset[name]

@@ -17,7 +17,6 @@ from calm.case.strumming import StrummingBand
 from calm.checks.finding import State
 from calm.checks.posture import reaches_the_surface
 from calm.checks.strength import safety_factor
-from calm.drawing.schematic.shown_parts import place_text
 from calm.files import Component
 from calm.files.legs import EndKeys
 from calm.files.strumming_keys import BourgetMarichalKeys
@@ -223,6 +222,8 @@ def line_table(
             there = clamp.depth, clamp.x, clamp.y
             cells = [*_cells(result, names, clamp, there, states)]
             if places:
+                from calm.drawing.schematic.shown_parts import place_text
+
                 cells[names.index("length")] = Cell(place_text(clamp.part.at))
             label = Cell(clamp.label, indented=True, strong=component.role == "instrument")
             rows.append((Cell(), label, *cells))

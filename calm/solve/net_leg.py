@@ -115,10 +115,15 @@ class LaidLeg:
         return LegRow(
             self.kind, first, start.node, end.node, self.leg.lower.seabed, *self.bed[:2],
             max(float(length.sum()) * 0.01, min(0.01 * limits.depth, 50.0) * 0.1, rough),
-            max(float(self.line.length[0]), 0.5) if len(length) else 0.5, self.highest,
+            self.stands, self.highest,
             int(limits.rides), *counted, len(course.cables), len(self.problem.surfacing),
             len(self.problem.hull), len(self.line.length),
         )  # fmt: skip
+
+    @property
+    def stands(self) -> float:
+        """Length of its float that shows how much of that is out of the water [m]."""
+        return max(float(self.line.length[0]), 0.5)
 
     @property
     def bed(self) -> Bed:

@@ -5,7 +5,6 @@ None accepts a figure that is not known: that is for whoever signs the design.
 
 from __future__ import annotations
 
-from importlib.resources import files
 from typing import Literal
 
 Template = Literal["shelf", "deep", "adcp-frame", "taut-surface", "slack-surface", "tow"]
@@ -23,4 +22,6 @@ TEMPLATES: dict[Template, str] = {
 
 def template(kind: Template) -> str:
     """Return the text of the file of a kind."""
+    from importlib.resources import files
+
     return (files("calm.templates") / f"{kind}.yaml").read_text(encoding="utf-8")

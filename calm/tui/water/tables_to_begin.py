@@ -19,9 +19,8 @@ from numpy import float32
 from calm.errors import CalmError, Problem, UsageError
 from calm.files.definition import QuantityField
 from calm.records import profile_tables
-from calm.records.columns import QuantityTable
 from calm.records.headings import heading
-from calm.records.profile_tables import speed_and_direction
+from calm.records.profile_tables import QuantityTable, speed_and_direction
 from calm.tui.checking import Check, Reading, number, quantity
 from calm.tui.dialogs import InputSheet, Question, choose, numbered
 from calm.tui.field import Asked
