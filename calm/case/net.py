@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
@@ -34,9 +35,6 @@ if TYPE_CHECKING:
     from calm.solve.net_leg import LegEnd, NetLeg
 
 _SKIN = 1e-3  # m above the surface, in which water turns into air
-
-Way = tuple[float, tuple[str, ...]]
-"""Along legs: how long they are in all [m], and their names."""
 
 
 @dataclass(frozen=True)
@@ -180,21 +178,17 @@ class Net(ReadFromFile):
                 "lift, and no end is held.",
                 advice="Add buoyancy.",
             )
-        ways: dict[tuple[Any, Any], Way] = {}
+        ways: dict[Any, tuple[float, tuple[str, ...]]] = defaultdict(lambda: (inf, ()))
         for leg, keys in zip(self.legs, self.file.legs, strict=True):
             ends = [end.node if end.place is None else end.place for end in (leg.upper, leg.lower)]
-            way: Way = float(leg.line.length.sum()), (keys.name,)
             for pair in permutations(ends):
-                ways[pair[0], pair[1]] = min(way, ways.get((pair[0], pair[1]), way))
+                ways[pair] = min(ways[pair], (float(leg.line.length.sum()), (keys.name,)))
         points = dict.fromkeys(end for pair in ways for end in pair if end != -1)  # -1: free
         for by, first, last in product(points, repeat=3):
-            if (first, by) in ways and (by, last) in ways:
-                (one, some), (other, more) = ways[first, by], ways[by, last]
-                way = one + other, some + more
-                ways[first, last] = min(way, ways.get((first, last), way))
-        held = combinations((point for point in points if isinstance(point, tuple)), 2)
-        for first, last in held:
-            length, names = ways.get((first, last), (inf, ()))
+            (one, some), (other, more) = ways[first, by], ways[by, last]
+            ways[first, last] = min(ways[first, last], (one + other, some + more))
+        for first, last in combinations((one for one in points if isinstance(one, tuple)), 2):
+            length, names = ways[first, last]
             if length < dist(first, last):
                 legs = f"Leg {names[0]} is" if len(names) == 1 else f"Legs {', '.join(names)} are"
                 return Status.NO_EQUILIBRIUM.because(

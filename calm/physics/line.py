@@ -308,20 +308,34 @@ class Line(_Arrays):
         lengths[piece] = length
         return replace(self, length=lengths)
 
-    def reversed(self) -> Line:
-        """Return the same line listed from its other end, from where its clamps are measured
-        then.
-        """
-        columns = {
-            column.name: getattr(self, column.name)[::-1]
+    @property
+    def _of_pieces(self) -> dict[str, Any]:
+        """What it holds of every piece."""
+        return {
+            column.name: getattr(self, column.name)
             for column in fields(self)
             if (column.type in _DTYPES or column.name in _CURVES)
             and not column.name.startswith("clamp_")
         }
+
+    def below_a_point(self) -> Line:
+        """Return the same line below a piece without length, weight and drag, to be pulled at."""
+        columns: dict[str, Any] = {
+            name: np.append(np.zeros(1, column.dtype), column)
+            if isinstance(column, np.ndarray)
+            else column and (None, *column)
+            for name, column in self._of_pieces.items()
+        }
+        return replace(self, **columns, clamp_piece=self.clamp_piece + 1)
+
+    def reversed(self) -> Line:
+        """Return the same line listed from its other end, from where its clamps are measured
+        then.
+        """
         on = self.clamp_piece
         return replace(
             self,
-            **columns,
+            **{name: column[::-1] for name, column in self._of_pieces.items()},
             clamp_piece=len(self.length) - 1 - on,
             clamp_at=np.maximum(self.length[on] - self.clamp_at, 0.0),
         )
