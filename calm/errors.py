@@ -53,6 +53,12 @@ class InputError(CalmError):
         super().__init__("\n".join(str(problem) for problem in self.problems))
 
 
+def refused(path: object, *messages: str, line: int = 0, column: int = 1) -> InputError:
+    """Return why a file cannot be used, each message in one line; `line` 0 is the whole file."""
+    place = str(path), line, column if line else 0
+    return InputError([Problem(*place, one_line(message)) for message in messages])
+
+
 class UsageError(CalmError):
     """Say that a command line or a call asks for something that does not exist."""
 
@@ -105,6 +111,11 @@ def internal_failure(error: Exception) -> NoEquilibrium:
 
 
 LONGEST_TEXT = 60
+
+
+def one_line(text: str) -> str:
+    """Return a text in one line, without control signs."""
+    return " ".join("".join(c if c.isprintable() else " " for c in text).split())
 
 
 def unknown(what: str, text: str, known: Iterable[str]) -> str:

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Generic, TypeVar
 
-from calm.errors import InputError, Problem
+from calm.errors import refused
 
 LARGEST_FILE = 1_000_000
 """Largest text file that is read [bytes]."""
@@ -132,32 +132,28 @@ def read_content(path: Path, *, largest: int = LARGEST_FILE) -> bytes:
     """Return the bytes of a small regular file, or raise InputError; nothing else is opened."""
     try:
         if path.is_dir():
-            raise _refused(path, "is a folder; a file is needed")
+            raise refused(path, "is a folder; a file is needed")
         if not path.is_file():
-            raise _refused(path, "is not a regular file" if path.exists() else "no such file")
+            raise refused(path, "is not a regular file" if path.exists() else "no such file")
         if path.stat().st_size > largest:
             megabytes = path.stat().st_size / 1e6
             message = f"is {megabytes:.1f} MB; more than {largest / 1e6:g} MB is not read"
-            raise _refused(path, message)
+            raise refused(path, message)
         return path.read_bytes()
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        raise _refused(path, f"cannot be read: {reason}") from None
+        raise refused(path, f"cannot be read: {reason}") from None
 
 
 def decoded(path: Path, content: bytes) -> str:
     """Return the text of a file with its byte order mark, or raise InputError."""
     if b"\0" in content:
-        raise _refused(path, "is a binary file; text is needed")
+        raise refused(path, "is a binary file; text is needed")
     try:
         return content.decode()
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
-        raise _refused(path, "is not UTF-8 text; save it as UTF-8", line) from None
-
-
-def _refused(path: Path, message: str, line: int = 0) -> InputError:
-    return InputError([Problem(str(path), line, 1 if line else 0, message)])
+        raise refused(path, "is not UTF-8 text; save it as UTF-8", line=line) from None
 
 
 class FileCache(Generic[T]):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
@@ -34,9 +35,6 @@ if TYPE_CHECKING:
     from calm.solve.net_leg import LegEnd, NetLeg
 
 _SKIN = 1e-3  # m above the surface, in which water turns into air
-
-Way = tuple[float, tuple[str, ...]]
-"""Along legs: how long they are in all [m], and their names."""
 
 
 @dataclass(frozen=True)
@@ -165,10 +163,11 @@ class Net(ReadFromFile):
                 nodes = len(nodes_of(self.file.legs))
                 return solve_net(self.legs, nodes, water, self.settings, near)
         except NoEquilibrium as failure:
-            raise self._why_not() or failure from None
+            raise self._why_not(water) or failure from None
 
-    def _why_not(self) -> NoEquilibrium | None:
-        """Why it sinks, or held ends cannot be reached, where weights or lengths say so.
+    def _why_not(self, water: Water) -> NoEquilibrium | None:
+        """Why it sinks, held ends are out of reach, or a leg lies in a heap, if weights or lengths
+        say so.
 
         Between every two ends the shortest way through the net counts (Floyd and Warshall).
         """
@@ -179,27 +178,37 @@ class Net(ReadFromFile):
                 "lift, and no end is held.",
                 advice="Add buoyancy.",
             )
-        ways: dict[tuple[Any, Any], Way] = {}
+        ways: dict[Any, tuple[float, tuple[str, ...]]] = defaultdict(lambda: (inf, ()))
         for leg, keys in zip(self.legs, self.file.legs, strict=True):
             ends = [end.node if end.place is None else end.place for end in (leg.upper, leg.lower)]
-            way: Way = float(leg.line.length.sum()), (keys.name,)
             for pair in permutations(ends):
-                ways[pair[0], pair[1]] = min(way, ways.get((pair[0], pair[1]), way))
+                ways[pair] = min(ways[pair], (float(leg.line.length.sum()), (keys.name,)))
         points = dict.fromkeys(end for pair in ways for end in pair if end != -1)  # -1: free
         for by, first, last in product(points, repeat=3):
-            if (first, by) in ways and (by, last) in ways:
-                (one, some), (other, more) = ways[first, by], ways[by, last]
-                way = one + other, some + more
-                ways[first, last] = min(way, ways.get((first, last), way))
-        held = combinations((point for point in points if isinstance(point, tuple)), 2)
-        for first, last in held:
-            length, names = ways.get((first, last), (inf, ()))
+            (one, some), (other, more) = ways[first, by], ways[by, last]
+            ways[first, last] = min(ways[first, last], (one + other, some + more))
+        for first, last in combinations((one for one in points if isinstance(one, tuple)), 2):
+            length, names = ways[first, last]
             if length < dist(first, last):
                 legs = f"Leg {names[0]} is" if len(names) == 1 else f"Legs {', '.join(names)} are"
                 return Status.NO_EQUILIBRIUM.because(
                     f"{legs} {say('length', length)} long in all, but its ends are held "
                     f"{say('length', dist(first, last))} apart.",
                     advice="Lengthen a leg, or bring the ends closer together.",
+                )
+        from calm.solve.net_start import start_of
+
+        tops = start_of(self.legs, len(nodes_of(self.file.legs)), water).first.tolist()
+        for leg, keys, (*at, up) in zip(self.legs, self.file.legs, tops, strict=True):
+            length = float(leg.line.length.sum())
+            foot, height = leg.lower.place, up - leg.lower.seabed  # inf where nothing anchors it
+            over = inf if foot is None else height + dist(at, foot[:2])
+            if length > over:
+                return Status.SLACK.because(
+                    f"Leg {keys.name} is {say('length', length)} long, and some "
+                    f"{say('length', over)} lead down from its upper end and along the seabed to "
+                    "its anchor: the rest lies there in no shape that a pull would give it.",
+                    advice="Shorten it, or anchor it farther away.",
                 )
         return None
 

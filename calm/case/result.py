@@ -6,7 +6,7 @@ Its ends, its anchors, its pieces, its knockdown, a net's legs and nodes, and it
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass
 from functools import cached_property
 from math import nan
 from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
@@ -122,11 +122,25 @@ class AnchorLoad:
     grounded_length: float
 
 
+@dataclass(frozen=True, kw_only=True, repr=False)
 class ResultForms:
-    """The forms of a result in a notebook and for other libraries.
+    """How a solution was found, and the forms of a result in a notebook and for other libraries.
 
-    `notebook_form` makes HTML of a result, `netcdf_form` a file; the packages above set them.
+    `iterations` counts marches, `segments` the cuts of the final one, `miss` is how far the end of
+    a line, the worst of a net's, is from where it is held: in height, of a single line [m];
+    `closure` the relative force residual recomputed from the final coordinates. `notebook_form`
+    makes HTML of a result, `netcdf_form` a file; the packages above set them.
     """
+
+    name: str
+    type: str
+    status: str
+    iterations: int
+    segments: int
+    miss: float
+    closure: float
+    accuracy: Accuracy
+    warnings: tuple[str, ...] = ()
 
     notebook_form: ClassVar[Callable[[Any], str] | None] = None
     netcdf_form: ClassVar[Callable[[Any], bytes] | None] = None
@@ -159,28 +173,16 @@ class ResultForms:
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class Solved(ResultForms):
-    """Hold what every result has, whatever was solved. Depths [m], forces [N].
+    """Hold what the result of every single line has. Depths [m].
 
-    `iterations` counts marches, `segments` the cuts of the final one, `miss` is the height
-    of the line's end above the anchor's top, `closure` the relative force residual recomputed
-    from the final coordinates. `other_depth` is that of the free end in another equilibrium that
-    was found.
+    `other_depth` is that of the free end in another equilibrium that was found.
     """
 
-    name: str
-    type: str
-    status: str
-    iterations: int
-    segments: int
-    miss: float
-    closure: float
-    accuracy: Accuracy
     strumming: Strumming | None
     components: Components
     clamps: Clamps
     shape: Shape
     other_depth: float | None = None
-    warnings: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         """Return the figures of both ends, in SI units and degrees."""
@@ -275,26 +277,17 @@ class NodePlace:
 class NetResult(ResultForms):
     """A converged net. Lengths and depths [m], forces [N], angles [degrees].
 
-    x and y are east and north of the origin of the file's places. `miss` is the worst distance of a
-    leg's end from where it is held, `closure` the worst of the legs', recomputed from coordinates.
-    `legs` are lines of their own, counted from their upper ends; one without an anchor has a
-    stand-in for it, of which nothing is true.
+    x and y are east and north of the origin of the file's places. `legs` are lines of their own,
+    counted from their upper ends; one without an anchor has a stand-in for it, of which nothing is
+    true.
     """
 
-    mooring: Net = field(repr=False)
-    name: str
     type: str = "net"
-    status: str
-    iterations: int
-    segments: int
-    miss: float
-    closure: float
-    accuracy: Accuracy
+    mooring: Net
     legs: tuple[Result, ...]
     nodes: tuple[NodePlace, ...]
     anchors: tuple[EndLoad, ...]
     held: tuple[EndLoad, ...]
-    warnings: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         """Return the nodes and the pulls on the anchors, in SI units and degrees."""

@@ -51,18 +51,19 @@ def import_(
     output
         The mooring file to write; for several files, the folder.
     format
-        The program: mdd, cbl, moordyn, moords or table. By default recognised
+        The program: mdd, cbl, moordyn, oceanarray, moords or table. By default recognised
         from the content.
     strict
         Refuse files that need guesses.
     define
-        A macro of WHOI Cable, as NAME=VALUE. Repeatable.
+        A macro of WHOI Cable, as NAME=VALUE, or the id in the catalogue of what oceanarray
+        names, as "NAME=ID". Repeatable.
     environment
         An environment file, in place of the water in the file.
     columns
         The columns of a table by their headings: name=Item,length=Len.
     elements
-        A library of elements, with the figures that a list of names lacks: the mdcodes.mat of
+        A library of elements, with the figures that a list or oceanarray lacks: the mdcodes.mat of
         Mooring Design & Dynamics, the table of moords, or a workbook.
     match_catalogue
         Use catalogue entries for components that agree in name and figures.

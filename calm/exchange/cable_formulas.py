@@ -7,9 +7,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
-from calm.errors import InputError, Problem
+from calm.errors import InputError, Problem, one_line
 from calm.exchange.cable_source import SourceLine, Token, tokens_of
-from calm.exchange.design import one_line
 
 Formula: TypeAlias = Callable[[Mapping[str, float]], float]
 """A value, computed from the values of the names it depends on."""
@@ -49,51 +48,40 @@ _UNARY: dict[str, Callable[[float], float]] = {
 }  # fmt: skip
 
 
+@dataclass
 class TokenStream:
-    """Words taken one after the other."""
+    """Words taken one after the other; `at` is the place of the next one."""
 
-    def __init__(self, tokens: list[Token]) -> None:
-        self._tokens = tokens
-        self._at = 0
+    tokens: list[Token]
+    at: int = 0
 
     @property
     def next(self) -> Token:
         """The next word, which is not taken."""
-        return self._tokens[self._at]
+        return self.tokens[self.at]
 
     def ahead(self, count: int) -> Token:
         """Return a word further on, which is not taken."""
-        return self._tokens[min(self._at + count, len(self._tokens) - 1)]
+        return self.tokens[min(self.at + count, len(self.tokens) - 1)]
 
     def take(self) -> Token:
         """Return the next word."""
         token = self.next
-        self._at = min(self._at + 1, len(self._tokens) - 1)
+        self.at = min(self.at + 1, len(self.tokens) - 1)
         return token
 
-    def mark(self) -> int:
-        """Return the place of the next word, for `back`."""
-        return self._at
+    def stands(self, *signs: str) -> bool:
+        """Return whether the next word is one of some signs."""
+        return self.next.kind == "sign" and self.next.text in signs
 
-    def back(self, mark: int) -> None:
-        """Go back to a place of `mark`."""
-        self._at = mark
-
-    def put(self, tokens: Sequence[Token]) -> None:
-        """Put other words before the next one."""
-        self._tokens[self._at : self._at] = tokens
-
-    def comes(self, text: str) -> bool:
+    def comes(self, sign: str) -> bool:
         """Return whether the next word is a sign; if so, it is taken."""
-        if self.next.kind == "sign" and self.next.text == text:
-            self.take()
-            return True
-        return False
+        return self.stands(sign) and bool(self.take())
 
-    def expect(self, text: str) -> None:
+    def expect(self, sign: str) -> None:
         """Take a sign, which must be next."""
-        if not self.comes(text):
-            raise self.next.refuse(f"`{text}` is missing before `{self.next.text}`")
+        if not self.comes(sign):
+            raise self.next.refuse(f"`{sign}` is missing before `{self.next.text}`")
 
 
 class UnknownNameError(InputError):
@@ -175,10 +163,9 @@ class _Reader:
         if level == len(_LEVELS):
             return self._unary(depth)
         left = self._binary(level + 1, depth)
-        signs = _LEVELS[level].split()
-        while self._words.next.kind == "sign" and self._words.next.text in signs:
+        while self._words.stands(*_LEVELS[level].split()):
             # a `+` before a key or the end closes a table that repeats: nothing is added
-            if self._words.next.text == "+" and self._words.ahead(1).kind in ("key", "end"):
+            if self._words.stands("+") and self._words.ahead(1).kind in ("key", "end"):
                 break
             left = _joined(self._words.take().text, left, self._binary(level + 1, depth))
         return left
@@ -186,8 +173,7 @@ class _Reader:
     def _unary(self, depth: int) -> Formula:
         if depth > _DEEPEST:
             raise self._words.next.refuse("signs are nested too deeply")
-        sign = self._words.next
-        if sign.kind != "sign" or sign.text not in _UNARY:
+        if not self._words.stands(*_UNARY):
             return self._value(depth)
         operation = _UNARY[self._words.take().text]
         of = self._unary(depth + 1)
@@ -204,7 +190,10 @@ class _Reader:
         if token.kind != "name":
             raise token.refuse(f"a number is missing before `{token.text}`")
         if "/" in token.text:  # a sign that names may hold: here it divides
-            token = self._cut(token)
+            head, _, rest = token.text.partition("/")
+            more = list(tokens_of([SourceLine(f"/{rest}", token.path, token.line)]))
+            self._words.tokens[self._words.at : self._words.at] = more[:-1]
+            token = replace(token, text=head)
         if token.text.lower() in _FUNCTIONS:
             return self._call(token, depth)
         if token.text.lower() == "pi":
@@ -212,13 +201,6 @@ class _Reader:
         name = token.text
         self._names.add(name)
         return lambda at: at[name]
-
-    def _cut(self, token: Token) -> Token:
-        """Return the name before the first stroke; what follows comes next."""
-        head, _, rest = token.text.partition("/")
-        line = SourceLine(f"/{rest}", token.path, token.line)
-        self._words.put([each for each in tokens_of([line]) if each.kind != "end"])
-        return replace(token, text=head)
 
     def _call(self, token: Token, depth: int) -> Formula:
         count, function = _FUNCTIONS[token.text.lower()]

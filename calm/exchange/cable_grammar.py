@@ -19,10 +19,16 @@ _TEXTS = frozenset([
 ])  # fmt: skip
 """Keys whose value is a word."""
 
-_SECTIONS = frozenset(
-    ["environment", "buoys", "platforms", "anchors", "connectors", "materials", "layout", "end"]
-)
+_SECTIONS = {
+    "environment": "environment", "buoys": "buoys", "platforms": "buoys", "anchors": "anchors",
+    "connectors": "connectors", "materials": "materials", "layout": "layout", "end": "",
+    "problem": "description", "analysis": "analysis",
+}  # fmt: skip
+"""What of a problem stands in each section."""
+
 _LONG_SECTIONS = {"problem": "description", "analysis": "parameters"}
+"""The second words of those that have two."""
+
 _MOST_NODES = 1_000_000
 _LAYOUT = frozenset(["terminal", "segment", "branch"])
 
@@ -112,13 +118,22 @@ class CableSegment:
 class CableTerminal(CableDefinition):
     """Represent an end of the line."""
 
+    @property
+    def buoy(self) -> KeyValue | None:
+        """The buoy or platform that it names."""
+        return self.values.get("buoy") or self.values.get("platform")
+
 
 @dataclass
 class CableBranch:
     """Represent a side line: its segments from where it joins, and its terminal."""
 
     token: Token
-    layout: list[CableTerminal | CableSegment | CableBranch]
+    layout: CableItems
+
+
+CableItems = list[CableTerminal | CableSegment | CableBranch]
+"""Terminals, segments and branches in the order of the file."""
 
 
 @dataclass
@@ -140,7 +155,7 @@ class CableProblem:
     anchors: dict[str, CableDefinition] = field(default_factory=dict)
     connectors: dict[str, CableDefinition] = field(default_factory=dict)
     materials: dict[str, CableDefinition] = field(default_factory=dict)
-    layout: list[CableTerminal | CableSegment | CableBranch] = field(default_factory=list)
+    layout: CableItems = field(default_factory=list)
 
     @property
     def kind(self) -> str:
@@ -193,38 +208,28 @@ def _section(words: TokenStream, problem: CableProblem) -> None:
     words.take()
     if name in _LONG_SECTIONS:
         words.take()
-    if name == "problem":
-        problem.description |= _values(words)
-    elif name == "analysis":
-        problem.analysis |= _values(words)
-    elif name == "environment":
-        problem.environment |= _values(words)
-    elif name == "layout":
+    if name == "layout":
         problem.layout += _layout(words)
     elif name != "end":
-        _definitions(words, getattr(problem, "buoys" if name == "platforms" else name))
+        into = getattr(problem, _SECTIONS[name])
+        if isinstance(into, KeyValues):
+            into |= _values(words)
+            return
+        while words.next.kind in ("name", "text") and _section_name(words) is None:
+            token = words.take()
+            if token.text in into:
+                raise token.refuse(f"`{token.text}` is defined twice")
+            into[token.text] = CableDefinition(token, _values(words))
 
 
 def _section_name(words: TokenStream) -> str | None:
     """Return the section that begins here, if one does."""
-    token = words.next
-    if token.kind != "name":
+    word, behind = words.next.text.lower(), words.ahead(1)
+    if words.next.kind != "name" or word not in _SECTIONS:
         return None
-    word = token.text.lower()
-    if word in _SECTIONS:
-        return word
-    behind = words.ahead(1)
-    if behind.kind == "name" and _LONG_SECTIONS.get(word) == behind.text.lower():
-        return word
-    return None
-
-
-def _definitions(words: TokenStream, found: dict[str, CableDefinition]) -> None:
-    while words.next.kind in ("name", "text") and _section_name(words) is None:
-        token = words.take()
-        if token.text in found:
-            raise token.refuse(f"`{token.text}` is defined twice")
-        found[token.text] = CableDefinition(token, _values(words))
+    second = _LONG_SECTIONS.get(word)
+    fits = second is None or (behind.kind == "name" and behind.text.lower() == second)
+    return word if fits else None
 
 
 def _values(words: TokenStream) -> KeyValues:
@@ -239,11 +244,11 @@ def _values(words: TokenStream) -> KeyValues:
 def _value(words: TokenStream, key: Token) -> KeyValue:
     if key.text in _TEXTS:
         return KeyValue(key, text=_word(words, key))
-    if words.next.kind == "sign" and words.next.text == "{":  # the name of a profile
+    if words.stands("{"):  # the name of a profile
         words.take()
         words.take()
         words.expect("}")
-    if words.next.kind == "sign" and words.next.text == "(" and (rows := _rows(words)):
+    if words.stands("(") and (rows := _rows(words)):
         return KeyValue(key, rows=rows, repeats=words.comes("+"))
     if words.next.kind == "text":
         return KeyValue(key, text=words.take().text)
@@ -255,7 +260,7 @@ def _word(words: TokenStream, key: Token) -> str:
     if token.kind not in ("name", "text", "number"):
         raise key.refuse(f"a name is missing after `{key.text} =`")
     text = token.text
-    while words.next.kind == "sign" and words.next.text == "-" and words.ahead(1).kind == "name":
+    while words.stands("-") and words.ahead(1).kind == "name":
         words.take()
         text += "-" + words.take().text
     return text
@@ -265,25 +270,25 @@ def _rows(words: TokenStream) -> list[tuple[Expression, ...]]:
     """Rows such as ``(0, 0.5) (100, 0.2)``; none where the parenthesis is one of a formula."""
     rows: list[tuple[Expression, ...]] = []
     while True:
-        back = words.mark()
+        back = words.at
         if rows:
             words.comes(",")
         if not words.comes("("):
-            words.back(back)
+            words.at = back
             return rows
         row = [read_expression(words)]
         while words.comes(","):
             row.append(read_expression(words))
         words.expect(")")
         if not rows and len(row) == 1:
-            words.back(back)
+            words.at = back
             return []
         rows.append(tuple(row))
 
 
-def _layout(words: TokenStream) -> list[CableTerminal | CableSegment | CableBranch]:
+def _layout(words: TokenStream) -> CableItems:
     """Terminals, segments and what joins them, from the anchor up."""
-    layout: list[CableTerminal | CableSegment | CableBranch] = []
+    layout: CableItems = []
     while words.next.kind == "key":
         key = words.take()
         if key.text == "terminal":
@@ -321,19 +326,18 @@ def _segment(words: TokenStream, key: Token) -> CableSegment:
     return segment
 
 
-def _connector(
-    words: TokenStream, key: Token, layout: list[CableTerminal | CableSegment | CableBranch]
-) -> None:
+def _connector(words: TokenStream, key: Token, layout: CableItems) -> None:
     below = layout[-1] if layout else None
     if not isinstance(below, CableSegment):
         raise key.refuse("a connector stands above a segment")
-    if words.next.kind == "sign" and words.next.text == "{":
+    body: KeyValue | None
+    if words.stands("{"):
         below.joint = _block(words)
         body = below.joint.get("body") or below.joint.get("connector")
-        if body is not None:
-            below.connector = replace(body.token, kind="name", text=body.text)
-        return
-    below.connector = replace(key, kind="name", text=_word(words, key))
+    else:
+        body = KeyValue(key, _word(words, key))
+    if body is not None:
+        below.connector = replace(body.token, kind="name", text=body.text)
 
 
 def _attachments(words: TokenStream, key: Token) -> list[tuple[Token, list[int]]]:

@@ -1,30 +1,35 @@
-"""Read a problem file of WHOI Cable as a design."""
+"""Read a problem file of WHOI Cable as a design, with its environment and currents beside it."""
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from itertools import pairwise
 from pathlib import Path
 
-from calm.errors import InputError, Problem
-from calm.exchange import cable_grammar
-from calm.exchange.cable_components import ComponentMaker, counts_on_depth, varies
+import numpy as np
+from numpy.typing import NDArray
+
+from calm.errors import InputError, Problem, refused
+from calm.exchange.cable_components import ComponentMaker
 from calm.exchange.cable_formulas import UnknownNameError
-from calm.exchange.cable_grammar import CableBranch, CableDefinition, CableProblem, CableSegment
-from calm.exchange.cable_source import Token
-from calm.exchange.cable_water import USUAL_GRAVITY, water_of
-from calm.exchange.design import (
-    Design,
-    ImportedComponent,
-    ImportedPiece,
-    ImportedTow,
-    ImportedWater,
-    Remark,
-    refused,
+from calm.exchange.cable_grammar import (
+    CableBranch,
+    CableProblem,
+    CableTerminal,
+    KeyValue,
+    KeyValues,
+    read_problem,
 )
+from calm.exchange.cable_layout import CableLayout
+from calm.exchange.design import Design, ImportedWater, Remark
 from calm.files.definition import CATALOGUE_DENSITY
 from calm.quantities import bearing_of
+from calm.whole_file import read_text
+
+_USUAL_GRAVITY = 9.81
+"""Gravity in the problems that come with that program, which has no default [m/s²]."""
 
 _REFUSED = {
     "horizontal": "a horizontal array, which has an anchor at each end",
@@ -37,9 +42,6 @@ _REFUSED = {
     "tensioned": "a line under a given tension",
 }
 _MOORED = ("general", "surface", "subsurface", "horizontal", "positioned")
-_REACHES = 0.97  # of the depth: a line as long reaches the surface
-_PARTS = 12  # lengths of a segment whose drag changes with depth
-_CHANGE = 0.02  # of a drag that is worth two lengths
 _HEADS = re.compile(
     r"^\s*(problem\s+description|analysis\s+parameters|environment|layout|materials)\b(?!\s*[=:])",
     re.MULTILINE,
@@ -49,6 +51,19 @@ _NOTE = (
     "cn and ct are its Cdn and Cdt, defined alike: on the diameter, and on the surface of a metre. "
     "See `calm docs import-cable`."
 )
+_FINEST = 1e-4  # share of the fastest current by which levels may miss a formula
+_HALVINGS = 8
+_DIGITS = 9  # of a speed in m/s
+_WAVES = ("x-wave", "y-wave", "x-input", "y-input", "z-input", "wave-file")
+_DYNAMICS = ("forcing-method", "input-type", "velocity-file", "force-file")
+_SEABED = ("bottom-stiffness", "bottom-damping", "bottom-elevation")
+_Profile = tuple[Callable[[float], float], list[float]]
+"""A speed by depth, and the depths between which it is linear."""
+
+_LARGEST = 20_000_000  # bytes
+_MOST = 2_000_000  # speeds
+_Grid = tuple[NDArray[np.float64], NDArray[np.float64]]
+"""Depths of the levels, growing [m], and (n, 3) speeds to x, y and z there [m/s]."""
 
 
 def is_cbl(content: bytes) -> bool:
@@ -93,29 +108,27 @@ def read_cbl(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> 
 
 
 def _read(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> Design:
-    problem = cable_grammar.read_problem(path, defines, allow_include=allow_include)
+    problem = read_problem(path, defines, allow_include=allow_include)
     _refuse_other_shapes(problem)
     title, environment = problem.description.get("title"), problem.environment
     design = Design("WHOI Cable", title.text if title and title.text else path.stem, [], None)
     design.notes.append(_NOTE)
-    design.water = water_of(
-        environment, problem.length, design.dropped, folder=path.parent, allow_include=allow_include
-    )
+    design.water = _water_of(problem, design.dropped, allow_include=allow_include)
     if problem.analysis:
         design.dropped.append(Remark("analysis parameters", "how that program is to solve it"))
     density = environment.number("rho", "density")
-    gravity = environment.number("gravity", default=USUAL_GRAVITY)
+    gravity = environment.number("gravity", default=_USUAL_GRAVITY)
     for key, value in (("density", density), ("gravity", gravity)):
         if value < 0.0 or (key == "gravity" and value == 0.0):
             raise refused(path, f"its {key} is {value:g}")
     makers = ComponentMaker(density or CATALOGUE_DENSITY, gravity, design.dropped)
+    layout = CableLayout(problem, makers, design)
     if _is_net(problem):
-        from calm.exchange.cable_net import lay_net
-
-        lay_net(problem, makers, design)
+        layout.lay_net()
+    elif problem.kind == "towing":
+        layout.lay_tow()
     else:
-        items = pieces_of(problem, problem.segments, makers, design)
-        (_lay_tow if problem.kind == "towing" else _lay_mooring)(problem, items, makers, design)
+        layout.lay_mooring()
     friction = problem.environment.number("bottom-friction")
     if friction > 0.0 and problem.kind != "towing":
         design.solver["seabed_friction"] = friction, "its bottom-friction"
@@ -147,7 +160,7 @@ def _refuse_other_shapes(problem: CableProblem) -> None:
     if len(ends) != 2 or not segments:
         counts = f"{len(ends)} terminals and {len(segments)} segments"
         raise refused(problem.path, f"the layout has {counts}")
-    if not all(isinstance(layout[end], cable_grammar.CableTerminal) for end in (0, -1)):
+    if not all(isinstance(layout[end], CableTerminal) for end in (0, -1)):
         raise refused(problem.path, "the layout must lead from one terminal to the other")
     anchored = ["anchor" in end.values for end in ends]
     if any("node" in end.values for end in ends):
@@ -160,193 +173,162 @@ def _refuse_other_shapes(problem: CableProblem) -> None:
                 raise values[key].token.refuse(f"`{key}` pulls at the line from outside")
 
 
-def _lay_mooring(
-    problem: CableProblem, items: list[ImportedPiece], makers: ComponentMaker, design: Design
-) -> None:
-    """Lay the line from the buoy down to the anchor."""
-    lower, upper = problem.terminals
-    if "anchor" in upper.values:
-        raise upper.token.refuse("the layout must lead from the anchor up")
-    if design.water is None or design.water.depth is None:
-        raise refused(problem.path, "the environment has no `depth`")
-    name = lower.values["anchor"]
-    anchor = makers.anchor(problem.anchors.get(name.text), name.text, lower.values.number("mu"))
-    if lower.values.number("z") > 0.0:
-        anchor.figures["length"] = lower.values.number("z")
-    top = upper.values.get("buoy") or upper.values.get("platform")
-    if top is None:
-        raise upper.token.refuse("the upper end is not a buoy")
-    reaches = problem.length >= _REACHES * design.water.depth
-    afloat = problem.kind == "surface" or (problem.kind == "general" and reaches)
-    buoy = makers.buoy(defined(problem.buoys, top, upper.token), afloat=afloat)
-    design.items = [ImportedPiece(buoy), *reversed(items), ImportedPiece(anchor)]
-
-
-def _lay_tow(
-    problem: CableProblem, items: list[ImportedPiece], makers: ComponentMaker, design: Design
-) -> None:
-    """Lay the line from the ship down; a ship at rest in a current moves against it."""
-    body, ship = problem.terminals
-    towed = body.values.get("buoy") or body.values.get("platform")
-    if towed is None or "anchor" in ship.values:
-        raise body.token.refuse("a tow leads from a towed body up to a ship")
-    water = design.water
-    assert water is not None
-    east, north = (
-        ship.values[key].at(0.0) if key in ship.values else 0.0 for key in ("x-speed", "y-speed")
-    )
-    if not east and not north and water.current:
-        _, drift_east, drift_north, _ = water.current[0]
-        east, north = 0.0 - drift_east, 0.0 - drift_north
-        rows = [(d, u - drift_east, v - drift_north, w) for d, u, v, w in water.current]
-        water.current = tuple(rows) if any(any(row[1:]) for row in rows) else ()
-        design.notes.append("The ship lay in a current: here it moves, and the water with it.")
-    speed = math.hypot(east, north)
-    if speed == 0.0:
-        raise ship.token.refuse("the ship of this tow does not move")
-    design.tow = ImportedTow(speed, bearing_of(east, north))
-    buoy = makers.buoy(defined(problem.buoys, towed, body.token), afloat=False)
-    design.items = [*items[::-1], ImportedPiece(buoy)]
-
-
-def pieces_of(
-    problem: CableProblem, segments: list[CableSegment], makers: ComponentMaker, design: Design
-) -> list[ImportedPiece]:
-    """Return the pieces of segments and their connectors, from the lower one up.
+def _water_of(
+    problem: CableProblem, dropped: list[Remark], *, allow_include: bool
+) -> ImportedWater:
+    """Return depth, density, gravity, current and wind, with files of currents in its folder.
 
     Parameters
     ----------
-    segments : in the order of the layout
-    makers : of components
-    design : whose water counts for drags by depth
+    problem : whose length stands for the depth of a tow whose file gives none
+    dropped : to which what has no counterpart is added
+    allow_include : whether files may stand elsewhere
     """
-    assert design.water is not None
-    items: list[ImportedPiece] = []
-    below = 0.0
-    seabed = design.water.depth or problem.length
-    for segment in segments:
-        length = segment.values.number("length")
-        if length <= 0.0:
-            raise segment.token.refuse("a segment has no length")
-        material = defined(problem.materials, segment.values.get("material"), segment.token)
-        clamps = _clamps(problem, segment, length, makers)
-        items += _pieces(material, length, seabed - below, clamps, makers, design.water)
-        below += length
-        for key in ("top-spool-length", "bottom-spool-length"):
-            if segment.values.number(key) > 0.0:
-                design.dropped.append(Remark(f"segment of {material.name}", f"{key}: on a winch"))
-        joint = segment.connector
-        if joint is not None and joint.text.lower() not in ("pinned", "spliced"):
-            items.append(ImportedPiece(makers.connector(_connector(problem, joint))))
-    return items
+    environment = problem.environment
+    depth = environment.number("depth")
+    water = ImportedWater(depth if depth > 0.0 else None)
+    water.density = environment.number("rho", "density") or None
+    water.gravity = environment.number("gravity", default=_USUAL_GRAVITY)
+    if "gravity" not in environment:
+        water.guesses["gravity"] = "the file gives none; the usual value of such files"
+    grid = None
+    if (value := environment.get("current-file")) is not None:
+        grid = _gridded_current(value, problem.path.parent, dropped, allow_include=allow_include)
+        if grid is None:
+            what = f"still water: its current-file `{value.text}` is missing"
+            water.guesses["current"] = what
+    axes = [_profile(environment, axis, grid) for axis in "xyz"]
+    angle = 0.0 if grid else environment.number("current-rotation")
+    water.current = _current(axes, angle, depth if depth > 0.0 else problem.length)
+    east, north = (environment.number(f"{axis}-wind") for axis in "xy")
+    if east or north:
+        water.wind = math.hypot(east, north), bearing_of(east, north)
+    for what, keys in (("waves", _WAVES), ("how waves act", _DYNAMICS), ("the seabed", _SEABED)):
+        found = [key for key in keys if key in environment]
+        if found:
+            dropped.append(Remark("environment", f"{what} ({', '.join(found)})"))
+    return water
 
 
-def _pieces(
-    material: CableDefinition,
-    length: float,
-    lower: float,
-    clamps: list[tuple[float, ImportedComponent]],
-    makers: ComponentMaker,
-    water: ImportedWater,
-) -> list[ImportedPiece]:
-    """Return a segment as one piece, or as several where its drag changes with depth, from below.
+def _current(
+    axes: list[_Profile | None], angle: float, deepest: float
+) -> tuple[tuple[float, float, float, float], ...]:
+    """Rows of depth, and speed to the east (x), to the north (y) and up (z), at the time 0."""
 
-    Its lower end is at the depth `lower` standing upright [m]; clamps have heights above that end
-    [m].
+    def at(depth: float) -> tuple[float, float, float]:
+        x, y, z = (0.0 if axis is None else axis[0](depth) for axis in axes)
+        turned = x * math.cos(angle) - y * math.sin(angle)
+        return turned, x * math.sin(angle) + y * math.cos(angle), z
+
+    given = [axis for axis in axes if axis is not None]
+    inside = {knot for _, knots in given for knot in knots if 0.0 < knot < deepest}
+    levels = sorted({0.0, deepest, *inside})
+    if not all(knots for _, knots in given):
+        levels = _refined(at, levels)
+    rows = []
+    for depth in levels:
+        x, y, z = (round(speed, _DIGITS) + 0.0 for speed in at(depth))
+        rows.append((depth, x, y, z))
+    return tuple(rows) if any(any(row[1:]) for row in rows) else ()
+
+
+def _profile(environment: KeyValues, axis: str, grid: _Grid | None) -> _Profile | None:
+    scale = environment.number(f"{axis}-current-scale", default=1.0)
+    if scale == 1.0:
+        scale = environment.number("current-scale", default=1.0)
+    if grid is not None:  # it is scaled there, but neither modulated nor turned
+        depths, column = grid[0], grid[1][:, "xyz".index(axis)]
+        # constant beyond the first and the last level, as there
+        return (lambda depth: scale * float(np.interp(depth, depths, column))), depths.tolist()
+    value = environment.get(f"{axis}-current")
+    if value is None:
+        return None
+    modulation = environment.get(f"{axis}-current-modulation")
+    if modulation is not None:
+        scale *= modulation.at(0.0)
+    knots = [row[0].at() for row in value.rows]
+    if not knots and value.formula is not None and not value.formula.names:
+        knots = [0.0]  # one speed at all depths
+    return (lambda depth: scale * value.at(depth)), knots
+
+
+def _refined(at: Callable[[float], tuple[float, float, float]], levels: list[float]) -> list[float]:
+    """Levels between which the current is linear within a tolerance."""
+    fastest = max(max(map(abs, at(depth))) for depth in levels)
+    for _ in range(_HALVINGS):
+        finer = [levels[0]]
+        for upper, lower in pairwise(levels):
+            middle = (upper + lower) / 2.0
+            a, b, c = at(upper), at(middle), at(lower)
+            fastest = max(fastest, *map(abs, b))
+            straight = all(
+                abs(y - (x + z) / 2.0) <= _FINEST * fastest for x, y, z in zip(a, b, c, strict=True)
+            )
+            finer += [lower] if straight and len(levels) > 4 else [middle, lower]
+        if len(finer) == len(levels):
+            break
+        levels = finer
+    return levels
+
+
+def _gridded_current(
+    value: KeyValue, folder: Path, dropped: list[Remark], *, allow_include: bool
+) -> _Grid | None:
+    """Return the currents of a file beside the problem; None where there is no such file.
+
+    It begins with step, start and count of time, depth, x and y; the speeds to x, y and z follow,
+    the depth running fastest, then x, then y, then the time. What is left out of it is `dropped`.
     """
-    count = _PARTS if varies(material) else 1
-    made: list[tuple[float, ImportedComponent]] = []
-    for part in range(count):
-        depth = max(lower - length * (part + 0.5) / count, 0.0)
-        component = makers.material(material, length, depth, _speed(water, depth))
-        if made and _alike(made[-1][1], component):
-            made[-1] = (made[-1][0] + length / count, made[-1][1])
-        else:
-            made.append((length / count, component))
-    items, start = [], 0.0
-    for part_length, component in made:
-        guess = "its drag at the depth where it stands upright" if len(made) > 1 else ""
-        item = ImportedPiece(component, part_length, guess=guess)
-        end = start + part_length
-        last = component is made[-1][1]
-        for height, clamped in clamps:
-            if start <= height < end or (last and height >= end):
-                item.clamp(clamped, min(max(end - height, 0.0), part_length))
-        items.append(item)
-        start = end
-    for key in ("cdn", "cdt"):
-        value = material.values.get(key)
-        if value is not None and value.rows and not counts_on_depth(value):
-            for item in items:
-                speed = f"{_speed(water, lower - length / 2.0):.3g} m/s"
-                item.guess = item.guess or f"{key} is a table by speed: its value at {speed}"
-    return items
+    path = folder / value.text
+    if not allow_include and not path.resolve().is_relative_to(folder.resolve()):
+        raise value.token.refuse(
+            f"`{value.text}` lies outside the folder of the file; --allow-include reads it"
+        )
+    if not path.is_file():
+        return None
+    numbers = _numbers(path)
+    steps, starts, counts = (numbers[i:12:3] for i in range(3))
+    sizes = [round(count) for count in counts]
+    if numbers.size < 12 or min(sizes) < 1 or not np.all(steps):
+        raise refused(path, "must begin with step, start and count of time, depth, x and y")
+    if np.prod([float(size) for size in sizes]) * 3 > _MOST:
+        raise refused(path, f"holds more than {_MOST} speeds")
+    times, depths, easts, norths = sizes
+    wanted = 12 + times * norths * easts * depths * 3
+    if numbers.size < wanted:
+        raise refused(path, f"has {numbers.size - 12} speeds, not {wanted - 12}")
+    speeds = numbers[12:wanted].reshape(times, norths, easts, depths, 3)
+    time, depth, x, y = (
+        start + step * np.arange(size)
+        for start, step, size in zip(starts, steps, sizes, strict=True)
+    )
+    here = _at_zero(_at_zero(_at_zero(speeds, time), y), x)
+    if times > 1:
+        dropped.append(Remark("current-file", "times after the first"))
+    if np.ptp(speeds, axis=(1, 2)).any():
+        what = "how it varies horizontally: the profile at the anchor is taken"
+        dropped.append(Remark("current-file", what))
+    order = np.argsort(depth)
+    return depth[order], here[order]
 
 
-def _alike(one: ImportedComponent, other: ImportedComponent) -> bool:
-    for key in ("cn", "ct"):
-        a, b = one.number(key), other.number(key)
-        if abs(a - b) > _CHANGE * max(abs(a), abs(b)):
-            return False
-    return True
+def _numbers(path: Path) -> NDArray[np.float64]:
+    try:
+        numbers = np.array(read_text(path, largest=_LARGEST).split(), np.float64)
+    except ValueError:
+        raise refused(path, "holds something other than numbers") from None
+    if not np.all(np.isfinite(numbers)):
+        raise refused(path, "holds numbers without a value")
+    return numbers
 
 
-def _speed(water: ImportedWater, depth: float) -> float:
-    """Return the speed of the current at the level next to a depth [m/s]."""
-    if not water.current:
-        return 0.0
-    row = min(water.current, key=lambda each: abs(each[0] - depth))
-    return math.hypot(row[1], row[2])
-
-
-def _clamps(
-    problem: CableProblem, segment: CableSegment, length: float, makers: ComponentMaker
-) -> list[tuple[float, ImportedComponent]]:
-    """Return what hangs on the nodes of a segment, with the height above its lower end."""
-    if not segment.attachments:
-        return []
-    heights = _heights(segment, length)
-    found = []
-    for token, nodes in segment.attachments:
-        component = makers.connector(_connector(problem, token))
-        for node in nodes:
-            if not 1 <= node <= len(heights):
-                raise token.refuse(f"node {node}: the segment has nodes 1 to {len(heights)}")
-            found.append((heights[node - 1], component))
-    return found
-
-
-def _heights(segment: CableSegment, length: float) -> list[float]:
-    """Return the heights of the nodes of a segment above its lower end [m]."""
-    nodes = segment.values.get("nodes")
-    if nodes is None or not nodes.rows or any(len(row) != 2 for row in nodes.rows):
-        raise segment.token.refuse("attachments need `nodes = (count, share)`")
-    heights = [0.0]
-    for count, share in nodes.rows:
-        number_, part = round(count.at()), share.at() * length
-        if not 2 <= number_ <= 1_000_000:
-            raise nodes.token.refuse("a segment needs two nodes at least")
-        start = heights[-1]
-        heights += [start + part * k / (number_ - 1) for k in range(1, number_)]
-    if abs(heights[-1] - length) > 1e-3 * length:
-        raise nodes.token.refuse(f"the nodes reach over {heights[-1]:g} m of {length:g} m")
-    return heights
-
-
-def defined(
-    definitions: dict[str, CableDefinition], value: cable_grammar.KeyValue | None, token: Token
-) -> CableDefinition:
-    """Return the definition that a value names; a problem stands at the value, or at `token`."""
-    if value is None or not value.text:
-        raise token.refuse("a name is missing: a material, or a buoy")
-    found = definitions.get(value.text)
-    if found is None:
-        raise value.token.refuse(f"`{value.text}` is defined nowhere")
-    return found
-
-
-def _connector(problem: CableProblem, token: Token) -> CableDefinition:
-    found = problem.connectors.get(token.text)
-    if found is None:
-        raise token.refuse(f"the connector `{token.text}` is defined nowhere")
-    return found
+def _at_zero(grid: NDArray[np.float64], axis: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the grid at 0 of its first axis, or at that end of it which is nearer."""
+    order = np.argsort(axis)
+    axis, grid = axis[order], grid[order]
+    place = min(max(0.0, axis[0]), axis[-1])
+    above = min(int(np.searchsorted(axis, place)), axis.size - 1)
+    below = max(above - 1, 0)
+    apart = axis[above] - axis[below]
+    share = (place - axis[below]) / apart if above > below else 0.0
+    return np.asarray(grid[below] + share * (grid[above] - grid[below]))

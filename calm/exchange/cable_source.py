@@ -12,8 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from calm.errors import InputError, UsageError
-from calm.exchange.design import refused_at
+from calm.errors import InputError, UsageError, refused
 from calm.whole_file import decoded, read_content
 
 _NAME = re.compile(r"[A-Za-z_]\w*")
@@ -91,20 +90,18 @@ class Preprocessor:
         conditions: list[tuple[bool, bool]] = []  # whether it holds, whether one has held
         for number, line in enumerate(_without_comments(text, shown), 1):
             found = _DIRECTIVE.match(line)
-            if found is None:
-                if all(holds for holds, _ in conditions):
-                    self._add(line, shown, number)
-                continue
-            word, rest = found[1], found[2].strip()
+            word, rest = (found[1], found[2].strip()) if found else ("", "")
             try:
-                if not self._condition(word, rest, conditions) and all(
-                    holds for holds, _ in conditions
-                ):
+                if self._condition(word, rest, conditions) or not all(one[0] for one in conditions):
+                    continue
+                if found is None:
+                    self._add(line, shown, number)
+                else:
                     self._directive(word, rest, path, root, within)
             except ValueError as error:
-                raise refused_at(shown, number, 1, str(error)) from None
+                raise refused(shown, str(error), line=number) from None
         if conditions:
-            raise refused_at(shown, len(text.splitlines()), 1, "an `#if` has no `#endif`")
+            raise refused(shown, "an `#if` has no `#endif`", line=len(text.splitlines()))
 
     def _condition(self, word: str, rest: str, conditions: list[tuple[bool, bool]]) -> bool:
         """Follow `#if` and the directives that go with it; False for another directive."""
@@ -187,13 +184,10 @@ class Preprocessor:
         self._file(target, root, (*within, real))
 
     def _add(self, line: str, path: str, number: int) -> None:
-        try:
-            expanded = self._expanded(line)
-        except ValueError as error:
-            raise refused_at(path, number, 1, str(error)) from None
+        expanded = self._expanded(line)
         self._size += len(expanded) + 1
         if self._size > _MOST_TEXT:
-            raise refused_at(path, number, 1, "macros and includes make the text too long")
+            raise ValueError("macros and includes make the text too long")
         self._lines.append(SourceLine(expanded, path, number))
 
     def _expanded(self, text: str, hidden: frozenset[str] = frozenset()) -> str:
@@ -262,7 +256,7 @@ def _without_comments(text: str, path: str) -> list[str]:
             end = text.find("*/", at)
             if end < 0:
                 start = text.count("\n", 0, found.start()) + 1
-                raise refused_at(path, start, 1, "a comment has no end")
+                raise refused(path, "a comment has no end", line=start)
             pieces.append(" " + "\n" * text.count("\n", at, end))
             at = end + 2
         elif found[0] == "//":
@@ -301,7 +295,7 @@ class Token:
 
     def refuse(self, message: str) -> Exception:
         """Return a problem at this word."""
-        return refused_at(self.path, self.line, self.column, message)
+        return refused(self.path, message, line=self.line, column=self.column)
 
 
 def tokens_of(lines: Iterable[SourceLine]) -> Iterator[Token]:
@@ -325,7 +319,8 @@ def _words(line: SourceLine) -> Iterator[Token]:
         place = line.path, line.number, at + 1
         found = _TOKEN.match(text, at)
         if found is None:
-            raise refused_at(*place, f"`{text[at]}` has no place in a problem of WHOI Cable")
+            message = f"`{text[at]}` has no place in a problem of WHOI Cable"
+            raise refused(line.path, message, line=line.number, column=at + 1)
         kind = found.lastgroup or ""
         word, at = found[kind], found.end()
         if kind == "key":

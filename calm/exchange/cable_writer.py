@@ -6,8 +6,14 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from math import atan2, degrees, hypot, pi, sqrt
 
-from calm.exchange.design import is_chain
-from calm.exchange.exported_parts import ExportedLine, ExportedPart, PartLoad, unique_name
+from calm.exchange.design import is_called
+from calm.exchange.exported_parts import (
+    AS_A_POINT,
+    ExportedLine,
+    ExportedPart,
+    PartLoad,
+    unique_name,
+)
 from calm.files import Chain, Cylinder, Rigid, Sphere
 from calm.files.rigid import Displacement
 from calm.physics.hull import Hull, cylindrical_hull, spherical_hull, tabulated_hull
@@ -97,17 +103,14 @@ def cbl_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
     if floating:
         lost.append("how its drag grows with draft: its Cdn gives the drag at the present draft")
     elif design.tow is None:
-        lost.append(
-            "that the drag of the float acts at its middle and by its axis: its point has the "
-            "pull found here"
-        )
+        lost.append(AS_A_POINT)
     if buoy.flexible:
         lost.append("the free end of the line: a small sphere without weight is put there")
     elif not floating and design.tow is None and buoy.length > 0.0:
         problem.segment(_link(problem), buoy.length)
     if problem.load is not None:
         problem.segment(_link(problem), 0.001)
-    text = _text(design, problem, _buoy_figures(buoy, design, density, lost), density, floating)
+    text = _text(design, problem, _buoy_figures(buoy, design, density, lost), density)
     losses = design.losses(lost)
     head = [f"{design.name}, by CALM; lost:", *(f"- {each}" for each in losses)]
     comment = "\n   ".join(line.replace("*/", "* /") for line in head)
@@ -179,7 +182,7 @@ def _material(problem: _Problem, part: ExportedPart) -> str:
         f"{along:.9g}  EA = {part.stiffness or _RIGID:.9g}  EI = 1e-4  GJ = 1e-4"
     )
     name = _word(part.use)
-    if isinstance(part.component, Chain) and not is_chain(name):
+    if isinstance(part.component, Chain) and not is_called(name, "chain"):
         name = f"chain_{name}"
     return unique_name(problem.materials, name, figures)
 
@@ -190,17 +193,37 @@ def _word(text: str) -> str:
     return word if word[:1].isalpha() else f"n_{word}"
 
 
-def _text(
-    design: ExportedLine, problem: _Problem, buoy: str, density: float, floating: bool
-) -> str:
-    kind = "towing" if design.tow else "surface" if floating else "subsurface"
+def _text(design: ExportedLine, problem: _Problem, buoy: str, density: float) -> str:
+    depth, wind = [], []
+    if design.tow:
+        buoys, anchors = [f"    towed  {buoy}", "    vessel  type = ship"], []
+        speeds = f"x-speed = {design.tow.east:.9g}  y-speed = {design.tow.north:.9g}"
+        ends = "buoy = towed", f"buoy = vessel  {speeds}"
+    else:
+        assert design.anchor is not None
+        anchor, weight = design.anchor
+        friction = f"  mu = {anchor.friction:.9g}" if anchor.friction else ""
+        height = f"  z = {anchor.length:.9g}" if anchor.length else ""
+        bottom = "bottom-stiffness = 100   bottom-damping = 1"
+        depth = [f"    depth = {design.depth:.9g}   {bottom}"]
+        buoys = [f"    upper_end  {buoy}"]
+        figures = f"wet = {weight:.9g}  m = {weight / 8.0:.9g}{friction}"
+        anchors = ["", "Anchors", f"    anchor  {figures}"]
+        ends = f"anchor = anchor{height}", "buoy = upper_end"
+    currents = [
+        f"    {axis}-current = " + " ".join(f"({r[0]:.9g}, {r[column]:.9g})" for r in design.levels)
+        for axis, column in (("x", 1), ("y", 2), ("z", 3))
+        if any(r[column] for r in design.levels)
+    ]
+    if any(design.wind):
+        wind = [f"    x-wind = {design.wind[0]:.9g}   y-wind = {design.wind[1]:.9g}"]
     lines = [
         "Problem Description",
         f'    title = "{design.name.replace(chr(34), chr(39))}"',
-        f"    type = {kind}",
+        f"    type = {'towing' if design.tow else 'surface' if design.afloat else 'subsurface'}",
         "",
         "Analysis Parameters",
-        "    static-solution = " + ("shooting" if design.tow else "relaxation"),
+        f"    static-solution = {'shooting' if design.tow else 'relaxation'}",
         "    static-relaxation = 0.1   static-iterations = 20000   static-tolerance = 1e-5",
         "    static-outer-iterations = 500   static-outer-tolerance = 1e-3",
         "    duration = 60   time-step = 0.1   ramp-time = 10",
@@ -208,52 +231,14 @@ def _text(
         "",
         "Environment",
         f"    rho = {density:.9g}   gravity = {design.gravity:.9g}",
+        *(*depth, *currents, *wind, "", "Buoys", *buoys, *anchors, "", "Connectors"),
+        *(f"    {name}  {each}" for name, each in problem.connectors.items()),
+        *("", "Materials"),
+        *(f"    {name}  {each}" for name, each in problem.materials.items()),
+        *("", "Layout", f"    terminal = {{ {ends[0]} }}", *problem.layout),
+        *(f"    terminal = {{ {ends[1]} }}", "", "End", ""),
     ]
-    if design.tow is None:
-        lines.append(
-            f"    depth = {design.depth:.9g}   bottom-stiffness = 100   bottom-damping = 1"
-        )
-    for axis, column in (("x", 1), ("y", 2), ("z", 3)):
-        if any(row[column] for row in design.levels):
-            rows = " ".join(f"({row[0]:.9g}, {row[column]:.9g})" for row in design.levels)
-            lines.append(f"    {axis}-current = {rows}")
-    lines += _wind(design)
-    lines += ["", "Buoys", f"    upper_end  {buoy}"]
-    if design.tow:
-        lines[-1] = f"    towed  {buoy}"
-        lines.append("    vessel  type = ship")
-    else:
-        assert design.anchor is not None
-        _, weight = design.anchor
-        lines += ["", "Anchors", f"    anchor  wet = {weight:.9g}  m = {weight / 8.0:.9g}"]
-        if design.anchor[0].friction:
-            lines[-1] += f"  mu = {design.anchor[0].friction:.9g}"
-    lines += ["", "Connectors"] + [
-        f"    {name}  {each}" for name, each in problem.connectors.items()
-    ]
-    lines += ["", "Materials"] + [f"    {name}  {each}" for name, each in problem.materials.items()]
-    lines += ["", "Layout", *_ends(design, problem.layout), "", "End", ""]
     return "\n".join(lines)
-
-
-def _wind(design: ExportedLine) -> list[str]:
-    east, north = design.wind
-    return [f"    x-wind = {east:.9g}   y-wind = {north:.9g}"] if east or north else []
-
-
-def _ends(design: ExportedLine, layout: list[str]) -> list[str]:
-    if design.tow is None:
-        assert design.anchor is not None
-        height = design.anchor[0].length
-        place = f"  z = {height:.9g}" if height else ""
-        return [
-            f"    terminal = {{ anchor = anchor{place} }}",
-            *layout,
-            "    terminal = { buoy = upper_end }",
-        ]
-    speeds = f"x-speed = {design.tow.east:.9g}  y-speed = {design.tow.north:.9g}"
-    ship = f"    terminal = {{ buoy = vessel  {speeds} }}"
-    return ["    terminal = { buoy = towed }", *layout, ship]
 
 
 def _buoy_figures(part: ExportedPart, design: ExportedLine, density: float, lost: list[str]) -> str:

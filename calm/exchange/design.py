@@ -14,18 +14,13 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.errors import InputError, Problem
+from calm.errors import one_line
 
 MOST_PIECES = 2_000
 """Most pieces of a line, and most levels of its water."""
 
 FigureOrWord = float | str
 """A number in SI, or a word of the mooring file such as ``insensitive``."""
-
-
-def one_line(text: str) -> str:
-    """Return a text in one line, without control signs."""
-    return " ".join("".join(c if c.isprintable() else " " for c in text).split())
 
 
 @dataclass(frozen=True)
@@ -64,7 +59,7 @@ class ImportedComponent:
 
     @classmethod
     def of_line(
-        cls, name: str, weight: float, figures: dict[str, FigureOrWord], *, chain: bool
+        cls, name: str, weight: float, figures: dict[str, FigureOrWord]
     ) -> ImportedComponent:
         """Make a cable, or a chain where it is called one and sinks.
 
@@ -73,10 +68,10 @@ class ImportedComponent:
         name : as that file calls it
         weight : of a metre in water, negative for what floats [N]
         figures : its diameter and drag, to which the weight is added
-        chain : whether it is called a chain
         """
         figures["buoyancy" if weight < 0.0 else "weight"] = abs(weight)
-        return cls(name, "chain" if chain and weight >= 0.0 else "cable", figures)
+        kind = "chain" if weight >= 0.0 and is_called(name, "chain") else "cable"
+        return cls(name, kind, figures)
 
     def number(self, field: str) -> float:
         """Return a figure; 0 where it has none."""
@@ -95,6 +90,8 @@ class ImportedClamp:
     component: ImportedComponent
     at: float
     guess: str = ""
+    label: str = ""
+    serial: str = ""
 
 
 @dataclass(eq=False)
@@ -107,13 +104,17 @@ class ImportedPiece:
     guess: str = ""
     label: str = ""
     count: int = 1
+    serial: str = ""
 
     @property
     def extent(self) -> float:
         """The length of a line, or that of its component [m]."""
         return self.component.number("length") if self.length is None else self.length
 
-    def clamp(self, component: ImportedComponent, at: float, guess: str = "") -> None:
+    def clamp(
+        self, component: ImportedComponent, at: float, guess: str = "", label: str = "",
+        serial: str = "",
+    ) -> None:  # fmt: skip
         """Clamp a component on it, after those that sit above.
 
         Parameters
@@ -121,8 +122,9 @@ class ImportedPiece:
         component : that is clamped on
         at : distance from its upper end [m]
         guess : why the place is not from the file
+        label, serial : its name in results, and its number
         """
-        self.clamps.append(ImportedClamp(component, at, guess))
+        self.clamps.append(ImportedClamp(component, at, guess, label, serial))
         self.clamps.sort(key=lambda clamp: clamp.at)
 
 
@@ -198,6 +200,7 @@ class Design:
     guessed : guesses that belong to no figure; figures carry their own
     dropped : what the file says and CALM cannot use
     notes : what else the heading of the mooring file says
+    heading : further keys of the mooring file, as it has them
     in_kilograms : whether the file counts forces in kilograms-force
     """
 
@@ -212,6 +215,7 @@ class Design:
     guessed: list[Remark] = field(default_factory=list)
     dropped: list[Remark] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+    heading: dict[str, str] = field(default_factory=dict)
     in_kilograms: bool = False
     legs: list[ImportedLeg] = field(default_factory=list)
 
@@ -223,54 +227,38 @@ class Design:
                 yield clamp.component
 
 
-def refused(path: object, *messages: str) -> InputError:
-    """Return why a file cannot be read, or what in it CALM cannot represent."""
-    return InputError([Problem(str(path), 0, 0, one_line(message)) for message in messages])
+_CHAIN = r"chain|cha[iî]ne|\w*kette\b|\bkjetting|\bcadena"
+_NAMES = {
+    "chain": _CHAIN,
+    "release": (
+        r"\brelease|\bacoustic rel|\blargu|\blargage|\bar[ -]?\d{3}|\bcdms ar\b|\b8242\b|\b866\b"
+        r"|ausl[öo]se|utl[øo]se|\bliberador|\bsuelta"
+    ),
+    "connector": (
+        r"shackle|\bshac|swivel|sling|\blink|pear|\bring|ringlet|miller|manille|[ée]merillon|maillon"
+        r"|anneau|sch[äa]kel|wirbel|\bgrillete|giratorio|anilla|thimble|kausch|guardacabo"
+    ),
+    "anchor": (
+        r"anchor|sinker|railway|\blest|\bancre|\bcorps.mort|dead ?weight|clump|\banker|grundgewicht"
+        r"|\bancla|\bmuerto|\blastre"
+    ),
+    "rigid": (
+        r"float|buoy|sphere|syntactic|instrument|sensor|logger|release|hardware|connector|shackle|swivel"
+        r"|bou[ée]e|flotteur|capteur|auftrieb|boje|kugel|ger[äa]t|boya|flotador|esfera|sonde|terminal"
+        r"|\bbody\b|cylinder"
+    ),
+    "line": (
+        f"{_CHAIN}|"
+        r"wire|rope|\blines?\b|\bcable|c[âa]ble\b|cordage|filin|aussi[èe]re|\bbout\b|seil\b|seile\b|draht"
+        r"|leine\b|\btau\b|trosse|kabel|\bcabo\b|cuerda|estacha|tether|hawser|\bwarp\b|nilspin|jetstr"
+        r"|kevlar|aramid|twaron|technora|vectran|nylon|polyamid|dacron|polyester|polyprop|polysteel|danline"
+        r"|dyneema|spectra|uhmwpe|\bhmpe|amsteel|plasma|tenex|samson|colmega|dynex|steelite|phillystran"
+        r"|braid|strand|\b\d{1,2}x\d{1,2}\b(?!.*(?:\bgla|\bball|verre|vidrio|\bin\b|[\"\u2033]))|\bmanila\b|sisal|hemp\b|umbilical|\bcoax"
+    ),
+}
+"""Names of parts in the languages of their lists, by what these are."""
 
-
-def refused_at(path: object, line: int, column: int, message: str) -> InputError:
-    """Return why a file cannot be read, with the place in its text.
-
-    Parameters
-    ----------
-    path : of the file
-    line, column : from 1
-    message : what is wrong there
-    """
-    return InputError([Problem(str(path), line, column, one_line(message))])
-
-
-_RELEASE = re.compile(
-    r"\brelease|\bacoustic rel|\blargu|\blargage|\bar[ -]?\d{3}|\bcdms ar\b|\b8242\b|\b866\b"
-    r"|ausl[öo]se|utl[øo]se|\bliberador|\bsuelta",
-    re.I,
-)
 _HEAVY = 20.0  # N: nothing that only joins weighs more, whatever it is called
-_CHAIN = re.compile(r"chain|cha[iî]ne|\w*kette\b|\bkjetting|\bcadena", re.I)
-_CONNECTOR = re.compile(
-    r"shackle|\bshac|swivel|sling|\blink|pear|\bring|ringlet|miller|manille|[ée]merillon|maillon"
-    r"|anneau|sch[äa]kel|wirbel|\bgrillete|giratorio|anilla|thimble|kausch|guardacabo",
-    re.I,
-)
-_ANCHOR = re.compile(
-    r"anchor|sinker|railway|\blest|\bancre|\bcorps.mort|dead ?weight|clump|\banker|grundgewicht"
-    r"|\bancla|\bmuerto|\blastre",
-    re.I,
-)
-_RIGID = re.compile(
-    r"float|buoy|sphere|syntactic|instrument|sensor|logger|release|hardware|connector|shackle|swivel"
-    r"|bou[ée]e|flotteur|capteur|auftrieb|boje|kugel|ger[äa]t|boya|flotador|esfera|sonde|terminal"
-    r"|\bbody\b|cylinder",
-    re.I,
-)
-_LINE = re.compile(
-    r"wire|rope|\blines?\b|\bcable|c[âa]ble\b|cordage|filin|aussi[èe]re|\bbout\b|seil\b|seile\b|draht"
-    r"|leine\b|\btau\b|trosse|kabel|\bcabo\b|cuerda|estacha|tether|hawser|\bwarp\b|nilspin|jetstr"
-    r"|kevlar|aramid|twaron|technora|vectran|nylon|polyamid|dacron|polyester|polyprop|polysteel|danline"
-    r"|dyneema|spectra|uhmwpe|\bhmpe|amsteel|plasma|tenex|samson|colmega|dynex|steelite|phillystran"
-    r"|braid|strand|\b\d{1,2}x\d{1,2}\b(?!.*(?:\bgla|\bball|verre|vidrio|\bin\b|[\"\u2033]))|\bmanila\b|sisal|hemp\b|umbilical|\bcoax",
-    re.I,
-)
 _LONG, _SLENDER = 3.0, 60.0
 """Metres, and diameters, of which a piece is longer where it is a line, whatever it is called."""
 
@@ -280,29 +268,13 @@ _NO_IDS = {"null", "true", "false", "yes", "no", "on", "off", "y", "n"}  # other
 _SIGNS = {'"': "in ", "″": "in ", "↑": " up ", "↓": " down ", "+": " ", "&": " and ", "µ": "u"}
 
 
-def is_release(name: str) -> bool:
-    """Return whether a piece is called a release."""
-    return bool(_RELEASE.search(name))
+def is_called(name: str, *what: str) -> bool:
+    """Return whether a name is that of a release, chain, connector, anchor, line or rigid part.
 
-
-def is_chain(name: str) -> bool:
-    """Return whether a piece is called a chain."""
-    return bool(_CHAIN.search(name))
-
-
-def is_connector(name: str) -> bool:
-    """Return whether a piece is called a shackle, swivel, link or the like."""
-    return bool(_CONNECTOR.search(name))
-
-
-def is_anchor(name: str) -> bool:
-    """Return whether a piece is called an anchor or a dead weight."""
-    return bool(_ANCHOR.search(name))
-
-
-def is_line(name: str) -> bool:
-    """Return whether a piece is called a wire, a rope or a chain."""
-    return bool(_LINE.search(name)) or is_chain(name)
+    Connectors are shackles, swivels and links; lines are wires, ropes and chains; floats,
+    instruments and fittings, or their kinds and families, are rigid.
+    """
+    return any(re.search(_NAMES[each], name, re.I) for each in what)
 
 
 def is_long(name: str, length: float, across: float) -> bool:
@@ -312,15 +284,10 @@ def is_long(name: str, length: float, across: float) -> bool:
     ----------
     length, across : of the piece [m]; 0 where it is not known how wide it is
     """
-    if is_release(name) or is_connector(name):
+    if is_called(name, "release", "connector"):
         return False
     slender = length >= _LONG and across > 0.0 and length >= _SLENDER * across
     return slender or length >= _LONGEST_PIECE
-
-
-def is_rigid(kind: str) -> bool:
-    """Return whether a kind or family of pieces is one of floats, instruments or fittings."""
-    return bool(_RIGID.search(kind))
 
 
 def role_of(name: str, buoyancy: float, *, fastener: bool = False) -> str:
@@ -332,9 +299,9 @@ def role_of(name: str, buoyancy: float, *, fastener: bool = False) -> str:
     buoyancy : net force in water, positive up [N]
     fastener : whether its program marks it so, which may mark instruments and floats too
     """
-    if is_release(name):
+    if is_called(name, "release"):
         return "release"
-    if is_connector(name) and buoyancy <= 0.0:
+    if is_called(name, "connector") and buoyancy <= 0.0:
         return "connector"
     if buoyancy > 0.0:
         return "float"

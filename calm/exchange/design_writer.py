@@ -5,24 +5,25 @@ Anchors have the weights that hold its line.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import groupby
 from pathlib import Path
 from textwrap import wrap
 
 from calm.case import Tow
 from calm.case.net import Net, load
 from calm.case.result import AnchorLoad, EndLoad
-from calm.errors import CalmError
+from calm.errors import CalmError, one_line
 from calm.exchange.design import (
     Design,
     FigureOrWord,
+    ImportedClamp,
     ImportedComponent,
     ImportedPiece,
     ImportedWater,
     Remark,
     ids_of,
-    one_line,
 )
 from calm.files import Catalogue
 from calm.files.components import FLEXIBLE_KINDS
@@ -87,6 +88,7 @@ def mooring_text(
     page.add(f"name: {quoted(design.name)}")
     if design.description:
         page.add(f"description: {quoted(design.description)}")
+    page.lines += [f"{key}: {value}" for key, value in design.heading.items()]
     page.add()
     if design.tow is not None:
         height = f", height: {_number(design.tow.height)} m" if design.tow.height else ""
@@ -114,7 +116,12 @@ def mooring_text(
         ends = (("top", leg.top), ("bottom", leg.bottom))
         page.lines += [f"    {name}: {end}" for name, end in ends if end]
     page.add()
-    _write_solver(page, design)
+    if design.solver:
+        page.add("solver:")
+        for key, (value, comment) in design.solver.items():
+            shown = _number(value) if isinstance(value, float) else value
+            page.add(f"  {key}: {shown}", comment=comment)
+        page.add()
     defined = {ids[id(each)]: each for each in design.components() if not each.entry}
     if defined:
         page.add("components:")
@@ -139,23 +146,17 @@ def _write_water(page: _Page, water: ImportedWater) -> None:
         _keyed(page, "depth", f"{_number(water.depth)} m", water)
     if isinstance(water.density, tuple):
         page.add("  density:")
-        page.add("    columns: [depth m, density kg/m^3]")
-        page.add("    rows:")
-        for depth, density in water.density:
-            page.add(f"      - [{_number(depth)}, {_number(density)}]")
+        _write_rows(page, "depth m, density kg/m^3", water.density)
     elif water.density is not None:
         _keyed(page, "density", f"{_number(water.density)} kg/m^3", water)
     if water.gravity is not None:
         _keyed(page, "gravity", f"{_number(water.gravity)} m/s^2", water)
     if water.current:
-        up = any(row[3] for row in water.current)
-        guess = water.guesses.get("current", "")
-        page.add("  current:", guess, "environment.current")
-        page.add("    columns: [depth m, u m/s, v m/s" + (", w m/s]" if up else "]"))
-        page.add("    rows:")
-        for row in water.current:
-            values = row if up else row[:3]
-            page.add(f"      - [{', '.join(_number(value) for value in values)}]")
+        page.add("  current:", water.guesses.get("current", ""), "environment.current")
+        if any(row[3] for row in water.current):
+            _write_rows(page, "depth m, u m/s, v m/s, w m/s", water.current)
+        else:
+            _write_rows(page, "depth m, u m/s, v m/s", [row[:3] for row in water.current])
     elif "current" in water.guesses:
         _keyed(page, "current", "{speed: 0 m/s, toward: 0 deg}", water)
     if water.wind is not None:
@@ -164,31 +165,25 @@ def _write_water(page: _Page, water: ImportedWater) -> None:
     page.add()
 
 
+def _write_rows(page: _Page, columns: str, rows: Iterable[Iterable[float]]) -> None:
+    page.lines += [f"    columns: [{columns}]", "    rows:"]
+    page.lines += [f"      - [{', '.join(map(_number, row))}]" for row in rows]
+
+
 def _keyed(page: _Page, key: str, value: str, water: ImportedWater) -> None:
     page.add(f"  {key}: {value}", water.guesses.get(key, ""), f"environment.{key}")
 
 
 def _counted(items: list[ImportedPiece]) -> list[ImportedPiece]:
     """Equal items that follow each other as one with a count."""
-    counted: list[ImportedPiece] = []
-    for item in items:
-        last = counted[-1] if counted else None
-        if last is not None and _bare(last) and _bare(item) and _same(last, item):
-            last = counted[-1] = ImportedPiece(
-                last.component, last.length, count=last.count + item.count
-            )
-        else:
-            counted.append(item)
-    return counted
 
+    def what(item: ImportedPiece) -> object:
+        if item.clamps or item.guess or item.label or item.serial:
+            return id(item)
+        return item.component.identity(), item.length, item.component.entry
 
-def _bare(item: ImportedPiece) -> bool:
-    return not (item.clamps or item.guess or item.label)
-
-
-def _same(one: ImportedPiece, other: ImportedPiece) -> bool:
-    alike = one.component.identity() == other.component.identity()
-    return alike and one.length == other.length and one.component.entry == other.component.entry
+    alike = ([*group] for _, group in groupby(items, what))
+    return [replace(group[0], count=sum(each.count for each in group)) for group in alike]
 
 
 def _write_item(page: _Page, item: ImportedPiece, ids: dict[int, str]) -> None:
@@ -198,30 +193,23 @@ def _write_item(page: _Page, item: ImportedPiece, ids: dict[int, str]) -> None:
         pairs.append(f"length: {_number(item.length)} m")
     if item.count > 1:
         pairs.append(f"count: {item.count}")
-    if item.label:
-        pairs.append(f"label: {quoted(item.label)}")
+    pairs += _called(item)
     where = f"line.{item.label or use}"
     if not item.clamps:
         page.add(f"  - {{{', '.join(pairs)}}}", item.guess, where)
         return
     page.add(f"  - {pairs[0]}", item.guess, where)
-    for pair in pairs[1:]:
-        page.add(f"    {pair}")
-    page.add("    clamps:")
+    page.lines += [*(f"    {pair}" for pair in pairs[1:]), "    clamps:"]
     for clamp in item.clamps:
         clamped = ids[id(clamp.component)]
-        line = f"      - {{use: {clamped}, at: {_number(clamp.at)} m}}"
-        page.add(line, clamp.guess, f"{where}.clamps.{clamped}")
+        pairs = [f"use: {clamped}", f"at: {_number(clamp.at)} m", *_called(clamp)]
+        where_clamped = f"{where}.clamps.{clamp.label or clamped}"
+        page.add(f"      - {{{', '.join(pairs)}}}", clamp.guess, where_clamped)
 
 
-def _write_solver(page: _Page, design: Design) -> None:
-    if not design.solver:
-        return
-    page.add("solver:")
-    for key, (value, comment) in design.solver.items():
-        shown = _number(value) if isinstance(value, float) else value
-        page.add(f"  {key}: {shown}", comment=comment)
-    page.add()
+def _called(item: ImportedPiece | ImportedClamp) -> list[str]:
+    named = (("label", item.label), ("serial", item.serial))
+    return [f"{key}: {quoted(text)}" for key, text in named if text]
 
 
 def _write_component(
@@ -319,10 +307,10 @@ def _pulls(
     design: Design, anchors: list[ImportedComponent], environment: list[str] | None, output: Path
 ) -> list[tuple[ImportedComponent, float | None, float]]:
     """Return each anchor, the upward pull of the line on it and the weight that holds it [N]."""
-    figures = [anchor.figures for anchor in anchors]
+    before = [anchor.figures for anchor in anchors]
     for anchor in anchors:
-        anchor.figures = {**anchor.figures, "weight": _HOLDS}
-        anchor.figures.pop("mass", None)
+        anchor.figures = {k: one for k, one in anchor.figures.items() if k != "mass"}
+        anchor.figures["weight"] = _HOLDS
     try:
         read = load(output, text=mooring_text(design, "", environment)[0])
         assert not isinstance(read, Tow)
@@ -332,9 +320,7 @@ def _pulls(
     except CalmError:
         return [(anchor, None, 0.0) for anchor in anchors]
     finally:
-        for anchor, before in zip(anchors, figures, strict=True):
-            anchor.figures = before
-    return [
-        (anchor, load.vertical, load.required_weight or 0.0)
-        for anchor, load in zip(anchors, loads, strict=True)
-    ]
+        for anchor, figures in zip(anchors, before, strict=True):
+            anchor.figures = figures
+    pairs = zip(anchors, loads, strict=True)
+    return [(anchor, load.vertical, load.required_weight or 0.0) for anchor, load in pairs]

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from math import cos, radians, sin
 from pathlib import Path
 
 import numpy as np
@@ -15,11 +14,12 @@ from calm.case.net import Net, load
 from calm.errors import NoEquilibrium, UsageError, unknown
 from calm.exchange.cable_writer import cbl_file
 from calm.exchange.exported_parts import ExportedLine, ExportedPart, ExportedTow, Levels
-from calm.exchange.mdd_writer import mdd_file
+from calm.exchange.mdd_file import mdd_file
 from calm.exchange.moordyn_writer import CURRENTS, current_profile, moordyn_file
-from calm.physics.line import Line, Water
+from calm.physics.line import Water
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.records.delimited import table_csv
+from calm.records.profile_tables import components
 
 _HEADER = (
     "name", "label", "kind", "role", "clamped at[m]", "length[m]", "diameter[m]", "whole mass[kg]",
@@ -90,7 +90,10 @@ def _exported_line(mooring: Mooring | Tow, solve: Solve) -> ExportedLine:
     if file.environment.fluid == "air":
         raise UsageError(f"{file.path} is towed in air; the other programs know only water")
     secant = _secants(mooring, solve)
-    depths = _depths(line, water, isinstance(mooring, Tow))
+    depths = np.cumsum(line.length) - line.length / 2.0  # of the middles, hanging down
+    if not isinstance(mooring, Tow):  # standing upright
+        depths += float(water.depth) - line.anchor_height - float(line.length.sum())
+    depths = np.maximum(depths, 0.0)
     parts = []
     for i in range(len(line.length)):
         piece = file.pieces[i]
@@ -124,10 +127,10 @@ def _exported_line(mooring: Mooring | Tow, solve: Solve) -> ExportedLine:
     wind, anchor, tow = file.environment.wind, None, None
     if isinstance(mooring, Tow):
         keys = mooring.keys
-        tow = ExportedTow(*_east_and_north(keys.speed, keys.toward), keys.height)
+        tow = ExportedTow(*components(keys.speed, keys.toward), keys.height)
     else:
         anchor = file.anchor, mooring.anchor_weight
-    riding, windage = _riding(mooring, solve)
+    afloat, riding, windage = _at_the_surface(mooring, solve)
     return ExportedLine(
         name=file.name,
         parts=tuple(parts),
@@ -135,9 +138,9 @@ def _exported_line(mooring: Mooring | Tow, solve: Solve) -> ExportedLine:
         depth=float(water.depth),
         levels=_levels(water, 2.0 * float(line.length.sum()) if tow else float(water.depth)),
         gravity=float(water.gravity),
-        wind=(0.0, 0.0) if wind is None else _east_and_north(wind.speed, wind.toward),
+        wind=(0.0, 0.0) if wind is None else components(wind.speed, wind.toward),
         tow=tow,
-        afloat=_reaches(mooring, solve),
+        afloat=afloat,
         has_draft=line.floating is not None and line.floating.hull is not None,
         riding=riding,
         windage=windage,
@@ -146,42 +149,30 @@ def _exported_line(mooring: Mooring | Tow, solve: Solve) -> ExportedLine:
     )
 
 
-def _east_and_north(speed: float, toward: float) -> tuple[float, float]:
-    """Return the parts of a speed [m/s] towards a bearing [degrees]."""
-    return speed * sin(radians(toward)), speed * cos(radians(toward))
-
-
-def _reaches(mooring: Mooring | Tow, solve: Solve) -> bool:
-    """Return whether a mooring floats at the surface; by its length where it has no equilibrium."""
-    if isinstance(mooring, Tow):
-        return False
-    try:
-        return solve().type == "surface"
-    except NoEquilibrium:
-        whole = mooring.line.anchor_height + float(mooring.line.length.sum())
-        return whole >= float(mooring.water.depth)
-
-
-def _riding(
+def _at_the_surface(
     mooring: Mooring | Tow, solve: Solve
-) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return how the float stands at the surface: `riding` and `windage` of `ExportedLine`."""
-    floating = mooring.line.floating
-    if not _reaches(mooring, solve):
-        return (1.0, 1.0), (0.0, 1.0)
+) -> tuple[bool, tuple[float, float], tuple[float, float]]:
+    """Return `afloat`, `riding` and `windage` of `ExportedLine`; by length without equilibrium."""
+    below, line = (False, (1.0, 1.0), (0.0, 1.0)), mooring.line
+    if isinstance(mooring, Tow):
+        return below
     try:
         result = solve()
         assert isinstance(result, Result)
-        used = result.top.used_buoyancy
+        afloat, used = result.type == "surface", result.top.used_buoyancy
     except NoEquilibrium:
-        used = 1.0
+        whole = line.anchor_height + float(line.length.sum())
+        afloat, used = whole >= float(mooring.water.depth), 1.0
+    if not afloat:
+        return below
+    floating = line.floating
     if floating is None:
-        return (used, 1.0), (0.0, 1.0)
+        return True, (used, 1.0), (0.0, 1.0)
     seen = floating.riding(used).drag
     area = floating.wind_area
     if area is None:
         area = 0.0 if floating.hull is None else floating.hull.area * (1.0 - seen)
-    return (used, seen), (area, floating.wind_cd)
+    return True, (used, seen), (area, floating.wind_cd)
 
 
 def _secants(mooring: Mooring | Tow, solve: Solve) -> dict[int, float]:
@@ -197,14 +188,6 @@ def _secants(mooring: Mooring | Tow, solve: Solve) -> dict[int, float]:
             tension = (rows[i].tension_top + rows[i].tension_bottom) / 2.0
             secants[i] = tension / strain if strain > 0.0 else 0.0
     return secants
-
-
-def _depths(line: Line, water: Water, towed: bool) -> list[float]:
-    """Depths of the middle of every piece, upright above the anchor or below the ship [m]."""
-    below = np.cumsum(line.length) - line.length / 2.0
-    if not towed:
-        below += float(water.depth) - line.anchor_height - float(line.length.sum())
-    return [max(float(depth), 0.0) for depth in below]
 
 
 def _levels(water: Water, deepest: float) -> Levels:

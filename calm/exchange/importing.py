@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -15,7 +15,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from calm.assemble.line_arrays import drag_of
-from calm.errors import InputError, Problem, UsageError
+from calm.errors import InputError, UsageError, one_line, refused
 from calm.exchange.cable_reader import is_cbl, read_cbl
 from calm.exchange.design import (
     MOST_PIECES,
@@ -23,16 +23,15 @@ from calm.exchange.design import (
     Design,
     ImportedComponent,
     Remark,
-    one_line,
-    refused,
 )
 from calm.exchange.design_writer import figure_text, mooring_text, secure_anchors
 from calm.exchange.list_cells import is_table
 from calm.exchange.list_reader import read_list
 from calm.exchange.mat_file import is_mat
 from calm.exchange.mdd_elements import is_moords, read_moords
-from calm.exchange.mdd_reader import read_mdd
+from calm.exchange.mdd_file import read_mdd
 from calm.exchange.moordyn_reader import is_moordyn, read_moordyn
+from calm.exchange.oceanarray_reader import is_oceanarray, read_oceanarray
 from calm.files import Anchor, Catalogue, Rigid, read_mooring
 from calm.files.components import FLEXIBLE_KINDS, KINDS, Component
 from calm.files.editing.writing import WritingStyle
@@ -48,7 +47,7 @@ class ImportOptions:
 
     Attributes
     ----------
-    defines : macros of WHOI Cable
+    defines : macros of WHOI Cable; ids of the catalogue by the names of oceanarray
     columns : the headings of a table, by what they hold
     elements : a library with the figures that a table lacks
     allow_include : whether a file may include another from outside its folder
@@ -82,6 +81,10 @@ FORMATS = (
     ),
     ImportFormat(
         "moordyn", "MoorDyn or MoorPy", is_moordyn, lambda path, options: read_moordyn(path)
+    ),
+    ImportFormat(
+        "oceanarray", "oceanarray", is_oceanarray,
+        lambda path, options: read_oceanarray(path, options.defines, options.elements),
     ),
     ImportFormat("moords", "moords", is_moords, lambda path, options: read_moords(path)),
     ImportFormat(
@@ -141,7 +144,7 @@ def import_file(
     """
     options = options or ImportOptions()
     chosen = _format_of(path, format, listed=options.elements is not None)
-    if options.elements is not None and chosen.name != "table":
+    if options.elements is not None and chosen.name not in ("table", "oceanarray"):
         raise refused(path, f"is of {chosen.program}; --elements is for lists")
     design = chosen.read(path, options)
     levels = 0 if design.water is None else len(design.water.current)
@@ -195,17 +198,15 @@ def _check(path: Path, output: Path, text: str) -> None:
     try:
         read_mooring(output, text=text, net=True)
     except InputError as error:
-        raise InputError(
-            [Problem(str(path), 0, 0, _blamed(each, text)) for each in error.problems]
+        lines = ["", *text.splitlines()]
+        blamed = [lines[each.line] if each.line < len(lines) else "" for each in error.problems]
+        raise refused(
+            path,
+            *(
+                f"{each.message} (in `{' '.join(line.split())[:80]}`)" if line else each.message
+                for each, line in zip(error.problems, blamed, strict=True)
+            ),
         ) from None
-
-
-def _blamed(problem: Problem, text: str) -> str:
-    """Return a mistake of the mooring file, with the line it is in."""
-    lines: Sequence[str] = text.splitlines()
-    if not 0 < problem.line <= len(lines):
-        return problem.message
-    return f"{problem.message} (in `{' '.join(lines[problem.line - 1].split())[:80]}`)"
 
 
 def record_file(record: CurrentRecord, source: str) -> bytes:
@@ -270,9 +271,8 @@ def match_catalogue_entries(design: Design) -> tuple[CatalogueMatch, ...]:
         if model is None or component.entry:
             continue
         for id, entry in entries.items():
-            sizeless = "drag_area" in component.guesses
-            if _alike(component.name, f"{id} {entry.name or ''}") and (
-                _weighs_alike(model, entry) if sizeless else _agree(model, entry)
+            if _alike(component.name, f"{id} {entry.name or ''}") and _agree(
+                model, entry, sizeless="drag_area" in component.guesses
             ):
                 component.entry = id
                 matched[id + component.name] = CatalogueMatch(component.name, id)
@@ -300,26 +300,21 @@ def _alike(name: str, other: str) -> bool:
     return len(shared) >= 2 and len(shared) >= _COMMON_WORDS * len(words)
 
 
-def _weighs_alike(one: Component, other: Component) -> bool:
-    """Return whether a component without a size in the file has the net force of an entry."""
-    if not isinstance(other, Rigid):
+def _agree(one: Component, other: Component, *, sizeless: bool) -> bool:
+    """Return whether two agree in figures; one that is `sizeless` in the file, in net force."""
+    pairs: list[tuple[float | None, float | None]] = [(one.net_buoyancy, other.net_buoyancy)]
+    if sizeless:
+        if not isinstance(other, Rigid):
+            return False
+    elif one.kind != other.kind or isinstance(one, Anchor):
         return False
-    a, b = one.net_buoyancy, other.net_buoyancy
-    return abs(a - b) <= _TOLERANCE * max(abs(a), abs(b))
-
-
-def _agree(one: Component, other: Component) -> bool:
-    if one.kind != other.kind or isinstance(one, Anchor) or isinstance(other, Anchor):
-        return False
-    pairs = [(one.net_buoyancy, other.net_buoyancy)]
-    for key in ("diameter", "length", "stiffness"):
-        values = getattr(one, key, None), getattr(other, key, None)
-        if values[0] is not None and values[1] is not None:
-            pairs.append((values[0], values[1]))
-    # at 1 m/s across it [N], of a cable or chain per metre
-    drags = [drag_of(each)[0] for each in (one, other)]
-    pairs.append((drags[0], drags[1]))
-    return all(abs(a - b) <= _TOLERANCE * max(abs(a), abs(b)) for a, b in pairs)
+    else:
+        sizes = ("diameter", "length", "stiffness")
+        pairs += [(getattr(one, key, None), getattr(other, key, None)) for key in sizes]
+        # at 1 m/s across it [N], of a cable or chain per metre
+        pairs.append((drag_of(one)[0], drag_of(other)[0]))
+    given = [(a, b) for a, b in pairs if a is not None and b is not None]
+    return all(abs(a - b) <= _TOLERANCE * max(abs(a), abs(b)) for a, b in given)
 
 
 def environment_lines(path: Path, output: Path) -> list[str]:

@@ -8,8 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from calm.errors import unknown
-from calm.exchange.design import refused
+from calm.errors import refused, unknown
 from calm.exchange.list_cells import SheetRows, decimal_sign, number, unit_called, unit_of_heading
 from calm.units import KILOGRAM_FORCE
 
@@ -142,7 +141,7 @@ def headings_of(rows: SheetRows, given: Mapping[str, str]) -> ListHeadings | Non
 
     Those that are given, by what they hold, come before those that are recognised.
     """
-    best: tuple[int, int, ListHeadings] | None = None
+    best, highest = None, (0, 0)
     for i in range(min(len(rows), _SEARCHED)):
         cells = _with_units(rows, i)
         found = _columns(cells, given, rows[i + 1 : i + 31])
@@ -153,14 +152,12 @@ def headings_of(rows: SheetRows, given: Mapping[str, str]) -> ListHeadings | Non
         if "name" not in found or not _MEASURES & found.keys():
             continue
         merit = len(found), sum(column.known for column in found.values())
-        if best is None or merit > best[:2]:
+        if merit > highest:
             every = [each for column in found.values() for each in (column, column.twin) if each]
             taken = {column.index for column in every}
-            others = tuple(
-                heading for index, heading in enumerate(rows[i]) if heading and index not in taken
-            )
-            best = *merit, ListHeadings(i, found, others)
-    return best[2] if best else None
+            others = [each for index, each in enumerate(rows[i]) if each and index not in taken]
+            best, highest = ListHeadings(i, found, tuple(others)), merit
+    return best
 
 
 def check_given(sheets: Mapping[str, SheetRows], given: Mapping[str, str], path: Path) -> None:
@@ -177,11 +174,8 @@ def check_given(sheets: Mapping[str, SheetRows], given: Mapping[str, str], path:
     InputError
         It does not.
     """
-    for what in given:
-        if what not in COLUMNS:
-            raise refused(
-                path, unknown(f"--columns: `{what}` is nothing of a piece", what, COLUMNS)
-            )
+    for what in (each for each in given if each not in COLUMNS):
+        raise refused(path, unknown(f"--columns: `{what}` is nothing of a piece", what, COLUMNS))
     cells = {_plain(cell) for rows in sheets.values() for row in rows[:_SEARCHED] for cell in row}
     for what, heading in given.items():
         if not any(cell.startswith(_plain(heading)) for cell in cells):
@@ -201,8 +195,9 @@ def _columns(row: list[str], given: Mapping[str, str], below: SheetRows) -> dict
             i for i, cell in enumerate(plain) if wanted and cell.startswith(wanted)
         ]
         if matches:
-            taken.add(matches[0])
-            found[what] = _column(what, matches[0], row[matches[0]])
+            best = matches[0]
+            taken.add(best)
+            found[what] = _column(what, best, row[best])
     for what, pattern in _PATTERNS:
         for i, cell in enumerate(plain):
             along = what != "tangential_area" and _ALONG.search(cell)
@@ -211,14 +206,13 @@ def _columns(row: list[str], given: Mapping[str, str], below: SheetRows) -> dict
                 continue
             if re.search(pattern, cell) and (what != "count" or not _worded(below, i)):
                 found[what] = _with_twin(_column(what, i, row[i]), what, row, taken)
-    for pattern in _NAMES:
-        for i, cell in enumerate(plain):
-            if "name" in found or i in taken or _NUMBERED.search(cell):
-                continue
-            if re.search(pattern, cell) and _worded(below, i):
-                found["name"] = ListColumn(i, row[i])
-    if "name" not in found and "kind" in found and _worded(below, found["kind"].index):
-        found["name"] = found["kind"]
+    bare = [i for i, cell in enumerate(plain) if i not in taken and not _NUMBERED.search(cell)]
+    called = (i for pattern in _NAMES for i in bare if re.search(pattern, plain[i]))
+    named = next((i for i in called if _worded(below, i)), None)
+    if named is not None:
+        found.setdefault("name", ListColumn(named, row[named]))
+    elif "kind" in found and _worded(below, found["kind"].index):
+        found.setdefault("name", found["kind"])
     _resolve(found)
     return found
 

@@ -7,28 +7,28 @@ or workbook whose sheets have headings.
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterable, Mapping
+from itertools import accumulate
 from pathlib import Path
 
 import numpy as np
 
-from calm.errors import nearest
+from calm.errors import nearest, refused
 from calm.exchange import list_rows
 from calm.exchange.design import (
     MOST_PIECES,
     Design,
     ImportedClamp,
-    ImportedComponent,
     ImportedPiece,
     ImportedWater,
     Remark,
-    is_line,
-    refused,
+    is_called,
 )
 from calm.exchange.list_cells import SheetRows, number, read_sheets
 from calm.exchange.list_headings import ListHeadings, check_given, headings_of
-from calm.exchange.mat_file import MatValue, is_mat, names, numbers, read_variables
-from calm.exchange.mdd_reader import GROUPS, read_water
+from calm.exchange.mat_file import MatVariables, is_mat, names, read_variables
+from calm.exchange.mdd_file import GROUPS, read_water
 from calm.files.components import FLEXIBLE_KINDS
 from calm.units import KILOGRAM_FORCE
 from calm.whole_file import read_content
@@ -62,10 +62,11 @@ def read_list(path: Path, columns: Mapping[str, str], elements: Path | None = No
     design = Design("a list", path.stem, [], None, notes=[_NOTE])
     design.water = _water(sheets, design, path)
     problems: list[str] = []
-    chosen = _sheet(sheets, columns)
-    headings, said = None, list[Remark]()
-    if chosen is not None:
-        cells, headings = chosen
+    ordered = sorted(sheets.values(), key=len, reverse=True)
+    headed = ((cells, headings_of(cells, columns)) for cells in ordered)
+    cells, headings = next((each for each in headed if each[1] is not None), ([], None))
+    said = list[Remark]()
+    if headings is not None:
         problems += headings.problems
         said = _unit_remarks(headings)
         weighed = {"buoyancy", "weight"} & headings.columns.keys()
@@ -84,9 +85,9 @@ def read_list(path: Path, columns: Mapping[str, str], elements: Path | None = No
     if sum(row.count for row in rows) > MOST_PIECES:
         raise refused(path, f"has more than {MOST_PIECES} pieces")
     rows = _from_the_top(rows, path, design)
-    design.items = _items(rows, problems)
+    design.items = _items(rows)
     design.guessed += said
-    if problems:
+    if problems := [*problems, *(each for row in rows for each in row.problems)]:
         raise refused(path, *problems)
     design.in_kilograms = headings is None or any(
         headings.columns[key].by_mass for key in ("buoyancy", "weight") if key in headings.columns
@@ -102,18 +103,6 @@ def _unit_remarks(headings: ListHeadings) -> list[Remark]:
         for what, column in headings.columns.items()
         if what in usual and not column.known
     ]
-
-
-def _sheet(
-    sheets: Mapping[str, SheetRows], columns: Mapping[str, str]
-) -> tuple[SheetRows, ListHeadings] | None:
-    """Return the longest sheet that has headings, and those."""
-    found = [
-        (rows, headings)
-        for rows in sorted(sheets.values(), key=len, reverse=True)
-        if (headings := headings_of(rows, columns)) is not None
-    ]
-    return found[0] if found else None
 
 
 def _names(
@@ -145,11 +134,9 @@ def _names(
 
 def _names_in(cells: SheetRows) -> list[list_rows.ListRow]:
     """Return the rows of a sheet that holds names alone: the words of the column that has most."""
-    counts: dict[int, int] = {}
-    for row in cells:
-        for index, cell in enumerate(row):
-            counts[index] = counts.get(index, 0) + bool(re.search(r"[^\W\d]{2}", cell))
-    best = max(counts, key=lambda index: counts[index], default=0)
+    words = (i for row in cells for i, cell in enumerate(row) if re.search(r"[^\W\d]{2}", cell))
+    counts = Counter(words)
+    best = max(range(max(map(len, cells), default=1)), key=counts.__getitem__)
     return [
         list_rows.ListRow(place, row[best])
         for place, row in enumerate(cells, 1)
@@ -163,11 +150,11 @@ def _water(sheets: Mapping[str, SheetRows], design: Design, path: Path) -> Impor
         headings = [cell.lower() for cell in rows[0]]
         if not {"z", "u"} <= set(headings):
             continue
-        columns = {
-            name: np.array([_figure(row, i, path) for row in rows[1:] if i < len(row)])
+        columns = MatVariables(
+            (name, np.array([_figure(row, i, path) for row in rows[1:] if i < len(row)]))
             for name in _WATER
             if name.lower() in headings and (i := headings.index(name.lower())) >= 0
-        }
+        )
         try:
             water, _ = read_water(columns, False, design.guessed)
         except ValueError as error:
@@ -212,21 +199,15 @@ def _from_the_top(
 
 
 def _turned(rows: list[list_rows.ListRow]) -> list[list_rows.ListRow]:
-    groups: list[list[list_rows.ListRow]] = []
-    for row in rows:
-        if "at" in row.figures and groups:
-            groups[-1].append(row)
-        else:
-            groups.append([row])
-    return [row for group in reversed(groups) for row in group]
+    pieces = accumulate(int("at" not in row.figures) for row in rows)
+    numbered = sorted(zip(pieces, rows, strict=True), key=lambda pair: -pair[0])
+    return [row for _, row in numbered]
 
 
-def _items(rows: list[list_rows.ListRow], problems: list[str]) -> list[ImportedPiece]:
+def _items(rows: list[list_rows.ListRow]) -> list[ImportedPiece]:
     items: list[ImportedPiece] = []
     for row in rows:
-        component: ImportedComponent = list_rows.component_of(
-            row, problems, anchor=row is rows[-1] and row.is_anchor
-        )
+        component = list_rows.component_of(row, anchor=row is rows[-1] and row.is_anchor)
         at = row.figures.get("at")
         if at is None:
             length = row.figures.get("length") if component.kind in FLEXIBLE_KINDS else None
@@ -324,10 +305,10 @@ def _of_matrices(path: Path) -> list[list_rows.ListRow]:
     return entries
 
 
-def _width(variables: Mapping[str, MatValue]) -> int:
+def _width(variables: MatVariables) -> int:
     """Bytes of a name: `format` has the columns of the name and of each figure."""
     try:
-        columns = numbers(variables.get("format"))
+        columns = variables.reals("format")
     except ValueError:
         return _NAME
     return int(columns[0, -1]) if columns.ndim == 2 and 0 < columns.size <= 100 else _NAME
@@ -381,4 +362,4 @@ def _is_line(row: list_rows.ListRow, title: str) -> bool:
     floats = row.figures.get("buoyancy", 0.0) > 0.0 and row.figures.get("diameter", 0.0) > 0.0
     if abs(row.figures.get("length", 1.0) - 1.0) > _A_METRE or (floats and "width" in row.figures):
         return False
-    return bool(row.metre) or row.is_line or is_line(title)
+    return bool(row.metre) or row.is_line or is_called(title, "line")

@@ -11,13 +11,8 @@ from calm.exchange.design import (
     FigureOrWord,
     ImportedComponent,
     Remark,
-    is_anchor,
-    is_chain,
-    is_connector,
-    is_line,
+    is_called,
     is_long,
-    is_release,
-    is_rigid,
     role_of,
     size_in,
 )
@@ -40,7 +35,6 @@ _FULL = 5.0  # times its diameter: a metre of line shows no larger area
 _METRES = re.compile(r"/\s*(\d+)")  # kg/100 m
 _SPREAD = ("buoyancy", "mass", "area", "drag_area", "tangential_area")  # along a line
 _USUAL = {"cable": 1.3, "chain": 2.75, "sphere": 0.5, "cylinder": 1.2}
-_COEFFICIENT = {"cable": "cn", "chain": "cn", "sphere": "cx", "cylinder": "cn"}
 _ROLES = ("float", "instrument", "release", "connector")
 _FITTING = 1.0  # m: a shorter link or shackle of a rope is none
 _ROUND = 1.5  # times its diameter: a float no longer is a sphere
@@ -52,7 +46,7 @@ class ListRow:
     """Hold a row: its name, its figures, what was guessed in it, and its count.
 
     `metre` names the figures of a line that are per metre; `line` says whether it is a cable or
-    chain, and `hint` where a library says that its figures might be.
+    chain, `hint` where a library says that its figures might be, and `problems` what is wrong.
     """
 
     place: int
@@ -66,31 +60,43 @@ class ListRow:
     line: bool | None = None
     hint: str = ""
     count: int = 1
+    problems: list[str] = field(default_factory=list)
 
     @property
     def where(self) -> str:
         """The name by which problems call it."""
         return f"row {self.place}, {self.name}"
 
+    def refuse(self, problem: str) -> None:
+        """Add what is wrong with it."""
+        self.problems.append(f"{self.where}: {problem}")
+
+    def figure(self, what: str) -> float:
+        """Return a figure; 0 where the list has none."""
+        return self.figures.get(what, 0.0)
+
     @property
     def is_anchor(self) -> bool:
         """Tell whether it is the anchor."""
-        return bool(_ANCHOR_KINDS.search(f"{self.kind} {self.role}")) or is_anchor(self.name)
+        said = _ANCHOR_KINDS.search(f"{self.kind} {self.role}")
+        return said is not None or is_called(self.name, "anchor")
 
     @property
     def sinks(self) -> bool:
         """Tell whether it is a line, an anchor, or what sinks by its name."""
-        return is_connector(self.name) or is_release(self.name) or self.is_line or self.is_anchor
+        named = is_called(self.name, "connector", "release")
+        return named or self.is_line or self.is_anchor
 
     @property
     def is_line(self) -> bool:
         """Tell whether it is a cable or a chain."""
         if self.line is not None:
             return self.line
-        if self.role in _ROLES or is_rigid(self.kind):
+        if self.role in _ROLES or is_called(self.kind, "rigid"):
             return False
-        fitting = is_connector(self.name) and self.figures.get("length", 0.0) < _FITTING
-        return self.role == "line" or (is_line(f"{self.kind} {self.name}") and not fitting)
+        if is_called(self.name, "connector") and self.figure("length") < _FITTING:
+            return self.role == "line"
+        return self.role == "line" or is_called(f"{self.kind} {self.name}", "line")
 
 
 def rows_of(
@@ -127,15 +133,13 @@ def rows_of(
         if TOTAL.match(name):
             dropped.append(Remark(f"row {place}", f"`{name}`, a sum"))
             continue
-        mistakes: list[str] = []
-        row = _row(each, place, name, known, decimal, mistakes)
+        row = _row(each, ListRow(place, name), known, decimal)
         if not (bare(name) or _ENOUGH & row.figures.keys() or row.is_anchor):
             dropped.append(Remark(f"row {place}", f"`{name}`, without length and weight"))
             continue
-        problems += mistakes
-        size = row.figures.get("diameter", 0.0) or row.figures.get("width", 0.0) or size_in(name)
-        fixed = row.is_line or row.is_anchor or row.role in _ROLES or is_rigid(row.kind)
-        if not fixed and is_long(name, row.figures.get("length", 0.0), size):
+        size = row.figure("diameter") or row.figure("width") or size_in(name)
+        fixed = row.is_line or row.is_anchor or row.role in _ROLES or is_called(row.kind, "rigid")
+        if not fixed and is_long(name, row.figure("length"), size):
             row.line = True
             guessed.append(Remark(row.where, "taken as a rope, since it is long and thin"))
         several = _COUNTED.match(name)
@@ -146,16 +150,11 @@ def rows_of(
     return rows
 
 
-def _row(
-    cells: list[str],
-    place: int,
-    name: str,
-    known: dict[str, ListColumn],
-    decimal: str,
-    mistakes: list[str],
-) -> ListRow:
-    words = {what: cell_of(cells, known.get(what)).removeprefix("'") for what in WORDS}
-    row = ListRow(place, name, words["label"], words["kind"], words["role"])
+def _row(cells: list[str], row: ListRow, known: dict[str, ListColumn], decimal: str) -> ListRow:
+    """Return a row with the words and figures of its cells."""
+    row.label, row.kind, row.role = (
+        cell_of(cells, known.get(what)).removeprefix("'") for what in ("label", "kind", "role")
+    )
     for what, column in known.items():
         if what in WORDS:
             continue
@@ -163,20 +162,20 @@ def _row(
         found = number(cell, decimal)
         if found.value is None:
             if found.wrong and what != "material":
-                mistakes.append(f"{row.where}: {column.heading}: {found.wrong}")
+                row.refuse(f"{column.heading}: {found.wrong}")
             continue
         try:
             unit = unit_called(found.rest, what)
         except ValueError as error:
-            mistakes.append(f"{row.where}: {column.heading}: `{cell}`: {error}")
+            row.refuse(f"{column.heading}: `{cell}`: {error}")
             continue
         figure = found.value * (unit or column).factor
         if not math.isfinite(figure):
-            mistakes.append(f"{row.where}: {column.heading} is {found.value:g}")
+            row.refuse(f"{column.heading} is {found.value:g}")
             continue
         widest = _WIDEST_LINE if row.is_line else _WIDEST
         if what in ("diameter", "width") and not (unit or column.known) and figure > widest:
-            mistakes.append(f"{row.where}: {column.heading} is {figure:g} m; which unit is it in?")
+            row.refuse(f"{column.heading} is {figure:g} m; which unit is it in?")
         if unit.per_metre if unit else column.per_metre:
             row.metre.add(what)
             several = _METRES.search(f"{column.heading} {found.rest}")
@@ -187,10 +186,10 @@ def _row(
         if found.tidied:
             row.guesses[what] = f"`{cell}` read as {found.value:g} {found.rest}".rstrip()
     count = row.figures.pop("count", 1.0)
-    if not 1.0 <= round(count) <= _MOST:
-        mistakes.append(f"{row.where}: {count:.12g} of them")
-    else:
-        row.count = round(count)
+    row.count = round(count)
+    if not 1 <= row.count <= _MOST:
+        row.refuse(f"{count:.12g} of them")
+        row.count = 1
     return row
 
 
@@ -226,14 +225,14 @@ def weights_as_buoyancy(rows: Iterable[ListRow], guessed: list[Remark]) -> None:
 
 def count_lines(rows: Iterable[ListRow], known: dict[str, ListColumn]) -> None:
     """Make figures of lines per metre, where the list gives them of the whole length."""
-    lines = [row for row in rows if row.is_line and row.figures.get("length", 0.0) > 0.0]
+    lines = [row for row in rows if row.is_line and row.figure("length") > 0.0]
     for what in _SPREAD:
         column = known.get(what) or (known.get("weight") if what == "buoyancy" else None)
         listed = [row for row in lines if what in row.figures and what not in row.metre]
         if column is None or not listed:
             continue
         per_metre = not column.whole and (
-            all(row.figures[what] <= _FULL * row.figures.get("diameter", 0.0) for row in listed)
+            all(row.figures[what] <= _FULL * row.figure("diameter") for row in listed)
             if "area" in what
             else _same_for_all(listed, what)
         )
@@ -260,64 +259,57 @@ def _same_for_all(lines: list[ListRow], what: str) -> bool:
     return False
 
 
-def component_of(row: ListRow, problems: list[str], *, anchor: bool) -> ImportedComponent:
-    """Return the definition of a row; what it lacks is added to `problems`.
-
-    Parameters
-    ----------
-    row : in SI
-    problems : of the list, to which those of the row are added
-    anchor : whether it is the anchor
-    """
+def component_of(row: ListRow, *, anchor: bool) -> ImportedComponent:
+    """Return the definition of a row in SI, which may be the anchor; its `problems` are added."""
     for what in ("length", "diameter", "width", "cd", "area", "drag_area", "mass", "stiffness"):
-        if row.figures.get(what, 0.0) < 0.0:
-            problems.append(f"{row.where}: its {what.replace('_', ' ')} is negative")
-    if anchor:
-        return _anchor(row)
-    return _line(row, problems) if row.is_line else _rigid(row, problems)
+        if row.figure(what) < 0.0:
+            row.refuse(f"its {what.replace('_', ' ')} is negative")
+    kind, kept = (_anchor if anchor else _line if row.is_line else _rigid)(row)
+    guesses = {key: text for key, text in row.guesses.items() if key in kept and text}
+    return ImportedComponent(row.name, kind, kept, guesses)
 
 
-def _anchor(row: ListRow) -> ImportedComponent:
-    figures, guesses = row.figures, dict(row.guesses)
+_Definition = tuple[str, dict[str, FigureOrWord]]
+"""The kind of a component, and its figures."""
+
+
+def _anchor(row: ListRow) -> _Definition:
     kept: dict[str, FigureOrWord] = {}
-    if figures.get("buoyancy"):
-        kept["weight"] = abs(figures["buoyancy"])
-    elif figures.get("mass"):
-        kept["mass"] = figures["mass"]
-        guesses["mass"] = "taken as steel: the list gives no weight in water"
-    kept["length"] = figures.get("length", 0.0)
-    return ImportedComponent(row.name, "anchor", kept, _of(guesses, kept))
+    if row.figure("buoyancy"):
+        kept["weight"] = abs(row.figure("buoyancy"))
+    elif row.figure("mass"):
+        kept["mass"] = row.figure("mass")
+        row.guesses["mass"] = "taken as steel: the list gives no weight in water"
+    return "anchor", kept | {"length": row.figure("length")}
 
 
-def _rigid(row: ListRow, problems: list[str]) -> ImportedComponent:
-    figures, guesses = row.figures, dict(row.guesses)
+def _rigid(row: ListRow) -> _Definition:
+    figures, guesses = row.figures, row.guesses
     if "buoyancy" not in figures:
-        problems.append(f"{row.where}: its weight in water or its buoyancy is missing{row.hint}")
-    lift, length = figures.get("buoyancy", 0.0), figures.get("length", 0.0)
+        row.refuse(f"its weight in water or its buoyancy is missing{row.hint}")
+    lift, length = row.figure("buoyancy"), row.figure("length")
     kind, across = _shape(row)
-    kept: dict[str, FigureOrWord]
-    if "drag_area" in figures and figures.get("tangential_area") is not None:
-        normal, along = figures["drag_area"], figures["tangential_area"]
-        kind, kept = "body", {"length": length}
-        kept |= {"kn": _HALF_DENSITY * normal, "kt": _HALF_DENSITY * along}
-        guesses["kn"] = guesses.get("drag_area", "")
+    kept: dict[str, FigureOrWord] = {"length": length}
+    if "drag_area" in figures and "tangential_area" in figures:
+        kind, guesses["kn"] = "body", guesses.get("drag_area", "")
+        kept["kn"] = _HALF_DENSITY * figures["drag_area"]
+        kept["kt"] = _HALF_DENSITY * figures["tangential_area"]
     elif "drag_area" in figures or "area" in figures:
         of = "drag_area" if "drag_area" in figures else "area"
         coefficient = 1.0 if of == "drag_area" else figures.get("cd", 1.0)
-        kind, kept = "body", {"length": length, "drag_area": figures[of], "cd": coefficient}
-        guesses["drag_area"] = guesses.get(of, "")
+        kind, guesses["drag_area"] = "body", guesses.get(of, "")
+        kept |= {"drag_area": figures[of], "cd": coefficient}
         if of == "area" and "cd" not in figures:
             guesses["cd"] = "the list gives an area and no coefficient"
     elif kind == "body":
-        kept = {"length": length, "drag_area": 0.0, "cd": 1.0}
+        kept |= {"drag_area": 0.0, "cd": 1.0}
         guesses["drag_area"] = "the list gives no size: it has no drag"
     else:
-        kept = {"diameter": across, "length": length or across}
-        kept |= _coefficient(row, kind, guesses)
+        kept = {"diameter": across, "length": length or across, **_coefficient(row, kind)}
     kept["buoyancy"] = lift
-    _keep(row, kept, lift, ("breaking_load",))
+    kept |= _further(row, lift, "breaking_load")
     kept["role"] = row.role if row.role in _ROLES else role_of(row.name, lift)
-    return ImportedComponent(row.name, kind, kept, _of(guesses, kept))
+    return kind, kept
 
 
 def _shape(row: ListRow) -> tuple[str, float]:
@@ -326,10 +318,8 @@ def _shape(row: ListRow) -> tuple[str, float]:
     Where a list has widths and diameters, a diameter is that of a sphere. Elsewhere a float that is
     hardly longer than wide is a sphere.
     """
-    figures = row.figures
-    width, diameter = figures.get("width", 0.0), figures.get("diameter", 0.0)
-    length, lift = figures.get("length", 0.0), figures.get("buoyancy", 0.0)
-    if "width" in figures and "diameter" in figures:
+    width, diameter, length, lift = map(row.figure, ("width", "diameter", "length", "buoyancy"))
+    if {"width", "diameter"} <= row.figures.keys():
         round_, across = diameter > 0.0, diameter or width
     else:
         across = diameter or width
@@ -339,62 +329,49 @@ def _shape(row: ListRow) -> tuple[str, float]:
     return "sphere" if round_ else "cylinder", across
 
 
-def _line(row: ListRow, problems: list[str]) -> ImportedComponent:
-    figures, guesses = row.figures, dict(row.guesses)
-    if figures.get("length", 0.0) <= 0.0:
-        problems.append(f"{row.where}: a line needs its length")
-    across = figures.get("diameter", 0.0) or figures.get("width", 0.0)
-    lift = figures.get("buoyancy", 0.0)
-    if "buoyancy" not in figures:
-        problems.append(f"{row.where}: its weight in water is missing{row.hint}")
-    kind = "chain" if lift <= 0.0 and is_chain(f"{row.name} {row.kind}") else "cable"
+def _line(row: ListRow) -> _Definition:
+    if row.figure("length") <= 0.0:
+        row.refuse("a line needs its length")
+    if "buoyancy" not in row.figures:
+        row.refuse(f"its weight in water is missing{row.hint}")
+    across, lift = row.figure("diameter") or row.figure("width"), row.figure("buoyancy")
+    kind = "chain" if lift <= 0.0 and is_called(f"{row.name} {row.kind}", "chain") else "cable"
     if across <= 0.0:
         across = size_in(row.name)
         if across <= 0.0:
-            problems.append(f"{row.where}: its diameter is missing")
+            row.refuse("its diameter is missing")
             across = 0.01
-        guesses["diameter"] = "from its name"
+        row.guesses["diameter"] = "from its name"
     kept: dict[str, FigureOrWord] = {"diameter": across}
-    if "drag_area" in figures:
-        along = figures.get("tangential_area", 0.0)
-        kept |= {"cn": figures["drag_area"] / across, "ct": along / (math.pi * across)}
-    elif "area" in figures:
-        coefficient = _coefficient(row, kind, guesses)["cn"]
-        kept["cn"] = float(coefficient) * figures["area"] / across
+    if "drag_area" in row.figures:
+        kept["cn"] = row.figure("drag_area") / across
+        kept["ct"] = row.figure("tangential_area") / (math.pi * across)
     else:
-        kept |= _coefficient(row, kind, guesses)
+        kept |= _coefficient(row, kind)
+        if "area" in row.figures:
+            kept["cn"] = float(kept["cn"]) * row.figure("area") / across
     if lift > 0.0:
         kept["buoyancy"] = lift
     else:
         kept["weight"] = 0.0 - lift
-        if "buoyancy" in guesses:
-            guesses["weight"] = guesses["buoyancy"]
-    _keep(row, kept, lift, ("stiffness", "breaking_load"))
-    material = figures.get("material", 0.0)
+        row.guesses["weight"] = row.guesses.get("buoyancy", row.guesses.get("weight", ""))
+    kept |= _further(row, lift, "stiffness", "breaking_load")
+    material = row.figure("material")
     if "stiffness" not in kept and material in range(1, len(MODULI) + 1):
         kept["stiffness"] = MODULI[round(material) - 1] * math.pi / 4.0 * across**2
-    return ImportedComponent(row.name, kind, kept, _of(guesses, kept))
+    return kind, kept
 
 
-def _coefficient(row: ListRow, kind: str, guesses: dict[str, str]) -> dict[str, FigureOrWord]:
+def _coefficient(row: ListRow, kind: str) -> dict[str, FigureOrWord]:
     """Return the drag coefficient of the list, or the usual one of the kind as a guess."""
-    key = _COEFFICIENT[kind]
-    guesses[key] = row.guesses.get("cd", "")
-    if "cd" not in row.figures:
-        guesses[key] = f"the usual one of a {kind}"
+    key, guess = "cx" if kind == "sphere" else "cn", f"the usual one of a {kind}"
+    row.guesses[key] = row.guesses.get("cd", "") if "cd" in row.figures else guess
     return {key: row.figures.get("cd", _USUAL[kind])}
 
 
-def _keep(row: ListRow, kept: dict[str, FigureOrWord], lift: float, names: tuple[str, ...]) -> None:
-    """Take over further figures; a mass lighter than the piece is in water is left out."""
-    mass = row.figures.get("mass", 0.0)
-    if mass > 0.0 and mass * KILOGRAM_FORCE >= max(-lift, 0.0):
-        kept["mass"] = mass
-    for name in names:
-        if row.figures.get(name, 0.0) > 0.0:
-            kept[name] = row.figures[name]
-
-
-def _of(guesses: dict[str, str], kept: dict[str, FigureOrWord]) -> dict[str, str]:
-    """Return the guesses for the figures that are kept."""
-    return {key: text for key, text in guesses.items() if key in kept and text}
+def _further(row: ListRow, lift: float, *names: str) -> dict[str, FigureOrWord]:
+    """Return further figures; a mass lighter than the piece is in water is left out."""
+    mass = row.figure("mass")
+    heavy = mass > 0.0 and mass * KILOGRAM_FORCE >= max(-lift, 0.0)
+    named = {name: row.figure(name) for name in names if row.figure(name) > 0.0}
+    return {"mass": mass, **named} if heavy else {**named}

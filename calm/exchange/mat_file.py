@@ -16,7 +16,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.exchange.design import refused
+from calm.errors import refused
 from calm.exchange.foreign_process import read_apart
 from calm.whole_file import read_content
 
@@ -39,7 +39,7 @@ _MOST = 20_000_000
 RealArray = NDArray[np.float64]
 
 
-def read_variables(path: Path, wanted: Collection[str]) -> dict[str, MatValue]:
+def read_variables(path: Path, wanted: Collection[str]) -> MatVariables:
     """Return the wanted variables that a file has.
 
     InputError: the file is no `.mat` file, or a damaged one.
@@ -50,7 +50,7 @@ def read_variables(path: Path, wanted: Collection[str]) -> dict[str, MatValue]:
     if content.startswith(_OCTAVE_BINARY):
         raise refused(path, "is in Octave's binary format; save it there with -v7, -hdf5 or -text")
     try:
-        return read_apart(_variables, content, list(wanted))
+        return MatVariables(read_apart(_variables, content, list(wanted)))
     except ValueError as error:
         raise refused(path, f"is not a MATLAB or Octave file, or a damaged one ({error})") from None
 
@@ -163,29 +163,24 @@ def _value(name: str, kind: str, header: dict[str, str], rows: list[str]) -> Mat
         return _texts(rows)
     if kind == "cell" or not kind:
         return None
+    bare = [row for row in rows if row.strip() and not row.lstrip().startswith("#")]
     try:
-        numbers = [float(word) for row in rows if not row.lstrip().startswith("#")
-                   for word in row.replace(",", " ").split()]  # fmt: skip
+        words = (word for row in bare for word in row.replace(",", " ").split())
+        numbers = np.array([float(word) for word in words])
     except ValueError:
         return None  # a structure, or complex numbers: none of those that matter here
     if kind.endswith("range") and len(numbers) == 3:
-        return _spread(name, *numbers)
+        return _spread(name, *numbers.tolist())
     if "scalar" in kind or kind == "bool":
-        return np.array(numbers[:1]).reshape(1, -1)
+        return numbers[:1].reshape(1, -1)
     if "ndims" in header:
-        dims, values = int(float(header["ndims"])), numbers
-        shape = [int(size) for size in values[:dims]]
-        return _shaped(name, np.array(values[dims:]), shape, order="F")
-    lines = [row for row in rows if row.strip() and not row.lstrip().startswith("#")]
-    stated = [_whole(header.get(key, "")) for key in ("rows", "columns")]
-    array = np.array(numbers)
-    if None not in stated:
-        shape = [size for size in stated if size is not None]
-        if shape[0] * shape[1] == array.size:
-            return array.reshape(shape)
-    if lines and array.size % len(lines) == 0:  # the header was edited: the lines count
-        return array.reshape(len(lines), -1)
-    return _shaped(name, array, [size or 0 for size in stated], order="C")
+        dims = int(float(header["ndims"]))
+        return _shaped(name, numbers[dims:], [int(size) for size in numbers[:dims]], order="F")
+    given = (header.get(key, "") for key in ("rows", "columns"))
+    stated = [int(text) if text.isdigit() else 0 for text in given]
+    if math.prod(stated) != numbers.size and bare and numbers.size % len(bare) == 0:
+        return numbers.reshape(len(bare), -1)  # the header was edited: the lines count
+    return _shaped(name, numbers, stated, order="C")
 
 
 def _spread(name: str, first: float, last: float, step: float) -> MatValue:
@@ -196,12 +191,7 @@ def _spread(name: str, first: float, last: float, step: float) -> MatValue:
     return first + step * np.arange(int(count))
 
 
-def _whole(text: str) -> int | None:
-    return int(text) if text.isdigit() else None
-
-
-def _shaped(name: str, array: MatValue, shape: list[int], *, order: str) -> MatValue:
-    assert isinstance(array, np.ndarray)
+def _shaped(name: str, array: RealArray, shape: list[int], *, order: str) -> MatValue:
     if int(np.prod(shape)) != array.size:
         size = "×".join(str(length) for length in shape)
         raise ValueError(f"`{name}` should be {size} but has {array.size} numbers")
@@ -285,18 +275,32 @@ def _text_of(value: object) -> str:
     return value.decode("ascii", "replace") if isinstance(value, bytes) else str(value)
 
 
-def numbers(value: MatValue | None) -> RealArray:
-    """Return a variable as numbers; an empty array where there is none.
+class MatVariables(dict[str, MatValue]):
+    """Hold variables of a file by their names."""
 
-    ValueError: it holds no real numbers.
-    """
-    if value is None:
-        return np.zeros((0, 0))
-    if isinstance(value, np.ndarray) and value.dtype.kind in "biuf":
-        return np.asarray(value, np.float64)
-    if isinstance(value, list) and not value:
-        return np.zeros((0, 0))
-    raise ValueError("holds no real numbers")
+    def reals(self, name: str) -> RealArray:
+        """Return a variable as numbers; an empty array where there is none.
+
+        ValueError: it holds no real numbers.
+        """
+        value = self.get(name)
+        if isinstance(value, np.ndarray) and value.dtype.kind in "biuf":
+            return np.asarray(value, np.float64)
+        if value is None or (isinstance(value, list) and not value):
+            return np.zeros((0, 0))
+        raise ValueError(f"`{name}` holds no real numbers")
+
+    def row(self, name: str) -> RealArray:
+        """Return a variable as numbers in a row; none where it holds something else."""
+        try:
+            return self.reals(name).ravel()
+        except ValueError:
+            return np.zeros(0)
+
+    def first(self, name: str) -> float:
+        """Return the first number of a variable; 0 where it has none."""
+        row = self.row(name)
+        return float(row[0]) if row.size else 0.0
 
 
 def _fits(name: str, shape: tuple[int, ...]) -> bool:
@@ -319,16 +323,15 @@ def names(value: MatValue | None) -> list[str]:
             return ["".join(row).strip() for row in value]
         return [str(row).strip() for row in value.ravel()]
     if value.dtype.kind == "O":
-        return [" ".join(names(_inner(each))) for each in value.ravel(order="F")]
+        inner = (
+            each if isinstance(each, (np.ndarray, str, list)) else str(each)
+            for each in value.ravel(order="F")
+        )  # fmt: skip
+        return [" ".join(names(each)) for each in inner]
     if value.dtype.kind not in "iuf":
         return []
-    rows = np.atleast_2d(value)
-    return ["".join(_sign(code) for code in row).strip() for row in rows]
-
-
-def _inner(value: object) -> MatValue:
-    return value if isinstance(value, (np.ndarray, str, list)) else str(value)
-
-
-def _sign(code: float) -> str:
-    return chr(int(code)) if np.isfinite(code) and 32 <= code < 0x110000 else ""
+    printed = (
+        [chr(int(code)) for code in row if np.isfinite(code) and 32 <= code < 0x110000]
+        for row in np.atleast_2d(value)
+    )
+    return ["".join(signs).strip() for signs in printed]

@@ -9,15 +9,20 @@ import csv
 import io
 import math
 import re
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from calm.errors import refused
 from calm.exchange import design
-from calm.exchange.design import MOST_PIECES, FigureOrWord, ImportedComponent, ImportedPiece
-from calm.exchange.mat_file import MatValue, RealArray, names, numbers
+from calm.exchange.design import (
+    MOST_PIECES,
+    FigureOrWord,
+    ImportedComponent,
+    ImportedPiece,
+)
+from calm.exchange.mat_file import MatVariables, RealArray, names
 from calm.files.definition import CATALOGUE_DENSITY
 from calm.units import KILOGRAM_FORCE
 from calm.whole_file import read_text
@@ -27,14 +32,17 @@ _FLAT = 1e-3  # m: height of a float that the file gives none
 _SOFT = 1e10  # Pa: the modulus of a rope is below, of a wire above
 _HARD = re.compile(r"\bwire|\bchain|\bsteel", re.I)
 _LARGEST = 1e9  # m, kg: of no piece
+_ROWS = ("B", "Cd", "ME", "Wt")
 MODULI = (1.38e11, 3.45e8, 8.0e8, 3.45e8, 6.9e8, 6.9e10, 7.6e10, 1.0e11)
 """Of the materials that the program numbers from 1: steel, nylon, Dacron, polypropylene,
 polyethylene, Kevlar, aluminium, Dyneema [Pa]."""
 
 
-def component_of(element: MddElement) -> ImportedComponent:
-    """Return the definition of an element that is not the anchor."""
-    return _flexible(element) if element.is_line else rigid(element)
+def piece_of(element: MddElement) -> ImportedPiece:
+    """Return the piece of an element that is not the anchor."""
+    if element.is_line:
+        return ImportedPiece(_flexible(element), element.length)
+    return ImportedPiece(rigid(element))
 
 
 def rigid(element: MddElement) -> ImportedComponent:
@@ -102,10 +110,9 @@ def _is_too_small(element: MddElement) -> bool:
 
 def _flexible(element: MddElement) -> ImportedComponent:
     """Return the definition of a wire, rope or chain; its Cd is of its width."""
-    chain = design.is_chain(element.name)
     figures: dict[str, FigureOrWord] = {"diameter": element.across, "cn": element.cd, "ct": 0.0}
     weight = 0.0 - element.lift * KILOGRAM_FORCE
-    component = ImportedComponent.of_line(element.name, weight, figures, chain=chain)
+    component = ImportedComponent.of_line(element.name, weight, figures)
     modulus = element.modulus
     if modulus is not None and math.isfinite(modulus):
         component.figures["stiffness"] = modulus * math.pi / 4.0 * element.across**2
@@ -168,9 +175,7 @@ class MddElement:
         return self.width or self.diameter
 
 
-def read_elements(
-    variables: Mapping[str, MatValue], suffix: str
-) -> tuple[list[MddElement], list[str]]:
+def read_elements(variables: MatVariables, suffix: str) -> tuple[list[MddElement], list[str]]:
     """Return the elements of a line in the order of the file, and what is wrong with them.
 
     The suffix is ``t`` for the matrices of a tow, ``CO`` for what is clamped on, or nothing.
@@ -178,22 +183,24 @@ def read_elements(
     problems: list[str] = []
     size = _matrix(variables, f"H{suffix}", problems)
     count = size.shape[1]
-    lift = _row(variables, f"B{suffix}", count, problems)
-    drag = _row(variables, f"Cd{suffix}", count, problems)
+    for name in (f"B{suffix}", f"Cd{suffix}"):
+        try:
+            if (given := variables.reals(name).size) != count:
+                problems.append(f"`{name}` has {given} values for {count} elements")
+        except ValueError as error:
+            problems.append(str(error))
     if count > MOST_PIECES:
         problems.append(f"`H{suffix}` has {count} elements; more than {MOST_PIECES} are not read")
     if problems or not count:
         return [], problems
-    modulus = _optional(variables, f"ME{suffix}")
-    mass = _optional(variables, f"Wt{suffix}")
+    lift, drag, modulus, mass = (variables.row(f"{name}{suffix}") for name in _ROWS)
     density = _densities(variables, size[0])
-    called = _names(variables, f"moorele{suffix}", count)
     elements = []
-    for i in range(count):
+    for i, name in enumerate(_names(variables, f"moorele{suffix}", count)):
         length, width, diameter, flag = (float(value) for value in size[:, i])
         elements.append(
             MddElement(
-                name=called[i],
+                name=name,
                 length=length,
                 width=width,
                 diameter=diameter,
@@ -207,7 +214,7 @@ def read_elements(
                 density=float(density[i]),
             )
         )
-        problems += mistakes_of(elements[-1], f"element {i + 1}, {called[i]}")
+        problems += mistakes_of(elements[-1], f"element {i + 1}, {name}")
     return elements, problems
 
 
@@ -227,19 +234,14 @@ def mistakes_of(element: MddElement, where: str) -> list[str]:
     return wrong
 
 
-def _reals(variables: Mapping[str, MatValue], name: str, problems: list[str]) -> RealArray | None:
-    """Return a variable as numbers; None, and a problem, where it holds something else."""
-    try:
-        return numbers(variables.get(name))
-    except ValueError as error:
-        problems.append(f"`{name}` {error}")
-        return None
-
-
-def _matrix(variables: Mapping[str, MatValue], name: str, problems: list[str]) -> RealArray:
+def _matrix(variables: MatVariables, name: str, problems: list[str]) -> RealArray:
     """Return ``H``: four rows, one column an element; the flag is 0 where a row is missing."""
-    size = _reals(variables, name, problems)
-    if size is None or size.size == 0:
+    try:
+        size = variables.reals(name)
+    except ValueError as error:
+        problems.append(str(error))
+        return np.zeros((4, 0))
+    if size.size == 0:
         return np.zeros((4, 0))
     size = np.atleast_2d(size)
     if size.ndim == 2 and size.shape[0] not in (3, 4) and size.shape[1] in (3, 4):
@@ -251,25 +253,9 @@ def _matrix(variables: Mapping[str, MatValue], name: str, problems: list[str]) -
     return size if size.shape[0] == 4 else np.vstack([size, np.zeros(size.shape[1])])
 
 
-def _row(
-    variables: Mapping[str, MatValue], name: str, count: int, problems: list[str]
-) -> RealArray:
-    row = _reals(variables, name, problems)
-    if row is not None and row.size == count:
-        return row.ravel()
-    if row is not None:
-        problems.append(f"`{name}` has {row.size} values for {count} elements")
-    return np.zeros(count)
-
-
-def _optional(variables: Mapping[str, MatValue], name: str) -> RealArray:
-    row = _reals(variables, name, [])
-    return np.zeros(0) if row is None else row.ravel()
-
-
-def _densities(variables: Mapping[str, MatValue], length: RealArray) -> RealArray:
+def _densities(variables: MatVariables, length: RealArray) -> RealArray:
     """Return the density of the water at every element of a line that stands upright [kg/m³]."""
-    levels, density = _optional(variables, "z"), _optional(variables, "rho")
+    levels, density = variables.row("z"), variables.row("rho")
     if not density.size == levels.size > 0 or not density.min() > 0.0:
         return np.full(length.size, CATALOGUE_DENSITY)
     order = np.argsort(levels)
@@ -277,10 +263,10 @@ def _densities(variables: Mapping[str, MatValue], length: RealArray) -> RealArra
     return np.interp(heights, levels[order], density[order])
 
 
-def _names(variables: Mapping[str, MatValue], name: str, count: int) -> list[str]:
+def _names(variables: MatVariables, name: str, count: int) -> list[str]:
     """Return a name for every element, also where the file has none."""
     value = variables.get(name)
-    found = names(value) if value is not None else []
+    found = names(value)
     if len(found) != count and isinstance(value, np.ndarray) and value.ndim == 2:
         found = names(value.T)
     found = (found + [""] * count)[:count]
@@ -295,6 +281,7 @@ def _modulus(value: float) -> float | None:
 
 
 _MARKS = {"name", "length", "buoyancy", "bool_line", "bool_clampon", "height_along_inline"}
+_FIGURES = ("length", "buoyancy", "material", "width", "diameter", "drag")
 _OFF = 1e-6  # m by which a clamp may stand off its piece
 _NOTE = "It solves the equations of Mooring Design & Dynamics. See `calm docs import-table`."
 
@@ -309,75 +296,65 @@ def read_moords(path: Path) -> design.Design:
     """Read a design (InputError: its headings or figures are not those of that program)."""
     rows = list(csv.DictReader(io.StringIO(read_text(path))))
     if not rows or not rows[0].keys() >= _MARKS:
-        raise design.refused(path, "is not a design of moords: its headings are others")
+        raise refused(path, "is not a design of moords: its headings are others")
     if len(rows) > MOST_PIECES:
-        raise design.refused(path, f"has {len(rows)} rows; more than {MOST_PIECES} are not read")
+        raise refused(path, f"has {len(rows)} rows; more than {MOST_PIECES} are not read")
     problems: list[str] = []
     elements = [_element(row, place, problems) for place, row in enumerate(rows, 2)]
     if not problems and rows[0].get("bool_clampon") == "True":
         problems.append("row 2: a clamp stands before the first piece")
     if problems:
-        raise design.refused(path, *problems)
+        raise refused(path, *problems)
     anchor = anchor_of(elements[0])
     if not elements[0].lift:
         del anchor.figures["weight"]
     items = [ImportedPiece(anchor)]
     for row, element in zip(rows[1:], elements[1:], strict=True):
         if row.get("bool_clampon") == "True":
-            _hang(items[-1], element, float(row["height_along_inline"] or 0.0))
+            host, length = items[-1], items[-1].extent
+            at = length - float(row["height_along_inline"] or 0.0)
+            guess = "" if -_OFF <= at <= length + _OFF else "its place was off the piece"
+            host.clamp(rigid(element), min(max(at, 0.0), length), guess)
         else:
-            items.append(
-                ImportedPiece(component_of(element), element.length if element.is_line else None)
-            )
+            items.append(piece_of(element))
     name = rows[0].get("mooring") or path.stem
     return design.Design("moords", name, items[::-1], None, notes=[_NOTE], in_kilograms=True)
 
 
-def _hang(host: ImportedPiece, element: MddElement, height: float) -> None:
-    """Clamp an element on a piece, at a height above its lower end [m]."""
-    length = host.extent
-    at = length - height
-    guess = "" if -_OFF <= at <= length + _OFF else "its place was off the piece"
-    host.clamp(rigid(element), min(max(at, 0.0), length), guess)
-
-
 def _element(row: dict[str, str], place: int, problems: list[str]) -> MddElement:
-    is_line = row.get("bool_line") == "True"
-    length = _number(row, "length", place, problems)
-    lift = _number(row, "buoyancy", place, problems)
+    clamped = row.get("bool_clampon") == "True"
+    keys = (*_FIGURES, "height_along_inline") if clamped else _FIGURES
+    figures = {key: _number(row, key, place, problems) for key in keys}
+    is_line, length, lift = row.get("bool_line") == "True", figures["length"], figures["buoyancy"]
     if is_line and length <= 0.0:
         problems.append(f"row {place}, {row['name']}: a line needs its length")
         length = 1.0
-    material = _number(row, "material", place, problems)
+    material = figures["material"]
     known = is_line and 1.0 <= material <= len(MODULI)
     element = MddElement(
         name=row["name"] or f"row {place}",
         length=length,
-        width=_number(row, "width", place, problems),
-        diameter=_number(row, "diameter", place, problems),
+        width=figures["width"],
+        diameter=figures["diameter"],
         is_line=is_line,
         is_fastener=row.get("type") == "rigging",
         lift=lift / length if is_line else lift,
-        cd=_number(row, "drag", place, problems),
+        cd=figures["drag"],
         mass=None,
         modulus=MODULI[round(material) - 1] if known else None,
         number=place,
     )
     problems += mistakes_of(element, f"row {place}, {element.name}")
-    if row.get("bool_clampon") == "True":
-        _number(row, "height_along_inline", place, problems)
     return element
 
 
 def _number(row: dict[str, str], key: str, place: int, problems: list[str]) -> float:
     text = (row.get(key) or "").strip()
-    if not text or text.lower() in ("nan", "none"):
-        return 0.0
     try:
-        value = float(text)
+        value = float(text) if text and text.lower() not in ("nan", "none") else 0.0
     except ValueError:
         value = math.nan
-    if not math.isfinite(value):
-        problems.append(f"row {place}, {row.get('name')}: {key} is `{text}`")
-        return 0.0
-    return value
+    if math.isfinite(value):
+        return value
+    problems.append(f"row {place}, {row.get('name')}: {key} is `{text}`")
+    return 0.0

@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 import re
 from collections import defaultdict
+from collections.abc import Collection
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+from calm.errors import refused
 from calm.exchange.design import (
     MOST_PIECES,
     Design,
@@ -18,9 +20,6 @@ from calm.exchange.design import (
     ImportedPiece,
     ImportedWater,
     Remark,
-    is_chain,
-    refused,
-    refused_at,
 )
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
 from calm.whole_file import read_text
@@ -80,6 +79,21 @@ class _File:
         if length <= 0.0:
             raise line.refuse("a line has no length")
         return ImportedPiece(_cable(kind, self.gravity), length)
+
+    def walk(
+        self, start: str, left: list[_Row], breaks: Collection[str]
+    ) -> tuple[list[str], list[_Row]]:
+        """Return the points and the lines from a point to one of `breaks`, taken from `left`."""
+        names, lines = [start], list[_Row]()
+        while not lines or names[-1] not in breaks:
+            line = next((line for line in self.at[names[-1]] if line in left), None)
+            if line is None:
+                break
+            lines.append(line)
+            left.remove(line)
+            a, b = line.ends
+            names.append(b if a == names[-1] else a)
+        return names, lines
 
     def along(self, names: list[str], lines: list[_Row], told: set[str]) -> list[ImportedPiece]:
         """Return lines, and what is at the points before and behind each that is not `told` yet."""
@@ -155,23 +169,14 @@ def _single_line(file: _File) -> tuple[list[str], list[_Row]] | None:
     floats = not _is_held(top) or (near and _lift(_figures(top)) > 0.0)
     if ends[0] not in held or {*held} - {*ends} or not floats:
         return None
-    names, lines, left = [ends[1]], list[_Row](), list(file.lines)
-    while met := [each for each in left if names[-1] in each.ends]:
-        lines.append(met[0])
-        left.remove(met[0])
-        names.append(_other_end(met[0], names[-1]))
-    return None if left else (names, lines)
+    left = list(file.lines)
+    found = file.walk(ends[1], left, ())
+    return None if left else found
 
 
 def _lift(figures: dict[str, FigureOrWord]) -> float:
     """What a point lifts, as a mass [kg]."""
     return CATALOGUE_DENSITY * float(figures["volume"]) - float(figures["mass"])
-
-
-def _other_end(line: _Row, name: str) -> str:
-    """Return the name of the point at the other end of a line."""
-    a, b = line.ends
-    return b if a == name else a
 
 
 def _is_held(point: _Row) -> bool:
@@ -209,7 +214,7 @@ def _cable(kind: _Row, gravity: float) -> ImportedComponent:
         "diameter": across, "cn": kind.number("cd", 0.0), "ct": kind.number("cdt", 0.0),
     }  # fmt: skip
     name = kind.words["name"]
-    component = ImportedComponent.of_line(name, wet, figures, chain=is_chain(name))
+    component = ImportedComponent.of_line(name, wet, figures)
     component.figures["mass"] = mass
     if (stiffness := kind.number("ea", 0.0)) > 0.0:
         component.figures["stiffness"] = stiffness
@@ -280,7 +285,7 @@ class _Row:
 
     def refuse(self, message: str) -> Exception:
         """Return a problem in this row."""
-        return refused_at(self.path, self.line, 1, message)
+        return refused(self.path, message, line=self.line)
 
 
 def is_moordyn(content: bytes) -> bool:
@@ -311,7 +316,7 @@ def _read_sections(path: Path) -> tuple[dict[str, list[_Row]], dict[str, str]]:
         else:
             words = line.split()
             if len(words) < min(len(headings), 4):
-                raise refused_at(str(path), number, 1, f"the row has {len(words)} words")
+                raise refused(path, f"the row has {len(words)} words", line=number)
             kept = dict(zip(headings, words, strict=False))
             tables[current].append(_Row(str(path), number, kept))
     return tables, options
@@ -341,13 +346,8 @@ def _lay_net(file: _File, path: Path) -> None:
     breaks = [name for name, met in file.at.items() if len(met) != 2 or _is_held(file.points[name])]
     left, told = list(file.lines), set[str]()
     for start in breaks:
-        while met := [line for line in file.at[start] if line in left]:
-            names, lines = [start], list[_Row]()
-            while met and (not lines or names[-1] not in breaks):
-                lines.append(met[0])
-                left.remove(met[0])
-                names.append(_other_end(met[0], names[-1]))
-                met = [line for line in file.at[names[-1]] if line in left]
+        while any(line in left for line in file.at[start]):
+            names, lines = file.walk(start, left, breaks)
             anchored = [_is_anchor(file, names[end]) for end in (0, -1)]
             rise = file.points[names[-1]].number("z") - file.points[names[0]].number("z")
             if all(anchored):

@@ -8,6 +8,7 @@ from math import pi, sqrt
 
 from calm.errors import UsageError
 from calm.exchange.exported_parts import (
+    AS_A_POINT,
     Coordinates,
     ExportedLine,
     ExportedPart,
@@ -61,47 +62,38 @@ class _System:
     points: list[_Point] = field(default_factory=list)
     lines: list[_Length] = field(default_factory=list)
     joined: dict[str, _Point] = field(default_factory=dict)
-
-    @property
-    def here(self) -> _Point:
-        """The point reached."""
-        return self._here
-
-    @property
-    def load(self) -> PartLoad:
-        """What acts at the point reached."""
-        return self._here.load
+    here: _Point = field(init=False)
 
     def begin(self, place: Coordinates, kind: str) -> None:
         """Go to a new point."""
-        self._here = _Point(place, PartLoad(self.density), kind)
-        self.points.append(self._here)
+        self.here = _Point(place, PartLoad(self.density), kind)
+        self.points.append(self.here)
 
     def begin_at(self, node: str, place: Coordinates) -> None:
         """Go to the point of a node, which is made where it is not there yet."""
         if node not in self.joined:
             self.begin(place, "Free")
-            self.joined[node] = self._here
-        self._here = self.joined[node]
+            self.joined[node] = self.here
+        self.here = self.joined[node]
 
     def end_at(self, node: str) -> None:
         """Make the point reached that of a node."""
-        last = self._here
+        last = self.here
         if node not in self.joined:
             self.joined[node] = last
             return
-        self._here = self.joined[node]
+        self.here = self.joined[node]
         self.points = [point for point in self.points if point is not last]
-        self.load.merge(last.load)
+        self.here.load.merge(last.load)
         for line in self.lines:
             if line.upper is last:
-                line.upper = self._here
+                line.upper = self.here
 
     def line(self, name: str, figures: str, length: float, to: Coordinates) -> None:
         """Add an unstretched length [m] of a type from the point reached up to another."""
-        below, chosen = self._here, unique_name(self.types, name, figures)
+        below, chosen = self.here, unique_name(self.types, name, figures)
         self.begin(to, "Free")
-        self.lines.append(_Length(chosen, below, self._here, length))
+        self.lines.append(_Length(chosen, below, self.here, length))
 
     def rows(self) -> tuple[list[str], list[str]]:
         """The tables of the points and of the lines."""
@@ -158,10 +150,7 @@ def moordyn_file(*designs: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
             "mass, volume and drag as it floats here"
         )
     else:
-        lost.append(
-            "that the drag of the float acts at its middle and by its axis: its point has the "
-            "pull found here"
-        )
+        lost.append(AS_A_POINT)
     losses = first.losses([*lost, *(each for design in designs for each in design.omitted)])
     return _text(first, system, losses).encode(), losses
 
@@ -216,14 +205,14 @@ def _lay(system: _System, part: ExportedPart, path: PartPath) -> None:
             system.line(_word(part.use), figures, below - at, path.at(at / part.length))
             below = at
         for clamp in cuts[at]:
-            system.load.add(clamp)
+            system.here.load.add(clamp)
 
 
 def _lay_rigid(system: _System, parts: list[ExportedPart], top: Coordinates) -> None:
     """Rigid pieces in a row, from the lowest up."""
     load, length = PartLoad(system.density), sum(part.length for part in parts)
     if length <= 0.0:
-        load = system.load
+        load = system.here.load
     for part in parts:
         load.add_whole(part)
     if length <= 0.0:
@@ -246,12 +235,12 @@ def _lay_float(system: _System, design: ExportedLine, path: PartPath) -> None:
         own = PartLoad(system.density, mass=_OWN * part.likely_mass).per_metre(length)
         figures = system.figures(own, _stiff(length))
         system.line("float", figures, length, path.at(1.0 - below))
-        system.load.mass -= own.mass * length
-    system.load.add_whole(part, design.riding[1])
+        system.here.load.mass -= own.mass * length
+    system.here.load.add_whole(part, design.riding[1])
     if not design.afloat:
         net, shown = design.float_as_point(system.density)
-        system.load.net += net - part.net
-        system.load.area += shown - part.area(system.density)
+        system.here.load.net += net - part.net
+        system.here.load.area += shown - part.area(system.density)
 
 
 def _stiff(length: float) -> float:

@@ -232,7 +232,7 @@ def read_environment(
     seas = () if waves is None else water.read_waves(waves, section, open_files)
     where = None if position is None else (position.latitude, position.longitude)
     sloping = getattr(keys, "seabed", None) if open_files else None
-    seabed = read_seabed(sloping, where, keys.depth, section)
+    seabed = read_seabed(sloping, where, keys.depth, section, notices)
     if density is None or current is None or len(section.problems) > before:
         return None
     notices.extend(water.density_notices(density, keys.depth))

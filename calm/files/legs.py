@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator, Field, ValidationInfo
 
 from calm.errors import unknown
 from calm.files.components import Anchor
 from calm.files.definition import Model, QuantityField, Text, described, optional
+from calm.files.environment import Position
 from calm.files.mooring_file import STAND_IN, MooringFile, Piece, Place, numbered, placed
 from calm.files.rigid import Profiler
 from calm.files.yaml_document import SourceMapping, validate
+from calm.positions import HEMISPHERES, Frame
 from calm.units import QuantityError
 
 if TYPE_CHECKING:
@@ -32,9 +35,34 @@ NET_SURE = (
 )
 
 _Offset = Annotated[float, QuantityField("length")]
+_LATITUDE, _LONGITUDE = (Position.model_fields[name] for name in HEMISPHERES)
+_ON_A_CHART = re.compile(r"deg|[°º]|\d['′\s]*[NSEW]\s*$", re.IGNORECASE)
+
+
+def _at_given(value: object, info: ValidationInfo) -> object:
+    """Return a place by its latitude and longitude in metres from the mooring's position."""
+    given = value if isinstance(value, list) and len(value) == 2 else ()
+    if not any(_ON_A_CHART.search(str(each)) for each in given):
+        return value
+    origin: Position | None = info.context and info.context["position"]
+    if origin is None:
+        raise QuantityError("is a latitude and a longitude; the file needs a `position` for it")
+    north, east = (
+        np.array(field.metadata[0].read(text))
+        for field, text in zip((_LATITUDE, _LONGITUDE), given, strict=True)
+    )
+    place = Frame(origin.latitude, origin.longitude).place(north, east, np.zeros(()))
+    return [f"{each:.3f} m" for each in place[:2]]
+
+
 _At = Annotated[
     tuple[_Offset, _Offset],
-    Field(description="metres east and north of the origin", examples=[["30 m", "0 m"]]),
+    BeforeValidator(_at_given, json_schema_input_type=tuple[Text, Text]),
+    Field(
+        description="metres east and north of the origin, or a latitude and a longitude, the "
+        "origin being the `position` of the file",
+        examples=[["30 m", "0 m"], ["57 28.84 N", "3 12.10 W"]],
+    ),
 ]
 
 
@@ -162,8 +190,15 @@ def stand_in_anchor(index: int, item: int) -> Piece:
     return Piece(index, STAND_IN, "anchor", component, 0.0, None, (), 0, 0, Place(item))
 
 
-def read_legs(top: SourceMapping, reader: LineReader) -> tuple[tuple[Leg, ...], tuple[Piece, ...]]:
-    """Read the legs of a file, and the pieces of all of them one after another."""
+def read_legs(
+    top: SourceMapping, reader: LineReader, position: Position | None
+) -> tuple[tuple[Leg, ...], tuple[Piece, ...]]:
+    """Read the legs of a file, and the pieces of all of them one after another.
+
+    Parameters
+    ----------
+    position : of the origin of their places
+    """
     if "line" in top.data:
         message = "`line` and `legs` in one file; give the line as one of the legs"
         top.refuse(("line",), message, key=True)
@@ -185,7 +220,7 @@ def read_legs(top: SourceMapping, reader: LineReader) -> tuple[tuple[Leg, ...], 
             whole = False
             continue
         own = section.child(name)
-        keys = validate(LegKeys, own)
+        keys = validate(LegKeys, own, context={"position": position})
         before, first = len(top.problems), len(pieces)
         if isinstance(own.data.get("line"), list):
             read = reader.read(own, "line")

@@ -155,7 +155,7 @@ def read_mooring(
     if stand_in and not towed and pieces and not _anchored(pieces):
         pieces = (*pieces, stand_in_anchor(0, len(top.data["line"])))
     if legged:
-        legs, pieces = read_legs(top, reader)
+        legs, pieces = read_legs(top, reader, keys.position if keys else None)
         line_is_whole = bool(pieces) and len(problems) == before
     else:
         (_check_tow if towed else _check_anchor)(pieces, top)
@@ -174,7 +174,7 @@ def read_mooring(
         position = keys.position if keys else None
         surroundings = read_environment(*chosen, notices, towed=towed, position=position)
     if surroundings is not None and surroundings.seabed is not None:
-        check_anchors(surroundings.seabed, pieces, legs, checks, top)
+        check_anchors(surroundings.seabed, pieces, legs, checks, top, surroundings.depth)
     if surroundings is not None and legged:
         check_held_depths(legs, top, surroundings.depth)
     elif surroundings is not None:

@@ -68,6 +68,7 @@ def read_seabed(
     where: tuple[float, float] | None,
     depth: float | None,
     section: SourceMapping,
+    notices: list[str],
 ) -> Seabed | None:
     """Return the seabed; a grid as far about the mooring as that may reach.
 
@@ -76,6 +77,7 @@ def read_seabed(
     where : latitude and longitude [degrees]; None where nobody gives them
     depth : of the water [m]
     section : the environment
+    notices : for what is doubtful
     """
     if not isinstance(given, SeabedFile):
         return given
@@ -86,7 +88,13 @@ def read_seabed(
         section.refuse(key, "a grid needs the `position` of the mooring")
     elif depth is not None:
         try:
-            return SeabedGrid.of_file(path, *where, 2000.0 + 3.0 * depth)
+            grid = SeabedGrid.of_file(path, *where, 2000.0 + 3.0 * depth)
+            if not 0.5 < grid.depth / depth < 2.0:
+                notices.append(
+                    f"The seabed of {given.file} is {grid.depth:.4g} m deep at the position of the "
+                    f"mooring, where `depth` is {depth:.4g} m: check the unit and the position."
+                )
+            return grid
         except InputError as error:
             section.problems.extend(error.problems)
     return None
@@ -98,14 +106,18 @@ def check_anchors(
     legs: Sequence[Leg],
     checks: Checks,
     top: SourceMapping,
+    depth: float | None,
 ) -> None:
-    """Check that no anchor slides down the seabed by its own weight, nor stands off the grid."""
+    """Check that no anchor slides down the seabed by its own weight, nor stands off the grid or out
+    of the water, which is so deep at the origin [m].
+    """
     ends = {leg.end - 1: leg.bottom.anchor for leg in legs}
     for piece in pieces:
         if not isinstance(piece.component, Anchor):
             continue
         place, own = ends.get(piece.index), piece.component.friction
-        here = seabed.at(*((0.0, 0.0) if place is None else place.at))
+        at = (0.0, 0.0) if place is None else place.at
+        here, deeper = seabed.at(*at), float(seabed.deeper(np.array([at]))[0])
         most = math.degrees(math.atan(checks.anchor_friction if own is None else own))
         said = []
         if here.slope >= most:
@@ -114,7 +126,11 @@ def check_anchors(
                 f"on a seabed that slopes by {here.slope:.4g}°; it holds on slopes of less than "
                 f"{most:.3g}°"
             )
-        if np.isnan(here.deeper(np.zeros((1, 2)))[0]) and (place is None or place.depth is None):
+        if place is not None and place.depth is not None:
+            pass
+        elif np.isnan(deeper):
             said.append("the grid of the seabed has no depth here; give the anchor its `depth`")
+        elif depth is not None and depth + deeper <= 0.0:
+            said.append(f"by its slope the seabed is {-depth - deeper:.3g} m above the water here")
         for one in said:
             top.refuse_at(piece.line, piece.column, one)

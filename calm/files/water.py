@@ -18,8 +18,8 @@ from calm.files.definition import DENSITY, Model, QuantityField, Text, described
 from calm.files.yaml_document import SourceMapping
 from calm.physics import seawater
 from calm.records import profile_tables
-from calm.records.columns import QuantityTable
 from calm.records.current_terms import left_out
+from calm.records.profile_tables import QuantityTable
 from calm.records.sea_states import (
     OF_HEIGHT,
     SPECTRA,

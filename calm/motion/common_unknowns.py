@@ -68,6 +68,11 @@ class Common:
     until: NDArray[np.datetime64] | None = None
 
     @property
+    def inferred(self) -> bool:
+        """Return whether the currents are inferred from the pressures."""
+        return self.law is not None
+
+    @property
     def value(self) -> Floats:
         """Return (q,) as the columns of the covariance stand."""
         logs = np.log(list(self.factors.values()))

@@ -99,7 +99,7 @@ def motion_layout(task: Task, record: MeasuredRecord) -> ResultLayout:
     layout = layout_of(task.mooring, record, None)
     known = dict(layout.sizes)
     known["sensor"] = len(task.measured.label)
-    alone = task.common.law is not None
+    alone = task.common.inferred
     names = () if alone else level_names(task.measured, labels_of(task.mooring))
     known["level"] = len(names)
     added = {name: known[name] for name in ("sensor", "level")}

@@ -88,7 +88,7 @@ def law_near(task: Task, whole: Task) -> tuple[LinearLaw | None, list[Suspect]]:
     And what may be wrong with the line and its currents, with what it does to them.
     """
     common = task.common
-    alone = common.law is not None
+    alone = common.inferred
     times = chosen_times(task.measured, alone)
     if not len(times):
         return None, []
@@ -118,7 +118,7 @@ class Diagnosis:
         self.mean = np.zeros(len(self.spread))
         self.white = np.linalg.inv(np.linalg.cholesky(law.expected))
         self.seen = self.white @ law.fixed
-        self.alone = task.common.law is not None
+        self.alone = task.common.inferred
         self.likely = LIKELY_ALONE if self.alone else LIKELY
         self.step = float(np.median(np.diff(self.measured.time)) / np.timedelta64(1, "h"))
         self._kept: dict[int, Floats] = {}
@@ -379,7 +379,7 @@ def _beforehand(task: Task) -> Floats:
     """Return (q, q) covariance of factors, datum and offsets beforehand."""
     common = task.common
     depth = task.mooring.water.depth
-    datum = common_unknowns.DATUM if common.law is None else SEABED
+    datum = SEABED if common.inferred else common_unknowns.DATUM
     spread = [common_unknowns.FACTORS[name][1] for name in common.factors]
     offsets = [common_unknowns.OFFSET] * len(common.offset)
     return np.diag(np.square([*spread, datum * depth, *offsets]))

@@ -60,13 +60,13 @@ def estimated(
     """
     one, still = moments.measured, moments.forward.still
     known = best_state(moments, common) if known is None else known
-    furthest = FURTHEST if common.law is None else np.inf
+    furthest = np.inf if common.inferred else FURTHEST
     first, at = known.found, known.at
     every = np.arange(len(one.time))
     mixture = Mixture(moments, known.way, first)
     if not len(one.label):
         return mixture.estimate()
-    own = own_errors(at.depth, still, common.law is not None)
+    own = own_errors(at.depth, still, common.inferred)
     for sensor in range(len(one.label)):
         spike = posterior(one, at, known.way.spread, common, still, sensor, furthest, own)
         chance = np.full(len(every), np.log(common_unknowns.SPIKES))
@@ -74,7 +74,7 @@ def estimated(
             beside = (part[:, sensor] for part in neighbours)
             chance += _excuse(moments, common, at, spike, sensor, *beside)
         mixture.add(every, known.way, spike, chance, ())
-    if common.law is not None:  # no current was measured that may be false
+    if common.inferred:  # no current was measured that may be false
         return mixture.estimate()
     odds, worse = _odds(moments), np.full(len(every), np.log(common_unknowns.ALL_WORSE))
     count = np.isfinite(one.depth).sum(axis=1)
@@ -327,7 +327,7 @@ def posterior(
     if spike >= 0:
         noise[:, spike] = np.maximum(noise[:, spike], common_unknowns.SPIKE**2)
     if own is None:
-        own = own_errors(at.depth, still, common.law is not None)
+        own = own_errors(at.depth, still, common.inferred)
     own = common.worst**2 * own
     bent = own[:, :, one.point]
     spread_of = slope @ state

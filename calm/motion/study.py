@@ -160,7 +160,7 @@ def judged(
     """
     used = task.measured
     residual = np.asarray(result["residual"].values, np.float64)
-    alone = task.common.law is not None
+    alone = task.common.inferred
     plain = None if alone else np.asarray(result["plain_depth"].values, np.float64)
     down = knockdown(used)
     every = np.isfinite(down)

@@ -196,7 +196,7 @@ def linear_law(
     slope = at.slope[good][:, part.point]
     currents = slope @ spread[good] @ slope.transpose(0, 2, 1)
     bend = np.zeros(currents.shape[:2])
-    if common.law is None:  # of what is computed at the currents as measured
+    if not common.inferred:  # of what is computed at the currents as measured
         down = np.maximum(depth[:, part.point] - still[part.point], 1.0)
         bend = 0.5 * np.einsum("nss->ns", currents) / down
     there = np.isfinite(part.depth[good])
@@ -215,9 +215,7 @@ def linear_law(
         currents,
         fixed,
         begun.fall(time, depth, still, part.point),
-        line_response.own_errors(depth, still, common.law is not None)[
-            :, part.point[:, None], part.point
-        ],
+        line_response.own_errors(depth, still, common.inferred)[:, part.point[:, None], part.point],
     )
 
 

@@ -32,6 +32,8 @@ State = tuple[float, float, float, float, float, float, float, int]
 last axis's rise, the interval of the water. A bare tuple: in CPython a named one costs as much as
 half of a segment's balance."""
 
+BREATH = 1e-3
+"""A current that turns a slack line and moves nothing else [m/s]."""
 GOES_ON, RUNS_OFF, SEGMENT_UNBALANCED, ROD_UNBALANCED, ENDLESS, NO_ROOM = range(6)
 """Whether a march can go on, or why it cannot."""
 FAILURES = (
@@ -306,20 +308,34 @@ class Line(_Arrays):
         lengths[piece] = length
         return replace(self, length=lengths)
 
-    def reversed(self) -> Line:
-        """Return the same line listed from its other end, from where its clamps are measured
-        then.
-        """
-        columns = {
-            column.name: getattr(self, column.name)[::-1]
+    @property
+    def _of_pieces(self) -> dict[str, Any]:
+        """What it holds of every piece."""
+        return {
+            column.name: getattr(self, column.name)
             for column in fields(self)
             if (column.type in _DTYPES or column.name in _CURVES)
             and not column.name.startswith("clamp_")
         }
+
+    def below_a_point(self) -> Line:
+        """Return the same line below a piece without length, weight and drag, to be pulled at."""
+        columns: dict[str, Any] = {
+            name: np.append(np.zeros(1, column.dtype), column)
+            if isinstance(column, np.ndarray)
+            else column and (None, *column)
+            for name, column in self._of_pieces.items()
+        }
+        return replace(self, **columns, clamp_piece=self.clamp_piece + 1)
+
+    def reversed(self) -> Line:
+        """Return the same line listed from its other end, from where its clamps are measured
+        then.
+        """
         on = self.clamp_piece
         return replace(
             self,
-            **columns,
+            **{name: column[::-1] for name, column in self._of_pieces.items()},
             clamp_piece=len(self.length) - 1 - on,
             clamp_at=np.maximum(self.length[on] - self.clamp_at, 0.0),
         )
@@ -375,6 +391,15 @@ class Water(_Arrays):
         """Return the same water without current."""
         zero = np.zeros_like(self.u)
         return replace(self, u=zero, v=zero, w=zero)
+
+    def stirred(self) -> Water | None:
+        """Return the same water with a breath of current wherever it has less; None if nowhere.
+
+        A slack line that hangs in still water folds plumb, which is the limit of a weak current;
+        but how it turns where nothing pulls it sideways no march can say.
+        """
+        still = np.hypot(self.u, self.v) < BREATH
+        return replace(self, u=np.where(still, BREATH, self.u)) if still.any() else None
 
     def current_at(self, depth: Floats) -> Floats:
         """Current (..., 3) [m/s] at depths of any shape [m]."""

@@ -66,10 +66,10 @@ def lay_line(
             tension = left
             reach = length * (1.0 + strain)
             x, y, z = x + reach * east, y + reach * north, z + reach * up
+            fx, fy, fz = -tension * east, -tension * north, 0.0 - tension * up
             if recording:
                 write_element(record, nodes, cable.piece, -1, length, strain)
-                at = (x, y, z, -tension * east, -tension * north, 0.0 - tension * up, tz, level)
-                write_node(record, nodes, at)
+                write_node(record, nodes, (x, y, z, fx, fy, fz, tz, level))
             nodes, grounded = nodes + 1, grounded + length
         elif hung == 0.0:
             # the loads of a rod go down it: of every piece its own, spread along it, then clamps
@@ -89,25 +89,12 @@ def lay_line(
                     share = step / length if length > 0.0 else 0.5 * part
                     _, tension = held_back(tension, hold * (weight if part == 1 else share * own))
                     x, y, z = x + step * east, y + step * north, z + step * up
+                    fx, fy, fz = -tension * east, -tension * north, 0.0 - tension * up
                     if recording:
                         write_element(record, nodes, load.piece, clamp, step, 0.0)
-                        at = (
-                            x,
-                            y,
-                            z,
-                            -tension * east,
-                            -tension * north,
-                            0.0 - tension * up,
-                            tz,
-                            level,
-                        )
-                        write_node(record, nodes, at)
+                        write_node(record, nodes, (x, y, z, fx, fy, fz, tz, level))
                     nodes, grounded, reached = nodes + 1, grounded + step, reached + step
-    return (
-        (x, y, z, -tension * east, -tension * north, 0.0 - tension * up, tz, level),
-        nodes,
-        grounded,
-    )
+    return (x, y, z, fx, fy, fz, tz, level), nodes, grounded
 
 
 def held_back(tension: float, hold: float) -> tuple[float, float]:

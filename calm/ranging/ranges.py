@@ -85,29 +85,27 @@ def read_ranges(path: Path, transducer: float = 0.0) -> Survey:
     """
     problems: list[Problem] = []
     table, its_transducer, said = _survey_table(path)
-    columns = read_named_columns(
-        path, _COLUMNS, EXAMPLE, problems, table=table, other_names=_OTHER_NAMES
-    )
+    columns = read_named_columns(table, _COLUMNS, problems, other_names=_OTHER_NAMES)
     heads = columns.factors
     problems += [
-        columns.lacks(path, name, "deg") for name in ("latitude", "longitude") if name not in heads
+        columns.lacks(name, "deg") for name in ("latitude", "longitude") if name not in heads
     ]
     if ("range" in heads) == ("time" in heads):
         both = "there are columns `range` and `time`; leave one of them out"
         none = "there is no column `range[m]` or `time[s]`"
-        problems.append(Problem(str(path), columns.header, 1, both if "range" in heads else none))
+        problems.append(columns.header.problem(both if "range" in heads else none))
     measure = "time" if "time" in heads else "range"
     values: list[tuple[int, float, float, float]] = []
     silent: list[int] = []
     for row in columns.rows:
         if row.cells.get(measure, "").strip().lower() in delimited.GAPS:
-            silent.append(row.line)
+            silent.append(row.row.number)
             continue
         names = [name for name in ("latitude", "longitude", measure) if name in heads]
-        found = [_value(path, row, name, heads[name], problems) for name in names]
+        found = [_value(row, name, heads[name], problems) for name in names]
         numbers = [value for value in found if value is not None]
         if len(numbers) == 3:
-            values.append((row.line, numbers[0], numbers[1], numbers[2]))
+            values.append((row.row.number, numbers[0], numbers[1], numbers[2]))
     problems += _misplaced(path, values)
     if problems:
         raise InputError(delimited.abridged(problems))
@@ -135,14 +133,12 @@ def read_ranges(path: Path, transducer: float = 0.0) -> Survey:
     )
 
 
-def _value(
-    path: Path, row: NamedRow, name: str, factor: float, problems: list[Problem]
-) -> float | None:
+def _value(row: NamedRow, name: str, factor: float, problems: list[Problem]) -> float | None:
     """Return a cell in SI or degrees; None, with a mistake added, where it is no such figure."""
     text = row.cells[name]
     refusal = _refusal(name, text, factor)
     if refusal:
-        problems.append(row.problem(path, name, f"`{name}: {shown(text)}` {refusal}"))
+        problems.append(row.problem(name, f"`{name}: {shown(text)}` {refusal}"))
         return None
     return plain_degrees(text, name) * factor if name in HEMISPHERES else float(text) * factor
 
@@ -245,10 +241,10 @@ def read_sound(path: Path) -> Sound:
     has.
     """
     problems: list[Problem] = []
-    columns = read_named_columns(path, _OF_SOUND, _EXAMPLE, problems)
+    columns = read_named_columns(delimited.read_table(path, _EXAMPLE), _OF_SOUND, problems)
     for name, dimension in _OF_SOUND.items():
         if name not in columns.factors:
-            problems.append(columns.lacks(path, name, DIMENSIONS[dimension].unit))
+            problems.append(columns.lacks(name, DIMENSIONS[dimension].unit))
     depths: list[float] = []
     speeds: list[float] = []
     for row in columns.rows:
@@ -256,8 +252,7 @@ def read_sound(path: Path) -> Sound:
             factor = columns.factors[name]
             complaint = _complaint(name, text, factor, depths)
             if complaint:
-                message = f"`{name}: {shown(text)}` {complaint}"
-                problems.append(row.problem(path, name, message))
+                problems.append(row.problem(name, f"`{name}: {shown(text)}` {complaint}"))
             else:
                 (depths if name == "depth" else speeds).append(float(text) * factor)
     if not problems and not depths:
@@ -316,11 +311,13 @@ def _survey_table(path: Path) -> tuple[delimited.TextTable, float | None, list[s
         )
         table = delimited.read_table(path, EXAMPLE, [(1, "latitude,longitude,time[s]"), *lines])
         return table, None, [said]
-    transducer = float(rows[1].cells[2])
-    lines = [(row.number, ",".join(row.cells)) for row in rows[3:]]
+    above = 1 if _are_near(rows[1:]) else 2  # rows with the depths, and before them the target
+    depth, release, transducer = map(float, rows[above - 1].cells)
+    lines = [(row.number, ",".join(row.cells)) for row in rows[above + 1 :]]
     said = (
-        "has no heading: read as range, latitude and longitude below the target, the depths and "
-        f"the drop; its transducer is {transducer:g} m deep"
+        "has no heading: read as range, latitude and longitude below the depths and the drop; its "
+        f"transducer is {transducer:g} m deep; the depth of the water in it, {depth:g} m, and the "
+        f"release {release:g} m above the seabed count when given: --depth, --above-seabed"
     )
     table = delimited.read_table(path, EXAMPLE, [(1, "range[m],latitude,longitude"), *lines])
     return table, transducer, [said]
@@ -336,7 +333,13 @@ def _without_heading(path: Path) -> tuple[list[delimited.CellRow], int] | None:
     if not there:
         return None
     dialect: delimited.Dialect = delimited.dialect_of([line for _, line in there])
-    rows = [delimited.CellRow(number, line, dialect.cells(line), dialect) for number, line in there]
+    blanks = not any(sign in line for _, line in there for sign in ",;")  # of any kind and number
+    rows = [
+        delimited.CellRow(
+            path, number, line, line.split() if blanks else dialect.cells(line), dialect
+        )
+        for number, line in there
+    ]
     counts = {len(row.cells) for row in rows}
     if len(counts) != 1 or not all(
         delimited.NUMBER.fullmatch(cell) for row in rows for cell in row.cells
@@ -346,11 +349,16 @@ def _without_heading(path: Path) -> tuple[list[delimited.CellRow], int] | None:
     values = [[float(cell) for cell in row.cells] for row in rows]
     if count == 5 and all(0.0 <= row[1] < 60.0 and 0.0 <= row[3] < 60.0 for row in values):
         return rows, count
-    places = [row[1:] for row in values[:1] + values[2:]]
-    together = count == 3 and len(rows) > 4 and all(
-        max(each) - min(each) < _NEAR for each in zip(*places, strict=True)
-    )  # fmt: skip
-    return (rows, count) if together else None
+    in_form = count == 3 and len(rows) > 4
+    if in_form and (_are_near(rows[1:]) or _are_near([rows[0], *rows[2:]])):
+        return rows, count
+    return None
+
+
+def _are_near(rows: Sequence[delimited.CellRow]) -> bool:
+    """Return whether the last two of three cells are places of one survey."""
+    places = zip(*(map(float, row.cells[1:]) for row in rows), strict=True)
+    return all(max(each) - min(each) < _NEAR for each in places)
 
 
 def _placed(cells: Sequence[str]) -> str:

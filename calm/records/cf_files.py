@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.errors import CalmError, InputError, Problem
+from calm.errors import CalmError, refused
 from calm.records.current_terms import ZONES_OF_UTC, TimeChoiceError
 from calm.records.instrument_text import is_instrument_text, read_instrument_text
 from calm.units import QuantityError, unit_factor
@@ -66,7 +66,7 @@ def is_dataset(path: Path) -> bool:
         signature = file.read(8)
     for begin, kind in _KINDS.items():
         if signature.startswith(begin):
-            raise InputError([Problem(str(path), 0, 0, f"is {kind}; NetCDF, zarr or CSV is read")])
+            raise refused(path, f"is {kind}; NetCDF, zarr or CSV is read")
     return is_netcdf(path) or is_instrument_text(path)
 
 
@@ -84,13 +84,12 @@ def reading(path: Path) -> Iterator[None]:
     except (CalmError, TimeChoiceError):
         raise
     except UnreadableError as error:
-        raise InputError([Problem(str(path), 0, 0, str(error))]) from None
+        raise refused(path, str(error)) from None
     # Damaged files leave the libraries by exceptions of many kinds.
     except Exception as error:
         kind = "zarr" if path.is_dir() else "NetCDF"
         reason = str(error).partition("\n")[0]
-        message = f"cannot be read as {kind}: {reason}"
-        raise InputError([Problem(str(path), 0, 0, message)]) from None
+        raise refused(path, f"cannot be read as {kind}: {reason}") from None
 
 
 def open_current(path: Path) -> xr.Dataset:
@@ -182,14 +181,12 @@ def known_values(variable: xr.DataArray) -> NDArray[np.float64]:
 
 def valid_range(variable: xr.DataArray) -> tuple[float, float]:
     """Return the least and the greatest valid value, unpacked."""
-    attributes = variable.attrs
-    low, high = attributes.get("valid_min"), attributes.get("valid_max")
-    both = attributes.get("valid_range")
+    low, high = (variable.attrs.get(name) for name in ("valid_min", "valid_max"))
+    both = variable.attrs.get("valid_range")
     if both is not None and len(both) == 2:
         low, high = both
-    least = _unpacked(low, variable, -inf)
-    greatest = _unpacked(high, variable, inf)
-    return min(least, greatest), max(least, greatest)
+    ends = _unpacked(low, variable, -inf), _unpacked(high, variable, inf)
+    return min(ends), max(ends)
 
 
 def _unpacked(limit: Any, variable: xr.DataArray, absent: float) -> float:
@@ -200,22 +197,22 @@ def _unpacked(limit: Any, variable: xr.DataArray, absent: float) -> float:
     packed = np.dtype(variable.encoding.get("dtype", np.float64))
     if limit is None or not (packed.kind in "iu" and np.asarray(limit).dtype.kind in "iu"):
         return value
-    scale, offset = (
-        float(variable.encoding.get(name, default))
-        for name, default in (("scale_factor", 1.0), ("add_offset", 0.0))
-    )
-    return value * scale + offset
+    packing = variable.encoding
+    return value * float(packing.get("scale_factor", 1.0)) + float(packing.get("add_offset", 0.0))
+
+
+def texts_of(variable: xr.DataArray) -> list[str]:
+    """Return the values of a variable as texts."""
+    values = np.atleast_1d(variable.values).tolist()
+    return [(one.decode() if isinstance(one, bytes) else str(one)).strip() for one in values]
 
 
 def labels_along(dataset: xr.Dataset, dimension: str) -> tuple[str, ...] | None:
     """Return the labels of what a dimension counts; None where it has none."""
-    for name in (*_LABELS, dimension):
-        if name not in dataset.variables or dataset[name].dims != (dimension,):
-            continue
-        values = np.asarray(dataset[name].values)
-        if values.dtype.kind in "SUO":
-            texts = [one.decode() if isinstance(one, bytes) else str(one) for one in values]
-            return tuple(text.strip() for text in texts)
+    for name in first_present(dataset, (*_LABELS, dimension)):
+        variable = dataset[name]
+        if variable.dims == (dimension,) and variable.dtype.kind in "SUO":
+            return tuple(texts_of(variable))
     return None
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.errors import InputError, Problem
+from calm.errors import refused
 from calm.records import cf_files
 from calm.records.attributes import remarks_in_texts
 from calm.records.cf_files import holdings
@@ -199,30 +199,28 @@ def _understood(dataset: xr.Dataset, terms: Terms) -> CurrentDataset:
     name_of_time = cf_files.find_times(dataset, velocity.names[0])
     times = None if name_of_time is None else cf_files.read_times(dataset, name_of_time)
     time = None if name_of_time is None else next(map(str, dataset[name_of_time].dims), None)
-    labels = _labels(dataset, velocity.names[0], time) if terms.on_the_line else ()
-    column, levels = GridColumn({}, None), None
+    column, levels, labels = GridColumn({}, None), None, tuple[str, ...]()
+    along = [str(dim) for dim in dataset[velocity.names[0]].dims if dim != time]
+    if terms.on_the_line and len(along) == 1:  # levels may be parts of a line
+        labels = cf_files.labels_along(dataset, along[0]) or ()
     if not labels:
         column = choose_column(dataset, velocity.names, time, terms.place)
         level, dataset = _single_levels(dataset.isel(column.index), velocity, time)
         levels = find_levels(dataset, level, time, terms.water_depth)
-    source = {"velocity": ", ".join(velocity.all_names)}
+    source, notices = {"velocity": ", ".join(velocity.all_names)}, [*column.notes]
     if levels is not None:
         source["levels"] = str(levels.variable.name)
     if name_of_time is not None:
         source["time"] = name_of_time
-    if column.place is not None:
-        source |= zip(
-            ("latitude", "longitude"), (f"{degrees:.6g}" for degrees in column.place), strict=True
-        )
-    notices = [*column.notes]
-    if name_of_time is not None:
         notices += cf_files.zone_notices(dataset, name_of_time)
+    if column.place is not None:
+        latitude, longitude = (f"{degrees:.6g}" for degrees in column.place)
+        source |= {"latitude": latitude, "longitude": longitude}
     found = (flag_variable(dataset, name) for name in velocity.names)
     flags = {str(one.name): one for one in found if one is not None}
-    notices += remarks_in_texts(dataset.attrs)
     return CurrentDataset(
         times=times,
-        notices=tuple(notices),
+        notices=(*notices, *remarks_in_texts(dataset.attrs)),
         turned=turned,
         rules=(*velocity.notes, *(() if levels is None else levels.notes)),
         source=source,
@@ -234,12 +232,6 @@ def _understood(dataset: xr.Dataset, terms: Terms) -> CurrentDataset:
         _levels=levels,
         _time=time,
     )
-
-
-def _labels(dataset: xr.Dataset, name: str, time: str | None) -> tuple[str, ...]:
-    """Return the labels of the parts of a line that the levels of a velocity hang at."""
-    along = [str(dim) for dim in dataset[name].dims if dim != time]
-    return (len(along) == 1 and cf_files.labels_along(dataset, along[0])) or ()
 
 
 def _turned(velocity: Velocity, declination: float | None) -> tuple[str, ...]:
@@ -310,8 +302,7 @@ class ArrayRecord(Record):
                 self._current = understand(self._dataset, terms)
             times = self._current.times
             if times is None:
-                message = "has no times: it is one profile, for `calm run`"
-                raise InputError([Problem(str(path), 0, 0, message)])
+                raise refused(path, "has no times: it is one profile, for `calm run`")
             self._index, chosen = choose_profiles(times, period, every, path)
             with cf_files.reading(path):
                 remarks = self._current.remarks(self._index)
@@ -319,14 +310,8 @@ class ArrayRecord(Record):
             self._dataset.close()
             raise
         self.time, self.labels = times[self._index], self._current.labels
-        self.notes = (
-            *chosen,
-            *self._current.notices,
-            *self._current.turned,
-            *remarks,
-            *self._current.rules,
-            *RULES,
-        )
+        found = self._current
+        self.notes = (*chosen, *found.notices, *found.turned, *remarks, *found.rules, *RULES)
         self.source = {"file": path.name, **self._current.source}
         self._ahead: tuple[int, int, CurrentArrays] | None = None
 

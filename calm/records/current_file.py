@@ -1,27 +1,44 @@
-"""A current from a file of measurements or of a model: NetCDF by its first bytes, zarr, or CSV."""
+"""A current from a file of measurements or of a model: NetCDF by its first bytes, zarr, or CSV.
+
+Tables of text are `depth[m],u[m/s],v[m/s]` or `depth[m],speed[m/s],toward[deg]`. A record has the
+column `time` first and a row for every time and depth, the levels of one time in lines that follow.
+It is read once, its numbers kept in a temporary file. A level of a record may have no value, its
+cell blank, `nan` or `NA`: it is left out.
+"""
 
 from __future__ import annotations
 
-from dataclasses import replace
-from datetime import UTC
+import tempfile
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
 
-from calm.errors import InputError, Problem
-from calm.records import current_terms
+from calm.errors import InputError, Problem, UsageError, refused
+from calm.physics.line import Floats, Integers
+from calm.records import current_terms, delimited
+from calm.records.attributes import refused_by_comments, remarks_in_comments
 from calm.records.cf_files import UnreadableError, is_dataset, open_current, reading
 from calm.records.current_dataset import ArrayRecord, CurrentArrays, understand
 from calm.records.current_terms import Terms, TimeChoiceError, choose_time, current_notices
-from calm.records.delimited import CellRow, abridged, read_table
-from calm.records.profile_tables import CurrentTable, turned_notices
-from calm.records.record import Period, Record
-from calm.records.record_csv import EXAMPLE, CsvRecord, CurrentHeader, comment_notices
+from calm.records.delimited import COMMENT, CellRow, NumberedLine, abridged, is_gap, read_table
+from calm.records.headings import heading, is_time, magnetic_columns, zone_complaint
+from calm.records.profile_tables import CurrentTable, QuantityTable, read_currents, turned_notices
+from calm.records.record import RULES, Levels, Period, Record, choose_profiles, part
 from calm.records.water_column import Place
 
 _ZARR = ("zarr.json", ".zgroup", ".zmetadata")
 
 _BLOCK = 10_000
+AT_ONCE = 50_000
+"""Lines of a record that are read together."""
+
+COLUMNS = 4
+"""Depth [m], u, v and w [m/s]."""
+
+EXAMPLE = "depth[m],u[m/s],v[m/s]"
 
 
 def read_current_file(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable, list[str]]:
@@ -83,14 +100,10 @@ def open_record(
     UsageError
         No profile of it is asked for.
     """
-    if not path.exists():
-        raise InputError([Problem(str(path), 0, 0, "no such file")])
     if not (path.is_file() or path.is_dir()):
-        raise InputError([Problem(str(path), 0, 0, "is not a regular file")])
+        raise refused(path, "is not a regular file" if path.exists() else "no such file")
     terms = Terms(seabed, at, declination, on_the_line=on_the_line)
-    if holds_arrays(path):
-        return ArrayRecord(path, terms, time, every)
-    return CsvRecord(path, terms, time, every)
+    return (ArrayRecord if holds_arrays(path) else CsvRecord)(path, terms, time, every)
 
 
 def holds_arrays(path: Path) -> bool:
@@ -101,8 +114,7 @@ def holds_arrays(path: Path) -> bool:
     if not path.is_dir():
         return is_dataset(path)
     if not any((path / name).is_file() for name in _ZARR):
-        message = "is a folder, and not a zarr store; join its files into one first"
-        raise InputError([Problem(str(path), 0, 0, message)])
+        raise refused(path, "is a folder, and not a zarr store; join its files into one first")
     return True
 
 
@@ -112,9 +124,7 @@ def _from_arrays(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTab
         notices = [*current.notices, *current.turned]
         index = 0
         if current.times is not None:
-            seconds = current.times.astype("datetime64[us]").tolist()
-            moments = [moment.replace(tzinfo=UTC) for moment in seconds]
-            index, notice = choose_time(moments, time)
+            index, notice = choose_time(current.times.astype("datetime64[us]"), time)
             notices = [*([notice] if notice else []), *notices]
         elif time is not None:
             raise TimeChoiceError("the file has no times")
@@ -125,8 +135,8 @@ def _from_arrays(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTab
 
 def _profile(arrays: CurrentArrays, terms: Terms, notices: list[str]) -> CurrentTable:
     """Return the levels in water that have a value, by depth."""
-    depth, u, v = (values.ravel() for values in (arrays.depth, arrays.u, arrays.v))
-    w = np.zeros_like(u) if arrays.w is None else arrays.w.ravel()
+    up = np.zeros_like(arrays.u) if arrays.w is None else arrays.w
+    depth, u, v, w = (values.ravel() for values in (arrays.depth, arrays.u, arrays.v, up))
     known = ~np.isnan(u + v + w) & np.isfinite(depth)
     below = known & (depth >= 0)
     for left, what in ((~known, "without a value"), (known & ~below, "above the surface")):
@@ -148,13 +158,13 @@ def _profile(arrays: CurrentArrays, terms: Terms, notices: list[str]) -> Current
 
 def _from_text(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable, list[str]]:
     table = read_table(path, EXAMPLE)
-    header, rows = CurrentHeader(path, table.header), list(table.rows)
+    header, rows = CurrentHeader(table.header), list(table.rows)
     notices: list[str] = []
     if header.timed:
-        rows, notices = _rows_of(rows, time, path)
+        rows, notices = _rows_of(rows, time)
         known = [rows[i] for i in header.known(rows)]
         if rows and not known:
-            raise InputError([Problem(str(path), rows[0].number, 1, "no level has a value")])
+            raise InputError([rows[0].problem("no level has a value")])
         if left_out := len(rows) - len(known):
             levels = f"{left_out} level{'s' * (left_out > 1)}"
             notices.append(f"{levels} without a value left out of the current")
@@ -165,23 +175,218 @@ def _from_text(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable
     depth, u, v, w = header.currents(rows, problems, terms).T
     if problems:
         raise InputError(abridged(problems))
-    notices += [*comment_notices(path, header), *turned_notices(header.columns, terms)]
+    notices += [*_comment_notices(header), *turned_notices(header.columns, terms)]
     notices += current_notices((depth, u[np.newaxis], v[np.newaxis]), None, terms.water_depth)
     return CurrentTable(*(tuple(each.tolist()) for each in (depth, u, v, w))), notices
 
 
-def _rows_of(rows: list[CellRow], time: str | None, path: Path) -> tuple[list[CellRow], list[str]]:
+def _rows_of(rows: list[CellRow], time: str | None) -> tuple[list[CellRow], list[str]]:
     """Return the rows of the time nearest to the one wanted, and the notice that says so."""
-    problems = []
-    moments = []
-    for row in rows:
-        try:
-            moments.append(current_terms.parse_time(row.cells[0]))
-        except TimeChoiceError as error:
-            problems.append(Problem(str(path), row.number, row.column(0), str(error)))
+    problems: list[Problem] = []
+    moments = np.array([_moment_of(row, problems) for row in rows], "datetime64[us]")
     if problems:
         raise InputError(abridged(problems))
-    times = sorted(set(moments))
+    times = np.unique(moments)
     index, notice = choose_time(times, time)
-    chosen = [row for row, moment in zip(rows, moments, strict=True) if moment == times[index]]
-    return chosen, [notice] if notice else []
+    chosen = np.flatnonzero(moments == times[index])
+    return [rows[i] for i in chosen], [notice] if notice else []
+
+
+def _moment_of(row: CellRow, problems: list[Problem]) -> np.datetime64 | None:
+    """Return the time of a row; None, with its mistake added, where it has none."""
+    try:
+        return current_terms.parse_time(row.cells[0])
+    except TimeChoiceError as error:
+        problems.append(row.problem(str(error), 0))
+        return None
+
+
+class CsvRecord(Record):
+    """Read a record once, and keep its numbers in a temporary file until it is closed.
+
+    Parameters and errors are those of `open_record`; every mistake of the file is reported.
+    """
+
+    def __init__(self, path: Path, terms: Terms, period: Period | None, every: int) -> None:
+        self._terms = terms
+        self._kept = tempfile.TemporaryFile()  # noqa: SIM115 (until it is closed)
+        try:
+            header = self._read(path)
+            told = _comment_notices(header)
+            self._index, chosen = choose_profiles(self._times, period, every, path)
+        except BaseException:
+            self._kept.close()
+            raise
+        self.time = self._times[self._index]
+        depth, u, v, _ = self.profiles(0, min(self.count, AT_ONCE))
+        odd = current_notices((depth, u, v), self.time[:AT_ONCE], terms.water_depth)
+        self.notes = (*chosen, *told, *self._turned, *odd, *RULES)
+        self.source = {"file": path.name, "columns": ", ".join(header.columns)}
+
+    def _read(self, path: Path) -> CurrentHeader:
+        """Return every profile of the file into the temporary one."""
+        try:
+            with path.open("rb") as file:
+                bare = (COMMENT.sub(rb"\1", line) if b"#" in line else line for line in file)
+                lines = (
+                    (i, line.decode("utf-8-sig" if i == 1 else "utf-8").rstrip("\r\n"))
+                    for i, line in enumerate(bare, 1)
+                )
+                return self._keep(*delimited.table_lines(path, lines, f"time,{EXAMPLE}"))
+        except UnicodeDecodeError:
+            raise refused(path, "is not UTF-8 text") from None
+        except OSError as error:
+            raise refused(path, f"cannot be read: {error.strerror or error}") from None
+
+    def _keep(self, first: CellRow, lines: Iterator[NumberedLine]) -> CurrentHeader:
+        header = CurrentHeader(first)
+        if not header.timed:
+            message = "has no column `time`: it is one profile, for `calm run`"
+            raise InputError([first.problem(message)])
+        problems: list[Problem] = []
+        times: list[np.datetime64] = []
+        counts: list[int] = []
+        for rows in _whole_profiles(lines, first):
+            begins = [
+                i for i, row in enumerate(rows) if not i or row.cells[0] != rows[i - 1].cells[0]
+            ]
+            moments = [_moment_of(rows[i], problems) for i in begins]
+            times += [each for each in moments if each is not None]
+            sizes = np.diff([*begins, len(rows)])
+            which = np.repeat(np.arange(len(begins)), sizes)
+            try:
+                header.currents(rows, problems, self._terms, which).tofile(self._kept)
+                self._kept.flush()
+            except OSError:
+                place = tempfile.gettempdir()
+                raise UsageError(f"no room for the numbers of the record in {place}") from None
+            counts += sizes.tolist()
+            _refuse(problems, header, at_least=delimited.MOST_PROBLEMS)
+        _refuse(problems, header)
+        self._times = np.array(times, "datetime64[ns]")
+        self._first = np.concatenate([[0], np.cumsum(counts, dtype=np.int64)])
+        self._most = max(counts, default=0)
+        self._rows = np.empty((0, COLUMNS))
+        if self._first[-1]:
+            self._rows = np.memmap(self._kept, np.float64, "r", shape=(self._first[-1], COLUMNS))
+        self._has_w = any(heading(column)[0].lower() == "w" for column in header.columns)
+        self._turned = turned_notices(header.columns, self._terms)
+        return header
+
+    def profiles(self, start: int, stop: int) -> Levels:
+        """See `Record`."""
+        chosen = np.arange(len(self._times))[part(self._index, start, stop)]
+        first, behind = self._first[chosen], self._first[chosen + 1]
+        levels = first[:, np.newaxis] + np.arange(self._most)
+        there = levels < behind[:, np.newaxis]
+        columns = np.full((*levels.shape, COLUMNS), np.nan)
+        columns[there] = self._rows[levels[there]]
+        depth, u, v, w = (np.ascontiguousarray(columns[:, :, i]) for i in range(COLUMNS))
+        return depth, u, v, (w if self._has_w else None)
+
+    def close(self) -> None:
+        """See `Record`."""
+        self._rows = np.empty((0, COLUMNS))
+        self._kept.close()
+
+
+def _comment_notices(header: CurrentHeader) -> list[str]:
+    """Return what the comments above a table of currents say that a person should know.
+
+    InputError: they say that it is a part of the current, or in other coordinates than its columns.
+    """
+    with header.row.path.open("rb") as file:
+        above = (line.decode(errors="replace").strip() for line in islice(file, header.row.number))
+        comments = [line.lstrip("# ") for line in above if line.startswith("#")]
+    magnetic = bool(magnetic_columns(header.columns)[1])
+    if reason := refused_by_comments(comments, magnetic=magnetic):
+        raise refused(header.row.path, f"its current {reason}", line=1)
+    return remarks_in_comments(comments)
+
+
+def _whole_profiles(lines: Iterable[NumberedLine], header: CellRow) -> Iterator[list[CellRow]]:
+    """Yield the rows of so many whole profiles that they are some `AT_ONCE`.
+
+    The rows of a profile follow each other with one time.
+    """
+    gathered: list[CellRow] = []
+    for line in lines:
+        row = header.below(*line)
+        if len(gathered) >= AT_ONCE and row.cells[0] != gathered[-1].cells[0]:
+            yield gathered
+            gathered = []
+        gathered.append(row)
+    if gathered:
+        yield gathered
+
+
+def _refuse(problems: list[Problem], header: CurrentHeader, *, at_least: int = 0) -> None:
+    """Raise the mistakes where there are more than `at_least`, or where the header has one."""
+    in_header = [problem for problem in problems if problem.line == header.row.number]
+    if in_header:
+        raise InputError(abridged(in_header))
+    if len(set(problems)) > at_least:
+        raise InputError(abridged(problems))
+
+
+@dataclass(frozen=True)
+class CurrentHeader:
+    """Know the columns of a table of currents after its time, if it has one."""
+
+    row: CellRow
+
+    def __post_init__(self) -> None:
+        if self.timed and (complaint := zone_complaint(self.row.cells[0])):
+            raise InputError([self.row.problem(complaint, 0)])
+
+    @property
+    def timed(self) -> bool:
+        """Return whether the file is a record."""
+        return is_time(self.row.cells[0])
+
+    @property
+    def columns(self) -> list[str]:
+        """Return the names with their units, without that of the time."""
+        return list(self.row.cells[int(self.timed) :])
+
+    def currents(
+        self,
+        rows: Sequence[CellRow],
+        problems: list[Problem],
+        terms: Terms,
+        profile: Integers | None = None,
+    ) -> Floats:
+        """Return (n, 4) depth [m], u, v and w [m/s] of rows; none, with mistakes added, of wrong
+        ones.
+
+        Parameters
+        ----------
+        rows : of the table
+        problems : to add to
+        terms : how the current is to be taken
+        profile : (n,) which profile each row is of; None where all are of one
+        """
+        first = int(self.timed)
+
+        def report(location: Sequence[str | int], message: str) -> Problem:
+            place = [int(part) for part in location[1:]]
+            row = rows[place.pop(0)] if location[0] == "rows" and place else self.row
+            return row.problem(message, place[0] + first if place else 0)
+
+        before = len(problems)
+        for row in rows if self.row.dialect.decimal == "," else ():
+            problems += row.mixed_decimals()
+        cells = [[cell or None for cell in row.cells[first:]] for row in rows]
+        table = QuantityTable(self.columns, cells, report, problems)
+        found = read_currents(table, terms, profile)
+        return np.empty((0, COLUMNS)) if found is None or len(problems) > before else found
+
+    def known(self, rows: Sequence[CellRow]) -> list[int]:
+        """Return which rows of a record give a current."""
+        names = [heading(cell)[0].lower() for cell in self.row.cells]
+        current = [j for j, name in enumerate(names) if name not in ("time", "depth")]
+        return [
+            i
+            for i, row in enumerate(rows)
+            if len(row.cells) != len(names) or not any(map(is_gap, (row.cells[j] for j in current)))
+        ]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from math import hypot, inf, isinf, pi
@@ -82,8 +82,8 @@ class TimeChoiceError(ValueError):
     """The time asked for is none, is not in the record, or is needed and not given."""
 
 
-def parse_time(text: str) -> datetime:
-    """Return an ISO 8601 time, in UTC where it names no zone.
+def parse_time(text: str) -> np.datetime64:
+    """Return an ISO 8601 time in UTC [µs], in which it is taken where it names no zone.
 
     TimeChoiceError: the text is no such time.
     """
@@ -91,35 +91,37 @@ def parse_time(text: str) -> datetime:
         time = datetime.fromisoformat(text.strip())
     except ValueError:
         raise TimeChoiceError(f"`{text[:40]}` is not a time; write 2026-03-01T06:00") from None
-    return time.replace(tzinfo=UTC) if time.tzinfo is None else time.astimezone(UTC)
+    return np.datetime64(time if time.tzinfo is None else time.astimezone(UTC).replace(tzinfo=None))
 
 
-def choose_time(times: Sequence[datetime], wanted: str | None) -> tuple[int, str | None]:
+def time_text(time: np.datetime64) -> str:
+    """Return a time as a person reads it."""
+    text: str = np.datetime_as_string(time.astype("datetime64[s]"))
+    return text.removesuffix(":00")
+
+
+def choose_time(times: NDArray[np.datetime64], wanted: str | None) -> tuple[int, str | None]:
     """Return the index of the time nearest to the one wanted, and a notice where it is another.
 
     TimeChoiceError: there is no time to choose from, several and none is wanted, or all lie to one
     side.
     """
-    if not times:
+    if not len(times):
         raise TimeChoiceError("the file has no times")
-    first, last = min(times), max(times)
-    span = f"{_short(first)} to {_short(last)}"
+    first, last = times.min(), times.max()
+    span = f"{time_text(first)} to {time_text(last)}"
     if wanted is None:
         if len(times) == 1:
             return 0, None
         raise TimeChoiceError(f"the file has {len(times)} times, {span}; give `time:`")
     moment = parse_time(wanted)
-    if not first.replace(microsecond=0) <= moment <= last:
-        raise TimeChoiceError(f"{_short(moment)} is outside the record, {span}")
-    index = min(range(len(times)), key=lambda i: abs(times[i] - moment))
+    if not first.astype("datetime64[s]") <= moment <= last:
+        raise TimeChoiceError(f"{time_text(moment)} is outside the record, {span}")
+    index = int(np.abs(times - moment).argmin())
     if times[index] == moment:
         return index, None
-    return index, f"the current is that of {_short(times[index])}, nearest to {_short(moment)}"
-
-
-def _short(time: datetime) -> str:
-    text = time.strftime("%Y-%m-%dT%H:%M:%S")
-    return text.removesuffix(":00")
+    nearest = f"{time_text(times[index])}, nearest to {time_text(moment)}"
+    return index, f"the current is that of {nearest}"
 
 
 FAR_APART = np.timedelta64(12, "h")

@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from calm.errors import InputError, Problem, shown
+from calm.errors import Problem, refused, shown
 from calm.physics.line import Floats
 from calm.whole_file import decoded, read_content
 
@@ -114,34 +114,45 @@ class CellRow(NamedTuple):
 
     Attributes
     ----------
+    path : of its file
     number : of the line
     line : as it stands
     cells : without `skipped` ones before them
     dialect : of the table
     """
 
+    path: Path
     number: int
     line: str
     cells: Sequence[str]
     dialect: Dialect
     skipped: int = 0
 
-    def column(self, cell: int) -> int:
-        """Return where a cell begins in the line, counted from 1."""
-        return self.dialect.column(self.line, cell + self.skipped)
+    def problem(self, message: str, cell: int | None = None) -> Problem:
+        """Return a mistake where a cell begins in the line; at its beginning without one."""
+        at = 1 if cell is None else self.dialect.column(self.line, cell + self.skipped)
+        return Problem(str(self.path), self.number, at, message)
 
-    def mixed_decimals(self, path: Path) -> list[Problem]:
+    def mixed_decimals(self) -> list[Problem]:
         """Return a mistake for each number with a point in a table of decimal commas."""
         if self.dialect.decimal != ",":
             return []
+        mixed = "has a decimal point, and the numbers before it have commas"
         return [
-            Problem(
-                str(path), self.number, self.column(j - self.skipped),
-                f"`{shown(cell)}` has a decimal point, and the numbers before it have commas",
-            )
+            self.problem(f"`{shown(cell)}` {mixed}", j - self.skipped)
             for j, cell in enumerate(Dialect(self.dialect.separator).cells(self.line))
             if _POINT.fullmatch(cell)
-        ]  # fmt: skip
+        ]
+
+    def below(self, number: int, line: str) -> CellRow:
+        """Return a line below this header as cells, by its number.
+
+        Between blanks, a time may be a date and a clock, which are two words.
+        """
+        cells, skipped = self.dialect.cells(line), self.skipped
+        if self.dialect.separator == " " and len(cells) == len(self.cells) + skipped + 1:
+            cells[skipped : skipped + 2] = [f"{cells[skipped]} {cells[skipped + 1]}"]
+        return CellRow(self.path, number, line, cells[skipped:], self.dialect, skipped)
 
 
 @dataclass(frozen=True)
@@ -151,9 +162,21 @@ class TextTable:
     `rows` is read once where a file is read as it is needed.
     """
 
-    path: Path
     header: CellRow
     rows: Iterable[CellRow]
+
+    def whole_rows(self, problems: list[Problem]) -> list[CellRow]:
+        """Return the rows with as many cells as the header; mistakes are added for the others."""
+        whole = []
+        for row in self.rows:
+            problems += row.mixed_decimals()
+            count, needed = len(row.cells), len(self.header.cells)
+            if count == needed:
+                whole.append(row)
+                continue
+            hint = "; a decimal comma? (write 48.2, not 48,2)" if count > needed else ""
+            problems.append(row.problem(f"the row has {count} values, {needed} are needed{hint}"))
+        return whole
 
 
 @dataclass(frozen=True)
@@ -188,7 +211,7 @@ def read_table(path: Path, example: str, lines: Iterable[NumberedLine] | None = 
         text = decoded(path, COMMENT.sub(rb"\1", read_content(path, largest=LARGEST_CSV)))
         lines = enumerate(text.removeprefix("\ufeff").splitlines(), 1)
     header, lines = table_lines(path, lines, example)
-    return TextTable(path, header, [row_below(header, *line) for line in lines])
+    return TextTable(header, [header.below(*line) for line in lines])
 
 
 def table_lines(
@@ -212,40 +235,21 @@ def table_lines(
     lines = _content(lines)
     sample = list(islice(lines, _SAMPLE))
     if not sample:
-        raise InputError([Problem(str(path), 0, 0, "is empty")])
+        raise refused(path, "is empty")
     dialect = dialect_of([line for _, line in sample])
     number, line = sample[0]
     cells = dialect.cells(line)
+    skipped = int(not cells[0])
+    header = CellRow(path, number, line, cells[skipped:], dialect, skipped)
     if len(cells) > 1 and not cells[-1]:
         message = f"the line ends in a {dialect.name}; take it off every line"
-        raise InputError([Problem(str(path), number, len(line.rstrip(" ")), message)])
+        raise refused(path, message, line=number, column=len(line.rstrip(" ")))
     if all(NUMBER.fullmatch(cell) for cell in cells):
-        message = f"there is no header; did you mean `{example}`?"
-        raise InputError([Problem(str(path), number, 1, message)])
+        raise refused(path, f"there is no header; did you mean `{example}`?", line=number)
     if len(cells) < 2:
         message = f"`{shown(line[:40])}` is not a header such as `{example}`"
-        raise InputError([Problem(str(path), number, 1, message)])
-    skipped = int(not cells[0])
-    header = CellRow(number, line, cells[skipped:], dialect, skipped)
+        raise refused(path, message, line=number)
     return header, chain(sample[1:], lines)
-
-
-def row_below(header: CellRow, number: int, line: str) -> CellRow:
-    """Return a line below a header as cells.
-
-    Between blanks, a time may be a date and a clock, which are two words.
-
-    Parameters
-    ----------
-    header : of the table
-    number : of the line
-    line : as it stands
-    """
-    dialect, skipped = header.dialect, header.skipped
-    cells = dialect.cells(line)
-    if dialect.separator == " " and len(cells) == len(header.cells) + skipped + 1:
-        cells[skipped : skipped + 2] = [f"{cells[skipped]} {cells[skipped + 1]}"]
-    return CellRow(number, line, cells[skipped:], dialect, skipped)
 
 
 def copied_table(text: str) -> CopiedTable:

@@ -130,22 +130,15 @@ _INFINITE = ("inf", "infinity")
 
 @dataclass(frozen=True)
 class NamedRow:
-    """Hold a line of a table by the names of its known columns."""
+    """Hold the cells of a row by the names of their known columns, and the places of these."""
 
-    line: int
+    row: delimited.CellRow
     cells: Mapping[str, str]
-    columns: Mapping[str, int]
+    places: Mapping[str, int]
 
-    def problem(self, path: Path, name: str, message: str) -> Problem:
-        """Return a mistake at the cell of a column.
-
-        Parameters
-        ----------
-        path : of the table
-        name : of the column
-        message : what is wrong
-        """
-        return Problem(str(path), self.line, self.columns[name], message)
+    def problem(self, name: str, message: str) -> Problem:
+        """Return a mistake at the cell of a column."""
+        return self.row.problem(message, self.places[name])
 
 
 @dataclass(frozen=True)
@@ -157,25 +150,18 @@ class NamedColumns:
     factors : of the known columns that are there, to SI (degrees)
     rows : as many cells in each as there are headings
     others : headings of the other columns
-    header : line of the headings
+    header : of the table
     """
 
     factors: Mapping[str, float]
     rows: Sequence[NamedRow]
     others: Sequence[str]
-    header: int
+    header: delimited.CellRow
 
-    def lacks(self, path: Path, name: str, unit: str) -> Problem:
-        """Return the mistake that there is no column of a name.
-
-        Parameters
-        ----------
-        path : of the table
-        name : of the column
-        unit : to offer with it
-        """
+    def lacks(self, name: str, unit: str) -> Problem:
+        """Return the mistake that there is no column of a name, for which a unit is offered."""
         message = unknown(f"there is no column `{name}[{unit}]`", name, self.others or [name])
-        return Problem(str(path), self.header, 1, message)
+        return self.header.problem(message)
 
 
 @dataclass(frozen=True)
@@ -196,31 +182,21 @@ class TimeColumns:
 
 
 def read_named_columns(
-    path: Path,
+    table: delimited.TextTable,
     known: Mapping[str, str],
-    example: str,
     problems: list[Problem],
     *,
-    table: delimited.TextTable | None = None,
     other_names: Mapping[str, str] = MappingProxyType({}),
 ) -> NamedColumns:
     """Return the cells of a table as they stand; mistakes of its form are added to `problems`.
 
     Parameters
     ----------
-    path : of the table
+    table : of a file
     known : dimensions of the columns by their names, blanks in which may be underscores
-    example : of a header, for messages
     problems : to add to
-    table : of the file, where it is read already
     other_names : what columns may be called too
-
-    Raises
-    ------
-    InputError
-        It cannot be read, is empty, or has no header.
     """
-    table = table or delimited.read_table(path, example)
     header = table.header
     names = [heading(column)[0].lower().replace(" ", "_") for column in header.cells]
     names = [name if name in known else other_names.get(name, name) for name in names]
@@ -234,23 +210,15 @@ def read_named_columns(
             factors[name] = column_unit(column, heading(column)[1], [known[name]])[1]
         except QuantityError as error:
             factors[name] = 1.0
-            problems.append(Problem(str(path), header.number, header.column(j), str(error)))
-    rows = []
-    for row in _whole_rows(table, problems):
-        mine = [j for j, name in enumerate(names) if name in factors]
-        rows.append(
-            NamedRow(
-                row.number,
-                {names[j]: row.cells[j] for j in mine},
-                {names[j]: row.column(j) for j in mine},
-            )
-        )
-    others = [
-        column
-        for column, name in zip(header.cells, names, strict=True)
-        if column and name not in known
+            problems.append(header.problem(str(error), j))
+    places = {name: j for j, name in enumerate(names) if name in factors}
+    rows = [
+        NamedRow(row, {name: row.cells[j] for name, j in places.items()}, places)
+        for row in table.whole_rows(problems)
     ]
-    return NamedColumns(factors, rows, others, header.number)
+    pairs = zip(header.cells, names, strict=True)
+    others = [column for column, name in pairs if column and name not in known]
+    return NamedColumns(factors, rows, others, header)
 
 
 def read_time_columns(path: Path, dimensions: Sequence[str], example: str) -> TimeColumns:
@@ -271,42 +239,41 @@ def read_time_columns(path: Path, dimensions: Sequence[str], example: str) -> Ti
     header = table.header
     if not is_time(header.cells[0]):
         message = f"is not a table over time; its heading should be `time,{example}`"
-        raise InputError([Problem(str(path), header.number, 1, message)])
+        raise InputError([header.problem(message)])
     problems: list[Problem] = []
     if complaint := zone_complaint(header.cells[0]):
-        problems.append(Problem(str(path), header.number, header.column(0), complaint))
-    columns = [
-        _labelled(path, header, j, dimensions, heading(example)[1], problems)
-        for j in range(1, len(header.cells))
-    ]
-    rows = _whole_rows(table, problems)
+        problems.append(header.problem(complaint, 0))
+    columns: dict[int, _LabelledColumn] = {}
+    for j, column in enumerate(header.cells[1:], 1):
+        name, unit = heading(column, dimensions)
+        try:
+            dimension, factor = column_unit(column, unit, dimensions, heading(example)[1])
+        except QuantityError as error:
+            problems.append(header.problem(str(error), j))
+        else:
+            usual = DIMENSIONS[dimension].unit
+            columns[j] = _LabelledColumn(name, dimension, unit or usual, factor)
+    rows = table.whole_rows(problems)
     if not rows and not problems:
-        problems.append(Problem(str(path), header.number, 1, "the table has no rows"))
+        problems.append(header.problem("the table has no rows"))
     times = np.full(len(rows), np.datetime64("NaT"), "M8[ns]")
     values = np.full((len(rows), len(columns)), np.nan)
     for i, row in enumerate(rows):
         try:
-            times[i] = np.datetime64(parse_time(row.cells[0]).replace(tzinfo=None), "ns")
+            times[i] = parse_time(row.cells[0])
         except TimeChoiceError as error:
-            problems.append(Problem(str(path), row.number, row.column(0), str(error)))
-        for j, column in enumerate(columns):
-            if column is None:
-                continue
+            problems.append(row.problem(str(error), 0))
+        for k, (j, labelled) in enumerate(columns.items()):
             try:
-                values[i, j] = column.value(row.cells[j + 1])
+                values[i, k] = labelled.value(row.cells[j])
             except QuantityError as error:
-                message = about_quantity(column.name, row.cells[j + 1], error)
-                problems.append(Problem(str(path), row.number, row.column(j + 1), message))
+                problems.append(row.problem(about_quantity(labelled.name, row.cells[j], error), j))
     if problems:
         raise InputError(delimited.abridged(problems))
-    found = [column for column in columns if column is not None]
     order = np.argsort(times, kind="stable")
-    return TimeColumns(
-        times[order],
-        tuple(column.name for column in found),
-        tuple(column.dimension for column in found),
-        values[order],
-    )
+    found = columns.values()
+    names, kinds = tuple(one.name for one in found), tuple(one.dimension for one in found)
+    return TimeColumns(times[order], names, kinds, values[order])
 
 
 @dataclass(frozen=True)
@@ -325,37 +292,3 @@ class _LabelledColumn:
         if cell.lower() in delimited.GAPS or cell.lower().lstrip("+-") in _INFINITE:
             return float("nan")
         return QuantityRange(self.dimension, self.unit).read(cell)
-
-
-def _labelled(
-    path: Path,
-    header: delimited.CellRow,
-    j: int,
-    dimensions: Sequence[str],
-    usual: str,
-    problems: list[Problem],
-) -> _LabelledColumn | None:
-    """Return the column of a heading; None, with its mistake added, where it has any."""
-    column = header.cells[j]
-    name, unit = heading(column, dimensions)
-    try:
-        dimension, factor = column_unit(column, unit, dimensions, usual)
-    except QuantityError as error:
-        problems.append(Problem(str(path), header.number, header.column(j), str(error)))
-        return None
-    return _LabelledColumn(name, dimension, unit or DIMENSIONS[dimension].unit, factor)
-
-
-def _whole_rows(table: delimited.TextTable, problems: list[Problem]) -> list[delimited.CellRow]:
-    """Return the rows that have as many cells as the header; mistakes are added for the others."""
-    whole = []
-    for row in table.rows:
-        problems += row.mixed_decimals(table.path)
-        count, needed = len(row.cells), len(table.header.cells)
-        if count == needed:
-            whole.append(row)
-            continue
-        hint = "; a decimal comma? (write 48.2, not 48,2)" if count > needed else ""
-        message = f"the row has {count} values, {needed} are needed{hint}"
-        problems.append(Problem(str(table.path), row.number, 1, message))
-    return whole

@@ -15,11 +15,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.errors import InputError, Problem, UsageError
+from calm.errors import InputError, Problem, UsageError, refused
 from calm.records import cf_files, measured_quantities
 from calm.records.cf_files import UnreadableError, factor_of, first_present, holdings, known_values
 from calm.records.level_depths import find_levels
 from calm.records.velocity import (
+    Velocity,
     find_velocity,
     flag_variable,
     flags_of,
@@ -161,15 +162,11 @@ def _of_file(
     path: Path, names: Sequence[str], flags: frozenset[int], seabed: float
 ) -> dict[str, list[InstrumentSeries]]:
     if not path.is_dir() and not cf_files.is_dataset(path):
-        raise InputError([Problem(str(path), 0, 0, "is not NetCDF, RODB, .cnv or RBR's table")])
+        raise refused(path, "is not NetCDF, RODB, .cnv or RBR's table")
     with cf_files.reading(path), cf_files.open_current(path) as dataset:
         try:
-            whole = with_components(dataset)
-            found = {}
-            for name in names:
-                variables = _find(whole, name)
-                if variables:
-                    found[name] = _instruments(whole, name, variables, path, flags, seabed)
+            file = _SeriesFile(with_components(dataset), path.name, flags, seabed)
+            found = {name: series for name in names if (series := file.series(name))}
         except UnreadableError as error:
             raise UnreadableError(f"{error}; it holds {holdings(dataset)}") from None
         if not found:
@@ -177,23 +174,80 @@ def _of_file(
     return found
 
 
-def _find(dataset: xr.Dataset, name: str) -> tuple[str, ...]:
-    """Return the variable of a quantity; of velocities the two that make it; nothing without."""
-    quantity = measured_quantities.QUANTITIES_MEASURED[name]
-    if quantity.dimension == "speed":
+@dataclass(frozen=True)
+class _SeriesFile:
+    """A dataset of instruments, the name of its file, and how it is read; see `read_series`."""
+
+    dataset: xr.Dataset
+    name: str
+    flags: frozenset[int]
+    seabed: float
+
+    def series(self, name: str) -> list[InstrumentSeries]:
+        """Return what the instruments measured of a quantity; nothing where they did not."""
+        dataset, quantity = self.dataset, measured_quantities.QUANTITIES_MEASURED[name]
+        moving = quantity.dimension == "speed"
+        velocity = self._velocity(quantity) if moving else None
+        variables: Sequence[str] = velocity.names if velocity else ()
+        if not moving:
+            variables = named(dataset, quantity.sought, quantity.usual)[:1]
+        if not variables:
+            return []
+        found = readings(dataset, variables, self.flags)
+        first, values = dataset[variables[0]], found.values
+        if velocity is not None and velocity.turn is None:
+            which = 0 if name == "u" else 1
+            value = values[which] * factor_of(dataset[variables[which]], "speed")
+        elif velocity is not None and velocity.turn is not None:
+            angles = values[1] * factor_of(dataset[variables[1]], "angle")
+            angle = np.radians(angles + velocity.turn)
+            speed = values[0] * factor_of(first, "speed")
+            value = speed * (np.sin(angle) if name == "u" else np.cos(angle))
+        elif quantity.dimension == "temperature":
+            value = values[0] - measured_quantities.celsius_zero(first)
+        elif quantity.dimension == "salinity":
+            value = values[0] * measured_quantities.practical_factor(first)
+        else:
+            value = values[0] * factor_of(first, quantity.dimension)
+        value = np.where(found.dropped, np.nan, value)
+        who = who_along(dataset, found.along, self.seabed, self.name)
+        below = np.zeros(len(who))
+        if found.along is not None and not any(one.known for one in who):
+            below = self._bins(found.along, found.axis)
+            who = who_along(dataset, None, self.seabed, self.name) * len(who)
+        return [
+            InstrumentSeries(
+                **vars(who[j]),
+                time=found.time,
+                value=value[:, j],
+                dropped=int(found.dropped[:, j].sum()),
+                below=float(below[j]),
+            )
+            for j in range(value.shape[1])
+        ]
+
+    def _velocity(self, quantity: measured_quantities.Measured) -> Velocity | None:
+        """Return the velocity of the file; None where it has none."""
         try:
-            velocity = find_velocity(dataset, regular=False)
+            velocity = find_velocity(self.dataset, regular=False)
         except UnreadableError:
-            if first_present(dataset, quantity.sought) or _standard(dataset, quantity.sought):
+            sought = quantity.sought
+            if first_present(self.dataset, sought) or _standard(self.dataset, sought):
                 raise
-            return ()
+            return None
         if velocity.magnetic:
             raise UnreadableError(
                 f"`{velocity.names[-1]}` is relative to magnetic north; turn it to true north "
                 "before it is gridded"
             )
-        return velocity.names
-    return tuple(named(dataset, quantity.sought, quantity.usual)[:1])
+        return velocity
+
+    def _bins(self, along: str, time: str) -> Floats:
+        """Return how far the bins of a profiler are below it [m]; nowhere else are they known."""
+        levels = find_levels(self.dataset, along, time, self.seabed)
+        if levels.instrument is None or time in levels.variable.dims:
+            raise UnreadableError(f"`{along}` counts neither instruments nor bins of a profiler")
+        return np.asarray(known_values(levels.variable) * levels.factor)
 
 
 def named(dataset: xr.Dataset, sought: Sequence[str], usual: Sequence[str]) -> list[str]:
@@ -212,51 +266,6 @@ def named(dataset: xr.Dataset, sought: Sequence[str], usual: Sequence[str]) -> l
 def _standard(dataset: xr.Dataset, sought: Sequence[str]) -> list[str]:
     names = dataset.cf.standard_names
     return next((list(map(str, names[one])) for one in sought if one in names), [])
-
-
-def _instruments(
-    dataset: xr.Dataset,
-    name: str,
-    variables: tuple[str, ...],
-    path: Path,
-    flags: frozenset[int],
-    seabed: float,
-) -> list[InstrumentSeries]:
-    quantity, first = measured_quantities.QUANTITIES_MEASURED[name], variables[0]
-    found = readings(dataset, variables, flags)
-    parts, dropped, along = found.values, found.dropped, found.along
-    if quantity.dimension == "speed":
-        value = _velocity(dataset, variables, parts, name)
-    elif quantity.dimension == "temperature":
-        value = parts[0] - measured_quantities.celsius_zero(dataset[first])
-    elif quantity.dimension == "salinity":
-        value = parts[0] * measured_quantities.practical_factor(dataset[first])
-    else:
-        value = parts[0] * factor_of(dataset[first], quantity.dimension)
-    value = np.where(dropped, np.nan, value)
-    who = who_along(dataset, along, seabed, path.name)
-    below = np.zeros(len(who))
-    if along is not None and not any(one.known for one in who):
-        below = _bins(dataset, along, found.axis, seabed)
-        who = who_along(dataset, None, seabed, path.name) * len(who)
-    return [
-        InstrumentSeries(
-            **vars(who[j]),
-            time=found.time,
-            value=value[:, j],
-            dropped=int(dropped[:, j].sum()),
-            below=float(below[j]),
-        )
-        for j in range(value.shape[1])
-    ]
-
-
-def _bins(dataset: xr.Dataset, along: str, time: str, seabed: float) -> Floats:
-    """Return how far the bins of a profiler are below it [m]; nowhere else are they known."""
-    levels = find_levels(dataset, along, time, seabed)
-    if levels.instrument is None or time in levels.variable.dims:
-        raise UnreadableError(f"`{along}` counts neither instruments nor bins of a profiler")
-    return np.asarray(known_values(levels.variable) * levels.factor)
 
 
 @dataclass(frozen=True)
@@ -350,9 +359,7 @@ def _serials(dataset: xr.Dataset, dims: tuple[str, ...]) -> list[str]:
     """Return the serial numbers over some dimensions; none where the file has none."""
     for name in first_present(dataset, _SERIALS):
         if dataset[name].dims == dims:
-            values = np.atleast_1d(dataset[name].values).tolist()
-            texts = [one.decode() if isinstance(one, bytes) else str(one) for one in values]
-            return [text.strip().rstrip("*") for text in texts]
+            return [text.rstrip("*") for text in cf_files.texts_of(dataset[name])]
     return []
 
 
@@ -363,16 +370,3 @@ def _number(attributes: Any) -> float:
         except (KeyError, TypeError, ValueError):
             continue
     return float("nan")
-
-
-def _velocity(
-    dataset: xr.Dataset, variables: tuple[str, ...], parts: list[Floats], name: str
-) -> Floats:
-    turn = find_velocity(dataset, regular=False).turn
-    if turn is None:
-        which = 0 if name == "u" else 1
-        return parts[which] * factor_of(dataset[variables[which]], "speed")
-    speed = parts[0] * factor_of(dataset[variables[0]], "speed")
-    angle = np.radians(parts[1] * factor_of(dataset[variables[1]], "angle") + turn)
-    component: Floats = speed * (np.sin(angle) if name == "u" else np.cos(angle))
-    return component

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.errors import InputError, Problem
+from calm.errors import InputError, Problem, refused
 from calm.physics.line import Floats
 from calm.positions import plain_degrees
 from calm.whole_file import read_content
@@ -147,7 +147,7 @@ def _rodb(path: Path) -> xr.Dataset:
         first += 1
     names = said["columns"].upper().split(":")
     if not set(_DATE[:3]) <= set(names):
-        raise _refused(path, first, "its `Columns` have no YY, MM and DD")
+        raise refused(path, "its `Columns` have no YY, MM and DD", line=first)
     values = _numbers(path, lines, first, len(names))
     of = dict(zip(names, values.T, strict=True))
     year, month, day = (of[name].astype(np.int64) for name in _DATE[:3])
@@ -159,7 +159,7 @@ def _rodb(path: Path) -> xr.Dataset:
     try:
         nominal, degrees = float(said.get("instrdepth", "nan")), plain_degrees(latitude, "latitude")
     except ValueError:
-        raise _refused(path, 0, "its `InstrDepth` or `Latitude` is no number") from None
+        raise refused(path, "its `InstrDepth` or `Latitude` is no number") from None
     serial = said.get("serialnumber", "")
     return _dataset(path, time + seconds.astype("m8[s]"), columns, nominal, degrees, serial)
 
@@ -170,7 +170,7 @@ def _cnv(path: Path) -> xr.Dataset:
     head = "\n".join(lines[:first])
     names = {int(one[1]): (one[2], one[3]) for one in map(_CNV_NAME.match, lines[:first]) if one}
     if not names:
-        raise _refused(path, 0, "its head names no columns")
+        raise refused(path, "its head names no columns")
     values = _numbers(path, lines, first, len(names))
     columns: dict[tuple[str, str], Floats] = {}
     for j, (name, told) in names.items():
@@ -184,7 +184,7 @@ def _cnv(path: Path) -> xr.Dataset:
     clock = next(((j, name) for j, (name, _) in names.items() if name in _CNV_TIMES), None)
     start = re.search(r"(?m)^# start_time = (\w{3} \d+ \d{4}(?: [\d:]+)?)", head)
     if clock is None or (start is None and clock[1] not in _CNV_EPOCHS):
-        raise _refused(path, 0, f"has no times: none of {', '.join(_CNV_TIMES)}, or no start_time")
+        raise refused(path, f"has no times: none of {', '.join(_CNV_TIMES)}, or no start_time")
     seconds = values[:, clock[0]] * _CNV_TIMES[clock[1]]
     if clock[1] in _CNV_EPOCHS:
         epoch = np.datetime64(_CNV_EPOCHS[clock[1]], "us")
@@ -212,7 +212,7 @@ def _rbr(path: Path) -> xr.Dataset:
     try:
         time = np.array(moments, "M8[us]")
     except ValueError:
-        raise _refused(path, first + 1, "has a row without a time") from None
+        raise refused(path, "has a row without a time", line=first + 1) from None
     of = {one[1]: (one[2], values[:, j]) for j, one in enumerate(told) if one}
     if "sea_pressure" in of or "pressure" in of:
         of["pressure"] = of.get("sea_pressure") or ("dbar", of["pressure"][1] - AIR)
@@ -241,7 +241,3 @@ def _numbers(path: Path, lines: Sequence[str], first: int, count: int) -> Floats
     values = np.array(rows, np.float64)
     values[np.isin(values, _MISSING)] = np.nan
     return values
-
-
-def _refused(path: Path, line: int, message: str) -> InputError:
-    return InputError([Problem(str(path), line, 1 if line else 0, message)])

@@ -84,8 +84,7 @@ def find_levels(
 ) -> LevelDepths:
     """Return the levels of a velocity that spreads over `level` and `time`, either of them None.
 
-    Those that move with time come before those that do not; `water_depth` [m] places heights
-    above the seabed.
+    Those that move with time come before those that do not.
 
     Parameters
     ----------
@@ -99,22 +98,7 @@ def find_levels(
     UnreadableError
         There are none, or the file does not say which way they grow.
     """
-    candidates = _candidates(dataset, level, time)
-    if not candidates:
-        raise UnreadableError("its levels have no depth")
-    unusable: list[UnreadableError] = []
-    for variable in candidates:
-        try:
-            factor = factor_of(variable, "length")
-        except UnreadableError as error:
-            unusable.append(error)
-        else:
-            return _placed(dataset, variable, factor, time, water_depth)
-    raise unusable[0]
-
-
-def _candidates(dataset: xr.Dataset, level: str | None, time: str | None) -> list[xr.DataArray]:
-    standard = dataset.cf.standard_names
+    standard, wanted = dataset.cf.standard_names, {level} - {None}
     names = [
         *dataset.cf.axes.get("Z", []),
         *dataset.cf.coordinates.get("vertical", []),
@@ -122,152 +106,145 @@ def _candidates(dataset: xr.Dataset, level: str | None, time: str | None) -> lis
         *standard.get("height_above_sea_floor", []),
         *_NAMES,
     ]
-    wanted = {level} - {None}
     fitting = [
         dataset[name]
         for name in first_present(dataset, names)
         if wanted <= set(dataset[name].dims) <= {level, time}
     ]
-    return sorted(fitting, key=lambda variable: time not in variable.dims)
+    unusable = []
+    for variable in sorted(fitting, key=lambda one: time not in one.dims):
+        try:
+            factor = factor_of(variable, "length")
+        except UnreadableError as error:
+            unusable.append(error)
+        else:
+            return _Levels(dataset, variable, factor, time, water_depth).placed()
+    raise (unusable or [UnreadableError("its levels have no depth")])[0]
 
 
-def _placed(
-    dataset: xr.Dataset, levels: xr.DataArray, factor: float, time: str | None, water_depth: float
-) -> LevelDepths:
-    if _MODEL_COORDINATE.fullmatch(str(levels.attrs.get("standard_name", ""))):
-        raise UnreadableError(
-            f"`{levels.name}` is {levels.attrs['standard_name']}, a share of the water depth, "
-            "whatever its unit; give the depths of the levels, such as ROMS' `z_rho`"
-        )
-    words = f"{levels.name} " + words_of(levels, "standard_name", "long_name", "reference_datum")
-    words = re.sub(r"[\W_]+", " ", words.lower())
-    if _COUNTED.search(words):
-        said = levels.attrs.get("long_name", levels.name)
-        raise UnreadableError(
-            f"`{levels.name}` counts its levels (`{said}`) and does not say how deep they are"
-        )
-    if _ALONG_BEAM.search(f"{words} {words_of(levels, 'comment')}"):
-        raise UnreadableError(
-            f"`{levels.name}` is the distance along the beam, which is longer than the height: "
-            "multiply it by the cosine of the beam's angle, 20° or 25° for most instruments"
-        )
-    if _ABOVE_SEABED.search(words):
-        return _above_seabed(levels, factor, water_depth)
-    positive = str(levels.attrs.get("positive", "")).lower()
-    if _FROM_INSTRUMENT.search(words) or words_of(levels, "reference_datum") in (
-        "sensor",
-        "instrument",
-        "transducer",
-    ):
-        way = positive or _way_it_looks(dataset, levels, words)
-        return _from_instrument(dataset, levels, factor, way, time, water_depth)
-    if not positive and levels.name in _HEIGHTS and _sign(levels, time) < 0:
-        positive = "up"
-    elif not positive and "depth" in words:
-        positive = "down"
-    if positive not in ("up", "down"):
-        raise UnreadableError(f"`{levels.name}` does not say whether it is `positive` up or down")
-    factor = factor if positive == "down" else -factor
-    if _sign(levels, time) * factor < 0:
-        raise UnreadableError(
-            f"`{levels.name}` is positive {positive}, and no level of it is below the surface: "
-            "its sign or its `positive` is wrong"
-        )
-    return LevelDepths(levels, factor, 0.0, None, ())
+@dataclass(frozen=True)
+class _Levels:
+    """The variable of the levels, and what tells where these are."""
+
+    dataset: xr.Dataset
+    variable: xr.DataArray
+    factor: float
+    time: str | None
+    water_depth: float
+
+    def placed(self) -> LevelDepths:
+        """Return the levels from the surface, the seabed or the instrument, as the file has it."""
+        levels, name = self.variable, self.variable.name
+        if _MODEL_COORDINATE.fullmatch(str(levels.attrs.get("standard_name", ""))):
+            raise UnreadableError(
+                f"`{name}` is {levels.attrs['standard_name']}, a share of the water depth, "
+                "whatever its unit; give the depths of the levels, such as ROMS' `z_rho`"
+            )
+        words = f"{name} " + words_of(levels, "standard_name", "long_name", "reference_datum")
+        words = re.sub(r"[\W_]+", " ", words.lower())
+        if _COUNTED.search(words):
+            said = levels.attrs.get("long_name", name)
+            raise UnreadableError(
+                f"`{name}` counts its levels (`{said}`) and does not say how deep they are"
+            )
+        if _ALONG_BEAM.search(f"{words} {words_of(levels, 'comment')}"):
+            raise UnreadableError(
+                f"`{name}` is the distance along the beam, which is longer than the height: "
+                "multiply it by the cosine of the beam's angle, 20° or 25° for most instruments"
+            )
+        if _ABOVE_SEABED.search(words):
+            return self._above_seabed()
+        positive = str(levels.attrs.get("positive", "")).lower()
+        datum = words_of(levels, "reference_datum")
+        if _FROM_INSTRUMENT.search(words) or datum in ("sensor", "instrument", "transducer"):
+            return self._from_instrument(positive or self._way_it_looks(words))
+        if not positive and name in _HEIGHTS and self._sign < 0:
+            positive = "up"
+        elif not positive and "depth" in words:
+            positive = "down"
+        if positive not in ("up", "down"):
+            raise UnreadableError(f"`{name}` does not say whether it is `positive` up or down")
+        factor = self.factor if positive == "down" else -self.factor
+        if self._sign * factor < 0:
+            raise UnreadableError(
+                f"`{name}` is positive {positive}, and no level of it is below the surface: "
+                "its sign or its `positive` is wrong"
+            )
+        return LevelDepths(levels, factor, 0.0, None, ())
+
+    def _above_seabed(self) -> LevelDepths:
+        note = f"`{self.variable.name}` is the height above the seabed, at {self.water_depth:g} m"
+        return LevelDepths(self.variable, -self.factor, self.water_depth, None, (note,))
+
+    @property
+    def _sign(self) -> int:
+        """1 or -1 where all values other than zero have that sign, else 0; of the first time."""
+        moving = self.time in self.variable.dims
+        first = self.variable.isel({self.time: slice(1)}) if moving else self.variable
+        values = known_values(first)
+        return int((values > 0).any()) - int((values < 0).any())
+
+    def _from_instrument(self, way: str) -> LevelDepths:
+        """Return levels counted from an instrument that looks up or down.
+
+        MHKiT adds the height of the instrument above the seabed to `range` where a person gives it,
+        or the instrument's depth where it looks down, and then calls the depth of the water
+        `depth`.
+        """
+        name, factor = self.variable.name, self.factor if way == "down" else -self.factor
+        if way not in ("up", "down"):
+            raise UnreadableError(
+                f"`{name}` is measured from the instrument, and the file does not say whether that "
+                "looks up or down (`positive: up` of the variable, or `orientation: up` of the "
+                "file)"
+            )
+        instrument, water = self._depths()
+        # Teledyne's offsets are of its head
+        attributes = self.dataset.attrs
+        by_hand = any(attributes.get(each) for each in ("range_offset", "h_deploy"))
+        offset = by_hand and "rdi" not in str(attributes.get("inst_make", "")).lower()
+        if offset and str(name).startswith("range") and (way == "down" or instrument is None):
+            if way == "down":
+                note = f"`{name}` is measured from the surface, as its offset is added already"
+                return LevelDepths(self.variable, factor, 0.0, None, (note,))
+            if water is None:
+                return self._above_seabed()
+            note = f"`{name}` is measured from the seabed, whose depth is `{water[0].name}`"
+            return LevelDepths(self.variable, factor, 0.0, water, (note,))
+        if instrument is None:
+            but = f"; `{water[0].name}` is that of the water" if water is not None else ""
+            raise UnreadableError(
+                f"`{name}` is measured from the instrument, whose depth is not in the file{but}"
+            )
+        note = f"`{name}` is measured from the instrument, whose depth is `{instrument[0].name}`"
+        return LevelDepths(self.variable, factor, 0.0, instrument, (note,))
+
+    def _way_it_looks(self, words: str) -> str:
+        """Return whether an instrument looks ``"up"`` or ``"down"``; empty where nothing says."""
+        for word, way in (("above", "up"), ("below", "down")):
+            if word in words.split():
+                return way
+        given = [one.attrs.get("orientation", "") for one in (self.variable, self.dataset)]
+        looks = re.sub(r"[\W_]+", " ", " ".join(map(str, given)).lower())
+        up, down = _UPWARDS.search(looks), _DOWNWARDS.search(looks)
+        if bool(up) == bool(down):
+            return ""
+        return "up" if up else "down"
+
+    def _depths(self) -> tuple[_Depth | None, _Depth | None]:
+        """Return the depth of the instrument and that of the water, None where there is none."""
+        found: dict[bool, _Depth] = {}
+        standard = self.dataset.cf.standard_names.get(_STANDARD_DEPTH, [])
+        for name in first_present(self.dataset, [*standard, *_NAMES, "depth_avg"]):
+            depth = self.dataset[name]
+            upwards = depth.attrs.get("positive") == "up"
+            if name == self.variable.name or not set(depth.dims) <= {self.time} or upwards:
+                continue
+            of_the_water = bool(_OF_THE_WATER.search(words_of(depth, "long_name", "comment")))
+            if of_the_water not in found:
+                found[of_the_water] = depth, factor_of(depth, "length")
+        return found.get(False), found.get(True)
 
 
-def _above_seabed(levels: xr.DataArray, factor: float, water_depth: float) -> LevelDepths:
-    note = f"`{levels.name}` is the height above the seabed, at {water_depth:g} m"
-    return LevelDepths(levels, -factor, water_depth, None, (note,))
-
-
-def _sign(levels: xr.DataArray, time: str | None) -> int:
-    """Return 1 or -1 where all values other than zero have that sign, else 0; of the first time."""
-
-    first = levels.isel({time: slice(1)}) if time in levels.dims else levels
-    values = known_values(first)
-    if (values > 0).any() == (values < 0).any():
-        return 0
-    return 1 if (values > 0).any() else -1
-
-
-def _from_instrument(
-    dataset: xr.Dataset,
-    levels: xr.DataArray,
-    factor: float,
-    way: str,
-    time: str | None,
-    water_depth: float,
-) -> LevelDepths:
-    """Return levels counted from an instrument that looks up or down.
-
-    MHKiT adds the height of the instrument above the seabed to `range` where a person gives it, or
-    the instrument's depth where it looks down, and then calls the depth of the water `depth`.
-    """
-    if way not in ("up", "down"):
-        raise UnreadableError(
-            f"`{levels.name}` is measured from the instrument, and the file does not say "
-            "whether that "
-            "looks up or down (`positive: up` of the variable, or `orientation: up` of the file)"
-        )
-    instrument, water = _depths(dataset, levels, time)
-    offset = str(levels.name).startswith("range") and _offset_by_hand(dataset)
-    if offset and way == "down":
-        note = f"`{levels.name}` is measured from the surface, as its offset is added already"
-        return LevelDepths(levels, factor, 0.0, None, (note,))
-    if offset and instrument is None:
-        if water is None:
-            return _above_seabed(levels, factor, water_depth)
-        note = f"`{levels.name}` is measured from the seabed, whose depth is `{water[0].name}`"
-        return LevelDepths(levels, -factor, 0.0, water, (note,))
-    if instrument is None:
-        but = f"; `{water[0].name}` is that of the water" if water is not None else ""
-        raise UnreadableError(
-            f"`{levels.name}` is measured from the instrument, whose depth is not in the file{but}"
-        )
-    note = f"`{levels.name}` is measured from the instrument, whose depth is `{instrument[0].name}`"
-    signed = factor if way == "down" else -factor
-    return LevelDepths(levels, signed, 0.0, instrument, (note,))
-
-
-def _offset_by_hand(dataset: xr.Dataset) -> bool:
-    """Return whether MHKiT was given the instrument's place; Teledyne's offsets are of its head."""
-    given = any(dataset.attrs.get(name) for name in ("range_offset", "h_deploy"))
-    return given and "rdi" not in str(dataset.attrs.get("inst_make", "")).lower()
-
-
-def _way_it_looks(dataset: xr.Dataset, levels: xr.DataArray, words: str) -> str:
-    """Return whether an instrument looks ``"up"`` or ``"down"``; empty where nothing says so."""
-    for word, way in (("above", "up"), ("below", "down")):
-        if word in words.split():
-            return way
-    given = [one.attrs.get("orientation", "") for one in (levels, dataset)]
-    looks = re.sub(r"[\W_]+", " ", " ".join(map(str, given)).lower())
-    up, down = _UPWARDS.search(looks), _DOWNWARDS.search(looks)
-    if bool(up) == bool(down):
-        return ""
-    return "up" if up else "down"
-
-
-Depth = tuple[Any, float]
+_Depth = tuple[Any, float]
 """A variable with depths, and its factor to metres."""
-
-
-def _depths(
-    dataset: xr.Dataset, levels: xr.DataArray, time: str | None
-) -> tuple[Depth | None, Depth | None]:
-    """Return the depth of the instrument and that of the water, None where the file has none."""
-    instrument: Depth | None = None
-    water: Depth | None = None
-    names = [*dataset.cf.standard_names.get(_STANDARD_DEPTH, []), *_NAMES, "depth_avg"]
-    for name in first_present(dataset, names):
-        depth = dataset[name]
-        upwards = depth.attrs.get("positive") == "up"
-        if name == levels.name or not set(depth.dims) <= {time} or upwards:
-            continue
-        of_the_water = _OF_THE_WATER.search(words_of(depth, "long_name", "comment"))
-        if of_the_water and water is None:
-            water = depth, factor_of(depth, "length")
-        elif not of_the_water and instrument is None:
-            instrument = depth, factor_of(depth, "length")
-    return instrument, water

@@ -1,23 +1,173 @@
-"""Tables of quantities: named columns, each with its unit, and rows of numbers."""
+"""Tables of quantities by depth: named columns, each with its unit, and rows of numbers, in SI."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from pathlib import Path
 from typing import TypeVar
 
 import numpy as np
 
-from calm.errors import shown
-from calm.physics.line import Floats, Integers
+from calm.errors import Problem, about_quantity, shown, unknown
+from calm.physics.line import Booleans, Floats, Integers
 from calm.quantities import bearing_of
-from calm.records.columns import QuantityTable, check_depths, read_columns
-from calm.records.current_terms import Terms, too_fast
-from calm.records.delimited import is_gap
-from calm.records.headings import heading, magnetic_columns
-from calm.units import QuantityRange
+from calm.records.current_terms import DEEPEST, Terms, too_deep, too_fast
+from calm.records.delimited import is_gap, plain_numbers
+from calm.records.headings import column_unit, heading, magnetic_columns
+from calm.units import QuantityError, QuantityRange, unit_factor
+
+Report = Callable[[Sequence[str | int], str], Problem]
+"""Makes a problem of a message, at ``("columns", j)`` or ``("rows", i, j)``."""
+
+
+@dataclass(frozen=True)
+class QuantityTable:
+    """Hold a table of quantities as text, and where its mistakes go.
+
+    Attributes
+    ----------
+    columns : names with their unit, ``"depth m"`` or ``"depth[m]"``; without, each value has its
+        own
+    rows : numbers, or quantities with a unit, as text
+    report : makes a mistake of its place and a message
+    problems : to which mistakes are added
+    """
+
+    columns: Sequence[str]
+    rows: Sequence[Sequence[str | None]]
+    report: Report
+    problems: list[Problem]
+
+    def refuse(self, place: Sequence[str | int], message: str) -> None:
+        """Add a mistake."""
+        self.problems.append(self.report(place, message))
+
+
+_BARE_NUMBER = re.compile(r"[-+.,/\deE ]*")
+_NO_WAY = ("direction", "dir", "heading", "bearing")
+
+
+def read_columns(
+    table: QuantityTable, known: Mapping[str, QuantityRange], gaps: Booleans | None = None
+) -> dict[str, Floats]:
+    """Return the known columns by name, in SI, NaN where a value is wrong, or lacks in `gaps`."""
+    columns, rows = table.columns, table.rows
+    units = _read_headings(table, known)
+    if len(units) == len(columns) and "depth" not in units:
+        table.refuse(("columns",), "the table has no `depth` column")
+    values = {name: np.full(len(rows), np.nan) for name in units}
+    if not rows:
+        table.refuse(("rows",), "the table has no rows")
+    whole = [i for i, row in enumerate(rows) if len(row) == len(columns)]
+    for i in sorted({*range(len(rows))} - {*whole}):
+        hint = "; a decimal comma? (write 0.8, not 0,8)" if len(rows[i]) > len(columns) else ""
+        message = f"the row has {len(rows[i])} values, {len(columns)} are needed{hint}"
+        table.refuse(("rows", i), message)
+    if len(units) < len(columns):
+        return values
+    for j, (name, unit) in enumerate(units.items()):
+        cells = [rows[i][j] for i in whole]
+        if gaps is not None and gaps.any():
+            pairs = zip(cells, gaps[whole].tolist(), strict=True)
+            cells = ["nan" if lacks and is_gap(cell) else cell for cell, lacks in pairs]
+        together = _read_together(cells, unit, known[name], gaps is not None)
+        if together is not None:
+            values[name][whole] = together
+            continue
+        for i, cell in zip(whole, cells, strict=True):
+            try:
+                if gaps is None or not (gaps[i] and cell == "nan"):
+                    bare = cell is not None and unit and _BARE_NUMBER.fullmatch(cell)
+                    values[name][i] = known[name].read(f"{cell} {unit}" if bare else cell)
+            except QuantityError as error:
+                table.refuse(("rows", i, j), about_quantity(name, cell, error))
+    return values
+
+
+def _read_together(
+    cells: Sequence[str | None], unit: str, quantity: QuantityRange, gaps: bool
+) -> Floats | None:
+    """Return a column in SI; None where a cell is no plain number, or beyond the limits."""
+    numbers = plain_numbers(cells) if unit else None
+    if numbers is None or (not gaps and np.isnan(numbers).any()):
+        return None
+    numbers = numbers * unit_factor(unit, quantity.dimension)
+    beyond = (numbers <= quantity.above) | (numbers < quantity.at_least)
+    return None if (beyond | (numbers > quantity.at_most)).any() else numbers
+
+
+def _read_headings(table: QuantityTable, known: Mapping[str, QuantityRange]) -> dict[str, str]:
+    """Return the unit of each known column by its name, empty where the column gives none."""
+    units: dict[str, str] = {}
+    for j, column in enumerate(table.columns):
+        name, unit = heading(column)
+        name = name.lower() if name.lower() in known else name
+        if name.lower() in _NO_WAY and "toward" in known:
+            message = (
+                f"`{shown(column)}` does not say which way: call it `toward` where the current "
+                "flows to, or `from` where it comes from"
+            )
+            table.refuse(("columns", j), message)
+        elif name not in known:
+            table.refuse(
+                ("columns", j), unknown(f"no column is called `{shown(name)}`", name, known)
+            )
+        elif name in units:
+            table.refuse(("columns", j), f"column `{name}` is given twice")
+        else:
+            try:
+                if unit:
+                    column_unit(column, unit, [known[name].dimension])
+            except QuantityError as error:
+                table.refuse(("columns", j), str(error))
+            else:
+                units[name] = unit
+    return units
+
+
+def check_depths(
+    table: QuantityTable,
+    values: Mapping[str, Floats],
+    rows: Integers,
+    profile: Integers | None = None,
+) -> None:
+    """Depths must not be negative, and must increase from one of the rows of a profile to another.
+
+    Rows that are not among `rows` are not looked at.
+    """
+    if "depth" not in values:
+        return
+    column = list(values).index("depth")
+    depths = values["depth"][rows]
+    ends = np.flatnonzero(np.diff(np.zeros(len(rows)) if profile is None else profile[rows])) + 1
+    inside = np.delete(np.diff(depths), ends - 1)
+    if ((depths >= 0.0) & (depths <= DEEPEST)).all() and (inside > 0.0).all():
+        return
+    for start, stop in pairwise([0, *ends.tolist(), len(depths)]):
+        mine = depths[start:stop]
+        if len(mine) > 1 and (mine <= 0.0).all() and mine.any():
+            message = "the depths count upwards; depth is positive down, so leave the sign out"
+            first = int(rows[start + int(np.argmax(mine < 0.0))])
+            table.refuse(("rows", first, column), message)
+            continue
+        previous = -math.inf
+        for i, depth in zip(rows[start:stop].tolist(), mine.tolist(), strict=True):
+            word = "repeats" if depth == previous else "comes after"
+            reason = f"depth {depth:g} m {word} {previous:g} m; depths must increase"
+            if depth < 0:
+                reason = f"depth {depth:g} m is above the surface"
+            elif deep := too_deep(depth):
+                reason = deep
+            elif not depth <= previous:
+                reason = ""
+            if reason:
+                table.refuse(("rows", i, column), reason)
+            previous = depth
+
 
 _AS_THEY_STAND = Terms()
 Speed = TypeVar("Speed", float, Floats)
@@ -37,19 +187,10 @@ _DEPTH = QuantityRange("length")
 _SPEED = QuantityRange("speed")
 _CURRENT = {
     "depth": _DEPTH,
-    "u": _SPEED,
-    "v": _SPEED,
-    "w": _SPEED,
-    "speed": _SPEED,
-    "toward": DIRECTION,
-    "from": DIRECTION,
+    **dict.fromkeys(("u", "v", "w", "speed"), _SPEED),
+    **dict.fromkeys(("toward", "from"), DIRECTION),
 }
-_WATER = {
-    "depth": _DEPTH,
-    "density": DENSITY,
-    "temperature": TEMPERATURE,
-    "salinity": SALINITY,
-}
+_WATER = {"depth": _DEPTH, "density": DENSITY, "temperature": TEMPERATURE, "salinity": SALINITY}
 
 
 @dataclass(frozen=True)
@@ -122,15 +263,13 @@ def read_currents(
     values = read_columns(replace(table, columns=plain), _CURRENT, gaps)
     given = values.keys()
     if len(given) == len(columns):
-        ways = [given & {"u", "v"}, given & {"speed", "toward", "from"}]
-        if all(ways) or given >= {"toward", "from"}:
-            message = "give `u` and `v`, or `speed` and `toward`, not both"
-            if not ways[0]:
-                message = "give `toward`, where the current flows to, or `from`, not both"
+        components, polar = given & {"u", "v"}, given & {"speed", "toward", "from"}
+        if components and polar:
+            table.refuse(("columns",), "give `u` and `v`, or `speed` and `toward`, not both")
+        elif {"toward", "from"} <= polar:
+            message = "give `toward`, where the current flows to, or `from`, not both"
             table.refuse(("columns",), message)
-        elif not (
-            given >= {"u", "v"} or given >= {"speed", "toward"} or given >= {"speed", "from"}
-        ):
+        elif len(components) < 2 and (len(polar) < 2 or "speed" not in polar):
             message = "a current needs `u` and `v`, or `speed` and `toward`; the columns are "
             table.refuse(("columns",), message + ", ".join(given))
     speeds = values.get("speed", np.zeros(0))
@@ -172,25 +311,23 @@ def _from_magnetic_north(table: QuantityTable, terms: Terms) -> tuple[list[str],
     plain, magnetic = magnetic_columns(columns)
     if not magnetic:
         if terms.declination is not None:
-            message = (
+            table.refuse(
+                ("columns",),
                 "no column is relative to magnetic north, such as `toward[deg magnetic]`, so no "
+                "`declination` is applied; leave it out",
             )
-            table.refuse(("columns",), message + "`declination` is applied; leave it out")
         return plain, 0.0
-    first = next(
-        j for j, (one, other) in enumerate(zip(columns, plain, strict=True)) if one != other
-    )
+    first = next(j for j, column in enumerate(columns) if column != plain[j])
     if magnetic in ({"u"}, {"v"}):
-        one = next(iter(magnetic))
-        message = f"`{one}` is relative to magnetic north, `{'v' if one == 'u' else 'u'}` is not"
+        one, other = ("u", "v") if "u" in magnetic else ("v", "u")
+        message = f"`{one}` is relative to magnetic north, `{other}` is not"
         table.refuse(("columns", first), message)
     if terms.declination is None:
-        message = (
+        table.refuse(
+            ("columns", first),
             f"`{shown(columns[first])}` is relative to magnetic north; give the `declination` "
-            "there, "
-            "positive to the east (beside `file:`, or `--declination`)"
+            "there, positive to the east (beside `file:`, or `--declination`)",
         )
-        table.refuse(("columns", first), message)
     return plain, terms.declination or 0.0
 
 

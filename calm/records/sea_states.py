@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from calm.errors import InputError, Problem, UsageError
+from calm.errors import InputError, Problem, UsageError, refused
 from calm.physics.line import Floats
 from calm.records.cf_files import UnreadableError, is_dataset, known_values, open_current, reading
 from calm.records.delimited import read_table
@@ -290,8 +290,7 @@ def _sea_of(path: Path, frequency: Floats, density: Floats, lines: Sequence[int]
     if density[-1] > CUT_OFF * density.max():
         wrong = wrong or f"it is cut off at {frequency[-1]:.3g} Hz, near its peak"
     if wrong is not None:
-        message = f"{wrong}; look at its units"
-        raise InputError([Problem(str(path), 0, 0, message)])
+        raise refused(path, f"{wrong}; look at its units")
     lowest = omega[int(np.searchsorted(parts.cumsum(), UNSEEN * parts.sum()))]
     peak = float(omega[int(density.argmax())])
     first = max(float(lowest), 0.02 * peak)
@@ -331,7 +330,7 @@ def _spectral_arrays(path: Path) -> tuple[Floats, Floats]:
             frequency, density = frequency / (2.0 * pi), density * 2.0 * pi
     density = density[:, np.isfinite(density).all(axis=0)]
     if not density.size:
-        raise InputError([Problem(str(path), 0, 0, "every spectrum in it has gaps")])
+        raise refused(path, "every spectrum in it has gaps")
     return frequency, density[:, int(np.trapezoid(density, frequency, axis=0).argmax())]
 
 
@@ -381,7 +380,7 @@ def _figures(path: Path, names: tuple[str, ...]) -> list[tuple[int, tuple[float,
         message = f"no column `{'`, `'.join(missing)}`; write {example}, not {','.join(header)}"
         if "peak_period[s]" in missing:
             message += f" ({PEAK_BY_MEAN})"
-        raise InputError([Problem(str(path), table.header.number, 1, message)])
+        raise InputError([table.header.problem(message)])
     places = [header.index(name) for name in names]
     rows, problems = [], []
     for row in table.rows:
@@ -391,7 +390,7 @@ def _figures(path: Path, names: tuple[str, ...]) -> list[tuple[int, tuple[float,
             figures = (nan,)
         rows.append((row.number, figures))
         if not all(isfinite(each) for each in figures):
-            problems.append(Problem(str(path), row.number, 1, f"not numbers as in {example}"))
+            problems.append(row.problem(f"not numbers as in {example}"))
     if problems:
         raise InputError(problems)
     return rows

@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.errors import InputError, Problem
+from calm.errors import refused
 from calm.positions import SEMI_MAJOR, Frame
-from calm.records.cf_files import UnreadableError, holdings, open_current, reading
+from calm.records.cf_files import UnreadableError, factor_of, holdings, open_current, reading
 
 Floats = NDArray[np.float64]
 _UP, _DOWN = ("elevation", "z", "Band1", "topo"), ("depth", "deptho", "bathymetry")
@@ -44,13 +44,17 @@ class SeabedGrid:
         """Return that of a file at a position; InputError where it cannot be understood."""
         if path.suffix.lower() in (".tif", ".tiff"):
             turn = f"gdal_translate -of netCDF {path.name} {path.stem}.nc"
-            message = f"is a GeoTIFF, which is not read; turn it into NetCDF: `{turn}`"
-            raise InputError([Problem(str(path), 0, 0, message)])
+            raise refused(path, f"is a GeoTIFF, which is not read; turn it into NetCDF: `{turn}`")
         digest = hashlib.sha256(path.read_bytes()).hexdigest()
         grid = cls(str(path), digest, latitude, longitude, reach)
         with reading(path):
             if np.isnan(grid.depth):
                 raise UnreadableError("has no depth at the position of the mooring")
+            if grid.depth <= 0.0:
+                raise UnreadableError(
+                    f"has land, {-grid.depth:.4g} m high, at the position of the mooring; if that "
+                    "is water, let `positive` of its variable say `down`, or `up`"
+                )
         return grid
 
     def at(self, east: float, north: float) -> SeabedGrid:
@@ -118,7 +122,10 @@ def _nodes(grid: SeabedGrid) -> tuple[Floats, Floats, Floats]:
         if min(here.shape) < 2:
             raise UnreadableError("has too few nodes about the position of the mooring")
         north, east = (np.asarray(here[each].values, float) for each in (lat, lon))
-        depth = np.asarray(here.values, float) * (-1.0 if name in _UP else 1.0)
+        attributes = dataset[name].attrs
+        down = attributes.get("positive", "up" if name in _UP else "down") == "down"
+        metre = factor_of(dataset[name], "length") if attributes.get("units") else 1.0
+        depth = np.asarray(here.values, float) * (metre if down else -metre)
     frame = Frame(latitude, longitude)
     north = frame.place(north, np.full(len(north), longitude), 0.0 * north)[:, 1]
     east = frame.place(np.full(len(east), latitude), east, 0.0 * east)[:, 0]

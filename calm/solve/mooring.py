@@ -39,6 +39,7 @@ from calm.solve.search import FoundShape, Referee, audited, find_shape
 from calm.solve.solution import (
     FOUND,
     MARCH_STOPPED,
+    SLACK_ON_DIGITS,
     Settings,
     Solution,
     Status,
@@ -84,6 +85,8 @@ def solve_mooring(line: Line, water: Water, settings: Settings | None = None) ->
         if not lacks_room(problem):
             break
         room *= MORE_ROOM
+    if found.ending == SLACK_ON_DIGITS and (stirred := water.stirred()):
+        return solve_mooring(line, stirred, settings)
     return solution_found(found, problem, line, water, settings)
 
 

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from calm.errors import NoEquilibrium
 from calm.physics.compiled import by_address, entry
 from calm.physics.line import FAILURES, GOES_ON, Floats, Line, Trace, Water
 from calm.physics.profile import Profile
@@ -91,10 +92,13 @@ class NetSearch:
         x, first = np.zeros(len(self.net.found)), 0
         x[self.net.nodes_at :] = start.nodes.ravel()
         for i, each in enumerate(self.laid):
-            free = start.lower[i] if each.kind == net_march.HANGING_DOWN else start.first[i]
-            x[first : first + each.unknowns] = (
-                start.pull[i] if each.kind == net_march.PULLED else -free[2]
-            )
+            down, pull = each.kind == net_march.HANGING_DOWN, start.pull[i]
+            x[first : first + each.unknowns] = -(start.lower if down else start.first)[i][2]
+            if each.kind == net_march.PULLED:
+                x[first : first + 3] = pull
+            elif x[first] < 0.0 and not down and each.problem.surfacing:  # what pulls is in use
+                share = pull[2] / each.problem.surfacing[0].surface_lift
+                x[first] = min(max(share, 0.01), 1.0) * each.stands - each.stands
             first += each.unknowns
             anchored = isfinite(each.leg.lower.seabed) and each.kind != net_march.HANGING_DOWN
             self.net.state[i][net_march.LANDS] = float(anchored and start.lies[i])
@@ -139,12 +143,13 @@ class NetSearch:
         NoEquilibrium: they cannot be.
         """
         how = self.marching(self.settings.angle_step, CHOSEN, FINE, given=False)
-        ending, found = self.asked(net_closing.SETTLE, x, how, net_closing.CLOSED)
+        for enough in (net_closing.CLOSED, 100.0 * net_closing.CLOSED):  # slack ones; audited too
+            ending, found = self.asked(net_closing.SETTLE, x, how, enough)
+            if ending == net_closing.CAME_OUT:
+                return found
         if ending == net_closing.TO_AND_FRO:
             raise unsettled("a leg alternately lies on the seabed and lifts off")
-        if ending != net_closing.CAME_OUT:
-            raise unsettled("its legs do not come together to the last digits")
-        return found
+        raise unsettled("its legs do not come together to the last digits")
 
     def end(self, i: int, x: Floats) -> Floats:
         """Where the march of a leg ends [m]."""
@@ -221,6 +226,10 @@ def solve_net(
             return net.told(net.settled(about(net, near)))
         except LacksRoom:
             room *= MORE_ROOM
+        except NoEquilibrium:
+            if (stirred := water.stirred()) is None:
+                raise
+            water = stirred
 
 
 def about(net: NetSearch, near: NetSolution | None) -> Floats:

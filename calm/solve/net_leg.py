@@ -103,7 +103,7 @@ class LaidLeg:
         elif leg.lower.free:
             kind, line = net_march.HANGING_DOWN, replace(line.reversed(), towed=True)
         else:
-            kind, line = net_march.PULLED, replace(pulled(line, (0.0, 0.0, 0.0)), towed=True)
+            kind, line = net_march.PULLED, replace(line.below_a_point(), towed=True, floating=None)
         problem = problem_of(line, water, settings, compiled=False, rough=rough, room=1)
         return LaidLeg(leg, line, kind, problem)
 
@@ -115,10 +115,15 @@ class LaidLeg:
         return LegRow(
             self.kind, first, start.node, end.node, self.leg.lower.seabed, *self.bed[:2],
             max(float(length.sum()) * 0.01, min(0.01 * limits.depth, 50.0) * 0.1, rough),
-            max(float(self.line.length[0]), 0.5) if len(length) else 0.5, self.highest,
+            self.stands, self.highest,
             int(limits.rides), *counted, len(course.cables), len(self.problem.surfacing),
             len(self.problem.hull), len(self.line.length),
         )  # fmt: skip
+
+    @property
+    def stands(self) -> float:
+        """Length of its float that shows how much of that is out of the water [m]."""
+        return max(float(self.line.length[0]), 0.5)
 
     @property
     def bed(self) -> Bed:
@@ -198,33 +203,6 @@ def lay_net(laid: Sequence[LaidLeg], nodes: int, compiled: bool, room: int) -> N
         zeros(size, size + 1), zeros(size, of=int), taken(scale), taken(rows), zeros(2),
         firsts[-1], length, force,
     )  # fmt: skip
-
-
-def pulled(line: Line, force: tuple[float, float, float]) -> Line:
-    """The line below a piece without length that stands for the pull on its upper end [N]."""
-    columns: dict[str, Any] = {
-        name: np.concatenate([[0.0], getattr(line, name)])
-        for name in (
-            "length", "volume", "normal_drag", "tangential_drag", "compliance", "thinning", "lift",
-            "diameter",
-        )
-    }  # fmt: skip
-    flags: dict[str, Any] = {
-        name: np.concatenate([[False], getattr(line, name)]) for name in ("flexible", "directional")
-    }
-    east, north, up = force
-    return replace(
-        line,
-        **columns,
-        **flags,
-        buoyancy=np.concatenate([[up], line.buoyancy]),
-        push_east=np.concatenate([[east], line.push_east]),
-        push_north=np.concatenate([[north], line.push_north]),
-        clamp_piece=line.clamp_piece + 1,
-        elongation=(None, *line.elongation) if line.elongation else (),
-        drag_curve=(None, *line.drag_curve) if line.drag_curve else (),
-        floating=None,
-    )
 
 
 def leg_found(

@@ -737,6 +737,38 @@ def test_a_grid_of_a_plane_is_the_plane(tmp_path: Path, name: str, sign: float) 
         assert ours.required_weight == pytest.approx(theirs.required_weight, rel=0.01)
 
 
+def test_a_grid_is_read_in_its_unit_and_its_sign(tmp_path: Path) -> None:
+    """Feet; depths by the name of elevations, as land or by `positive`; a doubtful depth."""
+    file = gridded(tmp_path, lambda east, north: (90.0 + 0.1 * east) / 0.3048)
+    feet = load(tmp_path / "grid.yaml", text=GRIDDED)
+    assert any("295.3 m deep" in each for each in feet.solve().warnings)
+    grid = xarray.load_dataset(file, engine="h5netcdf")
+    grid["elevation"].attrs["units"] = "ft"
+    grid.to_netcdf(file, engine="h5netcdf")
+    metres = load(tmp_path / "grid.yaml", text=GRIDDED).solve()
+    west, east = (anchor.depth for anchor in metres.anchors)
+    away = metres.anchors[1].x - metres.anchors[0].x
+    assert abs(east - west) == pytest.approx(0.1 * abs(away), rel=0.01)
+    assert not any("m deep" in each for each in metres.warnings)
+    (-grid).to_netcdf(file, engine="h5netcdf")
+    with pytest.raises(InputError, match=r"has land, .* m high, .* say `down`"):
+        load(tmp_path / "grid.yaml", text=GRIDDED)
+    turned = -grid
+    turned["elevation"].attrs |= {"units": "ft", "positive": "down"}
+    turned.to_netcdf(file, engine="h5netcdf")
+    again = load(tmp_path / "grid.yaml", text=GRIDDED).solve()
+    assert [each.depth for each in again.anchors] == [west, east]
+
+
+def test_an_anchor_up_the_slope_stands_in_water(tmp_path: Path) -> None:
+    """500 m up a slope of 25° the seabed is 233 m higher, where the water is 100 m deep."""
+    text = SLOPE.replace("slope: 10 deg", "slope: 25 deg")
+    at = re.search(r"at: \[.*?\]", text)
+    assert at is not None
+    with pytest.raises(InputError, match=r"the seabed is \d+ m above the water here"):
+        load(tmp_path / "slope.yaml", text=text.replace(at[0], "at: [-500 m, 0 m]"))
+
+
 LYING = (
     "position: {latitude: 48 deg, longitude: -5 deg}\n"
     + SLOPE[: SLOPE.index("legs:")].replace("toward: 0 deg}", "toward: 45 deg}")
@@ -866,6 +898,35 @@ def test_a_net_that_sinks_is_refused_as_such(tmp_path: Path) -> None:
     text = NET.replace("sphere-steel-1250", "rcm11").replace("glass-17in, count: 4", "rcm11")
     with pytest.raises(NoEquilibrium, match=r"It sinks: its legs weigh \d+ N more"):
         load(tmp_path / "net.yaml", text=text).solve()
+
+
+def test_places_may_be_latitudes_and_longitudes(tmp_path: Path) -> None:
+    """On the equator a minute of longitude is 6 378 137 m x π / 10 800 = 1855.325 m."""
+    leg = """
+    line: [{use: sphere-steel-1250}, {use: wire-jacketed-8, length: 60 m}, {use: anchor-wheels-4}]
+"""
+    place = "    bottom: {anchor: {at: [0 deg, 5 13.0 W]}}\n"
+    text = f"environment: {{depth: 100 m}}\nlegs:\n  one:{leg}  two:{leg}{place}"
+    origin = "position: {latitude: 0 deg, longitude: 5 12.0 W}\n"
+    _, two = load(tmp_path / "two.yaml", text=origin + text).solve().anchors
+    assert (two.x, two.y) == pytest.approx((-1855.325, 0.0), abs=2e-3)
+    with pytest.raises(InputError, match="the file needs a `position` for it"):
+        load(tmp_path / "two.yaml", text=text)
+
+
+def test_a_leg_that_lies_in_a_heap_is_refused_as_such(tmp_path: Path) -> None:
+    """300 m down from the ship and 400 m along the seabed to the anchor are no 890 m of chain."""
+    text = """
+environment: {depth: 300 m}
+legs:
+  moor:
+    line: [{use: chain-buoy-16, length: 890 m}, {use: anchor-wheels-4}]
+    top: {held: {depth: 0 m}}
+    bottom: {anchor: {at: [-400 m, 0 m]}}
+"""
+    with pytest.raises(NoEquilibrium, match=r"Leg moor is 890.*, and some 700\.00 m") as refused:
+        load(tmp_path / "net.yaml", text=text).solve()
+    assert refused.value.status == "slack"
 
 
 def test_what_names_no_part_of_a_net_is_a_mistake(tmp_path: Path) -> None:

@@ -4,7 +4,7 @@ import pytest
 
 from calm.assemble.catalogue_search import Index
 from calm.files.catalogue import Catalogue
-from calm.tui.catalogue.component_list import ComponentList, Remembered
+from calm.tui.catalogue.catalogue_pane import ComponentList, Remembered
 from calm.tui.catalogue.component_screen import ComponentScreen
 from calm.tui.field import Field
 from tests.tui.conftest import MOORING

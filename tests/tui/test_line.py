@@ -351,7 +351,7 @@ def test_the_mouse_goes_to_a_cell_and_edits_it_at_the_second_press(drive, small)
     async def story(driver):
         start = next(each.start for each in driver.table.columns if each.name == "label")
         await driver.pilot.click("#line", offset=(start + 1, 2))
-        assert (driver.table.cursor, driver.table.cell) == (1, "label")
+        assert (driver.table.cursor, driver.table.editable[driver.table.column]) == (1, "label")
         await driver.pilot.click("#line", offset=(start + 1, 2))
         assert driver.builder.line.editor.is_open
 

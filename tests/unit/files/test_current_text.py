@@ -3,10 +3,9 @@
 import pytest
 
 from calm.errors import Problem
-from calm.records.columns import QuantityTable
 from calm.records.current_terms import Terms
 from calm.records.delimited import CopiedTable, NoTableError, copied_table
-from calm.records.profile_tables import CurrentTable, read_current
+from calm.records.profile_tables import CurrentTable, QuantityTable, read_current
 
 
 def read(text: str, terms: Terms = Terms()) -> tuple[CurrentTable | None, list[str]]:  # noqa: B008

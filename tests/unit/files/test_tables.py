@@ -6,10 +6,10 @@ from collections.abc import Sequence
 import pytest
 
 from calm.errors import Problem
-from calm.records.columns import QuantityTable
 from calm.records.profile_tables import (
     CurrentTable,
     DepthTable,
+    QuantityTable,
     SeaWater,
     read_current,
     read_profile,

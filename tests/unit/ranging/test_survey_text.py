@@ -44,6 +44,12 @@ def noc() -> str:
     return head + "".join(f"{r:.2f} {a:.7f} {b:.7f}\n" for a, b, r in rows(TRANSDUCER))
 
 
+def noc_without_target() -> str:
+    """As typed at sea: tabs in some rows, blanks of any number in others."""
+    head = f"1210\t10\t{TRANSDUCER}  \n-999 57.501 -27.801    \n"
+    return head + "".join(f"{r:.2f}\t {a:.7f}  {b:.7f} \n" for a, b, r in rows(TRANSDUCER))
+
+
 def event_log() -> str:
     lines = ["Time,Lat deg,Lat min,Lat hem,Lon deg,Lon min,Lon hem,Slant Range (m),Event"]
     for i, (latitude, longitude, reach) in enumerate(rows(0.0)):
@@ -62,13 +68,13 @@ def deck_box() -> str:
     return "\n".join(lines)
 
 
-@pytest.mark.parametrize("written", [whoi, noc, event_log, deck_box])
+@pytest.mark.parametrize("written", [whoi, noc, noc_without_target, event_log, deck_box])
 def test_the_place_comes_out_of_every_form(tmp_path: Path, written) -> None:
     path = tmp_path / "survey.txt"
     path.write_text(written())
     survey = read_ranges(path)
     assert len(survey.line) == len(SHIPS)
-    assert survey.transducer == (TRANSDUCER if written is noc else 0.0)
+    assert survey.transducer == (TRANSDUCER if written in (noc, noc_without_target) else 0.0)
     found = locate(survey, 1500.0)
     # positions are written to 2e-7 and 1e-7 degrees, ranges to 0.01 m: a few centimetres
     assert found.latitude == pytest.approx(LATITUDE, abs=2e-6)
@@ -82,6 +88,9 @@ def test_what_is_understood_of_a_form_without_a_heading_is_said(tmp_path: Path) 
     path.write_text(whoi())
     (said,) = read_ranges(path).notices
     assert "seconds one way" in said and "south and west are negative" in said
+    path.write_text(noc_without_target())
+    (said,) = read_ranges(path).notices
+    assert "1210 m" in said and "10 m above the seabed" in said
     path.write_text(event_log())
     assert read_ranges(path).notices == ("not read: `clock Time`, `Event`",)
 

@@ -152,6 +152,26 @@ def test_a_slack_surface_line_without_current():
     assert "radius of 68.1 m" in error.message
 
 
+def test_a_tether_folds_where_only_the_water_below_it_moves():
+    """The limit of a weak current: nothing pulls the tether sideways, it hangs like an S, plumb.
+
+    Below the surface V of lift is in use. The sinking half of w N/m comes down V / w and turns,
+    the floating one of b N/m rises what is left of the sinking half's weight and turns again:
+    in all 2 V / w - 35 + 25 - 2 (35 w - V) / b = 39 m lower, from the foot of the float at 1 m.
+    """
+    tether = rope(35, weight=3.0), rope(25, weight=-4.0)
+    below = rigid(1.0, 6000.0, drag=250.0), rope(159, weight=2.0)
+    slack = line(rigid(1.0, 3000.0, drag=250.0), *tether, *below)
+    currents = (0, 0, 0, 0), (70, 0, 0, 0), (200, 0.2, 0, 0)
+    solution = solve_mooring(slack, water(200, *currents))
+    lift = (39.0 + 10.0 + 2.0 * 105.0 / 4.0) / (2.0 / 3.0 + 2.0 / 4.0)
+    foot = solution.piece_nodes[1]
+    # what the wire below leans, and the breath of current, are within a millimetre and 1 mN
+    assert solution.tension[foot] == pytest.approx([lift, 105.0 - lift], abs=1e-3)
+    assert depths(solution)[2:4] == pytest.approx([1.0 + 2.0 * lift / 3.0 - 35.0, 40.0], abs=1e-3)
+    assert np.ptp(solution.position[: solution.piece_nodes[2, 1], :2], axis=0).max() < 1e-4
+
+
 def test_a_line_that_hangs_on_a_lower_float_at_rest():
     folded = line(rigid(1.0, 100.0), rigid(1.0, -300.0), rope(20), rigid(1.0, 900.0), rope(30))
     error = refused(folded, water(100))

@@ -101,6 +101,53 @@ def test_between_two_held_ends_hangs_a_catenary(slack: float) -> None:
     assert abs(leg.force[-1, 2]) == pytest.approx(0.5 * weight * slack * span, rel=1e-6)
 
 
+def test_a_float_at_the_surface_on_two_legs_that_lie_bears_their_catenaries() -> None:
+    """In still water, stiff: it uses what 140 m of line and what hangs of both legs weigh.
+
+    Of each leg of S m a length g lies, H / w = a, and s = S - g hangs:
+    h = √(a² + s²) - a and x = a asinh(s / a) + g, by the catenary from its lowest point.
+    """
+    weight, down, length, reach, depth = 5.0, 140.0, 135.0, 90.0, 200.0
+    hull = Floating(hull=spherical_hull(1.2), weight=3000.0, lift=6000.0)
+    head = replace(line_of(Point(6000.0, 1.2, 0.5), Wire(down, weight, stiffness=1e12)),
+                   floating=hull)  # fmt: skip
+    leg = line_of(Wire(length, weight, stiffness=1e12))
+    legs = [
+        NetLeg(head, FREE, LegEnd(node=0)),
+        *(NetLeg(leg, LegEnd(node=0), anchored(x, 0.0, depth)) for x in (-reach, reach)),
+    ]
+    net = solve_net(legs, 1, water_of(depth))
+    up = depth + net.nodes[0, 2]
+
+    def gap(a: float) -> float:
+        hung = np.sqrt(up * up + 2.0 * a * up)
+        return float(a * asinh(hung / a) + length - hung - reach)
+
+    a = brentq(gap, 0.1, 1e4)
+    hung = float(np.sqrt(up * up + 2.0 * a * up))
+    assert abs(net.legs[1].force[-1, 0]) == pytest.approx(weight * a, rel=1e-3)
+    assert net.legs[1].grounded_length == pytest.approx(length - hung, abs=5e-3)
+    assert up == pytest.approx(depth - down, abs=1e-2)
+    borne = weight * (down + 2.0 * hung)
+    assert net.legs[0].buoyancy_used * 6000.0 == pytest.approx(borne, rel=1e-3)
+
+
+def test_of_two_legs_of_a_bridle_one_is_slack_in_still_water() -> None:
+    """It hangs plumb in two folds beside the other, as in the weakest current."""
+    legs = [
+        NetLeg(line_of(FLOAT, Wire(40.0)), FREE, LegEnd(node=0)),
+        NetLeg(line_of(Wire(80.0, stiffness=1e12)), LegEnd(node=0), LegEnd(node=1)),
+        NetLeg(line_of(Wire(81.6, stiffness=1e12)), LegEnd(node=0), LegEnd(node=1)),
+        NetLeg(line_of(Wire(100.0)), LegEnd(node=1), anchored(0.0, 0.0, 300.0)),
+    ]
+    net = solve_net(legs, 2, water_of(300.0))
+    assert net.nodes[0, 2] - net.nodes[1, 2] == pytest.approx(80.0, abs=1e-4)
+    upper, lower = (abs(net.legs[2].force[end, 2]) for end in (0, -1))
+    # 80.8 m hang from the upper node and turn, 0.8 m from the lower one
+    assert upper == pytest.approx(2.64 * 80.8, rel=1e-4)
+    assert lower == pytest.approx(2.64 * 0.8, rel=1e-3)
+
+
 def at_nodes(net: NetSolution, legs: list[int]) -> list[np.ndarray]:
     """Free ends of some legs, and the nodes, after one another."""
     return [*(net.legs[i].position[0] for i in legs), *net.nodes]
