@@ -89,11 +89,11 @@ def choose_column(
         )
     box = _box(latitude, longitude, horizontal, wanted)
     near = dataset[list(velocity)].isel(box)
-    where = (near[str(latitude.name)], near[str(longitude.name)])
     shape = [near.sizes[dim] for dim in horizontal]
     # each axis of a regular grid spread over the box
     lat, lon = (
-        np.broadcast_to(_spread(one, horizontal), shape).astype(np.float64) for one in where
+        np.broadcast_to(_spread(near[str(one.name)], horizontal), shape).astype(np.float64)
+        for one in pair
     )
     distance = kilometres_from(lat, lon, wanted)
     nearest = np.unravel_index(np.nanargmin(distance), distance.shape)
@@ -242,12 +242,8 @@ def _drift(dataset: xr.Dataset, time: str | None, wanted: Place | None) -> tuple
     latitude, longitude = (values[known] for values in found)
     first = float(latitude[0]), float(longitude[0])
     away = float(kilometres_from(latitude, longitude, first).max())
-    moved = (
-        (f"its place changes with time, by up to {away:.0f} km; all profiles are taken",)
-        if away > FAR
-        else ()
-    )
-    return (*moved, *_far(first, wanted))
+    moved = f"its place changes with time, by up to {away:.0f} km; all profiles are taken"
+    return (*([moved] if away > FAR else []), *_far(first, wanted))
 
 
 def _far(place: Place, wanted: Place | None) -> tuple[str, ...]:

@@ -6,6 +6,7 @@ Nothing here knows of the screen. What has to be solved for is found by `calm si
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from math import ceil
 from typing import TYPE_CHECKING
@@ -146,14 +147,11 @@ def _anchors(last: Piece, needed: float, catalogue: Catalogue | None) -> Iterato
 def _heavy_enough(catalogue: Catalogue, needed: float) -> Iterator[tuple[float, str]]:
     for id in catalogue.ids():
         entry = catalogue.entry(id)
-        if entry is None or entry.section.data.get("kind") != "anchor":
-            continue
-        try:
-            component = catalogue.get(id)
-        except CalmError:
-            continue  # one of the person's own with a mistake in it
-        if isinstance(component, Anchor) and -component.net_buoyancy >= needed:
-            yield -component.net_buoyancy, id
+        if entry is not None and entry.section.data.get("kind") == "anchor":
+            with suppress(CalmError):  # one of the person's own with a mistake in it
+                component = catalogue.get(id)
+                if isinstance(component, Anchor) and -component.net_buoyancy >= needed:
+                    yield -component.net_buoyancy, id
 
 
 def _floats(mooring: Mooring, finding: Finding, lacking: float) -> Iterator[Offer]:
@@ -166,11 +164,9 @@ def _floats(mooring: Mooring, finding: Finding, lacking: float) -> Iterator[Offe
     for item in dict.fromkeys(piece.place.item for piece in below):
         own = [piece for piece in file.pieces if piece.place.item == item]
         count = len(own) + ceil(lacking / own[0].component.net_buoyancy)
-        yield Offer(
-            f"back-up: {count} {own[0].use} in place of {len(own)}",
-            f"{count} {own[0].use}",
-            _put(item, "count", str(count)),
-        )
+        label = f"{count} {own[0].use}"
+        title = f"back-up: {label} in place of {len(own)}"
+        yield Offer(title, label, _put(item, "count", str(count)))
 
 
 def _put(item: int, key: str, value: str) -> Callable[[Draft], Draft]:
@@ -223,11 +219,8 @@ def differences(before: View, after: View) -> list[str]:
         effects.append(f"it does not stand: {after.failure.message}")
     if idle := [when for when, view in (("before", before), ("now", after)) if not view.result]:
         return [*effects, f"findings: not judged {' and '.join(idle)}, as it does not stand"]
-    for state, word in (
-        (State.FAIL, "failures"),
-        (State.UNKNOWN, "figures unknown"),
-        (State.WARN, "warnings"),
-    ):
+    words = {"failures": State.FAIL, "figures unknown": State.UNKNOWN, "warnings": State.WARN}
+    for word, state in words.items():
         counts = [sum(each.state is state for each in view.findings) for view in (before, after)]
         if counts[0] != counts[1]:
             effects.append(f"{word} {counts[0]} → {counts[1]}")

@@ -1,27 +1,29 @@
-"""The application: it owns the workers, the signals and the way out; screens own what is shown."""
+"""The application: it owns the turns of the keys, the workers and the way out; screens own what is
+shown."""
 
 from __future__ import annotations
 
 import os
 import sys
 import time
+from collections import deque
 from collections.abc import Iterable, Mapping, Sequence
-from functools import partial
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from rich.console import RenderableType
-from textual import on, work
+from textual import events, work
 from textual._compositor import CompositorUpdate
-from textual.app import SystemCommand
+from textual.app import App, SystemCommand
 from textual.command import CommandPalette
 from textual.filter import LineFilter, NoColor
+from textual.message_pump import MessagePump
 from textual.screen import Screen
 from textual.timer import Timer
+from textual.widgets import OptionList
 
 from calm.errors import CalmError
 from calm.files.editing import KeptWork, WorkingFile
-from calm.tui import saving, workspace
-from calm.tui.dialogs import LongText, choose
+from calm.tui.dialogs import LongText
 from calm.tui.key_table import Actions, Commands, all_keys
 from calm.tui.line.builder import BuilderScreen
 from calm.tui.painted import Pace, Painted, PlainSigns, shows_all_signs
@@ -29,16 +31,30 @@ from calm.tui.saving import Saving
 from calm.tui.screen import DraftScreen
 from calm.tui.session import Session
 from calm.tui.theme import DARK, LIGHT, PICTURE_DARK, PICTURE_LIGHT, choose_theme, legible
-from calm.tui.turns import InTurn
+from calm.tui.workspace import Judging, Workspace
+
+if TYPE_CHECKING:
+    from calm.files import Catalogue
 
 _AUTOSAVED_AFTER = 0.3  # seconds
 _LOOKED_AT_DISK = 2.0  # seconds between two looks
 _HELD_AT_MOST = 3.0  # seconds that a frame waits for a terminal that answers no more
+_MOST_ROUNDS = 50  # what sends itself messages without an end is not waited for
 _COLOURLESS = NoColor()
 
 
-class BuildApp(InTurn):
+class BuildApp(App[int]):
     """The line builder.
+
+    It handles keys, pastes and the mouse one after the other: what a key opens is there before the
+    next one is pressed. Keys that are typed ahead, or come in one parcel over a slow line, would
+    otherwise go to what has the focus when they arrive: to the line instead of the field that the
+    first of them opens.
+
+    A key is done when everything that it may have set going has come to rest. Each part of the
+    screen handles what it is sent in the order of its queue: a call that is sent after the key
+    comes back when the key is handled, and a second round finds what the key made the parts send
+    each other. Rounds are made until one of them finds no queue with anything left in it.
 
     Parameters
     ----------
@@ -49,10 +65,11 @@ class BuildApp(InTurn):
     Attributes
     ----------
     not_kept : why unsaved work could not be kept at the end; empty as a rule
+    has_keys_waiting : whether a key is not handled yet
     """
 
     TITLE = "calm build"
-    COMMANDS: ClassVar[set[Any]] = {*InTurn.COMMANDS, Actions}
+    COMMANDS: ClassVar[set[Any]] = {*App.COMMANDS, Actions}
     CSS = """
     * { scrollbar-size: 1 1; }
     Input > .input--placeholder { text-style: italic dim; }
@@ -71,10 +88,8 @@ class BuildApp(InTurn):
     ) -> None:
         super().__init__()
         self.session = session
-        self.workspace = workspace.Workspace(
-            session, self.tell, lambda: self.post_message(workspace.Edited())
-        )
-        self.judging = workspace.Judging(self, self.workspace, self._show_views)
+        self.workspace = Workspace(session, self.tell, self._edited)
+        self.judging = Judging(self, self.workspace, self._show_views)
         self.saving = Saving(self, self.workspace)
         self.builder = BuilderScreen(self.workspace)
         self.not_kept = ""
@@ -86,11 +101,64 @@ class BuildApp(InTurn):
         self._late: Timer | None = None
         self._is_left = False
         self._lost: str | None = None
+        self._waiting: deque[events.Event] = deque()
+        self.has_keys_waiting = False
+        self._rounds = 0
 
         for theme in (DARK, LIGHT):
             self.register_theme(theme)
         self.ansi_theme_dark, self.ansi_theme_light = PICTURE_DARK, PICTURE_LIGHT
         self.theme = choose_theme(environ)
+
+    # the turns of the keys
+
+    async def on_event(self, event: events.Event) -> None:
+        """Let what a person does wait for what was done before, but for the mouse that moves."""
+        is_done = isinstance(event, events.InputEvent | events.Paste)
+        if not is_done or event.is_forwarded or isinstance(event, events.MouseMove):
+            await super().on_event(event)
+            return
+        self._waiting.append(event)
+        if not self.has_keys_waiting:
+            await self._press()
+
+    async def _press(self) -> None:
+        """Do what has waited longest."""
+        self.has_keys_waiting = bool(self._waiting)
+        if self.has_keys_waiting:
+            before = self._listeners()
+            await super().on_event(self._waiting.popleft())
+            self._rounds = 0
+            self._go_round(before)
+
+    def _listeners(self) -> list[MessagePump]:
+        """All that a key may set going: what has the focus and what is around it, the screen.
+
+        Not the screens below it: each message makes them have all of the screen painted anew. A
+        list hands on what is chosen in it, without the focus.
+        """
+        around = [] if self.focused is None else list(self.focused.ancestors_with_self)
+        lists = [each for top in self.screen_stack[-1:] for each in top.query(OptionList)]
+        return list(dict.fromkeys([*around, *lists, *self.screen_stack[-1:], self]))
+
+    def _go_round(self, listeners: list[MessagePump]) -> None:
+        """Wait for one after the other; one that is gone handles nothing any more."""
+        while listeners:
+            first, *others = listeners
+            if first.call_later(self._go_round, others):
+                return
+            listeners = others
+        self._rounds += 1
+        now = self._listeners()
+        is_busy = any(each.message_queue_size for each in now)
+        if self._rounds < 2 or (is_busy and self._rounds < _MOST_ROUNDS):
+            self._go_round(now)
+        elif self._waiting:
+            self.call_after_refresh(self._press)
+        else:
+            self.has_keys_waiting = False
+
+    # the terminal
 
     def get_default_screen(self) -> Screen[Any]:
         """The line as the lowest screen: a screen below it would be painted too."""
@@ -107,9 +175,9 @@ class BuildApp(InTurn):
         self._read_catalogue()
         self.judging.ask()
         if self._offered is not None:
-            self._offer(self._offered)
+            self.saving.offer(self._offered)
         else:
-            self._mend()
+            self.mend()
         is_unsaved = self.session.file.is_open_elsewhere()
         others = self.saving.presence.say(self.session.file.path)
         if is_unsaved or others:
@@ -122,9 +190,7 @@ class BuildApp(InTurn):
         yield SystemCommand("colours", "Choose other colours.", self.action_change_theme)
 
     def get_line_filters(self) -> Sequence[LineFilter]:
-        """Return those of textual and one for colours that can be read; or one that takes all
-        colours off; and one for terminals of plain signs.
-        """
+        """Those of textual, and one for legible colours or for none, and one for plain signs."""
         if self.no_color:
             return [_COLOURLESS, *self._plain]
         theme = self.current_theme
@@ -161,12 +227,9 @@ class BuildApp(InTurn):
 
     def tell(self, text: str, *, wrong: bool = False) -> None:
         """Say something in the last line of the screen."""
-        screen = self.screen if isinstance(self.screen, DraftScreen) else self.builder
-        screen.tell(text, wrong=wrong)
-
-    @on(workspace.Told)
-    def _say(self, event: workspace.Told) -> None:
-        self.tell(event.text, wrong=event.wrong)
+        if self.is_running:  # else the screens are being taken apart
+            screen = self.screen if isinstance(self.screen, DraftScreen) else self.builder
+            screen.tell(text, wrong=wrong)
 
     def draft_screens(self) -> list[DraftScreen]:
         """The open ones, the top one last."""
@@ -181,19 +244,22 @@ class BuildApp(InTurn):
         for screen in self.draft_screens():
             screen.replaced()
         self.tell(message)
-        self.post_message(workspace.Edited())
+        self._edited()
 
     def action_save(self) -> None:
         """Save, and ask for a name where there is none."""
-        self.saving.save()
+        if self.is_settled():
+            self.saving.save()
 
     def action_save_as(self) -> None:
         """Save under another name."""
-        self.saving.save_as()
+        if self.is_settled():
+            self.saving.save_as()
 
     async def action_quit(self) -> None:
         """Leave; unsaved work is asked about."""
-        self.saving.quit()
+        if self.is_settled():
+            self.saving.quit()
 
     def action_command_palette(self) -> None:
         """Find a command by its name."""
@@ -211,20 +277,22 @@ class BuildApp(InTurn):
         """Return whether the line that is shown has been solved, and nothing else is under way."""
         return self.judging.is_idle and self._is_catalogue_read
 
-    @on(workspace.Edited)
+    def _edited(self) -> None:
+        self.call_later(self._after_an_edit)
+
     def _after_an_edit(self) -> None:
         self._show_views()
         self._tell_lost_environment()
         self.judging.after_an_edit()
         if self._autosaving is None:
             self._autosaving = self.set_timer(_AUTOSAVED_AFTER, self._autosave)
-        self._mend()
 
-    def _show_views(self) -> None:
+    def _show_views(self, *, is_first: bool = False) -> None:
         if self.is_running:  # else the screens are being taken apart
             for screen in self.draft_screens():
                 if screen.is_mounted and screen.is_attached:  # there, and not on the way out
                     screen.show_view()
+            self.mend(as_judged=is_first)
 
     def _tell_lost_environment(self) -> None:
         before, self._lost = self._lost, self.session.standing.lost_environment
@@ -232,7 +300,7 @@ class BuildApp(InTurn):
             message = f"There is no environment {self._lost} now; the line stands in the file's own"
             self.tell(message)
 
-    def _mend(self, *, as_judged: bool = False) -> None:
+    def mend(self, *, as_judged: bool = False) -> None:
         """Open the text where the draft cannot be read; or, `as_judged`, has mistakes."""
         judged = self.workspace.view if as_judged and self.screen is self.builder else None
         if (judged and judged.problems) or self.session.draft.problems:
@@ -248,21 +316,6 @@ class BuildApp(InTurn):
             await self.pop_screen()
         self.builder.action_text()
 
-    @on(workspace.Judged)
-    def _take_view(self, event: workspace.Judged) -> None:
-        if not self.is_running:
-            return
-        is_first = self.workspace.view is None
-        if self.judging.take(event):
-            self._show_views()
-            self._mend(as_judged=is_first)
-
-    @on(workspace.JudgingFailed)
-    def _tell_failure(self, event: workspace.JudgingFailed) -> None:
-        if self.is_running:
-            self.tell(f"internal error ({event.reason}); please report it", wrong=True)
-            self.judging.failed()
-
     # the catalogue
 
     @work(thread=True, exit_on_error=False)
@@ -270,19 +323,16 @@ class BuildApp(InTurn):
         from calm.files import Catalogue
 
         try:
-            self.post_message(workspace.CatalogueRead(Catalogue.load(self.session.catalogs)))
+            self.call_later(self._take_catalogue, Catalogue.load(self.session.catalogs))
         except CalmError as error:
-            self.post_message(workspace.CatalogueRead(None, str(error)))
+            self.call_later(self._take_catalogue, None, str(error))
 
-    @on(workspace.CatalogueRead)
-    def _take_catalogue(self, event: workspace.CatalogueRead) -> None:
-        if not self.is_running:
-            return
+    def _take_catalogue(self, catalogue: Catalogue | None, reason: str = "") -> None:
         self._is_catalogue_read = True
-        if event.catalogue is None:
-            self.tell(event.reason, wrong=True)
-        else:
-            self.workspace.take_catalogue(event.catalogue)
+        if catalogue is None:
+            self.tell(reason, wrong=True)
+        elif self.is_running:
+            self.workspace.take_catalogue(catalogue)
             self.builder.show_catalogue()
 
     # what is kept, and the way out
@@ -336,17 +386,3 @@ class BuildApp(InTurn):
             self.set_timer(0.02, self._exit_answered)
         else:
             self.exit(0)
-
-    def _offer(self, kept: KeptWork) -> None:
-        def recover() -> None:
-            self.session.recover(kept)
-            self.taken_over("Recovered; save it to keep it")
-
-        def throw_away() -> None:
-            self.session.file.discard(kept)
-            go_on()
-
-        go_on = partial(self._mend, as_judged=True)
-        sure = saving.confirmation(kept, throw_away, partial(self._offer, kept))
-        discard = partial(choose, self, sure)
-        choose(self, saving.offer(self.session, kept, recover, go_on, discard))

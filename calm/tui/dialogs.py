@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
@@ -15,8 +15,8 @@ from textual.markup import escape
 from textual.screen import ModalScreen, Screen
 from textual.widgets import Static
 
-from calm.tui.checking import Check, Reading, anything
-from calm.tui.field import Field, all_settled
+from calm.tui.checking import Reading
+from calm.tui.field import Asked, Field, all_settled
 from calm.tui.key_table import bindings
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ _FRAME = """
     align: center middle;
     & > Vertical, & > VerticalScroll {
         width: 72; max-width: 100%; height: auto; max-height: 100%; padding: 1 2;
-        background: $panel; border-left: outer $primary;
+        background: $panel; border-left: outer $primary; scrollbar-size-vertical: 1;
     }
     & .title { text-style: bold; }
     & .text { color: $text-muted; margin-bottom: 1; }
@@ -61,6 +61,11 @@ class Answer:
     key: str
     title: str
     then: Then | None = None
+
+
+def numbered(answers: Iterable[tuple[str, Then]]) -> list[Answer]:
+    """Titles and what is done then, their keys the numbers from 1."""
+    return [Answer(str(number), *answer) for number, answer in enumerate(answers, 1)]
 
 
 class Question(ModalScreen[Then | None]):
@@ -113,20 +118,31 @@ class Question(ModalScreen[Then | None]):
             self.dismiss(self._back)
 
 
-@dataclass(frozen=True)
-class Asked:
-    """A text that is asked for; `takes` stands beside it, and `above` begins a group with it."""
+class Form(Screen[T | None]):
+    """Fields that are entered together: Enter goes through them, and from the last takes all."""
 
-    key: str
-    title: str
-    text: str = ""
-    check: Check = anything
-    placeholder: str = ""
-    takes: str = ""
-    above: str = ""
+    @property
+    def fields(self) -> list[Field]:
+        """Return them as they follow one another."""
+        return list(self.query(Field))
+
+    @on(Field.Entered)
+    def _onward(self, event: Field.Entered) -> None:
+        if event.field is self.fields[-1]:
+            self.action_take()
+        else:
+            self.focus_next()
+
+    def action_take(self) -> None:
+        """Give what is entered, if it is good."""
+        raise NotImplementedError
+
+    def action_leave(self) -> None:
+        """Give nothing."""
+        self.dismiss(None)
 
 
-class InputSheet(ModalScreen[dict[str, str] | None]):
+class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
     """Some texts, entered together; Esc leaves all as it was.
 
     It is wider where it is said beside them what they take.
@@ -157,10 +173,7 @@ class InputSheet(ModalScreen[dict[str, str] | None]):
             for each in self._asked:
                 if each.above:
                     yield Static(each.above, classes="above", markup=False)
-                yield Field(
-                    each.key, each.title, each.check,
-                    text=each.text, note=each.takes, placeholder=each.placeholder,
-                )  # fmt: skip
+                yield Field(each)
             yield Static(id="sheet-note", markup=False)
             yield Static(
                 "[b]Enter[/b] next, then done   [b]Ctrl+S[/b] done   [b]Esc[/b] go back",
@@ -169,7 +182,7 @@ class InputSheet(ModalScreen[dict[str, str] | None]):
 
     def on_mount(self) -> None:
         """Type at once."""
-        first = self.query(Field).first()
+        first = self.fields[0]
         first.input.focus()
         if first.input.value:
             self._tell(first, first.reading)
@@ -183,40 +196,20 @@ class InputSheet(ModalScreen[dict[str, str] | None]):
         note.update(field.note(reading))
         note.set_class(not reading.is_good, "-wrong")
 
-    @on(Field.Entered)
-    def _onward(self, event: Field.Entered) -> None:
-        fields = list(self.query(Field))
-        number = fields.index(event.field)
-        if number + 1 < len(fields):
-            fields[number + 1].input.focus()
-        else:
-            self.action_take()
-
     def action_take(self) -> None:
         """Give the texts, if all are good."""
-        fields = list(self.query(Field))
-        if all_settled(fields):
-            self.dismiss({field.key: field.text for field in fields})
-
-    def action_leave(self) -> None:
-        """Give nothing."""
-        self.dismiss(None)
+        if all_settled(self.fields):
+            self.dismiss({field.key: field.text for field in self.fields})
 
 
 class LongText(ModalScreen[None]):
     """A text over the screen, scrolled where it is longer; of tables, `wide`."""
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings("help")]
-    DEFAULT_CSS = """
-    LongText {
-        align: center middle;
-        & > VerticalScroll {
-            width: 84; max-width: 100%; height: 90%; padding: 1 2; background: $panel;
-            border-left: outer $primary; scrollbar-size-vertical: 1;
-        }
-        &.-wide > VerticalScroll { width: 110; }
-    }
-    """
+    DEFAULT_CSS = (
+        "LongText {" + _FRAME + " & > VerticalScroll { width: 84; height: 90%; }"
+        " &.-wide > VerticalScroll { width: 110; } }"
+    )
 
     def __init__(self, text: RenderableType, *, wide: bool = False) -> None:
         super().__init__(classes="-wide" if wide else None)

@@ -1,4 +1,4 @@
-"""A value of a form: its name, the text, and at each key what is made of it."""
+"""Where a value is typed: a line of input, and at each key what is made of its text."""
 
 from __future__ import annotations
 
@@ -11,19 +11,52 @@ from textual import events, on
 from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.containers import Horizontal
+from textual.geometry import Size
 from textual.message import Message
+from textual.reactive import Reactive
 from textual.widget import Widget
 from textual.widgets import Input, Static
 
 from calm.tui.checking import Check, Reading, anything
 from calm.tui.key_table import bindings
-from calm.tui.scrolled import ScrolledEntry
+
+
+class ScrolledEntry(Input):
+    """A line of input; a text of several lines that is pasted is left to what is around it."""
+
+    virtual_size = Reactive(Size(0, 0), repaint=False)
+
+    def on_mount(self) -> None:
+        """Its cursor stands still: nothing is sent while nobody types."""
+        self.cursor_blink = False
+
+    def on_paste(self, event: events.Paste) -> None:
+        """Rows of a table are no value: textual would take the first of them."""
+        if len(event.text.splitlines()) > 1:
+            event.prevent_default()
+
+    def correct(self, reading: Reading) -> None:
+        """Put in what was probably meant, where that is known."""
+        if reading.offer:
+            self.value = reading.offer
+            self.cursor_position = len(self.value)
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A text that is asked for; `takes` stands beside it, and `above` begins a group with it."""
+
+    key: str
+    title: str
+    text: str = ""
+    check: Check = anything
+    placeholder: str = ""
+    takes: str = ""
+    above: str = ""
 
 
 def all_settled(fields: Iterable[Field]) -> bool:
-    """Return whether all texts are good, and taken; of those that are not the first gets the
-    focus.
-    """
+    """Return whether all texts are good, and taken; the first that is not gets the focus."""
     wrong = [field for field in fields if not field.settle()]
     if wrong:
         wrong[0].input.focus()
@@ -71,32 +104,19 @@ class Field(Horizontal):
         field: Field
         reading: Reading
 
-    def __init__(
-        self,
-        key: str,
-        title: str,
-        check: Check = anything,
-        *,
-        text: str = "",
-        note: str = "",
-        placeholder: str = "",
-        id: str | None = None,
-    ) -> None:
+    def __init__(self, asked: Asked, *, id: str | None = None) -> None:
         super().__init__(id=id)
-        self.key, self.check, self.begun, self._note = key, check, text, note
-        self._shown = text  # what the input was filled with
-        self._title, self._placeholder = title, placeholder
+        self.key, self.check = asked.key, asked.check
+        self._title, self._note = asked.title, asked.takes
+        self.begun = self._shown = asked.text  # what it began with, and was last filled with
+        self.input = ScrolledEntry(asked.text, placeholder=asked.placeholder, compact=True)
+        self._told = Static(asked.takes, classes="field-note", markup=False)
 
     def compose(self) -> ComposeResult:
         """Name, input, note."""
         yield Static(self._title, classes="field-title", markup=False)
-        yield ScrolledEntry(self.begun, placeholder=self._placeholder, compact=True)
-        yield Static(self._note, classes="field-note", markup=False)
-
-    @property
-    def input(self) -> ScrolledEntry:
-        """The input."""
-        return self.query_one(ScrolledEntry)
+        yield self.input
+        yield self._told
 
     @property
     def is_typing(self) -> bool:
@@ -106,7 +126,7 @@ class Field(Horizontal):
     @property
     def text(self) -> str:
         """Return what was typed, as it is to be written; as it was, where nothing was typed."""
-        return self.check(self.input.value).text if self.is_typing else self.begun
+        return self.reading.text if self.is_typing else self.begun
 
     @property
     def reading(self) -> Reading:
@@ -124,7 +144,7 @@ class Field(Horizontal):
         """Show another note, as long as nothing is wrong."""
         self._note = note
         if not self.has_class("-wrong"):
-            self.query_one(".field-note", Static).update(note, layout=False)
+            self._told.update(note, layout=False)
 
     def note(self, reading: Reading) -> str:
         """Return what is said of the typed text: what is wrong, or what is added."""
@@ -137,12 +157,12 @@ class Field(Horizontal):
 
     def _tell(self, reading: Reading) -> None:
         self.set_class(not reading.is_good, "-wrong")
-        self.query_one(".field-note", Static).update(self.note(reading), layout=False)
+        self._told.update(self.note(reading), layout=False)
 
     @on(Input.Changed)
     def _judge(self, event: Input.Changed) -> None:
         event.stop()
-        reading = self.check(event.value)
+        reading = self.reading
         self._tell(reading)
         self.post_message(self.Judged(self, reading))
 
@@ -162,19 +182,14 @@ class Field(Horizontal):
         reading = self.reading
         if not reading.is_good:
             self._tell(reading)
-            if reading.offer:
-                self.input.value = reading.offer
-                self.input.cursor_position = len(reading.offer)
+            self.input.correct(reading)
             return False
         if not self.is_typing:
             return True
-        if self.input.value != reading.text:
-            with self.prevent(Input.Changed):
-                self.input.value = reading.text
-        self._shown = reading.text
+        begun = self.begun
+        self.reset(reading.text)
         self._tell(reading)
-        if reading.text != self.begun:
-            self.begun = reading.text
+        if reading.text != begun:
             self.post_message(self.Committed(self, reading.text))
         return True
 
@@ -204,7 +219,7 @@ class Cycle(Widget, can_focus=True):
         id: str | None = None,
     ) -> None:
         super().__init__(id=id)
-        self._title, self.words, self.word, self._width = title, tuple(words), word, title_width
+        self._title, self.words, self.word = f"{title:<{title_width}}", tuple(words), word
 
     @property
     def hint(self) -> str:
@@ -216,10 +231,14 @@ class Cycle(Widget, can_focus=True):
         self.word = word
         self.refresh()
 
+    def next_word(self, by: int) -> str:
+        """Return the word after the one shown, or before it."""
+        here = self.words.index(self.word) if self.word in self.words else 0
+        return self.words[(here + by) % len(self.words)]
+
     def action_turn(self, by: int) -> None:
         """Go to the next word."""
-        here = self.words.index(self.word) if self.word in self.words else 0
-        self.show(self.words[(here + by) % len(self.words)])
+        self.show(self.next_word(by))
         self.post_message(self.Turned(self.word))
 
     def on_click(self) -> None:
@@ -229,7 +248,7 @@ class Cycle(Widget, can_focus=True):
     def render(self) -> Text:
         """The name, the arrows and the word."""
         return Text.assemble(
-            (f"{self._title:<{self._width}}", "dim"),
+            (self._title, "dim"),
             ("‹ " if self.has_focus else "  ", "dim"),
             (self.word, "reverse" if self.has_focus else ""),
             (f" ›   {self.hint}" if self.has_focus else "", "dim"),

@@ -47,9 +47,9 @@ _TABLE = """
 [line] The line
 edit | enter,f2 | edit | 1 | Edit the value under the cursor in place; on the component, choose
   another one.
-add(1) | a,insert | add | 0 | Add a piece below, from the catalogue.
-add(0) | A | add above |  | Add a piece above.
-clamp | i | clamp on | 5 | Clamp an instrument on this piece.
+search('below') | a,insert | add | 0 | Add a piece below, from the catalogue.
+search('above') | A | add above |  | Add a piece above.
+search('clamp') | i | clamp on | 5 | Clamp an instrument on this piece.
 duplicate | d | duplicate | 6 | Repeat the piece, or those marked, below.
 delete | delete,backspace | delete | 7 | Delete the piece, or those marked.
 move_piece(-1) | alt+up,ctrl+up,K | move up | 8 | Move the piece up the line.
@@ -67,8 +67,8 @@ edit_column('label') | n | label |  | Edit its label.
 edit_column('count') | equals_sign,asterisk | count |  | Edit its count.
 assemble | k | assembly |  | Make the marked pieces an assembly of the file, to be used again
   under one name.
-change_component | O | change component |  | Change the component of the row, one of the file's
-  own, in its form.
+screen.change_component | O | change component |  | Change the component of the row, one of the
+  file's own, in its form.
 equipment | N | serial number |  | Serial number, calibration, sampling, battery and termination
   of the row.
 find | slash | find | 12 | Find words in the line: id, label, serial number, maker.
@@ -84,7 +84,7 @@ repeat | R | repeat |  | Repeat the piece, or those marked, as often as you say.
 next_finding | f8,g | next finding |  | To the next row with the most serious finding; the last
   line of the screen shows it.
 why | y | why |  | All findings of this row, with remedies.
-replace | r | replace |  | Use another component in its place.
+search('replace') | r | replace |  | Use another component in its place.
 move_cursor(-1) | up | up | - | To the row above.
 move_cursor(1) | down | down | - | To the row below.
 move_page(-1) | pageup | page up | - | A page up.
@@ -93,7 +93,7 @@ move_to_end(-1) | home | top | - | To the top of the line.
 move_to_end(1) | end | bottom | - | To the bottom.
 move_column(-1) | left | left | - | To the column on the left.
 move_column(1) | right | right | - | To the one on the right.
-back | escape | back | - | Back to the line of the verdict that led here.
+screen.back | escape | back | - | Back to the line of the verdict that led here.
 [anywhere] Anywhere on the first screen
 undo | u | undo | 3 | Undo the last change, as often as there is one.
 suspend | ctrl+z | suspend |  | Suspend to the shell, `fg` returns; while a value is edited, and
@@ -112,19 +112,19 @@ figures | f | missing figures |  | Fill in the figures that are not known, piece
   their source.
 verdict | G | verdict |  | The verdict line by line: Enter goes to the row that a line is about,
   Esc back.
-search | B | catalogue |  | Browse the catalogue.
+search('below') | B | catalogue |  | Browse the catalogue.
 define | o | own component |  | Define a component of your own.
 picture('elevation') | 1 | elevation |  | The line seen from the side.
 picture('plan') | 2 | plan |  | The line seen from above.
 picture('tension') | 3 | tension |  | Tension along the line.
 picture('schematic') | 4 | schematic |  | The parts, not to scale.
 zoom | z | zoom |  | Give the picture the whole screen, or take it back.
-mooring | m | name, place |  | Name, description and position.
-document | M | document |  | Number, revision and what it changed, author, ship and cruise, for
-  the title block.
-deployed | L | as deployed |  | Date, position and depth of the deployment; of the row its number,
-  length, remark, codes.
-tow | T | tow |  | Speed and course of a tow; makes the line one, which hangs from a ship.
+sheet('mooring') | m | name, place |  | Name, description and position.
+sheet('document') | M | document |  | Number, revision and what it changed, author, ship and cruise,
+  for the title block.
+sheet('deployed') | L | as deployed |  | Date, position and depth of the deployment; of the row its
+  number, length, remark, codes.
+sheet('tow') | T | tow |  | Speed and course of a tow; makes the line one, which hangs from a ship.
 begin | b | begin |  | Begin an empty line with a mooring: deep, shelf, ADCP, taut or slack
   surface; a tow.
 papers | P | papers |  | Bill and totals; write the report of the check, or the sheets for the
@@ -200,8 +200,8 @@ end(-1) | ctrl+home | top |  | To the beginning of the text.
 end(1) | ctrl+end | bottom |  | To the end of the text.
 indent | tab | indent |  | Blanks to the next even column.
 [form] A component of your own
-accept | ctrl+s | keep it | 0 | Write the component into the file.
-cancel | escape | leave | 1 | Leave without it.
+take | ctrl+s | keep it | 0 | Write the component into the file.
+leave | escape | leave | 1 | Leave without it.
 app.help | f1 | help | 2 | All keys.
 app.focus_next | down | next |  | To the next figure.
 app.focus_previous | up | last |  | To the one before.
@@ -237,23 +237,9 @@ for _section in _TABLE.strip("\n[").replace("\n  ", " ").split("\n["):
     ACTIONS[_place] = [_action(_place, _row) for _row in _rows]
 
 
-_KEYS = {
-    "up": "↑",
-    "down": "↓",
-    "left": "←",
-    "right": "→",
-    "enter": "Enter",
-    "escape": "Esc",
-    "delete": "Del",
-    "insert": "Ins",
-    "space": "Space",
-    "tab": "Tab",
-    "home": "Home",
-    "end": "End",
-    "pageup": "PgUp",
-    "pagedown": "PgDn",
-    "slash": "/",
-}
+_ARROWS = {"up": "↑", "down": "↓", "left": "←", "right": "→"}
+_SHORT = {"escape": "Esc", "delete": "Del", "insert": "Ins", "pageup": "PgUp", "pagedown": "PgDn"}
+_KEYS = {**_ARROWS, **_SHORT, "slash": "/", "space": "Space"}
 
 
 def shown_key(key: str) -> str:
@@ -301,24 +287,22 @@ _OF_TEXTUAL: dict[str, Iterable[BindingType]] = {
 
 def all_keys() -> RenderableType:
     """Every key, by where it works."""
-    parts: list[RenderableType] = [Text("Keys", style="bold"), Text(_GROUND), Text(_SIGNS)]
-    for place, title in PLACES.items():
-        rows = [(action.keys, action.meaning) for action in ACTIONS[place]]
-        parts += _listed(title, rows)
+    listed = {
+        title: [(action.keys, action.meaning) for action in ACTIONS[place]]
+        for place, title in PLACES.items()
+    }
     for title, inherited in _OF_TEXTUAL.items():
         bound = [each for each in inherited if isinstance(each, Binding)]
-        told = [(each.key, f"{each.description.capitalize()}.") for each in bound]
-        parts += _listed(title, told)
+        listed[title] = [(each.key, f"{each.description.capitalize()}.") for each in bound]
+    parts: list[RenderableType] = [Text("Keys", style="bold"), Text(_GROUND), Text(_SIGNS)]
+    for title, rows in listed.items():
+        table = Table.grid(padding=(0, 2, 0, 0))
+        table.add_column(width=20, overflow="fold")
+        table.add_column(overflow="fold")
+        for keys, meaning in rows:
+            table.add_row(Text(shown_keys(keys), style="bold"), Text(meaning))
+        parts += [Text(f"\n{title}", style="bold underline"), table]
     return Group(*parts)
-
-
-def _listed(title: str, rows: Iterable[tuple[str, str]]) -> list[RenderableType]:
-    table = Table.grid(padding=(0, 2, 0, 0))
-    table.add_column(width=20, overflow="fold")
-    table.add_column(overflow="fold")
-    for keys, meaning in rows:
-        table.add_row(Text(shown_keys(keys), style="bold"), Text(meaning))
-    return [Text(f"\n{title}", style="bold underline"), table]
 
 
 class Commands(CommandPalette):
@@ -358,8 +342,10 @@ class Actions(Provider):
     def _run(self, action: Action) -> Callable[[], Awaitable[bool]]:
         from calm.tui.line.line_pane import LinePane
 
-        owner = self.screen.query_one(LinePane) if action.place == "line" else self.screen
-        return partial(self.app.run_action, action.name, owner)
+        name = action.name.removeprefix("screen.")
+        is_of_line = action.place == "line" and name == action.name
+        owner = self.screen.query_one(LinePane) if is_of_line else self.screen
+        return partial(self.app.run_action, name, owner)
 
 
 def _shown(action: Action) -> str:

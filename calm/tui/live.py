@@ -155,12 +155,9 @@ def _in_all_environments(
     view: View, here: Mooring | Net, catalogs: Sequence[str | Path]
 ) -> tuple[list[Mooring | Net], list[Problem]]:
     """The mooring in each of its environments, as long in all as here; what is wrong with them."""
-    names: list[str | None] = [None, *view.environments]
-    if view.environment not in names:
-        names.append(view.environment)
     found: list[Mooring | Net] = []
     problems: list[Problem] = []
-    for name in names:
+    for name in dict.fromkeys([None, *view.environments, view.environment]):
         if name == view.environment:
             found.append(here)
             continue

@@ -34,26 +34,23 @@ class Named:
 def named_in(draft: Draft) -> Iterator[Named]:
     """All that a file names of its line: what is accepted, what was deployed, stops."""
 
-    def mappings(*location: str | int) -> Iterator[tuple[Location, Mapping[str, Any]]]:
+    def within(*location: str | int) -> Iterator[tuple[Location, Any]]:
         values = draft.value(location)
-        pairs = values.items() if isinstance(values, dict) else enumerate(values or ())
-        for key, value in pairs if isinstance(values, dict | list) else ():
-            if isinstance(value, dict):
-                yield (*location, key), value
+        if isinstance(values, dict | list):
+            pairs = values.items() if isinstance(values, dict) else enumerate(values)
+            yield from (((*location, key), value) for key, value in pairs)
 
-    for place, one in mappings("checks", "accept"):
-        if isinstance(one.get("component"), str):
-            yield Named((*place, "component"), one["component"])
-    for place, one in mappings("deployed", "items"):
-        if isinstance(one.get("label"), str):
-            yield Named((*place, "label"), one["label"])
-    rows = [*mappings("components"), *mappings("line")]
-    rows += [clamp for place, _ in mappings("line") for clamp in mappings(*place, "clamps")]
-    for place, one in rows:
-        stops = one.get("between")
-        for number, stop in enumerate(stops if isinstance(stops, list) else ()):
-            if isinstance(stop, str):
-                yield Named((*place, "between", number), stop)
+    def under(key: str, *location: str | int) -> list[tuple[Location, Any]]:
+        rows = (row for row, _ in within(*location))
+        return [each for row in rows for each in within(*row) if each[0][-1] == key]
+
+    lists = [("components",), ("line",), *((*row, "clamps") for row, _ in within("line"))]
+    named = under("component", "checks", "accept") + under("label", "deployed", "items")
+    for rows in lists:
+        named += [each for row, _ in within(*rows) for each in within(*row, "between")]
+    for place, text in named:
+        if isinstance(text, str):
+            yield Named(place, text)
 
 
 def labels_of(draft: Draft) -> dict[Place, list[str]]:
@@ -61,12 +58,10 @@ def labels_of(draft: Draft) -> dict[Place, list[str]]:
     rows: list[tuple[Place, str]] = []
     for number, item in enumerate(draft.items):
         count = item.values.get("count", "1")
-        own = [
-            (Place(number), item),
-            *((Place(number, clamp=i), c) for i, c in enumerate(item.clamps)),
-        ]
+        parts = enumerate((item, *item.clamps), -1)
         named = [
-            (place, part.values.get("label") or part.values.get("use", "")) for place, part in own
+            (Place(number, clamp=i), part.values.get("label") or part.values.get("use", ""))
+            for i, part in parts
         ]
         rows += named * (min(int(count), _MOST_OF_A_COUNT) if count.isdecimal() else 1)
     found: dict[Place, list[str]] = {}
@@ -84,8 +79,6 @@ def followed(before: Draft, after: Draft, moved: Mapping[Place, Place]) -> tuple
     moved : the rows that are left of the line, and where they are now
     """
     names = list(named_in(after))
-    if not names:
-        return after, []
     old, new = labels_of(before), labels_of(after)
     renamed = {
         label: now
@@ -161,9 +154,7 @@ class Standing:
 
     @property
     def environment(self) -> str | None:
-        """Return what the line stands in: the own one, too, where that chosen is in the file no
-        more.
-        """
+        """Return what the line stands in; its own where the chosen one is gone from the file."""
         return None if self.lost_environment else self._environment
 
     @environment.setter

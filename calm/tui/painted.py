@@ -49,11 +49,9 @@ class Painted:
 
     def put(self, y: int, x: int, cells: list[Cell], pen: _Pen) -> str:
         """Return what is to be sent to have cells in a row, from a column on."""
-        while len(self._rows) <= y:
-            self._rows.append([])
+        self._rows += ([] for _ in range(y + 1 - len(self._rows)))
         row = self._rows[y]
-        if len(row) < x + len(cells):
-            row.extend([_UNKNOWN] * (x + len(cells) - len(row)))
+        row += [_UNKNOWN] * (x + len(cells) - len(row))
         sent = [
             f"\x1b[{y + 1};{x + begin + 1}H{pen.written(cells[begin:end])}"
             for begin, end in _changed(row[x : x + len(cells)], cells)
@@ -111,25 +109,21 @@ class _Changes(CompositorUpdate):
     def render_segments(self, console: Console) -> str:
         """The signs to be sent; they are taken to be shown then."""
         painted, update, pen = self._painted, self._update, _Pen(console)
+        if not isinstance(update, LayoutUpdate | ChopsUpdate):
+            painted.forget()
+            return update.render_segments(console)
         if isinstance(update, LayoutUpdate):
-            region = update.region
-            painted.fit(region.width, region.height)
-            return (
-                "".join(
-                    painted.put(y, region.x, [*_cells(chain.from_iterable(line))], pen)
-                    for y, line in enumerate(update.strips, region.y)
-                )
-                + pen.put_down()
-            )
-        if isinstance(update, ChopsUpdate):
-            sent = "".join(painted.put(y, x, cells, pen) for y, x, cells in _parts(update))
-            return sent + pen.put_down()
-        painted.forget()
-        return update.render_segments(console)
+            painted.fit(update.region.width, update.region.height)
+        sent = "".join(painted.put(y, x, cells, pen) for y, x, cells in _parts(update))
+        return sent + pen.put_down()
 
 
-def _parts(update: ChopsUpdate) -> Iterator[tuple[int, int, list[Cell]]]:
-    """The cells of an update of some spans, by row and column."""
+def _parts(update: LayoutUpdate | ChopsUpdate) -> Iterator[tuple[int, int, list[Cell]]]:
+    """The cells of an update, of the whole or of some spans, by row and column."""
+    if isinstance(update, LayoutUpdate):
+        for y, line in enumerate(update.strips, update.region.y):
+            yield y, update.region.x, [*_cells(chain.from_iterable(line))]
+        return
     for y, begin, end in update.spans:
         for x, strip in update.chops[y].items():
             if strip is not None and x < end and x + strip.cell_length > begin:
@@ -153,9 +147,7 @@ def _cells(segments: Iterable[Segment]) -> Iterator[Cell]:
 
 @lru_cache(1024)
 def _ground(style: Style | None) -> Style | None:
-    """Return what is seen of a style where nothing is written: two blanks that look alike are
-    alike.
-    """
+    """Return what is seen of a style where nothing is written."""
     if style is None or style.underline or style.overline or style.strike or style.reverse:
         return style
     return Style(bgcolor=style.bgcolor)
@@ -269,14 +261,10 @@ def shows_all_signs(environ: Mapping[str, str], output: TextIO | None) -> bool:
     """
     if environ.get("TEXTUAL_DRIVER"):
         return True  # a page in a browser
-    locales = [environ[name] for name in _LOCALE if environ.get(name)]
-    if (
-        len(locales) > 1
-        and locales[0] == environ.get("LC_CTYPE")
-        and locales[0].lower() in _OF_PYTHON
-    ):
-        locales.pop(0)
-    name, _, coded = (locales[0] if locales else "").partition("@")[0].partition(".")
+    locales = [environ[name] for name in _LOCALE if environ.get(name)] or [""]
+    is_of_python = locales[0].lower() in _OF_PYTHON and locales[0] == environ.get("LC_CTYPE")
+    locale = locales[1] if is_of_python and len(locales) > 1 else locales[0]
+    name, _, coded = locale.partition("@")[0].partition(".")
     if name in ("C", "POSIX") and not coded:
         return False
     return _is_utf(coded or "utf-8") and _is_utf(getattr(output, "encoding", None) or "ascii")

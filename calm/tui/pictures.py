@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from textwrap import wrap
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 from rich.text import Text
 from textual import events, on
 from textual.app import ComposeResult
-from textual.containers import Vertical
+from textual.binding import BindingType
+from textual.containers import ScrollableContainer, Vertical
 from textual.geometry import Size
 from textual.reactive import reactive
-from textual.scroll_view import ScrollView
-from textual.strip import Strip
 from textual.widgets import Static
 
+from calm.tui.scrolled import DrawnRows, Row
 from calm.tui.theme import CURSOR, ELLIPSIS
 
 if TYPE_CHECKING:
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 Tab = Literal["elevation", "plan", "tension", "schematic"]
 TABS: tuple[Tab, ...] = ("elevation", "plan", "tension", "schematic")
 
+_LEAST = (20, 6)
 _LEAST_BESIDE = 52
 _BESIDE, _MOST_BESIDE = 3, 26
 
@@ -53,38 +54,6 @@ class Tabs(Static):
         self.update("".join(parts) + (f"  [italic]{note}[/]" if note else ""), layout=False)
 
 
-class DrawnRows(ScrollView, can_focus=False):
-    """Show rows that are drawn for the cells there are, anew where these are others."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self._view: View | None = None
-        self._drawn: Size | None = None  # the size that the rows are for
-        self._rows: list[Text] = []
-
-    def rows_for(self, size: Size) -> list[Text]:
-        """Draw the rows for a size."""
-        raise NotImplementedError
-
-    def draw_again(self) -> None:
-        """Draw what is shown now."""
-        self._drawn = None
-        self.refresh()
-
-    def render_line(self, y: int) -> Strip:
-        """A row of the screen."""
-        size = self.scrollable_content_region.size
-        if size != self._drawn:
-            self._drawn = size
-            self._rows = self.rows_for(size)
-        number, left = y + self.scroll_offset.y, self.scroll_offset.x
-        if number >= len(self._rows):
-            return Strip.blank(size.width, self.rich_style)
-        strip = Strip(self._rows[number].render(self.app.console)).apply_style(self.rich_style)
-        strip = strip.adjust_cell_length(left + size.width, self.rich_style)
-        return strip.crop(left, left + size.width)
-
-
 class Picture(DrawnRows, can_focus=True):
     """One picture, drawn for the cells it has."""
 
@@ -94,9 +63,12 @@ class Picture(DrawnRows, can_focus=True):
     Picture:focus { background-tint: $foreground 3%; }
     """
 
+    BINDINGS: ClassVar[list[BindingType]] = [*ScrollableContainer.BINDINGS]
+
     def __init__(self) -> None:
         super().__init__()
         self.tab: Tab = "elevation"
+        self._view: View | None = None
         self._beside: Sequence[Shape] = ()
 
     def show(self, view: View | None, tab: Tab, beside: Sequence[Shape] = ()) -> None:
@@ -106,17 +78,20 @@ class Picture(DrawnRows, can_focus=True):
         self._view, self.tab, self._beside = view, tab, beside
         self.draw_again()
 
-    def rows_for(self, size: Size) -> list[Text]:
+    def rows_for(self, size: Size) -> list[Row]:
         """Draw the picture; one that is not to scale is as large as it needs."""
         rows = self._picture(size)
         widest = max((row.cell_len for row in rows), default=0)
         self.virtual_size = Size(widest, len(rows)) if self.tab == "schematic" else Size(0, 0)
-        return rows
+        return [[*row.render(self.app.console)] for row in rows]
 
     def _picture(self, size: Size) -> list[Text]:
         result = None if self._view is None else self._view.result
-        if result is None or size.width < 20 or size.height < 6:
-            return _words(self._view, size)
+        if _is_small(size):
+            return [Text("(too small)", style="dim")]
+        if result is None:
+            words = "A picture appears once the line stands." if self._view else ELLIPSIS
+            return [Text(""), *(Text(line, style="dim") for line in wrap(words, size.width))]
         from calm.drawing.line_picture import lines_of
         from calm.drawing.schematic.in_terminal import schematic_text
         from calm.drawing.sketch.views import plan, tension
@@ -150,12 +125,8 @@ class Picture(DrawnRows, can_focus=True):
         return rows
 
 
-def _words(view: View | None, size: Size) -> list[Text]:
-    """Return what stands where there is no picture yet."""
-    if size.width < 20 or size.height < 6:
-        return [Text("(too small)", style="dim")]
-    text = ELLIPSIS if view is None else "A picture appears once the line stands."
-    return [Text(""), *(Text(line, style="dim") for line in wrap(text, size.width))]
+def _is_small(size: Size) -> bool:
+    return size.width < _LEAST[0] or size.height < _LEAST[1]
 
 
 class Pictures(Vertical):
@@ -175,12 +146,14 @@ class Pictures(Vertical):
         self._note = ""
         self._overlaid = False
         self._other: tuple[str, Shape] | None = None
+        self._tabs, self._picture = Tabs(), Picture()
+        self._caption = Static(id="beside", markup=False)
 
     def compose(self) -> ComposeResult:
         """The names, and the picture."""
-        yield Tabs()
-        yield Static(id="beside", markup=False)
-        yield Picture()
+        yield self._tabs
+        yield self._caption
+        yield self._picture
 
     def on_mount(self) -> None:
         """Nothing is solved yet."""
@@ -220,33 +193,30 @@ class Pictures(Vertical):
 
     def _show(self) -> None:
         shapes, named = self._beside()
-        picture = self.query_one(Picture)
-        self.query_one(Tabs).show(self.tab, self._note, focused=picture.has_focus)
-        caption = self.query_one("#beside", Static)
-        caption.update(f"dashed: {named}")
-        caption.display = bool(named) and self.tab in ("elevation", "plan")
-        picture.show(self._view, self.tab, shapes)
+        self._say_where_keys_go()
+        self._caption.update(f"dashed: {named}")
+        self._caption.display = bool(named) and self.tab in ("elevation", "plan")
+        self._picture.show(self._view, self.tab, shapes)
 
     @on(events.DescendantFocus)
     @on(events.DescendantBlur)
     def _say_where_keys_go(self) -> None:
-        self.query_one(Tabs).show(self.tab, self._note, focused=self.query_one(Picture).has_focus)
+        self._tabs.show(self.tab, self._note, focused=self._picture.has_focus)
 
     def on_click(self, event: events.Click) -> None:
         """Give the picture the focus."""
-        self.query_one(Picture).focus()
+        self._picture.focus()
 
 
-_LEAST = (20, 6)
-
-
-class ProfilePicture(DrawnRows, can_focus=False):
+class ProfilePicture(DrawnRows):
     """Speed and direction over depth, of the environment that the line was judged in."""
 
     DEFAULT_CSS = """
     ProfilePicture { height: 1fr; overflow: hidden; }
     ProfilePicture.-old { text-style: dim; }
     """
+
+    _view: View | None = None
 
     def show(self, view: View | None, *, old: bool = False) -> None:
         """Draw another one, dimmed where it is `old`; one that cannot be read dims the last."""
@@ -257,14 +227,16 @@ class ProfilePicture(DrawnRows, can_focus=False):
             old = True
         self.set_class(old, "-old")
 
-    def rows_for(self, size: Size) -> list[Text]:
+    def rows_for(self, size: Size) -> list[Row]:
         """Draw the profile; nothing where there is no room, or no environment yet."""
-        width, height = size
-        if width < _LEAST[0] or height < _LEAST[1] or self._view is None or self._view.file is None:
+        file = None if self._view is None else self._view.file
+        if _is_small(size) or file is None:
             return []
         from calm.assemble import assemble_water
         from calm.drawing.sketch.views import current_profile
 
-        if self._view.file.environment.depth is None:
-            return [Text("No depth is given: the water is deep.", style="dim")]
-        return current_profile(assemble_water(self._view.file.environment), width, height)
+        if file.environment.depth is None:
+            rows = [Text("No depth is given: the water is deep.", style="dim")]
+        else:
+            rows = current_profile(assemble_water(file.environment), *size)
+        return [[*row.render(self.app.console)] for row in rows]

@@ -9,6 +9,7 @@ import os
 import time
 from collections.abc import Callable
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,9 +19,9 @@ from calm.files import read_mooring
 from calm.files.editing import KeptWork, state_folder
 from calm.files.editing.working_file import Keeper
 from calm.tui.checking import Reading
-from calm.tui.dialogs import Answer, Asked, InputSheet, Question, Then, ask, choose
+from calm.tui.dialogs import Answer, InputSheet, Question, Then, ask, choose
+from calm.tui.field import Asked
 from calm.tui.screen import DraftScreen
-from calm.tui.session import Session
 from calm.tui.workspace import Workspace, place_of
 
 if TYPE_CHECKING:
@@ -40,23 +41,12 @@ class Saving:
         self.presence = Presence()
         self._told: tuple[object] | None = None  # the state of the file on the disk, told already
 
-    def save(self) -> None:
-        """Save, and ask for a name where there is none."""
-        if self._app.is_settled():
-            self._save()
-
-    def save_as(self) -> None:
-        """Save under another name."""
-        if self._app.is_settled():
-            self._ask_for_name()
-
-    def _save(self, then: Then | None = None) -> None:
+    def save(self, then: Then | None = None) -> None:
+        """Save, and ask for a name where there is none; `then` follows where it was done."""
         file = self._session.file
         if file.path is None:
-            self._ask_for_name(then)
-        elif file.stamp is not None and file.changed_on_disk():
-            self._ask_of_change(then)
-        elif file.is_protected:
+            self.save_as(then)
+        elif file.is_protected or (file.stamp is not None and file.changed_on_disk()):
             self._ask_to_overwrite(file.path, then)
         else:
             self._write(self._session.save, then)
@@ -92,13 +82,14 @@ class Saving:
                 return f"it cannot be opened as it is: {said}"
         return ""
 
-    def _ask_for_name(self, then: Then | None = None, begin: Path | None = None) -> None:
+    def save_as(self, then: Then | None = None, begin: Path | None = None) -> None:
+        """Save under another name, which is asked for; `begin` is offered."""
         path = self._session.file.path
 
         def take(texts: dict[str, str]) -> None:
             chosen = chosen_path(texts["path"])
             if path is not None and os.path.realpath(chosen) == os.path.realpath(path):
-                self._save(then)
+                self.save(then)
             elif chosen.exists():
                 self._ask_to_overwrite(chosen, then)
             else:
@@ -110,38 +101,31 @@ class Saving:
         ask(self._app, InputSheet("Save as", text, asked), take)
 
     def _ask_to_overwrite(self, path: Path, then: Then | None) -> None:
-        """Of another file that is there, or of one's own that is protected."""
-        is_own = path == self._session.file.path
-        write = self._session.save if is_own else lambda: self._session.save_as(path)
-        title = f"{path.name} is write-protected" if is_own else f"{path.name} is there already"
-        protected = not is_own and not os.access(path, os.W_OK)
-        text = f"{path}{', and write-protected' if protected else ''}"
-        answers = [
-            Answer("o", "overwrite it", lambda: self._write(write, then)),
-            Answer(
-                "n", "save under another name", lambda: self._ask_for_name(then, _free_name(path))
-            ),
-        ]
-        choose(self._app, Question(title, text, answers))
-
-    def _ask_of_change(self, then: Then | None) -> None:
-        path, stamp = self._session.file.path, self._session.file.stamp
-        assert path is not None
-        theirs = "read the file from the disk; undo brings back your line"
+        """Of another file that is there, or of one's own that is protected or was changed."""
+        session, file = self._session, self._session.file
+        is_own, stamp = path == file.path, file.stamp
+        is_changed = is_own and stamp is not None and file.changed_on_disk()
+        write = session.save if is_own else lambda: session.save_as(path)
+        mine = " your line" if is_changed else ""
         answers = [
             Answer(
-                "o", "overwrite it with your line", lambda: self._write(self._session.save, then)
+                "o", "overwrite it" + (mine and f" with{mine}"), lambda: self._write(write, then)
             ),
             Answer(
                 "n",
-                "save your line under another name",
-                lambda: self._ask_for_name(then, _free_name(path)),
+                f"save{mine} under another name",
+                lambda: self.save_as(then, _free_name(path)),
             ),
-            Answer("t", theirs, self._take_theirs),
         ]
-        when = f" It was written {moment(stamp[0] / 1e9)}." if stamp else ""
-        title = f"{self._session.name} was changed by another program"
-        text = f"The file on the disk differs from your line.{when}"
+        title = f"{path.name} is write-protected" if is_own else f"{path.name} is there already"
+        protected = not is_own and not os.access(path, os.W_OK)
+        text = f"{path}{', and write-protected' if protected else ''}"
+        if is_changed and stamp is not None:
+            theirs = "read the file from the disk; undo brings back your line"
+            answers.append(Answer("t", theirs, self._take_theirs))
+            title = f"{path.name} was changed by another program"
+            text = "The file on the disk differs from your line. "
+            text += f"It was written {moment(stamp[0] / 1e9)}."
         choose(self._app, Question(title, text, answers))
 
     # the file on the disk
@@ -176,12 +160,52 @@ class Saving:
         self._session.take_saved(text)
         self._app.taken_over(_READ_AGAIN)
 
+    # work of an earlier run
+
+    def offer(self, kept: KeptWork) -> None:
+        """Ask whether it is to be recovered, saying when it was kept and whether the file is newer.
+
+        To throw it away is asked about twice: nothing brings it back.
+        """
+        app, session, keeper = self._app, self._session, kept.keeper
+        go_on = partial(app.mend, as_judged=True)
+
+        def recover() -> None:
+            session.recover(kept)
+            app.taken_over("Recovered; save it to keep it")
+
+        def throw_away() -> None:
+            session.file.discard(kept)
+            go_on()
+
+        whose = "" if keeper.is_here else f" on {keeper.host}, where it may still be open"
+        text = f"An earlier run ended before {session.name} was saved. It kept its work "
+        text += f"{moment(kept.at)}{whose}."
+        if session.file.is_of_another(kept):
+            stamp = session.file.stamp
+            text += (
+                " The file is gone since that work was begun: saving writes it again."
+                if stamp is None
+                else f" The file was changed, {moment(stamp[0] / 1e9)}, after that work was begun: "
+                "saving will ask."
+            )
+        sure = Question(
+            "Throw the work away?",
+            f"It was kept {moment(kept.at)}.",
+            [Answer("y", "yes, throw it away for good", throw_away)],
+            back=partial(self.offer, kept),
+        )
+        answers = [
+            Answer("r", "recover it; undo goes back to the file", recover),
+            Answer("k", "keep it for later; go on with the file", go_on),
+            Answer("d", "throw it away", partial(choose, app, sure)),
+        ]
+        choose(app, Question("Work that was not saved", text, answers, must=True))
+
     # the way out
 
     def quit(self) -> None:
         """Leave; unsaved work is asked about."""
-        if not self._app.is_settled():
-            return
         self.look_at_disk()
         if not self._session.changed:
             self._app.leave()
@@ -194,7 +218,7 @@ class Saving:
             self._app.leave()
 
         answers = [
-            Answer("s", "save and leave", lambda: self._save(self._app.leave)),
+            Answer("s", "save and leave", lambda: self.save(self._app.leave)),
             Answer("d", "leave without saving", discard),
         ]
         name, file = self._session.name, self._session.file
@@ -222,22 +246,15 @@ class Presence:
         with contextlib.suppress(OSError):
             folder.mkdir(parents=True, exist_ok=True)
             for place in folder.glob(f"open-{sign}-*.json"):
-                keeper = _keeper(place)
-                if keeper is not None and keeper.is_here and not keeper.is_running:
-                    place.unlink(missing_ok=True)
-                elif keeper is not None and keeper != own:
-                    others.append(keeper.process)
+                with contextlib.suppress(OSError, ValueError, TypeError):
+                    keeper = Keeper(**json.loads(place.read_text(encoding="utf-8")))
+                    if keeper.is_here and not keeper.is_running:
+                        place.unlink(missing_ok=True)
+                    elif keeper != own:
+                        others.append(keeper.process)
             self._place = folder / f"open-{sign}-{own.process}.json"
             whole_file.put(self._place, json.dumps(asdict(own)).encode())
         return others
-
-
-def _keeper(place: Path) -> Keeper | None:
-    """Who wrote a file of the state folder; None where it cannot be read."""
-    try:
-        return Keeper(**json.loads(place.read_text(encoding="utf-8")))
-    except (OSError, ValueError, TypeError):
-        return None
 
 
 def chosen_path(text: str) -> Path:
@@ -279,30 +296,3 @@ def _is_writable(text: str) -> Reading:
 def moment(seconds: float) -> str:
     """A time [s since 1970] as the clock on the wall shows it, to the minute."""
     return time.strftime("%Y-%m-%d at %H:%M", time.localtime(seconds))
-
-
-def offer(session: Session, kept: KeptWork, recover: Then, later: Then, discard: Then) -> Question:
-    """Ask whether it is to be recovered, saying when it was kept and whether the file is newer."""
-    whose = "" if kept.keeper.is_here else f" on {kept.keeper.host}, where it may still be open"
-    sentences = [f"An earlier run ended before {session.name} was saved. It kept its work"]
-    sentences.append(f"{moment(kept.at)}{whose}.")
-    if session.file.is_of_another(kept):
-        stamp = session.file.stamp
-        sentences.append(
-            "The file is gone since that work was begun: saving writes it again."
-            if stamp is None
-            else f"The file was changed, {moment(stamp[0] / 1e9)}, after that work was begun: "
-            "saving will ask."
-        )
-    answers = [
-        Answer("r", "recover it; undo goes back to the file", recover),
-        Answer("k", "keep it for later; go on with the file", later),
-        Answer("d", "throw it away", discard),
-    ]
-    return Question("Work that was not saved", " ".join(sentences), answers, must=True)
-
-
-def confirmation(kept: KeptWork, discard: Then, back: Then) -> Question:
-    """Ask whether it is really to be thrown away: nothing brings it back."""
-    answers = [Answer("y", "yes, throw it away for good", discard)]
-    return Question("Throw the work away?", f"It was kept {moment(kept.at)}.", answers, back=back)

@@ -156,8 +156,7 @@ class KeyBar(Static):
 
     def show_keys(self, actions: Iterable[Action]) -> None:
         """Show other keys."""
-        chosen = list(actions)
-        if chosen != self._actions:
+        if (chosen := list(actions)) != self._actions:
             self._actions = chosen
             self._show()
 
@@ -183,16 +182,10 @@ class KeyBar(Static):
             return
         parts, used = [], 0
         for action in self._actions:
-            key = shown_key(action.keys.split(",")[0])
-            wide = cell_len(f"{key} {action.title}")
-            if used + wide <= width:
-                used += wide + len(_GAP)
-                parts.append(_pressed(action, key))
+            pressed = action.keys.split(",")[0]
+            press = Style.from_meta({"@click": f"app.simulate_key({pressed!r})"})
+            key, title = shown_key(pressed), f" {action.title}"
+            if used + cell_len(key + title) <= width:
+                used += cell_len(key + title) + len(_GAP)
+                parts.append(Content.assemble((key, press + Style(bold=True)), (title, press)))
         self.update(Content(_GAP).join(parts), layout=False)
-
-
-def _pressed(action: Action, key: str) -> Content:
-    """A key and what it does, which the mouse presses too."""
-    pressed = action.keys.split(",")[0]
-    press = Style.from_meta({"@click": f"app.simulate_key({pressed!r})"})
-    return Content.assemble((key, press + Style(bold=True)), (f" {action.title}", press))

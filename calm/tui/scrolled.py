@@ -1,4 +1,4 @@
-"""What is longer than its place: lines that are scrolled, without the screen being laid out anew.
+"""What is scrolled: rows that are drawn for the cells there are, texts, and tables with a cursor.
 
 Textual lays the whole screen out where the length of anything in it changes, 10 to 20 ms at each
 key of a search. Nothing here has a size that depends on what it shows.
@@ -6,16 +6,24 @@ key of a search. Nothing here has a size that depends on what it shows.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar
 
+from rich.cells import cell_len, set_cell_size
 from rich.console import RenderableType
 from rich.segment import Segment
-from textual.events import Paste
-from textual.geometry import Size
-from textual.reactive import Reactive
+from rich.style import Style
+from textual import events
+from textual.geometry import Region, Size
+from textual.message import Message
+from textual.reactive import Reactive, reactive
 from textual.scroll_view import ScrollView
 from textual.strip import Strip
-from textual.widgets import Input
+
+from calm.tui.theme import ELLIPSIS
+
+Row = list[Segment]
 
 
 class Scrolled(ScrollView, inherit_bindings=False):
@@ -29,8 +37,47 @@ class Scrolled(ScrollView, inherit_bindings=False):
         if self.scroll_offset.y > self.max_scroll_y:
             self.scroll_to(y=self.max_scroll_y, animate=False)
 
+    def on_focus(self) -> None:
+        """The cursor is drawn where the focus is."""
+        self.refresh()
 
-class ScrolledText(Scrolled, can_focus=False):
+    def on_blur(self) -> None:
+        """And only there."""
+        self.refresh()
+
+
+class DrawnRows(Scrolled, can_focus=False):
+    """Rows that are drawn for the cells there are, anew where these are others."""
+
+    def __init__(self, *, id: str | None = None) -> None:
+        super().__init__(id=id)
+        self._drawn: tuple[Size | None, list[Row]] = (None, [])  # the size that the rows are for
+
+    def rows_for(self, size: Size) -> list[Row]:
+        """Draw the rows for a size."""
+        raise NotImplementedError
+
+    def draw_again(self) -> None:
+        """Draw what is shown now."""
+        self._drawn = (None, self._drawn[1])
+        self.refresh()
+
+    def drawn(self) -> list[Row]:
+        """Return the rows for the size of now."""
+        size = self.scrollable_content_region.size
+        if size.width > 0 and size != self._drawn[0]:
+            self._drawn = (size, self.rows_for(size))
+        return self._drawn[1]
+
+    def render_line(self, y: int) -> Strip:
+        """A row of the screen."""
+        rows, number, left = self.drawn(), y + self.scroll_offset.y, self.scroll_offset.x
+        width, style = self.scrollable_content_region.width, self.rich_style
+        strip = Strip(rows[number] if number < len(rows) else []).apply_style(style)
+        return strip.adjust_cell_length(left + width, style).crop(left, left + width)
+
+
+class ScrolledText(DrawnRows):
     """Texts for people below each other, wrapped to the width; others begin at the top."""
 
     DEFAULT_CSS = "ScrolledText { overflow-x: hidden; scrollbar-size-vertical: 1; }"
@@ -38,54 +85,243 @@ class ScrolledText(Scrolled, can_focus=False):
     def __init__(self, *, id: str | None = None) -> None:
         super().__init__(id=id)
         self._texts: Sequence[RenderableType] = ()
-        self._drawn: tuple[int, list[tuple[list[Segment], int]]] = (-1, [])  # the width and lines
+        self._numbers: list[int] = []  # of the text that each row is of
 
     def show(self, *texts: RenderableType) -> None:
         """Show other texts."""
-        self._texts, self._drawn = texts, (-1, [])
+        self._texts = texts
         self.scroll_to(y=0, animate=False)
-        self._lines()
-        self.refresh()
+        self.draw_again()
+        self.drawn()
 
     def on_resize(self) -> None:
         """Wrap it to the new width."""
-        self._lines()
+        self.drawn()
 
-    def _lines(self) -> list[tuple[list[Segment], int]]:
-        """Return the lines in the width of now, each with the number of its text."""
-        width = self.scrollable_content_region.width
-        if width > 0 and self._drawn[0] != width:
-            self._drawn = (width, self._wrapped(width))
-            self.virtual_size = Size(width, len(self._drawn[1]))
-        return self._drawn[1]
+    def rows_for(self, size: Size) -> list[Row]:
+        """Wrap the texts."""
+        wrapped = self._wrapped(size.width)
+        self._numbers = [number for number, _ in wrapped]
+        self.virtual_size = Size(size.width, len(wrapped))
+        return [row for _, row in wrapped]
 
-    def _wrapped(self, width: int) -> list[tuple[list[Segment], int]]:
+    def _wrapped(self, width: int) -> list[tuple[int, Row]]:
+        """Return the rows in a width, each with the number of its text."""
         console = self.app.console
         options = console.options.update(width=width, height=None)
         return [
-            (line, number)
+            (number, row)
             for number, text in enumerate(self._texts)
-            for line in console.render_lines(text, options, pad=False)
+            for row in console.render_lines(text, options, pad=False)
         ]
+
+
+@dataclass(frozen=True)
+class TableColumn:
+    """A column has a name, a heading, its first cell on the screen, and a width.
+
+    Of a text that is too long the last `tail` signs are kept.
+    """
+
+    name: str
+    heading: str
+    start: int
+    width: int
+    right_aligned: bool = False
+    tail: int = 0
+
+    def fitted(self, text: str) -> str:
+        """A text as wide as the column; one that is too long is cut at an ellipsis."""
+        excess = cell_len(text) > self.width
+        if excess and self.tail:
+            begin = set_cell_size(text, self.width - 1 - self.tail)
+            return begin + ELLIPSIS + text[-self.tail :]
+        if excess:
+            text = set_cell_size(text, self.width - 1).rstrip() + ELLIPSIS
+        if self.right_aligned:
+            return " " * (self.width - cell_len(text)) + text
+        return set_cell_size(text, self.width)
+
+
+class TableCells(Scrolled, inherit_bindings=False):
+    """Rows under a heading that stays, with a cursor on one cell of them.
+
+    What is made of it says its `columns`, which of them are `editable`, and what stands in the
+    cells, in front of them and below the rows.
+    """
+
+    COMPONENT_CLASSES: ClassVar[set[str]] = {"table--heading", "table--cursor"}
+    DEFAULT_CSS = """
+    TableCells {
+        height: 1fr; width: 1fr; overflow-x: hidden; overflow-y: auto; scrollbar-size-vertical: 1;
+        & > .table--heading { text-style: dim; }
+        & > .table--cursor { text-style: reverse bold; }
+    }
+    """
+
+    HEADING: ClassVar[int] = 1
+    BEYOND: ClassVar[int] = 0
+    """Rows kept in sight beyond the cursor."""
+    GAP: ClassVar[int] = 1
+    """Cells between two columns."""
+
+    cursor: reactive[int] = reactive(0, init=False, repaint=False)
+    column: reactive[int] = reactive(0, init=False, repaint=False)
+    rows: Sequence[Any] = ()
+
+    class Moved(Message):
+        """The cursor is on another cell."""
+
+    class Pressed(Message):
+        """A cell was pressed with the mouse while the cursor was on it."""
+
+    # what is made of it tells
+
+    @property
+    def columns(self) -> Sequence[TableColumn]:
+        """The columns as wide as they are now."""
+        raise NotImplementedError
+
+    @property
+    def editable(self) -> Sequence[str]:
+        """The names of the columns that the cursor goes to, from the left."""
+        return ()
+
+    def text_of(self, number: int, column: TableColumn) -> str:
+        """Return what stands in a cell of a row."""
+        raise NotImplementedError
+
+    def lead(self, number: int, style: Style) -> list[Segment]:
+        """Return what stands in front of the first column of a row."""
+        raise NotImplementedError
+
+    def look(self, name: str) -> Style:
+        """Return what one of the component classes adds to a style."""
+        return self.get_component_rich_style(name, partial=True)
+
+    def row_style(self, number: int) -> Style:
+        """Return how a row looks."""
+        return self.rich_style
+
+    def cell_style(self, number: int, column: TableColumn, style: Style) -> Style:
+        """Return how a cell looks that is not under the cursor, in a row of a style."""
+        return style
+
+    def below(self, y: int) -> list[Segment]:
+        """Return what a line of the screen has below the last row."""
+        return []
+
+    # rows and cursor
+
+    def take_rows(self, rows: Sequence[Any], changed: Iterable[int] | None = None) -> None:
+        """Other rows, the cursor where it was if there is such a row.
+
+        Only those that have `changed` are drawn, by their numbers; without them all are.
+        """
+        self.rows = rows
+        self.virtual_size = Size(0, len(rows) + self.HEADING)
+        self.set_reactive(TableCells.cursor, self.validate_cursor(self.cursor))
+        if changed is None:
+            self.refresh()
+        else:
+            self.refresh_rows(*changed)
+
+    def validate_cursor(self, cursor: int) -> int:
+        """Keep it on the rows."""
+        return max(0, min(cursor, len(self.rows) - 1))
+
+    def validate_column(self, column: int) -> int:
+        """Keep it on the columns that are edited."""
+        return max(0, min(column, len(self.editable) - 1))
+
+    def watch_cursor(self, before: int, now: int) -> None:
+        """Keep the cursor in sight."""
+        if not self.follow():
+            self.refresh_rows(before, now)
+        self.post_message(self.Moved())
+
+    def watch_column(self) -> None:
+        """Show it."""
+        self.refresh_rows(self.cursor)
+        self.post_message(self.Moved())
+
+    def refresh_rows(self, *numbers: int) -> None:
+        """Draw some rows only."""
+        for number in numbers:
+            self.refresh_line(number + self.HEADING)
+
+    def follow(self) -> bool:
+        """Scroll to the cursor; whether that was needed."""
+        page = max(self.scrollable_content_region.height - self.HEADING, 1)
+        beyond = min(self.BEYOND, (page - 1) // 2)
+        top = self.scroll_offset.y
+        wanted = min(max(top, self.cursor + beyond - page + 1), max(self.cursor - beyond, 0))
+        if wanted != top:
+            self.scroll_to(y=wanted, animate=False)
+        return wanted != top
+
+    def row_at(self, y: int) -> int | None:
+        """The number of the row on a line of the widget; None on the heading and below the last."""
+        row = y - self.HEADING + self.scroll_offset.y
+        return row if y >= self.HEADING and row < len(self.rows) else None
+
+    def cell_region(self) -> Region:
+        """Return where the cell under the cursor is, within the widget."""
+        shown = {each.name: each for each in self.columns}
+        column = shown.get(self.editable[self.column], self.columns[0])
+        y = self.cursor + self.HEADING - self.scroll_offset.y
+        return Region(column.start, y, column.width, 1)
+
+    def on_mouse_down(self, event: events.MouseDown) -> None:
+        """Put the cursor where the mouse is; a press on the cursor itself is told.
+
+        At once, as what is typed elsewhere is taken now, and the screen may be laid out anew.
+        """
+        place = event.get_content_offset(self)
+        number = None if place is None else self.row_at(place.y)
+        if place is None or number is None:
+            return
+        begun = [each.name for each in self.columns if each.start <= place.x]
+        here = begun[-1] if begun else self.columns[0].name
+        column = self.editable.index(here) if here in self.editable else self.column
+        if (number, column) == (self.cursor, self.column):
+            self.post_message(self.Pressed())
+        else:
+            self.cursor, self.column = number, column
+
+    # drawing
 
     def render_line(self, y: int) -> Strip:
         """A row of the screen."""
-        lines, number = self._lines(), y + self.scroll_offset.y
-        segments = lines[number][0] if number < len(lines) else []
-        strip = Strip(segments).apply_style(self.rich_style)
-        return strip.adjust_cell_length(self.scrollable_content_region.width, self.rich_style)
+        width, number = self.scrollable_content_region.width, self.row_at(y)
+        ground = self.rich_style
+        if y == 0:
+            segments = [Segment(self._heading(), self.get_component_rich_style("table--heading"))]
+        elif number is None:
+            segments = self.below(y)
+        else:
+            ground = self.row_style(number)
+            segments = self._row(number, ground)
+        return Strip(segments).adjust_cell_length(width, ground)
 
+    def _heading(self) -> str:
+        texts = [" " * self.columns[0].start] if self.columns else []
+        for each in self.columns:
+            if each.right_aligned:
+                texts.append(f"{each.heading:>{each.width}}{'':{self.GAP}}")
+            else:
+                texts.append(set_cell_size(each.heading, each.width + self.GAP))
+        return "".join(texts)
 
-class ScrolledEntry(Input):
-    """A line of input; a text of several lines that is pasted is left to what is around it."""
-
-    virtual_size = Reactive(Size(0, 0), repaint=False)
-
-    def on_mount(self) -> None:
-        """Its cursor stands still: nothing is sent while nobody types."""
-        self.cursor_blink = False
-
-    def on_paste(self, event: Paste) -> None:
-        """Rows of a table are no value: textual would take the first of them."""
-        if len(event.text.splitlines()) > 1:
-            event.prevent_default()
+    def _row(self, number: int, style: Style) -> list[Segment]:
+        cursor = None
+        if number == self.cursor and self.has_focus and self.editable:
+            cursor = self.editable[self.column]
+        segments = self.lead(number, style)
+        for each in self.columns:
+            own = self.cell_style(number, each, style)
+            if each.name == cursor:
+                own = style + self.look("table--cursor")
+            segments.append(Segment(each.fitted(self.text_of(number, each)), own))
+            segments.append(Segment(" " * self.GAP, style))
+        return segments

@@ -6,8 +6,8 @@ Nothing here knows of the screen; nothing is computed here.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from calm.files import Place, editing
 from calm.files.editing import LINE, Draft, History, LineItem, Value, WorkingFile, clamps_of
@@ -17,17 +17,6 @@ Location = tuple[str | int, ...]
 
 _OF_THE_ROW = frozenset({"use", "label", "count", "at", "clamps"})
 """Keys of a row that hold whatever component is there."""
-
-
-@dataclass(frozen=True)
-class Copied:
-    """What was copied, as text: items of a line, or clamped instruments."""
-
-    items: tuple[str, ...] = ()
-    clamps: tuple[str, ...] = ()
-
-    def __len__(self) -> int:
-        return len(self.items) or len(self.clamps)
 
 
 class Session:
@@ -42,7 +31,7 @@ class Session:
     Attributes
     ----------
     catalogs : catalogue files given with the command
-    copied : what `paste` puts in
+    copied : what `paste` puts in, as text: items of a line, or clamped instruments
     standing : the environment that the line stands in
     added : the rows that the last change has put in
     followed : what the last change of the line made of labels that the file names elsewhere
@@ -67,7 +56,8 @@ class Session:
         self.history = History(Draft(text))
         self.file = file
         self.catalogs = tuple(catalogs)
-        self.copied = Copied()
+        self.copied: tuple[str, ...] = ()
+        self._are_clamps = False  # what was copied
         self.followed: list[str] = []
         self.added: frozenset[Place] = frozenset()
         self.standing = Standing(self.history, environment)
@@ -88,16 +78,27 @@ class Session:
         path = self.file.path
         return "unnamed" if path is None else path.name
 
+    @property
+    def components(self) -> dict[str, Any]:
+        """The components that the file defines, as written."""
+        defined = self.draft.value(("components",))
+        return defined if isinstance(defined, dict) else {}
+
     # the line
 
     def spots(self) -> list[Place]:
         """Every row of the line, clamps below their piece."""
-        return _spots(self.draft)
+        return _rows_of(self.draft, 0, len(self.draft.items))
 
     def item(self, spot: Place) -> LineItem:
         """The item, or clamp, of a row."""
         item = self.draft.items[spot.item]
         return item.clamps[spot.clamp] if spot.is_clamp else item
+
+    def written(self, spot: Place) -> dict[str, Any]:
+        """All that the file says of a row."""
+        values = self.draft.value(location(spot))
+        return values if isinstance(values, dict) else {}
 
     def do(self, draft: Draft, label: str) -> None:
         """Take a draft as the next state; one that changes nothing is no step."""
@@ -109,7 +110,7 @@ class Session:
         self, draft: Draft, label: str, *, gone: Iterable[Place] = (), new: Iterable[Place] = ()
     ) -> None:
         """Take a draft of which rows are `gone` and others `new`; what names the others follows."""
-        gone, new, then = list(gone), set(new), _spots(draft)
+        gone, new, then = list(gone), set(new), _rows_of(draft, 0, len(draft.items))
         pairs = zip(
             [spot for spot in self.spots() if spot not in gone],
             [spot for spot in then if spot not in new],
@@ -141,12 +142,8 @@ class Session:
         self._edit(draft, f"clamp {values['use']}", new=[at])
         return at
 
-    def put(self, spot: Place, values: Mapping[str, Value | None], label: str) -> None:
-        """Set keys of a row; None takes one away."""
-        self.put_rows({spot: values}, label)
-
-    def put_rows(self, given: Mapping[Place, Mapping[str, Value | None]], label: str) -> None:
-        """Set keys of several rows in one step."""
+    def put(self, given: Mapping[Place, Mapping[str, Value | None]], label: str) -> None:
+        """Set keys of rows in one step; None takes one away."""
         draft = self.draft
         for spot, values in given.items():
             rows, index = _listed(spot)
@@ -156,14 +153,12 @@ class Session:
 
     def replace(self, spot: Place, values: Mapping[str, str]) -> list[str]:
         """Put another component on a row; returns what the row still overrides of the old one."""
-        rows, index = _listed(spot)
-        written = self.draft.value((*rows, index))
         kept = [
             f"{key} {value}" if isinstance(value, str) else key
-            for key, value in (written if isinstance(written, dict) else {}).items()
+            for key, value in self.written(spot).items()
             if key not in _OF_THE_ROW
         ]
-        self.put(spot, values, f"use {values['use']}")
+        self.put({spot: values}, f"use {values['use']}")
         return kept
 
     def delete(self, spots: Iterable[Place]) -> Place | None:
@@ -175,7 +170,11 @@ class Session:
         first = rows.index(chosen[0])
         pieces = {spot.item for spot in chosen if not spot.is_clamp}
         gone = [spot for spot in rows if spot in chosen or spot.item in pieces]
-        self._edit(self._without(chosen), f"delete {self._called(chosen)}", gone=gone)
+        draft = self.draft
+        for spot in reversed(chosen):
+            if spot.is_clamp:
+                draft = draft.delete([spot.clamp], clamps_of(spot.item))
+        self._edit(draft.delete(pieces), f"delete {self._called(chosen)}", gone=gone)
         left = self.spots()
         return left[min(first, len(left) - 1)] if left else None
 
@@ -206,44 +205,40 @@ class Session:
         return new
 
     def move(self, spots: Iterable[Place], by: int) -> tuple[Place, ...]:
-        """Move rows up (-1) or down (1); where they are then. At the end of the line they stay."""
+        """Move pieces, or one clamp, up (-1) or down (1); where they are then.
+
+        At the end of the line, or of the clamps of the piece, they stay.
+        """
         chosen = _whole(spots)
-        items = [spot.item for spot in chosen if not spot.is_clamp]
-        if items:
-            return self._move_items(items, by, f"move {self._called(chosen)}")
-        if len(chosen) == 1:
-            return self._move_clamp(chosen[0], by)
-        return tuple(chosen)
+        moved = [spot for spot in chosen if not spot.is_clamp] or chosen
+        first, last, draft = moved[0], moved[-1], self.draft
+        if first.is_clamp and first != last:
+            return tuple(moved)
+        rows, top = _listed(first)
+        bottom = _listed(last)[1]
+        held = draft.items[first.item].clamps if first.is_clamp else draft.items
+        if top + by < 0 or bottom + by >= len(held):
+            return tuple(moved)
+        for _, index in sorted(map(_listed, moved), reverse=by > 0):
+            draft = draft.move(index, index + by, rows)
 
-    def _move_items(self, items: list[int], by: int, label: str) -> tuple[Place, ...]:
-        limit = len(self.draft.items)
-        if items[0] + by < 0 or items[-1] + by >= limit:
-            return tuple(map(Place, items))
-        draft = self.draft
-        for index in items if by < 0 else reversed(items):
-            draft = draft.move(index, index + by)
-        gone = [spot for spot in self.spots() if spot.item in items]
-        new = [Place(spot.item + by, clamp=spot.clamp) for spot in gone]
-        self._edit(draft, label, gone=gone, new=new)
-        return tuple(Place(index + by) for index in items)
+        def there(spot: Place) -> Place:
+            if first.is_clamp:
+                return Place(spot.item, clamp=spot.clamp + by)
+            return Place(spot.item + by, clamp=spot.clamp)
 
-    def _move_clamp(self, spot: Place, by: int) -> tuple[Place, ...]:
-        to = spot.clamp + by
-        if not 0 <= to < len(self.draft.items[spot.item].clamps):
-            return (spot,)
-        draft = self.draft.move(spot.clamp, to, clamps_of(spot.item))
-        there = Place(spot.item, clamp=to)
-        self._edit(draft, f"move {_label(self.item(spot))}", gone=[spot], new=[there])
-        return (there,)
+        pieces = {spot.item for spot in moved if not spot.is_clamp}
+        gone = [spot for spot in self.spots() if spot in moved or spot.item in pieces]
+        self._edit(draft, f"move {self._called(moved)}", gone=gone, new=map(there, gone))
+        return tuple(map(there, moved))
 
     def copy(self, spots: Iterable[Place]) -> int:
         """Keep rows for pasting; how many."""
         chosen = _whole(spots)
         items = [spot.item for spot in chosen if not spot.is_clamp]
-        if items:
-            self.copied = Copied(items=tuple(self.draft.copy(items)))
-        elif chosen:
-            self.copied = Copied(clamps=self._clamps(chosen))
+        if chosen:
+            self.copied = tuple(self.draft.copy(items)) if items else self._clamps(chosen)
+            self._are_clamps = not items
         return len(self.copied) if chosen else 0
 
     def paste(self, spot: Place | None, *, below: bool) -> Place | None:
@@ -252,15 +247,15 @@ class Session:
         """
         count = len(self.copied)
         label = f"paste {count} row{'s' * (count != 1)}"
-        if self.copied.items:
+        if self.copied and not self._are_clamps:
             index = 0 if spot is None else spot.item + below
-            draft = self.draft.paste(index, self.copied.items, above=not below)
+            draft = self.draft.paste(index, self.copied, above=not below)
             self._edit(draft, label, new=_rows_of(draft, index, count))
             return Place(index + (count - 1) * below)
-        if not self.copied.clamps or spot is None:
+        if not self.copied or spot is None:
             return None
         first = spot.clamp + below if spot.is_clamp else len(self.draft.items[spot.item].clamps)
-        return self._put_clamps(spot, first, self.copied.clamps, label)[-1 if below else 0]
+        return self._put_clamps(spot, first, self.copied, label)[-1 if below else 0]
 
     def assemble(self, spots: Iterable[Place], id: str) -> Place:
         """Make pieces that follow one another an assembly of the file, which stands for them then.
@@ -279,13 +274,6 @@ class Session:
         """The text of clamps, of one piece or of several."""
         copied = (self.draft.copy([spot.clamp], clamps_of(spot.item)) for spot in chosen)
         return tuple(text for texts in copied for text in texts)
-
-    def _without(self, chosen: Sequence[Place]) -> Draft:
-        draft = self.draft
-        for spot in reversed(chosen):
-            if spot.is_clamp:
-                draft = draft.delete([spot.clamp], clamps_of(spot.item))
-        return draft.delete(spot.item for spot in chosen if not spot.is_clamp)
 
     def _called(self, chosen: Sequence[Place]) -> str:
         return _label(self.item(chosen[0])) if len(chosen) == 1 else f"{len(chosen)} rows"
@@ -344,11 +332,6 @@ class Session:
         self.write(kept.text, "recover what was not saved")
 
 
-def _spots(draft: Draft) -> list[Place]:
-    """Every row of a line, clamps below their piece."""
-    return _rows_of(draft, 0, len(draft.items))
-
-
 def _rows_of(draft: Draft, first: int, count: int) -> list[Place]:
     """The rows of some items that follow one another."""
     return [
@@ -363,6 +346,12 @@ def _whole(spots: Iterable[Place]) -> list[Place]:
     chosen = sorted(set(spots))
     pieces = {spot.item for spot in chosen if not spot.is_clamp}
     return [spot for spot in chosen if not spot.is_clamp or spot.item not in pieces]
+
+
+def location(spot: Place) -> Location:
+    """Where a row stands in the file."""
+    rows, index = _listed(spot)
+    return (*rows, index)
 
 
 def _listed(spot: Place) -> tuple[Location, int]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 from typing import ClassVar
 
 from textual import on
@@ -15,7 +14,8 @@ from textual.widgets import Static, TextArea
 
 from calm.errors import Problem
 from calm.files.editing.changes import retyped
-from calm.tui.dialogs import Asked, InputSheet, ask
+from calm.tui.dialogs import InputSheet, ask
+from calm.tui.field import Asked
 from calm.tui.key_table import bindings, hints
 from calm.tui.screen import DraftScreen, KeyBar
 from calm.tui.workspace import Workspace, is_elsewhere, mistakes, said
@@ -78,11 +78,12 @@ class TextScreen(DraftScreen):
         self._problems: tuple[Problem, ...] = ()
         self._next = 0
         self._begun = self.session.draft.text
+        self.text_area = YamlArea(self._begun, show_line_numbers=True, compact=True)
         self._edited = False
 
     def parts(self) -> ComposeResult:
         """Text and mistakes."""
-        yield YamlArea(self.session.draft.text, show_line_numbers=True, compact=True)
+        yield self.text_area
         with VerticalScroll(id="mistakes", can_focus=False):
             yield Static(id="mistakes-text")
 
@@ -97,40 +98,27 @@ class TextScreen(DraftScreen):
             row = _row(self.session.draft.text, self._line)
             self.text_area.move_cursor((row, 0), center=True)
 
-    @property
-    def text_area(self) -> TextArea:
-        """Return where one writes."""
-        return self.query_one(TextArea)
-
     def show_view(self) -> None:
         """List the mistakes that a worker has found."""
         view, draft = self.workspace.view, self.session.draft
         known = self.workspace.is_fresh
         self._problems = tuple(draft.problems) or (view.problems if known and view else ())
-        if self._problems:
-            lines = [said(each, self._path) for each in self._problems]
-        elif known and view is not None and view.missing:
-            lines = [Content(f"? {each}") for each in view.missing]
-        elif known:
-            lines = [Content.from_markup("[$text-success]✓[/] The text can be read.")]
-        else:
-            lines = [Content("…")]
+        lines = [said(each, self.workspace.path) for each in self._problems]
+        if not lines and known and view is not None:
+            good = Content.from_markup("[$text-success]✓[/] The text can be read.")
+            lines = [Content(f"? {each}") for each in view.missing] or [good]
+        lines = lines or [Content("…")]
         self.query_one("#mistakes-text", Static).update(Content("\n").join(lines))
         self.show_title()
 
     def titles(self) -> tuple[str, str]:
         """Return what is shown, and how many mistakes it has."""
-        return f"The text of {self.workspace.called}", mistakes(self._problems, self._path)
+        return f"The text of {self.workspace.called}", mistakes(self._problems, self.workspace.path)
 
     @property
     def _here(self) -> list[Problem]:
         """The mistakes in this text, not in a file that it names."""
-        return [each for each in self._problems if not is_elsewhere(each, self._path)]
-
-    @property
-    def _path(self) -> Path:
-        """Return that of the file, as its problems have it."""
-        return Path() if self.workspace.view is None else self.workspace.view.path
+        return [each for each in self._problems if not is_elsewhere(each, self.workspace.path)]
 
     @on(TextArea.Changed)
     def _take(self) -> None:
@@ -216,8 +204,6 @@ class TextScreen(DraftScreen):
 
 
 def _row(text: str, line: int) -> int:
-    """Return where the editor has a line of the file, both counted as they count: it knows more
-    breaks.
-    """
+    """Return where the editor, which knows more line breaks, has a line of the file."""
     ends = [0, *(found.end() for found in _LINE_BREAK.finditer(text))]
     return len(text[: ends[min(line, len(ends)) - 1]].splitlines())

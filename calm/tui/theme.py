@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from rich.color import Color as Ink
-from rich.color import ColorSystem
+from rich.color import ColorSystem, blend_rgb
 from rich.color_triplet import ColorTriplet
 from rich.segment import Segment
 from rich.style import Style
@@ -136,9 +136,7 @@ def legible(dark: bool, sixteen: bool) -> Legible:
 
 @lru_cache(1024)
 def _of_sixteen(style: Style, dark: bool) -> Style:
-    """Return a style of the terminal's own colours; on a ground of colour, and dimmed, none are
-    sure.
-    """
+    """A style of the terminal's own colours; on a coloured ground, and dimmed, none are sure."""
     ink = style.color or _OWN
     if style.bgcolor is not None and not style.bgcolor.is_default:
         return style + Style(color=_OWN, bgcolor=_OWN, reverse=True, dim=False)
@@ -152,22 +150,17 @@ def _apart(style: Style, ground: Ink) -> Style:
     on, ink = (style.bgcolor or ground).triplet, style.color and style.color.triplet
     if on is None or ink is None or _is_legible(ink, on):
         return style
-    end = max(((0, 0, 0), (255, 255, 255)), key=lambda each: contrast(ColorTriplet(*each), on))
-    for tenth in range(1, 11):
-        moved = ColorTriplet(
-            *(here + (there - here) * tenth // 10 for here, there in zip(ink, end, strict=True))
-        )
-        if _is_legible(moved, on):
-            break
+    black, white = ColorTriplet(0, 0, 0), ColorTriplet(255, 255, 255)
+    end = max((black, white), key=lambda each: contrast(each, on))
+    steps = (blend_rgb(ink, end, tenth / 10) for tenth in range(1, 11))
+    moved = next((each for each in steps if _is_legible(each, on)), end)
     return style + Style(color=Ink.from_triplet(moved))
 
 
 def _is_legible(ink: ColorTriplet, on: ColorTriplet) -> bool:
     """Return whether it is so in all colours, and in those of a terminal that has 256."""
-    few = (
-        Ink.from_triplet(each).downgrade(ColorSystem.EIGHT_BIT).get_truecolor()
-        for each in (ink, on)
-    )
+    pair = map(Ink.from_triplet, (ink, on))
+    few = (each.downgrade(ColorSystem.EIGHT_BIT).get_truecolor() for each in pair)
     return min(contrast(ink, on), contrast(*few)) >= _LEAST_CONTRAST
 
 

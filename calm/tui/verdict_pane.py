@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, ClassVar
 
 from rich.segment import Segment
@@ -13,11 +12,9 @@ from rich.text import Text
 from textual import events
 from textual.binding import BindingType
 from textual.geometry import Size
-from textual.message import Message
 from textual.strip import Strip
 
 from calm.checks.finding import State
-from calm.files import Place
 from calm.tui.key_table import bindings
 from calm.tui.scrolled import ScrolledText
 from calm.tui.theme import ELLIPSIS, LOOKS
@@ -32,7 +29,12 @@ _CHOSEN = Style(reverse=True)
 
 
 class VerdictPane(ScrolledText, can_focus=True):
-    """What holds, what does not and why; the figures of the anchor and the top."""
+    """What holds, what does not and why; the figures of the anchor and the top.
+
+    Parameters
+    ----------
+    go_to : takes the rows that a chosen line is about, none to go back, and what it says
+    """
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings("verdict")]
     DEFAULT_CSS = """
@@ -44,15 +46,9 @@ class VerdictPane(ScrolledText, can_focus=True):
     VerdictPane.-old { text-style: dim; }
     """
 
-    @dataclass
-    class RowWanted(Message):
-        """A line was chosen: the rows that it is about, none to go back, and what it says."""
-
-        places: tuple[Place, ...]
-        text: str = ""
-
-    def __init__(self, *, id: str | None = None) -> None:
-        super().__init__(id=id)
+    def __init__(self, go_to: Callable[..., object]) -> None:
+        super().__init__(id="verdict-pane")
+        self._go_to = go_to
         self._said: list[Saying] = []
         self._chosen = 0
 
@@ -61,21 +57,21 @@ class VerdictPane(ScrolledText, can_focus=True):
         parts = [*_parts(view, note)]
         self._said, self._texts = [each for each, _ in parts], [text for _, text in parts]
         self._chosen = min(self._chosen, len(self._said) - 1)
-        before = len(self._drawn[1])
-        self._drawn = (-1, [])
-        if len(self._lines()) != before:
+        before = len(self._numbers)
+        self.draw_again()
+        self.drawn()
+        if len(self._numbers) != before:
             self.refresh(layout=True)
-        self.refresh()
 
     def get_content_height(self, container: Size, viewport: Size, width: int) -> int:
         """As many lines as it has."""
-        known, lines = self._drawn
-        return len(lines if known == width else self._wrapped(width))
+        size, rows = self._drawn
+        return len(rows if size and size.width == width else self._wrapped(width))
 
     def render_line(self, y: int) -> Strip:
         """A row of the screen."""
-        strip, (_, lines), at = super().render_line(y), self._drawn, y + self.scroll_offset.y
-        if self.has_focus and at < len(lines) and lines[at][1] == self._chosen:
+        strip, at = super().render_line(y), y + self.scroll_offset.y
+        if self.has_focus and self._numbers[at : at + 1] == [self._chosen]:
             return Strip(Segment(text, style and style + _CHOSEN) for text, style, _ in strip)
         return strip
 
@@ -88,11 +84,6 @@ class VerdictPane(ScrolledText, can_focus=True):
         """The line that is chosen is shown where the focus is."""
         if not self._is_a_way(self._chosen):
             self.action_move(1)
-        self.refresh()
-
-    def on_blur(self) -> None:
-        """And only there."""
-        self.refresh()
 
     def action_move(self, by: int) -> None:
         """To the next line that leads to a row, or scroll where there is none."""
@@ -111,18 +102,18 @@ class VerdictPane(ScrolledText, can_focus=True):
         if self._is_a_way(self._chosen):
             said = self._said[self._chosen]
             text = f"{said.sign} {said.heading}: ".replace(" : ", " ") + said.text
-            self.post_message(self.RowWanted(said.places, text))
+            self._go_to(said.places, text)
 
     def action_leave(self) -> None:
         """Back to the line as it was."""
-        self.post_message(self.RowWanted(()))
+        self._go_to(())
 
     def on_click(self, event: events.Click) -> None:
         """A press on a line leads to its row."""
-        place, lines = event.get_content_offset(self), self._drawn[1]
-        at = -1 if place is None else place.y + self.scroll_offset.y
-        if 0 <= at < len(lines) and self._is_a_way(lines[at][1]):
-            self._chosen = lines[at][1]
+        place = event.get_content_offset(self)
+        at = len(self._numbers) if place is None else place.y + self.scroll_offset.y
+        if at < len(self._numbers) and self._is_a_way(self._numbers[at]):
+            self._chosen = self._numbers[at]
             self.action_go()
 
     def _is_a_way(self, number: int) -> bool:
@@ -130,7 +121,7 @@ class VerdictPane(ScrolledText, can_focus=True):
 
     def _follow(self) -> None:
         """Scroll to the line that is chosen."""
-        own = [at for at, (_, number) in enumerate(self._drawn[1]) if number == self._chosen]
+        own = [at for at, number in enumerate(self._numbers) if number == self._chosen]
         top, height = self.scroll_offset.y, max(self.scrollable_content_region.height, 1)
         if own and not top <= own[0] <= own[-1] < top + height:
             self.scroll_to(y=min(own[0], max(own[-1] - height + 1, 0)), animate=False)
@@ -145,20 +136,14 @@ def _parts(view: View | None, note: str) -> Iterator[tuple[Saying, RenderableTyp
         table = Table.grid(padding=(0, 1, 0, 0), expand=True)
         table.add_column(width=1)
         table.add_column(overflow="fold", ratio=1)
-        style = "" if saying.pending or not saying.state else LOOKS[saying.state].style
-        table.add_row(Text(saying.sign, style), _text(saying))
+        look = LOOKS[saying.state].style if saying.state else ""
+        grave = saying.state in (State.FAIL, State.WARN)
+        heading = (f"{saying.heading}  " if saying.heading else "", look if grave else "dim")
+        told = Text.assemble(heading, (saying.text, "dim" if saying.faint else ""))
+        table.add_row(Text(saying.sign, "" if saying.pending else look), told)
         yield saying, table
     if note:
         yield Saying(note), Text(note, style="dim italic")
-
-
-def _text(saying: Saying) -> Text:
-    text = Text()
-    if saying.heading:
-        grave = saying.state in (State.FAIL, State.WARN)
-        style = LOOKS[saying.state].style if grave and saying.state else "dim"
-        text.append(f"{saying.heading}  ", style=style)
-    return text.append(saying.text, style="dim" if saying.faint else "")
 
 
 def state_word(view: View | None, *, old: bool = False) -> str:

@@ -13,7 +13,7 @@ from calm.tui.theme import ELLIPSIS, LOOKS, worst
 from calm.tui.workspace import mistakes, place_of
 
 if TYPE_CHECKING:
-    from calm.case import Result, TowResult
+    from calm.case import Result
     from calm.case.result import AnyResult, NetResult
     from calm.checks.assessment import MooringInEnvironment
     from calm.files import Place
@@ -64,9 +64,6 @@ def headline(view: View | None) -> Saying:
     return Saying(f"{outcome} so far", pending=True)
 
 
-_NOT_PASSED = (State.ACCEPTED, State.ESTIMATED)
-
-
 def _judged(findings: Sequence[Finding]) -> Saying:
     """Return what is counted is a rule of a component in a situation, in whichever environments."""
     states: dict[tuple[str, str | None, str], State] = {}
@@ -76,21 +73,25 @@ def _judged(findings: Sequence[Finding]) -> Saying:
     state = worst(list(counts))
     if state is None:
         return Saying("solved")
-    phrases = [
-        f"{counts[each]} {word}{'s' * (counts[each] != 1)}"
-        for each, word in ((State.FAIL, "failure"), (State.WARN, "warning"))
-        if counts[each]
+
+    def counted(each: State, word: str, after: str = "") -> list[str]:
+        count = counts[each]
+        return [f"{count} {word}{'s' * (count != 1)}{after}"] if count else []
+
+    phrases = [*counted(State.FAIL, "failure"), *counted(State.WARN, "warning")]
+    unknown = counted(State.UNKNOWN, "figure", " unknown")
+    lesser = [
+        f"{counts[each]} {each}" for each in (State.ACCEPTED, State.ESTIMATED) if counts[each]
     ]
-    missing = counts[State.UNKNOWN]
-    unknown = f"{missing} figure{'s' * (missing != 1)} unknown"
     if state is State.UNKNOWN:
-        return Saying(f"nothing fails, {unknown}", state=state)
-    lesser = [f"{counts[each]} {each}" for each in _NOT_PASSED if counts[each]]
-    if not phrases and lesser:
-        return Saying(f"passes but for {' and '.join(lesser)}", state=state)
-    if not phrases:
-        return Saying("passes every check", state=State.PASS)
-    return Saying(", ".join([*phrases, *([unknown] if missing else [])]), state=state)
+        said = f"nothing fails, {unknown[0]}"
+    elif phrases:
+        said = ", ".join([*phrases, *unknown])
+    elif lesser:
+        said = f"passes but for {' and '.join(lesser)}"
+    else:
+        said = "passes every check"
+    return Saying(said, state=state)
 
 
 def sayings(view: View | None) -> Iterator[Saying]:
@@ -98,7 +99,11 @@ def sayings(view: View | None) -> Iterator[Saying]:
     if view is None:
         return
     if view.problems:
-        yield from _mistakes(view)
+        for problem in view.problems[:_MOST_PROBLEMS]:
+            yield Saying(problem.message, place_of(problem, view.path), State.FAIL)
+        if (more := len(view.problems) - _MOST_PROBLEMS) > 0:
+            yield Saying(f"and {more} more", faint=True)
+        yield Saying("t shows the text with its mistakes", faint=True)
         return
     for text in view.missing:
         yield Saying(text, heading="Missing", state=State.UNKNOWN)
@@ -142,16 +147,6 @@ def _stand(stand: MooringInEnvironment) -> Saying:
     return Saying(f"{figures}{said.text}", f"In {_environment(stand.environment)}", said.state)
 
 
-def _mistakes(view: View) -> Iterator[Saying]:
-    for problem in view.problems[:_MOST_PROBLEMS]:
-        place = place_of(problem, view.path)
-        yield Saying(problem.message, heading=place, state=State.FAIL)
-    more = len(view.problems) - _MOST_PROBLEMS
-    if more > 0:
-        yield Saying(f"and {more} more", faint=True)
-    yield Saying("t shows the text with its mistakes", faint=True)
-
-
 def _figures(
     result: AnyResult | None, findings: Sequence[Finding], *, pending: bool
 ) -> Iterator[Saying]:
@@ -164,7 +159,11 @@ def _figures(
     elif isinstance(result, NetResult):
         yield from _net(result)
     elif result is not None:
-        yield from _tow(result)
+        point, body = result.tow_point, result.body
+        pull = f"{say('tension', point.tension)}, {say('angle', point.angle)} below the horizontal"
+        yield Saying(pull, "Tow point")
+        behind = f"{say('depth', body.depth)} deep, {say('layback', body.layback)} behind"
+        yield Saying(behind, "Body")
 
 
 def _mooring(result: Result, findings: Sequence[Finding], pending: bool) -> Iterator[Saying]:
@@ -182,14 +181,14 @@ def _mooring(result: Result, findings: Sequence[Finding], pending: bool) -> Iter
         if worst is not None and worst.value is not None:
             used += _at_worst(worst, f"{1.0 - worst.value:.0%}")
         text = f"{say('reserve', top.reserve)}; {used}"
-        yield Saying(text, "Reserve", _gravity(worst), places=_places([worst]))
+        yield _figure(text, "Reserve", worst)
     else:
         depth = f"top at {say('depth', top.depth)}"
         worst = _worst(findings, knockdown)
         if worst is not None:
             depth += _at_worst(worst, say("knockdown", worst.value))
         text = f"{say('knockdown', top.knockdown)}, {depth}"
-        yield Saying(text, "Knockdown", _gravity(worst), places=_places([worst]))
+        yield _figure(text, "Knockdown", worst)
     if anchor.grounded_length > 0.0:
         yield Saying(f"{say('grounded_length', anchor.grounded_length)} of line", heading="Lies")
 
@@ -219,9 +218,10 @@ def _situation(finding: Finding) -> str:
     return "" if finding.situation == AS_GIVEN else f" ({finding.situation})"
 
 
-def _gravity(finding: Finding | None) -> State | None:
-    """The state of a figure in words, whose sign is wanted only where it is grave."""
-    return finding.state if finding is not None and _graver(finding) else None
+def _figure(text: str, heading: str, worst: Finding | None) -> Saying:
+    """A figure in words, which shows the state of the worst finding of it where that is grave."""
+    state = worst.state if worst is not None and _graver(worst) else None
+    return Saying(text, heading, state, places=_places([worst]))
 
 
 def _net(result: NetResult) -> Iterator[Saying]:
@@ -235,28 +235,27 @@ def _net(result: NetResult) -> Iterator[Saying]:
         yield Saying(f"{say('depth', node.depth)} deep", f"Node {node.name}")
 
 
-def _tow(result: TowResult) -> Iterator[Saying]:
-    point, body = result.tow_point, result.body
-    yield Saying(
-        f"{say('tension', point.tension)}, {say('angle', point.angle)} below the horizontal",
-        heading="Tow point",
-    )
-    yield Saying(
-        f"{say('depth', body.depth)} deep, {say('layback', body.layback)} behind", heading="Body"
-    )
-
-
 def _found(findings: Sequence[Finding], *, pending: bool) -> Iterator[Saying]:
     """Failures and warnings with reason and remedy; what passes and is unknown in short.
 
     A rule passes where it is met for every component: of a figure that is missing it is not known.
     """
     for finding in sorted(findings, key=lambda each: each.rank):
-        if finding.state in (State.FAIL, State.WARN):
+        if _graver(finding):
             yield _told(finding)
-    yield from _unknown([each for each in findings if each.state is State.UNKNOWN])
+    unknown: dict[str, list[Finding]] = {}
+    for finding in findings:
+        if finding.state is State.UNKNOWN:
+            unknown.setdefault(_title(finding), []).append(finding)
+    for title, own in unknown.items():
+        names = dict.fromkeys(each.component or "the line" for each in own)
+        named = ", ".join(list(names)[:_MOST_NAMED])
+        if (more := len(names) - _MOST_NAMED) > 0:
+            named += f" and {more} more"
+        text = f"figures missing of {named}"
+        yield Saying(text, title, State.UNKNOWN, places=_places(own))
     passed = dict.fromkeys(_title(each) for each in findings if each.state is State.PASS)
-    other = {_title(each) for each in findings if _graver(each) or each.state is State.UNKNOWN}
+    other = {*unknown, *(_title(each) for each in findings if _graver(each))}
     kept = [each for each in passed if each not in other]
     if kept:
         heading = "Pass so far" if pending else "Pass"
@@ -284,19 +283,6 @@ def _places(findings: Iterable[Finding | None]) -> tuple[Place, ...]:
 
 def _graver(finding: Finding) -> bool:
     return finding.state in (State.FAIL, State.WARN)
-
-
-def _unknown(findings: list[Finding]) -> Iterator[Saying]:
-    groups: dict[str, list[Finding]] = {}
-    for finding in findings:
-        groups.setdefault(_title(finding), []).append(finding)
-    for title, own in groups.items():
-        names = dict.fromkeys(each.component or "the line" for each in own)
-        named = ", ".join(list(names)[:_MOST_NAMED])
-        if len(names) > _MOST_NAMED:
-            named += f" and {len(names) - _MOST_NAMED} more"
-        text = f"figures missing of {named}"
-        yield Saying(text, title, State.UNKNOWN, places=_places(own))
 
 
 def _title(finding: Finding) -> str:

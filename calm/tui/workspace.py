@@ -3,64 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from textual.app import App
 from textual.content import Content
-from textual.message import Message
 from textual.timer import Timer
 
 from calm.assemble.catalogue_search import Index
 from calm.errors import CalmError, Problem
 from calm.files import Catalogue, Place
-from calm.files.editing import LineItem
 from calm.tui.session import Session
 
 if TYPE_CHECKING:
     from calm.tui.live import View
 
 
-class Edited(Message):
-    """The file, or the environment it is seen in, is another one."""
-
-
-@dataclass
-class Told(Message):
-    """Something is to be said in the last line; `wrong` where something cannot be done."""
-
-    text: str
-    wrong: bool = False
-
-
-@dataclass
-class Judged(Message):
-    """A worker has judged the file; `fully` with its launch, recovery and breaks."""
-
-    view: View
-    fully: bool
-
-
-@dataclass
-class JudgingFailed(Message):
-    """CALM itself failed."""
-
-    reason: str
-
-
-@dataclass
-class CatalogueRead(Message):
-    """A worker has read the catalogue; None where that cannot be used, with the reason."""
-
-    catalogue: Catalogue | None
-    reason: str = ""
-
-
 def is_elsewhere(problem: Problem, path: Path) -> bool:
-    """Return whether a mistake is in another file than the one that is edited, which has this
-    path.
-    """
+    """Return whether a mistake is in another file than that of the path, which is edited."""
     return problem.path not in ("", str(path))
 
 
@@ -122,12 +82,6 @@ class Workspace:
         self._catalogue: Catalogue | None = None
         self._defined: Any = None
 
-    def take_view(self, view: View) -> None:
-        """Take what a worker made of the file."""
-        self.view = view
-        if view.result is not None:
-            self.good = view
-
     def take_catalogue(self, catalogue: Catalogue) -> None:
         """Search a catalogue, with what the file defines itself."""
         self._catalogue, self.index = catalogue, None
@@ -141,25 +95,30 @@ class Workspace:
             self._defined = defined
             self.index = Index.of(self._catalogue, draft.text)
 
-    def is_assembly(self, item: LineItem) -> bool:
-        """Return whether a row is one of several parts, as far as the catalogue is read."""
-        listed = None if self.index is None else self.index.get(item.values.get("use", ""))
-        return listed is not None and listed.kind == "assembly"
-
     @property
     def is_fresh(self) -> bool:
-        """Return whether the view is of what is edited: the text, the file's place and the
-        environment.
-        """
+        """Return whether the view is of the text, the path and the environment of now."""
         session, view = self.session, self.view
         return view is not None and view.is_of(
             session.draft.text, session.file.path, session.standing.environment
         )
 
+    def judged(self, otherwise: str) -> View | None:
+        """Return the view of what is edited; None where there is none yet, which is told."""
+        if not self.is_fresh:
+            self.tell(otherwise)
+            return None
+        return self.view
+
     @property
     def is_old(self) -> bool:
         """Return whether the figures are to be shown dimmed, those of an earlier draft."""
         return self.is_late and not self.is_fresh
+
+    @property
+    def path(self) -> Path:
+        """Return that of the file, as its problems have it."""
+        return Path() if self.view is None else self.view.path
 
     @property
     def called(self) -> str:
@@ -181,16 +140,16 @@ _FULLY_AFTER = 0.5  # seconds without a change before launch, recovery and break
 
 
 class Judging:
-    """Starts workers that judge the draft of a workspace and post messages to the application.
+    """Has workers of the application judge the draft of a workspace, and takes what they find.
 
     Parameters
     ----------
     app : whose workers they are
     workspace : takes what they find
-    show : shows the workspace as it is
+    show : shows the workspace as it is; `is_first` where its first view is there
     """
 
-    def __init__(self, app: App[int], workspace: Workspace, show: Callable[[], object]) -> None:
+    def __init__(self, app: App[int], workspace: Workspace, show: Callable[..., object]) -> None:
         self._app, self._workspace, self._show = app, workspace, show
         self._is_judging = False
         self._is_stale = False  # a change is not asked about yet
@@ -244,24 +203,28 @@ class Judging:
             catalogs = self._workspace.session.catalogs
             self._work(lambda live: live.judge_fully(view, catalogs), fully=True)
 
-    def take(self, event: Judged) -> bool:
-        """Take what a worker has found; whether it is of the last state that was judged."""
+    def _take(self, view: View, fully: bool) -> None:
+        """Take what a worker has found, `fully` with launch, recovery and breaks."""
         workspace = self._workspace
-        if event.fully:
-            is_late, self._checked = self._checked is not workspace.view, None
+        is_first, is_late = workspace.view is None, fully and self._checked is not workspace.view
+        if fully:
+            self._checked = None
         else:
-            is_late, self._is_judging = False, False
+            self._is_judging = False
         if not is_late:
-            workspace.take_view(event.view)
+            workspace.view = view
+            workspace.good = view if view.result is not None else workspace.good
             workspace.is_late = workspace.is_late and not workspace.is_fresh
         if self._is_wanted:
             self.ask()
-        elif (is_late or not event.fully) and not (self._is_judging or self._fully):
+        elif (is_late or not fully) and not (self._is_judging or self._fully):
             self._fully = self._app.set_timer(_FULLY_AFTER, self.ask_fully)
-        return not is_late
+        if not is_late:
+            self._show(is_first=is_first)
 
-    def failed(self) -> None:
+    def _fail(self, reason: str) -> None:
         """Report a failure of CALM itself; later drafts are judged all the same."""
+        self._workspace.tell(f"internal error ({reason}); please report it", wrong=True)
         self._is_judging, self._checked = False, None
         if self._is_wanted:
             self.ask()
@@ -273,9 +236,9 @@ class Judging:
 
                 view = judge(live)
             except Exception as error:
-                self._app.post_message(JudgingFailed(f"{type(error).__name__}: {error}"))
+                self._app.call_later(self._fail, f"{type(error).__name__}: {error}")
             else:
-                self._app.post_message(Judged(view, fully))
+                self._app.call_later(self._take, view, fully)
 
         self._app.run_worker(work, thread=True, group="judging", exit_on_error=False)
 

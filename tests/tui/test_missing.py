@@ -4,7 +4,7 @@ import pytest
 
 from calm.checks.finding import State
 from calm.files.editing import Draft
-from calm.tui.line.filling import filled, missing_figures
+from calm.tui.line.mooring_sheet import missing_figures, with_figures
 from calm.tui.live import judge
 from tests.tui.conftest import MOORING
 
@@ -38,7 +38,7 @@ def test_of_a_component_of_the_catalogue_the_rows_that_lack_it_get_the_figure():
     assert rows["breaking_load"] == [("line", 3)]  # a clamp's would be taken for its grip
     missing = missing_figures(judge(text), Draft(text))
     figures = {"rcm4.depth_rating": "2000 m", "rcm4.working_load": "20 kN"}
-    made = filled(Draft(text), missing, figures, "")
+    made = with_figures(Draft(text), missing, figures, "")
     assert "- {use: rcm4, at: 10 m, depth_rating: 2000 m}" in made.text
     assert "- {use: rcm4, count: 2, depth_rating: 2000 m, working_load: 20 kN}" in made.text
     assert "rcm4" not in asked(made.text)
@@ -48,7 +48,7 @@ def test_what_is_filled_in_is_known_then_with_its_source():
     draft = Draft(UNKNOWN)
     missing = missing_figures(judge(UNKNOWN), draft)
     texts = {"ball.depth_rating": "500 m", "releaser.breaking_load": "90 kN"}
-    made = filled(draft, missing, texts, "test certificate 12")
+    made = with_figures(draft, missing, texts, "test certificate 12")
     assert "depth_rating: 500 m" in made.text and "# carries all" in made.text
     view = judge(made.text)
     component = next(each.component for each in view.file.pieces if each.use == "ball")

@@ -3,7 +3,14 @@
 import pytest
 
 from calm.records.delimited import NoTableError, copied_table
-from calm.tui.water.pasted import NoRows, Rows, UnknownColumns, check_of, offered_headings, rows_in
+from calm.tui.water.tables_to_begin import (
+    NoRows,
+    Rows,
+    UnknownColumns,
+    check_of,
+    offered_headings,
+    rows_in,
+)
 
 COLUMNS = ("depth m", "speed m/s", "toward deg")
 ROWS = (("0", "0.9", "70"), ("50", "1e-3", "60"))

@@ -2,26 +2,187 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import json
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from itertools import zip_longest
 from typing import ClassVar, Literal
 
+from rich.cells import cell_len
+from rich.segment import Segment
+from rich.style import Style
 from rich.text import Text
 from textual import on
 from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.containers import Horizontal, Vertical
-from textual.message import Message
 from textual.widgets import Input, Static
 
+from calm import whole_file
 from calm.assemble.catalogue_search import COLUMNS, Index, Listed
 from calm.errors import CalmError
 from calm.files.components import FLEXIBLE_KINDS, RIGID_KINDS
-from calm.tui.catalogue.component_list import ComponentList, Remembered
+from calm.files.editing import state_folder
 from calm.tui.checking import distance, length
-from calm.tui.dialogs import Asked, InputSheet, ask
+from calm.tui.dialogs import InputSheet, ask
+from calm.tui.field import Asked, ScrolledEntry
 from calm.tui.key_table import bindings
-from calm.tui.scrolled import ScrolledEntry, ScrolledText
-from calm.tui.workspace import Told
+from calm.tui.scrolled import ScrolledText, TableCells, TableColumn
+from calm.tui.theme import CURSOR, FAVOURITE, ROLES
+from calm.tui.workspace import Workspace
+
+_LEAD, _FIGURE = 4, 8
+
+
+class ComponentList(TableCells, can_focus=False):
+    """List components with a cursor, which the search moves."""
+
+    DEFAULT_CSS = """
+    ComponentList {
+        background: $background;
+        & > .component-list--cursor { text-style: bold; background: $surface; }
+        & > .component-list--id { color: $foreground; }
+        & > .component-list--name { text-style: dim; }
+        & > .component-list--own { color: $text-accent; }
+    }
+    """
+    COMPONENT_CLASSES: ClassVar[set[str]] = {
+        "component-list--cursor",
+        "component-list--id",
+        "component-list--name",
+        "component-list--own",
+    }
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.rows: Sequence[Listed] = ()
+        self._longest = 0
+        self._index: Index | None = None
+        self._by: str | None = None
+        self._favourites: frozenset[str] = frozenset()
+
+    @property
+    def chosen(self) -> Listed | None:
+        """The component under the cursor."""
+        return self.rows[self.cursor] if self.rows else None
+
+    def show(
+        self,
+        found: Sequence[Listed],
+        index: Index,
+        by: str | None = None,
+        favourites: frozenset[str] = frozenset(),
+    ) -> None:
+        """List other components, the cursor on the first; `by` which figure they are sorted."""
+        before, columns = self.rows, self.columns
+        cursor, like = self.cursor, (self._index, self._favourites)
+        self._index, self._by, self._favourites = index, by, favourites
+        self._longest = max((len(each.id) for each in found), default=0)
+        self.set_reactive(TableCells.cursor, 0)
+        if like != (index, favourites) or columns != self.columns or self.scroll_offset.y:
+            self.take_rows(found)
+            self.scroll_to(y=0, animate=False)
+        else:
+            pairs = zip_longest(before[: self.size.height], found[: self.size.height])
+            changed = [number for number, (old, new) in enumerate(pairs) if old is not new]
+            self.take_rows(found, {0, cursor, *changed})
+        self.post_message(self.Moved())
+
+    @property
+    def columns(self) -> list[TableColumn]:
+        """The ids, the figures that have room beside them, and the names in what is left."""
+        width = self.scrollable_content_region.width
+        id_width = max(min(self._longest, width - _LEAD), 0)
+        columns, start = [TableColumn("id", "component", _LEAD, id_width)], _LEAD + id_width + 1
+        room = max((width - start) // (_FIGURE + 1), 0)
+        shown = sorted(COLUMNS, key=lambda each: each.key != self._by)[:room]
+        for figure in COLUMNS:
+            if figure in shown:
+                columns.append(TableColumn(figure.key, figure.heading, start, _FIGURE, True))
+                start += _FIGURE + 1
+        return [*columns, TableColumn("name", "", start, max(width - start, 0))]
+
+    def text_of(self, number: int, column: TableColumn) -> str:
+        """Return an id, a figure, or a name that stands there whole; else the card has it."""
+        each: Listed = self.rows[number]
+        if column.name == "id":
+            return each.id
+        if column.name == "name":
+            return each.name if cell_len(each.name) <= column.width else ""
+        figures = {} if self._index is None else self._index.figures(each.id)
+        figure = next(each for each in COLUMNS if each.key == column.name)
+        return figure.shown(figures.get(column.name))
+
+    def lead(self, number: int, style: Style) -> list[Segment]:
+        """Return the cursor, the star of a favourite, and the sign of the role."""
+        each: Listed = self.rows[number]
+        cursor = CURSOR if number == self.cursor else " "
+        star = FAVOURITE if each.id in self._favourites else " "
+        return [Segment(f"{cursor}{star}{ROLES.get(each.role, ' ')} ", style)]
+
+    def row_style(self, number: int) -> Style:
+        """Return how a row looks, that of the cursor whoever has the focus."""
+        if number != self.cursor:
+            return self.rich_style
+        return self.rich_style + self.look("component-list--cursor")
+
+    def cell_style(self, number: int, column: TableColumn, style: Style) -> Style:
+        """Return how an id and a name look; figures look as the row does."""
+        look = {"id": "own" if self.rows[number].own else "id", "name": "name"}.get(column.name)
+        if look is None:
+            return style
+        return style + self.look(f"component-list--{look}")
+
+
+_NAME = "catalogue.json"
+_MOST_RECENT = 40
+
+
+class Remembered:
+    """Ids of components, each list the last one first; a file that cannot be read is none.
+
+    Attributes
+    ----------
+    favourites : marked by the person
+    recent : taken from the catalogue
+    """
+
+    def __init__(self) -> None:
+        try:
+            kept = json.loads((state_folder() / _NAME).read_text(encoding="utf-8"))
+            lists = [kept["favourites"], kept["recent"]]
+            ids = [[each for each in kept if isinstance(each, str)] for kept in lists]
+        except (OSError, ValueError, KeyError, TypeError):
+            ids = [[], []]
+        self.favourites, self.recent = ids
+
+    def take(self, id: str) -> None:
+        """Note that one was taken; where it cannot be kept, for this session only."""
+        self.recent = [id, *(each for each in self.recent if each != id)][:_MOST_RECENT]
+        with suppress(OSError):
+            self._keep()
+
+    def mark(self, id: str) -> bool:
+        """Mark a favourite, or unmark it; returns whether it is one now.
+
+        Raises
+        ------
+        OSError
+            It could not be kept, and is one in this session only.
+        """
+        is_new = id not in self.favourites
+        self.favourites = [each for each in self.favourites if each != id]
+        if is_new:
+            self.favourites.insert(0, id)
+        self._keep()
+        return is_new
+
+    def _keep(self) -> None:
+        folder = state_folder()
+        folder.mkdir(parents=True, exist_ok=True)
+        content = json.dumps({"favourites": self.favourites, "recent": self.recent}, indent=1)
+        whole_file.put(folder / _NAME, content.encode())
+
 
 Purpose = Literal["below", "above", "clamp", "replace"]
 """What the component is wanted for."""
@@ -35,7 +196,14 @@ _WHAT_FOR = {
 
 
 class CataloguePane(Vertical):
-    """Search, list, card; the length of a cable and the place of a clamp are asked for before."""
+    """Search, list, card; the length of a cable and the place of a clamp are asked for before.
+
+    Parameters
+    ----------
+    workspace : whose catalogue it is
+    take : takes what a component is for, its `use` and what was asked for: `length`, `at`, `label`
+    close : leads back to the line
+    """
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings("catalogue")]
     SCOPED_CSS = False  # the width of the screen counts
@@ -53,24 +221,21 @@ class CataloguePane(Vertical):
     .-narrow CataloguePane #catalogue-card { width: 1fr; height: 1fr; margin: 0 0 0 1; }
     """
 
-    @dataclass
-    class Taken(Message):
-        """A component was chosen, with what was asked for: `length`, `at`, `label`."""
-
-        purpose: Purpose
-        values: dict[str, str]
-
-    class Closed(Message):
-        """Back to the line."""
-
-    def __init__(self, *, id: str | None = None) -> None:
-        super().__init__(id=id)
-        self.index: Index | None = None
+    def __init__(
+        self,
+        workspace: Workspace,
+        take: Callable[[Purpose, dict[str, str]], object],
+        close: Callable[[], object],
+    ) -> None:
+        super().__init__(id="catalogue")
+        self.workspace, self._take, self._close = workspace, take, close
+        self.index: Index | None = None  # what was searched last
+        self.listing, self._card = ComponentList(), ScrolledText(id="catalogue-card")
+        words = "words of id, name, maker, kind, role; breaking>50kN"
+        self.search = ScrolledEntry(id="catalogue-search", compact=True, placeholder=words)
         self.remembered = Remembered()
         self.purpose: Purpose = "below"
         self.clampable = False
-        self.towed = False
-        self._used: list[str] = []
         self._role = ""
         self._by: str | None = None
         self._shown: Listed | None = None
@@ -79,30 +244,17 @@ class CataloguePane(Vertical):
     def compose(self) -> ComposeResult:
         """Title, search, and the list with its card."""
         yield Static(id="catalogue-title", markup=False)
-        yield ScrolledEntry(
-            id="catalogue-search",
-            compact=True,
-            placeholder="words of id, name, maker, kind, role; breaking>50kN",
-        )
+        yield self.search
         with Horizontal(id="catalogue-found"):
-            yield ComponentList()
-            yield ScrolledText(id="catalogue-card")
+            yield self.listing
+            yield self._card
 
-    @property
-    def listing(self) -> ComponentList:
-        """Return what was found."""
-        return self.query_one(ComponentList)
-
-    @property
-    def search(self) -> ScrolledEntry:
-        """The words."""
-        return self.query_one("#catalogue-search", ScrolledEntry)
-
-    def take_index(self, index: Index) -> None:
-        """Search another catalogue."""
-        self.index = index
-        if self.display or not self.listing.rows:
-            self._search_again()
+    def refresh_index(self) -> None:
+        """Search the catalogue, where it is another one now."""
+        if self.workspace.index is not self.index:
+            self.index = self.workspace.index
+            if self.display or not self.listing.rows:
+                self._search_again()
 
     def _search_again(self) -> None:
         """Search for the same, the cursor on the component it was on."""
@@ -116,20 +268,16 @@ class CataloguePane(Vertical):
         self,
         purpose: Purpose,
         target: str,
-        used: list[str],
         role: str = "",
         *,
         clampable: bool = False,
-        towed: bool = False,
     ) -> None:
         """Look for a component for the row called `target`, empty in an empty line.
 
         Favourites come first; then, until words are typed, what has a `role`, what was taken
-        lately, and what is `used` in the line. With `clampable`, only what can be clamped on a
-        line.
+        lately, and what is used in the line. With `clampable`, only what can be clamped on a line.
         """
-        self.purpose, self.clampable, self.towed = purpose, clampable, towed
-        self._used, self._role = used, role
+        self.purpose, self.clampable, self._role = purpose, clampable, role
         self.retitle(target)
         with self.prevent(Input.Changed):
             self.search.value = ""
@@ -150,7 +298,9 @@ class CataloguePane(Vertical):
             return
         kinds = RIGID_KINDS if self.clampable else None
         kept = self.remembered
-        first = [*dict.fromkeys([*kept.favourites, *kept.recent, *self._used])]
+        items = self.workspace.session.draft.items
+        used = [part.values.get("use", "") for each in items for part in (each, *each.clamps)]
+        first = [*dict.fromkeys([*kept.favourites, *kept.recent, *reversed(used)])]
         found = self.index.search(self.search.value, kinds, first=first, by=self._by)
         if self._role and self._by is None and not self.search.value.strip():
             found.sort(key=lambda each: (each.id not in kept.favourites, each.role != self._role))
@@ -158,7 +308,7 @@ class CataloguePane(Vertical):
 
     @on(ComponentList.Moved)
     def _show_card(self) -> None:
-        card, chosen = self.query_one("#catalogue-card", ScrolledText), self.listing.chosen
+        card, chosen = self._card, self.listing.chosen
         if chosen is self._shown and chosen is not None:
             return
         self._shown = chosen
@@ -188,10 +338,10 @@ class CataloguePane(Vertical):
             try:
                 is_one = self.remembered.mark(chosen.id)
             except OSError as error:
-                self.post_message(Told(f"It could not be kept: {error}", wrong=True))
+                self.workspace.tell(f"It could not be kept: {error}", wrong=True)
             else:
                 became = "is a favourite now" if is_one else "is no longer a favourite"
-                self.post_message(Told(f"{chosen.id} {became}"))
+                self.workspace.tell(f"{chosen.id} {became}")
             self._search_again()
 
     def action_choose(self, by: int) -> None:
@@ -209,14 +359,14 @@ class CataloguePane(Vertical):
             place = "e.g. 2 m down the piece"
             self._ask(chosen, Asked("at", "From the top", "", distance(), place))
         elif chosen.kind in FLEXIBLE_KINDS and self.purpose != "replace":
-            lengths = "e.g. 480 m, or fit 105 m"
-            self._ask(chosen, Asked("length", "Length", "", length(towed=self.towed), lengths))
+            check = length(towed=self.workspace.session.draft.is_tow)
+            self._ask(chosen, Asked("length", "Length", "", check, "e.g. 480 m, or fit 105 m"))
         else:
             self._give({"use": chosen.id})
 
     def _give(self, values: dict[str, str]) -> None:
         self.remembered.take(values["use"])
-        self.post_message(self.Taken(self.purpose, values))
+        self._take(self.purpose, values)
         self.search.action_select_all()
 
     def _ask(self, chosen: Listed, asked: Asked) -> None:
@@ -230,4 +380,4 @@ class CataloguePane(Vertical):
 
     def action_close(self) -> None:
         """Leave the catalogue."""
-        self.post_message(self.Closed())
+        self._close()

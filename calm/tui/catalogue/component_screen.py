@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
-from dataclasses import dataclass
+from dataclasses import replace
 from types import UnionType
 from typing import Any, ClassVar, Literal, Union, get_args, get_origin
 
@@ -11,14 +11,14 @@ from textual import on
 from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.containers import Horizontal, Vertical, VerticalScroll
-from textual.screen import Screen
 from textual.widgets import Static
 
 from calm.files.catalogue import defined, tidy_id
 from calm.files.components import KINDS
 from calm.files.definition import QuantityField
-from calm.tui.checking import Check, Reading, anything, quantity
-from calm.tui.field import Cycle, Field, all_settled
+from calm.tui.checking import Check, Reading, quantity
+from calm.tui.dialogs import Form
+from calm.tui.field import Asked, Cycle, Field, all_settled
 from calm.tui.key_table import bindings, hints
 from calm.tui.screen import KeyBar, TitleBar
 from calm.units import DIMENSIONS
@@ -26,7 +26,7 @@ from calm.units import DIMENSIONS
 Defined = tuple[str, dict[str, str]]
 
 
-class ComponentScreen(Screen[Defined | None]):
+class ComponentScreen(Form[Defined]):
     """Gives the id and the values of a component; None where it is left.
 
     Parameters
@@ -68,8 +68,8 @@ class ComponentScreen(Screen[Defined | None]):
         with Horizontal():
             with VerticalScroll(id="fields", can_focus=False):
                 if not self._begun:
-                    check = id_check(self._own)
-                    yield Field("id", "id", check, id="id", placeholder="e.g. sphere-own-1250")
+                    asked = Asked("id", "id", "", id_check(self._own), "e.g. sphere-own-1250")
+                    yield Field(asked, id="id")
                     yield Cycle("kind", tuple(KINDS), self._kind, title_width=20)
                 yield Vertical(id="kind-fields")
             with VerticalScroll(id="outcome", can_focus=False):
@@ -82,22 +82,13 @@ class ComponentScreen(Screen[Defined | None]):
         self.query_one(TitleBar).show(f"{what}, kept in this file   * needed", "")
         self.query_one(KeyBar).show_keys(hints("form"))
         await self._show_fields()
-        self.query(Field).first().input.focus()
+        self.fields[0].input.focus()
 
     async def _show_fields(self) -> None:
         holder = self.query_one("#kind-fields", Vertical)
         await holder.remove_children()
-        fields = [
-            Field(
-                each.key,
-                each.key.replace("_", " ") + (" *" if each.needed else ""),
-                each.check,
-                text=self._values.get(each.key, ""),
-                note=each.takes,
-            )
-            for each in form_fields(self._kind)
-        ]
-        await holder.mount(*fields)
+        begun, asked = self._values, form_fields(self._kind)
+        await holder.mount(*(Field(replace(each, text=begun.get(each.key, ""))) for each in asked))
         self._judge()
 
     @on(Cycle.Turned)
@@ -111,19 +102,9 @@ class ComponentScreen(Screen[Defined | None]):
             self._values[event.field.key] = event.reading.text
         self._judge()
 
-    @on(Field.Entered)
-    def _onward(self, event: Field.Entered) -> None:
-        if event.field is self._fields()[-1]:
-            self.action_accept()
-        else:
-            self.focus_next()
-
-    def _fields(self) -> list[Field]:
-        return list(self.query(Field))
-
     def _given(self) -> Defined:
         """The id and the values that have been typed; empty what is to be taken away."""
-        texts = {field.key: field.text for field in self._fields()}
+        texts = {field.key: field.text for field in self.fields}
         id = texts.pop("id", self._component)
         if self._begun:
             return id, texts
@@ -158,9 +139,9 @@ class ComponentScreen(Screen[Defined | None]):
             parts.append(shown(to_card(id or "component", component)))
         self.query_one("#outcome-text", Static).update(Group(*parts))
 
-    def action_accept(self) -> None:
+    def action_take(self) -> None:
         """Give the component, if it is one."""
-        if not all_settled(self._fields()):
+        if not all_settled(self.fields):
             return
         component, problems = defined(*self._all())
         if component is None:
@@ -169,53 +150,32 @@ class ComponentScreen(Screen[Defined | None]):
         else:
             self.dismiss(self._given())
 
-    def action_cancel(self) -> None:
-        """Give nothing."""
-        self.dismiss(None)
-
 
 _FIRST = ("name", "manufacturer", "role")
 _LAST = ("material", "part_number", "note", "source", "date")
 
 
-@dataclass(frozen=True)
-class FormField:
-    """A key of a component: what it takes, for people, and what judges it."""
-
-    key: str
-    needed: bool
-    takes: str
-    check: Check
-
-
-def form_fields(kind: str) -> Iterator[FormField]:
+def form_fields(kind: str) -> Iterator[Asked]:
     """The keys of a kind that hold one value; those that a component cannot do without first."""
     fields = KINDS[kind].model_fields
     known = [name for name in fields if name not in ("kind", *_FIRST, *_LAST)]
     known.sort(key=lambda name: not fields[name].is_required())
     for name in (*_FIRST, *known, *_LAST):
-        info = fields[name]
-        made = _form_field(name, info.annotation, info.metadata, needed=info.is_required())
-        if made is not None:
-            yield made
-
-
-def _form_field(
-    name: str, annotation: Any, metadata: list[Any], *, needed: bool
-) -> FormField | None:
-    found = next((each for each in metadata if isinstance(each, QuantityField)), None)
-    if found is not None:
-        units = list(DIMENSIONS[found.dimension].units)[:5]
-        takes = DIMENSIONS[found.dimension].noun.removeprefix("a ").removeprefix("an ")
-        takes += f" ({', '.join(units)})" if DIMENSIONS[found.dimension].unit else ""
-        check = quantity(found, optional=not needed, usual_unit=found.usual_unit)
-        return FormField(name, needed, takes, check)
-    words = _words(annotation)
-    if words:
-        return FormField(name, needed, " | ".join(words), _one_of(words))
-    if annotation is str or str in _members(annotation):
-        return FormField(name, needed, "", anything)
-    return None
+        needed, members = fields[name].is_required(), _members(fields[name].annotation)
+        title = name.replace("_", " ") + " *" * needed
+        metadata = fields[name].metadata
+        found = next((each for each in metadata if isinstance(each, QuantityField)), None)
+        words = _words(members)
+        if found is not None:
+            dimension = DIMENSIONS[found.dimension]
+            takes = dimension.noun.removeprefix("a ").removeprefix("an ")
+            takes += f" ({', '.join(list(dimension.units)[:5])})" if dimension.unit else ""
+            check = quantity(found, optional=not needed, usual_unit=found.usual_unit)
+            yield Asked(name, title, check=check, takes=takes)
+        elif words:
+            yield Asked(name, title, check=_one_of(words), takes=" | ".join(words))
+        elif str in members:
+            yield Asked(name, title)
 
 
 def _members(annotation: Any) -> tuple[Any, ...]:
@@ -227,11 +187,11 @@ def _members(annotation: Any) -> tuple[Any, ...]:
     return (annotation,)
 
 
-def _words(annotation: Any) -> tuple[str, ...]:
+def _words(members: tuple[Any, ...]) -> tuple[str, ...]:
     """The words that a field may be, where it is one of some words and nothing else."""
-    members = [each for each in _members(annotation) if each is not type(None)]
-    if members and all(get_origin(each) is Literal for each in members):
-        return tuple(word for each in members for word in get_args(each))
+    given = [each for each in members if each is not type(None)]
+    if all(get_origin(each) is Literal for each in given):
+        return tuple(word for each in given for word in get_args(each))
     return ()
 
 
@@ -247,9 +207,7 @@ def _one_of(words: tuple[str, ...]) -> Check:
 
 
 def id_check(own: Collection[str]) -> Check:
-    """Return whether a text can be the id of a component; `own` are those that the file has
-    already.
-    """
+    """Return whether a text can be an id; `own` are those that the file has already."""
 
     def check(text: str) -> Reading:
         tidy = text.strip()

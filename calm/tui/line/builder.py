@@ -2,44 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from functools import partial
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from textual import on
 from textual.binding import BindingType
 from textual.events import DescendantFocus, Key
 
 from calm.files.components import KINDS
-from calm.files.editing import Draft
 from calm.templates import TEMPLATES, Template, template
 from calm.tui.cell_editor import CellEditor
-from calm.tui.dialogs import Answer, InputSheet, Question, ask, choose
+from calm.tui.dialogs import Question, ask, choose, numbered
 from calm.tui.key_table import bindings, hints
-from calm.tui.line import comparing
-from calm.tui.line.filling import ask_figures
-from calm.tui.line.line_pane import LinePane
-from calm.tui.line.line_screen import LineScreen
+from calm.tui.line.comparing import ComparingScreen
 from calm.tui.line.mooring_sheet import (
-    as_deployed,
-    deployed_sheet,
-    document_sheet,
-    documented,
+    SHEETS,
+    figures_sheet,
     hung_at,
-    mooring_sheet,
-    tow_sheet,
-    written,
+    missing_figures,
+    with_figures,
 )
 from calm.tui.pictures import Picture, Tab
 from calm.tui.screen import KeyBar
 from calm.tui.session import Location
 from calm.tui.verdict_pane import VerdictPane
 
+if TYPE_CHECKING:
+    from calm.tui.catalogue.catalogue_pane import Purpose
+    from calm.tui.catalogue.component_screen import Defined
+
 _MOST_STEPS = 9
 """Of the history, offered at once."""
 
 
-class BuilderScreen(LineScreen):
+class BuilderScreen(ComparingScreen):
     """The line in the middle, and the ways to all other screens."""
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings("anywhere")]
@@ -103,18 +99,6 @@ class BuilderScreen(LineScreen):
         self.tell(f"The line stands in the file's {which}")
         self.workspace.edited()
 
-    def action_advise(self) -> None:
-        """Offer changes that mend what was found."""
-        comparing.offer_advice(self.line)
-
-    def action_compare(self) -> None:
-        """Show what has changed since the file was saved."""
-        comparing.compare_with_saved(self.line, self.pictures)
-
-    def action_compare_file(self) -> None:
-        """Show what is different in another file."""
-        comparing.compare_with_file(self.line, self.pictures)
-
     def action_overlay(self) -> None:
         """Draw the line in all its environments, or in its own alone."""
         shown = self.pictures.overlay()
@@ -127,12 +111,31 @@ class BuilderScreen(LineScreen):
         self.verdict.focus()
 
     def action_figures(self) -> None:
-        """Fill in what is not known of the components."""
-        ask_figures(self.line)
+        """Ask for all figures of the components that are missing, and write what is given."""
+        session = self.session
+        if not self.settle():
+            return
+        view = self.workspace.judged("Missing figures are known once the line is judged")
+        if view is None:
+            return
+        missing = missing_figures(view, session.draft)
 
-    def action_papers(self) -> None:
-        """Show the bill, or have report and sheets written."""
-        comparing.offer_papers(self.line)
+        def take(texts: dict[str, str]) -> None:
+            source = texts.pop("source", "")
+            figures = {asked: text for asked, text in texts.items() if text}
+            if figures:
+                count = f"{len(figures)} figure{'s' * (len(figures) != 1)} filled in"
+                self.line.attempt(
+                    lambda: session.do(
+                        with_figures(session.draft, missing, figures, source), "fill in figures"
+                    ),
+                    count,
+                )
+
+        if missing:
+            ask(self.app, figures_sheet(missing), take)
+        else:
+            self.tell("No figure of a component is missing")
 
     def action_begin(self) -> None:
         """Begin an empty line with a mooring."""
@@ -144,10 +147,9 @@ class BuilderScreen(LineScreen):
         def begin(kind: Template) -> None:
             self.line.attempt(lambda: session.write(template(kind), f"begin with {kind}"))
 
-        answers = [
-            Answer(str(number), f"{kind}: {meaning}", partial(begin, kind))
-            for number, (kind, meaning) in enumerate(TEMPLATES.items(), 1)
-        ]
+        answers = numbered(
+            (f"{kind}: {meaning}", partial(begin, kind)) for kind, meaning in TEMPLATES.items()
+        )
         text = "Each stands as given: change depth, current and pieces to yours."
         choose(self.app, Question("Begin with", text, answers))
 
@@ -163,44 +165,55 @@ class BuilderScreen(LineScreen):
         def undo(count: int) -> None:
             self._go("undone", lambda: [steps.undo() for _ in range(count)][-1])
 
-        answers = [
-            Answer(str(number), f"before: {label}", partial(undo, number))
+        answers = numbered(
+            (f"before: {label}", partial(undo, number))
             for number, label in enumerate(steps.steps[:_MOST_STEPS], 1)
-        ]
+        )
         text = f"Go back to before one of the last {len(answers)} changes; U does them again."
         if (more := len(steps.steps) - _MOST_STEPS) > 0:
             text += f" {more} are older; u goes back one by one."
         choose(self.app, Question("What was done", text, answers))
 
-    def action_search(self) -> None:
-        """Search the catalogue for a piece below."""
-        self.search("below")
+    def action_search(self, purpose: Purpose) -> None:
+        """Search the catalogue."""
+        self.search(purpose)
 
     def action_define(self) -> None:
         """Define a component of one's own, and put it into the line."""
         from calm.tui.catalogue.component_screen import ComponentScreen
 
-        index = self.workspace.index
-        listed = () if index is None else tuple(index.catalogue.ids())
-        form = ComponentScreen(listed, self._own)
-        ask(self.app, form, lambda defined: self._put_component(*defined))
+        index, session = self.workspace.index, self.session
 
-    @on(LinePane.ChangeWanted)
-    def _change_component(self, event: LinePane.ChangeWanted) -> None:
-        """Change a component of the file in its form; figures that it does not show stay."""
+        def take(defined: Defined) -> None:
+            id, values = defined
+            if self.line.attempt(
+                lambda: session.do(session.draft.put_component(id, values), f"define {id}"),
+                f"{id} is defined in the file; the catalogue has it",
+            ):
+                self.search("below")
+                self.catalogue.search.value = id
+
+        listed = () if index is None else tuple(index.catalogue.ids())
+        ask(self.app, ComponentScreen(listed, session.components), take)
+
+    def action_change_component(self) -> None:
+        """Change the component of the row in its form; figures that it does not show stay."""
         from calm.tui.catalogue.component_screen import ComponentScreen
 
-        id, session = event.id, self.session
-        values = self._own.get(id)
+        spot, session = self.line.table.spot, self.session
+        if spot is None or not self.settle():
+            return
+        id = session.item(spot).values["use"]
+        values = session.components.get(id)
         if not isinstance(values, dict) or values.get("kind") not in KINDS:
-            what = "is an assembly: change it in the text (t)" if id in self._own else (
+            what = "is an assembly: change it in the text (t)" if id in session.components else (
                 "is not of this file: what the row says in the text (t) counts for it alone, "
                 "o defines one of your own"
             )  # fmt: skip
             self.tell(f"{id} {what}")
             return
 
-        def take(defined: tuple[str, dict[str, str]]) -> None:
+        def take(defined: Defined) -> None:
             changed: dict[Location, str | None] = {
                 ("components", id, key): text or None
                 for key, text in defined[1].items()
@@ -209,12 +222,6 @@ class BuilderScreen(LineScreen):
             self.line.attempt(lambda: session.put_all(changed, f"change {id}"))
 
         ask(self.app, ComponentScreen(begun=(id, values)), take)
-
-    @property
-    def _own(self) -> dict[str, Any]:
-        """The components that the file defines, as written."""
-        defined = self.session.draft.value(("components",))
-        return defined if isinstance(defined, dict) else {}
 
     def action_water(self) -> None:
         """Depth, density, current, wind."""
@@ -238,45 +245,13 @@ class BuilderScreen(LineScreen):
         self.tell("")
         self.workspace.edited()
 
-    def action_mooring(self) -> None:
-        """Ask for name, description and position."""
-        self._ask(mooring_sheet(self.session.draft), "name and place", written)
-
-    def action_document(self) -> None:
-        """Ask for what the title block of the drawings says, and what the revision changed."""
-        self._ask(document_sheet(self.session.draft), "the document", documented)
-
-    def action_deployed(self) -> None:
-        """Ask when and where the mooring was deployed, and what of it hangs at the row."""
-        view = self.workspace.view if self.workspace.is_fresh else None
+    def action_sheet(self, name: str) -> None:
+        """Ask for what the file says of the whole of it, and write what is entered."""
+        session, view = self.session, self.workspace.view if self.workspace.is_fresh else None
         hung = hung_at(None if view is None else view.file, self.line.table.spot)
-
-        def deployed(draft: Draft, texts: Mapping[str, str]) -> Draft:
-            return as_deployed(draft, hung, texts)
-
-        self._ask(deployed_sheet(self.session.draft, hung), "the deployment", deployed)
-
-    def action_tow(self) -> None:
-        """Ask for speed and course of a tow; a mooring becomes one."""
-        self._ask(tow_sheet(self.session.draft), "the tow", written)
-
-    def _ask(
-        self, sheet: InputSheet, label: str, changed: Callable[[Draft, Mapping[str, str]], Draft]
-    ) -> None:
-        """Show a sheet, and write what is entered."""
-        session = self.session
+        sheet, label, changed = SHEETS[name](session.draft, hung)
 
         def take(texts: dict[str, str]) -> None:
             self.line.attempt(lambda: session.do(changed(session.draft, texts), label))
 
         ask(self.app, sheet, take)
-
-    def _put_component(self, id: str, values: dict[str, str]) -> None:
-        """Define a component in the file, and show it in the catalogue."""
-        session = self.session
-        if self.line.attempt(
-            lambda: session.do(session.draft.put_component(id, values), f"define {id}"),
-            f"{id} is defined in the file; the catalogue has it",
-        ):
-            self.search("below")
-            self.catalogue.search.value = id

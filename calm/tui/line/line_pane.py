@@ -3,65 +3,56 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import ClassVar
 
 from textual import on
 from textual.binding import BindingType
-from textual.message import Message
 
 from calm.checks.finding import State
 from calm.files import Place
 from calm.tui.catalogue.catalogue_pane import Purpose
 from calm.tui.catalogue.component_screen import id_check
-from calm.tui.cell_editor import CellEditor
-from calm.tui.checking import Reading
-from calm.tui.dialogs import Answer, Asked, InputSheet, Question, ask, choose
+from calm.tui.cell_editor import Then
+from calm.tui.checking import count
+from calm.tui.dialogs import Answer, InputSheet, Question, ask, choose
+from calm.tui.field import Asked
 from calm.tui.key_table import bindings
-from calm.tui.line.filling import ask_column, ask_equipment, ask_times, rows_meant
-from calm.tui.line.rows import LineCell, table_rows
+from calm.tui.line.mooring_sheet import equipment_changes, equipment_sheet
+from calm.tui.line.rows import ColumnFilling, LineCell, table_rows
 from calm.tui.line.table import EDITABLE, Column, LineSearch, LineTable
 from calm.tui.names import Named, namings
 from calm.tui.verdict_text import Saying, why
 from calm.tui.workspace import Workspace
 
-_LEAST_WIDTHS: dict[Column, int] = {"length": 16}
-_LEAST_WIDTH = 6
 _MIXED = "Pieces are marked, and clamps of other pieces; mark pieces only, or clamps only"
+_FROM_A_ROW = frozenset(
+    {"mark", "why", "alike", "equipment", "assemble", "column", "repeat", "duplicate", "delete",
+     "move_piece", "cut"}
+)  # fmt: skip
+"""Actions that need a row to begin with."""
 
 
 class LinePane(LineSearch):
-    """Edit the line: its cells, its rows and their order."""
+    """Edit the line: its cells, its rows and their order.
+
+    Parameters
+    ----------
+    search : searches the catalogue for a component for the row under the cursor
+    """
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings("line")]
     DEFAULT_CSS = "LinePane { width: 3fr; height: 1fr; }"
 
-    @dataclass
-    class ComponentWanted(Message):
-        """A component is to be chosen for the row under the cursor."""
-
-        purpose: Purpose
-
-    class BackWanted(Message):
-        """Back to the line of the verdict that led to the row."""
-
-    @dataclass
-    class ChangeWanted(Message):
-        """A component of the file is to be changed in its form."""
-
-        id: str
-
-    def __init__(self, workspace: Workspace) -> None:
+    def __init__(self, workspace: Workspace, search: Callable[[Purpose], object]) -> None:
         self.table: LineTable = LineTable(id="line")
-        super().__init__(self.table, editor_id="cell", id="line-pane")
-        self.workspace, self.session = workspace, workspace.session
-        self.came_from_verdict = False
+        super().__init__(workspace, self.table, id="line-pane")
+        self.session, self._search = workspace.session, search
         self._cell: LineCell | None = None  # what is edited, or was last
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """The keys of the rows are not those of a value that is typed."""
-        return not self.editor.is_open
+        """The keys of the rows are not those of a value that is typed, nor of an empty line."""
+        return not self.editor.is_open and (bool(self.table.rows) or action not in _FROM_A_ROW)
 
     def show_rows(self) -> None:
         """Show the rows as they are now, with the figures that are known of them."""
@@ -74,14 +65,10 @@ class LinePane(LineSearch):
     def show_draft(self, spot: Place | None = None) -> None:
         """Show the draft, another one now; the cursor goes to a row, or stays where it is."""
         here = self.table.spot if spot is None else spot
-        self.forget()
-        self.show_rows()
-        self.table.go_to(here)
-
-    def forget(self) -> None:
-        """The piece that is marked or edited may be another one now."""
         self.leave_cell()
         self.table.mark(frozenset())
+        self.show_rows()
+        self.table.go_to(here)
 
     def attempt(self, change: Callable[[], object], message: str = "") -> bool:
         """Make a change, after what is typed in place is taken. Whether it was made."""
@@ -113,18 +100,12 @@ class LinePane(LineSearch):
         """Go to the top or the bottom."""
         self.table.cursor = 0 if way < 0 else len(self.table.rows) - 1
 
-    def action_move_column(self, by: int) -> None:
-        """Go to the left or the right."""
-        self.table.column += by
-
     def action_mark(self, by: int) -> None:
         """Mark the row or not, and go on."""
-        spot = self.table.spot
-        if spot is not None:
-            self.table.mark(self.table.marked ^ {spot} if by == 0 else self.table.marked | {spot})
-            self.table.cursor += by
-            if by and self.table.spot is not None:
-                self.table.mark(self.table.marked | {self.table.spot})
+        table = self.table
+        marked, spot = table.marked, table.chosen_here
+        table.cursor += by
+        table.mark(marked | {spot, table.chosen_here} if by else marked ^ {spot})
 
     def action_mark_all(self) -> None:
         """Mark all pieces, or none where all are."""
@@ -152,17 +133,9 @@ class LinePane(LineSearch):
         view = self.workspace.view
         return why(view, spot) if view is not None and self.workspace.is_fresh else []
 
-    def action_back(self) -> None:
-        """Back to the verdict, where it has led here."""
-        if self.came_from_verdict:
-            self.came_from_verdict = False
-            self.post_message(self.BackWanted())
-
     def action_why(self) -> None:
         """Show all that was found of the row under the cursor."""
-        row = self.table.row
-        if row is None:
-            return
+        row = self.table.rows[self.table.cursor]
         found = self._found_of(row.spot)
         if not found:
             self.workspace.tell("There are no findings for this row, or it is not judged yet")
@@ -173,37 +146,32 @@ class LinePane(LineSearch):
 
     # rows
 
-    def action_add(self, below: int) -> None:
-        """Add a piece below, or above."""
-        self.post_message(self.ComponentWanted("below" if below else "above"))
-
-    def action_clamp(self) -> None:
-        """Clamp an instrument on the piece."""
-        if self.table.spot is None:
+    def action_search(self, purpose: Purpose) -> None:
+        """Search the catalogue for a component for the row."""
+        if self.table.rows or purpose in ("below", "above"):
+            self._search(purpose)
+        elif purpose == "clamp":
             self.workspace.tell("There is no piece yet to clamp it on")
-        else:
-            self.post_message(self.ComponentWanted("clamp"))
-
-    def action_replace(self) -> None:
-        """Use another component."""
-        if self.table.spot is not None:
-            self.post_message(self.ComponentWanted("replace"))
-
-    def action_change_component(self) -> None:
-        """Change the component of the row in its form."""
-        if self.table.spot is not None and self.settle():
-            self.post_message(self.ChangeWanted(self.session.item(self.table.spot).values["use"]))
 
     def action_equipment(self) -> None:
         """Serial number, calibration and more of the row."""
-        if self.table.spot is not None and self.settle():
-            ask_equipment(self, self.table.spot)
+        spot = self.table.chosen_here
+        values = self.session.written(spot)
+        label = str(values.get("label") or values.get("use") or "")
+        if refused := LineCell(self.workspace, spot, "serial").refused:
+            self.workspace.tell(f"{label} {refused}")
+            return
+
+        def take(texts: dict[str, str]) -> None:
+            changed = equipment_changes(values, texts)
+            if changed:
+                self.attempt(lambda: self.session.put({spot: changed}, f"equipment of {label}"))
+
+        ask(self.app, equipment_sheet(label, values, is_clamp=spot.is_clamp), take)
 
     def action_assemble(self) -> None:
         """Make an assembly of what is chosen."""
         chosen = self.table.chosen
-        if not chosen or not self.settle():
-            return
 
         def take(texts: dict[str, str]) -> None:
             self.attempt(
@@ -211,70 +179,85 @@ class LinePane(LineSearch):
                 f"{texts['id']} is defined in the file; add it again with a",
             )
 
-        own = self.session.draft.value(("components",))
-        check = id_check(own if isinstance(own, dict) else ())
+        check = id_check(self.session.components)
         asked = [Asked("id", "Id", check=check, placeholder="e.g. glass-pack-own")]
         text = "The pieces go into the file's components; `use` of this id stands for them."
         ask(self.app, InputSheet("Make an assembly", text, asked), take)
 
     def action_column(self) -> None:
-        """Fill a column of the rows that are meant."""
-        if self.table.rows and self.settle():
-            ask_column(self, rows_meant(self.table))
+        """Fill a column of the rows that are marked, else of all of the component of the row."""
+        table = self.table
+        spots = table.chosen
+        if not table.marked:
+            use = table.rows[table.cursor].texts["component"]
+            spots = tuple(row.spot for row in table.rows if row.texts["component"] == use)
+
+        def fill(column: str) -> None:
+            filling = ColumnFilling(self.workspace, spots, column)
+            if (sheet := filling.sheet) is None:
+                self.workspace.tell("None of these rows has such a value")
+            else:
+                ask(self.app, sheet, lambda texts: self.attempt(lambda: filling.write(texts)))
+
+        answers = [
+            Answer("s", "serial numbers", partial(fill, "serial")),
+            Answer("l", "lengths", partial(fill, "length")),
+            Answer("n", "labels", partial(fill, "label")),
+            Answer("c", "codes of releases that have serial numbers", partial(fill, "codes")),
+        ]
+        text = f"Of {len(spots)} rows, one below the other; a list copied elsewhere can be pasted."
+        choose(self.app, Question("Fill a column", text, answers))
 
     def action_repeat(self) -> None:
         """Repeat what is chosen several times."""
         chosen = self._chosen_of_a_kind()
-        if chosen and self.settle():
-            ask_times(self, chosen)
+
+        def take(texts: dict[str, str]) -> None:
+            self.attempt(lambda: self.session.duplicate(chosen, times=int(texts["count"])))
+
+        if chosen:
+            asked = [Asked("count", "Copies below", check=count)]
+            ask(self.app, InputSheet("Repeat", "", asked), take)
 
     def action_duplicate(self) -> None:
         """Repeat what is chosen."""
         chosen = self._chosen_of_a_kind()
         named = [each for spot in chosen for each in namings(self.session.draft, spot)]
-        one = partial(self._duplicate, chosen)
-        if not named:
-            one()
-            return
-        text = "\n".join(f"{each.where} names {each.text}" for each in named)
-        answers = [
-            Answer("o", "the one that is there; the copy stands for itself", one),
-            Answer("b", "both (`NAME *`) in what is accepted", partial(one, named)),
-        ]
-        choose(self.app, Question("Is the copy meant, too?", text, answers))
 
-    def _duplicate(self, chosen: tuple[Place, ...], also: Sequence[Named] = ()) -> None:
-        def change() -> Place | None:
-            return self.session.duplicate(chosen, also)
+        def duplicate(also: Sequence[Named] = ()) -> None:
+            self.attempt(lambda: self.session.duplicate(chosen, also))
 
-        if chosen:
-            self.attempt(change)
+        if named:
+            text = "\n".join(f"{each.where} names {each.text}" for each in named)
+            answers = [
+                Answer("o", "the one that is there; the copy stands for itself", duplicate),
+                Answer("b", "both (`NAME *`) in what is accepted", partial(duplicate, named)),
+            ]
+            choose(self.app, Question("Is the copy meant, too?", text, answers))
+        elif chosen:
+            duplicate()
 
     def action_delete(self) -> None:
         """Take out what is chosen."""
         chosen = self.table.chosen
-        if chosen:
-            count = f"{len(chosen)} rows" if len(chosen) > 1 else "deleted"
-            self.attempt(lambda: self.session.delete(chosen), f"{count}; u brings it back")
+        what = f"{len(chosen)} rows" if len(chosen) > 1 else "deleted"
+        self.attempt(lambda: self.session.delete(chosen), f"{what}; u brings it back")
 
     def action_move_piece(self, by: int) -> None:
         """Move what is chosen up or down."""
         marked, chosen = self.table.marked, self._chosen_of_a_kind()
-        if not chosen:
-            return
         moved: list[Place] = []
 
-        def move() -> Place | None:
+        def move() -> Place:
             moved.extend(self.session.move(chosen, by))
-            return moved[0] if moved else None
+            return moved[0]
 
-        if self.attempt(move) and marked:
+        if chosen and self.attempt(move) and marked:
             self.table.mark(frozenset(moved))
 
     def action_copy(self) -> None:
         """Keep what is chosen for pasting."""
-        copied = self.session.copy(self._chosen_of_a_kind())
-        if copied:
+        if copied := self.session.copy(self._chosen_of_a_kind()):
             self.table.mark(frozenset())
             self.workspace.tell(f"{copied} row{'s' * (copied != 1)} copied; v pastes below")
 
@@ -286,7 +269,7 @@ class LinePane(LineSearch):
 
     def action_paste(self, below: int) -> None:
         """Put in what was copied."""
-        if not len(self.session.copied):
+        if not self.session.copied:
             self.workspace.tell("Nothing was copied yet")
         else:
             self.attempt(lambda: self.session.paste(self.table.spot, below=bool(below)))
@@ -308,7 +291,7 @@ class LinePane(LineSearch):
 
     def action_edit(self) -> None:
         """Edit the value under the cursor."""
-        self.action_edit_column(self.table.cell)
+        self.action_edit_column(EDITABLE[self.table.column])
 
     @on(LineTable.Pressed)
     def _pressed(self) -> None:
@@ -318,9 +301,9 @@ class LinePane(LineSearch):
         """Edit a value of the row under the cursor."""
         spot = self.table.spot
         if spot is None:
-            self.action_add(1)
+            self._search("below")
         elif column == "component":
-            self.action_replace()
+            self._search("replace")
         else:
             self._edit(LineCell(self.workspace, spot, column))
 
@@ -332,15 +315,8 @@ class LinePane(LineSearch):
             return
         self.table.column = EDITABLE.index(cell.column)
         self._cell = cell
-        least = _LEAST_WIDTHS.get(cell.column, _LEAST_WIDTH)
+        least = 16 if cell.column == "length" else 6
         self.open_editor(cell.text, cell.check, least_width=least)
-
-    def settle(self) -> bool:
-        """Take what is typed in a cell; a bad value stays to be corrected."""
-        reading = self.settle_cell()
-        if not reading.is_good:
-            self.tell_refusal(f"Not taken yet: {reading.note}")
-        return reading.is_good
 
     def write(self, text: str) -> None:
         """Write a good text into the draft."""
@@ -349,26 +325,10 @@ class LinePane(LineSearch):
         if is_put and self.session.draft is not before:
             self._show_edited()
 
-    def leave_cell(self) -> None:
-        """Edit nothing any more; what is typed is not taken."""
-        if self.editor.is_open:
-            super().leave_cell()
-            self.workspace.tell("")
-
-    def tell_reading(self, reading: Reading) -> None:
-        """Tell what the text typed so far comes to."""
-        completed = reading.text if reading.text != self.editor.value.strip() else ""
-        note = reading.note or (f"= {completed}" if completed and reading.is_good else "")
-        self.workspace.tell(note, wrong=not reading.is_good)
-
-    def tell_refusal(self, reason: str) -> None:
-        """Tell why something is not done."""
-        self.workspace.tell(reason, wrong=True)
-
-    def go_on(self, done: CellEditor.Done) -> None:
+    def go_on(self, then: Then, text: str | None) -> None:
         """Go to the next value of the row, or to another row."""
-        onward = self._cell.onward() if self._cell and done.then == "edit next" else None
+        onward = self._cell.onward() if self._cell and then == "edit next" else None
         if onward is not None:
             self._edit(onward)
-        self.table.column += done.then == "right"
-        self.table.cursor += (done.then == "down") - (done.then == "up")
+        self.table.column += then == "right"
+        self.table.cursor += (then == "down") - (then == "up")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 from textual import on
 from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical
@@ -59,9 +61,10 @@ class LineScreen(DraftScreen):
 
     def __init__(self, workspace: Workspace) -> None:
         super().__init__(workspace)
-        self.line = LinePane(workspace)
-        self.catalogue = CataloguePane(id="catalogue")
-        self.pictures, self.verdict = Pictures(id="pictures"), VerdictPane(id="verdict-pane")
+        self.line = LinePane(workspace, self.search)
+        self.catalogue = CataloguePane(workspace, self._take_component, self.close_catalogue)
+        self.pictures, self.verdict = Pictures(id="pictures"), VerdictPane(self._go_to_row)
+        self._came_from_verdict = False
 
     def parts(self) -> ComposeResult:
         """The line; picture and verdict, in whose place the catalogue may be."""
@@ -101,9 +104,7 @@ class LineScreen(DraftScreen):
 
     def _show_beside(self) -> None:
         """Catalogue, picture and verdict of the last view, dimmed until they are of the draft."""
-        index = self.workspace.index
-        if index is not None and self.catalogue.index is not index:
-            self.catalogue.take_index(index)
+        self.catalogue.refresh_index()
         view, fresh = self.workspace.view, self.workspace.is_fresh
         last = None if view is None or view.result is not None else self.workspace.good
         if fresh:
@@ -125,42 +126,33 @@ class LineScreen(DraftScreen):
 
     # from the verdict to a row, and back
 
-    @on(VerdictPane.RowWanted)
-    def _go_to_row(self, event: VerdictPane.RowWanted) -> None:
+    def _go_to_row(self, places: Collection[Place], text: str = "") -> None:
         self.remove_class("-reading")
         table = self.line.table
         rows = {row.spot: number for number, row in enumerate(table.rows)}
-        numbers = sorted(rows[place] for place in event.places if place in rows)
+        numbers = sorted(rows[place] for place in places if place in rows)
         if numbers:  # again and again: the next of them
             table.cursor = next((each for each in numbers if each > table.cursor), numbers[0])
-            self.workspace.tell(event.text)
-            self.line.came_from_verdict = True
+            self.workspace.tell(text)
+            self._came_from_verdict = True
         table.focus()
 
-    @on(LinePane.BackWanted)
-    def _back_to_verdict(self) -> None:
-        self.add_class("-reading")
-        self.verdict.focus()
+    def action_back(self) -> None:
+        """Back to the verdict, where it has led here."""
+        if self._came_from_verdict:
+            self._came_from_verdict = False
+            self.add_class("-reading")
+            self.verdict.focus()
 
     # components from the catalogue
-
-    @on(LinePane.ComponentWanted)
-    def _want_component(self, event: LinePane.ComponentWanted) -> None:
-        self.search(event.purpose)
 
     def search(self, purpose: Purpose) -> None:
         """Search the catalogue for a component for the row under the cursor."""
         self.remove_class("-zoomed")
         self.add_class("-searching")
         spot = self.line.table.spot
-        is_on_line = purpose == "clamp" or (
-            purpose == "replace" and spot is not None and spot.is_clamp
-        )
-        target, towed = self._target(purpose), self.session.draft.is_tow
-        parts = [part for item in self.session.draft.items for part in (item, *item.clamps)]
-        used = [part.values.get("use", "") for part in reversed(parts)]
-        role = self._role(purpose)
-        self.catalogue.open(purpose, target, used, role, clampable=is_on_line, towed=towed)
+        is_clamp = purpose == "clamp" or bool(purpose == "replace" and spot and spot.is_clamp)
+        self.catalogue.open(purpose, self._target(purpose), self._role(purpose), clampable=is_clamp)
 
     def _role(self, purpose: Purpose) -> str:
         """Return what is likely wanted there: a float on top, an anchor last, the like."""
@@ -185,16 +177,14 @@ class LineScreen(DraftScreen):
         values = self.session.item(spot if purpose == "replace" else Place(spot.item)).values
         return values.get("label") or values.get("use", "")
 
-    @on(CataloguePane.Taken)
-    def _take_component(self, event: CataloguePane.Taken) -> None:
-        spot, values, purpose = self.line.table.spot, event.values, event.purpose
-        session, use = self.session, event.values["use"]
+    def _take_component(self, purpose: Purpose, values: dict[str, str]) -> None:
+        spot, session, use = self.line.table.spot, self.session, values["use"]
         if purpose == "replace" and spot is not None:
             kept: list[str] = []
             if self.line.attempt(lambda: kept.extend(session.replace(spot, values))):
                 kept_keys = f"; kept from the one before: {', '.join(kept)}" if kept else ""
                 self.workspace.tell(f"now {use}{kept_keys}")
-            self._close_catalogue()
+            self.close_catalogue()
             return
         if purpose == "clamp" and spot is not None:
             self.line.attempt(lambda: session.clamp(spot, values), f"{use} clamped on")
@@ -205,8 +195,8 @@ class LineScreen(DraftScreen):
                 self.catalogue.purpose = "below"
         self.catalogue.retitle(self._target(self.catalogue.purpose))
 
-    @on(CataloguePane.Closed)
-    def _close_catalogue(self) -> None:
+    def close_catalogue(self) -> None:
+        """Back to the line."""
         self.remove_class("-searching")
         self.line.table.focus()
 

@@ -1,9 +1,22 @@
-"""What is asked about a whole file: name and place, document, speed of a tow."""
+"""What is asked about a whole file: name and place, document, deployment, tow, missing figures."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from calm.checks.finding import State
+from calm.files.rule_texts import RULES
+from calm.tui.catalogue.component_screen import form_fields
+from calm.tui.session import location
+
+if TYPE_CHECKING:
+    from calm.tui.live import View
+
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from calm.files import Clamp, Flexible, MooringFile, Piece, Place
@@ -12,7 +25,8 @@ from calm.files.editing import Draft, EditError, Value
 from calm.files.mooring_file import parts_of
 from calm.files.yaml_document import Location
 from calm.tui.checking import Reading, anything, day, moment, quantity
-from calm.tui.dialogs import Asked, InputSheet
+from calm.tui.dialogs import InputSheet
+from calm.tui.field import Asked
 
 _HISTORY: Location = ("document", "history")
 
@@ -48,22 +62,29 @@ _BEGIN_A_TOW = (
 )
 
 
-def mooring_sheet(draft: Draft) -> InputSheet:
+Sheet = tuple[InputSheet, str, Callable[[Draft, Mapping[str, str]], Draft]]
+"""What is asked, the label of the change, and the file with what is entered."""
+
+
+def mooring_sheet(draft: Draft, hung: Piece | Clamp | None) -> Sheet:
     """Name and place, as the file has them."""
-    return InputSheet("Name and place", "", filled(draft, _NAME_AND_PLACE))
+    sheet = InputSheet("Name and place", "", filled(draft, _NAME_AND_PLACE))
+    return sheet, "name and place", written
 
 
-def document_sheet(draft: Draft) -> InputSheet:
-    """Return what the title block of the drawings says, as the file has it."""
+def document_sheet(draft: Draft, hung: Piece | Clamp | None) -> Sheet:
+    """What the title block says, as the file has it, and what the revision changed."""
     revision = draft.text_at(("document", "revision"))
     change = said(draft, _HISTORY, ("revision", revision), "change")
     asked = [*filled(draft, _DOCUMENT), Asked("change", "What it changed", change)]
-    return InputSheet("The document", "For the title block of drawings, and its history.", asked)
+    sheet = InputSheet("The document", "For the title block of drawings, and its history.", asked)
+    return sheet, "the document", _documented
 
 
-def tow_sheet(draft: Draft) -> InputSheet:
+def tow_sheet(draft: Draft, hung: Piece | Clamp | None) -> Sheet:
     """Speed, course and sheave of a tow, as the file has them; a mooring becomes one by them."""
-    return InputSheet("The tow", "" if draft.is_tow else _BEGIN_A_TOW, filled(draft, _TOW))
+    sheet = InputSheet("The tow", "" if draft.is_tow else _BEGIN_A_TOW, filled(draft, _TOW))
+    return sheet, "the tow", written
 
 
 def filled(draft: Draft, asked: Iterable[Asked]) -> list[Asked]:
@@ -80,7 +101,7 @@ def written(draft: Draft, texts: Mapping[str, str]) -> Draft:
     return draft
 
 
-def documented(draft: Draft, texts: Mapping[str, str]) -> Draft:
+def _documented(draft: Draft, texts: Mapping[str, str]) -> Draft:
     """The file with the texts of the document, and in its history what the revision changed."""
     revision, change = texts["document.revision"], texts["change"]
     if change and not revision:
@@ -112,24 +133,15 @@ RELEASES: Location = ("releases",)
 
 def hung_at(file: MooringFile | None, spot: Place | None) -> Piece | Clamp | None:
     """Return what hangs at a row of a line; None where that is several things, or not known."""
-    if file is None or spot is None:
-        return None
-    found = [
-        part
-        for piece in file.pieces
-        for part in parts_of([piece])
-        if (part.place.item, part.place.clamp) == (spot.item, spot.clamp)
-    ]
+    found = [part for part in parts_of(file.pieces if file else ()) if part.place.row == spot]
     return found[0] if len(found) == 1 else None
 
 
-def deployed_sheet(draft: Draft, hung: Piece | Clamp | None) -> InputSheet:
-    """Return when and where the mooring was deployed, and what hangs at a row, as the file has
-    them.
-    """
-    asked = filled(draft, _WHOLE)
+def deployed_sheet(draft: Draft, hung: Piece | Clamp | None) -> Sheet:
+    """When and where the mooring was deployed and what hangs at a row, as in the file."""
+    asked, changed = filled(draft, _WHOLE), partial(_deployed, hung)
     if hung is None:
-        return InputSheet("As deployed", _COMPARED, asked)
+        return InputSheet("As deployed", _COMPARED, asked), "the deployment", changed
     for key, title, check in _OF_A_ROW:
         if key != "length" or isinstance(hung.component, Flexible):
             text = said(draft, _ITEMS, ("label", hung.label), key)
@@ -137,11 +149,11 @@ def deployed_sheet(draft: Draft, hung: Piece | Clamp | None) -> InputSheet:
     if hung.component.role == "release":
         codes = said(draft, RELEASES, ("serial", _serial(draft, hung)), "codes")
         asked.append(Asked("codes", "Codes", codes, placeholder="arm 0A1B, release 0A55"))
-    return InputSheet("As deployed", f"{_COMPARED} Below the depth: {hung.label}.", asked)
+    about = f"{_COMPARED} Below the depth: {hung.label}."
+    return InputSheet("As deployed", about, asked), "the deployment", changed
 
 
-def as_deployed(draft: Draft, hung: Piece | Clamp | None, texts: Mapping[str, str]) -> Draft:
-    """The file with what was entered."""
+def _deployed(hung: Piece | Clamp | None, draft: Draft, texts: Mapping[str, str]) -> Draft:
     draft = written(draft, {each.key: texts[each.key] for each in _WHOLE})
     if hung is None:
         return draft
@@ -250,3 +262,113 @@ def _index(draft: Draft, rows: Location, called: tuple[str, str]) -> int | None:
     listed: Any = draft.value(rows)
     entries = enumerate(listed if isinstance(listed, list) else ())
     return next((i for i, one in entries if isinstance(one, dict) and called in one.items()), None)
+
+
+SHEETS = {
+    "mooring": mooring_sheet,
+    "document": document_sheet,
+    "deployed": deployed_sheet,
+    "tow": tow_sheet,
+}
+"""What is asked about a whole file, and of what hangs at the row under the cursor."""
+
+
+_MOST_LABELS = 4
+_ELSEWHERE = "part of an assembly of the catalogue: use its parts, or define it in the file (o)"
+_SOURCE = "data sheet, test certificate …"
+
+
+def figures_sheet(missing: Sequence[Missing]) -> InputSheet:
+    """Ask for all figures of each component, and for their source; any may stay empty."""
+    asked: list[Asked] = []
+    elsewhere = [f"{each.called}: {_ELSEWHERE}" for each in missing if not each.fields]
+    for each in missing:
+        for number, figure in enumerate(each.fields):
+            above = "" if number else each.called
+            key, title = f"{each.use}.{figure.key}", figure.key.replace("_", " ")
+            asked.append(replace(figure, key=key, title=title, above=above))
+    asked.append(Asked("source", "source", takes=_SOURCE, above="Of the figures"))
+    count = len(missing)
+    title = f"Figures missing of {count} component{'s' * (count != 1)}; any may stay empty"
+    return InputSheet(title, "\n".join(elsewhere), asked)
+
+
+@dataclass
+class Missing:
+    """What is not known of a component, once for all rows that use it.
+
+    Attributes
+    ----------
+    use, kind : of the component
+    labels : of the pieces and clamps that it is missing of, as the keys of a dict
+    targets : by key where in the file it is written: in the definition, where the file has it,
+        else in every row that lacks it; nowhere where that stands in an assembly
+    """
+
+    use: str
+    kind: str
+    labels: dict[str, None] = field(default_factory=dict)
+    targets: dict[str, dict[Location, None]] = field(default_factory=dict)
+
+    @property
+    def called(self) -> str:
+        """Return the component, with the labels of the first rows that lack a figure."""
+        labels = ", ".join(list(self.labels)[:_MOST_LABELS])
+        more = len(self.labels) - _MOST_LABELS
+        labels += f" and {more} more" if more > 0 else ""
+        return self.use if labels == self.use else f"{self.use}: {labels}"
+
+    @property
+    def fields(self) -> list[Asked]:
+        """Return what would do and can be filled in, as the form of a component has it."""
+        return [each for each in form_fields(self.kind) if self.targets.get(each.key)]
+
+
+def missing_figures(view: View, draft: Draft) -> list[Missing]:
+    """Return what the unknown findings of a line ask for, down the line."""
+    if view.file is None:
+        return []
+    wanted: dict[Place, dict[str, None]] = {}
+    for finding in view.findings:
+        if finding.state is State.UNKNOWN and finding.place and RULES[finding.rule].figures:
+            asked = wanted.setdefault(finding.place, {})
+            asked.update(dict.fromkeys(RULES[finding.rule].figures))
+    own = draft.value(("components",)) or ()
+    found: dict[str, Missing] = {}
+    for part in parts_of(view.file.pieces):
+        if part.place not in wanted:
+            continue
+        missing = found.setdefault(part.use, Missing(part.use, part.component.kind))
+        missing.labels[part.label] = None
+        for key in wanted[part.place]:
+            targets = missing.targets.setdefault(key, {})
+            if part.use in own:
+                targets["components", part.use] = None
+            elif part.place.part < 0:
+                targets[location(part.place)] = None
+    return list(found.values())
+
+
+def with_figures(
+    draft: Draft, missing: Iterable[Missing], texts: Mapping[str, str], source: str
+) -> Draft:
+    """The draft with figures filled in.
+
+    Parameters
+    ----------
+    texts : by ``component.key``; what is empty stays unknown
+    source : of all of them; may be empty
+
+    Raises
+    ------
+    EditError
+        The file does not allow it.
+    """
+    for each in missing:
+        for key, targets in each.targets.items():
+            text = texts.get(f"{each.use}.{key}", "")
+            for target in targets if text else ():
+                draft = draft.put_at((*target, key), text)
+                if source:
+                    draft = draft.put_at((*target, "sources", key), source)
+    return draft

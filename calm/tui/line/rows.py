@@ -1,4 +1,4 @@
-"""The rows of the line: what the file says beside what was found, and a value as it is edited."""
+"""The rows of the line: what the file says beside what was found; values and columns as edited."""
 
 from __future__ import annotations
 
@@ -6,14 +6,26 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from calm.assemble.catalogue_search import Index
+from textual.events import Paste
+
+from calm.assemble.catalogue_search import Index, Listed
 from calm.checks.finding import State
 from calm.files import Place
 from calm.files.components import FLEXIBLE_KINDS
 from calm.files.editing import Draft, LineItem, Value
 from calm.quantities import QUANTITIES
 from calm.tui.checking import Check, anything, count, distance, length, length_text, length_values
-from calm.tui.line.table import EDITABLE, Column, TableRow
+from calm.tui.dialogs import InputSheet
+from calm.tui.field import Asked
+from calm.tui.line.mooring_sheet import (
+    RELEASES,
+    entered,
+    equipment_changes,
+    said,
+    serial_of_equipment,
+    texts_of_equipment,
+)
+from calm.tui.line.table import EDITABLE, TableRow
 from calm.tui.theme import CLAMP, ROLES, UNKNOWN_MARGIN, UNKNOWN_ROLE, worst
 from calm.tui.workspace import Workspace
 
@@ -52,12 +64,10 @@ def _wrong_items(draft: Draft, view: View | None) -> set[int]:
     if view is None or view.text != draft.text or not view.problems:
         return set()
     lines = {problem.line for problem in view.problems if problem.path == str(view.path)}
-    starts = [(item.line, number) for number, item in enumerate(draft.items)]
-    ends = {number: line + draft.items[number].text.count("\n") for line, number in starts}
     return {
         number
-        for line, number in starts
-        if any(line <= wrong < max(ends[number], line + 1) for wrong in lines)
+        for number, item in enumerate(draft.items)
+        if not lines.isdisjoint(range(item.line, item.line + max(item.text.count("\n"), 1)))
     }
 
 
@@ -133,6 +143,7 @@ def _told(found: Sequence[FoundRow]) -> dict[str, str]:
 
 
 _NO_COUNT = "A clamp has no count; duplicate it instead"
+_NO_SERIAL = "is an assembly, whose parts have serial numbers; it has none"
 _NO_LENGTH = "Its length is set by the component"
 
 
@@ -142,34 +153,41 @@ class LineCell:
 
     workspace: Workspace
     spot: Place
-    column: Column
+    column: str
+    """One of the table that can be edited, or the serial number."""
+
+    @property
+    def listed(self) -> Listed | None:
+        """Return its component, where the catalogue is read and has it."""
+        index = self.workspace.index
+        return None if index is None else index.get(self._values.get("use", ""))
 
     @property
     def refused(self) -> str:
         """Return why it cannot be edited; empty where it can."""
+        listed = self.listed
+        if self.column == "serial" and listed is not None and listed.kind == "assembly":
+            return _NO_SERIAL
         if self.spot.is_clamp:
             return _NO_COUNT if self.column == "count" else ""
-        index = self.workspace.index
-        if self.column != "length" or index is None:
-            return ""
-        listed = index.get(self._values.get("use", ""))
         is_rigid = listed is not None and listed.kind not in FLEXIBLE_KINDS
-        return _NO_LENGTH if is_rigid and "length" not in self._values else ""
+        is_set = self.column == "length" and is_rigid and "length" not in self._values
+        return _NO_LENGTH if is_set else ""
 
     @property
     def text(self) -> str:
         """As it is edited."""
         if self._is_length:
             return length_text(self._values)
+        if self.column == "serial":
+            return texts_of_equipment(self.workspace.session.written(self.spot), "serial")
         return self._values.get("at" if self.column == "length" else self.column, "")
 
     @property
     def check(self) -> Check:
         """Return what judges another text of it."""
-        if self.column == "count":
-            return count
         if self.column != "length":
-            return anything
+            return {"count": count, "serial": serial_of_equipment}.get(self.column, anything)
         if self.spot.is_clamp:
             return distance(self.text)
         return length(self._values.get("length", ""), towed=self._is_towed)
@@ -183,14 +201,22 @@ class LineCell:
         """
         if given := self.values_of(text):
             name = "place" if self.spot.is_clamp and self.column == "length" else self.column
-            self.workspace.session.put(self.spot, given, f"change the {name}")
+            self.workspace.session.put({self.spot: given}, f"change the {name}")
 
     def values_of(self, text: str) -> dict[str, Value | None]:
         """The keys of the file that another text changes; None takes one away."""
         written = self._values
         if text == self.text:
             return {}
-        given = {k: new for k, new in self._keys(text).items() if new is not None or k in written}
+        if self.column == "serial":
+            return equipment_changes(self.workspace.session.written(self.spot), {"serial": text})
+        if self._is_length:
+            keys = length_values(text, towed=self._is_towed)
+        elif self.column == "length":
+            keys = {"at": text}
+        else:
+            keys = {self.column: None if self.column == "count" and text == "1" else text or None}
+        given = {key: new for key, new in keys.items() if new is not None or key in written}
         return given if any(written.get(key) != new for key, new in given.items()) else {}
 
     def onward(self) -> LineCell | None:
@@ -200,16 +226,6 @@ class LineCell:
             if not cell.refused:
                 return cell
         return None
-
-    def _keys(self, text: str) -> dict[str, Value | None]:
-        """The keys of the file that a text stands for."""
-        if self._is_length:
-            return dict(length_values(text, towed=self._is_towed))
-        if self.column == "length":
-            return {"at": text}
-        if self.column == "count":
-            return {"count": None if text == "1" else text}
-        return {self.column: text or None}
 
     @property
     def _is_length(self) -> bool:
@@ -222,3 +238,64 @@ class LineCell:
     @property
     def _is_towed(self) -> bool:
         return self.workspace.session.draft.is_tow
+
+
+_TITLES = {"serial": "Serial numbers", "length": "Lengths", "label": "Labels", "codes": "Codes"}
+
+
+class ColumnSheet(InputSheet):
+    """A field for each row; a list that is pasted fills them downwards."""
+
+    def on_paste(self, event: Paste) -> None:
+        """Fill the fields from the one that is edited on."""
+        lines = [line.split("\t")[0].strip() for line in event.text.splitlines()]
+        fields = self.fields
+        first = next((i for i, field in enumerate(fields) if field.input.has_focus), 0)
+        if len(lines) < 2:
+            return
+        event.stop()
+        for each, text in zip(fields[first:], lines, strict=False):
+            each.input.value = text
+        last = min(first + len(lines), len(fields)) - 1
+        fields[last].input.focus()
+        if len(lines) > len(fields) - first:
+            self.app.bell()
+
+
+class ColumnFilling:
+    """A column of some rows: what it has now, and what is entered."""
+
+    def __init__(self, workspace: Workspace, spots: Sequence[Place], column: str) -> None:
+        self._session, self._column = workspace.session, column
+        held = "serial" if column == "codes" else column  # by which codes are known
+        self._cells = {str(i): LineCell(workspace, spot, held) for i, spot in enumerate(spots)}
+        self._asked = [each for key in self._cells if (each := self._ask(key)) is not None]
+
+    @property
+    def sheet(self) -> ColumnSheet | None:
+        """Where it is entered; None where none of the rows has such a value."""
+        return ColumnSheet(_TITLES[self._column], "", self._asked) if self._asked else None
+
+    def write(self, texts: Mapping[str, str]) -> None:
+        """Write what is another now, in one step."""
+        begun, draft = {each.key: each.text for each in self._asked}, self._session.draft
+        new = {self._cells[key]: text for key, text in texts.items() if text != begun[key]}
+        label = f"fill in {_TITLES[self._column].lower()}"
+        if self._column == "codes":
+            for cell, text in new.items():
+                draft = entered(draft, RELEASES, ("serial", cell.text), {"codes": text})
+            self._session.do(draft, label)
+        else:
+            rows = {cell.spot: cell.values_of(text) for cell, text in new.items()}
+            self._session.put(rows, label)
+
+    def _ask(self, key: str) -> Asked | None:
+        cell = self._cells[key]
+        values = self._session.item(cell.spot).values
+        title = values.get("label") or values.get("use", "")
+        if self._column != "codes":
+            return None if cell.refused else Asked(key, title, cell.text, cell.check)
+        if cell.listed is None or cell.listed.role != "release" or not cell.text:
+            return None
+        codes = said(self._session.draft, RELEASES, ("serial", cell.text), "codes")
+        return Asked(key, title, codes)

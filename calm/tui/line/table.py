@@ -16,11 +16,12 @@ from calm.checks.finding import State
 from calm.checks.strength import strength
 from calm.files import Place
 from calm.quantities import QUANTITIES
+from calm.tui.cell_editor import EditableTable
 from calm.tui.checking import needed
-from calm.tui.dialogs import Asked, InputSheet, ask
-from calm.tui.table import EditableTable, TableCells, TableColumn
+from calm.tui.dialogs import InputSheet, ask
+from calm.tui.field import Asked
+from calm.tui.scrolled import TableCells, TableColumn
 from calm.tui.theme import CURSOR, LOOKS, MARK
-from calm.tui.workspace import Workspace
 
 _TAIL = 4
 _EMPTY = (
@@ -101,9 +102,9 @@ class LineTable(TableCells, can_focus=True):
         return self.row.spot if self.row else None
 
     @property
-    def cell(self) -> Column:
-        """The column of the cursor."""
-        return EDITABLE[self.column]
+    def chosen_here(self) -> Place:
+        """Return the same, of a line that has rows."""
+        return self.rows[self.cursor].spot
 
     @property
     def chosen(self) -> tuple[Place, ...]:
@@ -147,21 +148,22 @@ class LineTable(TableCells, can_focus=True):
 
     def row_style(self, number: int) -> Style:
         """Return how a row looks: clamped, under the cursor, wrong or marked."""
-        row, look = self.rows[number], self.get_component_rich_style
-        style = look("line-table--clamp" if row.spot.is_clamp else "line-table--row")
+        row = self.rows[number]
+        base = "line-table--clamp" if row.spot.is_clamp else "line-table--row"
+        style = self.get_component_rich_style(base)
         for part, is_so in (
             ("under-cursor", number == self.cursor and self.has_focus),
             ("wrong", row.wrong),
             ("marked", row.spot in self.marked),
         ):
             if is_so:
-                style += look(f"line-table--{part}", partial=True)
+                style += self.look(f"line-table--{part}")
         return style
 
     def cell_style(self, number: int, column: TableColumn, style: Style) -> Style:
         """Return how a cell looks: a figure of an earlier line is dimmed."""
         if self.old and column.name not in EDITABLE:
-            style += self.get_component_rich_style("line-table--old", partial=True)
+            style += self.look("line-table--old")
         return style
 
     def lead(self, number: int, style: Style) -> list[Segment]:
@@ -171,7 +173,7 @@ class LineTable(TableCells, can_focus=True):
         if row.spot in self.marked:
             sign = Segment(MARK, style)
         elif row.state is not None and row.state.value not in ("pass", "accepted", "estimated"):
-            colour = self.get_component_rich_style(f"line-table--{row.state.value}", partial=True)
+            colour = self.look(f"line-table--{row.state.value}")
             sign = Segment(LOOKS[row.state].sign, style + colour)
         cursor = CURSOR if number == self.cursor else " "
         return [Segment(cursor, style), sign, Segment(f"{row.sign} ", style)]
@@ -255,13 +257,8 @@ def _text_room(shown: list[str], width: int, fixed: dict[str, int]) -> int:
 class LineSearch(EditableTable):
     """A table of the line whose cursor goes to what is looked for, and which tells what it is."""
 
-    workspace: Workspace
     table: LineTable
     words = ""
-
-    def settle(self) -> bool:
-        """Take what is typed in a cell; whether it was good."""
-        raise NotImplementedError
 
     def action_find(self) -> None:
         """Ask for words, and go to the next row that has them."""
@@ -270,10 +267,9 @@ class LineSearch(EditableTable):
             self.words = texts["words"]
             self.action_find_next(1)
 
-        if self.settle():
-            takes = "id, label, serial, maker"
-            asked = [Asked("words", "Words", self.words, needed("a word"), takes)]
-            ask(self.app, InputSheet("Find in the line", "", asked), take)
+        takes = "id, label, serial, maker"
+        asked = [Asked("words", "Words", self.words, needed("a word"), takes)]
+        ask(self.app, InputSheet("Find in the line", "", asked), take)
 
     def action_find_next(self, by: int) -> None:
         """To the next row, or the one before, that has all words: id, label, serial, maker."""
@@ -285,15 +281,13 @@ class LineSearch(EditableTable):
 
     def action_alike(self, by: int) -> None:
         """To the next row, or the one before, of the same kind of component."""
-        here = self.table.row
-        if here is not None:
-            self._to(by, lambda row: row.sign == here.sign, "of its kind")
+        here = self.table.rows[self.table.cursor]
+        self._to(by, lambda row: row.sign == here.sign, "of its kind")
 
     def action_least(self, loads: int) -> None:
         """To the row with the least margin of all, or of the `loads` that pieces bear."""
-        view = self.workspace.view
-        if view is None or not self.workspace.is_fresh:
-            self.workspace.tell("The line is still being judged; ask again")
+        view = self.workspace.judged("The line is still being judged; ask again")
+        if view is None:
             return
         found = [
             (each.share, each.place.row, each)
@@ -325,12 +319,6 @@ class LineSearch(EditableTable):
         """What a row says, and the catalogue of its component."""
         index, use = self.workspace.index, row.texts["component"].split()[-1:]
         listed = index.get(use[0]) if index and use else None
-        values = self.workspace.session.draft.value(location(row.spot))
-        serial = values.get("serial", "") if isinstance(values, dict) else ""
+        serial = self.workspace.session.written(row.spot).get("serial", "")
         own = f"{row.texts['component']} {row.texts.get('label', '')} {serial}".casefold()
         return f"{own} {listed.searched}" if listed else own
-
-
-def location(spot: Place) -> tuple[str | int, ...]:
-    """Where a row stands in the file."""
-    return ("line", spot.item, *(("clamps", spot.clamp) if spot.is_clamp else ()))

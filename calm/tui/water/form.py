@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -17,21 +17,17 @@ from calm.files.water import USUAL_DENSITY
 from calm.files.yaml_document import Location
 from calm.records import profile_tables
 from calm.records.headings import heading
-from calm.tui.checking import needed, quantity
-from calm.tui.field import Cycle, Field
+from calm.tui.checking import Check, anything, needed, quantity
+from calm.tui.field import Asked, Cycle, Field
 from calm.tui.key_table import bindings
 from calm.tui.water.grid import Grid
+from calm.tui.water.tables_to_begin import CURRENT_COLUMNS, USUAL_DEPTH
 from calm.units import QuantityError, QuantityRange
 
 CURRENT_FORMS = ("still", "uniform", "table", "file")
 DENSITY_FORMS = ("constant", "table", "temperature and salinity")
 PROFILE_FORMS = ("constant", "table")
 """Of the temperature and of the salinity."""
-
-CURRENT_COLUMNS = ("depth m", "speed m/s", "toward deg")
-
-USUAL_DEPTH = 100.0
-"""How far down [m] tables are begun where no depth is given."""
 
 _CURRENT = ("0.5", "90")
 _CONSTANTS = {
@@ -40,13 +36,6 @@ _CONSTANTS = {
     ("density", "salinity"): (profile_tables.SALINITY, "", "35"),
 }
 """What can be a constant or a table: kind, unit, and the figure to begin with."""
-
-_DEPTH = quantity(POSITIVE_LENGTH, optional=True)
-_DENSITY = quantity(profile_tables.WATER_DENSITY, optional=True)
-_SPEED = quantity(QuantityField("speed", at_least=0))
-_WIND = quantity(QuantityField("speed", at_least=0), optional=True)
-_ANGLE = quantity(profile_tables.DIRECTION)
-_TOWARD = quantity(profile_tables.DIRECTION, optional=True)
 
 Place = tuple[str, ...]
 """Keys that lead to something within an environment: ``("density", "salinity")``."""
@@ -97,11 +86,6 @@ class WaterForm:
     def depth(self) -> float | None:
         """The depth [m], above 0; None where none is given or it cannot be read."""
         return _read(POSITIVE_LENGTH, self.text("depth"))
-
-    @property
-    def lacks_direction(self) -> bool:
-        """Return whether there is a wind without a direction."""
-        return bool(self.text("wind", "speed")) and not self.text("wind", "toward")
 
     def form(self, *keys: str) -> str:
         """Return how the current, the density, or the temperature or salinity of that is given."""
@@ -172,29 +156,25 @@ class WaterForm:
         return {name[-1]: self.begun(name, "constant") for name in _CONSTANTS if len(name) > 1}
 
     def _begun_current(self, form: str) -> Value | None:
-        speed, toward = self._current_at_the_surface()
-        if form == "table":
-            rows = [["0", speed, toward], [self._down_to, speed, toward]]
-            return {"columns": [*CURRENT_COLUMNS], "rows": rows}
-        if form == "uniform":
-            return {"speed": f"{speed} m/s", "toward": f"{toward} deg"}
-        # one that flows in the file's own environment would be there in this one, too
-        return {"speed": "0 m/s", "toward": "0 deg"} if self.variant else None
-
-    def _current_at_the_surface(self) -> tuple[str, str]:
-        """Speed [m/s] and direction [degrees] of a uniform current, or of a table's first row."""
+        """Begin with a uniform current as it is, or with what a table has in its first row."""
         place = {name: self.text("current", name) for name in ("speed", "toward")}
         columns, rows = self.table("current")
         for column, text in zip(columns, rows[0] if rows else (), strict=False):
             name, unit = heading(column)
             place[name] = f"{text} {unit}".strip()
-        speed, u, v = (
-            _read(QuantityField("speed"), place.get(name, "")) for name in ("speed", "u", "v")
-        )
-        toward = _read(QuantityField("angle"), place["toward"])
-        if u is not None and v is not None:
-            speed, toward = profile_tables.speed_and_direction(u, v)
-        return _CURRENT if speed is None or toward is None else (f"{speed:g}", f"{toward:g}")
+        found = [_read(QuantityField("speed"), place.get(name, "")) for name in ("speed", "u", "v")]
+        flow = found[0], _read(QuantityField("angle"), place["toward"])
+        if found[1] is not None and found[2] is not None:
+            flow = profile_tables.speed_and_direction(found[1], found[2])
+        known = [f"{each:g}" for each in flow if each is not None]
+        speed, toward = known if len(known) == 2 else _CURRENT
+        if form == "table":
+            rows_begun = [["0", speed, toward], [self._down_to, speed, toward]]
+            return {"columns": [*CURRENT_COLUMNS], "rows": rows_begun}
+        if form == "uniform":
+            return {"speed": f"{speed} m/s", "toward": f"{toward} deg"}
+        # one that flows in the file's own environment would be there in this one, too
+        return {"speed": "0 m/s", "toward": "0 deg"} if self.variant else None
 
     @property
     def _down_to(self) -> str:
@@ -249,8 +229,8 @@ class FormChoice(Cycle):
         choice: FormChoice
         form: str
 
-    def __init__(self, title: str, forms: tuple[str, ...], *, id: str | None = None) -> None:
-        super().__init__(title, forms, forms[0], id=id)
+    def __init__(self, title: str, forms: tuple[str, ...], *, id: str) -> None:
+        super().__init__(title, forms, forms[0], id=f"{id}-form")
         self._given = forms[0]
 
     def show(self, word: str) -> None:
@@ -260,8 +240,7 @@ class FormChoice(Cycle):
 
     def action_turn(self, by: int) -> None:
         """Show the next form."""
-        here = self.words.index(self.word)
-        super().show(self.words[(here + by) % len(self.words)])
+        super().show(self.next_word(by))
 
     def action_take(self) -> None:
         """Choose the form shown, and go on."""
@@ -289,24 +268,32 @@ class FormChoice(Cycle):
         return _TAKE_IT if self.word != self._given else super().hint
 
 
-def fields_of_water() -> Iterator[Widget]:
-    """The parts of the form; the id of each tells its place in an environment."""
-    yield Field("depth", "Depth", _DEPTH, id="depth", placeholder="e.g. 1100 m")
-    yield FormChoice("Density", DENSITY_FORMS, id="density-form")
-    yield Field("density", "", _DENSITY, id="density", placeholder="else 1025 kg/m^3")
-    yield Grid(id="density-table")
-    for name, kind in (
-        ("temperature", profile_tables.TEMPERATURE),
-        ("salinity", profile_tables.SALINITY),
-    ):
-        yield FormChoice(f"  {name}", PROFILE_FORMS, id=f"density-{name}-form")
-        yield Field(name, "", quantity(kind), id=f"density-{name}")
-        yield Grid(id=f"density-{name}-table")
-    yield FormChoice("Current", CURRENT_FORMS, id="current-form")
-    yield Field("speed", "  speed", _SPEED, id="current-speed")
-    yield Field("toward", "  towards", _ANGLE, id="current-toward")
-    yield Field("file", "  file", needed("a file"), id="current-file")
-    yield Field("time", "  time", id="current-time", placeholder="e.g. 2026-03-01T06")
-    yield Grid(id="current-table")
-    yield Field("speed", "Wind", _WIND, id="wind-speed", placeholder="none")
-    yield Field("toward", "  towards", _TOWARD, id="wind-toward", placeholder="where it blows")
+def fields_of_water(grid: Callable[..., Grid]) -> Iterator[Widget]:
+    """The parts of the form, tables made by `grid`; ids tell their places in an environment."""
+
+    def field(place: str, title: str, check: Check = anything, placeholder: str = "") -> Field:
+        key = place.rpartition("-")[2]
+        return Field(Asked(key, title, check=check, placeholder=placeholder), id=place)
+
+    speed = QuantityField("speed", at_least=0)
+    depth = quantity(POSITIVE_LENGTH, optional=True)
+    density = quantity(profile_tables.WATER_DENSITY, optional=True)
+    toward = quantity(profile_tables.DIRECTION, optional=True)
+    yield field("depth", "Depth", depth, "e.g. 1100 m")
+    yield FormChoice("Density", DENSITY_FORMS, id="density")
+    yield field("density", "", density, "else 1025 kg/m^3")
+    yield grid(id="density-table")
+    for place, (kind, _, _) in _CONSTANTS.items():
+        if len(place) > 1:
+            id = "-".join(place)
+            yield FormChoice(f"  {place[1]}", PROFILE_FORMS, id=id)
+            yield field(id, "", quantity(kind))
+            yield grid(id=f"{id}-table")
+    yield FormChoice("Current", CURRENT_FORMS, id="current")
+    yield field("current-speed", "  speed", quantity(speed))
+    yield field("current-toward", "  towards", quantity(profile_tables.DIRECTION))
+    yield field("current-file", "  file", needed("a file"))
+    yield field("current-time", "  time", placeholder="e.g. 2026-03-01T06")
+    yield grid(id="current-table")
+    yield field("wind-speed", "Wind", quantity(speed, optional=True), "none")
+    yield field("wind-toward", "  towards", toward, "where it blows")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from pathlib import Path
+from functools import partial
 from typing import TYPE_CHECKING, ClassVar
 
 from textual import events, on
@@ -19,23 +19,21 @@ from textual.widgets import Static
 from calm.files.editing import Draft, Value
 from calm.tui.cell_editor import CellEditor
 from calm.tui.checking import needed
-from calm.tui.dialogs import Asked, InputSheet, ask
-from calm.tui.field import Field
+from calm.tui.dialogs import InputSheet, ask
+from calm.tui.field import Asked, Field
 from calm.tui.key_table import bindings, hints
 from calm.tui.pictures import ProfilePicture
 from calm.tui.screen import DraftScreen, KeyBar
 from calm.tui.verdict_pane import state_word
-from calm.tui.water.currents_to_begin import Currents
 from calm.tui.water.form import (
-    CURRENT_COLUMNS,
     DENSITY_FORMS,
-    USUAL_DEPTH,
     FormChoice,
     Place,
     WaterForm,
     fields_of_water,
 )
 from calm.tui.water.grid import Grid, GridCells
+from calm.tui.water.tables_to_begin import CURRENT_COLUMNS, USUAL_DEPTH, Currents
 from calm.tui.workspace import Workspace, said
 
 if TYPE_CHECKING:
@@ -46,9 +44,6 @@ _ELSEWHERE = (
     "environment; what {0} gives takes its place."
 )
 _INHERITED = "as in the file's own environment"
-
-
-_CURRENT: Place = ("current",)
 
 
 class WaterScreen(DraftScreen):
@@ -72,9 +67,8 @@ class WaterScreen(DraftScreen):
         self._currents = Currents(self)
         # what was written in forms that others took the place of, to be had back
         self._left: dict[tuple[str | None, Place, str], Value | None] = {}
-        self._goes_on = (
-            False  # to the first value of a form, which leaves the message that is shown
-        )
+        # to the first value of a form, which leaves the message that is shown
+        self._goes_on = False
 
     def parts(self) -> ComposeResult:
         """Return the form at the left, the profile of the current at the right."""
@@ -82,7 +76,7 @@ class WaterScreen(DraftScreen):
             with VerticalScroll(id="water-form", can_focus=False):
                 yield Static(id="environment-names", markup=False)
                 yield Static(id="water-notes")
-                yield from fields_of_water()
+                yield from fields_of_water(partial(Grid, self.workspace, self._take_rows))
             with Vertical(id="water-profile"):
                 yield ProfilePicture()
 
@@ -119,9 +113,7 @@ class WaterScreen(DraftScreen):
 
     def _show_notes(self, problems: Sequence[Problem]) -> None:
         """Do what keeps the line from standing in the water that the form shows."""
-        file, path = self.environment_file, Path()
-        if self.workspace.view is not None:
-            path = self.workspace.view.path
+        file, path = self.environment_file, self.workspace.path
         notes = [Content.styled(_ELSEWHERE.format(file), "$text-warning")] if file else []
         notes += [said(each, path) for each in problems]
         shown = self.query_one("#water-notes", Static)
@@ -149,7 +141,8 @@ class WaterScreen(DraftScreen):
             field.set_class(not self._is_shown(place, "constant"), "gone")
             if not field.is_typing:
                 field.reset(water.text(*place))
-            is_lacking = place == ("wind", "toward") and water.lacks_direction
+            is_blown = place == ("wind", "toward") and water.text("wind", "speed")
+            is_lacking = is_blown and not water.text(*place)
             note = "is needed: where the wind blows" if is_lacking else ""
             field.tell(note if water.is_own(place[0]) else _INHERITED)
         for grid in self.query(Grid):
@@ -158,19 +151,13 @@ class WaterScreen(DraftScreen):
             grid.show(*water.table(*place), seabed=water.depth)
 
     def _is_shown(self, place: Place, form: str = "") -> bool:
-        """Return whether a part of the form is of use as the water is given, in this form of its
-        own.
-        """
-        match place:
-            case ("density", _) if self.water.form("density") != DENSITY_FORMS[2]:
-                return False
-            case ("current", "speed" | "toward"):
-                return self.water.form("current") == "uniform"
-            case ("current", "file" | "time"):
-                return self.water.form("current") == "file"
-            case ("density",) | ("density", _) | ("current",):
-                return not form or self.water.form(*place) == form
-        return True
+        """Return whether a part of the form is of use as the water is given."""
+        water, key = self.water, place[0]
+        if key == "density" and place[1:] and water.form(key) != DENSITY_FORMS[2]:
+            return False
+        if key == "current" and place[1:]:
+            return water.form(key) == ("file" if place[1] in ("file", "time") else "uniform")
+        return not form or key not in ("density", "current") or water.form(*place) == form
 
     def replaced(self) -> None:
         """Show another draft; what is typed, and what other forms held, was of the one before."""
@@ -193,22 +180,6 @@ class WaterScreen(DraftScreen):
         """Make the current a table of these rows."""
         self.change(lambda water: water.put_rows(("current",), columns, rows), label)
 
-    def give_in_form(self, place: Place, form: str) -> None:
-        """Give the current or the density in another form: as it was in it, or begun anew."""
-        if not self.settle():
-            return
-        water = self.water
-        self._left[water.variant, place, water.form(*place)] = water.own(*place)
-        key = (water.variant, place, form)
-        is_new = key not in self._left
-        value = water.begun(place, form) if is_new else self._left[key]
-        message = ""
-        if is_new and value is not None:
-            message = "Filled with typical figures, to be replaced"
-            if water.depth is None:
-                message += f"; no depth is given, so tables go down to {USUAL_DEPTH:g} m"
-        self.change(lambda water: water.put_form(place, value), f"{place[-1]}: {form}", message)
-
     # what is typed
 
     @property
@@ -218,14 +189,8 @@ class WaterScreen(DraftScreen):
 
     def settle(self) -> bool:
         """Take what is typed; the first bad value stays to be corrected, and is reported."""
-        for grid in self.query(Grid):
-            typed = grid.is_typing
-            reading = grid.settle()
-            if not reading.is_good:
-                self.workspace.tell(f"Not taken yet: {reading.note}", wrong=True)
-                return False
-            if typed:
-                self._take_rows(grid.cells, "a value")
+        if not all(grid.settle() for grid in self.query(Grid)):
+            return False
         for field in self.query(Field):
             if not field.is_typing:
                 continue
@@ -257,12 +222,8 @@ class WaterScreen(DraftScreen):
     def _onward(self) -> None:
         self.focus_next()
 
-    @on(GridCells.Changed)
-    def _commit_table(self, event: GridCells.Changed) -> None:
-        self._take_rows(event.cells, event.label)
-
-    def _take_rows(self, cells: GridCells, label: str) -> None:
-        place = _place(cells.parent)
+    def _take_rows(self, grid: Grid, label: str) -> None:
+        place, cells = _place(grid), grid.cells
         self.change(lambda water: water.put_rows(place, cells.headings, cells.rows), label)
 
     def on_paste(self, event: events.Paste) -> None:
@@ -275,13 +236,25 @@ class WaterScreen(DraftScreen):
 
     @on(FormChoice.Taken)
     def _take_form(self, event: FormChoice.Taken) -> None:
-        place = _place(event.choice)
-        if event.form == "file":
+        """Give the current or the density in another form: as it was in it, or begun anew."""
+        place, form, message = _place(event.choice), event.form, ""
+        if form == "file":
             self._currents.ask_for_file()
-        else:
-            self.give_in_form(place, event.form)
-            self._goes_on = True
-            self.call_after_refresh(self._first_of(place, event.form).focus)
+            return
+        if not self.settle():
+            return
+        water = self.water
+        self._left[water.variant, place, water.form(*place)] = water.own(*place)
+        key = (water.variant, place, form)
+        is_new = key not in self._left
+        value = water.begun(place, form) if is_new else self._left[key]
+        if is_new and value is not None:
+            message = "Filled with typical figures, to be replaced"
+            if water.depth is None:
+                message += f"; no depth is given, so tables go down to {USUAL_DEPTH:g} m"
+        self.change(lambda water: water.put_form(place, value), f"{place[-1]}: {form}", message)
+        self._goes_on = True
+        self.call_after_refresh(self._first_of(place, form).focus)
 
     def _first_of(self, place: Place, form: str) -> Widget:
         """Return where the value of a form begins; below it, where it has none."""
@@ -297,14 +270,12 @@ class WaterScreen(DraftScreen):
 
     @on(DescendantFocus)
     def _show_keys(self) -> None:
-        bar = self.query_one(KeyBar)
-        focused = self.focused
+        bar, focused = self.query_one(KeyBar), self.focused
         if isinstance(focused, CellEditor):
             bar.show_keys(hints("cell"))
-        elif isinstance(focused, GridCells):
-            bar.show_keys([*hints("grid"), *hints("water")])
         else:
-            bar.show_keys(hints("water"))
+            grid = hints("grid") if isinstance(focused, GridCells) else []
+            bar.show_keys([*grid, *hints("water")])
         if not self._goes_on:
             bar.tell("")
         self._goes_on = False
@@ -323,13 +294,12 @@ class WaterScreen(DraftScreen):
                 self.workspace.tell(f"There is an environment {name} already", wrong=True)
                 return
             known = water.value("current")
-            current = known or water.begun(_CURRENT, "uniform")
+            current = known or water.begun(("current",), "uniform")
             place = ("environments", name, "current")
             if self.change(lambda _: water.draft.put_at(place, current), f"environment {name}"):
+                told = "" if known else "Filled with a typical current, to be replaced"
                 self._stand_in(name)
-                self.workspace.tell(
-                    "" if known else "Filled with a typical current, to be replaced"
-                )
+                self.workspace.tell(told)
 
         if self.settle():
             asked = [Asked("name", "Name", check=needed("a name"), placeholder="e.g. storm")]

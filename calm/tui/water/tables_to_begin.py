@@ -1,0 +1,378 @@
+"""Tables to begin with: typical currents, those of files, and rows copied from elsewhere.
+
+What is copied from a spreadsheet, a CSV file or a page is read as files are: by its headings, their
+units, and which way a direction points.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+from itertools import chain
+from math import exp, isclose
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from numpy import float32
+
+from calm.errors import CalmError, Problem, UsageError
+from calm.files.definition import QuantityField
+from calm.records import profile_tables
+from calm.records.headings import heading
+from calm.records.profile_tables import QuantityTable, speed_and_direction
+from calm.tui.checking import Check, Reading, number, quantity
+from calm.tui.dialogs import InputSheet, Question, choose, numbered
+from calm.tui.field import Asked
+from calm.tui.theme import ELLIPSIS
+from calm.units import DIMENSIONS, QuantityError, QuantityRange, unit_factor
+
+if TYPE_CHECKING:
+    from calm.tui.water.form import WaterForm
+    from calm.tui.water.water_screen import WaterScreen
+
+CURRENT_COLUMNS = ("depth m", "speed m/s", "toward deg")
+
+USUAL_DEPTH = 100.0
+"""How far down [m] tables are begun where no depth is given."""
+
+_SHARES = (0.0, 0.1, 0.25, 0.5, 0.75, 0.9, 1.0)
+_POWER = 1 / 7
+
+
+_PRESETS: Mapping[str, Callable[[float], float]] = {
+    "uniform, 0.5 m/s": lambda share: 0.5,
+    "tidal stream, 1 m/s, falling by the 1/7 power of the height above the bed":
+        lambda share: (1.0 - share) ** _POWER,
+    "linear shear, 0.8 m/s at the surface to nothing at the bed":
+        lambda share: 0.8 * (1.0 - share),
+    "boundary current, 1.2 m/s at the surface, decaying by e in a fifth of the depth":
+        lambda share: 0.05 + 1.15 * exp(-share / 0.2),
+}  # fmt: skip
+"""Profiles to begin with: the speed [m/s] at a share of the depth, 0 at the surface, 1 at the bed.
+"""
+
+
+class Currents:
+    """What puts a whole current into the environment that the screen of the water shows."""
+
+    def __init__(self, screen: WaterScreen) -> None:
+        self._screen, self._workspace = screen, screen.workspace
+
+    def offer_presets(self) -> None:
+        """A profile to begin with."""
+
+        def take(speed: Callable[[float], float]) -> None:
+            deep = self._screen.water.depth or USUAL_DEPTH
+            rows = [(f"{part * deep:.4g}", f"{speed(part):.2g}", "90") for part in _SHARES]
+            self._screen.put_table(CURRENT_COLUMNS, rows, "a preset current")
+
+        if self._screen.settle():
+            depth = self._screen.water.depth
+            down = f"{USUAL_DEPTH:g} m, as no depth is given" if depth is None else f"{depth:g} m"
+            answers = numbered((name, partial(take, speed)) for name, speed in _PRESETS.items())
+            text = f"A table down to {down}, towards the east, for you to change."
+            choose(self._screen.app, Question("A current to start from", text, answers))
+
+    def ask_for_file(self) -> None:
+        """A current from CSV or NetCDF: referred to, or its profile copied."""
+        screen = self._screen
+
+        def take(texts: dict[str, str] | None) -> None:
+            if texts is None:
+                screen.show_draft()
+                return
+            path, time = texts["file"], texts["time"]
+            if texts["how"] == "refer":
+                given = {"file": path} | ({"time": time} if time else {})
+                message = f"current of {path}"
+                screen.change(lambda water: water.put_form(("current",), given), message)
+            else:
+                self._workspace.tell(f"Reading {path} …")
+                read = partial(self._read, screen.water, path, time)
+                screen.run_worker(read, thread=True, exit_on_error=False)
+
+        if screen.settle():
+            screen.app.push_screen(import_sheet(self._folder), take)
+
+    def _read(self, water: WaterForm, path: str, time: str) -> None:
+        """Read a file for an environment in a thread; what comes of it is taken by the form."""
+        screen, tell = self._screen, self._workspace.tell
+
+        def put(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+            if water.variant != screen.water.variant:
+                tell(f"{path} was read for another environment; read it again", wrong=True)
+            else:
+                screen.put_table(columns, rows, f"current of {path}")
+                tell(f"The current of {path} is in the table")
+
+        try:
+            table = imported(self._folder / path, time, water.depth or USUAL_DEPTH)
+        except CalmError as error:
+            screen.call_later(tell, str(error).partition("\n")[0], wrong=True)
+        except Exception as error:  # the libraries that read NetCDF raise whatever they like
+            reason = f"{type(error).__name__}: {error}"
+            screen.call_later(tell, f"{path} cannot be read: {reason}", wrong=True)
+        else:
+            screen.call_later(put, *table)
+
+    @property
+    def _folder(self) -> Path:
+        path = self._screen.session.file.path
+        return Path.cwd() if path is None else path.absolute().parent
+
+
+_SPEEDS = ("depth m", "u m/s", "v m/s", "w m/s")
+_NOISE = 1e-12  # of computing a speed and a direction in doubles, and then some
+
+
+def import_sheet(folder: Path) -> InputSheet:
+    """Ask for a file, a time, and how it is to stand in the mooring file."""
+    return InputSheet(
+        "A current from a file",
+        f"CSV or CF NetCDF, from {folder} unless another is named. `refer` keeps the file's "
+        "name in the mooring file; `copy` writes its profile as a table.",
+        [
+            Asked("file", "File", check=_existing(folder), placeholder="e.g. adcp.nc"),
+            Asked("time", "Time", placeholder="e.g. 2026-03-01T06:00, if it is a record"),
+            Asked("how", "refer or copy", "refer", _how),
+        ],
+    )
+
+
+def imported(path: Path, time: str, depth: float) -> tuple[Sequence[str], Sequence[Sequence[str]]]:
+    """The profile of a file as columns and rows of a table.
+
+    Parameters
+    ----------
+    path : CSV, NetCDF or zarr
+    time : which profile of a record, as ISO 8601; empty where there is one only
+    depth : of the water [m]
+
+    Returns
+    -------
+    columns : depth [m]; speed [m/s] and direction [degrees], or eastward and northward speed
+        [m/s], whichever needs fewer digits, as a rule that of the file; with an upward speed
+        [m/s] where the water rises or sinks
+    rows : a level each, from the top, with all digits of the file
+
+    Raises
+    ------
+    CalmError
+        The file, or the time, cannot be used.
+    """
+    from calm.records.current_file import read_current_file
+    from calm.records.current_terms import Terms, TimeChoiceError
+
+    try:
+        table, _ = read_current_file(path, time or None, Terms(water_depth=depth))
+    except TimeChoiceError as error:
+        raise UsageError(f"{path.name}: {error}") from None
+    levels = [*zip(table.depth, table.u, table.v, table.w, strict=True)]
+    if any(table.w):
+        return _SPEEDS, [[*map(_written, level)] for level in levels]
+    flows = [[*map(_written, level[:3])] for level in levels]
+    ways = [[*map(_written, (deep, *speed_and_direction(u, v)))] for deep, u, v, _ in levels]
+    signs = [len("".join(chain.from_iterable(rows))) for rows in (flows, ways)]
+    return (_SPEEDS[:3], flows) if signs[0] < signs[1] else (CURRENT_COLUMNS, ways)
+
+
+def _written(value: float) -> str:
+    """All digits of a value that was read, as 32 bits where it came of such, and no noise."""
+    short = float32(value)
+    if isclose(short, value, rel_tol=_NOISE):
+        return f"{float(str(short)) + 0.0:.12g}"
+    return f"{round(value, 12) + 0.0:.12g}"
+
+
+def _existing(folder: Path) -> Check:
+    def check(text: str) -> Reading:
+        tidy = text.strip()
+        if not tidy:
+            return Reading("", "a file is needed")
+        try:
+            is_there = (folder / tidy).exists()
+        except (OSError, ValueError):  # no file can have such a name
+            is_there = False
+        return Reading(tidy) if is_there else Reading(tidy, "no such file")
+
+    return check
+
+
+def _how(text: str) -> Reading:
+    word = text.strip().casefold()
+    for choice in ("refer", "copy"):
+        if word and choice.startswith(word):
+            return Reading(choice)
+    return Reading(word, "is refer or copy", "refer")
+
+
+Rows = tuple[tuple[str, ...], ...]
+
+_MOST_SHOWN = 8
+_OF_A_CURRENT = {"u", "v", "w", "speed", "toward"}
+
+
+class NoRows(ValueError):
+    """A text is not the rows of a table; says which row, and what is wrong with it."""
+
+
+class UnknownColumns(NoRows):
+    """The headings do not tell what the columns are; says what is wrong with them."""
+
+
+def offered_headings(headings: Sequence[str] | None, columns: Sequence[str]) -> list[str]:
+    """Headings for what was copied: its own, with units where it gives none; else the table's."""
+    if headings is None:
+        return list(columns)
+    units = {name: unit for name, unit in map(heading, columns)}
+    offered = []
+    for column in headings:
+        name, unit = heading(column)
+        usual = "" if unit else units.get(name.lower(), "")
+        offered.append(f"{name.lower()} {usual}" if usual else column)
+    return offered
+
+
+def rows_in(columns: Sequence[str], headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Rows:
+    """Copied rows under their headings as rows of a table with other columns.
+
+    Where both are the same the values stay as they were written.
+
+    Raises
+    ------
+    UnknownColumns
+        The headings are not those of such a table.
+    NoRows
+        A row has a value that is none.
+    """
+    if [heading(one) for one in headings] == [heading(one) for one in columns]:
+        return tuple(_as_written(i, row, columns) for i, row in enumerate(rows, 1))
+    values = _by_name(columns, headings, rows)
+    try:
+        return tuple(zip(*(_column(column, values) for column in columns), strict=True))
+    except KeyError as absent:
+        raise UnknownColumns(f"there is no column for {absent.args[0]}") from None
+
+
+def previewed(columns: Sequence[str], rows: Rows) -> str:
+    """Rows under their columns as they would be taken, of many the first and the last."""
+    lines: list[Sequence[str]] = [columns, *rows]
+    if len(rows) > _MOST_SHOWN:
+        between = f"{ELLIPSIS} {len(rows) - _MOST_SHOWN} more"
+        lines = [columns, *rows[: _MOST_SHOWN - 1], (between,), rows[-1]]
+    widths = [max(len(row[n]) for row in [columns, *rows]) for n in range(len(columns))]
+    return "\n".join(
+        "  ".join(f"{cell:<{width}}" for cell, width in zip(line, widths, strict=False)).rstrip()
+        for line in lines
+    )
+
+
+def _as_written(number: int, row: Sequence[str], columns: Sequence[str]) -> tuple[str, ...]:
+    if len(row) != len(columns):
+        many = f"{len(row)} value{'s' * (len(row) != 1)}"
+        raise NoRows(f"row {number} has {many}, and the table {len(columns)} columns")
+    readings = [check_of(column)(value) for column, value in zip(columns, row, strict=True)]
+    for value, reading in zip(row, readings, strict=True):
+        if not reading.is_good:
+            raise NoRows(f"row {number}: `{value}` {reading.note}")
+    return tuple(reading.text for reading in readings)
+
+
+def _by_name(
+    columns: Sequence[str], headings: Sequence[str], rows: Sequence[Sequence[str]]
+) -> dict[str, Sequence[float]]:
+    """The copied values in SI by the names that the table's columns may have."""
+    problems: list[tuple[bool, str]] = []
+
+    def report(location: Sequence[str | int], message: str) -> Problem:
+        of_a_row = location[0] == "rows" and len(location) > 1
+        said = f"row {int(location[1]) + 1}: {message}" if of_a_row else message
+        problems.append((not of_a_row, said))
+        return Problem("", 0, 0, message)
+
+    names = {heading(column)[0] for column in columns}
+    copied = QuantityTable(headings, rows, report, [])
+    table: profile_tables.CurrentTable | profile_tables.DepthTable | profile_tables.SeaWater | None
+    if names & _OF_A_CURRENT:
+        table = profile_tables.read_current(copied)
+    elif names == {"depth", "density"} or {"temperature", "salinity"} <= names:
+        table = profile_tables.read_water(copied)
+    else:
+        table = profile_tables.read_profile(next(iter(names - {"depth"})), copied)
+    if table is None:
+        of_the_headings, message = min(problems, key=lambda one: not one[0])
+        raise (UnknownColumns if of_the_headings else NoRows)(message)
+    if isinstance(table, profile_tables.SeaWater):
+        warm, salt = table.temperature, table.salinity
+        return {"depth": warm.depth, "temperature": warm.value, "salinity": salt.value}
+    if isinstance(table, profile_tables.DepthTable):
+        return {"depth": table.depth, next(iter(names - {"depth"})): table.value}
+    if "w" not in names and any(table.w):
+        raise UnknownColumns("the current has an upward speed `w`, and the table no column for it")
+    flows = [speed_and_direction(*uv) for uv in zip(table.u, table.v, strict=True)]
+    return {
+        "depth": table.depth,
+        "u": table.u,
+        "v": table.v,
+        "w": table.w,
+        "speed": [flow for flow, _ in flows],
+        "toward": [round(way, 9) % 360.0 for _, way in flows],
+    }
+
+
+def _column(column: str, values: dict[str, Sequence[float]]) -> list[str]:
+    """The values of a column in its unit; each with its own where the column has none."""
+    name, unit = heading(column)
+    dimension = _KINDS[name].dimension
+    usual = DIMENSIONS[dimension].unit
+    try:
+        factor = unit_factor(unit or usual, dimension) if unit or usual else 1.0
+    except QuantityError as error:
+        raise UnknownColumns(f"`{column}` {error.complaint}") from None
+    plain = [f"{round(value / factor, 9) + 0.0:.9g}" for value in values[name]]
+    return plain if unit or not usual else [f"{text} {usual}" for text in plain]
+
+
+_KINDS: dict[str, QuantityRange] = {
+    "depth": QuantityField("length"),
+    "speed": QuantityField("speed", at_least=0),
+    "u": QuantityField("speed"),
+    "v": QuantityField("speed"),
+    "w": QuantityField("speed"),
+    "toward": profile_tables.DIRECTION,
+    "density": profile_tables.WATER_DENSITY,
+    "temperature": profile_tables.TEMPERATURE,
+    "salinity": profile_tables.SALINITY,
+}
+
+
+def check_of(column: str) -> Check:
+    """Return what judges values of a column: numbers where it gives its unit, else quantities."""
+    name, unit = heading(column)
+    kind = _KINDS.get(name)
+    if kind is None:
+        return number
+    judged = quantity(kind)
+    if not unit:
+        return judged
+
+    def check(text: str) -> Reading:
+        reading = number(text)
+        complaint = judged(f"{reading.text} {unit}").complaint if reading.is_good else ""
+        return replace(reading, complaint=complaint) if complaint else reading
+
+    return check
+
+
+def half_way(column: str, one: float, other: float) -> float:
+    """The value between two of a column; between directions on the shorter way round."""
+    name, unit = heading(column)
+    half = (one + other) / 2
+    if name != "toward":
+        return half
+    try:
+        turn = 360.0 / unit_factor(unit or "deg", "angle")
+    except QuantityError:
+        return half
+    return (half + turn / 2) % turn if abs(one - other) > turn / 2 else half
