@@ -922,6 +922,14 @@ def test_a_net_that_sinks_is_refused_as_such(tmp_path: Path) -> None:
         load(tmp_path / "net.yaml", text=text).solve()
 
 
+def test_two_anchors_that_are_put_in_one_place_are_told(tmp_path: Path) -> None:
+    text = SLOPE.replace("at: [30 m, 0 m]", "at: [-30 m, 0 m]")
+    said = [one for one in load(tmp_path / "two.yaml", text=text).solve().warnings
+            if "in one place" in one]  # fmt: skip
+    assert len(said) == 1
+    assert said[0].startswith("The anchors of legs west and east stand in one place")
+
+
 def test_places_may_be_latitudes_and_longitudes(tmp_path: Path) -> None:
     """On the equator a minute of longitude is 6 378 137 m x π / 10 800 = 1855.325 m."""
     leg = """

@@ -298,6 +298,13 @@ def test_compiled_it_is_the_same() -> None:
     assert fast.nodes == pytest.approx(plain.nodes, abs=1e-9)
 
 
+def test_a_net_that_needs_more_segments_gets_more_room(monkeypatch: pytest.MonkeyPatch) -> None:
+    water = water_of(300.0, *SHEAR)
+    roomy = solve_net(y_net(), 1, water)
+    monkeypatch.setattr(net_module, "ROOM", 8)
+    assert solve_net(y_net(), 1, water).nodes == pytest.approx(roomy.nodes, abs=1e-9)
+
+
 def test_stated_errors_hold() -> None:
     """Against the same net at a quarter of the step, whose errors are a sixteenth."""
     water = water_of(300.0, *SHEAR)
