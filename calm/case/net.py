@@ -27,7 +27,7 @@ from calm.files.mooring_file import STAND_IN
 from calm.physics.hull import AIR_DENSITY
 from calm.physics.line import Floats, Line, Water
 from calm.quantities import say
-from calm.records.seabed_grid import SeabedGrid
+from calm.records.grids import SeabedGrid
 from calm.solve import Settings, Solution, Status
 
 if TYPE_CHECKING:

@@ -173,13 +173,11 @@ def _factor(text: str, dimension: str) -> float | None:
     if dimension not in DIMENSIONS or text.lower() in _AMBIGUOUS:
         return None
     known = DIMENSIONS[dimension].units
-    near = [unit for unit in known if unit and unit.lower() == text.lower() and unit != "MN"]
+    near = {unit.lower(): unit for unit in known if unit != "MN"}
     spelled = text if text in known else _SPELLED.get(text.lower().rstrip("."), "")
-    spelled = spelled or (near[0] if near else "")
-    if not spelled:
-        return None
     try:
-        return unit_factor(spelled, dimension)
+        spelled = spelled or near.get(text.lower(), "")
+        return unit_factor(spelled, dimension) if spelled else None
     except QuantityError:
         return None
 

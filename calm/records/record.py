@@ -19,7 +19,7 @@ from calm.errors import UsageError, refused
 from calm.physics.line import Floats
 from calm.positions import plain_degrees
 from calm.records.current_terms import TimeChoiceError, parse_time, time_text
-from calm.records.water_column import Place
+from calm.records.grids import Place
 
 Times = NDArray[np.datetime64]
 Index = slice | NDArray[np.intp]
