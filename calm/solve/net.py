@@ -21,6 +21,7 @@ from calm.physics.line import FAILURES, GOES_ON, Floats, Line, Trace, Water
 from calm.physics.profile import Profile
 from calm.solve import net_closing, net_march
 from calm.solve.finish import refuse_unbalanced
+from calm.solve.mooring import stirred
 from calm.solve.net_closing import AskedNet, ask_net, ask_now
 from calm.solve.net_leg import (
     LaidLeg,
@@ -227,9 +228,9 @@ def solve_net(
         except LacksRoom:
             room *= MORE_ROOM
         except NoEquilibrium:
-            if (stirred := water.stirred()) is None:
+            if (moving := stirred(water)) is None:
                 raise
-            water = stirred
+            water = moving
 
 
 def about(net: NetSearch, near: NetSolution | None) -> Floats:
