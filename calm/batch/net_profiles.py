@@ -5,8 +5,6 @@ of its file. Where that leads to nothing that stands, or the seabed is a grid, t
 as `calm run` does.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress

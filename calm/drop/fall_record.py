@@ -1,7 +1,5 @@
 """What the states of a chain tell of its pieces: depths, tensions, shapes."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

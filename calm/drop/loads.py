@@ -1,7 +1,5 @@
 """Forces on the loads of a chain that moves, and how they change with its motion."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 

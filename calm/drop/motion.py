@@ -6,8 +6,6 @@ and the tensions, together: so a bar may be as stiff as it is, or inextensible. 
 matrix is a band.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 

@@ -1,7 +1,5 @@
 """Make components of WHOI Cable's buoys, anchors, connectors and materials, with its drag."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from itertools import pairwise

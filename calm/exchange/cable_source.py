@@ -4,8 +4,6 @@ The C preprocessors that can be had as libraries know no limit to what macros gr
 arguments, cut numbers such as `6e3` where `e3` is a macro, and let a comment without an end pass.
 """
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Iterable, Iterator, Mapping

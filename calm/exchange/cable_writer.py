@@ -1,7 +1,5 @@
 """Write a mooring or a tow as a problem of WHOI Cable, for its statics and its dynamics."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from math import atan2, degrees, hypot, pi, sqrt

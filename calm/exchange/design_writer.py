@@ -3,8 +3,6 @@
 Anchors have the weights that hold its line.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import groupby

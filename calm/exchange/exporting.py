@@ -1,7 +1,5 @@
 """Export a mooring file to another program: its line as parts, written by one of the writers."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial

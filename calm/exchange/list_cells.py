@@ -1,7 +1,5 @@
 """Read the cells of a list: its sheets, its numbers as people write them, and their units."""
 
-from __future__ import annotations
-
 import io
 import re
 from collections.abc import Iterable

@@ -1,7 +1,5 @@
 """Read a `.mat` file of Mooring Design & Dynamics as a design, and write a line as one."""
 
-from __future__ import annotations
-
 import io
 import math
 from dataclasses import replace

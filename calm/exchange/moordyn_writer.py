@@ -1,7 +1,5 @@
 """Write a mooring as an input file of MoorDyn 2, its points where they stand in equilibrium."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from itertools import groupby
 from math import pi, sqrt

@@ -6,8 +6,6 @@ drowns a small change. Here every neighbour keeps the cuts of the first shape an
 root: two or three marches close it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, MutableSequence, Sequence
 from dataclasses import replace
 from math import isnan

@@ -6,8 +6,6 @@ places of the nodes; asked is that every leg ends where it is held and that the 
 balance: see `calm.solve.net_march`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import isfinite
