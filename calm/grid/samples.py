@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from calm.errors import InputError, Problem, UsageError
 from calm.motion.line_places import LinePlaces
 from calm.motion.measurements import interpolated
-from calm.records.cf_files import UnreadableError, is_dataset, open_current, read_times, reading
+from calm.records.cf_files import UnreadableError, holds_arrays, open_current, read_times, reading
 from calm.records.instrument_series import InstrumentSeries
 
 if TYPE_CHECKING:
@@ -70,7 +70,7 @@ def read_depths(path: Path) -> MooringDepths:
     """
     if not path.exists():
         raise InputError([Problem(str(path), 0, 0, "no such file")])
-    if not path.is_dir() and not is_dataset(path):
+    if not holds_arrays(path):
         raise InputError([Problem(str(path), 0, 0, "is not a result of calm motion")])
     with reading(path), open_current(path) as dataset:
         return _understood(dataset, path)

@@ -18,7 +18,7 @@ from calm.records.current_terms import Terms, current_notices
 from calm.records.grids import GridColumn, choose_column, is_regular
 from calm.records.level_depths import LevelDepths, find_levels
 from calm.records.profile_tables import turned_by
-from calm.records.record import RULES, Levels, Period, Record, choose_profiles, part
+from calm.records.record import RULES, Index, Levels, Period, Record, choose_profiles, part
 from calm.records.velocity import (
     Velocity,
     find_velocity,
@@ -37,24 +37,6 @@ AHEAD = 16_000_000
 
 LOOKED_AT = 64_000_000
 """Bytes of a record that are looked at for what is odd, spread over it where it has more."""
-
-
-@dataclass(frozen=True)
-class CurrentArrays:
-    """Currents of n profiles as they stand in a file, gaps as NaN, levels in the file's order.
-
-    Attributes
-    ----------
-    depth : (k,), or (n, k) where levels move [m], positive down
-    u, v : (n, k) to the east and to the north [m/s]; inf where the file has a negative speed or
-        a direction outside -360 to 360°
-    w : (n, k) upwards [m/s], None where the file has none
-    """
-
-    depth: NDArray[np.float64]
-    u: NDArray[np.float64]
-    v: NDArray[np.float64]
-    w: NDArray[np.float64] | None
 
 
 @dataclass(frozen=True)
@@ -103,10 +85,11 @@ class CurrentDataset:
         levels: int = variable.size // max(variable.sizes.get(self._time, 1), 1)
         return 8 * levels * (len(self._parts) + self.moves)
 
-    def read(self, index: slice | NDArray[np.intp]) -> CurrentArrays:
-        """Return the profiles of some times, by their index.
+    def read(self, index: Index) -> Levels:
+        """Return the profiles of some times, by their index; all of them where there is no time.
 
-        All profiles where there is no time.
+        Depths are (k,), or (n, k) where levels move. Currents are inf where the file has a negative
+        speed or a direction outside -360 to 360°.
         """
         first, second, *up = (
             self._along(variable, index, cf_files.known_values) * factor
@@ -126,9 +109,9 @@ class CurrentDataset:
         depth = np.full(first.shape[1], np.nan)
         if self._levels is not None:
             depth = self._levels.depths(self._time, index)
-        return CurrentArrays(depth, first, second, up[0] if up else None)
+        return depth, first, second, up[0] if up else None
 
-    def flags(self, index: slice | NDArray[np.intp]) -> NDArray[np.int8] | None:
+    def flags(self, index: Index) -> NDArray[np.int8] | None:
         """Return (n, k) the worse quality flags of both components; None without flags."""
         if not self._flags:
             return None
@@ -136,7 +119,7 @@ class CurrentDataset:
         worst: NDArray[np.int8] = np.maximum.reduce(every)
         return worst
 
-    def remarks(self, index: slice | NDArray[np.intp]) -> list[str]:
+    def remarks(self, index: Index) -> list[str]:
         """Return what is odd about the currents of some times; of a part where they are many."""
         said, times = [], self.times
         if times is not None:
@@ -162,9 +145,7 @@ class CurrentDataset:
                     f"{bad.sum()} of {bad.size} currents are left out, as `{variable.name}` marks "
                     "them as bad"
                 )
-        arrays = self.read(index)
-        levels = arrays.depth, arrays.u, arrays.v
-        return [*said, *current_notices(levels, times, self._terms.water_depth)]
+        return [*said, *current_notices(self.read(index)[:3], times, self._terms.water_depth)]
 
     def _along(
         self, variable: xr.DataArray, index: Any, read: Callable[[xr.DataArray], Any]
@@ -313,22 +294,21 @@ class ArrayRecord(Record):
         found = self._current
         self.notes = (*chosen, *found.notices, *found.turned, *remarks, *found.rules, *RULES)
         self.source = {"file": path.name, **self._current.source}
-        self._ahead: tuple[int, int, CurrentArrays] | None = None
+        self._ahead: tuple[int, int, Levels] | None = None
 
     def profiles(self, start: int, stop: int) -> Levels:
         """See `Record`."""
-        first, _, arrays = self._window(start, stop)
+        first, _, (depth, u, v, w) = self._window(start, stop)
         mine = slice(start - first, stop - first)
-        depth = arrays.depth[mine] if self._current.moves else arrays.depth
-        w = None if arrays.w is None else arrays.w[mine]
-        return depth, arrays.u[mine], arrays.v[mine], w
+        depth = depth[mine] if self._current.moves else depth
+        return depth, u[mine], v[mine], None if w is None else w[mine]
 
     def flags(self, start: int, stop: int) -> NDArray[np.int8] | None:
         """See `Record`."""
         with cf_files.reading(self._path):
             return self._current.flags(part(self._index, start, stop))
 
-    def _window(self, start: int, stop: int) -> tuple[int, int, CurrentArrays]:
+    def _window(self, start: int, stop: int) -> tuple[int, int, Levels]:
         """Return which profiles are decompressed with those wanted, and these profiles."""
         if self._ahead is not None and self._ahead[0] <= start and stop <= self._ahead[1]:
             return self._ahead

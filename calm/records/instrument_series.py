@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.errors import InputError, Problem, UsageError, refused
+from calm.physics.line import Floats
 from calm.records import cf_files, measured_quantities
 from calm.records.cf_files import UnreadableError, factor_of, first_present, holdings, known_values
 from calm.records.level_depths import find_levels
@@ -30,8 +31,6 @@ from calm.records.velocity import (
 
 if TYPE_CHECKING:
     import xarray as xr
-
-    Floats = NDArray[np.float64]
 
 _ENDINGS = (".nc", ".cnv", ".use", ".microcat", ".rcm")
 _SAID = ", ".join(_ENDINGS)
@@ -161,7 +160,7 @@ def split_label(text: str) -> tuple[str, Path]:
 def _of_file(
     path: Path, names: Sequence[str], flags: frozenset[int], seabed: float
 ) -> dict[str, list[InstrumentSeries]]:
-    if not path.is_dir() and not cf_files.is_dataset(path):
+    if not cf_files.holds_arrays(path):
         raise refused(path, "is not NetCDF, RODB, .cnv or RBR's table")
     with cf_files.reading(path), cf_files.open_current(path) as dataset:
         try:
