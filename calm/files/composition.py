@@ -11,17 +11,9 @@ from collections.abc import Callable
 from typing import Any, Literal, NamedTuple
 
 import yaml
+from yaml import events
 from yaml.error import MarkedYAMLError, YAMLError
-from yaml.events import (
-    AliasEvent,
-    CollectionEndEvent,
-    Event,
-    MappingStartEvent,
-    NodeEvent,
-    ScalarEvent,
-    SequenceStartEvent,
-    StreamEndEvent,
-)
+from yaml.events import CollectionEndEvent
 
 _DEEPEST = 100
 """Mappings and lists within others; the time to read brackets grows with the square of this."""
@@ -35,10 +27,10 @@ _TAG = re.compile(r"(?<![^\s\[{,])!")
 _CONTROL_CHARACTER = re.compile(
     "[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]"
 )
-_KINDS: dict[type[Event], Kind] = {
-    MappingStartEvent: "mapping",
-    SequenceStartEvent: "sequence",
-    ScalarEvent: "scalar",
+_KINDS: dict[type[events.Event], Kind] = {
+    events.MappingStartEvent: "mapping",
+    events.SequenceStartEvent: "sequence",
+    events.ScalarEvent: "scalar",
 }
 _COLON = re.compile(r"\s*:")
 _NULLS = frozenset({"", "~", "null", "Null", "NULL"})
@@ -133,7 +125,7 @@ class _Reader:
     next_event : gives one after the other
     """
 
-    def __init__(self, text: str, start: int, next_event: Callable[[], Event]) -> None:
+    def __init__(self, text: str, start: int, next_event: Callable[[], events.Event]) -> None:
         self._text = text
         self._start = start
         self._next = next_event
@@ -143,25 +135,25 @@ class _Reader:
     def read(self) -> Composition:
         """Return the nodes of the only document."""
         self._next()  # the stream begins
-        if isinstance(self._next(), StreamEndEvent):
+        if isinstance(self._next(), events.StreamEndEvent):
             return Composition(None)
         event = self._next()
         root = self._node(event, 0)
         self._next()  # the document ends
         behind = self._next()
-        if not isinstance(behind, StreamEndEvent):
+        if not isinstance(behind, events.StreamEndEvent):
             what = "expected a single document in the stream", "but found another document"
             raise MarkedYAMLError(what[0], event.start_mark, what[1], behind.start_mark)
         return Composition(root, tuple(self._refusals))
 
-    def _node(self, event: NodeEvent, depth: int) -> Node:
+    def _node(self, event: events.NodeEvent, depth: int) -> Node:
         """Return the node that an event begins, and all below it."""
         if depth > _DEEPEST:
             raise _TooDeep
         mark = event.start_mark
         start = mark.index + self._start
         place = mark.line + 1, mark.column + 1
-        if isinstance(event, AliasEvent):
+        if isinstance(event, events.AliasEvent):
             if event.anchor not in self._anchors:  # else the mistake is reported there
                 raise MarkedYAMLError(None, None, f"found undefined alias '{event.anchor}'", mark)
             return Node("scalar", start, start, *place, "", None)
@@ -208,7 +200,7 @@ class _Reader:
         while not isinstance(event := self._next(), CollectionEndEvent):
             if event.anchor is not None:
                 self._node(event, depth)
-            elif not isinstance(event, ScalarEvent):
+            elif not isinstance(event, events.ScalarEvent):
                 self._refused(event, depth, "a key must be plain text")
             elif (name := _shown(event.value)) in lines:
                 again = f"`{name}` is given twice (first in line {lines[name]})"
@@ -230,7 +222,7 @@ class _Reader:
             self._refused(self._next(), depth)
         return values, event
 
-    def _refused(self, event: NodeEvent, depth: int, message: str = "") -> Node:
+    def _refused(self, event: events.NodeEvent, depth: int, message: str = "") -> Node:
         """Pass over a node, whatever is wrong within it; a message says why it is refused."""
         before = len(self._refusals)
         node = self._node(event, depth)
@@ -238,7 +230,7 @@ class _Reader:
         return node
 
 
-def _refusal(event: NodeEvent, message: str) -> Refusal:
+def _refusal(event: events.NodeEvent, message: str) -> Refusal:
     return event.start_mark.line + 1, event.start_mark.column + 1, message
 
 

@@ -10,6 +10,7 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, Field
 
 from calm.errors import InputError, Problem, unknown
+from calm.files import mooring_file
 from calm.files.catalogue import Catalogue
 from calm.files.check_limits import Checks, read_accepts
 from calm.files.components import Anchor, Flexible
@@ -18,16 +19,7 @@ from calm.files.environment import Position, read_environment
 from calm.files.legs import NET_REFUSED, Leg, LegKeys, check_held_depths, read_legs, stand_in_anchor
 from calm.files.line_items import LineReader
 from calm.files.logbook import Deployed, DocumentKeys, OutputUnits, ReleaseKeys, check_deployed
-from calm.files.mooring_file import (
-    MooringFile,
-    Piece,
-    Solver,
-    TowKeys,
-    labels_of,
-    numbered,
-    travelling,
-    unknown_releases,
-)
+from calm.files.mooring_file import MooringFile, Piece, Solver, TowKeys, numbered
 from calm.files.seabed import check_anchors
 from calm.files.uncertainty import Uncertainty
 from calm.files.yaml_document import SourceMapping, compose, read_document, validate
@@ -158,15 +150,17 @@ def read_mooring(
     else:
         (_check_tow if towed else _check_anchor)(pieces, top)
         _check_one_fit(pieces, top)
-        pieces = travelling(numbered(pieces), top) if line_is_whole else numbered(pieces)
+        pieces = (
+            mooring_file.travelling(numbered(pieces), top) if line_is_whole else numbered(pieces)
+        )
     checks = (keys and keys.checks) or Checks()
-    labels = labels_of(pieces) if line_is_whole else None
+    labels = mooring_file.labels_of(pieces) if line_is_whole else None
     accepts = read_accepts(checks.accept, labels, top)
     if keys and keys.deployed and labels is not None:
         cut = [p.label for p in pieces if isinstance(p.component, Flexible)]
         check_deployed(keys.deployed, labels, cut, top)
     if keys and keys.releases and labels is not None:
-        notices += unknown_releases(keys.releases, pieces, keys.deployed)
+        notices += mooring_file.unknown_releases(keys.releases, pieces, keys.deployed)
     surroundings = None
     if chosen:
         position = keys.position if keys else None
