@@ -107,15 +107,11 @@ class Saving:
         is_changed = is_own and stamp is not None and file.changed_on_disk()
         write = session.save if is_own else lambda: session.save_as(path)
         mine = " your line" if is_changed else ""
+        overwrite = "overwrite it" + (mine and f" with{mine}")
+        other = partial(self.save_as, then, _free_name(path))
         answers = [
-            Answer(
-                "o", "overwrite it" + (mine and f" with{mine}"), lambda: self._write(write, then)
-            ),
-            Answer(
-                "n",
-                f"save{mine} under another name",
-                lambda: self.save_as(then, _free_name(path)),
-            ),
+            Answer("o", overwrite, lambda: self._write(write, then)),
+            Answer("n", f"save{mine} under another name", other),
         ]
         title = f"{path.name} is write-protected" if is_own else f"{path.name} is there already"
         protected = not is_own and not os.access(path, os.W_OK)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from textual import on
 from textual.binding import BindingType
@@ -57,15 +57,9 @@ class BuilderScreen(ComparingScreen):
     @on(DescendantFocus)
     def show_keys(self) -> None:
         """The keys of what has the focus."""
-        focused = self.focused
-        place = "line"
-        if isinstance(focused, CellEditor):
-            place = "cell"
-        elif isinstance(focused, VerdictPane):
-            place = "verdict"
-        elif isinstance(focused, Picture):
-            place = "anywhere"
-        elif focused is not None and self.catalogue in focused.ancestors_with_self:
+        places: dict[Any, str] = {CellEditor: "cell", VerdictPane: "verdict", Picture: "anywhere"}
+        place = places.get(type(self.focused), "line")
+        if self.focused is not None and self.catalogue in self.focused.ancestors_with_self:
             place = "catalogue"
         self.query_one(KeyBar).show_keys(hints(place))
 
