@@ -138,7 +138,7 @@ class Saving:
         is_new, self._told = now != self._told, now
         if now[0] is None:
             if is_new:
-                session.lost_file()
+                session.history.saved("")
                 self._workspace.tell(_GONE, wrong=True)
                 self._workspace.edited()  # what is here is kept like every change
         elif not (session.changed or screen.is_typing):
@@ -153,7 +153,8 @@ class Saving:
             if not quietly:
                 self._workspace.tell(f"The file cannot be read any more: {error}", wrong=True)
             return
-        self._session.take_saved(text)
+        self._session.write(text, "read the file again")
+        self._session.history.saved()
         self._app.taken_over(_READ_AGAIN)
 
     # work of an earlier run
