@@ -1,7 +1,5 @@
 """Places on the earth: latitudes and longitudes as people write them, and the ellipsoid."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ Table headings, CSV headers, plot labels and the manual all read it, so that a q
 the same and carries the same unit wherever it is shown.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import atan2, ceil, degrees, floor, log10

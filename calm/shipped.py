@@ -3,8 +3,6 @@
 Once installed they stand inside the package; in a checkout, beside it.
 """
 
-from __future__ import annotations
-
 import importlib.resources
 from pathlib import Path
 from typing import Literal

@@ -1,7 +1,5 @@
 """The version of CALM, and the commit that it was built from."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 __version__ = "0.1.0"

@@ -1,7 +1,5 @@
 """Files read whole, and put whole in their place: a reader sees the old content or the new."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import stat

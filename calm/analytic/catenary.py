@@ -11,8 +11,6 @@ On a level seabed without friction V₀ does not fall below 0: the rest, L − V
 Source: H. M. Irvine, *Cable Structures*, MIT Press, 1981, chapter 2.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from math import hypot, inf, isfinite, sqrt, tanh
 

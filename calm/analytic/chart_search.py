@@ -15,8 +15,6 @@ Of length, distance and one more, the mean of cos ψ over the piece is D/L, and 
 of the length. Where a grid of both ends shows that both may be met, Powell's method finishes it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 

@@ -23,8 +23,6 @@ with p = w/R, f = F/R and T₀ there,
 Source: L. Pode, David Taylor Model Basin report 687, 1951; tabulated were f = 0.01, 0.02 and 0.03.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

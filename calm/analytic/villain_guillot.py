@@ -17,8 +17,6 @@ direction of that force and the weight together. D = 1, k_t ≠ k_n is in
 `calm.analytic.villain_guillot`. D = 2 is the heavy line of `calm.analytic.uniform`, f = k_t/k_n.
 """
 
-from __future__ import annotations
-
 from math import hypot, pi
 from typing import Literal
 

@@ -6,10 +6,10 @@ import difflib
 import operator
 import re
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cache, cached_property
+from functools import cache, cached_property, lru_cache
 from math import inf
 
 from calm.errors import CalmError, InputError
@@ -82,10 +82,8 @@ class Index:
 
     def __init__(self, catalogue: Catalogue) -> None:
         self.catalogue = catalogue
-        shipped = catalogue.levels[-1]
-        found = [
-            _listed(entry, shipped) for id in catalogue.ids() if (entry := catalogue.entry(id))
-        ]
+        shipped, entries = catalogue.levels[-1], filter(None, map(catalogue.entry, catalogue.ids()))
+        found = [_listed(entry, shipped.get(entry.id) is not entry) for entry in entries]
         self._listed = {each.id: each for each in sorted(found, key=lambda each: not each.own)}
         self._figures: dict[str, Figures] = {}
 
@@ -220,7 +218,8 @@ def _rank(each: Listed, words: Sequence[str], others: Sequence[str]) -> int:
     return _ELSEWHERE + any(word not in each.own_words for word in others)
 
 
-def _listed(entry: CatalogueEntry, shipped: object) -> Listed:
+@lru_cache(4096)  # an index is made anew whenever a file's own components change
+def _listed(entry: CatalogueEntry, own: bool) -> Listed:
     fields = entry.section.data
 
     def text(key: str) -> str:
@@ -228,7 +227,6 @@ def _listed(entry: CatalogueEntry, shipped: object) -> Listed:
         return " ".join(value.split()) if isinstance(value, str) else ""
 
     role = text("role") or FAMILY_ROLES.get(entry.family or "", "")
-    own = not (isinstance(shipped, Mapping) and shipped.get(entry.id) is entry)
     return Listed(
         id=entry.id,
         name=text("name"),

@@ -1,7 +1,5 @@
 """What follows from the figures of a component: net force, drags and the area they stand for."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
 from typing import Any

@@ -1,7 +1,5 @@
 """The pieces of a file as arrays: net forces, drags, stiffness, and how its cables strum."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from math import cbrt, pi, sqrt

@@ -1,7 +1,5 @@
 """The environment of a mooring file as one table of levels, and the viscosity of its water."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

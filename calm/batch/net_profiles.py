@@ -5,8 +5,6 @@ of its file. Where that leads to nothing that stands, or the seabed is a grid, t
 as `calm run` does.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
@@ -39,7 +37,7 @@ from calm.physics.compiled import by_address, entry
 from calm.physics.line import Floats, Water
 from calm.physics.profile import Sea
 from calm.physics.track import head_count
-from calm.records.seabed_grid import SeabedGrid
+from calm.records.grids import SeabedGrid
 from calm.solve import expect_many, net_closing, net_march
 from calm.solve.net import NetSearch, NetSolution
 from calm.solve.net_closing import AskedNet, ask_net, keep

@@ -4,8 +4,6 @@ A profile is solved roughly: to a millionth of the depth, and not audited. What 
 and on halved cuts lead to is extrapolated from both.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import atan2, inf, isfinite, pi, sqrt
 from typing import Any, NamedTuple

@@ -1,7 +1,5 @@
 """Jobs done in threads, which are outlived, whatever stops them."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Iterable
 from threading import Event, Lock, Thread

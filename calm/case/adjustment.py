@@ -4,8 +4,6 @@ A change is made in the models of the file, as if it had been written there; eve
 from them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 

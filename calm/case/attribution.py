@@ -15,23 +15,18 @@ With drags that follow the square of the speed the stage s = t² is the mooring 
 current.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from math import radians
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from calm.case.net import Net
 from calm.files.legs import nodes_of
 from calm.physics.line import Floats, Line, Water
 from calm.solve import Settings
 from calm.solve.mooring import Nearby
 from calm.solve.net import NearbyNet
-
-if TYPE_CHECKING:
-    from calm.case.net import Net
 
 STAGES = (4, 8)
 """Gauss points in t: the second number where the first misses the whole by `FAIR`."""

@@ -4,8 +4,6 @@ The draws are those of a scrambled Sobol' sequence, one number for each cause: a
 long by the same share, the current too fast by the same factor at all depths.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from math import cos, log1p, radians, sin

@@ -1,10 +1,8 @@
 """Why a mooring stands as it does: what each drag causes, and what a change would do."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -13,7 +11,7 @@ from calm.case.draws import Draw, drawn_water
 from calm.case.mooring import Mooring
 from calm.case.net import Net
 from calm.case.parts import TOP, one_part
-from calm.case.result import NetResult, legs_of
+from calm.case.result import NetResult, Result, legs_of
 from calm.case.result_tables import ColumnTable
 from calm.case.targets import Figures, figures_of, leg_at
 from calm.errors import NoEquilibrium, UsageError
@@ -21,9 +19,6 @@ from calm.files import Place
 from calm.files.mooring_file import clamps_in
 from calm.physics.line import Floats, Line, Water
 from calm.solve import expect_many, solve_mooring
-
-if TYPE_CHECKING:
-    from calm.case.result import Result
 
 SOLVES = 100.0
 """About how many equilibria an explanation takes, by work."""

@@ -27,7 +27,7 @@ from calm.files.mooring_file import STAND_IN
 from calm.physics.hull import AIR_DENSITY
 from calm.physics.line import Floats, Line, Water
 from calm.quantities import say
-from calm.records.seabed_grid import SeabedGrid
+from calm.records.grids import SeabedGrid
 from calm.solve import Settings, Solution, Status
 
 if TYPE_CHECKING:
@@ -268,6 +268,12 @@ def net_result(net: Net, found: NetSolution, still: Sequence[Solution | None]) -
             *net.file.notices,
             *(said for leg in legs for said in leg.warnings),
             *(said for leg in legs if (said := _upside_down(leg))),
+            *(
+                f"The anchors of legs {one.leg} and {other.leg} stand in one place, and each is "
+                "judged for itself; where they are one anchor, join the legs at a node above it."
+                for one, other in combinations((end for end in ends if end.weight is not None), 2)
+                if dist((one.x, one.y), (other.x, other.y)) < 1e-3
+            ),
         ),
     )
 

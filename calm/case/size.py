@@ -1,7 +1,5 @@
 """Inverse design: the smallest change of a mooring that meets a target."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, field
 from functools import cache, partial

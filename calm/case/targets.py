@@ -1,7 +1,5 @@
 """What a mooring is to reach, as a person writes it: ``knockdown(CTD) <= 20 m``."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from math import hypot

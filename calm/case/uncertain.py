@@ -12,19 +12,17 @@ from dataclasses import dataclass
 from functools import partial
 from itertools import combinations
 from math import hypot
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from calm.case.draws import CAUSES, SAMPLES, Draw, checked_samples, drawn, draws_of, normals_of
 from calm.case.measure import anchor_load, clamps_of, measured
+from calm.case.mooring import Mooring
+from calm.case.result import Result
 from calm.errors import NoEquilibrium
 from calm.physics.line import Floats
 from calm.solve import expect_many
-
-if TYPE_CHECKING:
-    from calm.case.mooring import Mooring
-    from calm.case.result import Result
 
 BLOCK = 128
 """Samples that one process solves at a time."""

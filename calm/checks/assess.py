@@ -8,8 +8,6 @@ launch or a rise takes as long to solve as many equilibria: these, and the break
 the first `HANDLED` samples. A sample without equilibrium breaks every limit.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace

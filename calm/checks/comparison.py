@@ -1,7 +1,5 @@
 """What a change of a design does: depth, knockdown, tension, margins, anchor and weights."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from math import hypot

@@ -4,8 +4,6 @@ The design check puts it into words for one result, the statistics of a batch co
 profile.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache

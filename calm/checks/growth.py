@@ -7,8 +7,6 @@ that they are of; of a body without a size, as that of a sphere of the same area
 weighs in it follows from its density, and is nothing where none is given.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from math import pi, sqrt

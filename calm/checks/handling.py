@@ -1,7 +1,5 @@
 """Deployment and recovery: back-up buoyancy, launch and rise."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from math import isnan

@@ -3,8 +3,6 @@
 The launch and the recovery of a net are not solved: nothing of them is judged.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection, Hashable, Iterator, Sequence
 from dataclasses import replace
 from datetime import date

@@ -1,7 +1,5 @@
 """Where the line stands: tilt, depth, knockdown, excursion, and the reserve of a surface float."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from functools import partial
 from math import isnan

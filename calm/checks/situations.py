@@ -38,7 +38,7 @@ from calm.physics.line import Water
 from calm.quantities import say
 from calm.records.current_file import strongest_of
 from calm.records.current_terms import left_out
-from calm.records.water_column import kilometres_from
+from calm.records.grids import kilometres_from
 from calm.solve import Status
 
 if TYPE_CHECKING:

@@ -1,7 +1,5 @@
 """Whether every piece bears its tension, the line stays taut, and the anchor holds."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from functools import partial
 

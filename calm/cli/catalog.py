@@ -69,7 +69,7 @@ def search(words: list[str], /, *, json: bool = False) -> ExitCode:
         As JSON: objects with every field, in SI units and degrees.
     """
     from calm.assemble.catalogue_search import Index
-    from calm.tui.catalogue.component_list import Remembered
+    from calm.tui.catalogue.catalogue_pane import Remembered
 
     catalogue, text = _load(), " ".join(words)
     index, remembered = Index(catalogue), Remembered()

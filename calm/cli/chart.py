@@ -1,7 +1,5 @@
 """``calm chart``: cables in a uniform current, solved and drawn."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 from typing import Annotated, Literal

@@ -49,7 +49,6 @@ _SELDOM = 100_000
 """New objects after which unused circles of them are looked for. Python's own 700 cost a command a
 tenth of its time: what it imports is all looked through again and again."""
 
-
 _VALUES = {
     "FILE|-": "json csv netcdf",
     "FILE": "html pdf plot catalog currents pressures sea-level onto against update scatter "

@@ -1,7 +1,5 @@
 """``calm new``, ``calm build``, ``calm schema`` and ``calm docs``: to write a mooring file."""
 
-from __future__ import annotations
-
 import json
 import os
 import sys

@@ -4,8 +4,6 @@ Names and tables are those of the OceanSITES Data Format Reference Manual 1.4 (2
 Attribute Convention for Data Discovery 1.3.
 """
 
-from __future__ import annotations
-
 import hashlib
 import os
 from collections.abc import Iterable, Mapping, Sequence

@@ -1,25 +1,19 @@
 """Every piece and clamp of a mooring as the deck has it: where it hangs, when it goes over."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from itertools import groupby
-from typing import TYPE_CHECKING
 
+from calm.case import Result
 from calm.case.result import NetResult, legs_of
 from calm.case.result_tables import ClampRow, ComponentRow, rows_by_place, rows_down
 from calm.files import Clamp, Flexible, Piece
 from calm.files.legs import leg_numbers
+from calm.files.logbook import DeployedItem
 from calm.quantities import QUANTITIES
-
-if TYPE_CHECKING:
-    from calm.case import Result
-    from calm.files.logbook import DeployedItem
-
 
 _SIZED = re.compile(r"(shackle|ring|swivel|link)(?:-[a-z]+)?-(\d+)\b.*")
 

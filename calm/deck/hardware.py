@@ -1,7 +1,5 @@
 """What is cut, how long and how exactly; and what joins the pieces, counted with its spares."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Iterator, Sequence

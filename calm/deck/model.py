@@ -1,16 +1,15 @@
 """All that the deck needs to know of a mooring: the one model of its sheets and of their files."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
 from math import inf, isnan
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 from calm.case import Mooring, Result
 from calm.case.net import Net
 from calm.case.result import NetResult, legs_of
+from calm.checks.assessment import Assessment
 from calm.checks.finding import OWN
 from calm.checks.net_check import NetGraph, check
 from calm.checks.recovery import Recovery, recovery_of
@@ -24,9 +23,6 @@ from calm.errors import NoEquilibrium
 from calm.files import CurrentTable, MooringFile
 from calm.files.legs import leg_numbers
 from calm.solve import Status
-
-if TYPE_CHECKING:
-    from calm.checks.assessment import Assessment
 
 HANDLED = ("float", "instrument", "release", "line")
 """Roles of what takes time on deck by itself; what joins pieces is shackled on with them."""

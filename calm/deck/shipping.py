@@ -1,20 +1,15 @@
 """What is shipped, and what hangs on crane and winch at each stage."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from math import pi
-from typing import TYPE_CHECKING
 
+from calm.checks.inventory import InventoryItem
 from calm.deck.deck_items import Order
 from calm.files import Cable, Chain, Component, Cylinder, MooringFile, Sphere
 from calm.files.components import FLEXIBLE_KINDS
 from calm.files.mooring_file import parts_of
-
-if TYPE_CHECKING:
-    from calm.checks.inventory import InventoryItem
 
 
 @dataclass(frozen=True)

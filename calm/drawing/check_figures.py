@@ -53,7 +53,7 @@ def check_figure(assessment: Assessment) -> str:
     across = (_WIDTH - 12.0) / _LEGEND_COLUMNS
     page.legend(entries, (6.0, 3.0), across, _LEGEND_ROW, _LEGEND_COLUMNS)
     top, lower = legend + 11.0, legend + 372.0
-    depth = max(result.mooring.water.depth for _, result in solved)
+    depth = max(line_picture.seabed_of(result) for _, result in solved)
     highest = min(float(result.shape.depth.min()) for _, result in solved)
     # of the elevation and the current: from below the seabed to above the surface
     depths = graph.Scale(1.03 * depth, min(-0.03 * depth, highest))
@@ -102,6 +102,8 @@ def _draw_elevation(page: graph.Graph, place: Place, solved: Solved, depths: gra
     for line in side.lines:
         if line.kind is LineKind.STILL:
             axes.line(line.x, line.y, _STILL)
+        elif line.kind is LineKind.SEABED:
+            axes.line(line.x, line.y, graph.Stroke(SEABED_COLOUR, 3.0))
     for number, line in enumerate(lines):
         axes.line(line.x, line.y, _stroke(number))
     for mark in side.marks:

@@ -6,7 +6,7 @@ and `calm.drawing.sketch` for a terminal.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from itertools import repeat
@@ -42,6 +42,7 @@ class LineKind(Enum):
     STILL = "still"
     BESIDE = "beside"
     BAND = "band"
+    SEABED = "seabed"
 
 
 @dataclass(frozen=True)
@@ -128,7 +129,7 @@ def elevation_of(
         return LinePicture(
             (line,), marks, across, depth, ship, *edges, height, water, environment.depth
         )
-    lines = [] if uncertain is None else [_band(uncertain)]
+    lines = [*_beds(result), *([] if uncertain is None else [_band(uncertain)])]
     lines += [from_the_side(shape, plane, LineKind.BESIDE) for shape in beside]
     legs = legs_of(result)
     still = [leg.still_shape for leg in legs if leg.still_shape is not None]
@@ -179,6 +180,22 @@ def from_the_side(
     return Polyline(kind, along(shape.x, shape.y, plane), shape.depth, label)
 
 
+def _beds(result: Result | NetResult) -> Iterator[Polyline]:
+    """The seabed about each anchor, if it slopes there or is not as deep as at the deepest one."""
+    plane, legs = plane_of(result), legs_of(result)
+    drawn = np.concatenate([along(leg.shape.x, leg.shape.y, plane) for leg in legs])
+    stand = [leg for leg in legs if not np.isnan(leg.anchor.tension)]
+    deepest = max(leg.mooring.water.depth for leg in legs)
+    for leg in stand:
+        water, rows = leg.mooring.water, leg.components
+        slope = along(water.deeper_east, water.deeper_north, plane)
+        if slope or water.depth < deepest:
+            at = along(rows.x_top[-1], rows.y_top[-1], plane)
+            beside = at + np.array([-0.5, 0.5]) * np.ptp(drawn) / len(stand)
+            place = np.clip(beside, drawn.min(), drawn.max())
+            yield Polyline(LineKind.SEABED, place, water.depth + slope * (place - at))
+
+
 def _band(uncertain: Uncertain) -> Polyline:
     """The outline of the line between its 5 and 95 % of offset and depth."""
     (near, *_, far), (high, *_, low) = uncertain.offset, uncertain.depth_top
@@ -225,8 +242,9 @@ def levels_of(result: AnyResult) -> tuple[float, float]:
 
 
 def seabed_of(result: Result | NetResult) -> float:
-    """Return the depth of the water, of a net at its deepest anchor [m]."""
-    return max(float(line.mooring.water.depth) for line in (result, *legs_of(result)))
+    """Return the depth of the water at the deepest anchor, or of a seabed drawn deeper [m]."""
+    beds = (float(bed.y.max()) for bed in _beds(result))
+    return max(*(float(line.mooring.water.depth) for line in (result, *legs_of(result))), *beds)
 
 
 def along(x: Floats | float, y: Floats | float, plane: Floats) -> Floats:

@@ -129,6 +129,8 @@ def draw_lines(axes: Axes, picture: LinePicture) -> None:
             axes.fill(line.x, line.y, color=colour, alpha=0.2, linewidth=0, label=line.label)
         elif line.kind is LineKind.STILL:
             axes.plot(line.x, line.y, "--", color="grey", linewidth=1, label=line.label)
+        elif line.kind is LineKind.SEABED:
+            axes.plot(line.x, line.y, color=SEABED_COLOUR, linewidth=3)
         else:
             axes.plot(line.x, line.y, label=line.label, **LINE_STYLE)
 

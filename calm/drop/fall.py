@@ -1,7 +1,5 @@
 """The drop of an anchor: the line is towed, let go, and comes to rest on its anchor."""
 
-from __future__ import annotations
-
 from contextlib import suppress
 from dataclasses import dataclass, replace
 

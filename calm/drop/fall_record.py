@@ -1,7 +1,5 @@
 """What the states of a chain tell of its pieces: depths, tensions, shapes."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -93,7 +91,7 @@ class FallPath:
     anchor_tension: Floats
 
 
-def place_of(chain: BarChain, state: ChainState, bar: Integers, place: Floats) -> Floats:
+def place_of(state: ChainState, bar: Integers, place: Floats) -> Floats:
     """(m, 3) of points at places of bars [m]."""
     share = place[:, np.newaxis]
     found: Floats = (1.0 - share) * state.node[bar] + share * state.node[bar + 1]
@@ -104,15 +102,12 @@ def piece_ends(chain: BarChain, state: ChainState) -> tuple[Floats, Floats]:
     """(p, 3) of the upper and of the lower end of every piece [m]."""
     first, end = chain.bars.T
     last = np.maximum(end - 1, first)
-    return (
-        place_of(chain, state, first, chain.span[:, 0]),
-        place_of(chain, state, last, chain.span[:, 1]),
-    )
+    return place_of(state, first, chain.span[:, 0]), place_of(state, last, chain.span[:, 1])
 
 
 def clamp_places(chain: BarChain, state: ChainState) -> Floats:
     """(m, 3) of the clamps [m]."""
-    return place_of(chain, state, chain.clamp_bar, chain.clamp_place)
+    return place_of(state, chain.clamp_bar, chain.clamp_place)
 
 
 def end_tensions(mover: Mover, state: ChainState, *, within: bool = False) -> Floats:
@@ -125,9 +120,8 @@ def end_tensions(mover: Mover, state: ChainState, *, within: bool = False) -> Fl
     In the first moment the anchor pushes what is beside it, where a real line goes slack.
     """
     on = mover.chain.elements
-    loads, axis, _ = mover.loads(
-        state.node.T, state.velocity.T, state.tension, mover.variation(state)
-    )
+    strain, _ = mover.strain(state.tension)
+    loads, axis, _ = mover.loads(state.node.T, state.velocity.T, strain, mover.variation(state))
     force = loads.force
     if within:
         force = np.where((on.place > 0.0) & (on.place < 1.0), force, 0.0)

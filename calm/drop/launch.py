@@ -4,8 +4,6 @@ The design check judges by it. The plan of the anchor drop (`calm.drop.plan`) is
 the same start, in finer bars and steps, and told at length.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from math import cos, hypot, nan, radians, sin
 from typing import Any

@@ -1,7 +1,5 @@
 """Forces on the loads of a chain that moves, and how they change with its motion."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -59,7 +57,7 @@ class Loads:
     ----------
     force : (3, k) [N]
     by_flow : (3, 3, k) per metre per second of the water past the load
-    by_axis : (3, 3, k) per unit of its bar's axis
+    by_axis : (3, 3, k) per unit that its bar's axis turns by, at right angles to it
     by_height : (3, k) per metre upward, the current it meets there included
     """
 
@@ -105,11 +103,12 @@ def loads_on(
     sized = kn * size
     drag = sized * across + square * axis
     # d(s n)/dn of the normal drag is s + n n/s; n = V - (V.t) t is at right angles to t
-    held, skewed = wet * sized, wet * (slope - on.directional * sized) * axis
+    held, skewed = wet * sized, wet * (slope - on.directional * sized)
+    turned = wet * square - along * held
     normal = (wet * kn / size * across)[:, np.newaxis] * across
-    by_flow = normal + skewed[:, np.newaxis] * axis
-    by_axis = skewed[:, np.newaxis] * flow - along * normal
-    by_axis[_DIAGONAL] += wet * square - along * held
+    by_flow = normal + (skewed * axis)[:, np.newaxis] * axis
+    by_axis = axis[:, np.newaxis] * (skewed * across - turned * axis) - along * normal
+    by_axis[_DIAGONAL] += turned
     if aside is not None:
         by_flow += (wet * aside * axis)[:, np.newaxis] * flow
     if oblique is not None:
@@ -185,10 +184,8 @@ def _afloat(
         immersed, drag = (np.interp(near, hull.draft, y) for y in (hull.immersed, hull.drag))
         whole = hull.weight + net[i]
         growth = -0.5 / (_STEP * hull.height)
-        lift[i], stiffness[i] = (
-            whole * immersed[1] - hull.weight,
-            growth * whole * (immersed[2] - immersed[0]),
-        )
+        lift[i] = whole * immersed[1] - hull.weight
+        stiffness[i] = growth * whole * (immersed[2] - immersed[0])
         wet[i], wetting[i] = drag[1], growth * (drag[2] - drag[0])
         push = push.copy()
         push[:2, i] += [np.interp(draft, hull.draft, hull.push[:, k]) for k in (0, 1)]

@@ -6,8 +6,6 @@ and the tensions, together: so a bar may be as stiff as it is, or inextensible. 
 matrix is a band.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
@@ -125,20 +123,19 @@ class Mover:
         self,
         node: Floats,
         velocity: Floats,
-        tension: Floats,
+        strain: Floats,
         variation: Floats,
         slowest: float = SLOWEST,
     ) -> tuple[Loads, Floats, Floats]:
         """The forces on the loads, the axes (3, n) of the bars and their lengths (n,) [m].
 
-        Of nodes and velocities (3, n+1).
+        Of nodes and velocities (3, n+1), and strains of bars (n,).
         """
         on = self.chain.elements
         bar, (above, below) = on.bar, on.share
         chord = np.diff(node)
         length = np.sqrt((chord * chord).sum(axis=0))
         axis = chord / length
-        strain, _ = self.strain(tension)
         height = above * node[2].take(bar) + below * node[2].take(bar + 1)
         moving = above * velocity.take(bar, axis=1) + below * velocity.take(bar + 1, axis=1)
         loads = loads_on(
@@ -203,8 +200,8 @@ class Mover:
         chain, on = self.chain, self.chain.elements
         node = np.ascontiguousarray(node.T)
         velocity = (node - before.T) / step
-        loads, axis, length = self.loads(node, velocity, tension, variation, slowest)
         strain, growth = self.strain(tension)
+        loads, axis, length = self.loads(node, velocity, strain, variation, slowest)
         bars = len(length)
         # of nodes and bars in turn, as the unknowns
         residual = np.zeros((4, bars + 1))
@@ -216,9 +213,7 @@ class Mover:
         stiff = tension / length * (_UNIT[:, :, np.newaxis] - axis[:, np.newaxis] * axis)
         own = loads.by_flow / -step
         own[:, 2] += loads.by_height
-        turned, bar_length = axis.take(on.bar, axis=1), length[on.bar]
-        along = (loads.by_axis * turned).sum(axis=1)
-        leaning = (loads.by_axis - along[:, np.newaxis] * turned) / bar_length
+        leaning = loads.by_axis / length[on.bar]
         # by the place of the upper and of the lower end, each shared between the two
         by_end = on.share[:, np.newaxis, np.newaxis] * own
         by_end[0] -= leaning

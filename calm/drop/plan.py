@@ -1,7 +1,5 @@
 """From a mooring and a ship to the plan of its anchor drop, which the ship has to know before."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from math import cos, radians, sin

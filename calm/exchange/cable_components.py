@@ -1,7 +1,5 @@
 """Make components of WHOI Cable's buoys, anchors, connectors and materials, with its drag."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from itertools import pairwise
@@ -19,7 +17,6 @@ _DYNAMICS = (
     "ei", "gj", "am", "amn", "amt", "can", "cat", "cmn", "cmt", "bn", "bt", "b", "cg", "cl",
     "i", "j", "g", "nu",
 )  # fmt: skip
-_YIELDS = ("swl", "yield")
 _STEPS = 12  # rows of a table between two diameters
 _SLIGHT = 1e-9
 
@@ -56,8 +53,8 @@ class ComponentMaker:
             raise definition.token.refuse(f"material `{name}` has neither `m` nor `wet`")
         figures: dict[str, FigureOrWord] = {
             "diameter": across,
-            "cn": self._drag(values, "cdn", depth, speed),
-            "ct": self._drag(values, "cdt", depth, speed),
+            "cn": _drag(values.get("cdn"), depth, speed),
+            "ct": _drag(values.get("cdt"), depth, speed),
         }
         weight, mass = self._at_reference(wet, mass)
         component = ImportedComponent.of_line(name, weight, figures)
@@ -87,27 +84,21 @@ class ComponentMaker:
             component.guesses["stiffness"] = "its tension at a strain of 0.01; the file has a curve"
         if stiffness > 0.0:
             component.figures["stiffness"] = stiffness
-        limit = {key: values.number(key) for key in _YIELDS}
-        if limit["yield"] > 0.0:
-            component.figures["breaking_load"] = limit["yield"]
-        if limit["swl"] > 0.0 and (not limit["yield"] or limit["swl"] <= limit["yield"]):
-            component.figures["working_load"] = limit["swl"]
+        working, breaking = values.number("swl"), values.number("yield")
+        if breaking > 0.0:
+            component.figures["breaking_load"] = breaking
+        if working > 0.0 and (not breaking or working <= breaking):
+            component.figures["working_load"] = working
 
     def connector(self, definition: CableDefinition) -> ImportedComponent:
         """Return a point in the line: a sphere of its drag, as long as the file says."""
         values, name = definition.values, definition.name
         wet, mass = self._at_reference(values.number("wet"), values.number("m", "mass"))
-        figures: dict[str, FigureOrWord] = {
-            "length": values.number("length"),
-            "buoyancy": 0.0 - wet,
-        }
         across, drag = values.number("d", "diam"), values.number("cdn")
-        if across > 0.0:
-            kind = "sphere"
-            figures = {"diameter": across, **figures, "cx": drag}
-        else:
-            kind = "body"
-            figures |= {"drag_area": 0.0, "cd": drag}
+        figures: dict[str, FigureOrWord] = {"diameter": across} if across > 0.0 else {}
+        figures |= {"length": values.number("length"), "buoyancy": 0.0 - wet}
+        kind = "sphere" if across > 0.0 else "body"
+        figures |= {"cx": drag} if across > 0.0 else {"drag_area": 0.0, "cd": drag}
         if mass:
             figures["mass"] = mass
         figures["role"] = role_of(name, -wet, fastener=abs(wet) < 20.0)
@@ -197,12 +188,6 @@ class ComponentMaker:
         volume = (mass - wet / self.gravity) / self.density
         return wet + (self.density - CATALOGUE_DENSITY) * self.gravity * volume, mass
 
-    def _drag(self, values: KeyValues, key: str, depth: float, speed: float) -> float:
-        value = values.get(key)
-        if value is None:
-            return 0.0
-        return value.at(depth if counts_on_depth(value) else speed)
-
     def _drop(self, definition: CableDefinition) -> None:
         found = [key for key in _DYNAMICS if key in definition.values]
         what = ", ".join({"ei": "EI", "gj": "GJ"}.get(key, key) for key in found)
@@ -216,14 +201,15 @@ def counts_on_depth(value: KeyValue) -> bool:
     return not value.rows or value.rows[-1][0].at() > _FASTEST
 
 
+def _drag(value: KeyValue | None, depth: float, speed: float) -> float:
+    return 0.0 if value is None else value.at(depth if counts_on_depth(value) else speed)
+
+
 def varies(definition: CableDefinition) -> bool:
     """Return whether a drag of a material is a function of depth."""
-    return any(
-        value is not None
-        and counts_on_depth(value)
-        and (bool(value.rows) or bool(value.formula and value.formula.names))
-        for value in (definition.values.get("cdn"), definition.values.get("cdt"))
-    )
+    given = [definition.values[key] for key in ("cdn", "cdt") if key in definition.values]
+    deep = [value for value in given if counts_on_depth(value)]
+    return any(value.rows or (value.formula and value.formula.names) for value in deep)
 
 
 def _displacement(

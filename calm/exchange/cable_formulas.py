@@ -1,7 +1,5 @@
 """Read formulas of problem files into functions, of the depth `H` where they depend on it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Lay the layout of a WHOI Cable problem as a mooring, a tow, or a net of legs."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from itertools import zip_longest

@@ -1,7 +1,5 @@
 """Read a problem file of WHOI Cable as a design, with its environment and currents beside it."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Callable, Mapping

@@ -4,8 +4,6 @@ The C preprocessors that can be had as libraries know no limit to what macros gr
 arguments, cut numbers such as `6e3` where `e3` is a macro, and let a comment without an end pass.
 """
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Iterable, Iterator, Mapping
@@ -90,15 +88,13 @@ class Preprocessor:
         conditions: list[tuple[bool, bool]] = []  # whether it holds, whether one has held
         for number, line in enumerate(_without_comments(text, shown), 1):
             found = _DIRECTIVE.match(line)
-            if found is None:
-                if all(holds for holds, _ in conditions):
-                    self._add(line, shown, number)
-                continue
-            word, rest = found[1], found[2].strip()
+            word, rest = (found[1], found[2].strip()) if found else ("", "")
             try:
-                if not self._condition(word, rest, conditions) and all(
-                    holds for holds, _ in conditions
-                ):
+                if self._condition(word, rest, conditions) or not all(one[0] for one in conditions):
+                    continue
+                if found is None:
+                    self._add(line, shown, number)
+                else:
                     self._directive(word, rest, path, root, within)
             except ValueError as error:
                 raise refused(shown, str(error), line=number) from None
@@ -186,13 +182,10 @@ class Preprocessor:
         self._file(target, root, (*within, real))
 
     def _add(self, line: str, path: str, number: int) -> None:
-        try:
-            expanded = self._expanded(line)
-        except ValueError as error:
-            raise refused(path, str(error), line=number) from None
+        expanded = self._expanded(line)
         self._size += len(expanded) + 1
         if self._size > _MOST_TEXT:
-            raise refused(path, "macros and includes make the text too long", line=number)
+            raise ValueError("macros and includes make the text too long")
         self._lines.append(SourceLine(expanded, path, number))
 
     def _expanded(self, text: str, hidden: frozenset[str] = frozenset()) -> str:

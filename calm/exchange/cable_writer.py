@@ -1,13 +1,17 @@
 """Write a mooring or a tow as a problem of WHOI Cable, for its statics and its dynamics."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from math import atan2, degrees, hypot, pi, sqrt
 
 from calm.exchange.design import is_called
-from calm.exchange.exported_parts import ExportedLine, ExportedPart, PartLoad, unique_name
+from calm.exchange.exported_parts import (
+    AS_A_POINT,
+    ExportedLine,
+    ExportedPart,
+    PartLoad,
+    unique_name,
+)
 from calm.files import Chain, Cylinder, Rigid, Sphere
 from calm.files.rigid import Displacement
 from calm.physics.hull import Hull, cylindrical_hull, spherical_hull, tabulated_hull
@@ -97,10 +101,7 @@ def cbl_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
     if floating:
         lost.append("how its drag grows with draft: its Cdn gives the drag at the present draft")
     elif design.tow is None:
-        lost.append(
-            "that the drag of the float acts at its middle and by its axis: its point has the "
-            "pull found here"
-        )
+        lost.append(AS_A_POINT)
     if buoy.flexible:
         lost.append("the free end of the line: a small sphere without weight is put there")
     elif not floating and design.tow is None and buoy.length > 0.0:

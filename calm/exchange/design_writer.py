@@ -3,8 +3,6 @@
 Anchors have the weights that hold its line.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import groupby
@@ -307,10 +305,10 @@ def _pulls(
     design: Design, anchors: list[ImportedComponent], environment: list[str] | None, output: Path
 ) -> list[tuple[ImportedComponent, float | None, float]]:
     """Return each anchor, the upward pull of the line on it and the weight that holds it [N]."""
-    figures = [anchor.figures for anchor in anchors]
+    before = [anchor.figures for anchor in anchors]
     for anchor in anchors:
-        anchor.figures = {**anchor.figures, "weight": _HOLDS}
-        anchor.figures.pop("mass", None)
+        anchor.figures = {k: one for k, one in anchor.figures.items() if k != "mass"}
+        anchor.figures["weight"] = _HOLDS
     try:
         read = load(output, text=mooring_text(design, "", environment)[0])
         assert not isinstance(read, Tow)
@@ -320,9 +318,7 @@ def _pulls(
     except CalmError:
         return [(anchor, None, 0.0) for anchor in anchors]
     finally:
-        for anchor, before in zip(anchors, figures, strict=True):
-            anchor.figures = before
-    return [
-        (anchor, load.vertical, load.required_weight or 0.0)
-        for anchor, load in zip(anchors, loads, strict=True)
-    ]
+        for anchor, figures in zip(anchors, before, strict=True):
+            anchor.figures = figures
+    pairs = zip(anchors, loads, strict=True)
+    return [(anchor, load.vertical, load.required_weight or 0.0) for anchor, load in pairs]

@@ -16,6 +16,12 @@ from calm.files.legs import EndKeys
 from calm.files.rigid import Displacement
 from calm.physics.seawater import REFERENCE_DENSITY
 
+AS_A_POINT = (
+    "that the drag of the float acts at its middle and by its axis: its point has the pull found "
+    "here"
+)
+"""What is said where a float is written as `ExportedLine.float_as_point` has it."""
+
 _LEAST_MASS = 0.1  # of what its net force weighs
 
 Coordinates = tuple[float, float, float]
@@ -116,25 +122,24 @@ class PartLoad:
     area: float = 0.0
     along: float = 0.0
 
+    def merge(self, other: PartLoad) -> None:
+        """Add what another does."""
+        self.names += other.names
+        self.net += other.net
+        self.mass += other.mass
+        self.area += other.area
+        self.along += other.along
+
     def add(self, part: ExportedPart, share: float = 1.0) -> None:
         """Add a part without its clamps; `share` is of its drag."""
-        self.names.append(part.use)
-        self.net += part.net
-        self.mass += part.likely_mass
-        self.area += share * part.area(self.density)
-        self.along += share * part.area(self.density, along=True)
+        areas = (share * part.area(self.density, along=along) for along in (False, True))
+        self.merge(PartLoad(self.density, [part.use], part.net, part.likely_mass, *areas))
 
     def add_whole(self, part: ExportedPart, share: float = 1.0) -> None:
         """Add a part with what is clamped on it; `share` is of its own drag."""
         self.add(part, share)
         for clamp, _ in part.clamps:
             self.add(clamp)
-
-    def merge(self, other: PartLoad) -> None:
-        """Add what another does."""
-        self.names += other.names
-        for name in ("net", "mass", "area", "along"):
-            setattr(self, name, getattr(self, name) + getattr(other, name))
 
     def per_metre(self, length: float) -> PartLoad:
         """Return the same load, spread over a length [m]."""

@@ -1,7 +1,5 @@
 """Export a mooring file to another program: its line as parts, written by one of the writers."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -130,7 +128,7 @@ def _exported_line(mooring: Mooring | Tow, solve: Solve) -> ExportedLine:
         tow = ExportedTow(*components(keys.speed, keys.toward), keys.height)
     else:
         anchor = file.anchor, mooring.anchor_weight
-    riding, windage = _riding(mooring, solve)
+    afloat, riding, windage = _at_the_surface(mooring, solve)
     return ExportedLine(
         name=file.name,
         parts=tuple(parts),
@@ -140,7 +138,7 @@ def _exported_line(mooring: Mooring | Tow, solve: Solve) -> ExportedLine:
         gravity=float(water.gravity),
         wind=(0.0, 0.0) if wind is None else components(wind.speed, wind.toward),
         tow=tow,
-        afloat=_reaches(mooring, solve),
+        afloat=afloat,
         has_draft=line.floating is not None and line.floating.hull is not None,
         riding=riding,
         windage=windage,
@@ -149,37 +147,30 @@ def _exported_line(mooring: Mooring | Tow, solve: Solve) -> ExportedLine:
     )
 
 
-def _reaches(mooring: Mooring | Tow, solve: Solve) -> bool:
-    """Return whether a mooring floats at the surface; by its length where it has no equilibrium."""
-    if isinstance(mooring, Tow):
-        return False
-    try:
-        return solve().type == "surface"
-    except NoEquilibrium:
-        whole = mooring.line.anchor_height + float(mooring.line.length.sum())
-        return whole >= float(mooring.water.depth)
-
-
-def _riding(
+def _at_the_surface(
     mooring: Mooring | Tow, solve: Solve
-) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return how the float stands at the surface: `riding` and `windage` of `ExportedLine`."""
-    floating = mooring.line.floating
-    if not _reaches(mooring, solve):
-        return (1.0, 1.0), (0.0, 1.0)
+) -> tuple[bool, tuple[float, float], tuple[float, float]]:
+    """Return `afloat`, `riding` and `windage` of `ExportedLine`; by length without equilibrium."""
+    below, line = (False, (1.0, 1.0), (0.0, 1.0)), mooring.line
+    if isinstance(mooring, Tow):
+        return below
     try:
         result = solve()
         assert isinstance(result, Result)
-        used = result.top.used_buoyancy
+        afloat, used = result.type == "surface", result.top.used_buoyancy
     except NoEquilibrium:
-        used = 1.0
+        whole = line.anchor_height + float(line.length.sum())
+        afloat, used = whole >= float(mooring.water.depth), 1.0
+    if not afloat:
+        return below
+    floating = line.floating
     if floating is None:
-        return (used, 1.0), (0.0, 1.0)
+        return True, (used, 1.0), (0.0, 1.0)
     seen = floating.riding(used).drag
     area = floating.wind_area
     if area is None:
         area = 0.0 if floating.hull is None else floating.hull.area * (1.0 - seen)
-    return (used, seen), (area, floating.wind_cd)
+    return True, (used, seen), (area, floating.wind_cd)
 
 
 def _secants(mooring: Mooring | Tow, solve: Solve) -> dict[int, float]:

@@ -4,8 +4,6 @@ Libraries that read MATLAB files and workbooks are written in C and Rust: on a d
 end the process, panic, or ask for all memory. Here that ends the child alone, and is an error.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 from collections.abc import Callable

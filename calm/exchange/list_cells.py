@@ -1,7 +1,5 @@
 """Read the cells of a list: its sheets, its numbers as people write them, and their units."""
 
-from __future__ import annotations
-
 import io
 import re
 from collections.abc import Iterable
@@ -52,7 +50,8 @@ _PLAIN_WORDS = re.compile(
     rf"\b(?:wet|dry|{_SUBSTANCES}|net|nett[oa]?|gross|brutto|each|ea|total|whole|nominal|nom|approx"
     r"|est|ca|outer|outside|od|id|mean|max|min|immersed|submerged|immerg[ée]e?|sec|nass|trocken"
     r"|sumergido|seco|mojado|off|btm|bottom|fond|mbl|cyl|sph|unit|pc|pcs|pieces?|stk|stück"
-    r"|st|x|pzas?|pi[èe]ces?)\b\.?"
+    r"|st|x|pzas?|pi[èe]ces?)\b\.?",
+    re.I,
 )
 _PER_METRE = re.compile(
     r"^(?P<unit>\S+?)\s*(?:/|\bper\b|\bpro\b|\bpar\b|\bpor\b|\bje\b)\s*(?P<count>\d*)\s*(?P<of>\S+)$"
@@ -106,8 +105,7 @@ def unit_called(text: str, what: str) -> ColumnUnit | None:
         if (found := _unit(plain, what)) is not None:
             return found
         less = _IN_WATER.sub(" ", plain.lower()) if _IN_WATER.search(plain.lower()) else ""
-        if not less:
-            less = re.sub(_PLAIN_WORDS.pattern, " ", plain, flags=re.I)
+        less = less or _PLAIN_WORDS.sub(" ", plain)
         less = " ".join(re.sub(r"[,;:]", " ", less).split()).strip(".- ")
         if less == plain:
             break
@@ -135,7 +133,7 @@ def unit_of_heading(heading: str, what: str) -> ColumnUnit | None:
         return found[0]
     bare = " ".join(_IN_WATER.sub(" ", _BRACKETS.sub(" ", spaced).replace("_", " ")).split())
     words = re.sub(r"(\s*/\s*)(?=[^/]*$)", "/", bare).rstrip(".:").split()
-    while len(words) > 1 and re.fullmatch(_PLAIN_WORDS, words[-1].lower()):
+    while len(words) > 1 and _PLAIN_WORDS.fullmatch(words[-1]):
         words.pop()
     for count in (3, 2, 1):
         if len(words) > count and (unit := _unit(" ".join(words[-count:]), what)):
@@ -173,13 +171,11 @@ def _factor(text: str, dimension: str) -> float | None:
     if dimension not in DIMENSIONS or text.lower() in _AMBIGUOUS:
         return None
     known = DIMENSIONS[dimension].units
-    near = [unit for unit in known if unit and unit.lower() == text.lower() and unit != "MN"]
+    near = {unit.lower(): unit for unit in known if unit != "MN"}
     spelled = text if text in known else _SPELLED.get(text.lower().rstrip("."), "")
-    spelled = spelled or (near[0] if near else "")
-    if not spelled:
-        return None
     try:
-        return unit_factor(spelled, dimension)
+        spelled = spelled or near.get(text.lower(), "")
+        return unit_factor(spelled, dimension) if spelled else None
     except QuantityError:
         return None
 
@@ -199,13 +195,10 @@ def number(cell: str, decimal: str = "") -> CellNumber:
     if text.lower() in _NOTHING:
         return CellNumber(None)
     bare = _BEFORE.sub("", text)
-    ratio = _RATIO.match(bare)
-    if ratio:
+    if ratio := _RATIO.match(bare):
         value = int(ratio["whole"] or 0) + int(ratio["over"]) / int(ratio["under"])
-        return CellNumber(
-            -value if ratio["sign"] in "-−" and ratio["sign"] else value,
-            bare[ratio.end() :].strip(), tidied=True,
-        )  # fmt: skip
+        value *= -1.0 if ratio["sign"] in ("-", "−") else 1.0
+        return CellNumber(value, bare[ratio.end() :].strip(), tidied=True)
     found = _NUMERAL.match(bare)
     if found is None:
         return CellNumber(None, wrong=f"`{cell}` is not a number")
@@ -286,14 +279,9 @@ def decimal_sign(cells: Iterable[tuple[str, str]]) -> tuple[str, str]:
     return decimal, ""
 
 
-def _is_spreadsheet(content: bytes) -> bool:
-    """Return whether a file is an Excel workbook, by its first bytes."""
-    return content.startswith(_SPREADSHEETS)
-
-
 def is_table(content: bytes) -> bool:
     """Return whether a file is a workbook, or text whose lines have the same separator."""
-    if _is_spreadsheet(content):
+    if content.startswith(_SPREADSHEETS):
         return True
     if content.startswith(_UTF_16):
         content = content[: len(content) // 2 * 2].decode("utf-16", "replace").encode()
@@ -309,7 +297,7 @@ def read_sheets(path: Path) -> dict[str, SheetRows]:
     read.
     """
     content = read_content(path, largest=_LARGEST)
-    workbook = _is_spreadsheet(content)
+    workbook = content.startswith(_SPREADSHEETS)
     sheets = _workbook(path, content) if workbook else {"": cells_in(_text(path, content))}
     for rows in sheets.values():
         if len(rows) > _MOST_ROWS or any(len(row) > _MOST_COLUMNS for row in rows):
@@ -321,9 +309,7 @@ def _cleaned(rows: SheetRows) -> SheetRows:
     """Rows without blanks at the ends of cells, empty cells at the end, and comments."""
     cleaned = []
     for row in rows:
-        cells = [
-            cell if isinstance(cell, WorkbookNumber) else " ".join(cell.split()) for cell in row
-        ]
+        cells = [one if isinstance(one, WorkbookNumber) else " ".join(one.split()) for one in row]
         while cells and not cells[-1]:
             cells.pop()
         if cells and not cells[0].startswith("#"):

@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterable, Mapping
+from itertools import accumulate
 from pathlib import Path
 
 import numpy as np
@@ -198,13 +199,9 @@ def _from_the_top(
 
 
 def _turned(rows: list[list_rows.ListRow]) -> list[list_rows.ListRow]:
-    groups: list[list[list_rows.ListRow]] = []
-    for row in rows:
-        if "at" in row.figures and groups:
-            groups[-1].append(row)
-        else:
-            groups.append([row])
-    return [row for group in reversed(groups) for row in group]
+    pieces = accumulate(int("at" not in row.figures) for row in rows)
+    numbered = sorted(zip(pieces, rows, strict=True), key=lambda pair: -pair[0])
+    return [row for _, row in numbered]
 
 
 def _items(rows: list[list_rows.ListRow]) -> list[ImportedPiece]:

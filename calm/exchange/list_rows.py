@@ -1,7 +1,5 @@
 """Read the rows of a list in SI, each with how it was interpreted, and make components of them."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Callable, Iterable

@@ -217,12 +217,10 @@ def _read_hdf5(content: bytes, wanted: Collection[str]) -> dict[str, MatValue]:
     """Return the wanted variables that a file has; links to other files are not followed."""
     import h5py
 
-    found: dict[str, MatValue] = {}
     with h5py.File(io.BytesIO(content), "r") as file:
-        for name in wanted:
-            if isinstance(file.get(name, getlink=True), h5py.HardLink):
-                found[name] = _variable(file, file[name], 0)
-    return found
+        links = {name: file.get(name, getlink=True) for name in wanted}
+        hard = [name for name, link in links.items() if isinstance(link, h5py.HardLink)]
+        return {name: _variable(file, file[name], 0) for name in hard}
 
 
 def _variable(file: Any, node: Any, depth: int) -> MatValue:

@@ -1,7 +1,5 @@
 """Read a `.mat` file of Mooring Design & Dynamics as a design, and write a line as one."""
 
-from __future__ import annotations
-
 import io
 import math
 from dataclasses import replace
@@ -10,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from calm.errors import refused
+from calm.exchange import mdd_elements
 from calm.exchange.design import (
     CurrentRecord,
     Design,
@@ -20,14 +19,7 @@ from calm.exchange.design import (
 )
 from calm.exchange.exported_parts import ExportedLine, ExportedPart
 from calm.exchange.mat_file import MatVariables, RealArray, read_variables
-from calm.exchange.mdd_elements import (
-    MddElement,
-    anchor_of,
-    piece_of,
-    read_elements,
-    rides_by_buoyancy,
-    rigid,
-)
+from calm.exchange.mdd_elements import MddElement
 from calm.files import Chain, Cylinder, Sphere
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.quantities import bearing_of
@@ -67,8 +59,8 @@ def read_mdd(path: Path) -> Design:
     if not sized:
         raise refused(path, "holds no mooring (`H`) and no tow (`Ht`) of that program")
     towed = sized[0] == "Ht"
-    elements, problems = read_elements(variables, "t" if towed else "")
-    clamped, more = read_elements(variables, "CO")
+    elements, problems = mdd_elements.read_elements(variables, "t" if towed else "")
+    clamped, more = mdd_elements.read_elements(variables, "CO")
     if problems := [*problems, *more]:
         raise refused(path, *problems)
     program = "Mooring Design & Dynamics"
@@ -92,12 +84,12 @@ def _lay_mooring(design: Design, elements: list[MddElement], path: Path) -> None
     last = elements[-1]
     if last.is_line or len(elements) < 2 or last.lift == 0.0:
         raise refused(path, f"element {last.number}, {last.name}, is not an anchor with a weight")
-    design.items = [piece_of(element) for element in elements[:-1]]
-    design.items.append(ImportedPiece(anchor_of(last)))
+    design.items = [mdd_elements.piece_of(element) for element in elements[:-1]]
+    design.items.append(ImportedPiece(mdd_elements.anchor_of(last)))
     depth = design.water.depth if design.water is not None else None
     if depth is None or _STRETCHED * sum(item.extent for item in design.items) >= depth:
-        design.items[0] = piece_of(replace(elements[0], mass=None))
-        rides_by_buoyancy(design.items[0].component)
+        design.items[0] = mdd_elements.piece_of(replace(elements[0], mass=None))
+        mdd_elements.rides_by_buoyancy(design.items[0].component)
 
 
 def _lay_tow(
@@ -107,7 +99,7 @@ def _lay_tow(
     end = elements[-1]
     if not end.is_line and end.length <= 0.01 and abs(end.lift) <= 0.011 and len(elements) > 1:
         elements = elements[:-1]
-    design.items = [piece_of(element) for element in reversed(elements)]
+    design.items = [mdd_elements.piece_of(element) for element in reversed(elements)]
     east, north = variables.first("Usp"), variables.first("Vsp")
     speed = math.hypot(east, north)
     if speed == 0.0:
@@ -138,7 +130,7 @@ def _clamp(design: Design, clamped: list[MddElement], variables: MatVariables, p
                 guess = f"`ZCO` has it at {height[i]:g} m, elsewhere than `Jobj` and `Pobj`"
         if place is None:
             raise refused(path, f"{element.name} is clamped at {height[i]:g} m, off the line")
-        design.items[place[0]].clamp(rigid(element), place[1], guess)
+        design.items[place[0]].clamp(mdd_elements.rigid(element), place[1], guess)
 
 
 def _by_share(design: Design, host: float, share: float) -> tuple[int, float] | None:
@@ -336,7 +328,7 @@ def _column(part: ExportedPart, lost: list[str]) -> tuple[float, ...]:
 
 
 def _size(part: ExportedPart, lost: list[str]) -> tuple[float, float, float]:
-    """Width, diameter and Cd with which an element drags as the rigid part does."""
+    """Width, diameter and Cd with which an element drags as the mdd_elements.rigid part does."""
     component = part.component
     if part.kn == 0.0:
         return 0.0, 0.0, 0.0

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections import defaultdict
+from collections.abc import Collection
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -78,6 +79,21 @@ class _File:
         if length <= 0.0:
             raise line.refuse("a line has no length")
         return ImportedPiece(_cable(kind, self.gravity), length)
+
+    def walk(
+        self, start: str, left: list[_Row], breaks: Collection[str]
+    ) -> tuple[list[str], list[_Row]]:
+        """Return the points and the lines from a point to one of `breaks`, taken from `left`."""
+        names, lines = [start], list[_Row]()
+        while not lines or names[-1] not in breaks:
+            line = next((line for line in self.at[names[-1]] if line in left), None)
+            if line is None:
+                break
+            lines.append(line)
+            left.remove(line)
+            a, b = line.ends
+            names.append(b if a == names[-1] else a)
+        return names, lines
 
     def along(self, names: list[str], lines: list[_Row], told: set[str]) -> list[ImportedPiece]:
         """Return lines, and what is at the points before and behind each that is not `told` yet."""
@@ -153,23 +169,14 @@ def _single_line(file: _File) -> tuple[list[str], list[_Row]] | None:
     floats = not _is_held(top) or (near and _lift(_figures(top)) > 0.0)
     if ends[0] not in held or {*held} - {*ends} or not floats:
         return None
-    names, lines, left = [ends[1]], list[_Row](), list(file.lines)
-    while met := [each for each in left if names[-1] in each.ends]:
-        lines.append(met[0])
-        left.remove(met[0])
-        names.append(_other_end(met[0], names[-1]))
-    return None if left else (names, lines)
+    left = list(file.lines)
+    found = file.walk(ends[1], left, ())
+    return None if left else found
 
 
 def _lift(figures: dict[str, FigureOrWord]) -> float:
     """What a point lifts, as a mass [kg]."""
     return CATALOGUE_DENSITY * float(figures["volume"]) - float(figures["mass"])
-
-
-def _other_end(line: _Row, name: str) -> str:
-    """Return the name of the point at the other end of a line."""
-    a, b = line.ends
-    return b if a == name else a
 
 
 def _is_held(point: _Row) -> bool:
@@ -339,13 +346,8 @@ def _lay_net(file: _File, path: Path) -> None:
     breaks = [name for name, met in file.at.items() if len(met) != 2 or _is_held(file.points[name])]
     left, told = list(file.lines), set[str]()
     for start in breaks:
-        while met := [line for line in file.at[start] if line in left]:
-            names, lines = [start], list[_Row]()
-            while met and (not lines or names[-1] not in breaks):
-                lines.append(met[0])
-                left.remove(met[0])
-                names.append(_other_end(met[0], names[-1]))
-                met = [line for line in file.at[names[-1]] if line in left]
+        while any(line in left for line in file.at[start]):
+            names, lines = file.walk(start, left, breaks)
             anchored = [_is_anchor(file, names[end]) for end in (0, -1)]
             rise = file.points[names[-1]].number("z") - file.points[names[0]].number("z")
             if all(anchored):

@@ -1,13 +1,12 @@
 """Write a mooring as an input file of MoorDyn 2, its points where they stand in equilibrium."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from itertools import groupby
 from math import pi, sqrt
 
 from calm.errors import UsageError
 from calm.exchange.exported_parts import (
+    AS_A_POINT,
     Coordinates,
     ExportedLine,
     ExportedPart,
@@ -149,10 +148,7 @@ def moordyn_file(*designs: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
             "mass, volume and drag as it floats here"
         )
     else:
-        lost.append(
-            "that the drag of the float acts at its middle and by its axis: its point has the "
-            "pull found here"
-        )
+        lost.append(AS_A_POINT)
     losses = first.losses([*lost, *(each for design in designs for each in design.omitted)])
     return _text(first, system, losses).encode(), losses
 

@@ -5,8 +5,6 @@ the bottom and most without any figure: those come from a library of elements or
 Where no rope is listed between two pieces, there is one as long as their heights leave room for.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field

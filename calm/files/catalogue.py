@@ -218,7 +218,7 @@ def _kinds() -> str:
     return ", ".join([*KINDS, "assembly"])
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class CatalogueEntry:
     """Hold a definition as written, with the name of the family (the file) it belongs to."""
 

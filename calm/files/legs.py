@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import BeforeValidator, Field, ValidationInfo
@@ -14,14 +14,12 @@ from calm.errors import unknown
 from calm.files.components import Anchor
 from calm.files.definition import Model, QuantityField, Text, described, optional
 from calm.files.environment import Position
+from calm.files.line_items import LineReader
 from calm.files.mooring_file import STAND_IN, MooringFile, Piece, Place, numbered, placed
 from calm.files.rigid import Profiler
 from calm.files.yaml_document import SourceMapping, validate
 from calm.positions import HEMISPHERES, Frame
 from calm.units import QuantityError
-
-if TYPE_CHECKING:
-    from calm.files.line_items import LineReader
 
 MOST_LEGS = 40
 NET_REFUSED = (

@@ -1,7 +1,5 @@
 """The `line` of a mooring file: items expanded into pieces, overrides applied, labels resolved."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from dataclasses import replace

@@ -2,8 +2,6 @@
 found, or everything resolved.
 """
 
-from __future__ import annotations
-
 import os.path
 from collections.abc import Sequence
 from pathlib import Path

@@ -4,8 +4,6 @@ Findings, reports, the manual and `checks: accept:` all read this table; the fun
 are in `calm.checks`.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 

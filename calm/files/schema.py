@@ -4,8 +4,6 @@ It is made from the models that read the file. It knows the keys, the kinds and 
 a unit; what needs the catalogue or several fields at once is left to the reader.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any
 

@@ -15,7 +15,7 @@ from calm.files.components import Anchor
 from calm.files.definition import Model, QuantityField, Text, described
 from calm.files.water import Toward
 from calm.files.yaml_document import SourceMapping
-from calm.records.seabed_grid import Floats, SeabedGrid
+from calm.records.grids import Floats, SeabedGrid
 
 if TYPE_CHECKING:
     from calm.files.check_limits import Checks

@@ -12,8 +12,6 @@ that as its `model`
 ===================================== ==========================================
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Literal, cast, get_args

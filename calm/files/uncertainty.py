@@ -1,7 +1,5 @@
 """`uncertainty:` of a mooring file: how sure its figures are, each with its default."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Annotated, Any
 

@@ -1,7 +1,5 @@
 """The gridded file: values, deviations and flags on levels, laid out as archives want it."""
 
-from __future__ import annotations
-
 import tempfile
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace

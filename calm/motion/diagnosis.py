@@ -6,8 +6,6 @@ misfit of a time, and errors that repeat from time to time counted once. The lik
 first, and the others are weighed again beside it, until none is likely.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations

@@ -1,7 +1,5 @@
 """Which part of a line an instrument is: by label, serial number, or order down the line."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """What was measured, out of files: which sensor hangs where, and which readings can be right."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import combinations

@@ -13,8 +13,6 @@ The fits of the times that were learnt from are kept: each other time begins at 
 are nearest to its own, with the slopes there.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 

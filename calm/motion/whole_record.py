@@ -1,7 +1,5 @@
 """What is common to the whole record: factors on the line, the datum, the offsets of sensors."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 

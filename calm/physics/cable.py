@@ -1,7 +1,5 @@
 """A stretch of cable or chain: straight segments, hinged, each in moment equilibrium."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from math import inf, sqrt
 

@@ -6,8 +6,6 @@ in place of those it calls; sequences become arrays, those of named tuples array
 liberty is taken with the arithmetic, so that both give the same digits.
 """
 
-from __future__ import annotations
-
 import hashlib
 import os
 import sys

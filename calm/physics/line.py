@@ -32,8 +32,6 @@ State = tuple[float, float, float, float, float, float, float, int]
 last axis's rise, the interval of the water. A bare tuple: in CPython a named one costs as much as
 half of a segment's balance."""
 
-BREATH = 1e-3
-"""A current that turns a slack line and moves nothing else [m/s]."""
 GOES_ON, RUNS_OFF, SEGMENT_UNBALANCED, ROD_UNBALANCED, ENDLESS, NO_ROOM = range(6)
 """Whether a march can go on, or why it cannot."""
 FAILURES = (
@@ -329,9 +327,7 @@ class Line(_Arrays):
         return replace(self, **columns, clamp_piece=self.clamp_piece + 1)
 
     def reversed(self) -> Line:
-        """Return the same line listed from its other end, from where its clamps are measured
-        then.
-        """
+        """Return the same line from its other end, from where its clamps are measured then."""
         on = self.clamp_piece
         return replace(
             self,
@@ -389,17 +385,7 @@ class Water(_Arrays):
 
     def still(self) -> Water:
         """Return the same water without current."""
-        zero = np.zeros_like(self.u)
-        return replace(self, u=zero, v=zero, w=zero)
-
-    def stirred(self) -> Water | None:
-        """Return the same water with a breath of current wherever it has less; None if nowhere.
-
-        A slack line that hangs in still water folds plumb, which is the limit of a weak current;
-        but how it turns where nothing pulls it sideways no march can say.
-        """
-        still = np.hypot(self.u, self.v) < BREATH
-        return replace(self, u=np.where(still, BREATH, self.u)) if still.any() else None
+        return replace(self, u=(zero := np.zeros_like(self.u)), v=zero, w=zero)
 
     def current_at(self, depth: Floats) -> Floats:
         """Current (..., 3) [m/s] at depths of any shape [m]."""

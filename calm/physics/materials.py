@@ -1,7 +1,5 @@
 """What components are made of: the materials known, and what follows from each."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from typing import Literal

@@ -10,8 +10,6 @@ of the profile. Given cuts are taken as they are, which makes the end of the lin
 of its start.
 """
 
-from __future__ import annotations
-
 from collections.abc import MutableSequence
 from math import isfinite
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Current, density and viscosity by depth, as the march looks them up."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import cached_property
 from math import inf, isfinite

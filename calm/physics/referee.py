@@ -4,8 +4,6 @@ All follows from the coordinates. The flow is looked up, and drag and friction a
 from the laws of the march; only measured curves (of stretch, of drag, of strumming) are the same.
 """
 
-from __future__ import annotations
-
 from collections.abc import MutableSequence, Sequence
 from math import atan2, pow, sqrt
 from sys import float_info

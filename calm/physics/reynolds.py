@@ -5,8 +5,6 @@ remove it: a 1 m float in 0.5 m/s comes out at Cx = 0.1 as a smooth sphere, wher
 used for real ones. So nothing takes these curves unless it is declared smooth.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from math import log, pow, sqrt

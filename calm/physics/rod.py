@@ -1,7 +1,5 @@
 """A rigid body in moment equilibrium: one piece with its clamps, or the head of the line."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from math import inf
 

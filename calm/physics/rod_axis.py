@@ -2,8 +2,6 @@
 middle no force turns it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from math import inf, sqrt
 

@@ -1,8 +1,6 @@
 """The part of a line that lies on the seabed, a plane: straight, held by friction, out of the
 current."""
 
-from __future__ import annotations
-
 from collections.abc import MutableSequence, Sequence
 from math import sqrt
 from typing import Any

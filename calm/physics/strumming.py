@@ -5,8 +5,6 @@ has a mode near every frequency, so it is taken to strum wherever it sheds vorti
 current, with attachments or fairing, it strums less, and these factors are the upper end.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import asin, cbrt, cos, inf, pi, pow, radians, sin, sqrt

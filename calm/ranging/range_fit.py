@@ -6,8 +6,6 @@ normal and alike.
 What was located is written into the mooring file that it was for.
 """
 
-from __future__ import annotations
-
 from dataclasses import asdict, dataclass
 from math import atan2, degrees, hypot, nan, sqrt
 from pathlib import Path

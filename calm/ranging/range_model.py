@@ -6,8 +6,6 @@ judged by the others (Student's test, all of them together at 1 %). Where none c
 A survey may not agree with itself, or not tell one place from another: it is said.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from math import sqrt

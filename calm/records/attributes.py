@@ -119,16 +119,12 @@ def other_frame(attributes: Mapping[Any, Any]) -> str | None:
     for name in filter(_FRAMES.fullmatch, map(str, attributes)):
         frame = str(attributes[name]).lower()
         if _OTHER_FRAME.search(frame) and not _TO_THE_EARTH.search(frame):
-            return (
-                f"is in other coordinates, `{name}: {attributes[name]}`, not to the east and "
-                "north; rotate it to the earth's first"
-            )
+            said = f"is in other coordinates, `{name}: {attributes[name]}`"
+            return f"{said}, not to the east and north; rotate it to the earth's first"
     for name in filter(_ROTATION.fullmatch, map(str, attributes)):
         if str(attributes[name]).strip().lower() not in _NO:
-            return (
-                f"is rotated, `{name}: {attributes[name]}`, not to the east and north; rotate it "
-                "back first"
-            )
+            said = f"is rotated, `{name}: {attributes[name]}`"
+            return f"{said}, not to the east and north; rotate it back first"
     return None
 
 
@@ -146,14 +142,14 @@ def is_magnetic(variable: xr.DataArray, dataset: Mapping[Any, Any] = MappingProx
 
 def is_magnetic_by(attributes: Mapping[Any, Any]) -> bool:
     """Return whether attributes say that directions are relative to magnetic north."""
-    return any(_counts_from_it(str(name), said) for name, said in attributes.items())
-
-
-def _counts_from_it(name: str, said: Any) -> bool:
-    """Return whether an attribute says that directions are relative to magnetic north."""
-    if _UNTURNED.fullmatch(name):
-        return str(said).strip().lower() in _NO
-    return _says_so(said, _MAGNETIC if _DATUM.fullmatch(name) else _MAGNETIC_NORTH)
+    for name, said in attributes.items():
+        if _UNTURNED.fullmatch(str(name)):
+            counted = str(said).strip().lower() in _NO
+        else:
+            counted = _says_so(said, _MAGNETIC if _DATUM.fullmatch(str(name)) else _MAGNETIC_NORTH)
+        if counted:
+            return True
+    return False
 
 
 def _says_so(said: Any, magnetic: re.Pattern[str]) -> bool:

@@ -181,14 +181,12 @@ def known_values(variable: xr.DataArray) -> NDArray[np.float64]:
 
 def valid_range(variable: xr.DataArray) -> tuple[float, float]:
     """Return the least and the greatest valid value, unpacked."""
-    attributes = variable.attrs
-    low, high = attributes.get("valid_min"), attributes.get("valid_max")
-    both = attributes.get("valid_range")
+    low, high = (variable.attrs.get(name) for name in ("valid_min", "valid_max"))
+    both = variable.attrs.get("valid_range")
     if both is not None and len(both) == 2:
         low, high = both
-    least = _unpacked(low, variable, -inf)
-    greatest = _unpacked(high, variable, inf)
-    return min(least, greatest), max(least, greatest)
+    ends = _unpacked(low, variable, -inf), _unpacked(high, variable, inf)
+    return min(ends), max(ends)
 
 
 def _unpacked(limit: Any, variable: xr.DataArray, absent: float) -> float:
@@ -199,11 +197,8 @@ def _unpacked(limit: Any, variable: xr.DataArray, absent: float) -> float:
     packed = np.dtype(variable.encoding.get("dtype", np.float64))
     if limit is None or not (packed.kind in "iu" and np.asarray(limit).dtype.kind in "iu"):
         return value
-    scale, offset = (
-        float(variable.encoding.get(name, default))
-        for name, default in (("scale_factor", 1.0), ("add_offset", 0.0))
-    )
-    return value * scale + offset
+    packing = variable.encoding
+    return value * float(packing.get("scale_factor", 1.0)) + float(packing.get("add_offset", 0.0))
 
 
 def texts_of(variable: xr.DataArray) -> list[str]:

@@ -15,6 +15,7 @@ from calm.records import cf_files
 from calm.records.attributes import remarks_in_texts
 from calm.records.cf_files import holdings
 from calm.records.current_terms import Terms, current_notices
+from calm.records.grids import GridColumn, choose_column, is_regular
 from calm.records.level_depths import LevelDepths, find_levels
 from calm.records.profile_tables import turned_by
 from calm.records.record import RULES, Levels, Period, Record, choose_profiles, part
@@ -27,7 +28,6 @@ from calm.records.velocity import (
     refuse_ragged,
     with_components,
 )
-from calm.records.water_column import GridColumn, choose_column, is_regular
 
 if TYPE_CHECKING:
     import xarray as xr

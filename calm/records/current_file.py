@@ -24,10 +24,10 @@ from calm.records.cf_files import UnreadableError, is_dataset, open_current, rea
 from calm.records.current_dataset import ArrayRecord, CurrentArrays, understand
 from calm.records.current_terms import Terms, TimeChoiceError, choose_time, current_notices
 from calm.records.delimited import COMMENT, CellRow, NumberedLine, abridged, is_gap, read_table
+from calm.records.grids import Place
 from calm.records.headings import heading, is_time, magnetic_columns, zone_complaint
 from calm.records.profile_tables import CurrentTable, QuantityTable, read_currents, turned_notices
 from calm.records.record import RULES, Levels, Period, Record, choose_profiles, part
-from calm.records.water_column import Place
 
 _ZARR = ("zarr.json", ".zgroup", ".zmetadata")
 

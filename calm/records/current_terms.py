@@ -15,7 +15,7 @@ from calm.physics.line import Floats
 from calm.quantities import say
 
 if TYPE_CHECKING:
-    from calm.records.water_column import Place
+    from calm.records.grids import Place
 
 DEEPEST = 11_000.0
 """Depth that no sea exceeds [m]."""

@@ -4,8 +4,6 @@
 several words needs brackets around its unit, or a unit that is known.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Tables of quantities by depth: named columns, each with its unit, and rows of numbers, in SI."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Callable, Mapping, Sequence

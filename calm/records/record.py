@@ -19,7 +19,7 @@ from calm.errors import UsageError, refused
 from calm.physics.line import Floats
 from calm.positions import plain_degrees
 from calm.records.current_terms import TimeChoiceError, parse_time, time_text
-from calm.records.water_column import Place
+from calm.records.grids import Place
 
 Times = NDArray[np.datetime64]
 Index = slice | NDArray[np.intp]
@@ -170,19 +170,19 @@ def choose_profiles(
         order = np.argsort(times, kind="stable")
         notes.append("the profiles were not in the order of time, and have been sorted")
         times = times[order]
-    _refuse_repeats(times, path)
-    first, last = 0, len(times)
-    if period is not None:
-        start, stop = period
-        first = 0 if start is None else int(np.searchsorted(times, start, "left"))
-        last = last if stop is None else int(np.searchsorted(times, stop, "right"))
-        if first >= last:
-            raise UsageError(
-                f"{path} has no profile in this period: it is from {time_text(times[0])} to "
-                f"{time_text(times[-1])}"
-            )
-        if last - first < len(times):
-            notes.append(f"{last - first} of the {len(times)} profiles are in the period asked for")
+    again = np.flatnonzero(times[1:] == times[:-1])
+    if len(again):
+        more = f", and {len(again) - 1} more times" if len(again) > 1 else ""
+        message = f"has two profiles of {time_text(times[again[0]])}{more}; leave one of them out"
+        raise refused(path, message)
+    start, stop = period or (None, None)
+    first = 0 if start is None else int(np.searchsorted(times, start, "left"))
+    last = len(times) if stop is None else int(np.searchsorted(times, stop, "right"))
+    if first >= last:
+        span = f"{time_text(times[0])} to {time_text(times[-1])}"
+        raise UsageError(f"{path} has no profile in this period: it is from {span}")
+    if last - first < len(times):
+        notes.append(f"{last - first} of the {len(times)} profiles are in the period asked for")
     chosen = slice(first, last, every)
     if every > 1:
         notes.append(f"one profile in {every} is taken, from the first on")
@@ -209,10 +209,8 @@ def _end(text: str, *, whole: bool) -> np.datetime64 | None:
         return None
     try:
         if _PART_OF_A_DATE.fullmatch(text):
-            date: Any = np.datetime64(text)  # of a year, a month or a day
-            if whole:
-                return _in_reach((date + 1).astype("M8[us]")) - np.timedelta64(1, "ns")
-            return _in_reach(date.astype("M8[us]"))
+            date: Any = np.datetime64(text) + int(whole)  # of a year, a month or a day
+            return _in_reach(date.astype("M8[us]")) - np.timedelta64(int(whole), "ns")
         return _in_reach(parse_time(text))
     except TimeChoiceError as error:
         raise UsageError(str(error)) from None
@@ -225,14 +223,6 @@ def _in_reach(moment: np.datetime64) -> np.datetime64:
     first, last = (np.datetime64(end, "us") for end in REACH)
     near: Any = min(max(moment, first), last)
     return np.datetime64(near, "ns")
-
-
-def _refuse_repeats(times: Times, path: Path) -> None:
-    again = np.flatnonzero(times[1:] == times[:-1])
-    if len(again):
-        more = f", and {len(again) - 1} more times" if len(again) > 1 else ""
-        message = f"has two profiles of {time_text(times[again[0]])}{more}; leave one of them out"
-        raise refused(path, message)
 
 
 DAYS = 30

@@ -1,7 +1,5 @@
 """Sea states: spectra of the elevation of the sea, and the waves that they are made of."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import exp, isfinite, nan, pi, sqrt

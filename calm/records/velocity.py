@@ -54,6 +54,7 @@ _TOWARD = _Sought(
     ("sea_water_velocity_to_direction", "direction_of_sea_water_velocity"),
     ("HCDT", "toward", "CD_310", "LCDAAP01"),
 )
+_FLOWS = {"to": "flows to", "from": "comes from"}
 _FROM = _Sought(("sea_water_velocity_from_direction",), ())
 
 _ALONG_THE_GRID = {"sea_water_x_velocity": _EAST, "sea_water_y_velocity": _NORTH}
@@ -121,8 +122,7 @@ def find_velocity(dataset: xr.Dataset, *, regular: bool) -> Velocity:
     speed = _find(dataset, _SPEED, regular, notes)
     direction, way = _direction(dataset, regular, notes)
     if speed is not None and direction is not None and way is not None:
-        flows = "the current flows to" if way == "to" else "the current comes from"
-        notes.append(f"`{direction}` is the direction {flows}")
+        notes.append(f"`{direction}` is the direction the current {_FLOWS[way]}")
         turn = 0.0 if way == "to" else 180.0
         magnetic_north = is_magnetic(dataset[direction], dataset.attrs)
         return Velocity((speed, direction), up, turn, magnetic_north, tuple(notes))
@@ -150,7 +150,7 @@ def _direction(
                 said = dataset[name].attrs.get("long_name") or dataset[name].attrs.get("comment")
                 raise UnreadableError(
                     f"`{name}` contradicts itself: by its name it is the direction the current "
-                    f"{'flows to' if way == 'to' else 'comes from'}, and it says `{said}`"
+                    f"{_FLOWS[way]}, and it says `{said}`"
                 )
             return name, way
     unclear = next((name for name in _AMBIGUOUS if name in dataset.data_vars), None)
@@ -274,12 +274,8 @@ def flag_variable(dataset: xr.Dataset, name: str) -> xr.DataArray | None:
 
 
 def _tells_flags(variable: xr.DataArray) -> bool:
-    standard_name = str(variable.attrs.get("standard_name", ""))
-    return (
-        "status_flag" in standard_name
-        or "flag_values" in variable.attrs
-        or variable.dtype.kind in "iu"
-    )
+    named = "status_flag" in str(variable.attrs.get("standard_name", ""))
+    return named or "flag_values" in variable.attrs or variable.dtype.kind in "iu"
 
 
 def flags_of(variable: xr.DataArray) -> NDArray[np.int8]:

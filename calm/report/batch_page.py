@@ -1,7 +1,5 @@
 """The statistics of a batch as a page with tables, in short, and the files beside its result."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial

@@ -1,7 +1,5 @@
 """The statistics of a batch as JSON, with names, times and shares in words."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, replace
 from typing import Any

@@ -1,7 +1,5 @@
 """What an engineer signs: the figures that decide a design check, for page one and for JSON."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace

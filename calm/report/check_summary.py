@@ -1,7 +1,5 @@
 """The worst of many findings: of a rule in an environment, of a mooring, of a whole check."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections import Counter

@@ -3,8 +3,6 @@
 In short they are the matrix, the worst of each rule, and what to mend.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial

@@ -1,7 +1,5 @@
 """The deck of one mooring: its pages, and its sheets as files that a spreadsheet opens."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from datetime import datetime

@@ -1,7 +1,5 @@
 """Cutting list, hardware bill, shipping list, lifts and instrument sheet."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import groupby
 from typing import Any

@@ -1,7 +1,5 @@
 """The deployment log and the recovery log, with boxes to fill in."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """The mooring diagram for the wall, over as many pages as it needs, each with its title block."""
 
-from __future__ import annotations
-
 from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass

@@ -3,8 +3,6 @@
 A report as PDF is set by typst.
 """
 
-from __future__ import annotations
-
 import contextlib
 import json
 import os

@@ -1,7 +1,5 @@
 """Where a report comes from: title block, inputs, versions, date and a hash."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import os

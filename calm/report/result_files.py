@@ -1,7 +1,5 @@
 """Results as files: JSON; CSV, a row for each piece and clamp; NetCDF with a batch's names."""
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Iterator, Mapping, Sequence

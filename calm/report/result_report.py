@@ -1,7 +1,5 @@
 """The report of a single solved mooring or tow."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from math import isnan
 from typing import Any

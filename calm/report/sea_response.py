@@ -1,7 +1,5 @@
 """What waves do to a mooring, as a person reads it."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from math import isnan
 

@@ -3,8 +3,6 @@
 Of a net they are the table of its legs, its nodes, and what its ends bear.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace

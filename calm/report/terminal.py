@@ -1,7 +1,5 @@
 """What CALM says on a terminal: tables without rules, and nothing that hangs on colour alone."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any

@@ -6,8 +6,6 @@ is stretched as that force has it. Neither uses a number that the march left beh
 positions.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

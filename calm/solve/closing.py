@@ -4,8 +4,6 @@ The *miss* is the height of the line's last end above where it is to be [m]: the
 or the ship that tows it. It falls as the free end goes deeper and as more buoyancy is used.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import isnan, nan
 from typing import NamedTuple

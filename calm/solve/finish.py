@@ -1,7 +1,5 @@
 """From a closed line to a solution, or to the reason why there is none."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Cutting a piece to length: a mooring's top in still water, or a tow at its speed, to a depth."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from math import inf
 

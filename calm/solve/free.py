@@ -13,8 +13,6 @@ Where the force above a part points downward, that part overtakes what is above 
 doubles back: the balance holds there as elsewhere, but the line may tangle.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, fields, replace
 from itertools import compress
 from math import nan

@@ -5,8 +5,6 @@ from both its ends to where its tension should be greatest: a march that comes t
 the last of its tension swings wildly there, one that starts from it does not.
 """
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
 from functools import cached_property

@@ -1,7 +1,5 @@
 """How the velocity of a line that moves freely is found: Newton's method, Broyden's updates."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import copysign, sqrt

@@ -1,7 +1,5 @@
 """Where the root is: below the surface from the upright side, else at the surface float."""
 
-from __future__ import annotations
-
 from math import isnan, nan, sqrt
 from typing import NamedTuple
 

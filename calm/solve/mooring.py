@@ -6,9 +6,8 @@ drowns a small change. Here every neighbour keeps the cuts of the first shape an
 root: two or three marches close it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, MutableSequence, Sequence
+from dataclasses import replace
 from math import isnan
 from typing import NamedTuple
 
@@ -54,6 +53,20 @@ MORE_ROOM = 8
 """How many times as much room a line gets that needs more segments."""
 
 
+BREATH = 1e-3
+"""A current that turns a slack line and moves nothing else [m/s]."""
+
+
+def stirred(water: Water) -> Water | None:
+    """Return the same water with a breath of current wherever it has less; None if nowhere.
+
+    A slack line that hangs in still water folds plumb, which is the limit of a weak current; but
+    how it turns where nothing pulls it sideways no march can say.
+    """
+    still = np.hypot(water.u, water.v) < BREATH
+    return replace(water, u=np.where(still, BREATH, water.u)) if still.any() else None
+
+
 def solve_mooring(line: Line, water: Water, settings: Settings | None = None) -> Solution:
     """Solve for the static equilibrium of a moored line.
 
@@ -85,8 +98,8 @@ def solve_mooring(line: Line, water: Water, settings: Settings | None = None) ->
         if not lacks_room(problem):
             break
         room *= MORE_ROOM
-    if found.ending == SLACK_ON_DIGITS and (stirred := water.stirred()):
-        return solve_mooring(line, stirred, settings)
+    if found.ending == SLACK_ON_DIGITS and (moving := stirred(water)):
+        return solve_mooring(line, moving, settings)
     return solution_found(found, problem, line, water, settings)
 
 

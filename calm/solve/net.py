@@ -6,8 +6,6 @@ places of the nodes; asked is that every leg ends where it is held and that the 
 balance: see `calm.solve.net_march`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import isfinite
@@ -21,6 +19,7 @@ from calm.physics.line import FAILURES, GOES_ON, Floats, Line, Trace, Water
 from calm.physics.profile import Profile
 from calm.solve import net_closing, net_march
 from calm.solve.finish import refuse_unbalanced
+from calm.solve.mooring import stirred
 from calm.solve.net_closing import AskedNet, ask_net, ask_now
 from calm.solve.net_leg import (
     LaidLeg,
@@ -227,9 +226,9 @@ def solve_net(
         except LacksRoom:
             room *= MORE_ROOM
         except NoEquilibrium:
-            if (stirred := water.stirred()) is None:
+            if (moving := stirred(water)) is None:
                 raise
-            water = stirred
+            water = moving
 
 
 def about(net: NetSearch, near: NetSolution | None) -> Floats:

@@ -3,8 +3,6 @@
 Slopes are kept by Broyden's rule while they lead on.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, MutableSequence, Sequence
 from math import inf, sqrt
 from typing import Any, NamedTuple

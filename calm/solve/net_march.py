@@ -4,8 +4,6 @@ Unknown are the depths of free ends, the pulls on upper ends that are not free, 
 nodes; slopes are differences of marches on the same segments.
 """
 
-from __future__ import annotations
-
 from collections.abc import MutableSequence, Sequence
 from math import degrees, inf
 from typing import Any, NamedTuple

@@ -1,7 +1,5 @@
 """A line to be closed as the search takes it: plain numbers, and room to work in."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, MutableSequence, Sequence
 from math import degrees
 from typing import Any, NamedTuple

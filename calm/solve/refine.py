@@ -9,8 +9,6 @@ bends, may count for the same on coarse and on halved segments. It shows as a be
 neighbours, and that is added.
 """
 
-from __future__ import annotations
-
 from math import degrees, inf, isnan, sqrt
 from typing import Any, NamedTuple
 

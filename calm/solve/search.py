@@ -4,8 +4,6 @@ What is found clear of the seabed, or lying on it, is refined, looked at for wha
 water or in the seabed, and audited.
 """
 
-from __future__ import annotations
-
 from collections.abc import MutableSequence, Sequence
 from math import isnan, nan
 from typing import NamedTuple

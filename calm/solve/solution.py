@@ -5,8 +5,6 @@ by numba, it is compiled once that pays: fetching it costs as much as `WARM` moo
 first as much as `COLD`. `CALM_COMPILED=never` and `always` settle what is left open.
 """
 
-from __future__ import annotations
-
 import os
 from dataclasses import dataclass
 from enum import Enum

@@ -4,8 +4,6 @@ What it is sought from follows from the profile alone, so that neither the order
 company changes a digit.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from math import isnan, nan, sqrt
 

@@ -1,7 +1,5 @@
 """A towed line: how deep its free end runs behind a ship that steams on steadily."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

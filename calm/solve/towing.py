@@ -1,7 +1,5 @@
 """The marches of a tow, and its root on fixed segments."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import isnan, sqrt
 from typing import Any

@@ -3,8 +3,6 @@
 None accepts a figure that is not known: that is for whoever signs the design.
 """
 
-from __future__ import annotations
-
 from typing import Literal
 
 Template = Literal["shelf", "deep", "adcp-frame", "taut-surface", "slack-surface", "tow"]

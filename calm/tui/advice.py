@@ -3,16 +3,14 @@
 Nothing here knows of the screen. What has to be solved for is found by `calm size`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from math import ceil
-from typing import TYPE_CHECKING
 
 from calm.case import Mooring, Result
 from calm.case.adjustment import parse_change
+from calm.case.net import Net
 from calm.case.size import NOT_MET, size
 from calm.case.targets import parse_target
 from calm.checks.finding import Finding, State
@@ -22,9 +20,6 @@ from calm.files.editing import Draft
 from calm.quantities import QUANTITIES, rounded, say
 from calm.solve import Status
 from calm.tui.live import View, judge
-
-if TYPE_CHECKING:
-    from calm.case.net import Net
 
 _DIGITS = 3
 _ANCHOR = ("anchor-weight", "anchor-uplift", "anchor-sliding")

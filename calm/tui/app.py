@@ -1,14 +1,12 @@
 """The application: it owns the turns of the keys, the workers and the way out; screens own what is
 shown."""
 
-from __future__ import annotations
-
 import os
 import sys
 import time
 from collections import deque
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 from rich.console import RenderableType
 from textual import events, work
@@ -22,6 +20,7 @@ from textual.timer import Timer
 from textual.widgets import OptionList
 
 from calm.errors import CalmError
+from calm.files import Catalogue
 from calm.files.editing import KeptWork, WorkingFile
 from calm.tui.dialogs import LongText
 from calm.tui.key_table import Actions, Commands, all_keys
@@ -32,9 +31,6 @@ from calm.tui.screen import DraftScreen
 from calm.tui.session import Session
 from calm.tui.theme import DARK, LIGHT, PICTURE_DARK, PICTURE_LIGHT, choose_theme, legible
 from calm.tui.workspace import Judging, Workspace
-
-if TYPE_CHECKING:
-    from calm.files import Catalogue
 
 _AUTOSAVED_AFTER = 0.3  # seconds
 _LOOKED_AT_DISK = 2.0  # seconds between two looks

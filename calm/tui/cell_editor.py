@@ -1,7 +1,5 @@
 """A table whose values are edited where they stand."""
 
-from __future__ import annotations
-
 from typing import ClassVar, Literal
 
 from textual import events

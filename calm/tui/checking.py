@@ -1,7 +1,5 @@
 """What a person types, judged as it is typed: taken, completed by its unit, or refused."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

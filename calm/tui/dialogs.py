@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+from typing import Any, ClassVar, TypeVar
 
+from rich.console import RenderableType
 from textual import on
 from textual.app import App, ComposeResult
 from textual.binding import BindingType
@@ -18,9 +19,6 @@ from textual.widgets import Static
 from calm.tui.checking import Reading
 from calm.tui.field import Asked, Field, all_settled
 from calm.tui.key_table import bindings
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
 
 _FRAME = """
     align: center middle;

@@ -1,7 +1,5 @@
 """All actions of the builder and their keys: where they work, as hints, in help and palette."""
 
-from __future__ import annotations
-
 from collections.abc import Awaitable, Callable, Iterable
 from dataclasses import dataclass
 from functools import partial

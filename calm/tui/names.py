@@ -1,7 +1,5 @@
 """What a file names: its pieces by their labels, kept in step with the line; its environments."""
 
-from __future__ import annotations
-
 import os.path
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """A screen that shows and edits the draft: title, what is made of it, keys."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 
 from rich.cells import cell_len

@@ -4,8 +4,6 @@ Textual lays the whole screen out where the length of anything in it changes, 10
 key of a search. Nothing here has a size that depends on what it shows.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar

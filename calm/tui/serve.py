@@ -4,8 +4,6 @@ Each page that is opened is an application of its own. Only this machine is list
 needs the token of its address, and what another site's page sends here is refused.
 """
 
-from __future__ import annotations
-
 import asyncio
 import os
 import secrets

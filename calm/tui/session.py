@@ -3,8 +3,6 @@
 Nothing here knows of the screen; nothing is computed here.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any

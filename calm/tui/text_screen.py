@@ -1,7 +1,5 @@
 """The file as text, its mistakes below it: where a broken file is mended."""
 
-from __future__ import annotations
-
 import re
 from typing import ClassVar
 

@@ -1,7 +1,5 @@
 """The colours: a dark one and a light one, or those of a terminal that has but sixteen."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache

@@ -4,8 +4,6 @@ Braconnot's charts of EDF give a buoy, towed cables and a point of the curve; th
 Bourget & Marichal strums; Villain-Guillot solves a cable with linear drag in closed form.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache, partial
 from math import atan2, cos, degrees, pi, radians, sin

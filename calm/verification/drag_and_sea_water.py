@@ -5,8 +5,6 @@ published fits say by how much strumming raises them; the last figures are those
 the original CALM.
 """
 
-from __future__ import annotations
-
 from functools import partial
 from math import exp, pow
 

@@ -1,7 +1,5 @@
 """Check what must hold for every line (C20), and how the error falls with the angle step."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache, partial

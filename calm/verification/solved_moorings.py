@@ -3,8 +3,6 @@
 S1000 is 1000 m of stretchy cable in a sheared current; two other programs have solved CDMS-1.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import cache, partial
 from math import atan2, degrees, log2, pi, radians

@@ -3,8 +3,6 @@
 The rope (C15) hangs from its load and its own weight; the slack mooring (C22) has a watch circle.
 """
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from functools import cache

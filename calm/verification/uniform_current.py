@@ -4,8 +4,6 @@ C1 to C5 are a float on a thread, a neutral line and a heavy line; C7 and C8 a b
 critical angle and a cable that tows a body; C6 is Pode's cable functions and their identities.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache, partial
 from math import degrees, hypot, radians

@@ -1,7 +1,5 @@
 """Extremes of a Gaussian tension, and the fatigue it does: cycles by Dirlik, damage by Miner."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import exp, gamma, isnan, log, pi, sqrt

@@ -6,9 +6,9 @@ from collections import Counter
 from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parents[2] / "calm"
-MOST_LINES = 89_600
-MOST_MODULES = 357
-MOST_IMPORTS = 0.093
+MOST_LINES = 88_550
+MOST_MODULES = 348
+MOST_IMPORTS = 0.091
 """Share of the lines of code that import something."""
 
 

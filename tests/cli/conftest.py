@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from calm.case.memory import Memory
 from calm.cli import main
 
 MOORING = """\
@@ -35,6 +36,19 @@ def folder(tmp_path, monkeypatch):
     work.mkdir()
     monkeypatch.chdir(work)
     return work
+
+
+@pytest.fixture(scope="module")
+def solved_once():
+    """What several tests of a module solve is solved for the first of them."""
+    shared = Memory()
+
+    def share(memory):
+        vars(memory).update(vars(shared))
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Memory, "__init__", share)
+        yield
 
 
 @pytest.fixture

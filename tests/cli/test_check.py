@@ -2,6 +2,8 @@ import json
 
 import pytest
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 STORM = """\
 name: storm
 environment:

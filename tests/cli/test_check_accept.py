@@ -6,6 +6,8 @@ import pytest
 
 DAY = "1798675200"  # 2026-12-31
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 
 @pytest.fixture(autouse=True)
 def on_a_day(monkeypatch):

@@ -5,12 +5,16 @@ import io
 import json
 import math
 import re
+from functools import partial
 
 import openpyxl
 import pypdfium2
 import pypdfium2.raw as pdfium
 import pytest
 
+from calm.deck import model
+from calm.drop import drop_plan
+from calm.drop.fall import Fineness
 from calm.shipped import shipped_folder
 
 COMPONENTS = """\
@@ -81,6 +85,12 @@ def pages_of(content):
 
 def packed(text):
     return "".join(text.split())
+
+
+@pytest.fixture(autouse=True)
+def dropped_in_few_steps(monkeypatch):
+    """The plan of the drop from a chain of few bars: its figures are judged elsewhere."""
+    monkeypatch.setattr(model, "drop_plan", partial(drop_plan, fineness=Fineness(20, 20)))
 
 
 @pytest.fixture

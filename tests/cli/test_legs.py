@@ -306,6 +306,28 @@ def test_a_net_is_drawn_from_the_side_and_above(net: Path) -> None:
     assert side.seabed == 500.0
 
 
+def test_the_seabed_is_drawn_where_it_slopes(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """About each anchor at its depth, by its slope along the picture; a level one as before."""
+    file = tmp_path / "slope.yaml"
+    file.write_text(SLOPE)
+    beds = [
+        line
+        for line in elevation_of(load(file).solve()).lines
+        if line.kind is LineKind.SEABED
+    ]  # fmt: skip
+    steep = np.tan(np.radians(10.0))
+    assert len(beds) == 2
+    for line, anchor in zip(beds, (-30.0, 30.0), strict=True):
+        assert line.x.min() <= anchor + 1e-6
+        assert line.x.max() >= anchor - 1e-6
+        assert line.y == pytest.approx(100.0 + steep * line.x, abs=1e-3)
+    assert run("run", file, "--plot", tmp_path / "slope.svg") == 0
+    assert run("check", file, "--report", tmp_path / "report", "--workers", 1) == 1
+    capsys.readouterr()
+
+
 def test_a_net_has_its_page_and_its_schematics(
     net: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -898,6 +920,14 @@ def test_a_net_that_sinks_is_refused_as_such(tmp_path: Path) -> None:
     text = NET.replace("sphere-steel-1250", "rcm11").replace("glass-17in, count: 4", "rcm11")
     with pytest.raises(NoEquilibrium, match=r"It sinks: its legs weigh \d+ N more"):
         load(tmp_path / "net.yaml", text=text).solve()
+
+
+def test_two_anchors_that_are_put_in_one_place_are_told(tmp_path: Path) -> None:
+    text = SLOPE.replace("at: [30 m, 0 m]", "at: [-30 m, 0 m]")
+    said = [one for one in load(tmp_path / "two.yaml", text=text).solve().warnings
+            if "in one place" in one]  # fmt: skip
+    assert len(said) == 1
+    assert said[0].startswith("The anchors of legs west and east stand in one place")
 
 
 def test_places_may_be_latitudes_and_longitudes(tmp_path: Path) -> None:

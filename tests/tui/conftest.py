@@ -9,6 +9,7 @@ from textual._context import active_app
 from textual.css.stylesheet import Stylesheet
 from textual.pilot import Pilot
 
+from calm.case.memory import Memory
 from calm.tui.app import BuildApp
 from calm.tui.line.table import LineTable
 from calm.tui.start import open_session
@@ -40,6 +41,7 @@ components:
 """
 
 PAINT = Compositor.render_update
+REMEMBER = Memory.__init__
 PARSE = Stylesheet._parse_rules
 PARSED = {}
 """The rules of style sheets by text and variables, alike for all applications."""
@@ -84,6 +86,21 @@ def no_clock(monkeypatch):
     """Nothing is waited for by the clock."""
     monkeypatch.setattr("textual.pilot.wait_for_idle", at_rest)
     monkeypatch.setattr("textual.app.wait_for_idle", at_once)
+
+
+@pytest.fixture(autouse=True, scope="session")
+def solved_once():
+    """What several tests solve is solved for the first of them."""
+    shared = Memory()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Memory, "__init__", lambda memory: vars(memory).update(vars(shared)))
+        yield
+
+
+@pytest.fixture
+def own_memory(monkeypatch, solved_once):
+    """What is solved is forgotten with the session, as in the program."""
+    monkeypatch.setattr(Memory, "__init__", REMEMBER)
 
 
 @pytest.fixture(autouse=True)

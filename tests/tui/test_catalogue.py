@@ -131,11 +131,11 @@ def test_favourites_and_what_was_taken_come_first_in_every_file(drive, tmp_path)
 @pytest.mark.parametrize(
     "keys, role",
     [
-        (["A"], "float"),
         (["down", "down", "i"], "instrument"),
         (["down", "r"], "line"),
-        (["r"], "float"),
-        (["end", "delete", "end", "a"], "anchor"),
+        pytest.param(["A"], "float", marks=pytest.mark.thorough),
+        pytest.param(["r"], "float", marks=pytest.mark.thorough),
+        pytest.param(["end", "delete", "end", "a"], "anchor", marks=pytest.mark.thorough),
     ],
 )
 def test_the_catalogue_knows_where_it_is_opened_and_begins_without_words(drive, small, keys, role):

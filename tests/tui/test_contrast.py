@@ -88,10 +88,8 @@ DARK, LIGHT = theme.DARK.name, theme.LIGHT.name
 OTHERS = (DARK, "dracula", "solarized-light")
 
 
-@pytest.mark.parametrize(
-    "theme",
-    [LIGHT, *(pytest.param(name, marks=pytest.mark.thorough) for name in OTHERS)],
-)
+@pytest.mark.parametrize("theme", [LIGHT, *OTHERS])
+@pytest.mark.thorough
 @pytest.mark.usefixtures("painted")
 def test_every_word_is_legible_in_every_theme(drive, folder, theme):
     async def story(driver):

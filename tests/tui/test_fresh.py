@@ -71,7 +71,9 @@ def title(driver):
     return driver.screen.splitlines()[0]
 
 
-@pytest.mark.parametrize("tab", ["1", "2", "3", "4"])
+@pytest.mark.parametrize(
+    "tab", ["1", *(pytest.param(tab, marks=pytest.mark.thorough) for tab in "234")]
+)
 def test_while_a_change_is_solved_all_figures_are_dimmed(drive, small, monkeypatch, tab):
     async def story(driver):
         await driver.press(tab)

@@ -60,7 +60,10 @@ def test_rows_are_those_of_run(name: str) -> None:
     assert rows == figures(result)
 
 
-@pytest.mark.parametrize("name", MOORINGS)
+@pytest.mark.parametrize(
+    "name",
+    [MOORINGS[0], *(pytest.param(name, marks=pytest.mark.thorough) for name in MOORINGS[1:])],
+)
 def test_findings_are_those_of_check(name: str) -> None:
     path = LINES / f"{name}.yaml"
     view, mooring = judge(text_of(name), path), calm.load(path)
@@ -220,6 +223,7 @@ def test_a_failure_of_calm_itself_is_told(monkeypatch: pytest.MonkeyPatch) -> No
     assert judge(WHOLE).failure.status == "internal-error"
 
 
+@pytest.mark.usefixtures("own_memory")
 def test_what_has_not_changed_is_not_solved_again(monkeypatch: pytest.MonkeyPatch) -> None:
     import calm.case.mooring as case
 

@@ -146,7 +146,9 @@ def test_a_second_builder_on_the_same_file_says_so(drive, small, tmp_path):
     assert not list((tmp_path / "state" / "calm").glob("open-*"))  # neither its own nor the dead
 
 
-@pytest.mark.parametrize("height", [4, 3, 24])
+@pytest.mark.parametrize(
+    "height", [3, *(pytest.param(height, marks=pytest.mark.thorough) for height in (4, 24))]
+)
 def test_the_palette_lives_in_a_terminal_of_four_lines(drive, small, height):
     async def story(driver):
         await driver.press("ctrl+p", "pagedown", "pageup", "s", "pagedown", "down", "up")

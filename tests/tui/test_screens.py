@@ -126,7 +126,12 @@ def test_what_is_typed_in_the_text_is_one_step_to_undo(drive, small):
 
 
 @pytest.mark.parametrize(
-    "before, after", [("\n", "\r\n"), ("60 m\n", "60 m\r\n"), ("# A", "\ufeff# A")]
+    "before, after",
+    [
+        pytest.param("\n", "\r\n", marks=pytest.mark.thorough),
+        ("60 m\n", "60 m\r\n"),
+        ("# A", "\ufeff# A"),
+    ],
 )
 def test_to_look_at_the_text_changes_nothing_of_it(drive, small, before, after):
     small.write_bytes(MOORING.replace(before, after).encode())
@@ -182,8 +187,8 @@ def test_the_verdict_gives_figures_with_signs(drive, small):
     "key, words",
     [
         ("1", ["top float", "deep logger", "current, m/s", "▒"]),
-        ("2", ["m east", "N"]),
-        ("3", ["at most", "2000 N"]),
+        pytest.param("2", ["m east", "N"], marks=pytest.mark.thorough),
+        pytest.param("3", ["at most", "2000 N"], marks=pytest.mark.thorough),
         ("4", ["├─[#]     deep logger", "sea surface"]),
     ],
 )
@@ -337,6 +342,7 @@ def test_where_it_was_deployed(drive, small):
     drive(story, small)
 
 
+@pytest.mark.thorough
 def test_what_was_deployed_at_a_row(drive, small):
     async def story(driver):
         await driver.settle()
@@ -369,6 +375,7 @@ def test_what_was_deployed_at_a_row(drive, small):
     drive(story, small)
 
 
+@pytest.mark.thorough
 def test_a_tow_is_edited_the_same_way(drive, folder):
     from calm.shipped import shipped_folder
 

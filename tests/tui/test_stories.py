@@ -7,6 +7,7 @@ to begin with, none that is read, and none of the moorings that the builder offe
 
 import re
 
+import pytest
 import yaml
 from textual.events import Paste
 
@@ -125,6 +126,7 @@ def assert_is_meant(path, meant):
     assert set(said) == {"name", "environment", "line"} | ({"environments"} & set(said))
 
 
+@pytest.mark.thorough
 def test_a_deep_mooring_from_nothing_in_five_hundred_keys(drive, folder):
     counts = []
 

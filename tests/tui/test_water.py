@@ -90,8 +90,14 @@ def test_a_uniform_current_becomes_a_table_whose_cells_are_edited(drive, small):
 
 @pytest.mark.parametrize(
     ("unit", "above", "below", "half"),
-    [("deg", "350", "10", "0"), ("deg", "20", "300", "340"), ("deg", "-20", "60", "20"),
-     ("rad", "6", "0.5", "0.108407")],
+    [
+        ("deg", "350", "10", "0"),
+        *(
+            pytest.param(*each, marks=pytest.mark.thorough)
+            for each in (("deg", "20", "300", "340"), ("deg", "-20", "60", "20"),
+                         ("rad", "6", "0.5", "0.108407"))
+        ),
+    ],
 )  # fmt: skip
 def test_a_row_between_others_has_the_direction_between_theirs(
     drive, small, unit, above, below, half
@@ -207,7 +213,7 @@ def test_a_preset_current(drive, small):
     drive(story, small)
 
 
-@pytest.mark.parametrize("how", ["refer", "copy"])
+@pytest.mark.parametrize("how", ["refer", pytest.param("copy", marks=pytest.mark.thorough)])
 def test_a_current_of_a_csv_file(drive, small, how):
     table = "depth[m],speed[m/s],toward[deg]\n0,0.6,90\n100,0.2,80\n"
     small.with_name("adcp.csv").write_text(table)
@@ -408,7 +414,6 @@ environments:
     ("id", "text", "expected"),
     [
         ("wind-speed", "20", {"speed": "20 m/s", "toward": "90 deg", "surface_drift": "0.03"}),
-        ("current-speed", "2", {"speed": "2 m/s", "toward": "90 deg"}),
         ("current-toward", "45", {"speed": "0.5 m/s", "toward": "45 deg"}),
     ],
 )
@@ -548,7 +553,7 @@ def netcdf(path, **variables):
     xarray.Dataset(data, {"time": time, "depth": depth}).to_netcdf(path, engine="h5netcdf")
 
 
-@pytest.mark.parametrize("how", ["refer", "copy"])
+@pytest.mark.parametrize("how", [pytest.param("refer", marks=pytest.mark.thorough), "copy"])
 def test_a_current_of_a_netcdf_file(drive, small, how):
     east = ("eastward_sea_water_velocity", [[0.1, 0.1], [0.3, 0.0]])
     north = ("northward_sea_water_velocity", [[0.0, 0.0], [0.4, 0.2]])

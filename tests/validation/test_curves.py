@@ -162,11 +162,11 @@ def curved(line: Line, random: Random) -> Line:
     )
 
 
-STANDING = 5
+STANDING = 3
 BLOCKS = [
     0,
-    pytest.param(1, marks=pytest.mark.thorough),
-    *(pytest.param(block, marks=pytest.mark.slow) for block in range(2, 8)),
+    *(pytest.param(block, marks=pytest.mark.thorough) for block in (1, 2)),
+    *(pytest.param(block, marks=pytest.mark.slow) for block in range(3, 14)),
 ]
 
 

@@ -23,17 +23,22 @@ and rope with a free end, and 4e-6 in the vertical."""
 VERTICALLY = 1e-5
 
 SHEARED = (
-    "cdms-1",
-    "chain-and-rope-surface",
-    "deep-current-meters",
-    "fit-top-depth",
     "s1000",
-    "sediment-trap-undercurrent",
     "taut-nylon-surface",
-    "thermistor-string",
     "tidal-adcp",
-    "upward-adcp-300m",
     "veering-current",
+    *(
+        pytest.param(name, marks=pytest.mark.thorough)
+        for name in (
+            "cdms-1",
+            "chain-and-rope-surface",
+            "deep-current-meters",
+            "fit-top-depth",
+            "sediment-trap-undercurrent",
+            "thermistor-string",
+            "upward-adcp-300m",
+        )
+    ),
 )
 MOORINGS = (*SHEARED, "braconnot-buoy", "receiver-line")
 

@@ -127,7 +127,7 @@ SLIPS = (12.0, -9.0, 20.0, -15.0)  # down the line [m]
 
 
 @pytest.mark.parametrize(("label", "down", "start", "said"), [
-    ("Aquadopp 226", 12.0, 0, "m off throughout"),
+    pytest.param("Aquadopp 226", 12.0, 0, "m off throughout", marks=pytest.mark.thorough),
     ("Aquadopp 626", -9.0, 40, "a clamp that slipped"),
 ])  # fmt: skip
 def test_a_sensor_that_is_not_where_the_file_says_is_named_and_bends_nothing(
@@ -140,6 +140,7 @@ def test_a_sensor_that_is_not_where_the_file_says_is_named_and_bends_nothing(
     assert inside.mean() > 0.9
 
 
+@pytest.mark.thorough
 def test_of_two_sensors_too_the_one_that_hangs_elsewhere_leaves_the_bands_honest(mooring):
     _, plain, _ = recovered(mooring, 0)
     missed, inside, doubted = recovered(mooring, 0, USED, ("Aquadopp 26", -9.0, 0))
@@ -149,6 +150,7 @@ def test_of_two_sensors_too_the_one_that_hangs_elsewhere_leaves_the_bands_honest
     assert inside.mean() >= plain.mean() - 0.05
 
 
+@pytest.mark.thorough
 def test_a_slip_in_strong_currents_is_not_taken_for_their_errors(mooring):
     missed, inside, doubted = recovered(mooring, 414, USED, ("Aquadopp 626", 20.0, 44))
     assert doubted[0].startswith("Aquadopp 626: ") and "hangs 19.9 m below" in doubted[0]

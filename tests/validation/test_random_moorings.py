@@ -21,17 +21,17 @@ from tests.validation.agreement import closure, difference
 from tests.validation.cables import Folded, NoContinuousSolution
 from tests.validation.closing import solve_continuous
 
-STANDING = 10
+STANDING = 5
 BLOCKS = [
     0,
-    pytest.param(1, marks=pytest.mark.thorough),
-    *(pytest.param(block, marks=pytest.mark.slow) for block in range(2, 24)),
+    *(pytest.param(block, marks=pytest.mark.thorough) for block in (1, 2, 3)),
+    *(pytest.param(block, marks=pytest.mark.slow) for block in range(4, 48)),
 ]
 
 
 @pytest.mark.parametrize("block", BLOCKS)
 def test_calm_agrees_with_the_referee(block) -> None:
-    """Ten standing moorings a block; a failure names the number that draws its mooring.
+    """Five standing moorings a block; a failure names the number that draws its mooring.
 
     Each float at the surface is sought on its own, so that marches are counted for each.
     """

@@ -65,11 +65,14 @@ def stays(line: Line, water: Water, steps: int) -> list[float]:
     [
         pytest.param(THREAD, profile(110.0, [(0, 0.2), (12, 0.2), (30, 3.0)]), 2, id="jet"),
         pytest.param(ROPE, sheet(1.4, 148.0), 2, id="sheet"),
-        pytest.param(ROPE, sheet(0.8, 148.0), 1, id="weak sheet"),
-        pytest.param(ROPE, sheet(1.8, 148.0), 1, id="strong sheet"),
+        pytest.param(ROPE, sheet(0.8, 148.0), 1, id="weak sheet", marks=pytest.mark.thorough),
+        pytest.param(ROPE, sheet(1.8, 148.0), 1, id="strong sheet", marks=pytest.mark.thorough),
         pytest.param(ROPE, turning(1.0, 160.0), 2, id="turning"),
-        pytest.param(ROPE, turning(1.0, 146.0), 1, id="turning above"),
-        pytest.param(ROPE, profile(400.0, [(0, 2.5), (400, 0.1)]), 1, id="decaying"),
+        pytest.param(ROPE, turning(1.0, 146.0), 1, id="turning above", marks=pytest.mark.thorough),
+        pytest.param(
+            ROPE, profile(400.0, [(0, 2.5), (400, 0.1)]), 1, id="decaying",
+            marks=pytest.mark.thorough,
+        ),
     ],
 )  # fmt: skip
 def test_the_highest_is_given_and_the_deepest_told(line, water, expected) -> None:

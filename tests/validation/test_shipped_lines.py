@@ -10,6 +10,7 @@ from __future__ import annotations
 from functools import cache
 from math import radians
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -22,13 +23,18 @@ from tests.validation.towed import Passing, Towed, solve_continuous_tow
 LINES = sorted((Path(__file__).parents[2] / "lines").glob("*.yaml"))
 TOWS = [path for path in LINES if "\ntow:" in path.read_text(encoding="utf-8")]
 MOORINGS = [path for path in LINES if path not in TOWS]
-LONG_TO_REFEREE = ("tall-array-mooring", "profiler-mooring", "fit-top-depth", "deep-current-meters")
-EVERY_MOORING = [
-    pytest.param(
-        path, id=path.stem, marks=pytest.mark.thorough if path.stem in LONG_TO_REFEREE else ()
-    )
-    for path in MOORINGS
-]
+OF_EVERY_DAY = (
+    "braconnot-buoy", "s1000", "taut-nylon-surface", "veering-current",
+    "a-frame-sheared-tow", "bourget-marichal-sphere",
+)  # fmt: skip
+
+
+def _cases(paths: list[Path]) -> list[Any]:
+    often = {path: path.stem in OF_EVERY_DAY for path in paths}
+    return [
+        pytest.param(path, id=path.stem, marks=() if often[path] else pytest.mark.thorough)
+        for path in paths
+    ]
 
 
 @cache
@@ -46,7 +52,7 @@ def test_there_are_shipped_lines() -> None:
     assert len(TOWS) >= 4
 
 
-@pytest.mark.parametrize("path", TOWS, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", _cases(TOWS))
 def test_calm_agrees_with_the_referee_on_tows(path) -> None:
     tow = calm.load(path)
     referee = referee_of(path)
@@ -59,7 +65,7 @@ def test_calm_agrees_with_the_referee_on_tows(path) -> None:
         assert closure(solution, Passing(tow.water, tow.towing)) <= 1e-6
 
 
-@pytest.mark.parametrize("path", EVERY_MOORING)
+@pytest.mark.parametrize("path", _cases(MOORINGS))
 def test_calm_agrees_with_the_referee(path) -> None:
     mooring = calm.load(path)
     referee = referee_of(path)
@@ -73,7 +79,7 @@ def test_calm_agrees_with_the_referee(path) -> None:
         assert solution.surface == referee.surface
 
 
-@pytest.mark.parametrize("path", EVERY_MOORING)
+@pytest.mark.parametrize("path", _cases(MOORINGS))
 def test_the_accuracy_it_states_holds(path) -> None:
     """What the result says of its own error, against its error; half of it is the allowance."""
     mooring = calm.load(path)
@@ -84,7 +90,7 @@ def test_the_accuracy_it_states_holds(path) -> None:
     assert error <= 1.5 * result.accuracy.depth + 1e-7 * mooring.water.depth
 
 
-@pytest.mark.parametrize("path", TOWS, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", _cases(TOWS))
 def test_the_accuracy_a_tow_states_holds(path) -> None:
     tow = calm.load(path)
     referee = referee_of(path)

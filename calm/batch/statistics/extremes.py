@@ -6,8 +6,6 @@ Two ways to estimate them, each with its own rules, which are reported with the 
 - POT: the generalised Pareto distribution of independent peaks over a threshold (chapter 4).
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise

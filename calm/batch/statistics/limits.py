@@ -1,7 +1,5 @@
 """The criteria of the design check in every profile of a batch, and how often each is broken."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import groupby

@@ -4,8 +4,6 @@ Coles, S. (2001): An Introduction to Statistical Modeling of Extreme Values, Spr
 doi:10.1007/978-1-4471-3675-0.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import exp, inf, log, pi, sqrt

@@ -10,19 +10,16 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import accumulate
 from math import isnan, log10
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
+from calm.case import Result, TowResult
 from calm.drawing.schematic import symbols
 from calm.drawing.schematic.pen import FAINT, INK, SOFT, Pen, picture, svg_text, text_width, wrapped
 from calm.drawing.schematic.shown_parts import HEADINGS, Schematic, ShownPart, TextRow, schematic_of
 from calm.drawing.schematic.sign import LINES
 from calm.drawing.schematic.symbols import SEABED_ROOM, draw_cable, draw_clamp, figure_of
+from calm.files import MooringFile
 from calm.quantities import QUANTITIES
-
-if TYPE_CHECKING:
-    from calm.case import Result, TowResult
-    from calm.files import MooringFile
-
 
 FONT = 8.0
 """Size of the texts; nothing in a column is smaller."""

@@ -1,7 +1,5 @@
 """What the mooring diagram shows of a deck from the top down."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import groupby

@@ -6,17 +6,14 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import accumulate
-from typing import TYPE_CHECKING
 
+from calm.case import Result, TowResult
 from calm.drawing.line_picture import alike, together
 from calm.drawing.picture import printable
 from calm.drawing.schematic.sign import BALLS, LINES, Sign, Symbol, sign_of
 from calm.files import Clamp, MooringFile, Piece, Place, Rigid
 from calm.files.mooring_file import STAND_IN
 from calm.quantities import QUANTITIES, say
-
-if TYPE_CHECKING:
-    from calm.case import Result, TowResult
 
 HEADINGS = {"cut_length": ("cut", "length"), "depth": ("", "depth"), "height": ("above", "seabed")}
 """The quantities beside each part, with the two lines of their headings."""

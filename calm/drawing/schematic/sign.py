@@ -1,16 +1,11 @@
 """Which symbol of the schematic stands for a component: by its kind, its role, and its name."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import TYPE_CHECKING
 
+from calm.files import Component
 from calm.physics.materials import fibre_of
-
-if TYPE_CHECKING:
-    from calm.files import Component
 
 
 class Symbol(StrEnum):

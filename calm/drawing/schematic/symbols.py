@@ -1,7 +1,5 @@
 """The symbols of a schematic as SVG, each about an origin through which the line runs upright."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial

@@ -1,7 +1,5 @@
 """A picture in the cells of a terminal, dots of braille and signs, with axes around it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import pairwise

@@ -168,6 +168,7 @@ STROKES = {
     LineKind.LINE: (LINE, 0, 0),
     LineKind.STILL: (STILL, 1, 2),
     LineKind.BESIDE: (OTHER, 3, 2),
+    LineKind.SEABED: (canvas.SEABED, 0, 0),
 }
 """Style, dots drawn and dots left out of each kind of line."""
 

@@ -1,7 +1,5 @@
 """Changes to a text by location: the patches that make them, and what the text then says."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from difflib import SequenceMatcher

@@ -1,7 +1,5 @@
 """The catalogue: a search that answers at each key, a card, and what else is asked for."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Sequence
 from contextlib import suppress

@@ -1,7 +1,5 @@
 """A component of your own: a form that judges each figure as it is typed, and all of them."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterator
 from dataclasses import replace
 from types import UnionType

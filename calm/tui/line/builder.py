@@ -1,9 +1,7 @@
 """The first screen: the line, its picture, the verdict, and the catalogue when it is wanted."""
 
-from __future__ import annotations
-
 from functools import partial
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 from textual import on
 from textual.binding import BindingType
@@ -11,6 +9,8 @@ from textual.events import DescendantFocus, Key
 
 from calm.files.components import KINDS
 from calm.templates import TEMPLATES, Template, template
+from calm.tui.catalogue.catalogue_pane import Purpose
+from calm.tui.catalogue.component_screen import Defined
 from calm.tui.cell_editor import CellEditor
 from calm.tui.dialogs import Question, ask, choose, numbered
 from calm.tui.key_table import bindings, hints
@@ -26,10 +26,6 @@ from calm.tui.pictures import Picture, Tab
 from calm.tui.screen import KeyBar
 from calm.tui.session import Location
 from calm.tui.verdict_pane import VerdictPane
-
-if TYPE_CHECKING:
-    from calm.tui.catalogue.catalogue_pane import Purpose
-    from calm.tui.catalogue.component_screen import Defined
 
 _MOST_STEPS = 9
 """Of the history, offered at once."""

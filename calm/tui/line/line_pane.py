@@ -1,7 +1,5 @@
 """The line: its rows and what is done with them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from functools import partial
 from typing import ClassVar

@@ -1,7 +1,5 @@
 """The line beside its picture and verdict, or beside the catalogue."""
 
-from __future__ import annotations
-
 from collections.abc import Collection
 
 from textual import on

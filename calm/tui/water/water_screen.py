@@ -1,10 +1,8 @@
 """The water of an environment as a form, the profile of its current beside; environments."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 from textual import events, on
 from textual.app import ComposeResult
@@ -16,6 +14,7 @@ from textual.events import DescendantFocus
 from textual.widget import Widget
 from textual.widgets import Static
 
+from calm.errors import Problem
 from calm.files.editing import Draft, Value
 from calm.tui.cell_editor import CellEditor
 from calm.tui.checking import needed
@@ -35,9 +34,6 @@ from calm.tui.water.form import (
 from calm.tui.water.grid import Grid, GridCells
 from calm.tui.water.tables_to_begin import CURRENT_COLUMNS, USUAL_DEPTH, Currents
 from calm.tui.workspace import Workspace, said
-
-if TYPE_CHECKING:
-    from calm.errors import Problem
 
 _ELSEWHERE = (
     "The line stands in {0}: the profile and the verdict are of that. Below is the file's own "

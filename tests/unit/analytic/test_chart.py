@@ -104,11 +104,17 @@ def random_cable(
     return k, weight, mirrored(cable) if weight < 0.0 else cable
 
 
+CABLES = pytest.mark.parametrize("cables", [1, pytest.param(4, marks=pytest.mark.thorough)])
+
+
+@CABLES
 @pytest.mark.parametrize("sign", [1, -1], ids=["first branch", "second branch"])
 @pytest.mark.parametrize("triple", TRIPLES, ids=" ".join)
-def test_every_triple_gives_the_cable_it_was_taken_from(triple: tuple[str, ...], sign: int) -> None:
+def test_every_triple_gives_the_cable_it_was_taken_from(
+    triple: tuple[str, ...], sign: int, cables: int
+) -> None:
     generator = np.random.default_rng(TRIPLES.index(triple))
-    for _ in range(4):
+    for _ in range(cables):
         k, weight, cable = random_cable(generator, sign)
         answer = chart_solve(k, weight, **{name: cable[name] for name in triple})
         assert answer.status == "converged"
@@ -142,6 +148,7 @@ def integrated(k: float, weight: float, solution: ChartSolution) -> dict[str, fl
     }
 
 
+@CABLES
 @pytest.mark.parametrize("sign", [1, -1], ids=["first branch", "second branch"])
 @pytest.mark.parametrize(
     "triple",
@@ -154,9 +161,11 @@ def integrated(k: float, weight: float, solution: ChartSolution) -> dict[str, fl
     ],
     ids=" ".join,
 )
-def test_solutions_satisfy_the_equations_of_the_cable(triple: tuple[str, ...], sign: int) -> None:
+def test_solutions_satisfy_the_equations_of_the_cable(
+    triple: tuple[str, ...], sign: int, cables: int
+) -> None:
     generator = np.random.default_rng(7)
-    for _ in range(3):
+    for _ in range(cables):
         k, weight, cable = random_cable(generator, sign)
         answer = chart_solve(k, weight, **{name: cable[name] for name in triple})
         critical = float(critical_angle(k))

@@ -149,11 +149,11 @@ def test_the_current_grows_and_turns_clockwise():
 
 def test_an_unsure_depth_is_that_of_the_top():
     # upright: the top is as high above the seabed whatever the depth
-    found = uncertain(plumb(depth="1 %").solve(), 1024)
+    found = uncertain(plumb(depth="1 %").solve(), 512)
     given = found.result.top.depth
     assert found.depth_top[:, 0] == pytest.approx(
         [given - AT_95 * 5.0, given, given + AT_95 * 5.0], abs=0.05
-    )  # of the percentiles of 1024 points of a Sobol' sequence
+    )  # of the percentiles of 512 points of a Sobol' sequence
     assert found.tension[:, 0] == pytest.approx(3996.0, rel=0.02)
     assert np.ptp(found.tension, axis=0) == pytest.approx(0.0, abs=1e-6)
 
@@ -161,7 +161,7 @@ def test_an_unsure_depth_is_that_of_the_top():
 def test_an_unsure_length_is_that_of_the_cable():
     dotted = PLUMB.replace("400 m}", "400 m, clamps: [{use: dot, label: dot, at: 300 m}]}")
     dotted += "  dot: {kind: cylinder, diameter: 1 mm, length: 1 mm, buoyancy: 0 N}\n"
-    found = uncertain(plumb(dotted, length="1 %").solve(), 1024)
+    found = uncertain(plumb(dotted, length="1 %").solve(), 512)
     spread = found.depth_top[2, 0] - found.depth_top[0, 0]
     # the stretch grows with the length: N/EA = (4000 - 200)/200 000 on the average
     assert spread == pytest.approx(2 * AT_95 * 4.0 * 1.019, rel=0.01)
@@ -173,7 +173,7 @@ def test_an_unsure_length_is_that_of_the_cable():
 
 
 def test_an_unsure_buoyancy_pulls_at_the_anchor():
-    found = uncertain(plumb(buoyancy="[-10 %, 20 %]").solve(), 1024)
+    found = uncertain(plumb(buoyancy="[-10 %, 20 %]").solve(), 256)
     weight = 400.0
     pull = [0.9 * 4000 - weight, 4000 * sqrt(0.9 * 1.2) - weight, 1.2 * 4000 - weight]
     assert found.anchor_tension == pytest.approx(pull, rel=2e-3)
@@ -181,13 +181,13 @@ def test_an_unsure_buoyancy_pulls_at_the_anchor():
 
 
 def test_an_unsure_weight_of_cable_is_lifted():
-    found = uncertain(plumb(cable_weight="10 %").solve(), 1024)
+    found = uncertain(plumb(cable_weight="10 %").solve(), 256)
     pull = [3600 - AT_95 * 40, 3600, 3600 + AT_95 * 40]
     assert found.anchor_tension == pytest.approx(pull, rel=1e-3)
 
 
 def test_an_unsure_stiffness_is_that_of_the_stretch():
-    found = uncertain(plumb(stiffness="[-20 %, 25 %]").solve(), 1024)
+    found = uncertain(plumb(stiffness="[-20 %, 25 %]").solve(), 512)
     stretch = 400 * 3800 / 200e3
     upper, lower = found.depth_top[0, 0], found.depth_top[2, 0]
     assert lower - upper == pytest.approx(stretch / 0.8 - stretch / 1.25, rel=0.01)
@@ -226,7 +226,7 @@ components:
   thread: {kind: cable, diameter: 1 mm, weight: 0 N/m, cn: 0, ct: 0}
   block: {kind: anchor, weight: 20 kN}
 """
-    found = uncertain(calm.load("sphere.yaml", text=text).solve(), 1024)
+    found = uncertain(calm.load("sphere.yaml", text=text).solve(), 256)
     speeds = np.array([0.8, sqrt(0.8 * 1.2), 1.2])
     knockdown = 100.0 * (1.0 - np.cos(np.arctan(0.4 * speeds**2)))
     assert found.knockdown[:, 0] == pytest.approx(knockdown, rel=0.01)

@@ -1,14 +1,17 @@
 """What the sheets of the deck are made of, against sums and solves of their own."""
 
 import math
+from functools import partial
 
 import pytest
 
 import calm
-from calm.deck import Deck, deck_of
+from calm.deck import Deck, deck_of, model
 from calm.deck.deck_items import Order, rows_on_paper
 from calm.deck.hardware import Stock
 from calm.deck.shipping import total_of
+from calm.drop import drop_plan
+from calm.drop.fall import Fineness
 from calm.quantities import show_in
 from calm.report.deck_lists import cutting_part, hardware_part, shipping_part
 from calm.report.deck_logs import deployment_part
@@ -44,6 +47,14 @@ components:
     drag_area: 0.1 m^2, cd: 1}
   weight: {kind: anchor, mass: 800 kg, length: 0.3 m}
 """
+
+
+@pytest.fixture(autouse=True, scope="module")
+def dropped_in_few_steps():
+    """The plan of the drop from a chain of few bars: its figures are judged elsewhere."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(model, "drop_plan", partial(drop_plan, fineness=Fineness(20, 20)))
+        yield
 
 
 @pytest.fixture(scope="module")

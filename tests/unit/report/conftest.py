@@ -88,6 +88,8 @@ def build_result(**changes):
     )  # fmt: skip
     water = Record(
         depth=1100.0,
+        deeper_east=0.0,
+        deeper_north=0.0,
         level=np.array([0.0, 200.0, 1100.0]),
         u=np.array([0.8, 0.35, 0.05]),
         v=np.array([0.0, 0.1, 0.0]),

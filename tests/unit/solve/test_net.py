@@ -279,13 +279,13 @@ def agrees_with_relaxation(seed: int) -> None:
         assert mine.position[0] == pytest.approx(first, abs=0.08)
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(2))
 def test_random_nets_agree_with_relaxation(seed: int) -> None:
     agrees_with_relaxation(seed)
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("seed", range(6, 200))
+@pytest.mark.parametrize("seed", range(2, 200))
 def test_many_random_nets_agree_with_relaxation(seed: int) -> None:
     agrees_with_relaxation(seed)
 
@@ -296,6 +296,13 @@ def test_compiled_it_is_the_same() -> None:
     plain = solve_net(y_net(), 1, water, Settings(compiled=False))
     fast = solve_net(y_net(), 1, water, Settings(compiled=True))
     assert fast.nodes == pytest.approx(plain.nodes, abs=1e-9)
+
+
+def test_a_net_that_needs_more_segments_gets_more_room(monkeypatch: pytest.MonkeyPatch) -> None:
+    water = water_of(300.0, *SHEAR)
+    roomy = solve_net(y_net(), 1, water)
+    monkeypatch.setattr(net_module, "ROOM", 8)
+    assert solve_net(y_net(), 1, water).nodes == pytest.approx(roomy.nodes, abs=1e-9)
 
 
 def test_stated_errors_hold() -> None:
@@ -309,7 +316,9 @@ def test_stated_errors_hold() -> None:
         assert abs(a.tension[-1] - b.tension[-1]) <= usual.tension_error
 
 
-@pytest.mark.parametrize("seed", [0, 3, 4, 7, 11])
+@pytest.mark.parametrize(
+    "seed", [0, 4, *(pytest.param(seed, marks=pytest.mark.thorough) for seed in (3, 7, 11))]
+)
 def test_stated_errors_hold_of_random_nets(seed: int) -> None:
     """Of all pieces' ends, against a quarter of the step; what both round off is 1e-6 m and N."""
     legs, nodes, _, depth = random_net(seed)

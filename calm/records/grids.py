@@ -1,18 +1,34 @@
-"""Which column of a grid of currents: the nearest to a place that has water."""
+"""What grids have at a place: the nearest column of currents with water, the depth of the seabed.
+
+Depths of the seabed are those of GEBCO, EMODnet or a survey.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import hashlib
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.records.cf_files import UnreadableError, first_present
+from calm.errors import refused
+from calm.positions import SEMI_MAJOR, Frame
+from calm.records.cf_files import (
+    UnreadableError,
+    factor_of,
+    first_present,
+    holdings,
+    open_current,
+    reading,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
 
+Floats = NDArray[np.float64]
 Place = tuple[float, float]
 """Latitude and longitude [degrees north, degrees east]."""
 
@@ -45,10 +61,8 @@ class GridColumn:
 
 def is_regular(dataset: xr.Dataset) -> bool:
     """Return whether latitude and longitude are axes of their own: x is east, y is north."""
-    latitudes, longitudes = (
-        {dataset[name].dims for name in _named(dataset, *which)}
-        for which in (("latitude", _LATITUDES), ("longitude", _LONGITUDES))
-    )
+    latitudes = {dataset[name].dims for name in _named(dataset, "latitude", _LATITUDES)}
+    longitudes = {dataset[name].dims for name in _named(dataset, "longitude", _LONGITUDES)}
     alone = all(len(dims) == 1 for dims in latitudes | longitudes)
     return bool(latitudes and longitudes) and alone and latitudes != longitudes
 
@@ -89,11 +103,11 @@ def choose_column(
         )
     box = _box(latitude, longitude, horizontal, wanted)
     near = dataset[list(velocity)].isel(box)
-    where = (near[str(latitude.name)], near[str(longitude.name)])
     shape = [near.sizes[dim] for dim in horizontal]
     # each axis of a regular grid spread over the box
     lat, lon = (
-        np.broadcast_to(_spread(one, horizontal), shape).astype(np.float64) for one in where
+        np.broadcast_to(_spread(near[str(one.name)], horizontal), shape).astype(np.float64)
+        for one in pair
     )
     distance = kilometres_from(lat, lon, wanted)
     nearest = np.unravel_index(np.nanargmin(distance), distance.shape)
@@ -134,16 +148,13 @@ def _positions(dataset: xr.Dataset, dims: set[Any]) -> tuple[xr.DataArray, xr.Da
     """Return latitude and longitude of the columns that the dimensions span."""
     found = []
     for coordinate, usual in (("latitude", _LATITUDES), ("longitude", _LONGITUDES)):
-        fitting = [
-            name
-            for name in _named(dataset, coordinate, usual)
-            if dataset[name].dtype.kind in "fiu"
-            and (dataset[name].size == 1 or set(dataset[name].dims) <= dims)
-        ]
+        named = [dataset[name] for name in _named(dataset, coordinate, usual)]
+        numbers = [one for one in named if one.dtype.kind in "fiu"]
+        fitting = [one for one in numbers if one.size == 1 or set(one.dims) <= dims]
         if not fitting:
             return None
         # the one that varies, before a nominal position
-        found.append(dataset[max(fitting, key=lambda name: dataset[name].size)])
+        found.append(max(fitting, key=lambda one: one.size))
     return found[0], found[1]
 
 
@@ -215,9 +226,8 @@ def kilometres_from(latitude: Any, longitude: Any, place: Place) -> NDArray[Any]
     """
     first, second = np.radians(latitude), np.radians(place[0])
     east = np.radians(longitude - place[1])
-    chord = (
-        np.sin((first - second) / 2) ** 2 + np.cos(first) * np.cos(second) * np.sin(east / 2) ** 2
-    )
+    level = np.cos(first) * np.cos(second) * np.sin(east / 2) ** 2
+    chord = np.sin((first - second) / 2) ** 2 + level
     return np.asarray(2 * _EARTH * np.arcsin(np.sqrt(np.clip(chord, 0, 1))))
 
 
@@ -242,12 +252,8 @@ def _drift(dataset: xr.Dataset, time: str | None, wanted: Place | None) -> tuple
     latitude, longitude = (values[known] for values in found)
     first = float(latitude[0]), float(longitude[0])
     away = float(kilometres_from(latitude, longitude, first).max())
-    moved = (
-        (f"its place changes with time, by up to {away:.0f} km; all profiles are taken",)
-        if away > FAR
-        else ()
-    )
-    return (*moved, *_far(first, wanted))
+    moved = f"its place changes with time, by up to {away:.0f} km; all profiles are taken"
+    return (*([moved] if away > FAR else []), *_far(first, wanted))
 
 
 def _far(place: Place, wanted: Place | None) -> tuple[str, ...]:
@@ -272,3 +278,120 @@ def _turned(degrees: Any) -> Any:
 def _signed(longitude: float) -> float:
     """Return a longitude between −180° and 180°; as it stands where it is there already."""
     return longitude if -180.0 <= longitude <= 180.0 else float(_turned(longitude))
+
+
+_UP, _DOWN = ("elevation", "z", "Band1", "topo"), ("depth", "deptho", "bathymetry")
+_MOST = 1000  # nodes that are read along a side; of a finer grid not every one
+
+
+@dataclass(frozen=True)
+class SeabedGrid:
+    """Depths about a point, linear between nodes; the file is read when they are asked for.
+
+    Attributes
+    ----------
+    path, sha256 : of the file
+    latitude, longitude : of the origin of the mooring's places [degrees]
+    reach : how far from it nodes count, east and north [m]
+    east, north : of the point, from the origin [m]
+    """
+
+    path: str
+    sha256: str
+    latitude: float
+    longitude: float
+    reach: float
+    east: float = 0.0
+    north: float = 0.0
+
+    @classmethod
+    def of_file(cls, path: Path, latitude: float, longitude: float, reach: float) -> SeabedGrid:
+        """Return that of a file at a position; InputError where it cannot be understood."""
+        if path.suffix.lower() in (".tif", ".tiff"):
+            turn = f"gdal_translate -of netCDF {path.name} {path.stem}.nc"
+            raise refused(path, f"is a GeoTIFF, which is not read; turn it into NetCDF: `{turn}`")
+        digest = hashlib.sha256(path.read_bytes()).hexdigest()
+        grid = cls(str(path), digest, latitude, longitude, reach)
+        with reading(path):
+            if np.isnan(grid.depth):
+                raise UnreadableError("has no depth at the position of the mooring")
+            if grid.depth <= 0.0:
+                raise UnreadableError(
+                    f"has land, {-grid.depth:.4g} m high, at the position of the mooring; if that "
+                    "is water, let `positive` of its variable say `down`, or `up`"
+                )
+        return grid
+
+    def at(self, east: float, north: float) -> SeabedGrid:
+        """Return the same about another point, by its distance from this one [m]."""
+        return replace(self, east=self.east + east, north=self.north + north)
+
+    @property
+    def depth(self) -> float:
+        """Depth at the point [m]; NaN outside the grid, and where it has none."""
+        return float(self._depths(np.zeros((1, 2)))[0])
+
+    def deeper(self, places: Floats) -> Floats:
+        """Return how much deeper it is (n,) at places (n, 2) east and north of the point [m]."""
+        return self._depths(places) - self.depth
+
+    @property
+    def slope(self) -> float:
+        """The steepest slope to a node's distance from the point [degrees]."""
+        across, along = np.abs(self._falls).max(axis=1)
+        return float(np.degrees(np.arctan(np.hypot(across, along))))
+
+    @property
+    def plane(self) -> tuple[float, float]:
+        """How much deeper it is per metre to the east and to the north [-]: the mean over a node's
+        distance to either side."""
+        east, north = self._falls.mean(axis=1).tolist()
+        return east, north
+
+    @property
+    def _falls(self) -> Floats:
+        """How much deeper it is per metre along east (2,) and north (2,), on either side [-]."""
+        step = float(np.diff(_nodes(self.at(-self.east, -self.north))[0]).mean())
+        rises = self.deeper(step * np.array([(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)]))
+        falls = rises.reshape(2, 2) * np.array([1.0, -1.0]) / step
+        known: Floats = np.nan_to_num(np.where(np.isnan(falls), falls[:, ::-1], falls))
+        return known
+
+    def _depths(self, places: Floats) -> Floats:
+        from scipy.interpolate import RegularGridInterpolator
+
+        east, north, depth = _nodes(self.at(-self.east, -self.north))
+        found = RegularGridInterpolator((north, east), depth, bounds_error=False)
+        return np.asarray(found(places[:, ::-1] + [self.north, self.east]))
+
+
+@lru_cache(maxsize=4)
+def _nodes(grid: SeabedGrid) -> tuple[Floats, Floats, Floats]:
+    """East (n,) and north (m,) of the nodes from the origin, and the depths (m, n) there [m]."""
+    latitude, longitude = grid.latitude, grid.longitude
+    with open_current(Path(grid.path)) as dataset:
+        name = next((each for each in (*_UP, *_DOWN) if each in dataset.data_vars), None)
+        axes = {str(each).lower()[:3]: str(each) for each in dataset.dims}
+        lat, lon = axes.get("lat"), axes.get("lon")
+        if name is None or lat is None or lon is None:
+            wanted = f"none of {', '.join((*_UP, *_DOWN))} over latitude and longitude"
+            raise UnreadableError(f"has {wanted}; it holds {holdings(dataset)}")
+        turned = longitude + (dataset[lon] - longitude + 180.0) % 360.0 - 180.0
+        whole = dataset[name].squeeze(drop=True).assign_coords({lon: turned}).sortby([lat, lon])
+        high = np.degrees(grid.reach / SEMI_MAJOR)
+        wide = high / np.cos(np.radians(latitude))
+        rows = slice(latitude - high, latitude + high)
+        here = whole.sel({lat: rows, lon: slice(longitude - wide, longitude + wide)})
+        here = here.transpose(lat, lon)
+        here = here[tuple(slice(None, None, -(-size // _MOST) or 1) for size in here.shape)]
+        if min(here.shape) < 2:
+            raise UnreadableError("has too few nodes about the position of the mooring")
+        north, east = (np.asarray(here[each].values, float) for each in (lat, lon))
+        attributes = dataset[name].attrs
+        down = attributes.get("positive", "up" if name in _UP else "down") == "down"
+        metre = factor_of(dataset[name], "length") if attributes.get("units") else 1.0
+        depth = np.asarray(here.values, float) * (metre if down else -metre)
+    frame = Frame(latitude, longitude)
+    north = frame.place(north, np.full(len(north), longitude), 0.0 * north)[:, 1]
+    east = frame.place(np.full(len(east), latitude), east, 0.0 * east)[:, 0]
+    return east, north, depth
