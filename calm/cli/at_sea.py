@@ -119,11 +119,11 @@ def deck(
 
 
 def _write(folder: Path, path: Path, deck: Deck, paper: Paper) -> None:
-    from calm.report.check_summary import SIGNS, verdict_of
+    from calm.report.check_summary import verdict_of
     from calm.report.folder import write_report
 
     state, words = verdict_of(deck.assessment.all_findings())
-    narrate(f"{path}: {SIGNS[state]} {words}: calm check {path}")
+    narrate(f"{path}: {state.sign} {words}: calm check {path}")
     notes = _signs_that_are_lacking(deck)
     for note in (*deck.notes, *notes):
         narrate(f"{path}: {note}")

@@ -6,21 +6,21 @@ As a document it is JSON, and its findings and pieces are CSV.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment, Situation
-from calm.checks.finding import Finding, State, worst_state
+from calm.checks.finding import ON_THE_WAY, Finding, State, worst_state
 from calm.checks.inventory import total_of
 from calm.drawing.check_figures import check_figure
 from calm.files.check_limits import LimitKey
 from calm.quantities import QUANTITIES
 from calm.records.delimited import table_csv
-from calm.report import blocks, check_summary, check_tables, provenance
+from calm.report import blocks, check_facts, check_tables, provenance
 from calm.report.blocks import Block, Figure, Prose, Report, ReportPart, Section, Signatures
-from calm.report.check_facts import PAGE_ONE, facts_of, facts_part, judged_section, left_out
-from calm.report.check_summary import limits_table, matrix_tables, rules_tables, verdict_prose
+from calm.report.check_facts import PAGE_ONE, CheckFacts, facts_of, facts_part, left_out
+from calm.report.check_summary import limits_table, verdict_prose
 from calm.report.check_tables import breaks_table, checks_table, deck_table, likelihood_tables
 from calm.report.explanation import comparison_part
 from calm.report.provenance import BY_WAVES, NOT_JUDGED, UNJUDGED, date, history_part, inputs_part
@@ -39,12 +39,11 @@ def mooring_section(assessment: Assessment, against: Comparison | None = None) -
     `against` is the mooring compared with the design that it came from.
     """
     stands, facts = assessment.stands, facts_of(assessment)
-    judged = judged_section(assessment)
     compared = () if against is None else (comparison_part(against),)
     parts = (
         *history_part(assessment.mooring.file),
         *compared,
-        ReportPart("Judgement", tuple(_judgement(assessment, judged))),
+        ReportPart("Judgement", tuple(_judgement(assessment, facts))),
         ReportPart("The line", tuple(_line(assessment))),
         ReportPart("Shape, tension and breaks", tuple(_drawn(assessment))),
         ReportPart(
@@ -66,7 +65,7 @@ def mooring_section(assessment: Assessment, against: Comparison | None = None) -
             [stand.mooring.water for stand in stands],
         ),
     )
-    return replace(judged, parts=parts)
+    return Section(assessment.name, parts, facts)
 
 
 def check_report(sections: Sequence[Section]) -> Report:
@@ -75,40 +74,38 @@ def check_report(sections: Sequence[Section]) -> Report:
     Page one is all that an engineer signs, of one mooring; of several, a summary follows it.
     """
     count = len(sections)
-    environments = {column for each in sections for column in each.columns} - {blocks.ON_THE_WAY}
+    facts = [each.facts for each in sections if each.facts is not None]
+    environments = {column for each in facts for column in each.columns} - {ON_THE_WAY}
     moorings = sections[0].name if count == 1 else f"{count} moorings"
     in_all = f"{len(environments)} environment{'s' if len(environments) != 1 else ''}"
-    facts = [each.facts for each in sections if each.facts is not None]
-    verdict = verdict_prose(finding for each in facts for finding in each.findings)
-    seen = provenance.unseen(finding for each in facts for finding in each.findings)
+    findings = [one for each in facts for one in each.findings]
     signatures = Signatures(("Designed by", "Checked by"))
     return Report(
         title="Design check",
         subtitle=f"{moorings}, {in_all}",
         front=(
-            ReportPart("", (verdict,), least=PAGE_ONE),
+            ReportPart("", (verdict_prose(findings),), least=PAGE_ONE),
             *(facts_part(each, each.mooring if count > 1 else "") for each in facts),
             ReportPart("Signatures", (signatures, blocks.PageBreak()), least=PAGE_ONE),
-            *((ReportPart("Summary", tuple(_summary(sections))),) if count > 1 else ()),
-            ReportPart(NOT_JUDGED.title, (Prose(seen, State.UNKNOWN),)),
+            *((ReportPart("Summary", tuple(_summary(facts))),) if count > 1 else ()),
+            ReportPart(NOT_JUDGED.title, (Prose(provenance.unseen(findings), State.UNKNOWN),)),
         ),
         sections=tuple(sections),
         date=date(),
     )
 
 
-def _summary(sections: Sequence[Section]) -> Iterator[Block]:
-    yield from matrix_tables(sections)
-    findings = [(each.name, each.facts.findings) for each in sections if each.facts is not None]
-    yield from likelihood_tables(findings)
-    yield check_summary.worst_table(sections)
+def _summary(facts: Sequence[CheckFacts]) -> Iterator[Block]:
+    yield from check_facts.matrix_tables(facts)
+    yield from likelihood_tables([(each.mooring, each.findings) for each in facts])
+    yield check_facts.worst_table(facts)
 
 
-def _judgement(assessment: Assessment, judged: Section) -> Iterator[Block]:
+def _judgement(assessment: Assessment, facts: CheckFacts) -> Iterator[Block]:
     description = assessment.mooring.file.description
     if description:
         yield Prose((description,))
-    yield from rules_tables(judged.columns, judged.worst)
+    yield from check_facts.rules_tables(facts)
     yield from likelihood_tables([(assessment.name, [*assessment.all_findings()])])
     yield check_tables.results_table(assessment.stands)
 

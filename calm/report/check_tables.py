@@ -20,9 +20,9 @@ from calm.drawing.schematic.shown_parts import place_text
 from calm.files.components import FLEXIBLE_KINDS
 from calm.physics.line import Floats
 from calm.quantities import QUANTITIES, say
-from calm.report import blocks, check_summary
+from calm.report import blocks, check_facts, check_summary
 from calm.report.blocks import Cell, Field, Prose, Span, Table, number, quantity, table_of, words
-from calm.report.check_facts import CheckFacts, judged_section, key_pairs, settled_tables
+from calm.report.check_facts import CheckFacts
 from calm.report.check_summary import grouped, joined, place_of
 from calm.report.provenance import unseen
 
@@ -72,13 +72,14 @@ def checks_table(findings: Iterable[Finding]) -> Iterator[Table | Prose]:
         where = f"{found[0].component}, {place}" if len(found) > 1 else place
         return Cell(check_summary.named_components(found), where)
 
+    state, *figures = check_summary.FIGURES
     yield table_of(
         "Worst finding of each rule on each component",
         joined(kept),
-        *blocks.of_first(check_summary.STATE),
+        *blocks.of_first(state),
         words("rule", rule),
         words("component", component, 1.8),
-        *blocks.of_first(check_summary.VALUE, check_summary.LIMIT, check_summary.MARGIN),
+        *blocks.of_first(*figures),
         *blocks.of_first(words("finding and remedy", check_summary.said_of, 2.5)),
         note="Components with the same finding share a row, which shows the worst of them; "
         "every finding is in checks.csv and report.json. [1] is the first source below "
@@ -235,7 +236,7 @@ def likelihood_tables(named: Iterable[tuple[str, Sequence[Finding]]]) -> Iterato
 
     fields = [
         words("component", lambda one: one.component or "whole line"),
-        check_summary.LIMIT,
+        check_summary.FIGURES[2],
         words("where", place_of),
         number("broken in", share, "%"),
     ]
@@ -260,7 +261,7 @@ def _likeliest(findings: Sequence[Finding]) -> list[Finding]:
     return sorted(found, key=lambda one: (-(one.probability or 0.0), order.index(one.rule)))
 
 
-_SIGNS = {State.FAIL: "!", State.WARN: "~", State.UNKNOWN: "?"}
+_TO_MEND = (State.FAIL, State.WARN, State.UNKNOWN)
 _TOLD = 12
 """Most failures, or warnings, shown of a mooring; a report has them all."""
 _LACKING = 60
@@ -274,27 +275,26 @@ def check_part(assessments: Sequence[Assessment]) -> blocks.ReportPart:
     departs of each; of each rule the finding with the worst margin; every failure and warning with
     its figures and remedy. No rule hangs on colour.
     """
-    sections = [judged_section(each) for each in assessments]
-    facts = [each.facts for each in sections if each.facts is not None]
+    facts = [check_facts.facts_of(each) for each in assessments]
+    findings = [one for each in facts for one in each.findings]
     shown = (
-        *(replace(each, title="", note="") for each in check_summary.matrix_tables(sections)),
-        check_summary.verdict_prose(finding for each in facts for finding in each.findings),
+        *(replace(each, title="", note="") for each in check_facts.matrix_tables(facts)),
+        check_summary.verdict_prose(findings),
         *(block for each in facts for block in _decisive(each, several=len(facts) > 1)),
-        replace(check_summary.worst_table(sections), title=""),
+        replace(check_facts.worst_table(facts), title=""),
         *likelihood_tables([(each.name, [*each.all_findings()]) for each in assessments]),
         *(block for each in facts for block in _told(each)),
+        blocks.Note(unseen(findings)[:1]),
     )
-    return blocks.ReportPart(
-        "", (*shown, blocks.Note(unseen(each for one in facts for each in one.findings)[:1]))
-    )
+    return blocks.ReportPart("", shown)
 
 
 def _decisive(facts: CheckFacts, *, several: bool) -> Iterator[blocks.Block]:
     """What decides of a mooring, what is accepted, and what departs."""
     if several:
         yield blocks.Heading(facts.mooring)
-    yield key_pairs(facts)
-    yield from settled_tables(facts)
+    yield check_facts.key_pairs(facts)
+    yield from check_facts.settled_tables(facts)
 
 
 def _told(facts: CheckFacts) -> Iterator[blocks.Block]:
@@ -302,7 +302,7 @@ def _told(facts: CheckFacts) -> Iterator[blocks.Block]:
     missing.
     """
     listed = joined(
-        one for one in check_summary.worst_by_part(facts.findings) if one.state in _SIGNS
+        one for one in check_summary.worst_by_part(facts.findings) if one.state in _TO_MEND
     )
     if not listed:
         return
@@ -320,7 +320,7 @@ def _told(facts: CheckFacts) -> Iterator[blocks.Block]:
 def _sentence(found: Sequence[Finding]) -> blocks.Line:
     """What is found alike of some components, told of the worst of them."""
     worst = found[0]
-    sign, quiet = Span(f"{_SIGNS[worst.state]} ", worst.state), worst.state is not State.FAIL
+    sign, quiet = Span(f"{worst.state.sign} ", worst.state), worst.state is not State.FAIL
     if worst.state is State.UNKNOWN and worst.component is not None and worst.limit is None:
         names = check_summary.named((one.component or "" for one in found), _LACKING)
         return sign, Span(f"{worst.rule} of {names} is unknown. {worst.remedy}", quiet=True)
