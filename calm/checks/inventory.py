@@ -66,15 +66,9 @@ class Total:
 
 def total_of(items: Sequence[InventoryItem]) -> Total:
     """The sums over pieces and clamps."""
-    masses, weights = ([getattr(each, name) for each in items] for name in _SUMMED)
-    return Total(_known(masses), masses.count(None), _known(weights), weights.count(None))
-
-
-_SUMMED = ("dry_mass", "wet_weight")
-
-
-def _known(values: Sequence[float | None]) -> float:
-    return sum(value for value in values if value is not None)
+    masses, weights = [each.dry_mass for each in items], [each.wet_weight for each in items]
+    mass, weight = (sum(one for one in each if one is not None) for each in (masses, weights))
+    return Total(mass, masses.count(None), weight, weights.count(None))
 
 
 def inventory_of(mooring: Mooring) -> tuple[InventoryItem, ...]:
