@@ -20,11 +20,11 @@ from calm.checks.finding import State
 from calm.drawing import graph
 from calm.drawing.graph import COLOURS, Graph, LegendEntry, Scale, Stroke, covering, seconds
 from calm.quantities import QUANTITIES, Quantity
-from calm.report import batch_summary, blocks, check_summary
+from calm.report import batch_summary, blocks, check_tables
 from calm.report.batch_summary import QUANTITY, TITLES, percent, when
 from calm.report.blocks import Cell, Figure, Prose, ReportPart, Table, number, table_of, words
 from calm.report.html import page
-from calm.report.provenance import NOT_JUDGED, report_of, versions
+from calm.report.provenance import NOT_JUDGED, made_by, report_of
 from calm.report.result_files import to_json
 from calm.whole_file import put
 
@@ -40,7 +40,6 @@ def summary_report(summary: Summary) -> blocks.Report:
     left_out = blocks.warned(filter(None, [batch_summary.left_out(summary)]))
     not_judged = (f"Not judged: {name}, {why}." for name, why in summary.not_judged.items())
     moving = [part for part in summary.parts if part.clamped] or list(summary.parts[:-1])
-    made_by = ", ".join(f"{name} {number}" for name, number in versions())
     through_time = series_figure(summary)
     responses = Figure("Responses of the line", exceedance_figure(summary))
     instruments = parts_figure(moving)
@@ -61,7 +60,7 @@ def summary_report(summary: Summary) -> blocks.Report:
         "Limits": (
             limits_table(summary),
             Prose(tuple(not_judged)),
-            check_summary.limits_table(summary.limits_used),
+            check_tables.limits_table(summary.limits_used),
         ),
         "Distributions": (*left_out, *statistics_tables(summary)),
         NOT_JUDGED.title: NOT_JUDGED.blocks,
@@ -70,7 +69,7 @@ def summary_report(summary: Summary) -> blocks.Report:
                 blocks.Listing(name.replace("_", " ").capitalize(), text)
                 for name, text in summary.source.items()
             ),
-            Prose((f"Gathered with {made_by}",)),
+            Prose((f"Gathered with {made_by()}",)),
         ),
     }  # fmt: skip
     extent = batch_summary.extent(summary)

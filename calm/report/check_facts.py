@@ -21,7 +21,7 @@ from calm.checks.assessment import Assessment
 from calm.checks.finding import AS_GIVEN, ON_THE_WAY, OWN, Finding, State, by_rule, worst_of
 from calm.files.check_limits import LimitKey
 from calm.quantities import say
-from calm.report import blocks, check_summary
+from calm.report import blocks, check_tables
 from calm.report.blocks import (
     Cell,
     Column,
@@ -33,7 +33,7 @@ from calm.report.blocks import (
     table_of,
     words,
 )
-from calm.report.check_summary import figure_of, named_components, place_of, worst_by_part
+from calm.report.check_tables import figure_of, named_components, place_of
 from calm.report.provenance import title_pairs
 from calm.report.result_files import members
 from calm.units import KILOGRAM_FORCE, KNOT
@@ -110,7 +110,7 @@ class CheckFacts:
         if self.anchor is not None:
             anchor = members(self.anchor, "component", "environment", "situation", "margin")
             anchor |= {"weight": self.anchor.value, "required_weight": self.anchor.limit}
-        counts = check_summary.counted_states(self.findings)
+        counts = check_tables.counted_states(self.findings)
         return {
             "sha256": self.sha256,
             "strongest_current": vars(self.current),
@@ -192,7 +192,7 @@ def key_pairs(facts: CheckFacts) -> Pairs:
             )
             place = place_of(anchor)
             held = f"{margin}: {weight} held, {needed} needed, environment {place}"
-    counts = check_summary.counted_states(facts.findings)
+    counts = check_tables.counted_states(facts.findings)
     named = (State.FAIL, State.WARN, State.UNKNOWN, State.ESTIMATED, State.ACCEPTED)
     return Pairs((
         ("strongest current", strongest),
@@ -267,13 +267,13 @@ def _lines_of(row: Sequence[Cell], columns: Sequence[Column], signs: float) -> f
 def settled_tables(facts: CheckFacts) -> Iterator[Table]:
     """What the designer has decided: what is accepted, and limits of the design's own."""
     terms = attrgetter("accept.reason", "accept.by", "accept.date", "accept.until")
-    groups = check_summary.grouped(facts.accepted, terms)
+    groups = check_tables.grouped(facts.accepted, terms)
     rows = [(accept, found) for found in groups if (accept := found[0].accept) is not None]
     if rows:
         yield table_of(
             "Accepted",
             rows,
-            words("rule", lambda row: ", ".join(check_summary.rules_of(row[1]))),
+            words("rule", lambda row: ", ".join(RULES[name].title for name in by_rule(row[1]))),
             words("component", lambda row: named_components(row[1])),
             *blocks.of_first(
                 words("reason", share=1.8),
@@ -283,22 +283,21 @@ def settled_tables(facts: CheckFacts) -> Iterator[Table]:
         )
     if facts.departures:
         title = "Limits that depart from their defaults"
-        yield check_summary.limits_table(facts.departures, title)
+        yield check_tables.limits_table(facts.departures, title)
 
 
 def _mending(findings: Sequence[Finding]) -> Iterator[Table]:
     """The gravest of what fails, is unknown or warns; like findings are one row."""
-    shown = (State.FAIL, State.UNKNOWN, State.WARN)
-    groups = check_summary.joined(one for one in worst_by_part(findings) if one.state in shown)
+    groups = check_tables.to_mend(findings)
     if groups:
         yield table_of(
             _MENDING,
             groups,
             *blocks.of_first(
-                check_summary.FIGURES[0], words("rule", lambda one: RULES[one.rule].title, 0.8)
+                check_tables.FIGURES[0], words("rule", lambda one: RULES[one.rule].title, 0.8)
             ),
             words("component", named_components),
-            words("finding", lambda found: check_summary.said_of(found[0]).text, 2.2),
+            words("finding", lambda found: check_tables.said_of(found[0]).text, 2.2),
         )
 
 
@@ -379,7 +378,7 @@ def worst_table(moorings: Sequence[CheckFacts]) -> Table:
     return table_of(
         "Worst finding of each rule",
         rows,
-        *blocks.of_first(words("rule", share=0.0), *check_summary.FIGURES),
+        *blocks.of_first(words("rule", share=0.0), *check_tables.FIGURES),
         number("unknown", lambda row: row[1] or None, short="?"),
         in_so_many("moorings that fail", State.FAIL),
         in_so_many("that warn", State.WARN),

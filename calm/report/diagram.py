@@ -17,7 +17,7 @@ from calm.drawing.schematic.pen import INK, SOFT, Pen, picture, svg_text, wrappe
 from calm.drawing.schematic.shown_parts import TextRow, one_line
 from calm.drawing.schematic.symbols import LINES, Sign, draw_cable, figure_of
 from calm.quantities import QUANTITIES, say
-from calm.report.check_summary import short_verdict
+from calm.report.check_tables import short_verdict
 from calm.report.provenance import title_pairs
 from calm.report.sheet import ends_told, leg_title
 

@@ -16,7 +16,7 @@ from calm.files import Uncertainty
 from calm.files.uncertainty import Spread
 from calm.report import blocks
 from calm.report.blocks import Block, Field, Figure, ReportPart, Table, number, table_of, words
-from calm.report.check_summary import limits_table
+from calm.report.check_tables import limits_table
 from calm.report.provenance import NOT_JUDGED, document_part, inputs_part, report_of
 from calm.report.sheet import leg_title, net_part, quality_of, summary_of, table_of_line, title_of
 
@@ -25,7 +25,7 @@ def result_report(result: AnyResult, uncertain: Uncertain | None = None) -> bloc
     """Schematic, table, drawing and inputs of one result, and how sure its figures are."""
     from calm.drawing.schematic import schematic_svg
 
-    file, water = result.file, water_of(result)
+    file = result.file
     limits: tuple[ReportPart, ...] = ()
     if isinstance(result, NetResult):
         net = net_part(result)
@@ -55,7 +55,7 @@ def result_report(result: AnyResult, uncertain: Uncertain | None = None) -> bloc
         *(() if uncertain is None else (uncertainty_part(uncertain),)),
         *limits,
         NOT_JUDGED,
-        inputs_part([file], [file.environment.name or "own"], [water]),
+        inputs_part([(file.environment.name or "own", file, water_of(result))]),
     )
 
 
