@@ -167,7 +167,7 @@ def levels_tables(summary: Summary) -> Iterator[Table | Prose]:
                 number("return period", 1, "years"),
                 number("level", 2, quantity.display_unit),
                 number("95 % interval", 3, quantity.display_unit),
-                note=" ".join(f"{_rules(fit)}." for fit in fits),
+                note=" ".join(map(_fitted, fits)),
             )
     for reason in batch_summary.refusals(summary):
         yield Prose((f"{reason[0].upper()}{reason[1:]}.",), State.UNKNOWN)
@@ -178,9 +178,9 @@ def _ends(level: Level, quantity: Quantity, unknown: str) -> Iterator[str]:
         yield unknown if end is None else quantity.format(end)
 
 
-def _rules(fit: Fit) -> str:
+def _fitted(fit: Fit) -> str:
     fitted = f"location {fit.location:.4g}, scale {fit.scale:.4g}, shape {fit.shape:.3f}"
-    return f"{METHODS[fit.method]}: {fitted}; {fit.rules}"
+    return f"{METHODS[fit.method]}: {fitted}; {fit.rules}."
 
 
 def write_summary(
