@@ -23,22 +23,11 @@ from calm.report import blocks
 from calm.report.blocks import Cell, Column, Line, Note, Prose, ReportPart, Span, Table, words
 from calm.solve import Status
 
-_COLUMNS = {
-    Result: (
-        "length",
-        "depth",
-        "height",
-        "knockdown",
-        "offset",
-        "tilt",
-        "tension",
-        "safety_factor",
-    ),
-    TowResult: ("length", "depth", "layback", "tilt", "tension", "safety_factor"),
-    NetResult: ("length", "depth", "x", "y", "knockdown", "tilt", "tension", "safety_factor"),
-}
-_OF_AN_END = {Result: "Depth, height and offset", TowResult: "Depth and layback",
-              NetResult: "Depth, east and north"}  # fmt: skip
+_MOORING_COLUMNS = (
+    "length", "depth", "height", "knockdown", "offset", "tilt", "tension", "safety_factor",
+)  # fmt: skip
+_TOW_COLUMNS = ("length", "depth", "layback", "tilt", "tension", "safety_factor")
+_NET_COLUMNS = ("length", "depth", "x", "y", "knockdown", "tilt", "tension", "safety_factor")
 _NOTE = "of the upper end. Tension: the greatest in the piece. ~ near a limit, ! beyond it."
 _TYPES = {"subsurface": "sub-surface mooring", "surface": "surface mooring"}
 
@@ -193,14 +182,18 @@ def table_of_line(result: AnyResult, title: str = "", *, places: bool = False) -
     The legs of a net have heads. With `places` a clamp says where on its piece it sits, in place of
     a length.
     """
-    names, note = _COLUMNS[type(result)], f"{_OF_AN_END[type(result)]}: {_NOTE}"
-    legs = result.legs if isinstance(result, NetResult) else ()
-    heads = {leg.file.legs[0].first: Cell(leg_title(leg), strong=True) for leg in legs}
+    names: tuple[str, ...] = _MOORING_COLUMNS
+    of_an_end, heads = "Depth, height and offset", {}
+    if isinstance(result, TowResult):
+        names, of_an_end = _TOW_COLUMNS, "Depth and layback"
+    elif isinstance(result, NetResult):
+        names, of_an_end = _NET_COLUMNS, "Depth, east and north"
+        heads = {leg.file.legs[0].first: leg_title(leg) for leg in result.legs}
     columns = [Column("no.", numeric=True, narrow=False), Column("piece", short="")]
     rows: list[tuple[Cell, ...]] = []
     for number, (piece, clamps) in enumerate(rows_down(result)):
         if piece.index in heads:
-            rows.append((heads[piece.index],))
+            rows.append((Cell(heads[piece.index], strong=True),))
         component, upper = piece.part.component, (piece.depth_top, piece.x_top, piece.y_top)
         states = {"tilt": tilt_state(component, piece.tilt)}
         states["safety_factor"] = safety_state(result, piece)
@@ -218,7 +211,7 @@ def table_of_line(result: AnyResult, title: str = "", *, places: bool = False) -
             label = Cell(clamp.label, indented=True, strong=component.role == "instrument")
             rows.append((Cell(), label, *cells))
     columns += map(blocks.quantity_column, names)
-    return Table(title, tuple(columns), tuple(rows), note, dense=True)
+    return Table(title, tuple(columns), tuple(rows), f"{of_an_end}: {_NOTE}", dense=True)
 
 
 def tilt_state(component: Component, tilt: float) -> State | None:
