@@ -22,7 +22,7 @@ MOST_ROUNDS = 16
 """Of Newton's method; a step that takes more is too long."""
 GENTLE = 10.0
 """Speed below which drag goes with the speed, in the first round of a step from rest [m/s]."""
-CLOSE = 1e-4
+CLOSE = 1e-5
 """Last change of a place, as a share of the line, and of a tension, as one of all the weights; what
 is left is of the order of its square."""
 SINKING = 1e-4
