@@ -126,7 +126,7 @@ def motion(
     from calm.batch.profiles import Batch
     from calm.batch.work import compile_solver
     from calm.case import Tow
-    from calm.case.mooring import load_line
+    from calm.case.net import load_line
     from calm.motion.instrument_file import read_instruments
     from calm.motion.line_places import places_of
     from calm.motion.motion_estimate import RecoveredMooring

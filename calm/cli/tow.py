@@ -121,7 +121,7 @@ class TabulatedTow:
 
 def _only_tows(files: list[Path], environment: str | None, catalogs: list[Path]) -> list[Tow]:
     from calm.case import Tow
-    from calm.case.mooring import load_line
+    from calm.case.net import load_line
 
     read = read_all(load_line, files, environment, catalogs)
     moorings = [file for file, line in zip(files, read, strict=True) if not isinstance(line, Tow)]

@@ -141,7 +141,7 @@ def _limit_of(summary: Summary, response: Response) -> float | None:
     wanted = {"knockdown": "knockdown", "offset": "excursion"}.get(response.name)
     for rule in summary.rules:
         if rule.name == wanted:
-            limit = rule.exceedances[0].limit.limit
+            limit = rule.exceedances[0].limit.criterion.limit
             return (limit or 0.0) * QUANTITIES[QUANTITY[response.name]].scale
     return None
 

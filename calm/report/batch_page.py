@@ -6,7 +6,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from calm.batch.finished import stored_result
+from calm.batch.finished import open_result
 from calm.batch.statistics.extremes import EXTRAPOLATION, METHODS, Fit, Level
 from calm.batch.statistics.limits import Exceedance
 from calm.batch.statistics.summary import PERCENTILES, WORST, Distribution, Summary, summarize
@@ -84,15 +84,16 @@ def limits_table(summary: Summary) -> Table:
     """Return how often every limit is broken, and the worst of it."""
 
     def state(one: Exceedance) -> Cell:
-        broken = one.limit.beyond if one.share else State.PASS
+        broken = one.limit.criterion.beyond if one.share else State.PASS
         state = State.UNKNOWN if one.share is None else broken
         return Cell(state.value, state=state)
 
     def figure(one: Exceedance, value: float | None, bound: str = "") -> str:
-        return "-" if value is None else bound + QUANTITIES[one.limit.quantity].say(value)
+        return "-" if value is None else bound + QUANTITIES[one.limit.rule.quantity].say(value)
 
     def limit(one: Exceedance) -> str:
-        return figure(one, one.limit.limit, "≥ " if one.limit.least else "≤ ")
+        criterion = one.limit.criterion
+        return figure(one, criterion.limit, "≥ " if criterion.least else "≤ ")
 
     return table_of(
         "Limits",
@@ -100,7 +101,7 @@ def limits_table(summary: Summary) -> Table:
         *blocks.of_first(words("state", state, 0.0)),
         words("rule", lambda row: row[1].title),
         *blocks.of_first(
-            words("component", "limit.component"),
+            words("component", "limit.criterion.part.label"),
             number("limit", limit),
             number("broken in", lambda one: percent(one.share), "% of profiles"),
             number("worst value", lambda one: figure(one, one.worst)),
@@ -200,7 +201,7 @@ def write_summary(
     UsageError
         The result cannot be read.
     """
-    with stored_result(result) as stored:
+    with open_result(result) as stored:
         summary = summarize(stored, mooring, result.parent, check, result)
     document, page = summary_paths(result)
     put(document, to_json([batch_summary.summary_document(summary)]).encode())

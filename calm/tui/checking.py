@@ -125,9 +125,8 @@ def unit_of(text: str) -> str | None:
     return found[1].strip() if found else None
 
 
-def number(text: str) -> Reading:
-    """A plain number, of a table whose columns carry the units."""
-    return quantity(QuantityField("number"))(text)
+number = quantity(QuantityField("number"))
+"""Judges a plain number, of a table whose columns carry the units."""
 
 
 def count(text: str) -> Reading:

@@ -31,29 +31,6 @@ _LEAST_BESIDE = 52
 _BESIDE, _MOST_BESIDE = 3, 26
 
 
-class Tabs(Static):
-    """The names of the pictures; that of the picture shown in reverse."""
-
-    DEFAULT_CSS = """
-    Tabs {
-        height: 1; color: $text-muted; link-style: none; link-color: $text-muted;
-        link-color-hover: $foreground; link-background-hover: $primary-muted;
-        link-style-hover: bold;
-    }
-    """
-
-    def show(self, chosen: Tab, note: str = "", *, focused: bool = False) -> None:
-        """Show which is chosen, a note, and whether the picture has the focus."""
-        parts = [CURSOR if focused else " "]
-        parts += [
-            f"[@click=screen.picture('{tab}')]"
-            + (f"[reverse bold] {n} {tab} [/]" if tab == chosen else f" {n} {tab} ")
-            + "[/]"
-            for n, tab in enumerate(TABS, 1)
-        ]
-        self.update("".join(parts) + (f"  [italic]{note}[/]" if note else ""), layout=False)
-
-
 class Picture(DrawnRows, can_focus=True):
     """One picture, drawn for the cells it has."""
 
@@ -135,6 +112,11 @@ class Pictures(Vertical):
     DEFAULT_CSS = """
     Pictures { height: 1fr; width: 1fr; }
     Pictures.-old Picture { text-style: dim; }
+    Pictures > #tabs {
+        height: 1; color: $text-muted; link-style: none; link-color: $text-muted;
+        link-color-hover: $foreground; link-background-hover: $primary-muted;
+        link-style-hover: bold;
+    }
     Pictures > #beside { height: 1; padding: 0 1; color: $text-muted; display: none; }
     """
 
@@ -146,7 +128,7 @@ class Pictures(Vertical):
         self._note = ""
         self._overlaid = False
         self._other: tuple[str, Shape] | None = None
-        self._tabs, self._picture = Tabs(), Picture()
+        self._tabs, self._picture = Static(id="tabs"), Picture()
         self._caption = Static(id="beside", markup=False)
 
     def compose(self) -> ComposeResult:
@@ -193,15 +175,21 @@ class Pictures(Vertical):
 
     def _show(self) -> None:
         shapes, named = self._beside()
-        self._say_where_keys_go()
+        self._show_tabs()
         self._caption.update(f"dashed: {named}")
         self._caption.display = bool(named) and self.tab in ("elevation", "plan")
         self._picture.show(self._view, self.tab, shapes)
 
     @on(events.DescendantFocus)
     @on(events.DescendantBlur)
-    def _say_where_keys_go(self) -> None:
-        self._tabs.show(self.tab, self._note, focused=self._picture.has_focus)
+    def _show_tabs(self) -> None:
+        """The names of the pictures, that shown in reverse; a sign where the keys go to it."""
+        parts = [CURSOR if self._picture.has_focus else " "]
+        for number, tab in enumerate(TABS, 1):
+            style = ("[reverse bold]", "[/]") if tab == self.tab else ("", "")
+            parts.append(f"[@click=screen.picture('{tab}')]{style[0]} {number} {tab} {style[1]}[/]")
+        parts.append(f"  [italic]{self._note}[/]" if self._note else "")
+        self._tabs.update("".join(parts), layout=False)
 
     def on_click(self, event: events.Click) -> None:
         """Give the picture the focus."""

@@ -107,15 +107,11 @@ class Saving:
         is_changed = is_own and stamp is not None and file.changed_on_disk()
         write = session.save if is_own else lambda: session.save_as(path)
         mine = " your line" if is_changed else ""
+        overwrite = "overwrite it" + (mine and f" with{mine}")
+        other = partial(self.save_as, then, _free_name(path))
         answers = [
-            Answer(
-                "o", "overwrite it" + (mine and f" with{mine}"), lambda: self._write(write, then)
-            ),
-            Answer(
-                "n",
-                f"save{mine} under another name",
-                lambda: self.save_as(then, _free_name(path)),
-            ),
+            Answer("o", overwrite, lambda: self._write(write, then)),
+            Answer("n", f"save{mine} under another name", other),
         ]
         title = f"{path.name} is write-protected" if is_own else f"{path.name} is there already"
         protected = not is_own and not os.access(path, os.W_OK)
@@ -142,7 +138,7 @@ class Saving:
         is_new, self._told = now != self._told, now
         if now[0] is None:
             if is_new:
-                session.lost_file()
+                session.history.saved("")
                 self._workspace.tell(_GONE, wrong=True)
                 self._workspace.edited()  # what is here is kept like every change
         elif not (session.changed or screen.is_typing):
@@ -157,7 +153,8 @@ class Saving:
             if not quietly:
                 self._workspace.tell(f"The file cannot be read any more: {error}", wrong=True)
             return
-        self._session.take_saved(text)
+        self._session.write(text, "read the file again")
+        self._session.history.saved()
         self._app.taken_over(_READ_AGAIN)
 
     # work of an earlier run

@@ -285,11 +285,6 @@ class Session:
 
     # saving
 
-    def take_saved(self, text: str) -> None:
-        """Go on with what the file on the disk holds now; undo leads back."""
-        self.write(text, "read the file again")
-        self.history.saved()
-
     def save(self) -> str:
         """Write the file whole, and forget what was kept; what could not be kept of it.
 
@@ -312,10 +307,6 @@ class Session:
             raise
         before.forget()
         return lost
-
-    def lost_file(self) -> None:
-        """The file is gone from the disk: nothing of it is saved any more."""
-        self.history.saved("")
 
     # what is kept in case of a crash
 

@@ -75,11 +75,6 @@ class VerdictPane(ScrolledText, can_focus=True):
             return Strip(Segment(text, style and style + _CHOSEN) for text, style, _ in strip)
         return strip
 
-    @property
-    def said_here(self) -> str:
-        """Return what the line that is chosen says."""
-        return self._said[self._chosen].text
-
     def on_focus(self) -> None:
         """The line that is chosen is shown where the focus is."""
         if not self._is_a_way(self._chosen):

@@ -46,8 +46,8 @@ def mistakes(problems: Sequence[Problem], path: Path) -> str:
     files = {each.path for each in problems if is_elsewhere(each, path)}
     if not count:
         return ""
-    if not files or any(not is_elsewhere(each, path) for each in problems):
-        where = "in the file" if not files else "in the file and others"
+    if any(not is_elsewhere(each, path) for each in problems):
+        where = "in the file and others" if files else "in the file"
     else:
         where = f"in {Path(*files).name}" if len(files) == 1 else "in other files"
     return f"{count} mistake{'s' * (count != 1)} {where}"

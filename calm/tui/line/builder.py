@@ -1,7 +1,7 @@
 """The first screen: the line, its picture, the verdict, and the catalogue when it is wanted."""
 
 from functools import partial
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from textual import on
 from textual.binding import BindingType
@@ -53,15 +53,9 @@ class BuilderScreen(ComparingScreen):
     @on(DescendantFocus)
     def show_keys(self) -> None:
         """The keys of what has the focus."""
-        focused = self.focused
-        place = "line"
-        if isinstance(focused, CellEditor):
-            place = "cell"
-        elif isinstance(focused, VerdictPane):
-            place = "verdict"
-        elif isinstance(focused, Picture):
-            place = "anywhere"
-        elif focused is not None and self.catalogue in focused.ancestors_with_self:
+        places: dict[Any, str] = {CellEditor: "cell", VerdictPane: "verdict", Picture: "anywhere"}
+        place = places.get(type(self.focused), "line")
+        if self.focused is not None and self.catalogue in self.focused.ancestors_with_self:
             place = "catalogue"
         self.query_one(KeyBar).show_keys(hints(place))
 

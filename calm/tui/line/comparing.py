@@ -209,19 +209,16 @@ class ComparingScreen(LineScreen):
             self.tell("Save the file first: reports are made from the saved file")
             return
 
-        def take(texts: dict[str, str]) -> None:
-            self._write(what, path, Path(texts["folder"]).expanduser())
-
         folder = path.with_name(f"{path.stem}-{what}")
         asked = [Asked("folder", "Folder", str(folder), needed("a folder"))]
-        ask(self.app, InputSheet("Where to write it", "", asked), take)
+        write = partial(self._write, what, path)
+        ask(self.app, InputSheet("Where to write it", "", asked), write)
 
-    def _write(self, what: str, path: Path, folder: Path) -> None:
+    def _write(self, what: str, path: Path, texts: dict[str, str]) -> None:
         """Have the command write it; what it says last is reported."""
-        command, option = _PAPERS[what]
+        folder, (command, option) = Path(texts["folder"]).expanduser(), _PAPERS[what]
         words = [sys.executable, "-m", "calm", command, str(path), option, str(folder)]
-        for catalog in self.session.catalogs:
-            words += ["--catalog", str(catalog)]
+        words += [word for each in self.session.catalogs for word in ("--catalog", str(each))]
 
         def work() -> None:
             done = subprocess.run(

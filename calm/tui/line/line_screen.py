@@ -162,8 +162,7 @@ class LineScreen(DraftScreen):
         if purpose == "replace":
             listed = index.get(self.session.item(spot).values.get("use", ""))
             return listed.role if listed else ""
-        listed_all = [index.get(item.values.get("use", "")) for item in items]
-        roles = {each.role for each in listed_all if each}
+        roles = {each.role for item in items if (each := index.get(item.values.get("use", "")))}
         is_last = spot.item == len(items) - 1 and purpose == "below"
         return "anchor" if is_last and "release" in roles and "anchor" not in roles else ""
 
