@@ -12,11 +12,10 @@ from typing import TYPE_CHECKING, TypeVar
 
 from calm.batch import finished
 from calm.batch.dataset import layout_of, nodes_of
-from calm.batch.profiles import Batch
+from calm.batch.profiles import Batch, processors
 from calm.batch.statuses import Ending, endings
-from calm.batch.threads import Stopped, go_on, processors
 from calm.batch.work import BatchWork, Progress, compile_solver
-from calm.batch.work_store import identity_of, open_store, to_text
+from calm.batch.work_store import Stopped, go_on, identity_of, open_store, to_text
 from calm.case import Mooring
 from calm.case.net import Net
 from calm.errors import UsageError

@@ -133,7 +133,7 @@ def _summarized(output: Path, mooring: Mooring | Net, stop: Event) -> bool:
 
     UsageError: the result cannot be read.
     """
-    from calm.batch.threads import Stopped, go_on
+    from calm.batch.work_store import Stopped, go_on
     from calm.report.batch_page import summary_part, write_summary
 
     try:
