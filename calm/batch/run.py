@@ -1,14 +1,12 @@
 """Every profile of a record: solved in blocks, kept at once, taken up again where it stopped."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from threading import Event, Timer
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 from calm.batch import finished
 from calm.batch.dataset import layout_of, nodes_of
@@ -19,9 +17,7 @@ from calm.batch.work_store import Stopped, go_on, identity_of, open_store, to_te
 from calm.case import Mooring
 from calm.case.net import Net
 from calm.errors import UsageError
-
-if TYPE_CHECKING:
-    from calm.records.record import Record
+from calm.records.record import Record
 
 BLOCK = 8192
 """Profiles to a block: what is written at once, and lost where a process is stopped."""

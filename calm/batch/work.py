@@ -4,8 +4,6 @@ They are solved here, or by the workers of a dask scheduler on this machine or o
 is made ready before the first, and what is reported meanwhile.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 from contextlib import closing
 from dataclasses import dataclass
@@ -13,7 +11,7 @@ from functools import lru_cache
 from itertools import islice
 from threading import Event, Lock, Thread
 from time import monotonic, perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numba.core import event
@@ -27,10 +25,8 @@ from calm.case import Mooring
 from calm.case.net import Net
 from calm.errors import UsageError
 from calm.physics.compiled import cache_folder
+from calm.records.record import Levels, Record
 from calm.version import __version__
-
-if TYPE_CHECKING:
-    from calm.records.record import Levels, Record
 
 FIRST, FEWEST = 256, 8
 """Profiles solved before progress is reported or a stop heeded: at first, and at least. `SLICE`

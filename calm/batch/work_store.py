@@ -30,13 +30,12 @@ from calm.case import Mooring
 from calm.case.net import Net
 from calm.dataset.netcdf import LEVEL, Chunk, ResultLayout, chunk_shape
 from calm.errors import UsageError
+from calm.records.record import Record
 from calm.version import __version__
 from calm.whole_file import flush_to_disk, put
 
 if TYPE_CHECKING:
     import zarr
-
-    from calm.records.record import Record
 
 WORK = ".batch"
 """The folder of a store that its result is without."""
