@@ -69,7 +69,7 @@ def search(words: list[str], /, *, json: bool = False) -> ExitCode:
         As JSON: objects with every field, in SI units and degrees.
     """
     from calm.assemble.catalogue_search import Index
-    from calm.tui.catalogue.catalogue_pane import Remembered
+    from calm.files.editing.user_state import Remembered
 
     catalogue, text = _load(), " ".join(words)
     index, remembered = Index(catalogue), Remembered()

@@ -22,9 +22,9 @@ from textual.widgets import OptionList
 from calm.errors import CalmError
 from calm.files import Catalogue
 from calm.files.editing import KeptWork, WorkingFile
+from calm.tui.builder import BuilderScreen
 from calm.tui.dialogs import LongText
 from calm.tui.key_table import Actions, Commands, all_keys
-from calm.tui.line.builder import BuilderScreen
 from calm.tui.painted import Pace, Painted, PlainSigns, shows_all_signs
 from calm.tui.saving import Saving
 from calm.tui.screen import DraftScreen

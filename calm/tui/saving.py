@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
-import contextlib
-import hashlib
-import json
 import os
 import time
 from collections.abc import Callable
-from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from calm import whole_file
 from calm.errors import CalmError, InputError
 from calm.files import read_mooring
-from calm.files.editing import KeptWork, state_folder
-from calm.files.editing.working_file import Keeper
+from calm.files.editing import KeptWork
+from calm.files.editing.user_state import Presence
 from calm.tui.checking import Reading
 from calm.tui.dialogs import Answer, InputSheet, Question, Then, ask, choose
 from calm.tui.field import Asked
@@ -222,36 +217,6 @@ class Saving:
         is_gone = file.stamp is None and file.changed_on_disk()
         told = "is gone from the disk" if is_gone else "has changes that are not saved"
         choose(self._app, Question("Not saved", f"{name} {told}.", answers))
-
-
-class Presence:
-    """Says in the state folder which file is open here."""
-
-    def __init__(self) -> None:
-        self._place: Path | None = None
-
-    def say(self, path: Path | None) -> list[int]:
-        """Say it of another file, or of none; the processes that have that one open, too."""
-        if self._place is not None:
-            with contextlib.suppress(OSError):
-                self._place.unlink(missing_ok=True)
-        self._place = None
-        if path is None:
-            return []
-        own, folder, others = Keeper.this(), state_folder(), []
-        sign = hashlib.sha256(os.fsencode(os.path.realpath(path))).hexdigest()[:12]
-        with contextlib.suppress(OSError):
-            folder.mkdir(parents=True, exist_ok=True)
-            for place in folder.glob(f"open-{sign}-*.json"):
-                with contextlib.suppress(OSError, ValueError, TypeError):
-                    keeper = Keeper(**json.loads(place.read_text(encoding="utf-8")))
-                    if keeper.is_here and not keeper.is_running:
-                        place.unlink(missing_ok=True)
-                    elif keeper != own:
-                        others.append(keeper.process)
-            self._place = folder / f"open-{sign}-{own.process}.json"
-            whole_file.put(self._place, json.dumps(asdict(own)).encode())
-        return others
 
 
 def chosen_path(text: str) -> Path:

@@ -20,8 +20,8 @@ from calm.records.headings import heading
 from calm.tui.checking import Check, anything, needed, quantity
 from calm.tui.field import Asked, Cycle, Field
 from calm.tui.key_table import bindings
-from calm.tui.water.grid import Grid
-from calm.tui.water.tables_to_begin import CURRENT_COLUMNS, USUAL_DEPTH
+from calm.tui.water_grid import Grid
+from calm.tui.water_tables import CURRENT_COLUMNS, USUAL_DEPTH
 from calm.units import QuantityError, QuantityRange
 
 CURRENT_FORMS = ("still", "uniform", "table", "file")

@@ -7,9 +7,9 @@ from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical
 
 from calm.files import Place
-from calm.tui.catalogue.catalogue_pane import CataloguePane, Purpose
-from calm.tui.line.line_pane import LinePane
-from calm.tui.line.table import LineTable
+from calm.tui.catalogue_pane import CataloguePane, Purpose
+from calm.tui.line_pane import LinePane
+from calm.tui.line_table import LineTable
 from calm.tui.pictures import Pictures
 from calm.tui.screen import DraftScreen
 from calm.tui.verdict_pane import VerdictPane, state_word

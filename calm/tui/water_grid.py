@@ -18,7 +18,7 @@ from calm.tui.field import Asked
 from calm.tui.key_table import bindings
 from calm.tui.scrolled import TableCells, TableColumn
 from calm.tui.theme import CURSOR
-from calm.tui.water.tables_to_begin import (
+from calm.tui.water_tables import (
     NoRows,
     Rows,
     UnknownColumns,

@@ -9,16 +9,16 @@ from textual.binding import BindingType
 
 from calm.checks.finding import State
 from calm.files import Place
-from calm.tui.catalogue.catalogue_pane import Purpose
-from calm.tui.catalogue.component_screen import id_check
+from calm.tui.catalogue_pane import Purpose
 from calm.tui.cell_editor import Then
 from calm.tui.checking import count
+from calm.tui.component_screen import id_check
 from calm.tui.dialogs import Answer, InputSheet, Question, ask, choose
 from calm.tui.field import Asked
 from calm.tui.key_table import bindings
-from calm.tui.line.mooring_sheet import equipment_changes, equipment_sheet
-from calm.tui.line.rows import ColumnFilling, LineCell, table_rows
-from calm.tui.line.table import EDITABLE, Column, LineSearch, LineTable
+from calm.tui.line_rows import ColumnFilling, LineCell, table_rows
+from calm.tui.line_table import EDITABLE, Column, LineSearch, LineTable
+from calm.tui.mooring_sheet import equipment_changes, equipment_sheet
 from calm.tui.names import Named, namings
 from calm.tui.verdict_text import Saying, why
 from calm.tui.workspace import Workspace

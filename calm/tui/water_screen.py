@@ -24,15 +24,15 @@ from calm.tui.key_table import bindings, hints
 from calm.tui.pictures import ProfilePicture
 from calm.tui.screen import DraftScreen, KeyBar
 from calm.tui.verdict_pane import state_word
-from calm.tui.water.form import (
+from calm.tui.water_form import (
     DENSITY_FORMS,
     FormChoice,
     Place,
     WaterForm,
     fields_of_water,
 )
-from calm.tui.water.grid import Grid, GridCells
-from calm.tui.water.tables_to_begin import CURRENT_COLUMNS, USUAL_DEPTH, Currents
+from calm.tui.water_grid import Grid, GridCells
+from calm.tui.water_tables import CURRENT_COLUMNS, USUAL_DEPTH, Currents
 from calm.tui.workspace import Workspace, said
 
 _ELSEWHERE = (

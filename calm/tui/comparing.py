@@ -14,7 +14,7 @@ from calm.files.editing import Draft, WorkingFile
 from calm.tui.checking import needed
 from calm.tui.dialogs import Answer, InputSheet, LongText, Question, ask, choose, numbered
 from calm.tui.field import Asked
-from calm.tui.line.line_screen import LineScreen
+from calm.tui.line_screen import LineScreen
 
 if TYPE_CHECKING:
     from rich.console import RenderableType

@@ -17,7 +17,8 @@ from calm.quantities import QUANTITIES
 from calm.tui.checking import Check, anything, count, distance, length, length_text, length_values
 from calm.tui.dialogs import InputSheet
 from calm.tui.field import Asked
-from calm.tui.line.mooring_sheet import (
+from calm.tui.line_table import EDITABLE, TableRow
+from calm.tui.mooring_sheet import (
     RELEASES,
     entered,
     equipment_changes,
@@ -25,7 +26,6 @@ from calm.tui.line.mooring_sheet import (
     serial_of_equipment,
     texts_of_equipment,
 )
-from calm.tui.line.table import EDITABLE, TableRow
 from calm.tui.theme import CLAMP, ROLES, UNKNOWN_MARGIN, UNKNOWN_ROLE, worst
 from calm.tui.workspace import Workspace
 

@@ -9,13 +9,13 @@ from textual.events import DescendantFocus, Key
 
 from calm.files.components import KINDS
 from calm.templates import TEMPLATES, Template, template
-from calm.tui.catalogue.catalogue_pane import Purpose
-from calm.tui.catalogue.component_screen import Defined
+from calm.tui.catalogue_pane import Purpose
 from calm.tui.cell_editor import CellEditor
+from calm.tui.comparing import ComparingScreen
+from calm.tui.component_screen import Defined
 from calm.tui.dialogs import Question, ask, choose, numbered
 from calm.tui.key_table import bindings, hints
-from calm.tui.line.comparing import ComparingScreen
-from calm.tui.line.mooring_sheet import (
+from calm.tui.mooring_sheet import (
     SHEETS,
     figures_sheet,
     hung_at,
@@ -170,7 +170,7 @@ class BuilderScreen(ComparingScreen):
 
     def action_define(self) -> None:
         """Define a component of one's own, and put it into the line."""
-        from calm.tui.catalogue.component_screen import ComponentScreen
+        from calm.tui.component_screen import ComponentScreen
 
         index, session = self.workspace.index, self.session
 
@@ -188,7 +188,7 @@ class BuilderScreen(ComparingScreen):
 
     def action_change_component(self) -> None:
         """Change the component of the row in its form; figures that it does not show stay."""
-        from calm.tui.catalogue.component_screen import ComponentScreen
+        from calm.tui.component_screen import ComponentScreen
 
         spot, session = self.line.table.spot, self.session
         if spot is None or not self.settle():
@@ -215,7 +215,7 @@ class BuilderScreen(ComparingScreen):
 
     def action_water(self) -> None:
         """Depth, density, current, wind."""
-        from calm.tui.water.water_screen import WaterScreen
+        from calm.tui.water_screen import WaterScreen
 
         self.app.push_screen(WaterScreen(self.workspace), self._back)
 

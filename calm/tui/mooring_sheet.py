@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from calm.checks.finding import State
 from calm.files.rule_texts import RULES
-from calm.tui.catalogue.component_screen import form_fields
+from calm.tui.component_screen import form_fields
 from calm.tui.session import location
 
 if TYPE_CHECKING:

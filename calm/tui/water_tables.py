@@ -28,8 +28,8 @@ from calm.tui.theme import ELLIPSIS
 from calm.units import DIMENSIONS, QuantityError, QuantityRange, unit_factor
 
 if TYPE_CHECKING:
-    from calm.tui.water.form import WaterForm
-    from calm.tui.water.water_screen import WaterScreen
+    from calm.tui.water_form import WaterForm
+    from calm.tui.water_screen import WaterScreen
 
 CURRENT_COLUMNS = ("depth m", "speed m/s", "toward deg")
 

@@ -1,8 +1,6 @@
 """The catalogue: a search that answers at each key, a card, and what else is asked for."""
 
-import json
 from collections.abc import Callable, Sequence
-from contextlib import suppress
 from itertools import zip_longest
 from typing import ClassVar, Literal
 
@@ -16,11 +14,10 @@ from textual.binding import BindingType
 from textual.containers import Horizontal, Vertical
 from textual.widgets import Input, Static
 
-from calm import whole_file
 from calm.assemble.catalogue_search import COLUMNS, Index, Listed
 from calm.errors import CalmError
 from calm.files.components import FLEXIBLE_KINDS, RIGID_KINDS
-from calm.files.editing import state_folder
+from calm.files.editing.user_state import Remembered
 from calm.tui.checking import distance, length
 from calm.tui.dialogs import InputSheet, ask
 from calm.tui.field import Asked, ScrolledEntry
@@ -130,56 +127,6 @@ class ComponentList(TableCells, can_focus=False):
         if look is None:
             return style
         return style + self.look(f"component-list--{look}")
-
-
-_NAME = "catalogue.json"
-_MOST_RECENT = 40
-
-
-class Remembered:
-    """Ids of components, each list the last one first; a file that cannot be read is none.
-
-    Attributes
-    ----------
-    favourites : marked by the person
-    recent : taken from the catalogue
-    """
-
-    def __init__(self) -> None:
-        try:
-            kept = json.loads((state_folder() / _NAME).read_text(encoding="utf-8"))
-            lists = [kept["favourites"], kept["recent"]]
-            ids = [[each for each in kept if isinstance(each, str)] for kept in lists]
-        except (OSError, ValueError, KeyError, TypeError):
-            ids = [[], []]
-        self.favourites, self.recent = ids
-
-    def take(self, id: str) -> None:
-        """Note that one was taken; where it cannot be kept, for this session only."""
-        self.recent = [id, *(each for each in self.recent if each != id)][:_MOST_RECENT]
-        with suppress(OSError):
-            self._keep()
-
-    def mark(self, id: str) -> bool:
-        """Mark a favourite, or unmark it; returns whether it is one now.
-
-        Raises
-        ------
-        OSError
-            It could not be kept, and is one in this session only.
-        """
-        is_new = id not in self.favourites
-        self.favourites = [each for each in self.favourites if each != id]
-        if is_new:
-            self.favourites.insert(0, id)
-        self._keep()
-        return is_new
-
-    def _keep(self) -> None:
-        folder = state_folder()
-        folder.mkdir(parents=True, exist_ok=True)
-        content = json.dumps({"favourites": self.favourites, "recent": self.recent}, indent=1)
-        whole_file.put(folder / _NAME, content.encode())
 
 
 Purpose = Literal["below", "above", "clamp", "replace"]
