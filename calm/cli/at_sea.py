@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
-from calm.cli.check_files import DesignFile, read_designs
 from calm.cli.options import CatalogFiles, Units, quantities, show_units
-from calm.cli.outputs import OutputPath, Outputs
-from calm.cli.streams import ExitCode, narrate
+from calm.cli.outputs import ExitCode, OutputPath, Outputs, narrate
+from calm.cli.reading import DesignFile, read_designs
 from calm.errors import NoEquilibrium, UsageError
 from calm.version import __version__
 
@@ -20,15 +19,6 @@ if TYPE_CHECKING:
     from calm.deck import Deck
     from calm.ranging import Sound
     from calm.report.diagram import Paper
-
-
-DECK_EXAMPLES = """Examples:
-
-  calm deck mooring.yaml -o cruise/
-  calm deck mooring.yaml -o cruise/ --page a3 --environment storm
-  calm deck north.yaml south.yaml -o cruise/
-  calm deck mooring.yaml -o cruise/ --ship-speed "2 knot" --course "245 deg" --deck-time "3 min"
-  calm deck shallow.yaml -o cruise/ --order anchor-first"""
 
 
 def deck(
@@ -84,6 +74,14 @@ def deck(
         min", except shackles and rings; by default by role, from `document:
         deck_time:` in the file. Without either the plan has no start of the
         run.
+
+    Examples
+    --------
+      calm deck mooring.yaml -o cruise/
+      calm deck mooring.yaml -o cruise/ --page a3 --environment storm
+      calm deck north.yaml south.yaml -o cruise/
+      calm deck mooring.yaml -o cruise/ --ship-speed "2 knot" --course "245 deg" --deck-time "3 min"
+      calm deck shallow.yaml -o cruise/ --order anchor-first
     """
     from calm.deck import deck_of
     from calm.deck.deck_items import Order
@@ -219,19 +217,6 @@ def _folders(designs: Sequence[DesignFile], output: Path) -> list[Path]:
 
 DEFAULT_SPEED = "1500 m/s"
 
-LOCATE_EXAMPLES = """Examples:
-
-  calm locate ranges.csv
-  calm locate times.csv --sound-speed "1492 m/s" --transducer "5 m" --plot circles.png
-  calm locate times.csv --sound-speed profile.csv --depth "1103 m"
-  calm locate ranges.csv --depth "1103 m" --near "48 18.0 N, 5 12.0 W"
-  calm locate ranges.csv --update mooring.yaml   (its deployed: gets position and depth)
-
-ranges.csv:
-
-  latitude[deg],longitude[deg],range[m]
-  48.30120,-5.19870,1432.5"""
-
 
 def locate(
     file: Path,
@@ -287,6 +272,19 @@ def locate(
         doubt nothing is written, and the exit code is 1.
     accept
         Write the position in spite of a doubt.
+
+    Examples
+    --------
+      calm locate ranges.csv
+      calm locate times.csv --sound-speed "1492 m/s" --transducer "5 m" --plot circles.png
+      calm locate times.csv --sound-speed profile.csv --depth "1103 m"
+      calm locate ranges.csv --depth "1103 m" --near "48 18.0 N, 5 12.0 W"
+      calm locate ranges.csv --update mooring.yaml   (its deployed: gets position and depth)
+
+    ranges.csv:
+
+      latitude[deg],longitude[deg],range[m]
+      48.30120,-5.19870,1432.5
     """
     from calm.drawing.picture import check_format, image
     from calm.ranging import locate as found_at

@@ -14,8 +14,8 @@ from cyclopts import Parameter
 
 from calm.cli import options
 from calm.cli.options import CatalogFiles, Declination, EnvironmentName, Threads, Units, quantities
+from calm.cli.outputs import ExitCode, narrate, show_parts
 from calm.cli.progress import ProgressTeller, grouped
-from calm.cli.streams import ExitCode, narrate, show_parts
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
@@ -23,13 +23,6 @@ if TYPE_CHECKING:
     from calm.case import Mooring
     from calm.case.net import Net
     from calm.records.record import Record
-
-BATCH_EXAMPLES = """Examples:
-
-  calm batch mooring.yaml --currents adcp.nc -o moved.nc
-  calm batch mooring.yaml --currents glorys.nc --at 48.3,-5.2 -o hindcast.nc
-  calm batch mooring.yaml --currents adcp.nc --time 2024-03/2024-05 -o spring.nc
-  calm batch mooring.yaml --currents ensemble.zarr -o moved.zarr --workers 32"""
 
 
 def batch(
@@ -81,6 +74,13 @@ def batch(
         Store the shape of the line too.
     no_statistics
         Write no statistics, for a part of a longer record.
+
+    Examples
+    --------
+      calm batch mooring.yaml --currents adcp.nc -o moved.nc
+      calm batch mooring.yaml --currents glorys.nc --at 48.3,-5.2 -o hindcast.nc
+      calm batch mooring.yaml --currents adcp.nc --time 2024-03/2024-05 -o spring.nc
+      calm batch mooring.yaml --currents ensemble.zarr -o moved.zarr --workers 32
     """
     if every < 1:
         raise UsageError(f"--every: {every} is not 1 or more")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import App, Parameter
 
-from calm.cli.streams import ExitCode, narrate, show, show_parts
+from calm.cli.outputs import ExitCode, narrate, show, show_parts
 from calm.errors import InputError, UsageError
 
 if TYPE_CHECKING:

@@ -7,8 +7,7 @@ from typing import Annotated, Literal
 from cyclopts import App, Group, Parameter
 
 from calm.cli.options import option, quantities
-from calm.cli.outputs import Outputs
-from calm.cli.streams import ExitCode, narrate
+from calm.cli.outputs import ExitCode, Outputs, narrate
 from calm.errors import UsageError
 
 _BUOY = """  calm chart solve --k 2.4 --weight "5 N/m" \\

@@ -10,12 +10,11 @@ from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from calm.cli.check_files import DesignFile, read_designs
 from calm.cli.options import CatalogFiles, Samples, Seed, Units, show_units
-from calm.cli.outputs import OutputPath, Outputs
+from calm.cli.outputs import ExitCode, OutputPath, Outputs, gravest, narrate
 from calm.cli.progress import FEW, mapped
+from calm.cli.reading import DesignFile, read_designs
 from calm.cli.run import draws_of
-from calm.cli.streams import ExitCode, gravest, narrate
 from calm.errors import InputError, Problem, UsageError, internal_failure
 
 if TYPE_CHECKING:
@@ -24,15 +23,6 @@ if TYPE_CHECKING:
     from calm.case.uncertain import Mapped
     from calm.checks.assessment import Assessment, MooringInEnvironment
     from calm.report.blocks import Section
-
-CHECK_EXAMPLES = """Examples:
-
-  calm check mooring.yaml
-  calm check mooring.yaml --environment storm.yaml --environment neap.yaml
-  calm check north.yaml south.yaml --report cruise/
-  calm check revised.yaml --report cruise/ --against design.yaml
-  calm check mooring.yaml --uncertainty --samples 512
-  calm check mooring.yaml --json - | jq '.findings[] | select(.state == "fail")'"""
 
 
 def check(
@@ -79,6 +69,15 @@ def check(
         uncertain as `uncertainty` in the file says, and list the designs by it.
     workers
         Number of processes; by default one for each core.
+
+    Examples
+    --------
+      calm check mooring.yaml
+      calm check mooring.yaml --environment storm.yaml --environment neap.yaml
+      calm check north.yaml south.yaml --report cruise/
+      calm check revised.yaml --report cruise/ --against design.yaml
+      calm check mooring.yaml --uncertainty --samples 512
+      calm check mooring.yaml --json - | jq '.findings[] | select(.state == "fail")'
     """
     outputs = Outputs(tuple(files), json)
     if workers is not None and workers < 1:

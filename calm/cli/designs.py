@@ -9,22 +9,14 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import Parameter
 
 from calm.cli.options import CatalogFiles, EnvironmentName, Units, show_units
-from calm.cli.outputs import OutputPath, Outputs
+from calm.cli.outputs import ExitCode, OutputPath, Outputs, narrate
 from calm.cli.run import read_all
-from calm.cli.streams import ExitCode, narrate
 from calm.errors import NoEquilibrium, UsageError
 
 if TYPE_CHECKING:
     from calm.case import Mooring, Tow
     from calm.case.net import Net
     from calm.checks.comparison import Comparison
-
-DIFF_EXAMPLES = """Examples:
-
-  calm diff design-A.yaml design-B.yaml
-  calm diff design-A.yaml design-B.yaml --environment storm.yaml
-  calm diff mooring.yaml             (its design against its deployed:)
-  calm diff design-A.yaml design-B.yaml --json - | jq '.changed[].where'"""
 
 
 def diff(
@@ -56,6 +48,13 @@ def diff(
         environment file.
     json
         Write the differences as JSON, - to print it.
+
+    Examples
+    --------
+      calm diff design-A.yaml design-B.yaml
+      calm diff design-A.yaml design-B.yaml --environment storm.yaml
+      calm diff mooring.yaml             (its design against its deployed:)
+      calm diff design-A.yaml design-B.yaml --json - | jq '.changed[].where'
     """
     files = (before,) if after is None else (before, after)
     outputs = Outputs(files, json)
@@ -101,22 +100,6 @@ def compared(files: tuple[Path, ...], lines: list[Mooring | Tow | Net]) -> Compa
         raise UsageError(f"{files[0]}: what is cut to fit has no length: {failure}") from failure
 
 
-SIZE_EXAMPLES = """Examples:
-
-  calm size mooring.yaml --target "knockdown(top) <= 20 m" \\
-      --change "top float.buoyancy"
-  calm size mooring.yaml --target "tilt(current meter) <= 5 deg" \\
-      --change "back-up glass.count" --between 4 40
-  calm size mooring.yaml --target "depth(CTD 130 m) = 130 m" \\
-      --change wire.length --environment storm
-  calm size mooring.yaml --target "required_weight <= 8 kN" \\
-      --change "top float.buoyancy" --json -
-
-Targets: knockdown, depth, excursion, tilt or tension of a label or of top, and
-required_weight of the anchor, in a net required_weight(LEG). Changes:
-LABEL.buoyancy, LABEL.length, LABEL.count."""
-
-
 def size(
     file: Path,
     /,
@@ -150,6 +133,21 @@ def size(
         a count up to 1000.
     json
         Write the answer as JSON, - to print it.
+
+    Examples
+    --------
+      calm size mooring.yaml --target "knockdown(top) <= 20 m" \\
+          --change "top float.buoyancy"
+      calm size mooring.yaml --target "tilt(current meter) <= 5 deg" \\
+          --change "back-up glass.count" --between 4 40
+      calm size mooring.yaml --target "depth(CTD 130 m) = 130 m" \\
+          --change wire.length --environment storm
+      calm size mooring.yaml --target "required_weight <= 8 kN" \\
+          --change "top float.buoyancy" --json -
+
+    Targets: knockdown, depth, excursion, tilt or tension of a label or of top, and
+    required_weight of the anchor, in a net required_weight(LEG). Changes:
+    LABEL.buoyancy, LABEL.length, LABEL.count.
     """
     outputs = Outputs((file,), json)
     from calm.case import Tow

@@ -9,19 +9,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from calm.cli.options import CatalogFiles, EnvironmentName
-from calm.cli.outputs import STDOUT, OutputPath
-from calm.cli.streams import ExitCode, narrate, show
+from calm.cli.outputs import STDOUT, ExitCode, OutputPath, narrate, show
 from calm.errors import InputError, Problem, UsageError
 
 if TYPE_CHECKING:
     from calm.exchange.importing import Imported
-
-IMPORT_EXAMPLES = """Examples:
-
-  calm import moor001.mat -o moor001.yaml
-  calm import *.cbl -o moorings/ --environment site.yaml
-  calm import snare.cbl -o snare.yaml -D DEPTH=1200 --strict
-  calm import list.csv -o list.yaml --columns name=Item,length=Len --environment site.yaml"""
 
 
 def import_(
@@ -71,6 +63,13 @@ def import_(
         Allow a file to include others from outside its own folder.
     json
         Write what was guessed and left out as JSON, - to print it.
+
+    Examples
+    --------
+      calm import moor001.mat -o moor001.yaml
+      calm import *.cbl -o moorings/ --environment site.yaml
+      calm import snare.cbl -o snare.yaml -D DEPTH=1200 --strict
+      calm import list.csv -o list.yaml --columns name=Item,length=Len --environment site.yaml
     """
     from calm.exchange.importing import ImportOptions, import_file, record_file
     from calm.report.folder import check_destination, write_file
@@ -181,14 +180,6 @@ def _document(imported: Imported, target: Path) -> dict[str, Any]:
     }
 
 
-EXPORT_EXAMPLES = """Examples:
-
-  calm export mooring.yaml --to mdd -o mooring.mat
-  calm export mooring.yaml --to cbl -o mooring.cbl --environment storm
-  calm export mooring.yaml --to moordyn -o moordyn/mooring.txt
-  calm export mooring.yaml --to csv -o mooring.csv"""
-
-
 def export(
     file: Path,
     /,
@@ -212,6 +203,13 @@ def export(
         with the current in a file beside it) or csv (a list).
     output
         The file to write.
+
+    Examples
+    --------
+      calm export mooring.yaml --to mdd -o mooring.mat
+      calm export mooring.yaml --to cbl -o mooring.cbl --environment storm
+      calm export mooring.yaml --to moordyn -o moordyn/mooring.txt
+      calm export mooring.yaml --to csv -o mooring.csv
     """
     from calm.exchange.exporting import export_file
     from calm.report.folder import check_destination, write_file

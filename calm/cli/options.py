@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from calm.cli.streams import narrate
+from calm.cli.outputs import narrate
 from calm.errors import UsageError
 
 if TYPE_CHECKING:

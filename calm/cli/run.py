@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Annotated, TypeVar
 from cyclopts import Parameter
 
 from calm.cli.options import CatalogFiles, EnvironmentName, Samples, Seed, Units, show_units
-from calm.cli.outputs import FileOutcome, OutputPath, Outputs
-from calm.cli.streams import ExitCode, gravest, narrate
+from calm.cli.outputs import ExitCode, FileOutcome, OutputPath, Outputs, gravest, narrate
 from calm.errors import InputError, NoEquilibrium, Problem, UsageError
 
 if TYPE_CHECKING:
@@ -25,17 +24,6 @@ if TYPE_CHECKING:
     from calm.drawing.schematic.in_terminal import TerminalSchematic
 
 Line = TypeVar("Line")
-
-RUN_EXAMPLES = """Examples:
-
-  calm run mooring.yaml
-  calm run mooring.yaml --environment storm --plot storm.png
-  calm run mooring.yaml --csv components.csv --json result.json
-  calm run mooring.yaml --explain
-  calm run mooring.yaml --uncertainty --plot band.png
-  calm run mooring.yaml --schematic
-  calm run mooring.yaml --html mooring.html --pdf mooring.pdf
-  calm run spring.yaml neap.yaml tow.yaml --json -"""
 
 
 def run(
@@ -95,6 +83,17 @@ def run(
         JSON, the picture and the reports too.
     verbose
         Also say below the table how the solution was found.
+
+    Examples
+    --------
+      calm run mooring.yaml
+      calm run mooring.yaml --environment storm --plot storm.png
+      calm run mooring.yaml --csv components.csv --json result.json
+      calm run mooring.yaml --explain
+      calm run mooring.yaml --uncertainty --plot band.png
+      calm run mooring.yaml --schematic
+      calm run mooring.yaml --html mooring.html --pdf mooring.pdf
+      calm run spring.yaml neap.yaml tow.yaml --json -
     """
     outputs = Outputs(tuple(files), json, csv, plot, html, pdf, netcdf)
     draws = draws_of(uncertainty, samples, seed)

@@ -12,10 +12,9 @@ from cyclopts import Parameter
 
 from calm.cli import options
 from calm.cli.options import CatalogFiles, EnvironmentName, Units, option, quantities, show_units
-from calm.cli.outputs import FileOutcome, OutputPath, Outputs
+from calm.cli.outputs import ExitCode, FileOutcome, OutputPath, Outputs, gravest, narrate
 from calm.cli.progress import progress
 from calm.cli.run import read_all, solve_and_show
-from calm.cli.streams import ExitCode, gravest, narrate
 from calm.errors import NoEquilibrium, UsageError
 
 if TYPE_CHECKING:
@@ -23,13 +22,6 @@ if TYPE_CHECKING:
     from calm.case.strumming import BareCable
     from calm.cli.outputs import Shows
     from calm.report.tabulation import Tabulation
-
-TOW_EXAMPLES = """Examples:
-
-  calm tow tow.yaml
-  calm tow tow.yaml --speeds "1 knot:12 knot:0.5 knot" --plot sweep.png
-  calm tow tow.yaml --speeds "0.5 m/s:3 m/s:0.1 m/s" --csv sweep.csv
-  calm tow tow.yaml --sensitivity"""
 
 
 def tow(
@@ -68,6 +60,13 @@ def tow(
         Solve with A1, B1 and C1 of bourget-marichal strumming each 10 % smaller and greater.
     schematic
         Draw the line as `calm run` does; only at the speed of its file.
+
+    Examples
+    --------
+      calm tow tow.yaml
+      calm tow tow.yaml --speeds "1 knot:12 knot:0.5 knot" --plot sweep.png
+      calm tow tow.yaml --speeds "0.5 m/s:3 m/s:0.1 m/s" --csv sweep.csv
+      calm tow tow.yaml --sensitivity
     """
     if speeds is not None and sensitivity:
         raise UsageError("give either --speeds or --sensitivity")
@@ -181,13 +180,6 @@ def _tabulate(
     return gravest(each.code for each in shown)
 
 
-STRUMMING_EXAMPLES = """Examples:
-
-  calm tow strumming --angle "30 deg" --speed "1 m/s" --diameter "17 mm" \\
-      --weight "3.1 N/m"
-  calm tow strumming --angle "18 deg" --speed "1.3 m/s" --diameter "17 mm" \\
-      --solid-density "2383 kg/m^3" --density "1000 kg/m^3" --json -"""
-
 _Given = Annotated[str | None, Parameter(allow_leading_hyphen=True)]
 _Asked = Annotated[str, Parameter(allow_leading_hyphen=True)]
 
@@ -225,6 +217,13 @@ def strumming(
         Density of the water; 1025 kg/m^3 by default.
     json
         Write the answer as JSON, - to print it.
+
+    Examples
+    --------
+      calm tow strumming --angle "30 deg" --speed "1 m/s" --diameter "17 mm" \\
+          --weight "3.1 N/m"
+      calm tow strumming --angle "18 deg" --speed "1.3 m/s" --diameter "17 mm" \\
+          --solid-density "2383 kg/m^3" --density "1000 kg/m^3" --json -
     """
     from calm.report.tabulation import bare_cable_document, bare_cable_part
 

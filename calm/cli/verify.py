@@ -6,20 +6,12 @@ from collections.abc import Sequence
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
-from calm.cli.outputs import OutputPath, Outputs
+from calm.cli.outputs import ExitCode, OutputPath, Outputs
 from calm.cli.progress import progress
-from calm.cli.streams import ExitCode
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
     from calm.verification import Source
-
-VERIFY_EXAMPLES = """Examples:
-
-  calm verify
-  calm verify cdms tension
-  calm verify braconnot --json -
-  calm verify --field"""
 
 
 def verify(
@@ -41,6 +33,13 @@ def verify(
         with the measured depths: see `calm docs motion`.
     json
         Write the figures, with the reason for each tolerance, as JSON, - to print it.
+
+    Examples
+    --------
+      calm verify
+      calm verify cdms tension
+      calm verify braconnot --json -
+      calm verify --field
     """
     from calm.report.verification import verification_document, verification_part
     from calm.solve import expect_many

@@ -9,22 +9,13 @@ from cyclopts import Parameter
 
 from calm.cli import options
 from calm.cli.options import option
-from calm.cli.outputs import OutputPath, Outputs
-from calm.cli.streams import ExitCode, narrate
+from calm.cli.outputs import ExitCode, OutputPath, Outputs, narrate
 from calm.errors import NoEquilibrium, UsageError
 
 if TYPE_CHECKING:
     from calm.records.sea_states import SeaState
 
 Signed = Annotated[str | None, Parameter(allow_leading_hyphen=True)]
-
-WAVES_EXAMPLES = """Examples:
-
-  calm waves buoy.yaml --hs "5 m" --tp "8.4 s"
-  calm waves buoy.yaml --hs "2 m" --tp "6 s" --swell "3 m" --swell-tp "14 s"
-  calm waves buoy.yaml --hs "3 m" --tp "7 s" --spectrum jonswap --toward "45 deg"
-  calm waves buoy.yaml --scatter site.csv --json waves.json
-  calm waves buoy.yaml --spectrum measured.csv"""
 
 
 def waves(
@@ -84,6 +75,14 @@ def waves(
         Write the answer as JSON, - to print it.
     report
         A folder for waves.html and waves.pdf, with pictures of the tension.
+
+    Examples
+    --------
+      calm waves buoy.yaml --hs "5 m" --tp "8.4 s"
+      calm waves buoy.yaml --hs "2 m" --tp "6 s" --swell "3 m" --swell-tp "14 s"
+      calm waves buoy.yaml --hs "3 m" --tp "7 s" --spectrum jonswap --toward "45 deg"
+      calm waves buoy.yaml --scatter site.csv --json waves.json
+      calm waves buoy.yaml --spectrum measured.csv
     """
     outputs = Outputs((file,), json)
     from calm.case import Tow
