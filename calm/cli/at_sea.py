@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
-from calm.cli.options import CatalogFiles, Units, quantities, show_units
+from calm.cli import options
 from calm.cli.outputs import ExitCode, OutputPath, Outputs, narrate
 from calm.cli.reading import DesignFile, read_designs
 from calm.errors import NoEquilibrium, UsageError
@@ -25,7 +25,7 @@ def deck(
     files: list[Path],
     /,
     *,
-    output: Annotated[Path, Parameter(alias="-o")],
+    output: options.OutputFile,
     page: Literal["a4", "a3", "letter"] = "a4",
     environment: list[str] | None = None,
     order: Literal["anchor-last", "anchor-first"] = "anchor-last",
@@ -33,8 +33,8 @@ def deck(
     streamed: str | None = None,
     course: str | None = None,
     deck_time: str | None = None,
-    catalog: CatalogFiles = None,
-    units: Units = None,
+    catalog: options.CatalogFiles = None,
+    units: options.Units = None,
 ) -> ExitCode:
     """Draw the diagram and write the lists for the deployment of moorings and nets.
 
@@ -91,7 +91,7 @@ def deck(
 
     check_folder(output)
     moment()
-    ship = quantities(
+    ship = options.quantities(
         ship_speed=(ship_speed, "speed"),
         streamed=(streamed, "length"),
         course=(course, "angle"),
@@ -100,7 +100,7 @@ def deck(
     designs, tows = read_designs(files, environment, catalog or [], None, "calm deck")
     if tows:
         narrate(f"not drawn, because they are tows: {', '.join(map(str, tows))}")
-    show_units(units, [one.file for design in designs for one in design.moorings])
+    options.show_units(units, [one.file for design in designs for one in design.moorings])
     folders = _folders(designs, output)
     decks: list[Deck] = []
     for design in designs:
@@ -228,7 +228,7 @@ def locate(
     above_seabed: str = "0 m",
     plot: Path | None = None,
     json: OutputPath = None,
-    near: Annotated[str | None, Parameter(allow_leading_hyphen=True)] = None,
+    near: options.Signed = None,
     update: Path | None = None,
     accept: bool = False,
     output: Annotated[Path | None, Parameter(name=["--output", "-o"], show=False)] = None,
@@ -298,7 +298,7 @@ def locate(
     if plot is not None:
         check_format(plot, (".png", ".svg", ".pdf"))
         check_destination(plot)
-    given = quantities(
+    given = options.quantities(
         transducer=(transducer, "length"),
         depth=(depth, "length"),
         above_seabed=(above_seabed, "length"),
@@ -354,7 +354,7 @@ def _sound(text: str) -> Sound:
 
     if text.lower().endswith((".csv", ".txt", ".tsv")):
         return read_sound(Path(text))
-    speed = quantities(sound_speed=(text, "speed"))["sound_speed"]
+    speed = options.quantities(sound_speed=(text, "speed"))["sound_speed"]
     if not SLOWEST <= speed <= FASTEST:
         raise UsageError(f"--sound-speed: `{text}` {sound_complaint()}")
     return Sound.constant(speed)

@@ -8,12 +8,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from threading import Event, current_thread, main_thread
-from typing import TYPE_CHECKING, Annotated
-
-from cyclopts import Parameter
+from typing import TYPE_CHECKING
 
 from calm.cli import options
-from calm.cli.options import CatalogFiles, Declination, EnvironmentName, Threads, Units, quantities
 from calm.cli.outputs import ExitCode, narrate, show_parts
 from calm.cli.progress import ProgressTeller, grouped
 from calm.errors import UsageError
@@ -30,18 +27,18 @@ def batch(
     /,
     *,
     currents: Path,
-    output: Annotated[Path, Parameter(name=["--output", "-o"])],
+    output: options.OutputFile,
     time: str | None = None,
     every: int = 1,
-    at: Annotated[str | None, Parameter(allow_leading_hyphen=True)] = None,
-    declination: Declination = None,
-    workers: Threads = None,
+    at: options.Signed = None,
+    declination: options.Declination = None,
+    workers: options.Threads = None,
     scheduler: str | None = None,
     shape: bool = False,
     no_statistics: bool = False,
-    environment: EnvironmentName = None,
-    catalog: CatalogFiles = None,
-    units: Units = None,
+    environment: options.EnvironmentName = None,
+    catalog: options.CatalogFiles = None,
+    units: options.Units = None,
 ) -> ExitCode:
     """Solve a mooring, or a net of legs, in every profile of a record or a hindcast.
 
@@ -82,10 +79,7 @@ def batch(
       calm batch mooring.yaml --currents adcp.nc --time 2024-03/2024-05 -o spring.nc
       calm batch mooring.yaml --currents ensemble.zarr -o moved.zarr --workers 32
     """
-    if every < 1:
-        raise UsageError(f"--every: {every} is not 1 or more")
-    if workers is not None and workers < 1:
-        raise UsageError(f"--workers: {workers} is not 1 or more")
+    options.from_one(every=every, workers=workers)
     from calm.batch.run import run_batch
     from calm.case import Tow
     from calm.case.net import load
@@ -103,7 +97,7 @@ def batch(
     place = own if at is None else parse_place(at)
     seabed = float(mooring.water.depth)
     teller = ProgressTeller()
-    turned = quantities(declination=(declination, "angle")).get("declination")
+    turned = options.quantities(declination=(declination, "angle")).get("declination")
     with stopped_by_a_signal() as stop:
         with open_record(
             currents, seabed=seabed, at=place, declination=turned, time=period, every=every

@@ -10,7 +10,7 @@ from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from calm.cli.options import CatalogFiles, Samples, Seed, Units, show_units
+from calm.cli import options
 from calm.cli.outputs import ExitCode, OutputPath, Outputs, gravest, narrate
 from calm.cli.progress import FEW, mapped
 from calm.cli.reading import DesignFile, read_designs
@@ -30,16 +30,16 @@ def check(
     /,
     *,
     environment: list[str] | None = None,
-    catalog: CatalogFiles = None,
+    catalog: options.CatalogFiles = None,
     json: OutputPath = None,
     report: Path | None = None,
     against: Path | None = None,
     allow_unknown: bool = False,
     uncertainty: bool = False,
-    samples: Samples = 2048,
-    seed: Seed = 0,
+    samples: options.Samples = 2048,
+    seed: options.Seed = 0,
     workers: int | None = None,
-    units: Units = None,
+    units: options.Units = None,
 ) -> ExitCode:
     """Check designs: solve every mooring in every environment, and judge it by rule.
 
@@ -80,8 +80,7 @@ def check(
       calm check mooring.yaml --json - | jq '.findings[] | select(.state == "fail")'
     """
     outputs = Outputs(tuple(files), json)
-    if workers is not None and workers < 1:
-        raise UsageError(f"--workers: {workers} is not 1 or more")
+    options.from_one(workers=workers)
     if against is not None and (report is None or len(files) > 1):
         raise UsageError("--against compares one mooring with an earlier design in its --report")
     draws = draws_of(uncertainty, samples, seed)
@@ -99,7 +98,7 @@ def check(
         from calm.files.legs import NET_SURE
 
         raise UsageError(f"--uncertainty is for {NET_SURE}: {nets[0]}")
-    show_units(units, [one.file for design in designs for one in design.moorings])
+    options.show_units(units, [one.file for design in designs for one in design.moorings])
     judged = _judged(designs, workers, drawn, draws)
     assessments = [each.assessment for each in judged]
     for design, assessment in zip(designs, assessments, strict=True):

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from calm.cli.options import CatalogFiles, EnvironmentName, Units, show_units
+from calm.cli import options
 from calm.cli.outputs import ExitCode, OutputPath, Outputs, narrate
-from calm.cli.run import read_all
+from calm.cli.reading import read_all
 from calm.errors import NoEquilibrium, UsageError
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ def diff(
     /,
     *,
     environment: str | None = None,
-    catalog: CatalogFiles = None,
+    catalog: options.CatalogFiles = None,
     json: OutputPath = None,
 ) -> ExitCode:
     """Compare two designs piece by piece, and show the effect of the changes.
@@ -107,10 +107,10 @@ def size(
     target: str,
     change: str,
     between: Annotated[tuple[str, str] | None, Parameter(allow_leading_hyphen=True)] = None,
-    environment: EnvironmentName = None,
-    catalog: CatalogFiles = None,
-    json: OutputPath = None,
-    units: Units = None,
+    environment: options.EnvironmentName = None,
+    catalog: options.CatalogFiles = None,
+    json: options.JsonAnswer = None,
+    units: options.Units = None,
 ) -> ExitCode:
     """Find the smallest change of a mooring that meets a target.
 
@@ -131,8 +131,6 @@ def size(
         The least and the greatest value, with units; by default a buoyancy may
         change from 0 to 100 times itself, a length up to twice the water depth,
         a count up to 1000.
-    json
-        Write the answer as JSON, - to print it.
 
     Examples
     --------
@@ -150,15 +148,14 @@ def size(
     LABEL.buoyancy, LABEL.length, LABEL.count.
     """
     outputs = Outputs((file,), json)
-    from calm.case import Tow
     from calm.case.net import load
     from calm.case.size import size as sized
     from calm.report.explanation import refusal, sizing_part
 
     mooring = load(file, environment, catalog or [])
     if isinstance(mooring, Tow):
-        raise UsageError(f"{file} is a tow; calm size changes moorings")
-    show_units(units, [mooring.file])
+        raise UsageError(f"{file} is a tow; calm size is for moorings")
+    options.show_units(units, [mooring.file])
     sizing = sized(mooring, target, change, between)
     if sizing.after is not None:
         outputs.write_answer(sizing.to_dict, sizing_part(sizing))

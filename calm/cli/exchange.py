@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from calm.cli.options import CatalogFiles, EnvironmentName
+from calm.cli import options
 from calm.cli.outputs import STDOUT, ExitCode, OutputPath, narrate, show
 from calm.errors import InputError, Problem, UsageError
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 def import_(
     *files: Path,
-    output: Annotated[Path, Parameter(name=["--output", "-o"])],
+    output: options.OutputFile,
     format: str | None = None,
     strict: bool = False,
     define: Annotated[list[str] | None, Parameter(name=["--define", "-D"])] = None,
@@ -78,7 +78,7 @@ def import_(
     if not files:
         raise UsageError("calm import needs a file")
     headings = _pairs("--columns", columns.split(",") if columns else [])
-    options = ImportOptions(_pairs("--define", define or []), headings, elements, allow_include)
+    given = ImportOptions(_pairs("--define", define or []), headings, elements, allow_include)
     targets = _targets(files, output)
     if json is not None and json != STDOUT:
         check_destination(json)
@@ -87,7 +87,7 @@ def import_(
     for file, target in zip(files, targets, strict=True):
         try:
             imported = import_file(
-                file, target, format=format, environment=environment, options=options,
+                file, target, format=format, environment=environment, options=given,
                 match_catalogue=match_catalogue,
             )  # fmt: skip
         except InputError as error:
@@ -185,9 +185,9 @@ def export(
     /,
     *,
     to: str,
-    output: Annotated[Path, Parameter(name=["--output", "-o"])],
-    environment: EnvironmentName = None,
-    catalog: CatalogFiles = None,
+    output: options.OutputFile,
+    environment: options.EnvironmentName = None,
+    catalog: options.CatalogFiles = None,
 ) -> ExitCode:
     """Write a mooring or a tow for another program.
 

@@ -9,7 +9,6 @@ from cyclopts import Parameter
 
 from calm.cli import options
 from calm.cli.batch import check_output, ended, stopped_by_a_signal
-from calm.cli.options import CatalogFiles, Declination, EnvironmentName, Threads, quantities
 from calm.cli.outputs import ExitCode, OutputPath, Outputs, narrate, show_parts
 from calm.cli.progress import ProgressTeller, progress
 from calm.errors import UsageError
@@ -24,7 +23,6 @@ if TYPE_CHECKING:
     from calm.records.instrument_series import InstrumentSeries
 
 _LONGEST_GAP = 1e8  # s
-Several = Annotated[list[Path], Parameter(consume_multiple=True)]
 SeveralTexts = Annotated[list[str], Parameter(consume_multiple=True)]
 
 
@@ -33,7 +31,7 @@ def motion(
     /,
     *,
     pressures: SeveralTexts,
-    output: Annotated[Path, Parameter(name=["--output", "-o"])],
+    output: options.OutputFile,
     currents: SeveralTexts | None = None,
     match: str = "label",
     fit: str | None = None,
@@ -45,14 +43,14 @@ def motion(
     sea_level: Path | None = None,
     flags: str = "1,2",
     gap: str = "2 h",
-    declination: Declination = None,
+    declination: options.Declination = None,
     onto: Path | None = None,
     replace_depth: Annotated[bool, Parameter(name="--replace")] = False,
     json: OutputPath = None,
     report: Path | None = None,
-    workers: Threads = None,
-    environment: EnvironmentName = None,
-    catalog: CatalogFiles = None,
+    workers: options.Threads = None,
+    environment: options.EnvironmentName = None,
+    catalog: options.CatalogFiles = None,
 ) -> ExitCode:
     """Estimate the depth of every instrument at every time from pressures and currents.
 
@@ -137,8 +135,7 @@ def motion(
     from calm.report.folder import check_folder, write_pages
     from calm.report.motion_report import motion_document, motion_part, motion_report
 
-    if workers is not None and workers < 1:
-        raise UsageError(f"--workers: {workers} is not 1 or more")
+    options.from_one(workers=workers)
     outputs = Outputs(files=(file,), json=json)
     if report is not None:
         check_folder(report)
@@ -163,7 +160,7 @@ def motion(
         raise UsageError(f"{file} is a tow; calm motion is for moorings")
     for notice in mooring.file.notices:
         narrate(f"{file}: {notice}")
-    turned = quantities(declination=(declination, "angle")).get("declination")
+    turned = options.quantities(declination=(declination, "angle")).get("declination")
     apart = options.span_of("--gap", gap, (0.0, _LONGEST_GAP), "0 and three years")
     instruments = None
     if onto is not None:
@@ -241,7 +238,7 @@ def grid(
     values: Annotated[list[str], Parameter(negative=())],
     /,
     *,
-    output: Annotated[Path, Parameter(name=["--output", "-o"])],
+    output: options.OutputFile,
     levels: str,
     step: str | None = None,
     variables: str | None = None,

@@ -7,13 +7,14 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from itertools import zip_longest
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, TypeVar
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from calm.cli.options import CatalogFiles, EnvironmentName, Samples, Seed, Units, show_units
+from calm.cli import options
 from calm.cli.outputs import ExitCode, FileOutcome, OutputPath, Outputs, gravest, narrate
-from calm.errors import InputError, NoEquilibrium, Problem, UsageError
+from calm.cli.reading import read_all
+from calm.errors import NoEquilibrium, UsageError
 
 if TYPE_CHECKING:
     from calm.case import Mooring, Result, Tow
@@ -23,15 +24,13 @@ if TYPE_CHECKING:
     from calm.case.uncertain import Uncertain
     from calm.drawing.schematic.in_terminal import TerminalSchematic
 
-Line = TypeVar("Line")
-
 
 def run(
     files: list[Path],
     /,
     *,
-    environment: EnvironmentName = None,
-    catalog: CatalogFiles = None,
+    environment: options.EnvironmentName = None,
+    catalog: options.CatalogFiles = None,
     json: OutputPath = None,
     csv: OutputPath = None,
     netcdf: Path | None = None,
@@ -41,9 +40,9 @@ def run(
     explain: bool = False,
     schematic: bool = False,
     uncertainty: bool = False,
-    samples: Samples = 2048,
-    seed: Seed = 0,
-    units: Units = None,
+    samples: options.Samples = 2048,
+    seed: options.Seed = 0,
+    units: options.Units = None,
     verbose: Annotated[bool, Parameter(name=["--verbose", "-v"], negative=())] = False,
 ) -> ExitCode:
     """Solve moorings, tows and nets of legs, and print the table of each line.
@@ -102,7 +101,7 @@ def run(
     from calm.files.legs import NET_SURE
 
     lines = read_all(load, files, environment, catalog or [])
-    show_units(units, [line.file for line in lines])
+    options.show_units(units, [line.file for line in lines])
     drawn = {"--uncertainty": uncertainty}
     _refuse({"--explain": explain} | drawn, "moorings; these are tows", Tow, files, lines)
     _refuse(drawn, NET_SURE, Net, files, lines)
@@ -128,26 +127,6 @@ def draws_of(uncertainty: bool, samples: int, seed: int) -> tuple[int, int] | No
     if seed < 0:
         raise UsageError(f"--seed: {seed} is below 0")
     return samples, seed
-
-
-def read_all(
-    load: Callable[[Path, str | None, Sequence[Path]], Line],
-    files: Sequence[Path],
-    environment: str | None,
-    catalogs: Sequence[Path],
-) -> list[Line]:
-    """Read all files by `calm.case.load`, or one like it; or an `InputError` with all mistakes."""
-    read: list[Line] = []
-    problems: dict[Problem, None] = {}
-    for file in files:
-        try:
-            read.append(load(file, environment, catalogs))
-        except InputError as error:
-            # A catalogue that all files share has its mistakes told once.
-            problems |= dict.fromkeys(error.problems)
-    if problems:
-        raise InputError(list(problems))
-    return read
 
 
 def solve_and_show(

@@ -10,7 +10,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from calm.cli.options import CatalogFiles
+from calm.cli import options
 from calm.cli.outputs import ExitCode, narrate, show
 from calm.errors import UsageError
 from calm.templates import Template, template
@@ -192,7 +192,7 @@ def build(
     /,
     *,
     environment: str | None = None,
-    catalog: CatalogFiles = None,
+    catalog: options.CatalogFiles = None,
     serve: bool = False,
     port: int = PORT,
     allow_host: list[str] | None = None,

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from calm.cli import options
-from calm.cli.options import CatalogFiles, EnvironmentName, Units, option, quantities, show_units
 from calm.cli.outputs import ExitCode, FileOutcome, OutputPath, Outputs, gravest, narrate
 from calm.cli.progress import progress
-from calm.cli.run import read_all, solve_and_show
+from calm.cli.reading import read_all
+from calm.cli.run import solve_and_show
 from calm.errors import NoEquilibrium, UsageError
 
 if TYPE_CHECKING:
@@ -28,15 +28,15 @@ def tow(
     files: list[Path],
     /,
     *,
-    environment: EnvironmentName = None,
-    catalog: CatalogFiles = None,
+    environment: options.EnvironmentName = None,
+    catalog: options.CatalogFiles = None,
     json: OutputPath = None,
     csv: OutputPath = None,
     plot: Path | None = None,
-    speeds: Annotated[str | None, Parameter(allow_leading_hyphen=True)] = None,
+    speeds: options.Signed = None,
     sensitivity: bool = False,
     schematic: bool = False,
-    units: Units = None,
+    units: options.Units = None,
 ) -> ExitCode:
     """Solve towed lines, at the speed of their file or at many speeds.
 
@@ -77,7 +77,7 @@ def tow(
     chosen = None if speeds is None else options.speed_range(speeds)
     outputs = Outputs(tuple(files), json, csv, plot)
     tows = _only_tows(files, environment, catalog or [])
-    show_units(units, [tow.file for tow in tows])
+    options.show_units(units, [tow.file for tow in tows])
     if chosen is not None:
         return _tabulate(tows, outputs, lambda file, each: _sweep(file, each, chosen))
     if sensitivity:
@@ -180,7 +180,6 @@ def _tabulate(
     return gravest(each.code for each in shown)
 
 
-_Given = Annotated[str | None, Parameter(allow_leading_hyphen=True)]
 _Asked = Annotated[str, Parameter(allow_leading_hyphen=True)]
 
 
@@ -189,10 +188,10 @@ def strumming(
     angle: _Asked,
     speed: _Asked,
     diameter: _Asked,
-    weight: _Given = None,
-    solid_density: _Given = None,
-    density: _Given = None,
-    json: OutputPath = None,
+    weight: options.Signed = None,
+    solid_density: options.Signed = None,
+    density: options.Signed = None,
+    json: options.JsonAnswer = None,
 ) -> ExitCode:
     """Find how a bare towed cable vibrates from the angle at which it tows.
 
@@ -215,8 +214,6 @@ def strumming(
         Density of the cable, in place of its weight.
     density
         Density of the water; 1025 kg/m^3 by default.
-    json
-        Write the answer as JSON, - to print it.
 
     Examples
     --------
@@ -228,7 +225,7 @@ def strumming(
     from calm.report.tabulation import bare_cable_document, bare_cable_part
 
     outputs = Outputs(json=json)
-    given = quantities(
+    given = options.quantities(
         angle=(angle, "angle"), speed=(speed, "speed"), diameter=(diameter, "length"),
         weight=(weight, "force per length"), solid_density=(solid_density, "density"),
         density=(density, "density"),
@@ -247,7 +244,7 @@ def _cable(given: dict[str, float]) -> BareCable:
         raise UsageError("give one of --weight and --solid-density")
     given.setdefault("density", CATALOGUE_DENSITY)
     complaints = [
-        f"{option(name)} must be above 0" for name, value in given.items() if value <= 0.0
+        f"{options.option(name)} must be above 0" for name, value in given.items() if value <= 0.0
     ]
     if given["angle"] >= 90.0:
         complaints.append("--angle must be below 90 deg")

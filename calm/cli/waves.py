@@ -3,19 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
-
-from cyclopts import Parameter
+from typing import TYPE_CHECKING
 
 from calm.cli import options
-from calm.cli.options import option
-from calm.cli.outputs import ExitCode, OutputPath, Outputs, narrate
+from calm.cli.outputs import ExitCode, Outputs, narrate
 from calm.errors import NoEquilibrium, UsageError
 
 if TYPE_CHECKING:
     from calm.records.sea_states import SeaState
-
-Signed = Annotated[str | None, Parameter(allow_leading_hyphen=True)]
 
 
 def waves(
@@ -24,16 +19,16 @@ def waves(
     *,
     environment: options.EnvironmentName = None,
     catalog: options.CatalogFiles = None,
-    hs: Signed = None,
-    tp: Signed = None,
+    hs: options.Signed = None,
+    tp: options.Signed = None,
     spectrum: str = "bretschneider",
     gamma: float = 3.3,
-    swell: Signed = None,
-    swell_tp: Signed = None,
-    toward: Signed = None,
+    swell: options.Signed = None,
+    swell_tp: options.Signed = None,
+    toward: options.Signed = None,
     scatter: Path | None = None,
     duration: str = "3 h",
-    json: OutputPath = None,
+    json: options.JsonAnswer = None,
     report: Path | None = None,
     units: options.Units = None,
 ) -> ExitCode:
@@ -71,8 +66,6 @@ def waves(
         A CSV file of seas: significant_wave_height[m],peak_period[s],share.
     duration
         Time over which the greatest and the least tension are sought; 3 h by default.
-    json
-        Write the answer as JSON, - to print it.
     report
         A folder for waves.html and waves.pdf, with pictures of the tension.
 
@@ -99,9 +92,9 @@ def waves(
         {"hs": hs, "tp": tp, "swell": swell, "swell_tp": swell_tp},
         spectrum, gamma, toward, scatter, duration,
     )  # fmt: skip
-    mooring = load_line(file, environment=environment, catalogs=catalog or [])
+    mooring = load_line(file, environment, catalog or [])
     if isinstance(mooring, Tow):
-        raise UsageError(f"{file} is a tow; calm waves judges moorings")
+        raise UsageError(f"{file} is a tow; calm waves is for moorings")
     given, seas = mooring.file.environment.waves, asked or mooring.file.environment.seas
     if not seas:
         missing = "--hs: missing" if spectrum in OF_HEIGHT else "--hs, --tp: missing"
@@ -153,7 +146,7 @@ def _asked(
         duration=(duration, "time"),
     )
     complaints = [
-        f"{option(name)}: must be above 0"
+        f"{options.option(name)}: must be above 0"
         for name in (*waves, "duration")
         if name in given and not given[name] > 0.0
     ]
@@ -168,7 +161,7 @@ def _asked(
         complaints.append(
             f"--spectrum: `{spectrum}` is neither {', '.join(sea_states.SPECTRA)} nor a file{meant}"
         )
-    chosen = [option(name) for name, each in waves.items() if each is not None]
+    chosen = [options.option(name) for name, each in waves.items() if each is not None]
     swells = [name for name in ("--swell", "--swell-tp") if name in chosen]
     if len(swells) == 1:
         complaints.append("--swell, --swell-tp: a swell has both a height and a period")
