@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
-from calm.cli import options
+from calm.cli import options, reading
 from calm.cli.outputs import ExitCode, OutputPath, Outputs, narrate
-from calm.cli.reading import DesignFile, read_designs
 from calm.errors import NoEquilibrium, UsageError
 from calm.version import __version__
 
@@ -83,21 +82,19 @@ def deck(
       calm deck mooring.yaml -o cruise/ --ship-speed "2 knot" --course "245 deg" --deck-time "3 min"
       calm deck shallow.yaml -o cruise/ --order anchor-first
     """
-    from calm.deck import deck_of
-    from calm.deck.deck_items import Order
-    from calm.report.diagram import Paper
+    from calm.deck import deck_items, deck_of
+    from calm.report import diagram, provenance
     from calm.report.folder import check_folder
-    from calm.report.provenance import moment
 
     check_folder(output)
-    moment()
+    provenance.moment()
     ship = options.quantities(
         ship_speed=(ship_speed, "speed"),
         streamed=(streamed, "length"),
         course=(course, "angle"),
         deck_time=(deck_time, "time"),
     )
-    designs, tows = read_designs(files, environment, catalog or [], None, "calm deck")
+    designs, tows = reading.read_designs(files, environment, catalog or [], None, "calm deck")
     if tows:
         narrate(f"not drawn, because they are tows: {', '.join(map(str, tows))}")
     options.show_units(units, [one.file for design in designs for one in design.moorings])
@@ -107,12 +104,12 @@ def deck(
         for notice in dict.fromkeys(n for one in design.moorings for n in one.file.notices):
             narrate(f"{design.path}: {notice}")
         try:
-            decks.append(deck_of(design.moorings, Order(order), **ship))
+            decks.append(deck_of(design.moorings, deck_items.Order(order), **ship))
         except NoEquilibrium as failure:
             narrate(f"{design.path}: {failure}")
             return ExitCode.NO_EQUILIBRIUM
     for folder, design, one in zip(folders, designs, decks, strict=True):
-        _write(folder, design.path, one, Paper(page))
+        _write(folder, design.path, one, diagram.Paper(page))
     return ExitCode.DONE
 
 
@@ -198,7 +195,7 @@ def _texts(deck: Deck) -> Iterator[tuple[str, str]]:
         yield " ".join(filter(None, texts)), f"`{one.label}`"
 
 
-def _folders(designs: Sequence[DesignFile], output: Path) -> list[Path]:
+def _folders(designs: Sequence[reading.DesignFile], output: Path) -> list[Path]:
     """Where each mooring's sheets go.
 
     UsageError: two moorings would have the same folder, or a file that is read stands where one
@@ -288,8 +285,7 @@ def locate(
     """
     from calm.drawing.picture import check_format, image
     from calm.ranging import locate as found_at
-    from calm.ranging import read_ranges
-    from calm.ranging.range_fit import located_mooring, with_deployed
+    from calm.ranging import range_fit, read_ranges
     from calm.records.record import parse_place
     from calm.report.folder import check_destination, write_file
     from calm.report.located_anchor import located_figure, located_part
@@ -319,7 +315,7 @@ def locate(
     if output is not None:
         narrate("-o is now --update: the file is edited in place")
         update = update or output
-    mooring = None if update is None else located_mooring(update)
+    mooring = None if update is None else range_fit.located_mooring(update)
     about = None if near is None else parse_place(near)
     if about is None and mooring is not None and mooring.position is not None:
         about = mooring.position.latitude, mooring.position.longitude
@@ -327,7 +323,7 @@ def locate(
     water_depth = located.depth + height
     doubts, edited = located.doubts, None
     if update is not None and mooring is not None:
-        working, text, beside, far = with_deployed(update, mooring, located, water_depth)
+        working, text, beside, far = range_fit.with_deployed(update, mooring, located, water_depth)
         edited, doubts = (working, text), (*doubts, *far)
         for line in beside:
             narrate(f"{update}: {line}")
@@ -349,12 +345,11 @@ def locate(
 
 def _sound(text: str) -> Sound:
     """One speed, or the profile of a file."""
-    from calm.ranging import Sound
-    from calm.ranging.ranges import FASTEST, SLOWEST, read_sound, sound_complaint
+    from calm.ranging import Sound, ranges
 
     if text.lower().endswith((".csv", ".txt", ".tsv")):
-        return read_sound(Path(text))
+        return ranges.read_sound(Path(text))
     speed = options.quantities(sound_speed=(text, "speed"))["sound_speed"]
-    if not SLOWEST <= speed <= FASTEST:
-        raise UsageError(f"--sound-speed: `{text}` {sound_complaint()}")
+    if not ranges.SLOWEST <= speed <= ranges.FASTEST:
+        raise UsageError(f"--sound-speed: `{text}` {ranges.sound_complaint()}")
     return Sound.constant(speed)

@@ -17,8 +17,7 @@ from calm.errors import UsageError
 
 if TYPE_CHECKING:
     from calm.batch.run import BatchOutcome
-    from calm.case import Mooring
-    from calm.case.net import Net
+    from calm.case import Mooring, net
     from calm.records.record import Record
 
 
@@ -122,7 +121,7 @@ def batch(
     return code
 
 
-def _summarized(output: Path, mooring: Mooring | Net, stop: Event) -> bool:
+def _summarized(output: Path, mooring: Mooring | net.Net, stop: Event) -> bool:
     """Show what the result says, and write it beside the result; whether that was possible.
 
     UsageError: the result cannot be read.
@@ -144,7 +143,7 @@ def _summarized(output: Path, mooring: Mooring | Net, stop: Event) -> bool:
     return False
 
 
-def _implausible(outcome: BatchOutcome, mooring: Mooring | Net, record: Record) -> str:
+def _implausible(outcome: BatchOutcome, mooring: Mooring | net.Net, record: Record) -> str:
     """How many profiles have a current that cannot be true, and the first of them."""
     from calm.batch.statuses import first_implausible
 

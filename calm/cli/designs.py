@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from calm.cli import options
+from calm.cli import options, reading
 from calm.cli.outputs import ExitCode, OutputPath, Outputs, narrate
-from calm.cli.reading import read_all
 from calm.errors import NoEquilibrium, UsageError
 
 if TYPE_CHECKING:
@@ -60,7 +59,7 @@ def diff(
     outputs = Outputs(files, json)
     from calm.case.net import load
 
-    lines = read_all(load, files, environment, catalog or [])
+    lines = reading.read_all(load, files, environment, catalog or [])
     for file, line in zip(files, lines, strict=True):
         for notice in line.file.notices:
             narrate(f"{file}: {notice}")
@@ -76,8 +75,7 @@ def compared(files: tuple[Path, ...], lines: list[Mooring | Tow | Net]) -> Compa
 
     UsageError: a mooring and a tow; a single tow, or a file that says nothing of a deployment.
     """
-    from calm.case import Mooring, Tow
-    from calm.case.net import Net
+    from calm.case import Mooring, Tow, net
     from calm.checks.comparison import comparison_of
     from calm.checks.situations import as_deployed, deployed_file
 
@@ -88,10 +86,10 @@ def compared(files: tuple[Path, ...], lines: list[Mooring | Tow | Net]) -> Compa
         return comparison_of((str(files[0]), str(files[1])), first, last)
     if isinstance(first, Tow):
         raise UsageError(f"{files[0]} is a tow; give the file to compare it with")
-    if isinstance(first, Net):
+    if isinstance(first, net.Net):
         laid = replace(deployed_file(first.file), deployed=None)
         planned = replace(first.file, deployed=None)
-        return comparison_of(("design", "deployed"), Net(planned), Net(laid))
+        return comparison_of(("design", "deployed"), net.Net(planned), net.Net(laid))
     try:
         deployed = as_deployed(first)
         design, there = (Mooring(replace(one.file, deployed=None)) for one in (first, deployed))

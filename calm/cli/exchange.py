@@ -72,8 +72,7 @@ def import_(
       calm import list.csv -o list.yaml --columns name=Item,length=Len --environment site.yaml
     """
     from calm.exchange.importing import ImportOptions, import_file, record_file
-    from calm.report.folder import check_destination, write_file
-    from calm.report.result_files import to_json
+    from calm.report import folder, result_files
 
     if not files:
         raise UsageError("calm import needs a file")
@@ -81,7 +80,7 @@ def import_(
     given = ImportOptions(_pairs("--define", define or []), headings, elements, allow_include)
     targets = _targets(files, output)
     if json is not None and json != STDOUT:
-        check_destination(json)
+        folder.check_destination(json)
     done: list[tuple[Imported, Path]] = []
     problems: list[Problem] = []
     for file, target in zip(files, targets, strict=True):
@@ -106,12 +105,12 @@ def import_(
     for imported, target in done:
         record = _record_of(target) if imported.record is not None else None
         if record is not None and imported.record is not None:
-            write_file(record, record_file(imported.record, imported.file.name))
-        write_file(target, imported.text.encode("utf-8", "replace"))
+            folder.write_file(record, record_file(imported.record, imported.file.name))
+        folder.write_file(target, imported.text.encode("utf-8", "replace"))
         _tell(imported, target, record)
     if json is not None:
-        text = to_json([_document(imported, target) for imported, target in done])
-        show(text) if json == STDOUT else write_file(json, text.encode())
+        text = result_files.to_json([_document(imported, target) for imported, target in done])
+        show(text) if json == STDOUT else folder.write_file(json, text.encode())
     return ExitCode.DONE
 
 

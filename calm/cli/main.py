@@ -14,17 +14,14 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import App, CycloptsError, Group, Parameter, UnusedCliTokensError
 
-from calm.cli.at_sea import deck, locate
+from calm.cli import at_sea, designs, exchange, starter
 from calm.cli.batch import batch
 from calm.cli.catalog import catalog
 from calm.cli.chart import chart
 from calm.cli.check import check
-from calm.cli.designs import diff, size
-from calm.cli.exchange import export, import_
 from calm.cli.motion import grid, motion
 from calm.cli.outputs import ExitCode, narrate, prepare, show
 from calm.cli.run import run
-from calm.cli.starter import build, docs, new, schema
 from calm.cli.tow import strumming, tow
 from calm.cli.verify import verify
 from calm.cli.waves import waves
@@ -183,17 +180,17 @@ _TOW.command(strumming, help_epilogue=_examples(strumming))
 
 _GROUPS: dict[str, tuple[tuple[Any, str], ...]] = {
     "Design": (
-        (new, ""),
-        (build, ""),
+        (starter.new, ""),
+        (starter.build, ""),
         (run, "[OPTIONS] FILE..."),
-        (size, ""),
+        (designs.size, ""),
         (waves, ""),
         (check, "[OPTIONS] FILE..."),
-        (diff, "[OPTIONS] FILE [FILE]"),
+        (designs.diff, "[OPTIONS] FILE [FILE]"),
     ),
     "At sea": (
-        (deck, "[OPTIONS] FILE..."),
-        (locate, "[OPTIONS] FILE"),
+        (at_sea.deck, "[OPTIONS] FILE..."),
+        (at_sea.locate, "[OPTIONS] FILE"),
     ),
     "Records": (
         (batch, ""),
@@ -201,16 +198,16 @@ _GROUPS: dict[str, tuple[tuple[Any, str], ...]] = {
         (grid, "[OPTIONS] DEPTHS VALUES..."),
     ),
     "Files": (
-        (import_, "[OPTIONS] FILE..."),
-        (export, ""),
+        (exchange.import_, "[OPTIONS] FILE..."),
+        (exchange.export, ""),
         (catalog, ""),
-        (schema, ""),
+        (starter.schema, ""),
     ),
     "More": (
         (_TOW, ""),
         (chart, ""),
         (verify, "[OPTIONS] [WORD...]"),
-        (docs, "[OPTIONS] [PAGE]"),
+        (starter.docs, "[OPTIONS] [PAGE]"),
         (completion, "SHELL"),
     ),
 }

@@ -122,9 +122,7 @@ def motion(
       calm motion mooring.yaml --pressures two.csv -o depths.nc
     """
 
-    from calm.batch.finished import open_result, readable
-    from calm.batch.profiles import Batch
-    from calm.batch.work import compile_solver
+    from calm.batch import finished, profiles, work
     from calm.case import Tow
     from calm.case.mooring import load_line
     from calm.motion.instrument_file import read_instruments
@@ -176,7 +174,7 @@ def motion(
         narrate(note)
     teller = ProgressTeller()
     with stopped_by_a_signal() as stop:
-        compile_solver(Batch(mooring), teller.note)
+        work.compile_solver(profiles.Batch(mooring), teller.note)
         try:
             outcome = recovery.estimate(
                 output, workers=workers, progress=teller, tell=teller.note, stop=stop
@@ -186,7 +184,7 @@ def motion(
         code = ended(outcome, output, len(recovery.measured.time))
         if not outcome.done:
             return code
-        with open_result(output) as result, readable(output):
+        with finished.open_result(output) as result, finished.readable(output):
             study = recovery.study(result, narrate, workers)
             series = series_of(mooring, recovery.measured, study.task.measured.label, result)
             if onto is not None and instruments is not None:

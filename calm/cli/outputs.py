@@ -207,16 +207,14 @@ class FileOutcome:
 
             report = result_report(self.result, self.uncertain)
             if suffix == ".pdf":
-                from calm.report.folder import printed
+                from calm.report import folder, result_files
 
-                return printed(report)
+                return folder.printed(report)
             from calm.report.html import page
 
             return page(report).encode("utf-8", "replace")
         if suffix == ".nc":
-            from calm.report.result_files import result_netcdf
-
-            return result_netcdf(self.result)
+            return result_files.result_netcdf(self.result)
         from calm.drawing.plot import picture
 
         return picture(self.result, suffix, self.uncertain)

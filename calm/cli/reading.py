@@ -107,16 +107,15 @@ def _cut_alike(moorings: Sequence[Mooring | Net]) -> tuple[Mooring | Net, ...]:
 
     What does not depend on the environment, such as the line in still water, is solved once.
     """
-    from calm.case import Mooring
+    from calm.case import Mooring, parts
     from calm.case.memory import Memory
-    from calm.case.parts import cut_like
 
     if any(not isinstance(each, Mooring) for each in moorings):
         return tuple(moorings)  # nothing in a net is cut to fit
     memory = Memory()
     first, *others = (Mooring(each.file, memory=memory) for each in moorings)
     try:
-        return first, *(Mooring(cut_like(each.file, first), memory=memory) for each in others)
+        return first, *(Mooring(parts.cut_like(each.file, first), memory=memory) for each in others)
     except NoEquilibrium:
         return first, *others  # the first is reported not to stand, and why
 

@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from calm.cli import options
+from calm.cli import options, reading
 from calm.cli.outputs import ExitCode, FileOutcome, OutputPath, Outputs, gravest, narrate
-from calm.cli.reading import read_all
 from calm.errors import NoEquilibrium, UsageError
 
 if TYPE_CHECKING:
@@ -96,15 +95,14 @@ def run(
     """
     outputs = Outputs(tuple(files), json, csv, plot, html, pdf, netcdf)
     draws = draws_of(uncertainty, samples, seed)
-    from calm.case import Tow
-    from calm.case.net import Net, load
+    from calm.case import Tow, net
     from calm.files.legs import NET_SURE
 
-    lines = read_all(load, files, environment, catalog or [])
+    lines = reading.read_all(net.load, files, environment, catalog or [])
     options.show_units(units, [line.file for line in lines])
     drawn = {"--uncertainty": uncertainty}
     _refuse({"--explain": explain} | drawn, "moorings; these are tows", Tow, files, lines)
-    _refuse(drawn, NET_SURE, Net, files, lines)
+    _refuse(drawn, NET_SURE, net.Net, files, lines)
     return solve_and_show(
         lines, outputs, explain=explain, schematic=schematic, draws=draws, verbose=verbose
     )

@@ -10,11 +10,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from calm.cli import options
+from calm.cli import options, reading, run
 from calm.cli.outputs import ExitCode, FileOutcome, OutputPath, Outputs, gravest, narrate
 from calm.cli.progress import progress
-from calm.cli.reading import read_all
-from calm.cli.run import solve_and_show
 from calm.errors import NoEquilibrium, UsageError
 
 if TYPE_CHECKING:
@@ -82,7 +80,7 @@ def tow(
         return _tabulate(tows, outputs, lambda file, each: _sweep(file, each, chosen))
     if sensitivity:
         return _tabulate(tows, outputs, _vary)
-    return solve_and_show(tows, outputs, schematic=schematic)
+    return run.solve_and_show(tows, outputs, schematic=schematic)
 
 
 @dataclass(frozen=True)
@@ -119,10 +117,9 @@ class TabulatedTow:
 
 
 def _only_tows(files: list[Path], environment: str | None, catalogs: list[Path]) -> list[Tow]:
-    from calm.case import Tow
-    from calm.case.mooring import load_line
+    from calm.case import Tow, mooring
 
-    read = read_all(load_line, files, environment, catalogs)
+    read = reading.read_all(mooring.load_line, files, environment, catalogs)
     moorings = [file for file, line in zip(files, read, strict=True) if not isinstance(line, Tow)]
     if moorings:
         raise UsageError(

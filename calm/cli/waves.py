@@ -82,12 +82,11 @@ def waves(
     from calm.case.mooring import load_line
     from calm.cli.progress import progress
     from calm.records.sea_states import OF_HEIGHT
-    from calm.report.folder import check_folder, write_pages
-    from calm.report.sea_response import sea_response_part, sea_response_report
+    from calm.report import folder, sea_response
     from calm.waves.analysis import SLACK, analyse
 
     if report is not None:
-        check_folder(report)
+        folder.check_folder(report)
     asked, way, length = _asked(
         {"hs": hs, "tp": tp, "swell": swell, "swell_tp": swell_tp},
         spectrum, gamma, toward, scatter, duration,
@@ -109,9 +108,9 @@ def waves(
         outputs.write_answer(lambda: answer, None)
         narrate(f"{file}: {failure.status}: {failure.message} {failure.advice}")
         return ExitCode.NO_EQUILIBRIUM
-    outputs.write_answer(analysis.to_dict, sea_response_part(analysis))
+    outputs.write_answer(analysis.to_dict, sea_response.sea_response_part(analysis))
     if report is not None:
-        write_pages(report, "waves", sea_response_report(analysis))
+        folder.write_pages(report, "waves", sea_response.sea_response_report(analysis))
     if analysis.status != SLACK:
         return ExitCode.DONE
     narrate(

@@ -18,12 +18,10 @@ from calm.assemble.catalogue_search import COLUMNS, Index, Listed
 from calm.errors import CalmError
 from calm.files.components import FLEXIBLE_KINDS, RIGID_KINDS
 from calm.files.editing.user_state import Remembered
+from calm.tui import dialogs, key_table, theme
 from calm.tui.checking import distance, length
-from calm.tui.dialogs import InputSheet, ask
 from calm.tui.field import Asked, ScrolledEntry
-from calm.tui.key_table import bindings
 from calm.tui.scrolled import ScrolledText, TableCells, TableColumn
-from calm.tui.theme import CURSOR, FAVOURITE, ROLES
 from calm.tui.workspace import Workspace
 
 _LEAD, _FIGURE = 4, 8
@@ -111,9 +109,9 @@ class ComponentList(TableCells, can_focus=False):
     def lead(self, number: int, style: Style) -> list[Segment]:
         """Return the cursor, the star of a favourite, and the sign of the role."""
         each: Listed = self.rows[number]
-        cursor = CURSOR if number == self.cursor else " "
-        star = FAVOURITE if each.id in self._favourites else " "
-        return [Segment(f"{cursor}{star}{ROLES.get(each.role, ' ')} ", style)]
+        cursor = theme.CURSOR if number == self.cursor else " "
+        star = theme.FAVOURITE if each.id in self._favourites else " "
+        return [Segment(f"{cursor}{star}{theme.ROLES.get(each.role, ' ')} ", style)]
 
     def row_style(self, number: int) -> Style:
         """Return how a row looks, that of the cursor whoever has the focus."""
@@ -150,7 +148,7 @@ class CataloguePane(Vertical):
     close : leads back to the line
     """
 
-    BINDINGS: ClassVar[list[BindingType]] = [*bindings("catalogue")]
+    BINDINGS: ClassVar[list[BindingType]] = [*key_table.bindings("catalogue")]
     SCOPED_CSS = False  # the width of the screen counts
     DEFAULT_CSS = """
     CataloguePane {
@@ -321,7 +319,7 @@ class CataloguePane(Vertical):
             self._give({"use": chosen.id} | {key: text for key, text in texts.items() if text})
 
         label = Asked("label", "Label", placeholder="may stay empty")
-        ask(self.app, InputSheet(chosen.id, "", [asked, label]), take)
+        dialogs.ask(self.app, dialogs.InputSheet(chosen.id, "", [asked, label]), take)
 
     def action_close(self) -> None:
         """Leave the catalogue."""

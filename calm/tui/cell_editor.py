@@ -7,9 +7,8 @@ from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.containers import Vertical
 
+from calm.tui import field, key_table
 from calm.tui.checking import Check, Reading, anything
-from calm.tui.field import ScrolledEntry
-from calm.tui.key_table import bindings
 from calm.tui.scrolled import TableCells
 from calm.tui.workspace import Workspace
 
@@ -118,10 +117,10 @@ class EditableTable(Vertical):
             self.workspace.tell(reason, wrong=True)
 
 
-class CellEditor(ScrolledEntry):
+class CellEditor(field.ScrolledEntry):
     """A line of input laid over a cell; it says at each key what it makes of the text."""
 
-    BINDINGS: ClassVar[list[BindingType]] = [*bindings("cell")]
+    BINDINGS: ClassVar[list[BindingType]] = [*key_table.bindings("cell")]
     DEFAULT_CSS = """
     CellEditor, CellEditor:focus {
         layer: over; position: absolute; display: none; height: 1; border: none; padding: 0;

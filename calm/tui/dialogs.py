@@ -16,9 +16,8 @@ from textual.markup import escape
 from textual.screen import ModalScreen, Screen
 from textual.widgets import Static
 
-from calm.tui.checking import Reading
+from calm.tui import checking, key_table
 from calm.tui.field import Asked, Field, all_settled
-from calm.tui.key_table import bindings
 
 _FRAME = """
     align: center middle;
@@ -69,7 +68,7 @@ def numbered(answers: Iterable[tuple[str, Then]]) -> list[Answer]:
 class Question(ModalScreen[Then | None]):
     """One of several answers, by its key or with the mouse; Esc is `back` unless one `must` be."""
 
-    BINDINGS: ClassVar[list[BindingType]] = [*bindings("question")]
+    BINDINGS: ClassVar[list[BindingType]] = [*key_table.bindings("question")]
     DEFAULT_CSS = "Question {" + _FRAME + "}"
 
     def __init__(
@@ -146,7 +145,7 @@ class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
     It is wider where it is said beside them what they take.
     """
 
-    BINDINGS: ClassVar[list[BindingType]] = [*bindings("sheet")]
+    BINDINGS: ClassVar[list[BindingType]] = [*key_table.bindings("sheet")]
     DEFAULT_CSS = (
         "InputSheet {" + _FRAME + " & Field > Input { width: 1fr; }"
         " & .field-note { display: none; }"
@@ -189,7 +188,7 @@ class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
     def _judge(self, event: Field.Judged) -> None:
         self._tell(event.field, event.reading)
 
-    def _tell(self, field: Field, reading: Reading) -> None:
+    def _tell(self, field: Field, reading: checking.Reading) -> None:
         note = self.query_one("#sheet-note", Static)
         note.update(field.note(reading))
         note.set_class(not reading.is_good, "-wrong")
@@ -203,7 +202,7 @@ class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
 class LongText(ModalScreen[None]):
     """A text over the screen, scrolled where it is longer; of tables, `wide`."""
 
-    BINDINGS: ClassVar[list[BindingType]] = [*bindings("help")]
+    BINDINGS: ClassVar[list[BindingType]] = [*key_table.bindings("help")]
     DEFAULT_CSS = (
         "LongText {" + _FRAME + " & > VerticalScroll { width: 84; height: 90%; }"
         " &.-wide > VerticalScroll { width: 110; } }"

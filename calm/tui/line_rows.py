@@ -10,8 +10,7 @@ from textual.events import Paste
 
 from calm.assemble.catalogue_search import Index, Listed
 from calm.checks.finding import State
-from calm.files import Place
-from calm.files.components import FLEXIBLE_KINDS
+from calm.files import Place, components
 from calm.files.editing import Draft, LineItem, Value
 from calm.quantities import QUANTITIES
 from calm.tui.checking import Check, anything, count, distance, length, length_text, length_values
@@ -170,7 +169,7 @@ class LineCell:
             return _NO_SERIAL
         if self.spot.is_clamp:
             return _NO_COUNT if self.column == "count" else ""
-        is_rigid = listed is not None and listed.kind not in FLEXIBLE_KINDS
+        is_rigid = listed is not None and listed.kind not in components.FLEXIBLE_KINDS
         is_set = self.column == "length" and is_rigid and "length" not in self._values
         return _NO_LENGTH if is_set else ""
 

@@ -10,8 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from calm.errors import CalmError, InputError
-from calm.files import read_mooring
-from calm.files.editing import KeptWork
+from calm.files import editing, read_mooring
 from calm.files.editing.user_state import Presence
 from calm.tui.checking import Reading
 from calm.tui.dialogs import Answer, InputSheet, Question, Then, ask, choose
@@ -154,7 +153,7 @@ class Saving:
 
     # work of an earlier run
 
-    def offer(self, kept: KeptWork) -> None:
+    def offer(self, kept: editing.KeptWork) -> None:
         """Ask whether it is to be recovered, saying when it was kept and whether the file is newer.
 
         To throw it away is asked about twice: nothing brings it back.
