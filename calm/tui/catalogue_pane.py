@@ -10,7 +10,6 @@ from rich.style import Style
 from rich.text import Text
 from textual import on
 from textual.app import ComposeResult
-from textual.binding import BindingType
 from textual.containers import Horizontal, Vertical
 from textual.widgets import Input, Static
 
@@ -148,7 +147,7 @@ class CataloguePane(Vertical):
     close : leads back to the line
     """
 
-    BINDINGS: ClassVar[list[BindingType]] = [*key_table.bindings("catalogue")]
+    BINDINGS = key_table.bindings("catalogue")
     SCOPED_CSS = False  # the width of the screen counts
     DEFAULT_CSS = """
     CataloguePane {
@@ -319,7 +318,7 @@ class CataloguePane(Vertical):
             self._give({"use": chosen.id} | {key: text for key, text in texts.items() if text})
 
         label = Asked("label", "Label", placeholder="may stay empty")
-        dialogs.ask(self.app, dialogs.InputSheet(chosen.id, "", [asked, label]), take)
+        dialogs.enter(self.app, chosen.id, "", [asked, label], take)
 
     def action_close(self) -> None:
         """Leave the catalogue."""

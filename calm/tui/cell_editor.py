@@ -1,10 +1,9 @@
 """A table whose values are edited where they stand."""
 
-from typing import ClassVar, Literal
+from typing import Literal
 
 from textual import events
 from textual.app import ComposeResult
-from textual.binding import BindingType
 from textual.containers import Vertical
 
 from calm.tui import field, key_table
@@ -120,7 +119,7 @@ class EditableTable(Vertical):
 class CellEditor(field.ScrolledEntry):
     """A line of input laid over a cell; it says at each key what it makes of the text."""
 
-    BINDINGS: ClassVar[list[BindingType]] = [*key_table.bindings("cell")]
+    BINDINGS = key_table.bindings("cell")
     DEFAULT_CSS = """
     CellEditor, CellEditor:focus {
         layer: over; position: absolute; display: none; height: 1; border: none; padding: 0;

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from calm.errors import CalmError
 from calm.files.editing import Draft, WorkingFile
 from calm.tui import checking, line_screen
-from calm.tui.dialogs import Answer, InputSheet, LongText, Question, ask, choose, numbered
+from calm.tui.dialogs import Answer, LongText, choose, enter, numbered
 from calm.tui.field import Asked
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ class ComparingScreen(line_screen.LineScreen):
         if self.settle():
             asked = [Asked("file", "File", placeholder="e.g. other.yaml")]
             text = "Its line is drawn dashed beside this one; no name takes it away again."
-            ask(self.app, InputSheet("Compare with another file", text, asked), take)
+            enter(self.app, "Compare with another file", text, asked, take)
 
     def _judge_beside(self, text: str, file: Path | None) -> None:
         """Judge a text beside the line's: of another file, or of its own as it was saved."""
@@ -87,7 +87,7 @@ class ComparingScreen(line_screen.LineScreen):
             if shape is not None and now and type(before.result) is type(now.result):
                 self.pictures.put_beside((name, shape))
             answers = [Answer("b", "back to the line")]
-            choose(self.app, Question(f"Beside {name}", "\n".join(lines), answers))
+            choose(self.app, f"Beside {name}", "\n".join(lines), answers)
 
         self.tell("Comparing …")
         self.run_worker(work, thread=True, group="advice", exclusive=True)
@@ -123,7 +123,7 @@ class ComparingScreen(line_screen.LineScreen):
             text = "No finding has a remedy that can be computed here. " + text
         if isinstance(result, Result) and not view.complete:
             text += " Launch, recovery, breaks and waves are still being judged."
-        choose(self.app, Question("Advice", text, answers))
+        choose(self.app, "Advice", text, answers)
 
     def _ask_for_target(self, view: View, mooring: Mooring | net.Net) -> None:
         from calm.tui.advice import sized
@@ -143,7 +143,7 @@ class ComparingScreen(line_screen.LineScreen):
             Asked("change", "Change", f"{label.strip('├ ')}.buoyancy", checking.needed("a change")),
         ]
         text = "LABEL.buoyancy, LABEL.length or LABEL.count; depth(LABEL) = 100 m, tilt(LABEL) …"
-        ask(self.app, InputSheet("A target to meet", text, asked), take)
+        enter(self.app, "A target to meet", text, asked, take)
 
     def _try(self, offer: Offer, before: View) -> None:
         """Work a change out in a thread, and ask whether it is wanted for what it would do."""
@@ -171,7 +171,7 @@ class ComparingScreen(line_screen.LineScreen):
 
             self.workspace.tell("")
             answers, back = [Answer("y", "take it", take)], partial(self.tell, "Not taken")
-            choose(self.app, Question(offer.title, "\n".join(lines), answers, back=back))
+            choose(self.app, offer.title, "\n".join(lines), answers, back=back)
 
         self.tell(f"Working out {offer.label} …")
         self.run_worker(work, thread=True, group="advice", exclusive=True)
@@ -199,7 +199,7 @@ class ComparingScreen(line_screen.LineScreen):
             Answer("r", "report of the design check: page, PDF, tables", report),
             Answer("d", "sheets for the deck: diagram, logs, cutting list, anchor drop", deck),
         ]
-        choose(self.app, Question("On paper", "", answers))
+        choose(self.app, "On paper", "", answers)
 
     def _ask_where(self, what: str) -> None:
         path = self.session.file.path
@@ -210,7 +210,7 @@ class ComparingScreen(line_screen.LineScreen):
         folder = path.with_name(f"{path.stem}-{what}")
         asked = [Asked("folder", "Folder", str(folder), checking.needed("a folder"))]
         write = partial(self._write, what, path)
-        ask(self.app, InputSheet("Where to write it", "", asked), write)
+        enter(self.app, "Where to write it", "", asked, write)
 
     def _write(self, what: str, path: Path, texts: dict[str, str]) -> None:
         """Have the command write it; what it says last is reported."""

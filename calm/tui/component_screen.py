@@ -3,11 +3,10 @@
 from collections.abc import Collection, Iterator
 from dataclasses import replace
 from types import UnionType
-from typing import Any, ClassVar, Literal, Union, get_args, get_origin
+from typing import Any, Literal, Union, get_args, get_origin
 
 from textual import on
 from textual.app import ComposeResult
-from textual.binding import BindingType
 from textual.containers import Horizontal, Vertical, VerticalScroll
 from textual.widgets import Static
 
@@ -33,7 +32,7 @@ class ComponentScreen(dialogs.Form[Defined]):
     begun : a component that is to be changed, with all that the file says of it
     """
 
-    BINDINGS: ClassVar[list[BindingType]] = [*key_table.bindings("form")]
+    BINDINGS = key_table.bindings("form")
     HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (112, "-wide")]  # noqa: RUF012
     DEFAULT_CSS = """
     ComponentScreen {

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import ClassVar
 
 from rich.text import Text
 from textual import events, on
 from textual.app import ComposeResult
-from textual.binding import BindingType
 from textual.containers import Horizontal
 from textual.geometry import Size
 from textual.message import Message
@@ -197,7 +195,7 @@ class Field(Horizontal):
 class Cycle(Widget, can_focus=True):
     """A name, and a word between two arrows."""
 
-    BINDINGS: ClassVar[list[BindingType]] = [*bindings("choice")]
+    BINDINGS = bindings("choice")
     DEFAULT_CSS = """
     Cycle { height: 1; width: 1fr; color: $foreground; }
     Cycle:focus { text-style: bold; }

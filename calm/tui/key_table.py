@@ -256,7 +256,7 @@ def shown_keys(keys: str) -> str:
     return "  ".join(map(shown_key, keys.split(",")))
 
 
-def bindings(place: str) -> list[Binding]:
+def bindings(place: str) -> list[BindingType]:
     """The keys of a place for the widget or screen that has the methods."""
     return [Binding(each.keys, each.name, each.title, show=False) for each in ACTIONS[place]]
 

@@ -265,7 +265,7 @@ class LineSearch(cell_editor.EditableTable):
 
         takes = "id, label, serial, maker"
         asked = [field.Asked("words", "Words", self.words, checking.needed("a word"), takes)]
-        dialogs.ask(self.app, dialogs.InputSheet("Find in the line", "", asked), take)
+        dialogs.enter(self.app, "Find in the line", "", asked, take)
 
     def action_find_next(self, by: int) -> None:
         """To the next row, or the one before, that has all words: id, label, serial, maker."""

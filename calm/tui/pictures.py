@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from textwrap import wrap
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, Literal
 
 from rich.text import Text
 from textual import events, on
 from textual.app import ComposeResult
-from textual.binding import BindingType
 from textual.containers import ScrollableContainer, Vertical
 from textual.geometry import Size
 from textual.reactive import reactive
@@ -39,7 +38,7 @@ class Picture(scrolled.DrawnRows, can_focus=True):
     Picture:focus { background-tint: $foreground 3%; }
     """
 
-    BINDINGS: ClassVar[list[BindingType]] = [*ScrollableContainer.BINDINGS]
+    BINDINGS = ScrollableContainer.BINDINGS
 
     def __init__(self) -> None:
         super().__init__()

@@ -13,7 +13,7 @@ from calm.errors import CalmError, InputError
 from calm.files import editing, read_mooring
 from calm.files.editing.user_state import Presence
 from calm.tui.checking import Reading
-from calm.tui.dialogs import Answer, InputSheet, Question, Then, ask, choose
+from calm.tui.dialogs import Answer, Question, Then, choose, enter
 from calm.tui.field import Asked
 from calm.tui.screen import DraftScreen
 from calm.tui.workspace import Workspace, place_of
@@ -92,7 +92,7 @@ class Saving:
         begun = str(begin or path or "")
         asked = [Asked("path", "File", begun, _is_writable, placeholder="e.g. iroise-2026.yaml")]
         text = f"In {Path.cwd()}, unless you give a folder."
-        ask(self._app, InputSheet("Save as", text, asked), take)
+        enter(self._app, "Save as", text, asked, take)
 
     def _ask_to_overwrite(self, path: Path, then: Then | None) -> None:
         """Of another file that is there, or of one's own that is protected or was changed."""
@@ -116,7 +116,7 @@ class Saving:
             title = f"{path.name} was changed by another program"
             text = "The file on the disk differs from your line. "
             text += f"It was written {moment(stamp[0] / 1e9)}."
-        choose(self._app, Question(title, text, answers))
+        choose(self._app, title, text, answers)
 
     # the file on the disk
 
@@ -180,18 +180,18 @@ class Saving:
                 else f" The file was changed, {moment(stamp[0] / 1e9)}, after that work was begun: "
                 "saving will ask."
             )
-        sure = Question(
-            "Throw the work away?",
-            f"It was kept {moment(kept.at)}.",
-            [Answer("y", "yes, throw it away for good", throw_away)],
-            back=partial(self.offer, kept),
-        )
+
+        def ask_again() -> None:
+            yes = [Answer("y", "yes, throw it away for good", throw_away)]
+            told = f"It was kept {moment(kept.at)}."
+            choose(app, "Throw the work away?", told, yes, back=partial(self.offer, kept))
+
         answers = [
             Answer("r", "recover it; undo goes back to the file", recover),
             Answer("k", "keep it for later; go on with the file", go_on),
-            Answer("d", "throw it away", partial(choose, app, sure)),
+            Answer("d", "throw it away", ask_again),
         ]
-        choose(app, Question("Work that was not saved", text, answers, must=True))
+        choose(app, "Work that was not saved", text, answers, must=True)
 
     # the way out
 
@@ -215,7 +215,7 @@ class Saving:
         name, file = self._session.name, self._session.file
         is_gone = file.stamp is None and file.changed_on_disk()
         told = "is gone from the disk" if is_gone else "has changes that are not saved"
-        choose(self._app, Question("Not saved", f"{name} {told}.", answers))
+        choose(self._app, "Not saved", f"{name} {told}.", answers)
 
 
 def chosen_path(text: str) -> Path:

@@ -1,11 +1,9 @@
 """The file as text, its mistakes below it: where a broken file is mended."""
 
 import re
-from typing import ClassVar
 
 from textual import on
 from textual.app import ComposeResult
-from textual.binding import BindingType
 from textual.containers import VerticalScroll
 from textual.content import Content
 from textual.widgets import Static, TextArea
@@ -22,7 +20,7 @@ _LINE_BREAK = re.compile(r"\r\n?|\n")
 class YamlArea(TextArea):
     """Text whose tabs are blanks, as YAML wants them."""
 
-    BINDINGS: ClassVar[list[BindingType]] = [*key_table.bindings("area")]
+    BINDINGS = key_table.bindings("area")
 
     def action_indent(self) -> None:
         """Blanks up to the next column that is even."""
@@ -55,7 +53,7 @@ class TextScreen(screen.DraftScreen):
     Lines that are not touched keep their line breaks.
     """
 
-    BINDINGS: ClassVar[list[BindingType]] = [*key_table.bindings("text")]
+    BINDINGS = key_table.bindings("text")
 
     DEFAULT_CSS = """
     TextScreen {
@@ -183,8 +181,8 @@ class TextScreen(screen.DraftScreen):
     def action_find(self) -> None:
         """Ask for words, and go to them."""
         asked = [field.Asked("words", "Find", placeholder="a label, a key, a number")]
-        sheet = dialogs.InputSheet("Find in the text", "F3 goes to the next place.", asked)
-        dialogs.ask(self.app, sheet, lambda texts: self.find(texts["words"]))
+        text, app = "F3 goes to the next place.", self.app
+        dialogs.enter(app, "Find in the text", text, asked, lambda it: self.find(it["words"]))
 
     def action_find_next(self) -> None:
         """To the next place of what was sought."""

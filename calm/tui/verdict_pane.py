@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 from rich.segment import Segment
 from rich.style import Style
 from rich.table import Table
 from rich.text import Text
 from textual import events
-from textual.binding import BindingType
 from textual.geometry import Size
 from textual.strip import Strip
 
@@ -34,7 +33,7 @@ class VerdictPane(scrolled.ScrolledText, can_focus=True):
     go_to : takes the rows that a chosen line is about, none to go back, and what it says
     """
 
-    BINDINGS: ClassVar[list[BindingType]] = [*key_table.bindings("verdict")]
+    BINDINGS = key_table.bindings("verdict")
     DEFAULT_CSS = """
     VerdictPane {
         height: auto; max-height: 60%; min-height: 5; width: 1fr; padding: 0 1; margin-top: 1;

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any
 
 from textual import events, on
-from textual.binding import BindingType
 from textual.message import Message
 from textual.widget import Widget
 
@@ -217,7 +216,7 @@ class FormChoice(Cycle):
     When it is left without, it shows the form there is again.
     """
 
-    BINDINGS: ClassVar[list[BindingType]] = [*key_table.bindings("given")]
+    BINDINGS = key_table.bindings("given")
 
     @dataclass
     class Taken(Message):

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import ClassVar
 
 from rich.segment import Segment
 from rich.style import Style
 from textual import events, on
-from textual.binding import BindingType
 
 from calm.records.delimited import CopiedTable, NoTableError, copied_table
 from calm.tui import cell_editor, checking, dialogs, field, key_table, theme
@@ -93,7 +91,7 @@ class Grid(cell_editor.EditableTable):
     changed : takes the table where its rows are other ones, and what was done to them
     """
 
-    BINDINGS: ClassVar[list[BindingType]] = [*key_table.bindings("grid")]
+    BINDINGS = key_table.bindings("grid")
     DEFAULT_CSS = """
     Grid { height: auto; min-height: 3; max-height: 16; }
     Grid GridCells { height: auto; min-height: 3; max-height: 16; }
@@ -282,7 +280,7 @@ class Grid(cell_editor.EditableTable):
         first = "   ".join(copied.rows[0])
         text += f" Its first row reads  {first}"
         asked = field.Asked("columns", "Columns", ", ".join(headings), check)
-        dialogs.ask(self.app, dialogs.InputSheet("A table is pasted", text, [asked]), take)
+        dialogs.enter(self.app, "A table is pasted", text, [asked], take)
 
 
 def _between(columns: Sequence[str], rows: Rows, at: int, seabed: float | None) -> tuple[str, ...]:

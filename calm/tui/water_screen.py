@@ -2,11 +2,9 @@
 
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import ClassVar
 
 from textual import events, on
 from textual.app import ComposeResult
-from textual.binding import BindingType
 from textual.containers import Horizontal, Vertical, VerticalScroll
 from textual.content import Content
 from textual.dom import DOMNode
@@ -39,7 +37,7 @@ _INHERITED = "as in the file's own environment"
 class WaterScreen(screen.DraftScreen):
     """Depth, density, current and wind of each environment; the line stands in the one shown."""
 
-    BINDINGS: ClassVar[list[BindingType]] = [*key_table.bindings("water")]
+    BINDINGS = key_table.bindings("water")
     HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (112, "-wide")]  # noqa: RUF012
     DEFAULT_CSS = """
     WaterScreen {
@@ -296,7 +294,7 @@ class WaterScreen(screen.DraftScreen):
                 Asked("name", "Name", check=checking.needed("a name"), placeholder="e.g. storm")
             ]
             text = "It says only what differs from the file's own environment."
-            dialogs.ask(self.app, dialogs.InputSheet("Another environment", text, asked), take)
+            dialogs.enter(self.app, "Another environment", text, asked, take)
 
     def action_drop_environment(self) -> None:
         """Take the named environment out of the file."""
