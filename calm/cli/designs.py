@@ -146,6 +146,7 @@ def size(
     LABEL.buoyancy, LABEL.length, LABEL.count.
     """
     outputs = Outputs((file,), json)
+    from calm.case import Tow
     from calm.case.net import load
     from calm.case.size import size as sized
     from calm.report.explanation import refusal, sizing_part

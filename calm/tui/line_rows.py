@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from textual.events import Paste
 
 from calm.assemble.catalogue_search import Index, Listed
-from calm.checks.finding import State
+from calm.checks.finding import State, worst_state
 from calm.files import Place, components
 from calm.files.editing import Draft, LineItem, Value
 from calm.quantities import QUANTITIES
@@ -25,7 +25,7 @@ from calm.tui.mooring_sheet import (
     serial_of_equipment,
     texts_of_equipment,
 )
-from calm.tui.theme import CLAMP, ROLES, UNKNOWN_MARGIN, UNKNOWN_ROLE, worst
+from calm.tui.theme import CLAMP, ROLES, UNKNOWN_MARGIN, UNKNOWN_ROLE
 from calm.tui.workspace import Workspace
 
 if TYPE_CHECKING:
@@ -116,7 +116,8 @@ def _row(spot: Place, item: LineItem, found: Sequence[FoundRow], index: Index | 
         **_told(found),
     }
     states = [row.state for row in found if row.state is not None]
-    return TableRow(spot, sign if index else " ", texts, worst(states), unknown)
+    gravest = worst_state(states) if states else None
+    return TableRow(spot, sign if index else " ", texts, gravest, unknown)
 
 
 def _length(values: Mapping[str, str], found: Sequence[FoundRow]) -> str:
