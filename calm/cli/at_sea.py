@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def deck(
-    files: list[Path],
+    files: options.MooringPaths,
     /,
     *,
     output: options.OutputFile,
@@ -46,8 +46,6 @@ def deck(
 
     Parameters
     ----------
-    files
-        Mooring files.
     output
         The folder to write; with several moorings, each gets a subfolder of its
         name.
@@ -128,29 +126,23 @@ def _write(folder: Path, path: Path, deck: Deck, paper: Paper) -> None:
 
 def _contents(deck: Deck, paper: Paper, notes: tuple[str, ...]) -> Mapping[str, bytes]:
     from calm.checks.finding import State
-    from calm.report import check_summary
-    from calm.report.deck_files import (
-        deck_csvs,
-        deck_report,
-        deck_workbook,
-        diagram_report,
-        net_svg,
-    )
+    from calm.report import check_summary, deck_files, result_files
     from calm.report.diagram import diagram_svg
     from calm.report.folder import printed
-    from calm.report.result_files import to_json
 
-    texts = {"diagram.svg": diagram_svg(deck, paper), **deck_csvs(deck)}
+    texts = {"diagram.svg": diagram_svg(deck, paper), **deck_files.deck_csvs(deck)}
     if deck.file.legs:
-        texts["net.svg"] = net_svg(deck)
+        texts["net.svg"] = deck_files.net_svg(deck)
     counts = check_summary.counted_states(deck.assessment.all_findings())
     fails, unknown = counts[State.FAIL], counts[State.UNKNOWN]
     verdict = {"state": str(deck.assessment.state), "fails": fails, "unknown": unknown}
-    texts["plan.json"] = to_json([{"calm": __version__, **_plan(deck), "verdict": verdict}])
+    texts["plan.json"] = result_files.to_json(
+        [{"calm": __version__, **_plan(deck), "verdict": verdict}]
+    )
     return {
-        "deck.pdf": printed(deck_report(deck, paper, notes), paper, least=7.5),
-        "deck.xlsx": deck_workbook(deck),
-        "diagram.pdf": printed(diagram_report(deck, paper), paper, least=7.5),
+        "deck.pdf": printed(deck_files.deck_report(deck, paper, notes), paper, least=7.5),
+        "deck.xlsx": deck_files.deck_workbook(deck),
+        "diagram.pdf": printed(deck_files.diagram_report(deck, paper), paper, least=7.5),
         **{name: text.encode("utf-8", "replace") for name, text in texts.items()},
     }
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def batch(
-    file: Path,
+    file: options.MooringPath,
     /,
     *,
     currents: Path,
@@ -51,8 +51,6 @@ def batch(
 
     Parameters
     ----------
-    file
-        Mooring file.
     currents
         The record: NetCDF, zarr or CSV.
     output

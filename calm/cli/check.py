@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def check(
-    files: list[Path],
+    files: options.MooringPaths,
     /,
     *,
     environment: list[str] | None = None,
@@ -48,8 +48,6 @@ def check(
 
     Parameters
     ----------
-    files
-        Mooring files.
     environment
         An environment named in the files, or an environment file. Repeatable. By default, every
         environment of each file.

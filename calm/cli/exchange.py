@@ -180,7 +180,7 @@ def _document(imported: Imported, target: Path) -> dict[str, Any]:
 
 
 def export(
-    file: Path,
+    file: options.MooringPath,
     /,
     *,
     to: str,
@@ -195,8 +195,6 @@ def export(
 
     Parameters
     ----------
-    file
-        Mooring file.
     to
         The program: mdd (Mooring Design & Dynamics), cbl (WHOI Cable), moordyn (MoorDyn 2,
         with the current in a file beside it) or csv (a list).

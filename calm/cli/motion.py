@@ -27,7 +27,7 @@ SeveralTexts = Annotated[list[str], Parameter(consume_multiple=True)]
 
 
 def motion(
-    file: Path,
+    file: options.MooringPath,
     /,
     *,
     pressures: SeveralTexts,
@@ -66,8 +66,6 @@ def motion(
 
     Parameters
     ----------
-    file
-        Mooring file.
     pressures
         Pressures of sensors on the line, one file or more: NetCDF or CSV with their
         labels, or one sensor each as LABEL=FILE, in RODB or Sea-Bird's .cnv too.

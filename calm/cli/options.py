@@ -23,6 +23,8 @@ CatalogFiles = Annotated[
         help="A catalogue of your own; its components replace others of the same id. Repeatable."
     ),
 ]
+MooringPath = Annotated[Path, Parameter(help="Mooring file.")]
+MooringPaths = Annotated[list[Path], Parameter(help="Mooring files.")]
 EnvironmentName = Annotated[
     str | None,
     Parameter(help="The environment to use instead: a name from the file, or an environment file."),

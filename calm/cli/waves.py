@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def waves(
-    file: Path,
+    file: options.MooringPath,
     /,
     *,
     environment: options.EnvironmentName = None,
@@ -42,8 +42,6 @@ def waves(
 
     Parameters
     ----------
-    file
-        A mooring file.
     hs
         Significant wave height, such as "5 m".
     tp

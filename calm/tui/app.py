@@ -311,8 +311,6 @@ class BuildApp(App[int]):
 
     @work(thread=True, exit_on_error=False)
     def _read_catalogue(self) -> None:
-        from calm.files import Catalogue
-
         try:
             self.call_later(self._take_catalogue, Catalogue.load(self.session.catalogs))
         except CalmError as error:

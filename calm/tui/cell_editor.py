@@ -39,9 +39,7 @@ class EditableTable(Vertical):
 
     def tell_reading(self, reading: Reading) -> None:
         """Tell what the text typed so far comes to."""
-        completed = reading.text if reading.text != self.editor.value.strip() else ""
-        note = reading.note or (f"= {completed}" if completed and reading.is_good else "")
-        self.workspace.tell(note, wrong=not reading.is_good)
+        self.workspace.tell(reading.told(self.editor.value), wrong=not reading.is_good)
 
     def go_on(self, then: Then, text: str | None) -> None:
         """Go on from a cell whose text was taken, None where it stays as it was."""

@@ -45,6 +45,11 @@ class Reading:
             return f"{self.complaint}: {self.offer}?"
         return self.complaint
 
+    def told(self, typed: str) -> str:
+        """Return the note of a bad text; of a good one what it comes to, where that is more."""
+        is_completed = self.text and self.text != " ".join(typed.split())
+        return self.note or self.comes_to or (f"= {self.text}" if is_completed else "")
+
 
 Check = Callable[[str], Reading]
 """Judges a text."""

@@ -145,13 +145,8 @@ class Field(Horizontal):
             self._told.update(note, layout=False)
 
     def note(self, reading: Reading) -> str:
-        """Return what is said of the typed text: what is wrong, or what is added."""
-        if not reading.is_good:
-            return reading.note
-        if reading.comes_to:
-            return reading.comes_to
-        completed = reading.text != " ".join(self.input.value.split())
-        return f"= {reading.text}" if completed else self._note
+        """Return what is said of the typed text: what is wrong or added, else what it takes."""
+        return reading.told(self.input.value) or self._note
 
     def _tell(self, reading: Reading) -> None:
         self.set_class(not reading.is_good, "-wrong")
