@@ -7,29 +7,11 @@ from typing import assert_never
 
 import numpy as np
 
-from calm.files import (
-    Anchor,
-    Cable,
-    Chain,
-    Component,
-    Cylinder,
-    Environment,
-    Flexible,
-    Piece,
-    Rigid,
-    Shaped,
-    Solver,
-    Sphere,
-)
+from calm import files
+from calm.files import Cable, Solver, strumming_keys
 from calm.files.components import FlexibleComponent, RigidComponent
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
 from calm.files.rigid import CylinderShape, Displacement, SphereShape
-from calm.files.strumming_keys import (
-    AmplitudeModel,
-    BourgetMarichalKeys,
-    ConstantCn,
-    StrummingFactor,
-)
 from calm.physics import drag
 from calm.physics.drag import Friction
 from calm.physics.hull import Floating, Hull, cylindrical_hull, spherical_hull, tabulated_hull
@@ -45,7 +27,7 @@ TOWED_SPHERE_CX = 0.90
 
 
 def assemble_line(
-    pieces: Sequence[Piece], solver: Solver | None = None, gravity: float = STANDARD_GRAVITY
+    pieces: Sequence[files.Piece], solver: Solver | None = None, gravity: float = STANDARD_GRAVITY
 ) -> Line:
     """The line above the anchor, or the whole towed line, in the order of the pieces.
 
@@ -59,19 +41,19 @@ def assemble_line(
     """
     solver = solver or Solver()
     anchor = pieces[-1].component
-    moored = isinstance(anchor, Anchor)
+    moored = isinstance(anchor, files.Anchor)
     above = pieces[:-1] if moored else pieces
     parts = [piece.component for piece in above]
     drags = [drag_of(part, solver) for part in parts]
     curves = [_drag_curve(part, solver) for part in parts]
-    if not moored and isinstance(anchor, Sphere) and anchor.cx is None:
+    if not moored and isinstance(anchor, files.Sphere) and anchor.cx is None:
         k = drag.sphere_drag(anchor.diameter, TOWED_SPHERE_CX)
         drags[-1], curves[-1] = (k, k, False), None
     clamps = [(i, clamp) for i, piece in enumerate(above) for clamp in piece.clamps]
     hung = [clamp.component for _, clamp in clamps]
     return Line(
         length=np.array([piece.length or 0.0 for piece in above]),
-        flexible=np.array([isinstance(part, Flexible) for part in parts]),
+        flexible=np.array([isinstance(part, files.Flexible) for part in parts]),
         buoyancy=np.array([net_buoyancy(part, gravity) for part in parts]),
         volume=np.array([part.displaced_volume or 0.0 for part in parts]),
         normal_drag=np.array([kn for kn, _, _ in drags]),
@@ -87,7 +69,7 @@ def assemble_line(
         clamp_volume=np.array([part.displaced_volume or 0.0 for part in hung]),
         # what is clamped on is dragged as across its axis, whatever the inclination of the line
         clamp_drag=np.array([drag_of(part)[0] for part in hung]),
-        anchor_height=anchor.length if isinstance(anchor, Anchor) else 0.0,
+        anchor_height=anchor.length if isinstance(anchor, files.Anchor) else 0.0,
         lift=np.array([getattr(part, "lift", None) or 0.0 for part in parts]),
         clamp_lift=np.array([getattr(part, "lift", None) or 0.0 for part in hung]),
         diameter=np.array([part.diameter if isinstance(part, Cable) else 0.0 for part in parts]),
@@ -99,13 +81,13 @@ def assemble_line(
     )
 
 
-def net_buoyancy(component: Component, gravity: float) -> float:
+def net_buoyancy(component: files.Component, gravity: float) -> float:
     """Net force in reference water, + up [N, N/m]: given, or from masses under a gravity [m/s²]."""
     given = any(getattr(component, name, None) is not None for name in ("buoyancy", "weight"))
     return component.net_buoyancy * (1.0 if given else gravity / STANDARD_GRAVITY)
 
 
-def mass_in_air(component: Component) -> float | None:
+def mass_in_air(component: files.Component) -> float | None:
     """Mass, per metre of a cable or chain, as given or from the weight in water [kg, kg/m].
 
     It follows from the displaced volume, or from the density of the material: that of steel for a
@@ -116,10 +98,10 @@ def mass_in_air(component: Component) -> float | None:
     net = component.net_buoyancy / STANDARD_GRAVITY
     if component.displaced_volume is not None:
         return CATALOGUE_DENSITY * component.displaced_volume - net
-    density = component.density if isinstance(component, Flexible) else None
-    if isinstance(component, Anchor):
+    density = component.density if isinstance(component, files.Flexible) else None
+    if isinstance(component, files.Anchor):
         density = component.material_density
-    if density is None and isinstance(component, Chain | Anchor):
+    if density is None and isinstance(component, files.Chain | files.Anchor):
         density = STEEL_DENSITY
     if density is None or density == CATALOGUE_DENSITY:
         return None
@@ -127,7 +109,7 @@ def mass_in_air(component: Component) -> float | None:
     return mass if mass >= 0.0 else None
 
 
-def drag_of(component: Component, solver: Solver | None = None) -> tuple[float, float, bool]:
+def drag_of(component: files.Component, solver: Solver | None = None) -> tuple[float, float, bool]:
     """Kn, Kt [N/(m/s)², per metre of cable or chain] and whether drag depends on the axis.
 
     Parameters
@@ -137,30 +119,30 @@ def drag_of(component: Component, solver: Solver | None = None) -> tuple[float, 
     """
     if isinstance(component, SphereShape | CylinderShape):
         return _shape_drag(component)
-    if isinstance(component, Shaped):
+    if isinstance(component, files.Shaped):
         return _body_drag(component)
-    if isinstance(component, Flexible):
+    if isinstance(component, files.Flexible):
         return *cable_drag(component, solver or Solver()), True
-    if isinstance(component, Anchor):
+    if isinstance(component, files.Anchor):
         return 0.0, 0.0, False
     assert_never(component)
 
 
-def _drag_curve(component: Component, solver: Solver) -> DragCurve | None:
+def _drag_curve(component: files.Component, solver: Solver) -> DragCurve | None:
     """The drag curve of a smooth sphere or cylinder; None where it gives a drag of its own."""
     if solver.drag == "constant":
         return None
-    if not isinstance(component, Sphere | Cylinder) or component.surface != "smooth":
+    if not isinstance(component, files.Sphere | files.Cylinder) or component.surface != "smooth":
         return None
-    given = component.cx if isinstance(component, Sphere) else component.cn
+    given = component.cx if isinstance(component, files.Sphere) else component.cn
     if given is not None or component.k_surface is not None:
         return None
-    if isinstance(component, Sphere):
+    if isinstance(component, files.Sphere):
         return DragCurve(component.diameter)
     return DragCurve(component.diameter, component.length / component.diameter)
 
 
-def _elongation(component: Component) -> ElongationCurve | None:
+def _elongation(component: files.Component) -> ElongationCurve | None:
     if not isinstance(component, Cable) or component.elongation is None:
         return None
     assert component.breaking_load is not None
@@ -169,7 +151,7 @@ def _elongation(component: Component) -> ElongationCurve | None:
     )
 
 
-def _body_drag(body: Shaped) -> tuple[float, float, bool]:
+def _body_drag(body: files.Shaped) -> tuple[float, float, bool]:
     if body.made_of is not None:
         each = [_shape_drag(shape) for shape in body.made_of]
         follows = any(along for *_, along in each) and body.inclination != "insensitive"
@@ -199,7 +181,7 @@ def _shape_drag(shape: SphereShape | CylinderShape) -> tuple[float, float, bool]
     return kn, kt, True
 
 
-def axial_drag_of(component: Component) -> float:
+def axial_drag_of(component: files.Component) -> float:
     """K of what is clamped on a line in a flow along that line [N/(m/s)²].
 
     Its tangential drag; where its drag does not depend on the axis, that of any direction.
@@ -208,7 +190,7 @@ def axial_drag_of(component: Component) -> float:
     return kt if directional else kn
 
 
-def with_axial_clamps(line: Line, pieces: Sequence[Piece]) -> Line:
+def with_axial_clamps(line: Line, pieces: Sequence[files.Piece]) -> Line:
     """The line of some pieces with its clamps in a flow along it, as in a fall and a rise."""
     clamps = [clamp.component for piece in pieces for clamp in piece.clamps]
     axial = [drag_of(each)[2] for each in clamps]
@@ -229,7 +211,7 @@ def cable_drag(component: FlexibleComponent, solver: Solver) -> tuple[float, flo
     """
     if isinstance(component, Cable):
         usual = drag.CABLE_CN, drag.CABLE_CT[component.finish or "smooth"]
-    elif isinstance(component, Chain):
+    elif isinstance(component, files.Chain):
         usual = drag.CHAIN_CN, drag.CHAIN_CT
     else:
         assert_never(component)
@@ -246,13 +228,13 @@ def cable_drag(component: FlexibleComponent, solver: Solver) -> tuple[float, flo
 
 def _strumming_cn(cable: Cable, cn: float, solver: Solver) -> float:
     law = solver.strumming
-    if isinstance(law, StrummingFactor):
+    if isinstance(law, strumming_keys.StrummingFactor):
         return cn * law.factor
-    if isinstance(law, ConstantCn):
+    if isinstance(law, strumming_keys.ConstantCn):
         return law.cn
-    if isinstance(law, BourgetMarichalKeys):
+    if isinstance(law, strumming_keys.BourgetMarichalKeys):
         return law.c0
-    if isinstance(law, AmplitudeModel):
+    if isinstance(law, strumming_keys.AmplitudeModel):
         amplitude = line_amplitude(_mass(cable), cable.diameter, CATALOGUE_DENSITY)
         return cn * AMPLIFICATIONS[law.name](amplitude)
     return cn
@@ -269,13 +251,13 @@ def _mass(cable: Cable) -> float:
 def vibration_law(solver: Solver) -> BourgetMarichal | None:
     """The law by which the Cn of cables grows as they strum; None where the file chooses none."""
     keys = solver.strumming
-    if not isinstance(keys, BourgetMarichalKeys):
+    if not isinstance(keys, strumming_keys.BourgetMarichalKeys):
         return None
     return BourgetMarichal(keys.a1, keys.b1, keys.c1, rest=keys.c0, strouhal=keys.strouhal)
 
 
 def assemble_floating(
-    pieces: Sequence[Piece], environment: Environment, water: Water
+    pieces: Sequence[files.Piece], environment: files.Environment, water: Water
 ) -> Floating | None:
     """Return how the first float rides at the surface; None where neither its draft nor its drag
     is known.
@@ -284,7 +266,7 @@ def assemble_floating(
     mass or volume there is no draft, and only a `k_surface` makes a difference.
     """
     parts = (piece.component for piece in pieces)
-    floats = (part for part in parts if isinstance(part, Rigid) and part.net_buoyancy > 0.0)
+    floats = (part for part in parts if isinstance(part, files.Rigid) and part.net_buoyancy > 0.0)
     component = next(floats, None)
     if component is None:
         return None
@@ -322,9 +304,9 @@ def _hull(component: RigidComponent) -> Hull | None:
         return None
     if isinstance(hull, Displacement):
         return tabulated_hull(hull.displacement)
-    if isinstance(component, Sphere) and hull != "cylinder":
+    if isinstance(component, files.Sphere) and hull != "cylinder":
         return spherical_hull(component.diameter)
-    if isinstance(component, Cylinder) and hull != "sphere":
+    if isinstance(component, files.Cylinder) and hull != "sphere":
         return cylindrical_hull(component.diameter, component.length)
     # a body of no stated width is as wide as its volume makes it
     if hull == "sphere":

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from pathlib import Path
 
 import numpy as np
 
@@ -15,7 +13,6 @@ from calm.case.measure import anchor_weight_of, result_of
 from calm.case.memory import Forgetful, Memory
 from calm.case.profilers import profilers_of
 from calm.case.result import Result
-from calm.case.tow import Tow
 from calm.errors import NoEquilibrium
 from calm.files import MooringFile
 from calm.physics.drag import BLOCK_CD, area_drag
@@ -25,30 +22,6 @@ from calm.physics.seawater import REFERENCE_DENSITY
 from calm.solve import Settings, Solution, Status, fit_length, solve_mooring
 from calm.solve.problem import COARSE_STEP
 from calm.solve.solution import standing_lift, too_heavy
-
-
-def load_line(
-    path: str | Path,
-    environment: str | Path | None = None,
-    catalogs: Sequence[str | Path] = (),
-    text: str | None = None,
-) -> Mooring | Tow:
-    """Read the file of a mooring or a tow; the parameters are those of `calm.load`.
-
-    InputError: with every mistake of the file, each with its line and column; of a net, that it is
-    one.
-    """
-    origin = parts.Origin(path, environment, tuple(Path(each) for each in catalogs), text)
-    return line_of(origin.read(), origin)
-
-
-def line_of(file: MooringFile, origin: parts.Origin) -> Mooring | Tow:
-    """Return the mooring or the tow of a file, which knows what it was read from."""
-    return (
-        parts.as_read(Mooring, file, origin)
-        if file.tow is None
-        else parts.as_read(Tow, file, origin)
-    )
 
 
 @dataclass(frozen=True, init=False)
@@ -64,8 +37,6 @@ class Mooring(parts.ReadFromFile):
     file: MooringFile
     for_surface: bool | None
     memory: Memory = field(repr=False, compare=False)
-    _line: Line | None = field(repr=False, compare=False)
-    _water: Water | None = field(repr=False, compare=False)
     origin: parts.Origin | None = field(default=None, repr=False, compare=False)
 
     def __init__(
@@ -77,17 +48,20 @@ class Mooring(parts.ReadFromFile):
         water: Water | None = None,
     ) -> None:
         memory = Forgetful() if memory is None else memory
-        fields = {"file": file, "for_surface": for_surface, "memory": memory}
-        vars(self).update(fields, _line=line, _water=water)
+        vars(self).update(file=file, for_surface=for_surface, memory=memory)
+        given = {"line": line, "water": water}
+        vars(self).update({name: value for name, value in given.items() if value is not None})
 
     def __reduce__(self) -> tuple[type[Mooring], tuple[object, ...]]:
         """Return what another process needs: all else follows from these."""
-        return Mooring, (self.file, self.for_surface, self.memory, self._line, self._water)
+        known = vars(self)
+        line, water = known.get("line"), known.get("water")
+        return Mooring, (self.file, self.for_surface, self.memory, line, water)
 
     @cached_property
     def water(self) -> Water:
         """Depth, current and density by level."""
-        return self._water or assemble_water(self.file.environment)
+        return assemble_water(self.file.environment)
 
     @property
     def settings(self) -> Settings:
@@ -101,8 +75,6 @@ class Mooring(parts.ReadFromFile):
 
         NoEquilibrium: where no length fits.
         """
-        if self._line is not None:
-            return self._line
         line = assemble_line(self.file.pieces, self.file.solver, self.water.gravity)
         if self.file.solver.buoy_drag == "immersed":
             floating = assemble_floating(self.file.pieces, self.file.environment, self.water)
@@ -139,7 +111,7 @@ class Mooring(parts.ReadFromFile):
 
     def with_file(self, file: MooringFile) -> Mooring:
         """Return another line in the same water, meant for what this one is meant for."""
-        return Mooring(file, self.for_surface, self.memory, water=self._water)
+        return Mooring(file, self.for_surface, self.memory, water=self.water)
 
     def solve(self, environment: parts.OtherEnvironment | None = None) -> Result:
         """Find the static equilibrium, in another of its environments where one is given.

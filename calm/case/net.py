@@ -15,7 +15,7 @@ import numpy as np
 
 from calm.assemble import assemble_water
 from calm.case.measure import result_of
-from calm.case.mooring import Mooring, line_of, refuse_in_the_slope
+from calm.case.mooring import Mooring, refuse_in_the_slope
 from calm.case.parts import Origin, OtherEnvironment, ReadFromFile, as_read, naming_the_piece
 from calm.case.result import Accuracy, AnchorLoad, EndLoad, NetResult, NodePlace, Result
 from calm.case.tow import Tow
@@ -348,6 +348,19 @@ def load(
     InputError
         With every mistake of the file, each with its line and column.
     """
-    origin = Origin(path, environment, tuple(Path(each) for each in catalogs), text)
+    origin = Origin(path, environment, tuple(map(Path, catalogs)), text)
     file = origin.read(net=True)
-    return as_read(Net, file, origin) if file.legs else line_of(file, origin)
+    return as_read(Net, file, origin) if file.legs else _line_of(file, origin)
+
+
+def load_line(
+    path: str | Path, environment: str | Path | None = None, catalogs: Sequence[str | Path] = ()
+) -> Mooring | Tow:
+    """Read the file of a mooring or a tow as `load` does; InputError: it is a net."""
+    origin = Origin(path, environment, tuple(map(Path, catalogs)), None)
+    return _line_of(origin.read(), origin)
+
+
+def _line_of(file: MooringFile, origin: Origin) -> Mooring | Tow:
+    moored = file.tow is None
+    return as_read(Mooring, file, origin) if moored else as_read(Tow, file, origin)

@@ -101,18 +101,18 @@ class Tow(ReadFromFile):
 
     file: MooringFile
     memory: Memory = field(repr=False, compare=False)
-    _line: Line | None = field(repr=False, compare=False)
     origin: Origin | None = field(default=None, repr=False, compare=False)
 
     def __init__(
         self, file: MooringFile, memory: Memory | None = None, line: Line | None = None
     ) -> None:
-        memory = Forgetful() if memory is None else memory
-        vars(self).update(file=file, memory=memory, _line=line)
+        vars(self).update(file=file, memory=Forgetful() if memory is None else memory)
+        if line is not None:
+            vars(self)["line"] = line
 
     def __reduce__(self) -> tuple[type[Tow], tuple[object, ...]]:
         """Return what another process needs: all else follows from it."""
-        return Tow, (self.file, None, self._line)
+        return Tow, (self.file, None, vars(self).get("line"))
 
     @property
     def keys(self) -> TowKeys:
@@ -147,8 +147,6 @@ class Tow(ReadFromFile):
 
         NoEquilibrium: where no length reaches the depth.
         """
-        if self._line is not None:
-            return self._line
         line = assemble_line(self.file.pieces, self.file.solver, self.water.gravity)
         for piece in self.file.pieces:
             if piece.fit_body_depth is not None:

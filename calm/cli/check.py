@@ -307,13 +307,13 @@ def _answer(
     """
     from concurrent.futures import ThreadPoolExecutor
 
-    from calm.report import check_tables, result_files
-    from calm.report.check_report import check_document, checks_csv, inventory_csv
+    from calm.report import result_files
+    from calm.report.check_report import check_document, check_part, checks_csv, inventory_csv
     from calm.report.folder import write_report
 
     document = cache(lambda: check_document(assessments))
     if folder is None:
-        outputs.write_answer(document, check_tables.check_part(assessments))
+        outputs.write_answer(document, check_part(assessments))
         return
     from calm.report.check_report import check_report
     from calm.report.folder import printed
@@ -322,7 +322,7 @@ def _answer(
     report = check_report([each.section for each in drawings])
     with ThreadPoolExecutor(1) as beside:
         pdf = beside.submit(printed, report, leaves=[each.pdf for each in drawings])
-        outputs.write_answer(document, check_tables.check_part(assessments))
+        outputs.write_answer(document, check_part(assessments))
         texts = {
             "report.html": page(report, [each.html for each in drawings]),
             "report.json": result_files.to_json([document()]),

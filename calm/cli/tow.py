@@ -111,15 +111,15 @@ class TabulatedTow:
 
     def rendered(self, suffix: str) -> bytes:
         from calm.drawing.picture import image
-        from calm.drawing.plot import draw_sweep
+        from calm.report.tabulation import draw_sweep
 
         return image(draw_sweep(self.tabulation), suffix)
 
 
 def _only_tows(files: list[Path], environment: str | None, catalogs: list[Path]) -> list[Tow]:
-    from calm.case import Tow, mooring
+    from calm.case import Tow, net
 
-    read = reading.read_all(mooring.load_line, files, environment, catalogs)
+    read = reading.read_all(net.load_line, files, environment, catalogs)
     moorings = [file for file, line in zip(files, read, strict=True) if not isinstance(line, Tow)]
     if moorings:
         raise UsageError(

@@ -77,7 +77,7 @@ def waves(
     """
     outputs = Outputs((file,), json)
     from calm.case import Tow
-    from calm.case.mooring import load_line
+    from calm.case.net import load_line
     from calm.cli.progress import progress
     from calm.records.sea_states import OF_HEIGHT
     from calm.report import folder, sea_response

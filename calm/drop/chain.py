@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -75,13 +75,7 @@ def chain_of(line: Line, count: int) -> BarChain:
         line.clamp_piece, line.clamp_at / np.maximum(line.length, 1e-300)[line.clamp_piece],
         bars, span,
     )  # fmt: skip
-    on_clamps = zip(clamp_bar.tolist(), clamp_place.tolist(), strict=True)
-    elements = Elements.of(
-        [
-            *_piece_elements(line, bars, span),
-            *(clamp_element(line, clamp, *place) for clamp, place in enumerate(on_clamps)),
-        ]
-    )
+    elements = _elements(line, bars, span, clamp_bar, clamp_place)
     return BarChain(
         line=line,
         length=length,
@@ -142,39 +136,8 @@ def _along(piece: Integers, share: Floats, bars: Integers, span: Floats) -> tupl
     return first + bar, np.clip(whole - bar, 0.0, 1.0)
 
 
-def _piece_elements(line: Line, bars: Integers, span: Floats) -> list[Element]:
-    rows = []
-    for piece, (first, end) in enumerate(bars.tolist()):
-        begin, stop = span[piece].tolist()
-        middle = 0.5 * (begin + stop)
-        parts = max(end - first, 1)
-        rows += [piece_element(line, piece, first + i, middle, 1.0 / parts) for i in range(parts)]
-    return rows
-
-
 _DRAFTS = 401
 """Points of the table of a hull afloat."""
-
-
-class Element(NamedTuple):
-    """A load at a place of a bar, as a row of `Elements`."""
-
-    bar: int
-    place: float
-    piece: int
-    buoyancy: float
-    volume: float
-    normal_drag: float
-    tangential_drag: float
-    directional: bool
-    flexible: bool
-    thinning: float
-    lift: float
-    push_east: float
-    push_north: float
-    height: float
-    out: bool
-    curve: DragCurve | None
 
 
 @dataclass(frozen=True)
@@ -190,7 +153,8 @@ class Elements:
     normal_drag, tangential_drag : (k,) Kn and Kt, whole [N/(m/s)²]
     directional : (k,) False where the drag is Kn|V|V
     flexible : (k,) whether it is cable or chain
-    thinning, lift, push_east, push_north : (k,) as in `Line`
+    thinning, lift : (k,) as in `Line`
+    push : (3, k) of the wind [N]
     height : (k,) of what is rigid, from its top to its lower end [m]
     out : (k,) whether it stands on the float, and so out of the water where that is at the surface
     curve : (k,) of smooth spheres and cylinders, None of others
@@ -207,8 +171,7 @@ class Elements:
     flexible: Booleans
     thinning: Floats
     lift: Floats
-    push_east: Floats
-    push_north: Floats
+    push: Floats
     height: Floats
     out: Booleans
     curve: tuple[DragCurve | None, ...]
@@ -217,11 +180,6 @@ class Elements:
     def lifts(self) -> bool:
         """Return whether the flow lifts any."""
         return bool(self.lift.any())
-
-    @cached_property
-    def push(self) -> Floats:
-        """(3, k) of the wind [N]."""
-        return np.stack([self.push_east, self.push_north, 0.0 * self.push_east])
 
     @cached_property
     def share(self) -> Floats:
@@ -237,65 +195,44 @@ class Elements:
     def _first(self) -> Integers:
         return np.flatnonzero(np.diff(self.bar, prepend=-1))
 
-    @staticmethod
-    def of(rows: list[Element]) -> Elements:
-        """The columns of rows in any order."""
-        ordered = sorted(rows, key=lambda row: row[:2])
-        *columns, curve = zip(*ordered, strict=True)
-        arrays: list[Any] = [*(np.array(column) for column in columns), curve]
-        return Elements(*arrays)
 
+def _elements(
+    line: Line, bars: Integers, span: Floats, clamp_bar: Integers, clamp_place: Floats
+) -> Elements:
+    """Return the loads: pieces, shared out over their bars, and clamps."""
+    first, end = bars.T
+    parts = np.maximum(end - first, 1)
+    piece = np.repeat(np.arange(len(parts)), parts)
+    bar = np.concatenate([np.arange(at, at + n) for at, n in zip(first, parts, strict=True)])
+    bar, place = np.append(bar, clamp_bar), np.append(0.5 * span.sum(1)[piece], clamp_place)
+    order = np.lexsort((place, bar))
+    share, flexible, head = 1.0 / parts[piece], line.flexible[piece], head_count(line)
+    whole = share * np.where(flexible, line.length[piece], 1.0)
+    curves = [line.drag_curve[i] if line.drag_curve else None for i in piece]
+    curves += line.clamp_drag_curve or [None] * len(clamp_bar)
 
-def piece_element(line: Line, piece: int, bar: int, place: float, share: float) -> Element:
-    """A share of a piece, its middle at a place of a bar."""
-    whole = share * (float(line.length[piece]) if line.flexible[piece] else 1.0)
-    flexible = bool(line.flexible[piece])
-    return Element(
-        bar=bar,
-        place=place,
-        piece=piece,
-        buoyancy=whole * float(line.buoyancy[piece]),
-        volume=whole * float(line.volume[piece]),
-        normal_drag=whole * float(line.normal_drag[piece]),
-        tangential_drag=whole * float(line.tangential_drag[piece]),
-        directional=bool(line.directional[piece]),
-        flexible=flexible,
-        thinning=float(line.thinning[piece]),
-        lift=0.0 if flexible else float(line.lift[piece]),
-        push_east=share * float(line.push_east[piece]),
-        push_north=share * float(line.push_north[piece]),
-        height=0.0 if flexible else float(line.length[piece]),
-        out=piece < head_count(line) - 1,
-        curve=line.drag_curve[piece] if line.drag_curve else None,
+    def column(of_pieces: Any, of_clamps: Any = 0.0) -> Any:
+        return np.append(of_pieces, np.broadcast_to(of_clamps, clamp_bar.shape))[order]
+
+    return Elements(
+        bar=bar[order],
+        place=place[order],
+        piece=column(piece, -1),
+        buoyancy=column(whole * line.buoyancy[piece], line.clamp_buoyancy),
+        volume=column(whole * line.volume[piece], line.clamp_volume),
+        normal_drag=column(whole * line.normal_drag[piece], line.clamp_drag),
+        tangential_drag=column(whole * line.tangential_drag[piece]),
+        directional=column(line.directional[piece], False),
+        flexible=column(flexible, False),
+        thinning=column(line.thinning[piece]),
+        lift=column(np.where(flexible, 0.0, line.lift[piece]), line.clamp_lift),
+        push=np.stack(
+            [*(column(share * p[piece]) for p in (line.push_east, line.push_north)), 0.0 * place]
+        ),
+        height=column(np.where(flexible, 0.0, line.length[piece])),
+        out=column(piece < head - 1, line.clamp_piece < head - 1),
+        curve=tuple(curves[i] for i in order),
     )
-
-
-def clamp_element(line: Line, clamp: int, bar: int, place: float) -> Element:
-    """An instrument clamped at a place of a bar."""
-    return Element(
-        bar=bar,
-        place=place,
-        piece=-1,
-        buoyancy=float(line.clamp_buoyancy[clamp]),
-        volume=float(line.clamp_volume[clamp]),
-        normal_drag=float(line.clamp_drag[clamp]),
-        tangential_drag=0.0,
-        directional=False,
-        flexible=False,
-        thinning=0.0,
-        lift=float(line.clamp_lift[clamp]),
-        push_east=0.0,
-        push_north=0.0,
-        height=0.0,
-        out=int(line.clamp_piece[clamp]) < head_count(line) - 1,
-        curve=line.clamp_drag_curve[clamp] if line.clamp_drag_curve else None,
-    )
-
-
-def first_float(line: Line) -> int:
-    """The first rigid piece that lifts; -1 where none does."""
-    floats = np.flatnonzero(~line.flexible & (line.buoyancy > 0.0))
-    return int(floats[0]) if len(floats) else -1
 
 
 @dataclass(frozen=True)
@@ -326,7 +263,8 @@ def afloat_of(line: Line, elements: Elements) -> FloatOnChain | None:
     floating = line.floating
     if floating is None or floating.hull is None:
         return None
-    element = int(np.flatnonzero(elements.piece == first_float(line))[0])
+    first = np.flatnonzero(~line.flexible & (line.buoyancy > 0.0))[0]
+    element = int(np.flatnonzero(elements.piece == first)[0])
     # by the share immersed, finer where a hull is thin: at its keel and at its top
     share = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, _DRAFTS))
     net = share * (floating.weight + floating.lift) - floating.weight

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from calm.case import Mooring, Result
+from calm.drop import launch
 from calm.drop.fall import Fineness, Motion, fall, settle, towed
 from calm.drop.fall_record import (
     DepthReached,
@@ -19,13 +20,6 @@ from calm.drop.fall_record import (
     path_of,
     pulls_of,
     rest_difference,
-)
-from calm.drop.launch import (
-    SHIP_SPEED,
-    course_into_current,
-    falling_anchor,
-    falling_line,
-    ship_of,
 )
 from calm.drop.motion import ChainState
 from calm.errors import NoEquilibrium
@@ -220,7 +214,7 @@ LEAST_TIME_ERROR = 5e-4
 
 def drop_plan(
     mooring: Mooring,
-    ship_speed: float = SHIP_SPEED,
+    ship_speed: float = launch.SHIP_SPEED,
     streamed: float | None = None,
     course: float | None = None,
     result: Result | None = None,
@@ -256,9 +250,9 @@ def drop_plan(
         raise TypeError(f"a Mooring is needed, as calm.load gives it, not a {kind}")
     if result is None:
         result = _equilibrium(mooring)
-    course = course_into_current(mooring.water) if course is None else course % 360.0
-    ship = ship_of(mooring, ship_speed, course, streamed)
-    anchor, falling = falling_anchor(mooring), falling_line(mooring)
+    course = launch.course_into_current(mooring.water) if course is None else course % 360.0
+    ship = launch.ship_of(mooring, ship_speed, course, streamed)
+    anchor, falling = launch.falling_anchor(mooring), launch.falling_line(mooring)
     water = mooring.water
 
     def let_go(start: ChainState, drag: float, fineness: Fineness) -> Motion:

@@ -14,26 +14,8 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, ConfigDict, Field, ValidationInfo, model_validator
 
 from calm.errors import about_quantity
-from calm.files.definition import (
-    CATALOGUE_DENSITY,
-    STANDARD_GRAVITY,
-    Definition,
-    Diameter,
-    Length,
-    Mass,
-    MaterialDensity,
-    NormalCoefficient,
-    PositiveForce,
-    QuantityField,
-    Role,
-    TangentialCoefficient,
-    TangentialDrag,
-    is_in_air,
-    optional,
-    quantity_of,
-    refuse_weight_above_mass,
-    volume_from_weights,
-)
+from calm.files import definition
+from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY, QuantityField, optional
 from calm.files.rigid import DRAG_FORMS, Body, Cylinder, Profiler, Rigid, Sphere
 from calm.files.yaml_document import unknown_key
 from calm.physics.materials import STEEL_DENSITY, density_of, fibre_of
@@ -73,17 +55,17 @@ MassPerMetre = Annotated[
 ]
 
 
-class Flexible(Definition):
+class Flexible(definition.Definition):
     """A cable or chain: all its figures are per metre."""
 
-    role: Role = "line"
-    diameter: Diameter
+    role: definition.Role = "line"
+    diameter: definition.Diameter
     weight: WeightPerMetre = Field(default=None, examples=["2.1 N/m"])
     mass: MassPerMetre = Field(default=None, examples=["0.2 kg/m"])
-    density: MaterialDensity = None
-    cn: NormalCoefficient = None
-    ct: TangentialCoefficient = None
-    stiffness: PositiveForce = optional(
+    density: definition.MaterialDensity = None
+    cn: definition.NormalCoefficient = None
+    ct: definition.TangentialCoefficient = None
+    stiffness: definition.PositiveForce = optional(
         "EA, the force that would double the length, e.g. 4 MN", "4 MN"
     )
 
@@ -109,7 +91,7 @@ class Cable(Flexible):
         "rows of load over breaking load and strain, e.g. [[0.1, 0.03], [0.3, 0.08]]",
         [[0.05, 0.05], [0.1, 0.08], [0.2, 0.12]],
     )
-    dynamic_stiffness: PositiveForce = optional(
+    dynamic_stiffness: definition.PositiveForce = optional(
         "EA under the quick loads of waves, greater than that of a slow load", "600 kN"
     )
     permanent_elongation: Annotated[
@@ -132,7 +114,7 @@ class Cable(Flexible):
         """Return the volume displaced by a metre [m³/m], None if the mass is unknown, or is all."""
         if self._gives_no_force and self.density is None:
             return None
-        return volume_from_weights(self.mass, self.net_buoyancy)
+        return definition.volume_from_weights(self.mass, self.net_buoyancy)
 
     @property
     def _gives_no_force(self) -> bool:
@@ -143,11 +125,11 @@ class Cable(Flexible):
         if self.weight is not None and self.buoyancy is not None:
             raise ValueError("gives both `weight` and `buoyancy`; one is the other negated")
         if self._gives_no_force:
-            if not is_in_air(info) and (self.mass is None or self.density is None):
+            if not definition.is_in_air(info) and (self.mass is None or self.density is None):
                 raise ValueError("needs `weight` or `buoyancy` in water, or `mass` with `density`")
             if self.mass is None:
                 raise ValueError("needs `mass`, or `weight`")
-        refuse_weight_above_mass(self.mass, self.net_buoyancy)
+        definition.refuse_weight_above_mass(self.mass, self.net_buoyancy)
         return self
 
     @model_validator(mode="after")
@@ -189,30 +171,30 @@ class Chain(Flexible):
     def displaced_volume(self) -> float | None:
         """Return the volume displaced by a metre [m³/m], None when only its weight is known."""
         if self.mass is not None or self.weight is not None:
-            return volume_from_weights(self.mass, self.net_buoyancy)
+            return definition.volume_from_weights(self.mass, self.net_buoyancy)
         return 19.9e3 * self.diameter**2 / (self.density or STEEL_DENSITY)
 
     @model_validator(mode="after")
     def _weight_is_possible(self) -> Chain:
-        refuse_weight_above_mass(self.mass, self.net_buoyancy)
+        definition.refuse_weight_above_mass(self.mass, self.net_buoyancy)
         return self
 
 
-class Anchor(Definition):
+class Anchor(definition.Definition):
     """The lower end: stands on the seabed, carries no drag."""
 
-    role: Role = "anchor"
+    role: definition.Role = "anchor"
     kind: Literal["anchor"] = Field(description="which kind of component it is")
-    mass: Mass = None
+    mass: definition.Mass = None
     weight: Annotated[float | None, QuantityField("force", at_least=0)] = optional(
         "in sea water of 1025 kg/m^3 (per metre of a cable or chain)", "5000 N"
     )
-    density: MaterialDensity = None
-    length: Length = 0.0
+    density: definition.MaterialDensity = None
+    length: definition.Length = 0.0
     friction: Annotated[float | None, QuantityField("number", above=0)] = optional(
         "coefficient on the seabed", 0.6
     )
-    kt: TangentialDrag = None
+    kt: definition.TangentialDrag = None
 
     @property
     def net_buoyancy(self) -> float:
@@ -236,13 +218,13 @@ class Anchor(Definition):
     @property
     def displaced_volume(self) -> float | None:
         """Return the volume of water displaced [m³], None when only the weight is known."""
-        return volume_from_weights(self.mass, self.net_buoyancy)
+        return definition.volume_from_weights(self.mass, self.net_buoyancy)
 
     @model_validator(mode="after")
     def _weight_is_known(self) -> Anchor:
         if self.mass is None and self.weight is None:
             raise ValueError("needs `mass`, or `weight` in water")
-        refuse_weight_above_mass(self.mass, self.net_buoyancy)
+        definition.refuse_weight_above_mass(self.mass, self.net_buoyancy)
         return self
 
 
@@ -280,7 +262,7 @@ _ESSENTIAL = {
 """Figures that a component cannot do without, and the keys that give each."""
 
 
-class Outline(Definition):
+class Outline(definition.Definition):
     """A product without figures that its kind needs, `searched` in vain: its line gives them."""
 
     model_config = ConfigDict(extra="allow")
@@ -294,7 +276,7 @@ class Outline(Definition):
         if strange := next((key for key in data if key not in fields), None):
             raise ValueError(unknown_key(strange, [*fields], f" for kind {data['kind']}"))
         for key in data.keys() - cls.model_fields.keys():
-            if quantity := quantity_of(fields[key]):
+            if quantity := definition.quantity_of(fields[key]):
                 try:
                     data = data | {key: quantity.read(data[key])}
                 except QuantityError as error:
@@ -371,27 +353,27 @@ def contradicted(kind: str, base: Set[str], override: Set[str]) -> frozenset[str
 
 
 def odd_overrides(
-    use: str, definition: Component, component: Component, given: Set[str]
+    use: str, defined: Component, component: Component, given: Set[str]
 ) -> Iterator[str]:
     """Yield what is odd about values that a line gives in place of a definition's.
 
     Parameters
     ----------
     use : id of the definition
-    definition, component : before and after
+    defined, component : before and after
     given : the keys of the line
     """
-    if "mass" in given and component.net_buoyancy == definition.net_buoyancy:
+    if "mass" in given and component.net_buoyancy == defined.net_buoyancy:
         yield (
             f"`mass` of {use} is overridden, its net force in water is not; override that too if "
             "it changes"
         )
-    if isinstance(definition, Anchor) and isinstance(component, Anchor) and "weight" in given:
-        share = 1.0 - CATALOGUE_DENSITY / (definition.material_density or STEEL_DENSITY)
-        in_air = definition.net_buoyancy / -share
+    if isinstance(defined, Anchor) and isinstance(component, Anchor) and "weight" in given:
+        share = 1.0 - CATALOGUE_DENSITY / (defined.material_density or STEEL_DENSITY)
+        in_air = defined.net_buoyancy / -share
         if abs((component.weight or 0.0) - in_air) < 0.01 * in_air:
             yield f"`weight` of {use} is what it weighs in air; `weight` is that in water"
-    fibre = fibre_of(definition.material)
+    fibre = fibre_of(defined.material)
     if fibre is not None and fibre_of(component.material) is None:
         yield (
             f"`material: {component.material}` of {use}, which is {fibre.name}: it is no longer "

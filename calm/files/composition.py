@@ -11,17 +11,9 @@ from collections.abc import Callable
 from typing import Any, Literal, NamedTuple
 
 import yaml
+from yaml import events
 from yaml.error import MarkedYAMLError, YAMLError
-from yaml.events import (
-    AliasEvent,
-    CollectionEndEvent,
-    Event,
-    MappingStartEvent,
-    NodeEvent,
-    ScalarEvent,
-    SequenceStartEvent,
-    StreamEndEvent,
-)
+from yaml.events import CollectionEndEvent
 
 _DEEPEST = 100
 """Mappings and lists within others; the time to read brackets grows with the square of this."""
@@ -35,11 +27,10 @@ _TAG = re.compile(r"(?<![^\s\[{,])!")
 _CONTROL_CHARACTER = re.compile(
     "[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]"
 )
-_KINDS: dict[type[Event], Kind] = {
-    MappingStartEvent: "mapping",
-    SequenceStartEvent: "sequence",
-    ScalarEvent: "scalar",
-    AliasEvent: "scalar",
+_KINDS: dict[type[events.Event], Kind] = {
+    events.MappingStartEvent: "mapping",
+    events.SequenceStartEvent: "sequence",
+    events.ScalarEvent: "scalar",
 }
 _COLON = re.compile(r"\s*:")
 _NULLS = frozenset({"", "~", "null", "Null", "NULL"})
@@ -134,39 +125,46 @@ class _Reader:
     next_event : gives one after the other
     """
 
-    def __init__(self, text: str, start: int, next_event: Callable[[], Event]) -> None:
+    def __init__(self, text: str, start: int, next_event: Callable[[], events.Event]) -> None:
         self._text = text
         self._start = start
         self._next = next_event
         self._refusals: list[Refusal] = []
         self._anchors: set[str] = set()
-        self._skipping = 0
 
     def read(self) -> Composition:
         """Return the nodes of the only document."""
         self._next()  # the stream begins
-        if isinstance(self._next(), StreamEndEvent):
+        if isinstance(self._next(), events.StreamEndEvent):
             return Composition(None)
         event = self._next()
         root = self._node(event, 0)
         self._next()  # the document ends
         behind = self._next()
-        if not isinstance(behind, StreamEndEvent):
+        if not isinstance(behind, events.StreamEndEvent):
             what = "expected a single document in the stream", "but found another document"
             raise MarkedYAMLError(what[0], event.start_mark, what[1], behind.start_mark)
         return Composition(root, tuple(self._refusals))
 
-    def _node(self, event: NodeEvent, depth: int) -> Node:
+    def _node(self, event: events.NodeEvent, depth: int) -> Node:
         """Return the node that an event begins, and all below it."""
         if depth > _DEEPEST:
             raise _TooDeep
         mark = event.start_mark
         start = mark.index + self._start
         place = mark.line + 1, mark.column + 1
-        kind = _KINDS[type(event)]
+        if isinstance(event, events.AliasEvent):
+            if event.anchor not in self._anchors:  # else the mistake is reported there
+                raise MarkedYAMLError(None, None, f"found undefined alias '{event.anchor}'", mark)
+            return Node("scalar", start, start, *place, "", None)
         if event.anchor is not None or event.tag not in _PLAIN_TAGS:
-            self._refuse_node(event, depth)
-            return Node(kind, start, start, *place, "", None)
+            message = f"tags (`{event.tag}`) are not allowed"
+            if event.anchor is not None:
+                self._anchors.add(event.anchor)
+                message = "anchors (&) and aliases (*) are not allowed; write it out"
+            event.anchor = event.tag = None
+            return self._refused(event, depth, message)
+        kind = _KINDS[type(event)]
         if kind == "scalar":
             end = event.end_mark.index + self._start
             if event.style in ("|", ">"):
@@ -201,12 +199,12 @@ class _Reader:
         values = []
         while not isinstance(event := self._next(), CollectionEndEvent):
             if event.anchor is not None:
-                self._refuse_node(event, depth)
-            elif not isinstance(event, ScalarEvent):
-                self._refuse(event, "a key must be plain text")
-                self._skip(event, depth)
+                self._node(event, depth)
+            elif not isinstance(event, events.ScalarEvent):
+                self._refused(event, depth, "a key must be plain text")
             elif (name := _shown(event.value)) in lines:
-                self._refuse(event, f"`{name}` is given twice (first in line {lines[name]})")
+                again = f"`{name}` is given twice (first in line {lines[name]})"
+                self._refusals.append(_refusal(event, again))
             else:
                 mark = event.start_mark
                 lines[name] = line = mark.line + 1
@@ -221,40 +219,19 @@ class _Reader:
                 keys.append(key)
                 values.append(value)
                 continue
-            self._skip(self._next(), depth)
+            self._refused(self._next(), depth)
         return values, event
 
-    def _refuse_node(self, event: NodeEvent, depth: int) -> None:
-        """Refuse an anchor (and, with it, what refers to it) or a tag, and what belongs to it."""
-        if isinstance(event, AliasEvent):
-            self._find_anchor(event)
-            return
-        if event.anchor is None:
-            self._refuse(event, f"tags (`{event.tag}`) are not allowed")
-        else:
-            self._refuse(event, "anchors (&) and aliases (*) are not allowed; write it out")
-        self._skip(event, depth)
+    def _refused(self, event: events.NodeEvent, depth: int, message: str = "") -> Node:
+        """Pass over a node, whatever is wrong within it; a message says why it is refused."""
+        before = len(self._refusals)
+        node = self._node(event, depth)
+        self._refusals[before:] = [_refusal(event, message)] if message else []
+        return node
 
-    def _refuse(self, event: NodeEvent, message: str) -> None:
-        mark = event.start_mark
-        if not self._skipping:
-            self._refusals.append((mark.line + 1, mark.column + 1, message))
 
-    def _skip(self, event: NodeEvent, depth: int) -> None:
-        """Pass over a node that an event begins, whatever else is wrong with it."""
-        self._skipping += 1
-        if event.anchor is not None and not isinstance(event, AliasEvent):
-            self._anchors.add(event.anchor)
-            event.anchor = None
-        event.tag = None
-        self._node(event, depth)
-        self._skipping -= 1
-
-    def _find_anchor(self, event: AliasEvent) -> None:
-        """Raise where an alias has no anchor; where it has, the mistake is reported there."""
-        if event.anchor not in self._anchors:
-            problem = f"found undefined alias '{event.anchor}'"
-            raise MarkedYAMLError(None, None, problem, event.start_mark)
+def _refusal(event: events.NodeEvent, message: str) -> Refusal:
+    return event.start_mark.line + 1, event.start_mark.column + 1, message
 
 
 def _shown(value: str) -> str:

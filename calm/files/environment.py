@@ -1,21 +1,22 @@
-"""What a line is in, moored or towed: water or air, its depth, density, current and wind."""
+"""What a line is in, moored or towed: water or air, its depth, currents, wind and seabed."""
 
 from __future__ import annotations
 
 import math
 import os.path
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Literal
 
+import numpy as np
 from pydantic import BeforeValidator, Discriminator, Tag
 
 from calm.errors import InputError, shown
 from calm.files import definition, water
 from calm.files.definition import DENSITY, Model, QuantityField, Text, described, optional
-from calm.files.seabed import Seabed, SeabedGiven, read_seabed
 from calm.files.yaml_document import SourceMapping, validate
 from calm.records.current_terms import DEEPEST, Terms, TimeChoiceError, too_fast
+from calm.records.grids import Floats, SeabedGrid
 from calm.records.profile_tables import CurrentTable, DepthTable, SeaWater, components, read_current
 from calm.records.sea_states import SeaState
 from calm.units import QuantityError
@@ -34,6 +35,47 @@ class Position(Model):
     longitude: Annotated[float, QuantityField("longitude", at_least=-360, at_most=360)] = described(
         "east positive, or degrees and minutes: 5 12.0 W", "-5.2 deg"
     )
+
+
+class SeabedKeys(Model):
+    """A seabed that slopes, as a plane: how steep, and towards where it gets deeper [degrees]."""
+
+    slope: Annotated[float, QuantityField("angle", at_least=0, at_most=45)] = described(
+        "from the horizontal", "3 deg"
+    )
+    toward: water.Toward = described("where it gets deeper, clockwise from north", "120 deg")
+
+    def at(self, east: float, north: float) -> SeabedKeys:
+        """Return the same about another point, by its distance from this one [m]."""
+        return self
+
+    @property
+    def plane(self) -> tuple[float, float]:
+        """How much deeper it is per metre to the east and to the north [-]."""
+        way, steep = math.radians(self.toward), math.tan(math.radians(self.slope))
+        return steep * math.sin(way), steep * math.cos(way)
+
+    def deeper(self, places: Floats) -> Floats:
+        """Return how much deeper it is (n,) at places (n, 2) east and north of the point [m]."""
+        deeper: Floats = places @ np.array(self.plane)
+        return deeper
+
+
+class SeabedFile(Model):
+    """Say which grid the depths of the seabed are from."""
+
+    file: Text = described("NetCDF over latitude and longitude: GEBCO, EMODnet", "gebco.nc")
+
+
+def _bed_form(value: object) -> str:
+    return "file" if isinstance(value, dict) and "file" in value else "plane"
+
+
+Seabed = SeabedKeys | SeabedGrid
+SeabedGiven = Annotated[
+    Annotated[SeabedKeys, Tag("plane")] | Annotated[SeabedFile, Tag("file")],
+    Discriminator(_bed_form),
+]
 
 
 @dataclass(frozen=True)
@@ -220,19 +262,25 @@ def read_environment(
         _check_tables(section)
         return None
     before = len(section.problems)
+    moored = keys if isinstance(keys, EnvironmentKeys) else None
     given = keys.density if "density" in keys.model_fields_set else water.USUAL_DENSITY[keys.fluid]
     density = water.read_density(given, keys.fluid, section)
     if isinstance(density, SeaWater) and keys.fluid == "air":
         section.refuse(("density",), "temperature and salinity are those of the sea, not of air")
     _check_wind(keys, section)
-    if open_files:  # otherwise the depth may be that of another section
-        _check_depth_range(keys, section)
-    current = _current(keys, section, notices, open_files, position)
-    waves = getattr(keys, "waves", None)
-    seas = () if waves is None else water.read_waves(waves, section, open_files)
+    if moored and open_files:  # otherwise the depth may be that of another section
+        _check_depth_range(moored, section)
     where = None if position is None else (position.latitude, position.longitude)
-    sloping = getattr(keys, "seabed", None) if open_files else None
-    seabed = read_seabed(sloping, where, keys.depth, section, notices)
+    terms = Terms(
+        water_depth=math.inf if keys.depth is None else keys.depth,
+        place=where,
+        maximum_speed=moored.maximum_speed if moored else math.inf,
+    )
+    current = _current(keys.current, terms, section, notices, open_files)
+    seas = water.read_waves(moored.waves, section, open_files) if moored and moored.waves else ()
+    seabed = None
+    if moored and open_files:
+        seabed = _seabed(moored.seabed, where, moored.depth, section, notices)
     if density is None or current is None or len(section.problems) > before:
         return None
     notices.extend(water.density_notices(density, keys.depth))
@@ -241,30 +289,50 @@ def read_environment(
             "Density from temperature and salinity without a `position`: taken at 45 degrees of "
             "latitude, in sea water of the reference composition."
         )
-    return Environment(
-        name=name,
-        fluid=keys.fluid,
-        depth=keys.depth,
-        density=density,
-        gravity=keys.gravity,
-        current=current,
-        wind=keys.wind,
-        position=position,
-        depth_range=getattr(keys, "depth_range", None),
-        fouling=getattr(keys, "fouling", None),
-        maximum_speed=getattr(keys, "maximum_speed", math.inf),
-        waves=waves,
-        seas=seas,
-        seabed=seabed,
-    )
+    found = {"name": name, "density": density, "current": current, "position": position}
+    return Environment(**dict(keys) | found | {"seas": seas, "seabed": seabed})
 
 
-def _check_depth_range(keys: TowEnvironmentKeys, section: SourceMapping) -> None:
+def _seabed(
+    given: SeabedKeys | SeabedFile | None,
+    where: tuple[float, float] | None,
+    depth: float | None,
+    section: SourceMapping,
+    notices: list[str],
+) -> Seabed | None:
+    """Return the seabed; a grid as far about the mooring as that may reach.
+
+    Parameters
+    ----------
+    where : latitude and longitude [degrees]; None where nobody gives them
+    depth : of the water [m]
+    section : the environment
+    notices : for what is doubtful
+    """
+    if not isinstance(given, SeabedFile):
+        return given
+    path, key = Path(section.home("seabed").document.path).parent / given.file, ("seabed", "file")
+    if not path.is_file():
+        section.refuse(key, f"`file: {shown(given.file)}`: no such file")
+    elif where is None:
+        section.refuse(key, "a grid needs the `position` of the mooring")
+    elif depth is not None:
+        try:
+            grid = SeabedGrid.of_file(path, *where, 2000.0 + 3.0 * depth)
+            if not 0.5 < grid.depth / depth < 2.0:
+                notices.append(
+                    f"The seabed of {given.file} is {grid.depth:.4g} m deep at the position of the "
+                    f"mooring, where `depth` is {depth:.4g} m: check the unit and the position."
+                )
+            return grid
+        except InputError as error:
+            section.problems.extend(error.problems)
+    return None
+
+
+def _check_depth_range(keys: EnvironmentKeys, section: SourceMapping) -> None:
     """Check that low water comes first, then high water, with the depth between them."""
-    depth, levels = keys.depth, getattr(keys, "depth_range", None)
-    if levels is None or depth is None:
-        return
-    low, high = levels
+    depth, (low, high) = keys.depth, keys.depth_range or (keys.depth, keys.depth)
     if not low <= depth <= high:
         message = (
             f"`depth_range` is low and high water, with `depth`, {depth:g} m, between them: "
@@ -286,20 +354,18 @@ def _check_wind(keys: TowEnvironmentKeys, section: SourceMapping) -> None:
 
 
 def _current(
-    keys: TowEnvironmentKeys,
+    current: water.TableKeys | CurrentFile | UniformCurrent,
+    terms: Terms,
     section: SourceMapping,
     notices: list[str],
     open_files: bool,
-    position: Position | None,
 ) -> CurrentTable | None:
-    current = keys.current
-    maximum_speed = getattr(keys, "maximum_speed", math.inf)
     if isinstance(current, water.TableKeys):
-        terms = Terms(maximum_speed=maximum_speed)
-        return read_current(water.quantity_table(current, section, "current"), terms)
+        of_any_depth = Terms(maximum_speed=terms.maximum_speed)
+        return read_current(water.quantity_table(current, section, "current"), of_any_depth)
     if isinstance(current, UniformCurrent):
         u, v = components(current.speed, current.toward)
-        if reason := too_fast(u, v, current.w, maximum_speed):
+        if reason := too_fast(u, v, current.w, terms.maximum_speed):
             section.refuse(("current", "speed"), reason)
             return None
         return CurrentTable((0.0,), (u,), (v,), (current.w,))
@@ -309,12 +375,7 @@ def _current(
         return None
     if not open_files:
         return None
-    terms = Terms(
-        water_depth=math.inf if keys.depth is None else keys.depth,
-        place=None if position is None else (position.latitude, position.longitude),
-        declination=current.declination,
-        maximum_speed=maximum_speed,
-    )
+    terms = replace(terms, declination=current.declination)
     try:
         from calm.records.current_file import read_current_file
 

@@ -10,19 +10,9 @@ from typing import Annotated, Any, Literal, TypeGuard
 from pydantic import AfterValidator, Field, WithJsonSchema, model_validator
 
 from calm.errors import shown, unknown
+from calm.files import definition
 from calm.files.check_limits import Day
-from calm.files.definition import (
-    LENGTH,
-    POSITIVE_LENGTH,
-    Length,
-    Model,
-    PositiveLength,
-    QuantityField,
-    Role,
-    Text,
-    described,
-    optional,
-)
+from calm.files.definition import Text, described, optional
 from calm.files.environment import Position
 from calm.files.yaml_document import SourceMapping, validate
 from calm.quantities import SHOWN_UNITS
@@ -46,7 +36,7 @@ Moment = Annotated[
 """A day, or a day and time, as ISO 8601 writes them; kept as written."""
 
 
-class OutputUnits(Model):
+class OutputUnits(definition.Model):
     """Say in which units people read tables, papers and the builder; files for programs are SI."""
 
     force: Literal["N", "kN", "kgf", "lbf"] | None = optional(
@@ -82,7 +72,7 @@ def unit_meant(text: str) -> tuple[str, str] | None:
     return None
 
 
-class Revision(Model):
+class Revision(definition.Model):
     """What a revision of the document changed."""
 
     revision: Text = described("letter or number", "B")
@@ -91,7 +81,7 @@ class Revision(Model):
     change: Text | None = optional("what is new", "wire 20 m longer")
 
 
-class DocumentKeys(Model):
+class DocumentKeys(definition.Model):
     """What the title block of a drawing says."""
 
     id: Text | None = optional("of the drawing", "M-2026-17")
@@ -111,7 +101,9 @@ class DocumentKeys(Model):
     acknowledgement: Text | None = optional("who paid", "Funded by the Examples Fund")
     site: Text | None = optional("its code at OceanSITES", "EXAMPLE")
     platform: Text | None = optional("code of the mooring", "EXAMPLE-1")
-    deck_time: dict[Role, Annotated[float, QuantityField("time", at_least=0)]] | None = optional(
+    deck_time: (
+        dict[definition.Role, Annotated[float, definition.QuantityField("time", at_least=0)]] | None
+    ) = optional(
         "time that a piece takes on deck before it goes over, by its role",
         {"float": "5 min", "instrument": "3 min", "line": "2 min"},
     )
@@ -126,7 +118,7 @@ class DocumentKeys(Model):
         return self.model_dump(mode="json", exclude_none=True, exclude_defaults=True)
 
 
-class ReleaseKeys(Model):
+class ReleaseKeys(definition.Model):
     """A release by its serial number, and its codes: one text, several, or several by name."""
 
     serial: Text | None = optional("of the release", 1729)
@@ -143,23 +135,23 @@ class ReleaseKeys(Model):
         return (self.codes,) if isinstance(self.codes, str) else self.codes or ()
 
 
-class DeployedItem(Model):
+class DeployedItem(definition.Model):
     """What went over the side for a piece or a clamp; `length` [m] is what a cable was cut to."""
 
     label: Text = described("of the piece or clamp in results", "wire-jacketed-8")
     serial: Text | None = optional("serial number; for a count, a list with one for each", 12345)
-    length: PositiveLength = optional("what a cable was cut to", "480 m")
+    length: definition.PositiveLength = optional("what a cable was cut to", "480 m")
     remark: Text | None = optional("anything worth knowing", "one terminal remade")
 
 
-class Deployed(Model):
+class Deployed(definition.Model):
     """Where and when the mooring was deployed, and what of it differs from the design."""
 
     date: Moment | None = optional("day or time, e.g. 2027-03-02T10:40", "2027-03-02T10:40")
     position: Position | None = optional(
         "where it stands", {"latitude": "48.3 deg", "longitude": "-5.2 deg"}
     )
-    depth: Annotated[float | None, QuantityField("length", above=0)] = optional(
+    depth: Annotated[float | None, definition.QuantityField("length", above=0)] = optional(
         "of the water there", "1100 m"
     )
     items: tuple[DeployedItem, ...] = described(
@@ -169,7 +161,7 @@ class Deployed(Model):
     )
 
 
-class Equipment(Model):
+class Equipment(definition.Model):
     """What the file says of the individual thing at a place of the line.
 
     `serial` is a text, or as many as the `count` of the item; of an item, one of it is chosen for
@@ -197,14 +189,16 @@ class Equipment(Model):
         return self.model_copy(update={"serial": self.serial[min(repeat, len(self.serial) - 1)]})
 
 
-LOAD = QuantityField("force", usual_unit="kN", at_least=0)
+LOAD = definition.QuantityField("force", usual_unit="kN", at_least=0)
 
 
-class LengthAt(Model):
+class LengthAt(definition.Model):
     """A length of a cable [m] as measured under a load [N]."""
 
     load: Annotated[float, LOAD] = described("that the cable was under", "2 kN")
-    length: Annotated[float, POSITIVE_LENGTH] = described("as measured under `load`", "480 m")
+    length: Annotated[float, definition.POSITIVE_LENGTH] = described(
+        "as measured under `load`", "480 m"
+    )
 
 
 MOST_PIECES = 10_000
@@ -221,7 +215,7 @@ class ClampKeys(Equipment):
 
     use: str = described("id of a component of the catalogue or of `components`", "sbe37")
     label: Label = ""
-    at: Annotated[float, LENGTH] = described(
+    at: Annotated[float, definition.LENGTH] = described(
         "distance from the top of the piece, unstretched", "20 m"
     )
 
@@ -234,15 +228,15 @@ class ItemKeys(Equipment):
     count: Annotated[int, Field(ge=1, le=MOST_PIECES)] = described(
         "how many follow one another in the line", 6, default=1
     )
-    length: Length = 0.0
+    length: definition.Length = 0.0
     length_at: LengthAt = described(
         "a length measured under a load, e.g. {load: 2 kN, length: 480 m}",
         {"load": "2 kN", "length": "480 m"},
     )
-    top_depth: Annotated[float, LENGTH] = described(
+    top_depth: Annotated[float, definition.LENGTH] = described(
         "depth wanted in still water for the top of the line", "105 m"
     )
-    body_depth: Annotated[float, LENGTH] = described(
+    body_depth: Annotated[float, definition.LENGTH] = described(
         "depth wanted in a tow for the lower end of this cable, at the tow's speed", "70 m"
     )
     clamps: tuple[ClampKeys, ...] = described(

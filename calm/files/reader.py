@@ -2,33 +2,26 @@
 found, or everything resolved.
 """
 
+import math
 import os.path
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
+import numpy as np
 from pydantic import BeforeValidator, Field
 
 from calm.errors import InputError, Problem, unknown
+from calm.files import mooring_file
 from calm.files.catalogue import Catalogue
 from calm.files.check_limits import Checks, read_accepts
 from calm.files.components import Anchor, Flexible
 from calm.files.definition import Model, Text, described, optional
-from calm.files.environment import Position, read_environment
+from calm.files.environment import Position, Seabed, read_environment
 from calm.files.legs import NET_REFUSED, Leg, LegKeys, check_held_depths, read_legs, stand_in_anchor
 from calm.files.line_items import LineReader
 from calm.files.logbook import Deployed, DocumentKeys, OutputUnits, ReleaseKeys, check_deployed
-from calm.files.mooring_file import (
-    MooringFile,
-    Piece,
-    Solver,
-    TowKeys,
-    labels_of,
-    numbered,
-    travelling,
-    unknown_releases,
-)
-from calm.files.seabed import check_anchors
+from calm.files.mooring_file import MooringFile, Piece, Solver, TowKeys, numbered
 from calm.files.uncertainty import Uncertainty
 from calm.files.yaml_document import SourceMapping, compose, read_document, validate
 from calm.units import QuantityError
@@ -158,21 +151,23 @@ def read_mooring(
     else:
         (_check_tow if towed else _check_anchor)(pieces, top)
         _check_one_fit(pieces, top)
-        pieces = travelling(numbered(pieces), top) if line_is_whole else numbered(pieces)
+        pieces = (
+            mooring_file.travelling(numbered(pieces), top) if line_is_whole else numbered(pieces)
+        )
     checks = (keys and keys.checks) or Checks()
-    labels = labels_of(pieces) if line_is_whole else None
+    labels = mooring_file.labels_of(pieces) if line_is_whole else None
     accepts = read_accepts(checks.accept, labels, top)
     if keys and keys.deployed and labels is not None:
         cut = [p.label for p in pieces if isinstance(p.component, Flexible)]
         check_deployed(keys.deployed, labels, cut, top)
     if keys and keys.releases and labels is not None:
-        notices += unknown_releases(keys.releases, pieces, keys.deployed)
+        notices += mooring_file.unknown_releases(keys.releases, pieces, keys.deployed)
     surroundings = None
     if chosen:
         position = keys.position if keys else None
         surroundings = read_environment(*chosen, notices, towed=towed, position=position)
     if surroundings is not None and surroundings.seabed is not None:
-        check_anchors(surroundings.seabed, pieces, legs, checks, top, surroundings.depth)
+        _check_slides(surroundings.seabed, pieces, legs, checks, top, surroundings.depth)
     if surroundings is not None and legged:
         check_held_depths(legs, top, surroundings.depth)
     elif surroundings is not None:
@@ -240,6 +235,42 @@ def _check_anchor(pieces: Sequence[Piece], top: SourceMapping) -> None:
 
 def _anchored(pieces: Sequence[Piece]) -> bool:
     return any(isinstance(piece.component, Anchor) for piece in pieces)
+
+
+def _check_slides(
+    seabed: Seabed,
+    pieces: Sequence[Piece],
+    legs: Sequence[Leg],
+    checks: Checks,
+    top: SourceMapping,
+    depth: float | None,
+) -> None:
+    """Check that no anchor slides down the seabed by its own weight, nor stands off the grid or out
+    of the water, which is so deep at the origin [m].
+    """
+    ends = {leg.end - 1: leg.bottom.anchor for leg in legs}
+    for piece in pieces:
+        if not isinstance(piece.component, Anchor):
+            continue
+        place, own = ends.get(piece.index), piece.component.friction
+        at = (0.0, 0.0) if place is None else place.at
+        here, deeper = seabed.at(*at), float(seabed.deeper(np.array([at]))[0])
+        most = math.degrees(math.atan(checks.anchor_friction if own is None else own))
+        said = []
+        if here.slope >= most:
+            said.append(
+                f"with a friction of {math.tan(math.radians(most)):g} the anchor slides by itself "
+                f"on a seabed that slopes by {here.slope:.4g}°; it holds on slopes of less than "
+                f"{most:.3g}°"
+            )
+        if place is not None and place.depth is not None:
+            pass
+        elif np.isnan(deeper):
+            said.append("the grid of the seabed has no depth here; give the anchor its `depth`")
+        elif depth is not None and depth + deeper <= 0.0:
+            said.append(f"by its slope the seabed is {-depth - deeper:.3g} m above the water here")
+        for one in said:
+            top.refuse_at(piece.line, piece.column, one)
 
 
 def _check_one_fit(pieces: Sequence[Piece], top: SourceMapping) -> None:

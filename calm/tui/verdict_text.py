@@ -64,7 +64,7 @@ def headline(view: View | None) -> Saying:
 
 def _judged(findings: Sequence[Finding]) -> Saying:
     """The verdict in the words of `calm check`."""
-    from calm.report.check_summary import verdict_of
+    from calm.report.check_tables import verdict_of
 
     if not findings:
         return Saying("solved")
@@ -218,7 +218,7 @@ def _found(findings: Sequence[Finding], *, pending: bool) -> Iterator[Saying]:
 
     A rule passes where it is met for every component: of a figure that is missing it is not known.
     """
-    from calm.report.check_summary import grouped, named_components
+    from calm.report.check_tables import grouped, named_components
 
     for finding in sorted(findings, key=lambda each: each.rank):
         if _graver(finding):
