@@ -9,10 +9,9 @@ import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from calm.batch.work_store import IDENTITY, WORK, Store, refuse_another
 from calm.dataset.netcdf import write_netcdf
@@ -176,45 +175,6 @@ TOP = "top"
 """What the first component, the free end of the line, is always called besides its own label."""
 
 _ROWS = 65536  # profiles read at a time
-_UNITS = {
-    "days": "D", "hours": "h", "minutes": "m", "seconds": "s",
-    "milliseconds": "ms", "microseconds": "us", "nanoseconds": "ns",
-}  # fmt: skip
-
-
-class Stored(Protocol):
-    """A result: attributes, and arrays by name, which are read as they are sliced.
-
-    An xarray dataset is one.
-    """
-
-    @property
-    def attrs(self) -> Mapping[Any, Any]: ...
-
-    def __contains__(self, name: object, /) -> bool: ...
-
-    def __getitem__(self, name: str, /) -> Any: ...
-
-
-@contextmanager
-def stored_result(path: Path) -> Iterator[Stored]:
-    """A result of `calm batch` as it lies on the disk; quicker there than `open_result`.
-
-    UsageError: it cannot be read.
-    """
-    if path.suffix == ".zarr":
-        import zarr
-
-        with readable(path):
-            group: Any = zarr.open_group(path, mode="r")
-        yield group
-        return
-    import h5netcdf
-
-    with readable(path):
-        file: Any = h5netcdf.File(path, "r")
-    with file:
-        yield file
 
 
 def open_result(path: Path) -> Dataset:
@@ -270,25 +230,12 @@ def attributes_of(path: Path) -> Mapping[str, Any]:
         return {}
 
 
-def times_of(dataset: Stored) -> NDArray[np.datetime64]:
-    """(n,) of the profiles of a result."""
-    time = np.asarray(dataset["time"][...])
-    if time.dtype.kind == "M":
-        return time.astype("datetime64[ns]", copy=False)
-    unit, _, begin = str(dataset["time"].attrs["units"]).partition(" since ")
-    since = np.datetime64(begin.replace(" ", "T"), "ns")
-    return np.asarray(since + time.astype(f"timedelta64[{_UNITS[unit]}]"))
-
-
-def labels_of(dataset: Stored, name: str) -> tuple[str, ...]:
+def labels_of(dataset: Dataset, name: str) -> tuple[str, ...]:
     """The labels of a result, such as `clamp_label`; none where it has no such parts."""
-    if name not in dataset:
-        return ()
-    labels = np.asarray(dataset[name][...])
-    return tuple(label.decode() if isinstance(label, bytes) else str(label) for label in labels)
+    return tuple(map(str, dataset[name].values)) if name in dataset else ()
 
 
-def place_of(dataset: Stored, label: str) -> tuple[str, int]:
+def place_of(dataset: Dataset, label: str) -> tuple[str, int]:
     """Prefix of the variables of a part of the line in a result, and its column.
 
     Parameters
@@ -311,7 +258,7 @@ def place_of(dataset: Stored, label: str) -> tuple[str, int]:
     raise UsageError(unknown(f"no part of the line is called `{label}`", label, parts))
 
 
-def status_names(dataset: Stored) -> tuple[str, ...]:
+def status_names(dataset: Dataset) -> tuple[str, ...]:
     """Return what the numbers of `status` in a result mean; the first is 0.
 
     UsageError: the dataset is no result of `calm batch`.
@@ -324,7 +271,7 @@ def status_names(dataset: Stored) -> tuple[str, ...]:
     return names
 
 
-def statuses_of(dataset: Stored) -> dict[str, int]:
+def statuses_of(dataset: Dataset) -> dict[str, int]:
     """Return how many profiles of a result ended with each status that occurs.
 
     UsageError: the dataset is no result of `calm batch`.

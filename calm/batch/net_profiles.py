@@ -16,14 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.batch.solving import (
-    LEVELS_COINCIDE,
-    NO_CURRENT,
-    ProfileLevels,
-    levels_for,
-    read_profile,
-    sea_of,
-)
+from calm.batch import solving
 from calm.batch.statuses import OF_PROFILES, STATUSES
 from calm.case.measure import leaning_of
 from calm.case.net import Net, net_result
@@ -80,7 +73,7 @@ class NetPaper(NamedTuple):
     weight : of the anchor of each leg, inf where it has none [N]
     """
 
-    on: ProfileLevels
+    on: solving.ProfileLevels
     still: Sea
     start: Any
     slopes: Any
@@ -115,7 +108,7 @@ def solve_net_rows(
     for case in range(endings.size):
         if endings[case] != 0:
             continue
-        endings[case], sea = sea_of(paper.on, depth, u, v, w, case, paper.still)
+        endings[case], sea = solving.sea_of(paper.on, depth, u, v, w, case, paper.still)
         if endings[case] != 0:
             continue
         keep(paper.start, paper.x)
@@ -287,7 +280,7 @@ class NetProfiles:
         ]
         clamped = [len(piece.clamps) for piece in self.net.file.pieces]
         paper = NetPaper(
-            on=levels_for(current[0].shape[1], water),
+            on=solving.levels_for(current[0].shape[1], water),
             still=search.sea,
             start=self.base.unknowns,
             slopes=self.slopes,
@@ -372,9 +365,9 @@ class NetProfiles:
         (depth, u, v, w), still = current, self.still
         read = np.zeros((depth.shape[1], 4))
         levels = depth[case if len(depth) > 1 else 0]
-        count = read_profile(levels, u[case], v[case], w[case], read)
+        count = solving.read_profile(levels, u[case], v[case], w[case], read)
         if count <= 0:
-            ending = NO_CURRENT if count == 0 else LEVELS_COINCIDE
+            ending = solving.NO_CURRENT if count == 0 else solving.LEVELS_COINCIDE
             status[case] = STATUSES.index(OF_PROFILES[ending])
             return
         water = self.water(*(tuple(column) for column in read[:count].T.tolist()))

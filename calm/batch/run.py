@@ -199,7 +199,7 @@ def _complete(
 
 def _found(output: Path) -> BatchOutcome:
     """Of a finished result."""
-    with finished.stored_result(output) as result, finished.readable(output):
+    with finished.open_result(output) as result, finished.readable(output):
         return BatchOutcome(finished.statuses_of(result), True)
 
 

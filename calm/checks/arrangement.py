@@ -217,14 +217,21 @@ def metals(handling: Handling) -> Iterator[Verdict]:
     for base, noble, volts in unlike_metals(handling.mooring.file.pieces):
         if base.label not in warned:
             warned.add(base.label)
-            yield _corrodes(base, noble, volts)
+            message = (
+                f"{base.label} ({base.component.material}) touches {noble.label} "
+                f"({noble.component.material}), {volts:.2f} V nobler in sea water, and corrodes."
+            )
+            remedy = "Insulate them from each other, or give an anode."
+            margin = GREATEST_DIFFERENCE - volts
+            yield verdict_on(base, State.WARN, message, remedy, volts, GREATEST_DIFFERENCE, margin)
 
 
 def unlike_metals(pieces: Sequence[Piece]) -> Iterator[tuple[Piece | Clamp, Piece | Clamp, float]]:
     """Return what touches far apart in the galvanic series: base, noble, and how far [V]."""
     pairs: list[tuple[Piece | Clamp, Piece | Clamp]] = [*pairwise(pieces)]
     for piece in pieces:
-        if not _insulated(piece):
+        said = _words(piece.use, piece.component.name, piece.component.material)
+        if not any(word in said for word in _INSULATED):
             pairs += [(piece, clamp) for clamp in piece.clamps]
     for one, other in pairs:
         first, second = (potential_of(part.component.material) for part in (one, other))
@@ -232,21 +239,6 @@ def unlike_metals(pieces: Sequence[Piece]) -> Iterator[tuple[Piece | Clamp, Piec
             continue
         base, noble = (one, other) if first < second else (other, one)
         yield base, noble, abs(first - second)
-
-
-def _corrodes(base: Piece | Clamp, noble: Piece | Clamp, volts: float) -> Verdict:
-    message = (
-        f"{base.label} ({base.component.material}) touches {noble.label} "
-        f"({noble.component.material}), {volts:.2f} V nobler in sea water, and corrodes."
-    )
-    remedy = "Insulate them from each other, or give an anode."
-    return verdict_on(base, State.WARN, message, remedy, volts, GREATEST_DIFFERENCE,
-                      GREATEST_DIFFERENCE - volts)  # fmt: skip
-
-
-def _insulated(piece: Piece) -> bool:
-    said = _words(piece.use, piece.component.name, piece.component.material)
-    return any(word in said for word in _INSULATED)
 
 
 def _words(*texts: str | None) -> str:

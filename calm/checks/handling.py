@@ -1,6 +1,6 @@
 """Deployment and recovery: back-up buoyancy, launch and rise."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from math import isnan
 
@@ -194,7 +194,11 @@ def tangling(handling: Handling) -> Iterator[Verdict]:
         (handling.recovery, rise, "Put more of the buoyancy at the top."),
     ):
         if not isinstance(motion, NoEquilibrium) and motion.tangles:
-            yield _tangled(handling, motion.tangles, what, remedy)
+            pieces = [handling.mooring.file.pieces[piece] for piece in motion.tangles]
+            named = ", ".join(piece.label for piece in pieces[:3])
+            more = f" and {len(pieces) - 3} more" if len(pieces) > 3 else ""
+            message = f"{what} {named}{more}: the line doubles back and may tangle."
+            yield verdict_on(pieces[0], State.WARN, message, remedy)
 
 
 def _hauled_in(lowest: LinePart, arrival: float, rise: Recovery) -> Verdict:
@@ -215,12 +219,3 @@ def _hauled_in(lowest: LinePart, arrival: float, rise: Recovery) -> Verdict:
 def _unsolved(motion: str, failure: NoEquilibrium) -> Verdict:
     message = f"The {motion} of the line is not known ({failure.status}): {failure.message}"
     return unknown(None, message, failure.advice)
-
-
-def _tangled(handling: Handling, tangles: Sequence[int], what: str, remedy: str) -> Verdict:
-    pieces = [handling.mooring.file.pieces[piece] for piece in tangles]
-    named = ", ".join(piece.label for piece in pieces[:3])
-    if len(pieces) > 3:
-        named += f" and {len(pieces) - 3} more"
-    message = f"{what} {named}: the line doubles back and may tangle."
-    return verdict_on(pieces[0], State.WARN, message, remedy)

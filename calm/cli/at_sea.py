@@ -119,11 +119,11 @@ def deck(
 
 
 def _write(folder: Path, path: Path, deck: Deck, paper: Paper) -> None:
-    from calm.report.check_summary import SIGNS, verdict_of
+    from calm.report.check_tables import verdict_of
     from calm.report.folder import write_report
 
     state, words = verdict_of(deck.assessment.all_findings())
-    narrate(f"{path}: {SIGNS[state]} {words}: calm check {path}")
+    narrate(f"{path}: {state.sign} {words}: calm check {path}")
     notes = _signs_that_are_lacking(deck)
     for note in (*deck.notes, *notes):
         narrate(f"{path}: {note}")
@@ -133,7 +133,7 @@ def _write(folder: Path, path: Path, deck: Deck, paper: Paper) -> None:
 
 def _contents(deck: Deck, paper: Paper, notes: tuple[str, ...]) -> Mapping[str, bytes]:
     from calm.checks.finding import State
-    from calm.report import check_summary
+    from calm.report import check_tables
     from calm.report.deck_files import (
         deck_csvs,
         deck_report,
@@ -148,7 +148,7 @@ def _contents(deck: Deck, paper: Paper, notes: tuple[str, ...]) -> Mapping[str, 
     texts = {"diagram.svg": diagram_svg(deck, paper), **deck_csvs(deck)}
     if deck.file.legs:
         texts["net.svg"] = net_svg(deck)
-    counts = check_summary.counted_states(deck.assessment.all_findings())
+    counts = check_tables.counted_states(deck.assessment.all_findings())
     fails, unknown = counts[State.FAIL], counts[State.UNKNOWN]
     verdict = {"state": str(deck.assessment.state), "fails": fails, "unknown": unknown}
     texts["plan.json"] = to_json([{"calm": __version__, **_plan(deck), "verdict": verdict}])

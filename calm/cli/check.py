@@ -319,8 +319,7 @@ def _answer(
     """
     from concurrent.futures import ThreadPoolExecutor
 
-    from calm.report.check_report import check_document, checks_csv, inventory_csv
-    from calm.report.check_tables import check_part
+    from calm.report.check_report import check_document, check_part, checks_csv, inventory_csv
     from calm.report.folder import write_report
 
     document = cache(lambda: check_document(assessments))

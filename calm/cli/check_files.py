@@ -139,8 +139,7 @@ def _load(
 
 def _refuse_one_name(moorings: Sequence[Mooring | Net]) -> None:
     """Two environments of one name could not be told apart."""
-    from calm.checks.finding import OWN
-    from calm.report.blocks import ON_THE_WAY
+    from calm.checks.finding import ON_THE_WAY, OWN
 
     names = Counter(mooring.file.environment.name or OWN for mooring in moorings)
     names[ON_THE_WAY] += 1  # a column of its own

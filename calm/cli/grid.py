@@ -152,10 +152,10 @@ def fields_of(
         if dropped:
             narrate(f"{name}: {dropped} values are left out because of their flag")
         for i, at in points.items():
-            one, column = series[name][i], samples.label.index(where.label[at])
+            one, column = series[name][i], samples.label.index(where.places.label[at])
             had = one.dropped or np.isfinite(one.value).any()
             if had and not np.isfinite(samples.value[:, column]).any():
-                narrate(f"{name}: {where.label[at]} has no good value at any of the times")
+                narrate(f"{name}: {where.places.label[at]} has no good value at any of the times")
         try:
             fields[name] = field_of(samples, QUANTITIES_MEASURED[name].noise, in_time=in_time)
         except UsageError as error:

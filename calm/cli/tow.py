@@ -114,7 +114,7 @@ class TabulatedTow:
 
     def rendered(self, suffix: str) -> bytes:
         from calm.drawing.picture import image
-        from calm.drawing.plot import draw_sweep
+        from calm.report.tabulation import draw_sweep
 
         return image(draw_sweep(self.tabulation), suffix)
 

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 from calm.errors import refused
 from calm.exchange.cable_grammar import CableDefinition, KeyValue, KeyValues
-from calm.exchange.design import FigureOrWord, ImportedComponent, Remark, role_of
+from calm.exchange.model import FigureOrWord, ImportedComponent, Remark, role_of
 from calm.files.definition import CATALOGUE_DENSITY
 from calm.units import KILOGRAM_FORCE
 

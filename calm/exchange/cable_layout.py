@@ -5,26 +5,9 @@ from dataclasses import dataclass, replace
 from itertools import zip_longest
 
 from calm.errors import refused
+from calm.exchange import cable_grammar, model
 from calm.exchange.cable_components import ComponentMaker, counts_on_depth, varies
-from calm.exchange.cable_grammar import (
-    CableBranch,
-    CableDefinition,
-    CableItems,
-    CableProblem,
-    CableSegment,
-    CableTerminal,
-    KeyValue,
-)
 from calm.exchange.cable_source import Token
-from calm.exchange.design import (
-    Design,
-    ImportedComponent,
-    ImportedLeg,
-    ImportedPiece,
-    ImportedTow,
-    ImportedWater,
-    Remark,
-)
 from calm.quantities import bearing_of
 
 _REACHES = 0.97  # of the depth: a line as long reaches the surface
@@ -39,7 +22,7 @@ _ON_THE_BED = 0.05
 class _Start:
     """Where a leg of the layout begins: at a terminal, or at a node."""
 
-    terminal: CableTerminal | None = None
+    terminal: cable_grammar.CableTerminal | None = None
     node: str = ""
 
 
@@ -55,13 +38,13 @@ class CableLayout:
     nodes : where legs of a net join, so far; legs begin where the layout has their first segment
     """
 
-    problem: CableProblem
+    problem: cable_grammar.CableProblem
     makers: ComponentMaker
-    design: Design
+    design: model.Design
     nodes: int = 0
 
     @property
-    def water(self) -> ImportedWater:
+    def water(self) -> model.ImportedWater:
         """The water of the design."""
         assert self.design.water is not None
         return self.design.water
@@ -84,7 +67,7 @@ class CableLayout:
             raise upper.token.refuse("the upper end is not a buoy")
         reaches = self.problem.kind == "general" and self.problem.length >= _REACHES * depth
         buoy = self._buoy(upper, afloat=reaches or self.problem.kind == "surface")
-        self.design.items = [buoy, *reversed(items), ImportedPiece(anchor)]
+        self.design.items = [buoy, *reversed(items), model.ImportedPiece(anchor)]
 
     def lay_tow(self) -> None:
         """Lay the line from the ship down; a ship at rest in a current moves against it."""
@@ -104,7 +87,7 @@ class CableLayout:
         speed = math.hypot(east, north)
         if speed == 0.0:
             raise ship.token.refuse("the ship of this tow does not move")
-        self.design.tow = ImportedTow(speed, bearing_of(east, north))
+        self.design.tow = model.ImportedTow(speed, bearing_of(east, north))
         self.design.items = [*items[::-1], self._buoy(body, afloat=False)]
 
     def lay_net(self) -> None:
@@ -113,11 +96,11 @@ class CableLayout:
         InputError: a branch has no end, or nothing stands between two anchors.
         """
         first, *others = self.problem.layout
-        assert isinstance(first, CableTerminal)
+        assert isinstance(first, cable_grammar.CableTerminal)
         self._lay(others, _Start(first))
         self.design.items = [item for leg in self.design.legs for item in leg.items]
 
-    def _anchor(self, end: CableTerminal) -> ImportedComponent:
+    def _anchor(self, end: cable_grammar.CableTerminal) -> model.ImportedComponent:
         """Return the anchor of an end, as high as that stands."""
         name = end.values["anchor"].text
         known, height = self.problem.anchors.get(name), end.values.number("z")
@@ -126,13 +109,13 @@ class CableLayout:
             anchor.figures["length"] = height
         return anchor
 
-    def _buoy(self, end: CableTerminal, *, afloat: bool) -> ImportedPiece:
+    def _buoy(self, end: cable_grammar.CableTerminal, *, afloat: bool) -> model.ImportedPiece:
         found = _defined(self.problem.buoys, end.buoy, end.token)
-        return ImportedPiece(self.makers.buoy(found, afloat=afloat))
+        return model.ImportedPiece(self.makers.buoy(found, afloat=afloat))
 
-    def _pieces_of(self, segments: list[CableSegment]) -> list[ImportedPiece]:
+    def _pieces_of(self, segments: list[cable_grammar.CableSegment]) -> list[model.ImportedPiece]:
         """Return the pieces of segments and their connectors, from the lower one up."""
-        items: list[ImportedPiece] = []
+        items: list[model.ImportedPiece] = []
         below, seabed = 0.0, self.water.depth or self.problem.length
         for segment in segments:
             length = segment.values.number("length")
@@ -144,30 +127,34 @@ class CableLayout:
             below += length
             for key in ("top-spool-length", "bottom-spool-length"):
                 if segment.values.number(key) > 0.0:
-                    remark = Remark(f"segment of {material.name}", f"{key}: on a winch")
+                    remark = model.Remark(f"segment of {material.name}", f"{key}: on a winch")
                     self.design.dropped.append(remark)
             joint = segment.connector
             if joint is not None and joint.text.lower() not in ("pinned", "spliced"):
-                items.append(ImportedPiece(self._connector(joint)))
+                items.append(model.ImportedPiece(self._connector(joint)))
         return items
 
     def _pieces(
-        self, segment: CableSegment, material: CableDefinition, length: float, lower: float
-    ) -> list[ImportedPiece]:
+        self,
+        segment: cable_grammar.CableSegment,
+        material: cable_grammar.CableDefinition,
+        length: float,
+        lower: float,
+    ) -> list[model.ImportedPiece]:
         """Return a segment, whose lower end is at a depth standing upright, as pieces from below.
 
         They are several where its drag changes with depth.
         """
         clamps = self._clamps(segment, length)
         count = _PARTS if varies(material) else 1
-        made: list[ImportedPiece] = []
+        made: list[model.ImportedPiece] = []
         for part in range(count):
             depth = max(lower - length * (part + 0.5) / count, 0.0)
             component = self.makers.material(material, length, depth, self._speed(depth))
             if made and _alike(made[-1].component, component):
                 made[-1].length = made[-1].extent + length / count
             else:
-                made.append(ImportedPiece(component, length / count))
+                made.append(model.ImportedPiece(component, length / count))
         start = 0.0
         for item in made:
             end = start + item.extent
@@ -191,8 +178,8 @@ class CableLayout:
         return math.hypot(row[1], row[2])
 
     def _clamps(
-        self, segment: CableSegment, length: float
-    ) -> list[tuple[float, ImportedComponent]]:
+        self, segment: cable_grammar.CableSegment, length: float
+    ) -> list[tuple[float, model.ImportedComponent]]:
         """Return what hangs on the nodes of a segment, with the height above its lower end."""
         heights = _heights(segment, length) if segment.attachments else []
         found = []
@@ -204,39 +191,39 @@ class CableLayout:
                 found.append((heights[node - 1], component))
         return found
 
-    def _connector(self, token: Token) -> ImportedComponent:
+    def _connector(self, token: Token) -> model.ImportedComponent:
         found = self.problem.connectors.get(token.text)
         if found is None:
             raise token.refuse(f"the connector `{token.text}` is defined nowhere")
         return self.makers.connector(found)
 
-    def _lay(self, layout: CableItems, start: _Start) -> None:
+    def _lay(self, layout: cable_grammar.CableItems, start: _Start) -> None:
         """Lay what follows a terminal or a node, and the branches at the nodes on the way."""
-        segments: list[CableSegment] = []
-        branched = any(isinstance(each, CableBranch) for each in layout)
+        segments: list[cable_grammar.CableSegment] = []
+        branched = any(isinstance(each, cable_grammar.CableBranch) for each in layout)
         last = layout[-1] if layout else None
-        ends = [start.terminal, last if isinstance(last, CableTerminal) else None]
+        ends = [start.terminal, last if isinstance(last, cable_grammar.CableTerminal) else None]
         # a line from anchor to anchor is cut where it first can be
         whole = not branched and all(end is not None and "anchor" in end.values for end in ends)
         for each, following in zip_longest(layout, layout[1:]):
-            if isinstance(each, CableTerminal):
+            if isinstance(each, cable_grammar.CableTerminal):
                 self._leg(start, segments, _Start(each))
                 segments = []
-            elif isinstance(each, CableBranch):
+            elif isinstance(each, cable_grammar.CableBranch):
                 self._lay(each.layout, start)
             else:
                 segments.append(each)
                 cut = whole and not start.node and each.connector is not None
-                if isinstance(following, CableBranch) or cut:
+                if isinstance(following, cable_grammar.CableBranch) or cut:
                     self.nodes += 1
                     node = _Start(node=f"node-{self.nodes}")
                     self._leg(start, segments, node)
                     start, segments = node, []
-        if segments or not isinstance(last, CableTerminal):
+        if segments or not isinstance(last, cable_grammar.CableTerminal):
             message = "the layout has no `terminal` at the end of a line"
             raise last.token.refuse(message) if last else refused(self.problem.path, message)
 
-    def _leg(self, start: _Start, segments: list[CableSegment], end: _Start) -> None:
+    def _leg(self, start: _Start, segments: list[cable_grammar.CableSegment], end: _Start) -> None:
         """Add a leg, turned where what the layout has last is its lower end."""
         items = self._pieces_of(segments)[::-1]
         first, lower, low = self._end(start)
@@ -249,9 +236,11 @@ class CableLayout:
             items = [_turned(each) for each in items[::-1]]
             first, lower, last, upper = last, upper, first, lower
         legs = self.design.legs
-        legs.append(ImportedLeg(f"leg-{len(legs) + 1}", [*last, *items, *first], upper, lower))
+        legs.append(
+            model.ImportedLeg(f"leg-{len(legs) + 1}", [*last, *items, *first], upper, lower)
+        )
 
-    def _end(self, at: _Start) -> tuple[list[ImportedPiece], str, bool]:
+    def _end(self, at: _Start) -> tuple[list[model.ImportedPiece], str, bool]:
         """What stands at an end, what holds it, and whether it is a lower one."""
         if at.terminal is None:
             return [], f"{{join: {at.node}}}", False
@@ -265,21 +254,25 @@ class CableLayout:
             return [buoy], "free", buoy.component.figures.get("role") != "float"
         if z > _ON_THE_BED * self.depth:
             return [], f"{{held: {{depth: {self.depth - z:.9g} m, at: {place}}}}}", False
-        return [ImportedPiece(self._anchor(at.terminal))], f"{{anchor: {{at: {place}}}}}", True
+        return (
+            [model.ImportedPiece(self._anchor(at.terminal))],
+            f"{{anchor: {{at: {place}}}}}",
+            True,
+        )
 
 
-def _turned(item: ImportedPiece) -> ImportedPiece:
+def _turned(item: model.ImportedPiece) -> model.ImportedPiece:
     """Return a piece with its clamps counted from the other end."""
     clamps = [replace(each, at=item.extent - each.at) for each in item.clamps[::-1]]
     return replace(item, clamps=clamps)
 
 
-def _alike(one: ImportedComponent, other: ImportedComponent) -> bool:
+def _alike(one: model.ImportedComponent, other: model.ImportedComponent) -> bool:
     pairs = ((one.number(key), other.number(key)) for key in ("cn", "ct"))
     return all(abs(a - b) <= _CHANGE * max(abs(a), abs(b)) for a, b in pairs)
 
 
-def _heights(segment: CableSegment, length: float) -> list[float]:
+def _heights(segment: cable_grammar.CableSegment, length: float) -> list[float]:
     """Return the heights of the nodes of a segment above its lower end [m]."""
     nodes = segment.values.get("nodes")
     if nodes is None or not nodes.rows or any(len(row) != 2 for row in nodes.rows):
@@ -296,8 +289,10 @@ def _heights(segment: CableSegment, length: float) -> list[float]:
 
 
 def _defined(
-    definitions: dict[str, CableDefinition], value: KeyValue | None, token: Token
-) -> CableDefinition:
+    definitions: dict[str, cable_grammar.CableDefinition],
+    value: cable_grammar.KeyValue | None,
+    token: Token,
+) -> cable_grammar.CableDefinition:
     """Return the definition that a value names; a problem stands at the value, or at `token`."""
     if value is None or not value.text:
         raise token.refuse("a name is missing: a material, or a buoy")

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.errors import InputError, Problem, refused
+from calm.exchange import model
 from calm.exchange.cable_components import ComponentMaker
 from calm.exchange.cable_formulas import UnknownNameError
 from calm.exchange.cable_grammar import (
@@ -21,7 +22,6 @@ from calm.exchange.cable_grammar import (
     read_problem,
 )
 from calm.exchange.cable_layout import CableLayout
-from calm.exchange.design import Design, ImportedWater, Remark
 from calm.files.definition import CATALOGUE_DENSITY
 from calm.quantities import bearing_of
 from calm.whole_file import read_text
@@ -70,7 +70,7 @@ def is_cbl(content: bytes) -> bool:
     return b"\0" not in content and len(set(_HEADS.findall(text))) >= 2
 
 
-def read_cbl(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> Design:
+def read_cbl(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> model.Design:
     """Read a mooring or a tow.
 
     Parameters
@@ -105,15 +105,17 @@ def read_cbl(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> 
     raise InputError(missing)
 
 
-def _read(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> Design:
+def _read(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> model.Design:
     problem = read_problem(path, defines, allow_include=allow_include)
     _refuse_other_shapes(problem)
     title, environment = problem.description.get("title"), problem.environment
-    design = Design("WHOI Cable", title.text if title and title.text else path.stem, [], None)
+    design = model.Design("WHOI Cable", title.text if title and title.text else path.stem, [], None)
     design.notes.append(_NOTE)
     design.water = _water_of(problem, design.dropped, allow_include=allow_include)
     if problem.analysis:
-        design.dropped.append(Remark("analysis parameters", "how that program is to solve it"))
+        design.dropped.append(
+            model.Remark("analysis parameters", "how that program is to solve it")
+        )
     density = environment.number("rho", "density")
     gravity = environment.number("gravity", default=_USUAL_GRAVITY)
     for key, value in (("density", density), ("gravity", gravity)):
@@ -134,7 +136,7 @@ def _read(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> Des
     for end in problem.terminals:
         found = [key for key in end.values if key not in known]
         if found:
-            design.dropped.append(Remark("terminal", ", ".join(found)))
+            design.dropped.append(model.Remark("terminal", ", ".join(found)))
     return design
 
 
@@ -172,8 +174,8 @@ def _refuse_other_shapes(problem: CableProblem) -> None:
 
 
 def _water_of(
-    problem: CableProblem, dropped: list[Remark], *, allow_include: bool
-) -> ImportedWater:
+    problem: CableProblem, dropped: list[model.Remark], *, allow_include: bool
+) -> model.ImportedWater:
     """Return depth, density, gravity, current and wind, with files of currents in its folder.
 
     Parameters
@@ -184,7 +186,7 @@ def _water_of(
     """
     environment = problem.environment
     depth = environment.number("depth")
-    water = ImportedWater(depth if depth > 0.0 else None)
+    water = model.ImportedWater(depth if depth > 0.0 else None)
     water.density = environment.number("rho", "density") or None
     water.gravity = environment.number("gravity", default=_USUAL_GRAVITY)
     if "gravity" not in environment:
@@ -204,7 +206,7 @@ def _water_of(
     for what, keys in (("waves", _WAVES), ("how waves act", _DYNAMICS), ("the seabed", _SEABED)):
         found = [key for key in keys if key in environment]
         if found:
-            dropped.append(Remark("environment", f"{what} ({', '.join(found)})"))
+            dropped.append(model.Remark("environment", f"{what} ({', '.join(found)})"))
     return water
 
 
@@ -270,7 +272,7 @@ def _refined(at: Callable[[float], tuple[float, float, float]], levels: list[flo
 
 
 def _gridded_current(
-    value: KeyValue, folder: Path, dropped: list[Remark], *, allow_include: bool
+    value: KeyValue, folder: Path, dropped: list[model.Remark], *, allow_include: bool
 ) -> _Grid | None:
     """Return the currents of a file beside the problem; None where there is no such file.
 
@@ -302,10 +304,10 @@ def _gridded_current(
     )
     here = _at_zero(_at_zero(_at_zero(speeds, time), y), x)
     if times > 1:
-        dropped.append(Remark("current-file", "times after the first"))
+        dropped.append(model.Remark("current-file", "times after the first"))
     if np.ptp(speeds, axis=(1, 2)).any():
         what = "how it varies horizontally: the profile at the anchor is taken"
-        dropped.append(Remark("current-file", what))
+        dropped.append(model.Remark("current-file", what))
     order = np.argsort(depth)
     return depth[order], here[order]
 

@@ -4,7 +4,6 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from math import atan2, degrees, hypot, pi, sqrt
 
-from calm.exchange.design import is_called
 from calm.exchange.exported_parts import (
     AS_A_POINT,
     ExportedLine,
@@ -12,6 +11,7 @@ from calm.exchange.exported_parts import (
     PartLoad,
     unique_name,
 )
+from calm.exchange.model import is_called
 from calm.files import Chain, Cylinder, Rigid, Sphere
 from calm.files.rigid import Displacement
 from calm.physics.hull import Hull, cylindrical_hull, spherical_hull, tabulated_hull

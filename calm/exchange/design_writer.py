@@ -13,16 +13,7 @@ from calm.case import Tow
 from calm.case.net import Net, load
 from calm.case.result import AnchorLoad, EndLoad
 from calm.errors import CalmError, one_line
-from calm.exchange.design import (
-    Design,
-    FigureOrWord,
-    ImportedClamp,
-    ImportedComponent,
-    ImportedPiece,
-    ImportedWater,
-    Remark,
-    ids_of,
-)
+from calm.exchange import model
 from calm.files import Catalogue
 from calm.files.components import FLEXIBLE_KINDS
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
@@ -46,12 +37,12 @@ class _Page:
     """Hold the lines so far, and the guesses in their comments."""
 
     lines: list[str] = field(default_factory=list)
-    guessed: list[Remark] = field(default_factory=list)
+    guessed: list[model.Remark] = field(default_factory=list)
 
     def add(self, line: str = "", guess: str = "", where: str = "", comment: str = "") -> None:
         if guess:
             guess = one_line(guess)
-            self.guessed.append(Remark(where, guess))
+            self.guessed.append(model.Remark(where, guess))
             line += f"  # guessed: {guess}"
         elif comment:
             line += f"  # {comment}"
@@ -62,8 +53,8 @@ class _Page:
 
 
 def mooring_text(
-    design: Design, source: str, environment: list[str] | None = None, version: str = ""
-) -> tuple[str, list[Remark]]:
+    design: model.Design, source: str, environment: list[str] | None = None, version: str = ""
+) -> tuple[str, list[model.Remark]]:
     """Return the text of the mooring file of a design, and what was guessed in it.
 
     Parameters
@@ -98,7 +89,7 @@ def mooring_text(
         page.add()
     elif design.water is not None:
         _write_water(page, design.water)
-    ids = ids_of(design.components(), Catalogue.load().ids())
+    ids = model.ids_of(design.components(), Catalogue.load().ids())
     if design.legs:
         page.add("legs:  # each from its upper to its lower end")
     else:
@@ -138,7 +129,7 @@ def quoted(text: str) -> str:
     return written(one_line(text), flow=True)
 
 
-def _write_water(page: _Page, water: ImportedWater) -> None:
+def _write_water(page: _Page, water: model.ImportedWater) -> None:
     page.add("environment:")
     if water.depth is not None:
         _keyed(page, "depth", f"{_number(water.depth)} m", water)
@@ -168,14 +159,14 @@ def _write_rows(page: _Page, columns: str, rows: Iterable[Iterable[float]]) -> N
     page.lines += [f"      - [{', '.join(map(_number, row))}]" for row in rows]
 
 
-def _keyed(page: _Page, key: str, value: str, water: ImportedWater) -> None:
+def _keyed(page: _Page, key: str, value: str, water: model.ImportedWater) -> None:
     page.add(f"  {key}: {value}", water.guesses.get(key, ""), f"environment.{key}")
 
 
-def _counted(items: list[ImportedPiece]) -> list[ImportedPiece]:
+def _counted(items: list[model.ImportedPiece]) -> list[model.ImportedPiece]:
     """Equal items that follow each other as one with a count."""
 
-    def what(item: ImportedPiece) -> object:
+    def what(item: model.ImportedPiece) -> object:
         if item.clamps or item.guess or item.label or item.serial:
             return id(item)
         return item.component.identity(), item.length, item.component.entry
@@ -184,7 +175,7 @@ def _counted(items: list[ImportedPiece]) -> list[ImportedPiece]:
     return [replace(group[0], count=sum(each.count for each in group)) for group in alike]
 
 
-def _write_item(page: _Page, item: ImportedPiece, ids: dict[int, str]) -> None:
+def _write_item(page: _Page, item: model.ImportedPiece, ids: dict[int, str]) -> None:
     use = ids[id(item.component)]
     pairs = [f"use: {use}"]
     if item.length is not None:
@@ -205,13 +196,13 @@ def _write_item(page: _Page, item: ImportedPiece, ids: dict[int, str]) -> None:
         page.add(f"      - {{{', '.join(pairs)}}}", clamp.guess, where_clamped)
 
 
-def _called(item: ImportedPiece | ImportedClamp) -> list[str]:
+def _called(item: model.ImportedPiece | model.ImportedClamp) -> list[str]:
     named = (("label", item.label), ("serial", item.serial))
     return [f"{key}: {quoted(text)}" for key, text in named if text]
 
 
 def _write_component(
-    page: _Page, component: ImportedComponent, id_: str, in_kilograms: bool
+    page: _Page, component: model.ImportedComponent, id_: str, in_kilograms: bool
 ) -> None:
     page.add(f"  {id_}:")
     if component.comment:
@@ -234,7 +225,7 @@ def _write_component(
             page.add(f"        - {row}")
 
 
-def figure_text(key: str, value: FigureOrWord, *, per_metre: bool, in_kilograms: bool) -> str:
+def figure_text(key: str, value: model.FigureOrWord, *, per_metre: bool, in_kilograms: bool) -> str:
     """Return a figure of a component as the mooring file has it.
 
     Parameters
@@ -266,7 +257,7 @@ _DIGITS = 2  # that a guessed weight keeps
 _LEAST = 100.0  # N of a guessed weight
 
 
-def secure_anchors(design: Design, environment: list[str] | None, output: Path) -> None:
+def secure_anchors(design: model.Design, environment: list[str] | None, output: Path) -> None:
     """Give each anchor a weight where the file gives none, or one that the line would lift.
 
     The shape of the line does not depend on it. The weight is what `calm check` asks for in this
@@ -302,8 +293,11 @@ def secure_anchors(design: Design, environment: list[str] | None, output: Path) 
 
 
 def _pulls(
-    design: Design, anchors: list[ImportedComponent], environment: list[str] | None, output: Path
-) -> list[tuple[ImportedComponent, float | None, float]]:
+    design: model.Design,
+    anchors: list[model.ImportedComponent],
+    environment: list[str] | None,
+    output: Path,
+) -> list[tuple[model.ImportedComponent, float | None, float]]:
     """Return each anchor, the upward pull of the line on it and the weight that holds it [N]."""
     before = [anchor.figures for anchor in anchors]
     for anchor in anchors:

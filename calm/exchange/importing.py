@@ -16,14 +16,8 @@ from pydantic import ValidationError
 
 from calm.assemble.component_forces import drag_of
 from calm.errors import InputError, UsageError, one_line, refused
+from calm.exchange import model
 from calm.exchange.cable_reader import is_cbl, read_cbl
-from calm.exchange.design import (
-    MOST_PIECES,
-    CurrentRecord,
-    Design,
-    ImportedComponent,
-    Remark,
-)
 from calm.exchange.design_writer import figure_text, mooring_text, secure_anchors
 from calm.exchange.list_cells import is_table
 from calm.exchange.list_reader import read_list
@@ -66,7 +60,7 @@ class ImportFormat:
     name: str
     program: str
     recognises: Callable[[bytes], bool]
-    read: Callable[[Path, ImportOptions], Design]
+    read: Callable[[Path, ImportOptions], model.Design]
 
 
 FORMATS = (
@@ -111,10 +105,10 @@ class Imported:
     file: Path
     format: str
     text: str
-    guessed: tuple[Remark, ...]
-    dropped: tuple[Remark, ...]
+    guessed: tuple[model.Remark, ...]
+    dropped: tuple[model.Remark, ...]
     matched: tuple[CatalogueMatch, ...]
-    record: CurrentRecord | None
+    record: model.CurrentRecord | None
 
 
 def import_file(
@@ -149,14 +143,16 @@ def import_file(
     design = chosen.read(path, options)
     levels = 0 if design.water is None else len(design.water.current)
     for what, count in (("pieces", len(design.items)), ("levels of current", levels)):
-        if count > MOST_PIECES:
-            raise refused(path, f"has {count} {what}; more than {MOST_PIECES} are not imported")
+        if count > model.MOST_PIECES:
+            raise refused(
+                path, f"has {count} {what}; more than {model.MOST_PIECES} are not imported"
+            )
     lines = None
     if environment is not None:
         lines = environment_lines(environment, output)
         if design.water is not None:
             what = f"the water of the file: {environment.name} replaces it"
-            design.dropped.append(Remark("environment", what))
+            design.dropped.append(model.Remark("environment", what))
         design.record = None
     elif design.water is None and design.tow is None:
         message = "has no environment; give one: --environment FILE (depth, current, density)"
@@ -209,7 +205,7 @@ def _check(path: Path, output: Path, text: str) -> None:
         ) from None
 
 
-def record_file(record: CurrentRecord, source: str) -> bytes:
+def record_file(record: model.CurrentRecord, source: str) -> bytes:
     """Return a record as a classic NetCDF file by the CF conventions."""
     import xarray as xr
 
@@ -257,7 +253,7 @@ class CatalogueMatch:
     entry: str
 
 
-def match_catalogue_entries(design: Design) -> tuple[CatalogueMatch, ...]:
+def match_catalogue_entries(design: model.Design) -> tuple[CatalogueMatch, ...]:
     """Use catalogue entries for the components whose name and figures agree with one.
 
     A component is of the same kind, shares half the words of its name, and is within `_TOLERANCE`
@@ -280,7 +276,7 @@ def match_catalogue_entries(design: Design) -> tuple[CatalogueMatch, ...]:
     return tuple(matched.values())
 
 
-def _model(component: ImportedComponent) -> Component | None:
+def _model(component: model.ImportedComponent) -> Component | None:
     per_metre = component.kind in FLEXIBLE_KINDS
     fields = {
         key: figure_text(key, value, per_metre=per_metre, in_kilograms=False)

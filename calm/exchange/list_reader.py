@@ -15,16 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from calm.errors import nearest, refused
-from calm.exchange import list_rows
-from calm.exchange.design import (
-    MOST_PIECES,
-    Design,
-    ImportedClamp,
-    ImportedPiece,
-    ImportedWater,
-    Remark,
-    is_called,
-)
+from calm.exchange import list_rows, model
 from calm.exchange.list_cells import SheetRows, number, read_sheets
 from calm.exchange.list_headings import ListHeadings, check_given, headings_of
 from calm.exchange.mat_file import MatVariables, is_mat, names, read_variables
@@ -38,7 +29,7 @@ _WATER = ("z", "U", "V", "W", "rho")  # headings of a sheet of Mooring Design & 
 _NAMES = 3  # at least, in a list of names alone
 
 
-def read_list(path: Path, columns: Mapping[str, str], elements: Path | None = None) -> Design:
+def read_list(path: Path, columns: Mapping[str, str], elements: Path | None = None) -> model.Design:
     """Read a CSV file or a workbook.
 
     Parameters
@@ -59,13 +50,13 @@ def read_list(path: Path, columns: Mapping[str, str], elements: Path | None = No
             "is a library of elements, not a mooring; a list takes its figures: --elements FILE",
         )
     library = read_library(elements) if elements is not None else {}
-    design = Design("a list", path.stem, [], None, notes=[_NOTE])
+    design = model.Design("a list", path.stem, [], None, notes=[_NOTE])
     design.water = _water(sheets, design, path)
     problems: list[str] = []
     ordered = sorted(sheets.values(), key=len, reverse=True)
     headed = ((cells, headings_of(cells, columns)) for cells in ordered)
     cells, headings = next((each for each in headed if each[1] is not None), ([], None))
-    said = list[Remark]()
+    said = list[model.Remark]()
     if headings is not None:
         problems += headings.problems
         said = _unit_remarks(headings)
@@ -76,14 +67,14 @@ def read_list(path: Path, columns: Mapping[str, str], elements: Path | None = No
         )  # fmt: skip
         list_rows.weights_as_buoyancy(rows, design.guessed)
         if headings.others:
-            design.dropped.append(Remark("columns", ", ".join(headings.others)))
+            design.dropped.append(model.Remark("columns", ", ".join(headings.others)))
     else:
         rows = _names(sheets, design, path, library)
     if elements is not None:
         complete_rows(rows, library, elements.name)
     list_rows.count_lines(rows, headings.columns if headings else {})
-    if sum(row.count for row in rows) > MOST_PIECES:
-        raise refused(path, f"has more than {MOST_PIECES} pieces")
+    if sum(row.count for row in rows) > model.MOST_PIECES:
+        raise refused(path, f"has more than {model.MOST_PIECES} pieces")
     rows = _from_the_top(rows, path, design)
     design.items = _items(rows)
     design.guessed += said
@@ -95,18 +86,18 @@ def read_list(path: Path, columns: Mapping[str, str], elements: Path | None = No
     return design
 
 
-def _unit_remarks(headings: ListHeadings) -> list[Remark]:
+def _unit_remarks(headings: ListHeadings) -> list[model.Remark]:
     """Return what is taken for the unit of forces whose headings give none."""
     usual = {"buoyancy": "kg", "weight": "kg", "stiffness": "N", "breaking_load": "N"}
     return [
-        Remark(f"column {column.heading}", f"gives no unit: read as {usual[what]}")
+        model.Remark(f"column {column.heading}", f"gives no unit: read as {usual[what]}")
         for what, column in headings.columns.items()
         if what in usual and not column.known
     ]
 
 
 def _names(
-    sheets: Mapping[str, SheetRows], design: Design, path: Path, library: Library
+    sheets: Mapping[str, SheetRows], design: model.Design, path: Path, library: Library
 ) -> list[list_rows.ListRow]:
     """Return the rows of a list that holds names alone, in the longest sheet.
 
@@ -144,7 +135,9 @@ def _names_in(cells: SheetRows) -> list[list_rows.ListRow]:
     ]
 
 
-def _water(sheets: Mapping[str, SheetRows], design: Design, path: Path) -> ImportedWater | None:
+def _water(
+    sheets: Mapping[str, SheetRows], design: model.Design, path: Path
+) -> model.ImportedWater | None:
     """Return the environment in a sheet of heights, `z`, of Mooring Design & Dynamics."""
     for rows in sheets.values():
         headings = [cell.lower() for cell in rows[0]]
@@ -172,7 +165,7 @@ def _figure(row: list[str], index: int, path: Path) -> float:
 
 
 def _from_the_top(
-    rows: list[list_rows.ListRow], path: Path, design: Design
+    rows: list[list_rows.ListRow], path: Path, design: model.Design
 ) -> list[list_rows.ListRow]:
     """Return the rows from the top down; lists run either way, clamps follow their piece."""
     pieces = [row for row in rows if "at" not in row.figures]
@@ -194,7 +187,7 @@ def _from_the_top(
     if lifts[0] < lifts[1]:
         design.notes.append("The list runs from the lower end up: here it is reversed.")
         rows = _turned(rows)
-    design.guessed.append(Remark("line.anchor", "the list has none"))
+    design.guessed.append(model.Remark("line.anchor", "the list has none"))
     return [*rows, list_rows.ListRow(0, "anchor", kind="anchor", role="anchor")]
 
 
@@ -204,8 +197,8 @@ def _turned(rows: list[list_rows.ListRow]) -> list[list_rows.ListRow]:
     return [row for _, row in numbered]
 
 
-def _items(rows: list[list_rows.ListRow]) -> list[ImportedPiece]:
-    items: list[ImportedPiece] = []
+def _items(rows: list[list_rows.ListRow]) -> list[model.ImportedPiece]:
+    items: list[model.ImportedPiece] = []
     for row in rows:
         component = list_rows.component_of(row, anchor=row is rows[-1] and row.is_anchor)
         at = row.figures.get("at")
@@ -213,11 +206,11 @@ def _items(rows: list[list_rows.ListRow]) -> list[ImportedPiece]:
             length = row.figures.get("length") if component.kind in FLEXIBLE_KINDS else None
             guess = "" if length is None else row.guesses.get("length", "")
             items += [
-                ImportedPiece(component, length, label=row.label, guess=guess)
+                model.ImportedPiece(component, length, label=row.label, guess=guess)
                 for _ in range(row.count)
             ]
         elif items:
-            items[-1].clamps.append(ImportedClamp(component, at, row.guesses.get("at", "")))
+            items[-1].clamps.append(model.ImportedClamp(component, at, row.guesses.get("at", "")))
     return items
 
 
@@ -362,4 +355,4 @@ def _is_line(row: list_rows.ListRow, title: str) -> bool:
     floats = row.figures.get("buoyancy", 0.0) > 0.0 and row.figures.get("diameter", 0.0) > 0.0
     if abs(row.figures.get("length", 1.0) - 1.0) > _A_METRE or (floats and "width" in row.figures):
         return False
-    return bool(row.metre) or row.is_line or is_called(title, "line")
+    return bool(row.metre) or row.is_line or model.is_called(title, "line")

@@ -5,15 +5,7 @@ import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 
-from calm.exchange.design import (
-    FigureOrWord,
-    ImportedComponent,
-    Remark,
-    is_called,
-    is_long,
-    role_of,
-    size_in,
-)
+from calm.exchange import model
 from calm.exchange.list_cells import SheetRows, number, unit_called
 from calm.exchange.list_headings import WORDS, ListColumn, ListHeadings, cell_of, decimals_of
 from calm.exchange.mdd_elements import MODULI
@@ -77,12 +69,12 @@ class ListRow:
     def is_anchor(self) -> bool:
         """Tell whether it is the anchor."""
         said = _ANCHOR_KINDS.search(f"{self.kind} {self.role}")
-        return said is not None or is_called(self.name, "anchor")
+        return said is not None or model.is_called(self.name, "anchor")
 
     @property
     def sinks(self) -> bool:
         """Tell whether it is a line, an anchor, or what sinks by its name."""
-        named = is_called(self.name, "connector", "release")
+        named = model.is_called(self.name, "connector", "release")
         return named or self.is_line or self.is_anchor
 
     @property
@@ -90,19 +82,19 @@ class ListRow:
         """Tell whether it is a cable or a chain."""
         if self.line is not None:
             return self.line
-        if self.role in _ROLES or is_called(self.kind, "rigid"):
+        if self.role in _ROLES or model.is_called(self.kind, "rigid"):
             return False
-        if is_called(self.name, "connector") and self.figure("length") < _FITTING:
+        if model.is_called(self.name, "connector") and self.figure("length") < _FITTING:
             return self.role == "line"
-        return self.role == "line" or is_called(f"{self.kind} {self.name}", "line")
+        return self.role == "line" or model.is_called(f"{self.kind} {self.name}", "line")
 
 
 def rows_of(
     cells: SheetRows,
     headings: ListHeadings,
     problems: list[str],
-    dropped: list[Remark],
-    guessed: list[Remark],
+    dropped: list[model.Remark],
+    guessed: list[model.Remark],
     *,
     bare: Callable[[str], bool] = lambda name: False,
 ) -> list[ListRow]:
@@ -117,33 +109,35 @@ def rows_of(
     known = headings.columns
     decimal, said = decimals_of(cells, headings, problems)
     if said:
-        guessed.append(Remark("numbers", said))
+        guessed.append(model.Remark("numbers", said))
     for place, each in enumerate(cells[headings.row + 1 :], headings.row + 2):
         name = cell_of(each, known["name"])
         if _DITTO.match(name) and rows:
-            guessed.append(Remark(f"row {place}", f"`{name}` read as `{rows[-1].name}`"))
+            guessed.append(model.Remark(f"row {place}", f"`{name}` read as `{rows[-1].name}`"))
             name = rows[-1].name
         if not name:
             held = [cell_of(each, column) for what, column in known.items() if what in _ENOUGH]
             if any(re.search(r"\d", cell) for cell in held):
-                dropped.append(Remark(f"row {place}", "it has figures and no name"))
+                dropped.append(model.Remark(f"row {place}", "it has figures and no name"))
             continue
         if TOTAL.match(name):
-            dropped.append(Remark(f"row {place}", f"`{name}`, a sum"))
+            dropped.append(model.Remark(f"row {place}", f"`{name}`, a sum"))
             continue
         row = _row(each, ListRow(place, name), known, decimal)
         if not (bare(name) or _ENOUGH & row.figures.keys() or row.is_anchor):
-            dropped.append(Remark(f"row {place}", f"`{name}`, without length and weight"))
+            dropped.append(model.Remark(f"row {place}", f"`{name}`, without length and weight"))
             continue
-        size = row.figure("diameter") or row.figure("width") or size_in(name)
-        fixed = row.is_line or row.is_anchor or row.role in _ROLES or is_called(row.kind, "rigid")
-        if not fixed and is_long(name, row.figure("length"), size):
+        size = row.figure("diameter") or row.figure("width") or model.size_in(name)
+        fixed = (
+            row.is_line or row.is_anchor or row.role in _ROLES or model.is_called(row.kind, "rigid")
+        )
+        if not fixed and model.is_long(name, row.figure("length"), size):
             row.line = True
-            guessed.append(Remark(row.where, "taken as a rope, since it is long and thin"))
+            guessed.append(model.Remark(row.where, "taken as a rope, since it is long and thin"))
         several = _COUNTED.match(name)
         if several and row.count == 1 and not row.is_line:
             said = f"read as one piece with the figures of its row, not as {several[1]} of them"
-            guessed.append(Remark(row.where, said))
+            guessed.append(model.Remark(row.where, said))
         rows.append(row)
     return rows
 
@@ -191,7 +185,7 @@ def _row(cells: list[str], row: ListRow, known: dict[str, ListColumn], decimal: 
     return row
 
 
-def weights_as_buoyancy(rows: Iterable[ListRow], guessed: list[Remark]) -> None:
+def weights_as_buoyancy(rows: Iterable[ListRow], guessed: list[model.Remark]) -> None:
     """Give every row its net force as buoyancy, positive up.
 
     Weights are positive down; where they are negative for what sinks by its name, positive up.
@@ -203,11 +197,11 @@ def weights_as_buoyancy(rows: Iterable[ListRow], guessed: list[Remark]) -> None:
     lifts = [row for row in rows if row.figures.get("buoyancy")]
     turned = all(row.sinks == (row.figures["buoyancy"] > 0.0) for row in lifts)
     if turned and 0 < sum(row.sinks for row in lifts) < len(lifts):
-        guessed.append(Remark("buoyancy", "positive for parts that sink: read as weight"))
+        guessed.append(model.Remark("buoyancy", "positive for parts that sink: read as weight"))
         for row in lifts:
             row.figures["buoyancy"] *= -1.0
     if upward:
-        guessed.append(Remark("weights", "negative for parts that sink: read as buoyancy"))
+        guessed.append(model.Remark("weights", "negative for parts that sink: read as buoyancy"))
     for row in rows:
         if "weight" not in row.figures:
             continue
@@ -257,22 +251,22 @@ def _same_for_all(lines: list[ListRow], what: str) -> bool:
     return False
 
 
-def component_of(row: ListRow, *, anchor: bool) -> ImportedComponent:
+def component_of(row: ListRow, *, anchor: bool) -> model.ImportedComponent:
     """Return the definition of a row in SI, which may be the anchor; its `problems` are added."""
     for what in ("length", "diameter", "width", "cd", "area", "drag_area", "mass", "stiffness"):
         if row.figure(what) < 0.0:
             row.refuse(f"its {what.replace('_', ' ')} is negative")
     kind, kept = (_anchor if anchor else _line if row.is_line else _rigid)(row)
     guesses = {key: text for key, text in row.guesses.items() if key in kept and text}
-    return ImportedComponent(row.name, kind, kept, guesses)
+    return model.ImportedComponent(row.name, kind, kept, guesses)
 
 
-_Definition = tuple[str, dict[str, FigureOrWord]]
+_Definition = tuple[str, dict[str, model.FigureOrWord]]
 """The kind of a component, and its figures."""
 
 
 def _anchor(row: ListRow) -> _Definition:
-    kept: dict[str, FigureOrWord] = {}
+    kept: dict[str, model.FigureOrWord] = {}
     if row.figure("buoyancy"):
         kept["weight"] = abs(row.figure("buoyancy"))
     elif row.figure("mass"):
@@ -287,7 +281,7 @@ def _rigid(row: ListRow) -> _Definition:
         row.refuse(f"its weight in water or its buoyancy is missing{row.hint}")
     lift, length = row.figure("buoyancy"), row.figure("length")
     kind, across = _shape(row)
-    kept: dict[str, FigureOrWord] = {"length": length}
+    kept: dict[str, model.FigureOrWord] = {"length": length}
     if "drag_area" in figures and "tangential_area" in figures:
         kind, guesses["kn"] = "body", guesses.get("drag_area", "")
         kept["kn"] = _HALF_DENSITY * figures["drag_area"]
@@ -306,7 +300,7 @@ def _rigid(row: ListRow) -> _Definition:
         kept = {"diameter": across, "length": length or across, **_coefficient(row, kind)}
     kept["buoyancy"] = lift
     kept |= _further(row, lift, "breaking_load")
-    kept["role"] = row.role if row.role in _ROLES else role_of(row.name, lift)
+    kept["role"] = row.role if row.role in _ROLES else model.role_of(row.name, lift)
     return kind, kept
 
 
@@ -333,14 +327,16 @@ def _line(row: ListRow) -> _Definition:
     if "buoyancy" not in row.figures:
         row.refuse(f"its weight in water is missing{row.hint}")
     across, lift = row.figure("diameter") or row.figure("width"), row.figure("buoyancy")
-    kind = "chain" if lift <= 0.0 and is_called(f"{row.name} {row.kind}", "chain") else "cable"
+    kind = (
+        "chain" if lift <= 0.0 and model.is_called(f"{row.name} {row.kind}", "chain") else "cable"
+    )
     if across <= 0.0:
-        across = size_in(row.name)
+        across = model.size_in(row.name)
         if across <= 0.0:
             row.refuse("its diameter is missing")
             across = 0.01
         row.guesses["diameter"] = "from its name"
-    kept: dict[str, FigureOrWord] = {"diameter": across}
+    kept: dict[str, model.FigureOrWord] = {"diameter": across}
     if "drag_area" in row.figures:
         kept["cn"] = row.figure("drag_area") / across
         kept["ct"] = row.figure("tangential_area") / (math.pi * across)
@@ -360,14 +356,14 @@ def _line(row: ListRow) -> _Definition:
     return kind, kept
 
 
-def _coefficient(row: ListRow, kind: str) -> dict[str, FigureOrWord]:
+def _coefficient(row: ListRow, kind: str) -> dict[str, model.FigureOrWord]:
     """Return the drag coefficient of the list, or the usual one of the kind as a guess."""
     key, guess = "cx" if kind == "sphere" else "cn", f"the usual one of a {kind}"
     row.guesses[key] = row.guesses.get("cd", "") if "cd" in row.figures else guess
     return {key: row.figures.get("cd", _USUAL[kind])}
 
 
-def _further(row: ListRow, lift: float, *names: str) -> dict[str, FigureOrWord]:
+def _further(row: ListRow, lift: float, *names: str) -> dict[str, model.FigureOrWord]:
     """Return further figures; a mass lighter than the piece is in water is left out."""
     mass = row.figure("mass")
     heavy = mass > 0.0 and mass * KILOGRAM_FORCE >= max(-lift, 0.0)

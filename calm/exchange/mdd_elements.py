@@ -15,13 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from calm.errors import refused
-from calm.exchange import design
-from calm.exchange.design import (
-    MOST_PIECES,
-    FigureOrWord,
-    ImportedComponent,
-    ImportedPiece,
-)
+from calm.exchange import model
 from calm.exchange.mat_file import MatVariables, RealArray, names
 from calm.files.definition import CATALOGUE_DENSITY
 from calm.units import KILOGRAM_FORCE
@@ -38,14 +32,14 @@ MODULI = (1.38e11, 3.45e8, 8.0e8, 3.45e8, 6.9e8, 6.9e10, 7.6e10, 1.0e11)
 polyethylene, Kevlar, aluminium, Dyneema [Pa]."""
 
 
-def piece_of(element: MddElement) -> ImportedPiece:
+def piece_of(element: MddElement) -> model.ImportedPiece:
     """Return the piece of an element that is not the anchor."""
     if element.is_line:
-        return ImportedPiece(_flexible(element), element.length)
-    return ImportedPiece(rigid(element))
+        return model.ImportedPiece(_flexible(element), element.length)
+    return model.ImportedPiece(rigid(element))
 
 
-def rigid(element: MddElement) -> ImportedComponent:
+def rigid(element: MddElement) -> model.ImportedComponent:
     """Return the definition of a rigid element, or of one clamped on.
 
     That program takes an element with a diameter for a sphere of that diameter, whatever its
@@ -53,8 +47,8 @@ def rigid(element: MddElement) -> ImportedComponent:
     faces.
     """
     lift = element.lift * KILOGRAM_FORCE
-    role = design.role_of(element.name, lift, fastener=element.is_fastener)
-    figures: dict[str, FigureOrWord]
+    role = model.role_of(element.name, lift, fastener=element.is_fastener)
+    figures: dict[str, model.FigureOrWord]
     if element.diameter > 0.0:
         kind = "sphere"
         figures = {"diameter": element.diameter, "length": element.length, "cx": element.cd}
@@ -69,7 +63,7 @@ def rigid(element: MddElement) -> ImportedComponent:
         figures["mass"] = element.mass
         volume = (element.mass + element.lift) / element.density
         figures["buoyancy"] = (CATALOGUE_DENSITY * volume - element.mass) * KILOGRAM_FORCE
-    component = ImportedComponent(element.name, kind, {**figures, "role": role})
+    component = model.ImportedComponent(element.name, kind, {**figures, "role": role})
     if kind == "body":
         component.comment = "The file gives it no size, so it has no drag."
     elif _is_too_small(element):
@@ -80,7 +74,7 @@ def rigid(element: MddElement) -> ImportedComponent:
     return component
 
 
-def rides_by_buoyancy(component: ImportedComponent) -> None:
+def rides_by_buoyancy(component: model.ImportedComponent) -> None:
     """Let a float ride as in that program: its draft and drag follow the buoyancy it uses.
 
     Its hull displaces, in proportion to the draft, no more than its net buoyancy needs.
@@ -108,11 +102,15 @@ def _is_too_small(element: MddElement) -> bool:
     return element.lift > CATALOGUE_DENSITY * volume
 
 
-def _flexible(element: MddElement) -> ImportedComponent:
+def _flexible(element: MddElement) -> model.ImportedComponent:
     """Return the definition of a wire, rope or chain; its Cd is of its width."""
-    figures: dict[str, FigureOrWord] = {"diameter": element.across, "cn": element.cd, "ct": 0.0}
+    figures: dict[str, model.FigureOrWord] = {
+        "diameter": element.across,
+        "cn": element.cd,
+        "ct": 0.0,
+    }
     weight = 0.0 - element.lift * KILOGRAM_FORCE
-    component = ImportedComponent.of_line(element.name, weight, figures)
+    component = model.ImportedComponent.of_line(element.name, weight, figures)
     modulus = element.modulus
     if modulus is not None and math.isfinite(modulus):
         component.figures["stiffness"] = modulus * math.pi / 4.0 * element.across**2
@@ -131,13 +129,13 @@ def _flexible(element: MddElement) -> ImportedComponent:
     return component
 
 
-def anchor_of(element: MddElement) -> ImportedComponent:
+def anchor_of(element: MddElement) -> model.ImportedComponent:
     """Return the definition of the lowest element; files give its weight with either sign."""
-    figures: dict[str, FigureOrWord] = {
+    figures: dict[str, model.FigureOrWord] = {
         "weight": abs(element.lift) * KILOGRAM_FORCE,
         "length": element.length,
     }
-    return ImportedComponent(element.name, "anchor", figures)
+    return model.ImportedComponent(element.name, "anchor", figures)
 
 
 @dataclass(frozen=True)
@@ -189,8 +187,10 @@ def read_elements(variables: MatVariables, suffix: str) -> tuple[list[MddElement
                 problems.append(f"`{name}` has {given} values for {count} elements")
         except ValueError as error:
             problems.append(str(error))
-    if count > MOST_PIECES:
-        problems.append(f"`H{suffix}` has {count} elements; more than {MOST_PIECES} are not read")
+    if count > model.MOST_PIECES:
+        problems.append(
+            f"`H{suffix}` has {count} elements; more than {model.MOST_PIECES} are not read"
+        )
     if problems or not count:
         return [], problems
     lift, drag, modulus, mass = (variables.row(f"{name}{suffix}") for name in _ROWS)
@@ -292,13 +292,13 @@ def is_moords(content: bytes) -> bool:
     return set(head.strip().split(",")) >= _MARKS
 
 
-def read_moords(path: Path) -> design.Design:
+def read_moords(path: Path) -> model.Design:
     """Read a design (InputError: its headings or figures are not those of that program)."""
     rows = list(csv.DictReader(io.StringIO(read_text(path))))
     if not rows or not rows[0].keys() >= _MARKS:
         raise refused(path, "is not a design of moords: its headings are others")
-    if len(rows) > MOST_PIECES:
-        raise refused(path, f"has {len(rows)} rows; more than {MOST_PIECES} are not read")
+    if len(rows) > model.MOST_PIECES:
+        raise refused(path, f"has {len(rows)} rows; more than {model.MOST_PIECES} are not read")
     problems: list[str] = []
     elements = [_element(row, place, problems) for place, row in enumerate(rows, 2)]
     if not problems and rows[0].get("bool_clampon") == "True":
@@ -308,7 +308,7 @@ def read_moords(path: Path) -> design.Design:
     anchor = anchor_of(elements[0])
     if not elements[0].lift:
         del anchor.figures["weight"]
-    items = [ImportedPiece(anchor)]
+    items = [model.ImportedPiece(anchor)]
     for row, element in zip(rows[1:], elements[1:], strict=True):
         if row.get("bool_clampon") == "True":
             host, length = items[-1], items[-1].extent
@@ -318,7 +318,7 @@ def read_moords(path: Path) -> design.Design:
         else:
             items.append(piece_of(element))
     name = rows[0].get("mooring") or path.stem
-    return design.Design("moords", name, items[::-1], None, notes=[_NOTE], in_kilograms=True)
+    return model.Design("moords", name, items[::-1], None, notes=[_NOTE], in_kilograms=True)
 
 
 def _element(row: dict[str, str], place: int, problems: list[str]) -> MddElement:

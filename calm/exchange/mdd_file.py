@@ -8,15 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from calm.errors import refused
-from calm.exchange import mdd_elements
-from calm.exchange.design import (
-    CurrentRecord,
-    Design,
-    ImportedPiece,
-    ImportedTow,
-    ImportedWater,
-    Remark,
-)
+from calm.exchange import mdd_elements, model
 from calm.exchange.exported_parts import ExportedLine, ExportedPart
 from calm.exchange.mat_file import MatVariables, RealArray, read_variables
 from calm.exchange.mdd_elements import MddElement
@@ -43,7 +35,7 @@ _MATLAB_EPOCH = 719529.0  # datenum of 1 January 1970
 _EARLIEST, _LATEST = 500_000.0, 1_000_000.0  # datenums that are dates of this age
 
 
-def read_mdd(path: Path) -> Design:
+def read_mdd(path: Path) -> model.Design:
     """Read a mooring or a tow.
 
     InputError: the file is damaged, is none of that program, or holds what CALM cannot represent.
@@ -64,7 +56,7 @@ def read_mdd(path: Path) -> Design:
     if problems := [*problems, *more]:
         raise refused(path, *problems)
     program = "Mooring Design & Dynamics"
-    design = Design(program, path.stem, [], None, notes=[_NOTE], in_kilograms=True)
+    design = model.Design(program, path.stem, [], None, notes=[_NOTE], in_kilograms=True)
     try:
         design.water, design.record = read_water(variables, towed, design.guessed)
     except ValueError as error:
@@ -80,12 +72,12 @@ def read_mdd(path: Path) -> Design:
     return design
 
 
-def _lay_mooring(design: Design, elements: list[MddElement], path: Path) -> None:
+def _lay_mooring(design: model.Design, elements: list[MddElement], path: Path) -> None:
     last = elements[-1]
     if last.is_line or len(elements) < 2 or last.lift == 0.0:
         raise refused(path, f"element {last.number}, {last.name}, is not an anchor with a weight")
     design.items = [mdd_elements.piece_of(element) for element in elements[:-1]]
-    design.items.append(ImportedPiece(mdd_elements.anchor_of(last)))
+    design.items.append(model.ImportedPiece(mdd_elements.anchor_of(last)))
     depth = design.water.depth if design.water is not None else None
     if depth is None or _STRETCHED * sum(item.extent for item in design.items) >= depth:
         design.items[0] = mdd_elements.piece_of(replace(elements[0], mass=None))
@@ -93,7 +85,7 @@ def _lay_mooring(design: Design, elements: list[MddElement], path: Path) -> None
 
 
 def _lay_tow(
-    design: Design, elements: list[MddElement], variables: MatVariables, path: Path
+    design: model.Design, elements: list[MddElement], variables: MatVariables, path: Path
 ) -> None:
     """Lay a tow: the file runs from the body up, and ends with a mark for the ship."""
     end = elements[-1]
@@ -104,14 +96,16 @@ def _lay_tow(
     speed = math.hypot(east, north)
     if speed == 0.0:
         raise refused(path, "the ship of this tow does not move (`Usp`, `Vsp`)")
-    design.tow = ImportedTow(speed, bearing_of(east, north))
+    design.tow = model.ImportedTow(speed, bearing_of(east, north))
     height = variables.first("afh")
     if height > 0.0:
         what = f"an A-frame of {height:g} m is only drawn: the wire counts from the water"
-        design.dropped.append(Remark("afh", what))
+        design.dropped.append(model.Remark("afh", what))
 
 
-def _clamp(design: Design, clamped: list[MddElement], variables: MatVariables, path: Path) -> None:
+def _clamp(
+    design: model.Design, clamped: list[MddElement], variables: MatVariables, path: Path
+) -> None:
     """Hang what is clamped on: by element and share of its length, counted from its lower end."""
     host, share, height = (variables.row(name).tolist() for name in ("Jobj", "Pobj", "ZCO"))
     by_share = len(host) == len(share) == len(clamped)
@@ -133,7 +127,7 @@ def _clamp(design: Design, clamped: list[MddElement], variables: MatVariables, p
         design.items[place[0]].clamp(mdd_elements.rigid(element), place[1], guess)
 
 
-def _by_share(design: Design, host: float, share: float) -> tuple[int, float] | None:
+def _by_share(design: model.Design, host: float, share: float) -> tuple[int, float] | None:
     """Return the piece that an element became, and how far below its upper end a share of it is."""
     count, number = len(design.items), round(host) - 1
     if design.tow is not None:
@@ -145,7 +139,7 @@ def _by_share(design: Design, host: float, share: float) -> tuple[int, float] | 
     return number, min(max((1.0 - share) * length, 0.0), length)
 
 
-def _by_height(items: list[ImportedPiece], height: float) -> tuple[int, float] | None:
+def _by_height(items: list[model.ImportedPiece], height: float) -> tuple[int, float] | None:
     """Return the piece at a height above the seabed (in a tow above the lower end of the body)."""
     below = 0.0
     for number in range(len(items) - 1, -1, -1):
@@ -161,8 +155,8 @@ def _agree(one: tuple[int, float], other: tuple[int, float]) -> bool:
 
 
 def read_water(
-    variables: MatVariables, towed: bool, guessed: list[Remark]
-) -> tuple[ImportedWater | None, CurrentRecord | None]:
+    variables: MatVariables, towed: bool, guessed: list[model.Remark]
+) -> tuple[model.ImportedWater | None, model.CurrentRecord | None]:
     """Return the environment of a file, and the record where it has several profiles.
 
     In a mooring `z` is the height above the seabed and its greatest the depth of the water, in a
@@ -198,12 +192,12 @@ def read_water(
         if not np.all(np.isfinite(density)):
             raise ValueError("`rho` has gaps in its first profile")
         what = f"the first of {densities.shape[1]} profiles; a mooring has one density"
-        guessed.append(Remark("environment.density", what))
+        guessed.append(model.Remark("environment.density", what))
     order = np.arange(levels.size) if towed else np.argsort(seabed - levels, kind="stable")
     depth = np.sort(levels) if towed else (seabed - levels)[order]
     u, v, w = u[order], v[order], w[order]
     keep = np.append(True, np.diff(depth) > 0.0)
-    water = ImportedWater(None if towed else seabed)
+    water = model.ImportedWater(None if towed else seabed)
     if density.size:
         rows = list(zip(depth[keep].tolist(), density[order][keep].tolist(), strict=True))
         alike = all(row[1] == rows[0][1] for row in rows)
@@ -214,7 +208,7 @@ def read_water(
     if times == 1:
         return water, None
     days, epoch = _days(variables.reals("time").ravel(), times, guessed)
-    return water, CurrentRecord(days, epoch, depth[keep], u[keep].T, v[keep].T, w[keep].T)
+    return water, model.CurrentRecord(days, epoch, depth[keep], u[keep].T, v[keep].T, w[keep].T)
 
 
 def _profiles(variables: MatVariables, name: str, levels: int) -> RealArray | None:
@@ -241,14 +235,14 @@ def _filled(values: RealArray | None, name: str, levels: int, times: int) -> Rea
     return np.broadcast_to(values, (levels, times))
 
 
-def _days(time: RealArray, times: int, guessed: list[Remark]) -> tuple[RealArray, str]:
+def _days(time: RealArray, times: int, guessed: list[model.Remark]) -> tuple[RealArray, str]:
     """Days, and the date from which they count."""
     if time.size != times:
-        guessed.append(Remark("record.time", "an hour between profiles, from 2000-01-01"))
+        guessed.append(model.Remark("record.time", "an hour between profiles, from 2000-01-01"))
         return np.arange(times) / 24.0, "2000-01-01"
     if np.all((time > _EARLIEST) & (time < _LATEST)):
         return time - _MATLAB_EPOCH, "1970-01-01"
-    guessed.append(Remark("record.time", "days from 2000-01-01"))
+    guessed.append(model.Remark("record.time", "days from 2000-01-01"))
     return time - time[0], "2000-01-01"
 
 

@@ -11,16 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from calm.errors import refused
-from calm.exchange.design import (
-    MOST_PIECES,
-    Design,
-    FigureOrWord,
-    ImportedComponent,
-    ImportedLeg,
-    ImportedPiece,
-    ImportedWater,
-    Remark,
-)
+from calm.exchange import model
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
 from calm.whole_file import read_text
 
@@ -68,9 +59,9 @@ class _File:
     at: dict[str, list[_Row]]
     depth: float
     gravity: float
-    design: Design
+    design: model.Design
 
-    def piece(self, line: _Row) -> ImportedPiece:
+    def piece(self, line: _Row) -> model.ImportedPiece:
         """Return a line as a piece (InputError: it has no type, or no length)."""
         kind = self.types.get(line.words.get("type", ""))
         if kind is None:
@@ -78,7 +69,7 @@ class _File:
         length = line.number("length")
         if length <= 0.0:
             raise line.refuse("a line has no length")
-        return ImportedPiece(_cable(kind, self.gravity), length)
+        return model.ImportedPiece(_cable(kind, self.gravity), length)
 
     def walk(
         self, start: str, left: list[_Row], breaks: Collection[str]
@@ -95,9 +86,11 @@ class _File:
             names.append(b if a == names[-1] else a)
         return names, lines
 
-    def along(self, names: list[str], lines: list[_Row], told: set[str]) -> list[ImportedPiece]:
+    def along(
+        self, names: list[str], lines: list[_Row], told: set[str]
+    ) -> list[model.ImportedPiece]:
         """Return lines, and what is at the points before and behind each that is not `told` yet."""
-        items: list[ImportedPiece] = []
+        items: list[model.ImportedPiece] = []
         for at, line in zip(names, [*lines, None], strict=True):
             if not _is_held(self.points[at]) and at not in told:
                 there = _point_of(self.points[at])
@@ -107,7 +100,7 @@ class _File:
         return items
 
 
-def read_moordyn(path: Path) -> Design:
+def read_moordyn(path: Path) -> model.Design:
     """Read a file: a single line from an anchor up to a float, or a net of legs.
 
     InputError: it cannot be read, or holds a body or a rod.
@@ -120,8 +113,8 @@ def read_moordyn(path: Path) -> Design:
     lines = tables["lines"]
     if not points or not lines:
         raise refused(path, f"has {len(points)} points and {len(lines)} lines")
-    if len(lines) > MOST_PIECES:
-        raise refused(path, f"has {len(lines)} lines; more than {MOST_PIECES} are not read")
+    if len(lines) > model.MOST_PIECES:
+        raise refused(path, f"has {len(lines)} lines; more than {model.MOST_PIECES} are not read")
     at: dict[str, list[_Row]] = {}
     for line in lines:
         for name in line.ends:
@@ -136,23 +129,25 @@ def read_moordyn(path: Path) -> Design:
     gravity = _option(options, "g", "gravity", default=STANDARD_GRAVITY)  # its own
     kind, beside = options.get("currents", "0"), path.with_name(_CURRENTS)
     current = _currents(beside) if kind in _STEADY and beside.is_file() else ()
-    water = ImportedWater(depth, density, gravity, current)
-    design = Design("MoorDyn", path.stem, [], water, notes=[_NOTE])
+    water = model.ImportedWater(depth, density, gravity, current)
+    design = model.Design("MoorDyn", path.stem, [], water, notes=[_NOTE])
     if kind not in ("0", "none") and not current:
         lacks = f"without {_CURRENTS} beside the file" if kind in _STEADY else "which vary in time"
-        design.dropped.append(Remark("current", f"`Currents` {kind}, {lacks}: the water is still"))
+        design.dropped.append(
+            model.Remark("current", f"`Currents` {kind}, {lacks}: the water is still")
+        )
     if options.get("wavekin", "0") not in ("0", "none"):
-        design.dropped.append(Remark("waves", f"`WaveKin` {options['wavekin']}"))
+        design.dropped.append(model.Remark("waves", f"`WaveKin` {options['wavekin']}"))
     types = {row.words.get("name", ""): row for row in tables["types"]}
     file = _File(points, types, lines, at, depth, gravity, design)
-    design.dropped.append(Remark("line types", "damping, bending stiffness, added mass"))
+    design.dropped.append(model.Remark("line types", "damping, bending stiffness, added mass"))
     single = _single_line(file)
     if single is None:
         _lay_net(file, path)
         return design
     names, down = single
     items = file.along(names, down, {names[0], names[-1]})
-    anchor = ImportedPiece(_anchor_of(points[names[-1]], depth))
+    anchor = model.ImportedPiece(_anchor_of(points[names[-1]], depth))
     design.items = [_upper_end(points[names[0]]), *items, anchor]
     return design
 
@@ -174,7 +169,7 @@ def _single_line(file: _File) -> tuple[list[str], list[_Row]] | None:
     return None if left else found
 
 
-def _lift(figures: dict[str, FigureOrWord]) -> float:
+def _lift(figures: dict[str, model.FigureOrWord]) -> float:
     """What a point lifts, as a mass [kg]."""
     return CATALOGUE_DENSITY * float(figures["volume"]) - float(figures["mass"])
 
@@ -203,34 +198,36 @@ def _currents(path: Path) -> tuple[tuple[float, float, float, float], ...]:
     return tuple(sorted(rows))
 
 
-def _cable(kind: _Row, gravity: float) -> ImportedComponent:
+def _cable(kind: _Row, gravity: float) -> model.ImportedComponent:
     """Return a line type; its weight in water follows from its mass and the water it displaces."""
     across = kind.number("diameter")
     if across <= 0.0:
         raise kind.refuse("a line type has no diameter")
     mass = kind.number("mass")
     wet = (mass - CATALOGUE_DENSITY * (math.pi / 4.0 * across**2)) * gravity
-    figures: dict[str, FigureOrWord] = {
+    figures: dict[str, model.FigureOrWord] = {
         "diameter": across, "cn": kind.number("cd", 0.0), "ct": kind.number("cdt", 0.0),
     }  # fmt: skip
     name = kind.words["name"]
-    component = ImportedComponent.of_line(name, wet, figures)
+    component = model.ImportedComponent.of_line(name, wet, figures)
     component.figures["mass"] = mass
     if (stiffness := kind.number("ea", 0.0)) > 0.0:
         component.figures["stiffness"] = stiffness
     return component
 
 
-def _point_of(point: _Row) -> ImportedPiece | None:
+def _point_of(point: _Row) -> model.ImportedPiece | None:
     """Return what is at a free point; None where it has neither weight nor drag."""
     figures = _figures(point)
     if not any(figures[key] for key in ("mass", "volume", "drag_area")):
         return None
     figures["role"] = "float" if _lift(figures) > 0.0 else "instrument"
-    return ImportedPiece(ImportedComponent(f"point {point.words['id']}", "body", figures))
+    return model.ImportedPiece(
+        model.ImportedComponent(f"point {point.words['id']}", "body", figures)
+    )
 
 
-def _figures(point: _Row) -> dict[str, FigureOrWord]:
+def _figures(point: _Row) -> dict[str, model.FigureOrWord]:
     for key in ("fx", "fy", "fz"):
         if point.number(key, 0.0) != 0.0:
             raise point.refuse(f"`{key}` pulls at the line from outside")
@@ -240,7 +237,7 @@ def _figures(point: _Row) -> dict[str, FigureOrWord]:
     }  # fmt: skip
 
 
-def _upper_end(top: _Row) -> ImportedPiece:
+def _upper_end(top: _Row) -> model.ImportedPiece:
     """Return the float: a free point, or one that is held at the surface and would float there."""
     figures = _figures(top)
     if _lift(figures) <= 0.0:
@@ -248,13 +245,15 @@ def _upper_end(top: _Row) -> ImportedPiece:
     told = "the file holds the upper end; here a float of its point, free to move"
     guess = {"volume": told} if _is_held(top) else {}
     name = f"point {top.words['id']}"
-    return ImportedPiece(ImportedComponent(name, "body", {**figures, "role": "float"}, guess))
+    return model.ImportedPiece(
+        model.ImportedComponent(name, "body", {**figures, "role": "float"}, guess)
+    )
 
 
-def _anchor_of(point: _Row, depth: float) -> ImportedComponent:
+def _anchor_of(point: _Row, depth: float) -> model.ImportedComponent:
     """Return an anchor as high as its point stands above the seabed."""
     height = depth + point.number("z")
-    return ImportedComponent("anchor", "anchor", {"length": height} if height > 1e-6 else {})
+    return model.ImportedComponent("anchor", "anchor", {"length": height} if height > 1e-6 else {})
 
 
 @dataclass(frozen=True)
@@ -376,17 +375,17 @@ def _is_anchor(file: _File, name: str) -> bool:
 
 def _leg(
     file: _File, name: str, names: list[str], lines: list[_Row], told: set[str]
-) -> ImportedLeg:
+) -> model.ImportedLeg:
     """Return a leg from its upper end; what is at a point goes to the first leg that has it."""
     items = file.along(names, lines, told)
     upper, lower = (_end(file, at) for at in (names[0], names[-1]))
     if _is_anchor(file, names[-1]):
         point = file.points[names[-1]]
-        items.append(ImportedPiece(_anchor_of(point, file.depth)))
+        items.append(model.ImportedPiece(_anchor_of(point, file.depth)))
         depth = 0.0 - point.number("z")
         deeper = f", depth: {depth:.9g} m" if depth > file.depth else ""
         lower = f"{{anchor: {{at: {_at(point)}{deeper}}}}}"
-    return ImportedLeg(name, items, upper, lower)
+    return model.ImportedLeg(name, items, upper, lower)
 
 
 def _end(file: _File, name: str) -> str:

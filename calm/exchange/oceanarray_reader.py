@@ -15,15 +15,7 @@ import numpy as np
 
 from calm.assemble.catalogue_search import Index
 from calm.errors import InputError, Problem, refused
-from calm.exchange.design import (
-    MOST_PIECES,
-    Design,
-    ImportedComponent,
-    ImportedPiece,
-    ImportedWater,
-    Remark,
-    is_called,
-)
+from calm.exchange import model
 from calm.exchange.list_cells import number, unit_called
 from calm.exchange.list_reader import Library, complete_rows, key_of, read_library
 from calm.exchange.list_rows import ListRow, component_of
@@ -49,7 +41,7 @@ def is_oceanarray(content: bytes) -> bool:
 
 def read_oceanarray(
     path: Path, stands_for: Mapping[str, str], elements: Path | None = None
-) -> Design:
+) -> model.Design:
     """Read such a configuration.
 
     Parameters
@@ -78,15 +70,15 @@ def read_oceanarray(
         said = f"lists {len(beside)} instruments and no line: its floats, releases and anchor, with"
         said += " `hab` or `length` and a name in `label`, belong under `inline`"
         problems.append(document.problem((), said))
-    if len(line) + len(beside) > MOST_PIECES:
-        problems.append(document.problem((), f"has more than {MOST_PIECES} pieces"))
+    if len(line) + len(beside) > model.MOST_PIECES:
+        problems.append(document.problem((), f"has more than {model.MOST_PIECES} pieces"))
     if problems:
         raise InputError(problems)
     parts = _Parts(document, stands_for, library, problems)
-    design = Design("oceanarray", str(document.data.get("name") or path.stem), [], None)
+    design = model.Design("oceanarray", str(document.data.get("name") or path.stem), [], None)
     _hang(beside, _strung(line, parts, design), parts)
     current = "the file has none: still water"
-    design.water = ImportedWater(depth, guesses={"current": current})
+    design.water = model.ImportedWater(depth, guesses={"current": current})
     design.heading = _heading(document, problems)
     if problems:
         raise InputError(sorted(problems, key=lambda problem: problem.line))
@@ -121,7 +113,7 @@ class _Entry:
     @property
     def is_anchor(self) -> bool:
         """Return whether it is called an anchor."""
-        return is_called(" ".join(self.names), "anchor")
+        return model.is_called(" ".join(self.names), "anchor")
 
     def lower_end(self, extent: float) -> float | None:
         """Return the height of its lower end, so long as it is [m]."""
@@ -180,8 +172,8 @@ def _entries(
         if height["hab"] is None and height["depth"] is not None and depth is not None:
             height["hab"] = depth - height["depth"]
         repeat = height["repeat"] or 1.0
-        if not 1.0 <= repeat <= MOST_PIECES:
-            said = f"repeat: 1 to {MOST_PIECES} are read"
+        if not 1.0 <= repeat <= model.MOST_PIECES:
+            said = f"repeat: 1 to {model.MOST_PIECES} are read"
             problems.append(document.problem((*place, "repeat"), said))
             continue
         instrument = str(item.get("instrument") or "").strip()
@@ -209,22 +201,22 @@ class _Parts:
     library: Library
     problems: list[Problem]
     catalogue: Catalogue = field(default_factory=Catalogue.load)
-    _known: dict[tuple[str, ...], tuple[ImportedComponent, str] | None] = field(
+    _known: dict[tuple[str, ...], tuple[model.ImportedComponent, str] | None] = field(
         default_factory=dict
     )
 
-    def of(self, entry: _Entry) -> tuple[ImportedComponent, str] | None:
+    def of(self, entry: _Entry) -> tuple[model.ImportedComponent, str] | None:
         """Return what an item is, and what of that is guessed; None where nothing is known."""
         said = f"neither the library nor the catalogue has `{entry.names[0]}`"
         return self._named(entry.names, entry.instrument, entry.place, said)
 
-    def rope(self, entry: _Entry, between: str) -> tuple[ImportedComponent, str] | None:
+    def rope(self, entry: _Entry, between: str) -> tuple[model.ImportedComponent, str] | None:
         """Return the rope below an item, between pieces where none is listed."""
         return self._named((ROPE,), "", entry.place, f"no line is listed {between}")
 
     def _named(
         self, names: tuple[str, ...], instrument: str, place: tuple[str | int, ...], said: str
-    ) -> tuple[ImportedComponent, str] | None:
+    ) -> tuple[model.ImportedComponent, str] | None:
         if names not in self._known:
             self._known[names] = self._found(names, instrument)
             if self._known[names] is None:
@@ -234,7 +226,7 @@ class _Parts:
 
     def _found(
         self, names: tuple[str, ...], instrument: str
-    ) -> tuple[ImportedComponent, str] | None:
+    ) -> tuple[model.ImportedComponent, str] | None:
         for name in names:
             if id := self.stands_for.get(name, ""):
                 return self._entry(name, id), ""
@@ -245,7 +237,7 @@ class _Parts:
                 component = component_of(row, anchor=row.is_anchor)
                 self.problems += refused(self.document.path, *row.problems).problems
                 return component, ""
-        if is_called(" ".join(names), "anchor"):
+        if model.is_called(" ".join(names), "anchor"):
             return self._anchor(names), ""
         for name in names:
             if self.catalogue.entry(name) is not None:
@@ -255,16 +247,16 @@ class _Parts:
             return self._entry(instrument, found[0].id), guess
         return None
 
-    def _entry(self, name: str, id: str) -> ImportedComponent:
+    def _entry(self, name: str, id: str) -> model.ImportedComponent:
         definition = self.catalogue.get(id)
         length = getattr(definition, "length", None) or 0.0
         kind = definition.kind if isinstance(definition, Component) else "body"
         kind = "anchor" if isinstance(definition, Anchor) else kind
-        return ImportedComponent(name, kind, {"length": float(length)}, entry=id)
+        return model.ImportedComponent(name, kind, {"length": float(length)}, entry=id)
 
-    def _anchor(self, names: tuple[str, ...]) -> ImportedComponent:
+    def _anchor(self, names: tuple[str, ...]) -> model.ImportedComponent:
         mass = _MASS.search(" ".join(names))
-        anchor = ImportedComponent(names[0], "anchor", {"length": 0.0})
+        anchor = model.ImportedComponent(names[0], "anchor", {"length": 0.0})
         if mass:
             anchor.figures["mass"] = float(mass[1])
             anchor.guesses["mass"] = "read from its label, taken as steel"
@@ -275,22 +267,24 @@ class _Parts:
 class _Strung:
     """A line with the heights of its pieces' lower ends, as the file has them and by lengths."""
 
-    items: list[ImportedPiece]
+    items: list[model.ImportedPiece]
     nominal: list[float]
     height: list[float]
 
 
-def _strung(line: list[_Entry], parts: _Parts, design: Design) -> _Strung:
+def _strung(line: list[_Entry], parts: _Parts, design: model.Design) -> _Strung:
     """Return the pieces from the anchor up, ropes between them, and put them into the design."""
-    items: list[ImportedPiece] = []
+    items: list[model.ImportedPiece] = []
     nominal, height = [0.0], [0.0]  # of lower ends; the last is that of the piece to come
     if not line[-1].is_anchor:
-        items.append(ImportedPiece(ImportedComponent("anchor", "anchor", {"length": 0.0})))
+        items.append(
+            model.ImportedPiece(model.ImportedComponent("anchor", "anchor", {"length": 0.0}))
+        )
         nominal, height = [0.0, 0.0], [0.0, 0.0]
-        design.guessed.append(Remark("line.anchor", "the file has none"))
+        design.guessed.append(model.Remark("line.anchor", "the file has none"))
     below, roped = "the anchor", 0.0
 
-    def add(item: ImportedPiece, at: float, extent: float) -> None:
+    def add(item: model.ImportedPiece, at: float, extent: float) -> None:
         items.append(item)
         nominal[-1] = at
         nominal.append(at + extent)
@@ -314,22 +308,24 @@ def _strung(line: list[_Entry], parts: _Parts, design: Design) -> _Strung:
             if gap > _CLOSE and not roped:
                 between = f"between {below} and `{entry.label}`, {gap:.6g} m above it"
                 if (rope := parts.rope(entry, between)) is not None:
-                    piece = ImportedPiece(rope[0], gap, guess="as long as the heights leave room")
+                    piece = model.ImportedPiece(
+                        rope[0], gap, guess="as long as the heights leave room"
+                    )
                     add(piece, nominal[-1], gap)
             elif roped and abs(gap) > max(_OFF * roped, _ROUNDED):
                 said = (
                     f"its lines below are {roped:.6g} m long, its height says {roped + gap:.6g} m"
                 )
-                design.guessed.append(Remark(entry.label, said))
+                design.guessed.append(model.Remark(entry.label, said))
             elif gap < -_CLOSE:
                 said = f"stands {-gap:.3g} m within what is below it: put on top of that"
-                design.guessed.append(Remark(entry.label, said))
+                design.guessed.append(model.Remark(entry.label, said))
                 lower = nominal[-1]
             at, below, roped = lower, f"`{entry.label}`", 0.0
         elif flexible:
             roped += extent * entry.count
         for repeat in range(entry.count):
-            piece = ImportedPiece(
+            piece = model.ImportedPiece(
                 component, extent if flexible else None, guess=guess,
                 label=entry.label if entry.count == 1 else "",
                 serial=entry.serial if entry.count == 1 else "",

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from calm.errors import InputError, Problem, UsageError
 from calm.motion.line_places import LinePlaces
 from calm.motion.measurements import interpolated
-from calm.records.cf_files import UnreadableError, is_dataset, open_current, read_times, reading
+from calm.records.cf_files import UnreadableError, holds_arrays, open_current, read_times, reading
 from calm.records.instrument_series import InstrumentSeries
 
 if TYPE_CHECKING:
@@ -34,33 +34,21 @@ class MooringDepths:
     Attributes
     ----------
     time : (n,) to the nanosecond, rising
-    label, serial : (p,) of clamps and pieces; serials are empty where not known
-    clamps : how many of the points are clamps, which come first
+    places : the points, with their depths in the calmest hours: a twentieth of the times is less
+        deep
     depth, deviation : (n, p) and standard deviation [m]
     place : latitude and longitude [degrees]; empty where not known
     seabed : depth of the last piece, the anchor [m]; NaN where not known
     attributes : of the file
     """
 
-    path: Path
     time: NDArray[np.datetime64]
-    label: tuple[str, ...]
-    serial: tuple[str, ...]
-    clamps: int
+    places: LinePlaces
     depth: Floats
     deviation: Floats
     place: tuple[float, ...]
     seabed: float
     attributes: Mapping[str, Any]
-
-    @property
-    def places(self) -> LinePlaces:
-        """The points with their depths in the calmest hours: a twentieth of the times is less
-        deep.
-        """
-        known = np.where(np.isfinite(self.depth).any(axis=0), self.depth, 0.0)
-        still = np.asarray(np.nanpercentile(known, 5.0, axis=0), np.float64)
-        return LinePlaces(self.path.name, self.label, self.serial, self.clamps, still)
 
 
 def read_depths(path: Path) -> MooringDepths:
@@ -70,7 +58,7 @@ def read_depths(path: Path) -> MooringDepths:
     """
     if not path.exists():
         raise InputError([Problem(str(path), 0, 0, "no such file")])
-    if not path.is_dir() and not is_dataset(path):
+    if not holds_arrays(path):
         raise InputError([Problem(str(path), 0, 0, "is not a result of calm motion")])
     with reading(path), open_current(path) as dataset:
         return _understood(dataset, path)
@@ -90,8 +78,8 @@ def _understood(dataset: Dataset, path: Path) -> MooringDepths:
             )
         mine = [str(one) for one in dataset[f"{dimension}_label"].values.tolist()]
         labels += mine
-        known = dataset.variables.get(f"{dimension}_serial")
-        serials += [""] * len(mine) if known is None else [str(one) for one in known.values]
+        told = dataset.variables.get(f"{dimension}_serial")
+        serials += [""] * len(mine) if told is None else [str(one) for one in told.values]
         depth.append(np.asarray(dataset[name].values, np.float64))
         deviation.append(np.asarray(dataset[spread].values, np.float64))
         clamps = len(mine) if dimension == "clamp" else clamps
@@ -101,12 +89,15 @@ def _understood(dataset: Dataset, path: Path) -> MooringDepths:
     whole = np.hstack(depth)
     if len(time) < 2 or not np.isfinite(whole).any():
         raise UnreadableError("has no depths: none of its times is solved")
-    place = [float(dataset[a].values) for a in ("latitude", "longitude") if a in dataset.variables]
+    axes = [a for a in ("latitude", "longitude") if a in dataset.variables]
+    position = tuple(float(dataset[axis].values) for axis in axes) if len(axes) == 2 else ()
     seabed = float(np.nanmedian(whole[:, -1])) if np.isfinite(whole[:, -1]).any() else np.nan
+    known = np.where(np.isfinite(whole).any(axis=0), whole, 0.0)
+    still = np.asarray(np.nanpercentile(known, 5.0, axis=0), np.float64)
+    places = LinePlaces(path.name, tuple(labels), tuple(serials), clamps, still)
     return MooringDepths(
-        path, time, tuple(labels), tuple(serials), clamps, whole, np.hstack(deviation),
-        tuple(place) if len(place) == 2 else (), seabed, dict(dataset.attrs),
-    )  # fmt: skip
+        time, places, whole, np.hstack(deviation), position, seabed, dict(dataset.attrs)
+    )
 
 
 MOST = 5_000_000
@@ -191,7 +182,7 @@ def gather(
     for at, below in each:
         if each.count((at, below)) > 1:
             who = ", ".join(series[i].source for i in points if points[i] == at)
-            raise UsageError(f"two series are of `{depths.label[at]}`: {who}; leave one out")
+            raise UsageError(f"two series are of `{depths.places.label[at]}`: {who}; leave one out")
     order = sorted(points, key=lambda i: still[points[i]] + series[i].below)
     shape = len(time), len(order)
     value, depth, deviation = (np.full(shape, np.nan) for _ in range(3))
@@ -220,4 +211,6 @@ def gather(
             sums = np.bincount(bin_of[good], known[good], minlength=len(time))
             with np.errstate(invalid="ignore"):
                 table[:, column] = sums / count
-    return Samples(time, tuple(depths.label[points[i]] for i in order), depth, deviation, value)
+    return Samples(
+        time, tuple(depths.places.label[points[i]] for i in order), depth, deviation, value
+    )

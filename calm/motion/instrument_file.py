@@ -95,7 +95,7 @@ def read_instruments(
 
 
 def _read(path: Path, seabed: float, replacing: bool) -> Instruments:
-    if not path.is_file() or not cf_files.is_dataset(path):
+    if not path.is_file() or not cf_files.holds_arrays(path):
         raise InputError([Problem(str(path), 0, 0, "is not NetCDF, RODB, .cnv or RBR's table")])
     with cf_files.reading(path), cf_files.open_current(path) as dataset:
         if groups := cf_files.groups_of(path):
@@ -189,10 +189,10 @@ def write_depths(
             continue
         depth[:, j], spread[:, j], flag[:, j] = at_own_times(result, point, instruments.time, gap)
     # values as they stand, but for texts: kept as characters they would be split once more
-    if cf_files.is_netcdf(instruments.path):
+    if engine := cf_files.engine_of(instruments.path):
         with xr.open_dataset(
             instruments.path,
-            engine=cf_files.engine_of(instruments.path),
+            engine=engine,
             mask_and_scale=False,
             decode_times=False,
             decode_coords=False,

@@ -16,7 +16,6 @@ from calm.physics.line import Floats
 from calm.records import cf_files, instrument_series
 from calm.records.attributes import words_of
 from calm.records.cf_files import UnreadableError, factor_of, find_times, holdings, open_current
-from calm.records.current_file import holds_arrays
 from calm.records.headings import read_time_columns
 from calm.records.velocity import MISSING, flag_variable
 
@@ -86,7 +85,7 @@ def read_sensors(
             raise InputError([Problem(str(path), 0, 0, "no such file")])
         mine = (
             _from_arrays(path, flags, latitude, seabed)
-            if holds_arrays(path)
+            if cf_files.holds_arrays(path)
             else _from_csv(path, latitude)
         )
         if label:
@@ -223,7 +222,7 @@ def read_sea_level(path: Path) -> tuple[NDArray[np.datetime64], Floats]:
     """
     if not path.exists():
         raise InputError([Problem(str(path), 0, 0, "no such file")])
-    if not holds_arrays(path):
+    if not cf_files.holds_arrays(path):
         table = read_time_columns(path, ("length",), "level[m]")
         if len(table.names) != 1:
             message = "has several columns; the sea level is one: `time,level[m]`"

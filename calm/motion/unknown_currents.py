@@ -29,8 +29,10 @@ from calm.motion.whole_record import common_beforehand, fixed_slopes, forwards_o
 from calm.physics.line import Floats, Integers
 
 KNOTS, FINER = 6, 2.2
-"""Depths at which the speed is unknown; the power of their share of the depth below the top of the
-line by which they are closer together above, as currents change most there."""
+"""Depths at which the speed is unknown; the power of their share of the depth below the uppermost
+by which they are closer together above, as currents change most there."""
+DOWN = 0.9
+"""Share of the times at which the top of the line is at the uppermost of them or above it."""
 SURFACE, DECAY, LEAST = 0.3, 400.0, 0.03
 """The speeds that are assumed: at the top [m/s], decaying over this depth [m], the scale of the
 thermocline, and what is added everywhere [m/s]."""
@@ -78,9 +80,16 @@ class SpeedLaw:
 
 
 def with_knots(measured: MooringMeasurements, mooring: Mooring) -> MooringMeasurements:
-    """Return what was measured with the knots as its levels, whose currents are not known."""
-    top, seabed = float(Forward(mooring, {}).still.min()), float(mooring.water.depth)
-    knots = max(top, 0.0) + (seabed - max(top, 0.0)) * np.linspace(0.0, 1.0, KNOTS) ** FINER
+    """Return what was measured with the knots as its levels, whose currents are not known.
+
+    The uppermost is where the top of the line is in strong currents, by the uppermost sensor: above
+    it no pressure says anything of the speed.
+    """
+    still, seabed = Forward(mooring, {}).still, float(mooring.water.depth)
+    sensor = int(np.argmin(still[measured.point]))
+    down = float(np.nanquantile(measured.depth[:, sensor], DOWN)) - still[measured.point[sensor]]
+    top = max(float(still.min()), 0.0) + max(down, 0.0)
+    knots = top + (seabed - top) * np.linspace(0.0, 1.0, KNOTS) ** FINER
     shape = len(measured.time), KNOTS
     return replace(
         measured,

@@ -17,14 +17,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.errors import CalmError, refused
+from calm.physics.line import Floats
 from calm.records.current_terms import ZONES_OF_UTC, TimeChoiceError
 from calm.records.instrument_text import is_instrument_text, read_instrument_text
 from calm.units import QuantityError, unit_factor
 
 if TYPE_CHECKING:
     import xarray as xr
-
-    Floats = NDArray[np.float64]
 
 _TIME_NAMES = ("time", "TIME", "Time", "time_counter", "ocean_time", "MT")
 _CALENDARS = ("standard", "gregorian", "proleptic_gregorian")
@@ -53,27 +52,29 @@ _KINDS = {
 """What files begin with that hold currents, and are of a kind that is not read."""
 
 
+_ENGINES = {b"\x89HDF": "h5netcdf", **dict.fromkeys((b"CDF\x01", b"CDF\x02", b"CDF\x05"), "scipy")}
+_ZARR = ("zarr.json", ".zgroup", ".zmetadata")
+
+
 class UnreadableError(Exception):
     """The file does not hold a current that can be understood; the text says why."""
 
 
-def is_dataset(path: Path) -> bool:
-    """Return whether a file is NetCDF, by its first bytes, or text of one instrument.
+def holds_arrays(path: Path) -> bool:
+    """Return whether a file is NetCDF or text of one instrument, or a folder zarr; others are CSV.
 
-    InputError: it is of a kind that is known, and not read.
+    InputError: it is a folder of something else, or of a kind that is known, and not read.
     """
+    if path.is_dir():
+        if not any((path / name).is_file() for name in _ZARR):
+            raise refused(path, "is a folder, and not a zarr store; join its files into one first")
+        return True
     with path.open("rb") as file:
         signature = file.read(8)
     for begin, kind in _KINDS.items():
         if signature.startswith(begin):
             raise refused(path, f"is {kind}; NetCDF, zarr or CSV is read")
-    return is_netcdf(path) or is_instrument_text(path)
-
-
-def is_netcdf(path: Path) -> bool:
-    """Return whether a file is NetCDF, by its first bytes."""
-    with path.open("rb") as file:
-        return file.read(4) in (b"\x89HDF", b"CDF\x01", b"CDF\x02", b"CDF\x05")
+    return bool(engine_of(path)) or is_instrument_text(path)
 
 
 @contextmanager
@@ -101,15 +102,16 @@ def open_current(path: Path) -> xr.Dataset:
         return xr.open_dataset(
             path, engine="zarr", decode_times=False, cache=False, consolidated=False
         )
-    if not is_netcdf(path):
+    engine = engine_of(path)
+    if not engine:
         return read_instrument_text(path)
-    return xr.open_dataset(path, engine=engine_of(path), decode_times=False, cache=False)
+    return xr.open_dataset(path, engine=engine, decode_times=False, cache=False)
 
 
 def engine_of(path: Path) -> str:
-    """Return what reads a NetCDF file, by its first bytes."""
+    """Return what reads a NetCDF file, by its first bytes; empty where it is none."""
     with path.open("rb") as file:
-        return "scipy" if file.read(3) == b"CDF" else "h5netcdf"
+        return _ENGINES.get(file.read(4), "")
 
 
 def holdings(dataset: xr.Dataset) -> str:
@@ -137,7 +139,7 @@ def groups_of(path: Path) -> list[str]:
     """Return the names of the groups of a NetCDF 4 file; of any other file it has none."""
     import h5netcdf
 
-    if not (path.is_file() and is_netcdf(path)) or engine_of(path) != "h5netcdf":
+    if not path.is_file() or engine_of(path) != "h5netcdf":
         return []
     with h5netcdf.File(path, "r") as file:
         return list(file.groups)

@@ -11,23 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.errors import refused
-from calm.records import cf_files
+from calm.records import cf_files, velocity
 from calm.records.attributes import remarks_in_texts
 from calm.records.cf_files import holdings
 from calm.records.current_terms import Terms, current_notices
 from calm.records.grids import GridColumn, choose_column, is_regular
 from calm.records.level_depths import LevelDepths, find_levels
 from calm.records.profile_tables import turned_by
-from calm.records.record import RULES, Levels, Period, Record, choose_profiles, part
-from calm.records.velocity import (
-    Velocity,
-    find_velocity,
-    flag_variable,
-    flags_of,
-    marked_bad,
-    refuse_ragged,
-    with_components,
-)
+from calm.records.record import RULES, Index, Levels, Period, Record, choose_profiles, part
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -37,24 +28,6 @@ AHEAD = 16_000_000
 
 LOOKED_AT = 64_000_000
 """Bytes of a record that are looked at for what is odd, spread over it where it has more."""
-
-
-@dataclass(frozen=True)
-class CurrentArrays:
-    """Currents of n profiles as they stand in a file, gaps as NaN, levels in the file's order.
-
-    Attributes
-    ----------
-    depth : (k,), or (n, k) where levels move [m], positive down
-    u, v : (n, k) to the east and to the north [m/s]; inf where the file has a negative speed or
-        a direction outside -360 to 360°
-    w : (n, k) upwards [m/s], None where the file has none
-    """
-
-    depth: NDArray[np.float64]
-    u: NDArray[np.float64]
-    v: NDArray[np.float64]
-    w: NDArray[np.float64] | None
 
 
 @dataclass(frozen=True)
@@ -103,10 +76,11 @@ class CurrentDataset:
         levels: int = variable.size // max(variable.sizes.get(self._time, 1), 1)
         return 8 * levels * (len(self._parts) + self.moves)
 
-    def read(self, index: slice | NDArray[np.intp]) -> CurrentArrays:
-        """Return the profiles of some times, by their index.
+    def read(self, index: Index) -> Levels:
+        """Return the profiles of some times, by their index; all of them where there is no time.
 
-        All profiles where there is no time.
+        Depths are (k,), or (n, k) where levels move. Currents are inf where the file has a negative
+        speed or a direction outside -360 to 360°.
         """
         first, second, *up = (
             self._along(variable, index, cf_files.known_values) * factor
@@ -114,7 +88,7 @@ class CurrentDataset:
         )
         if not self._terms.on_the_line:
             for variable in self._flags:
-                first[self._along(variable, index, marked_bad)] = np.nan
+                first[self._along(variable, index, velocity.marked_bad)] = np.nan
         if self._turn is not None:
             angle = np.radians(second + self._turn)
             impossible = (first < 0.0) | (np.abs(second) > 360.0)
@@ -126,17 +100,17 @@ class CurrentDataset:
         depth = np.full(first.shape[1], np.nan)
         if self._levels is not None:
             depth = self._levels.depths(self._time, index)
-        return CurrentArrays(depth, first, second, up[0] if up else None)
+        return depth, first, second, up[0] if up else None
 
-    def flags(self, index: slice | NDArray[np.intp]) -> NDArray[np.int8] | None:
+    def flags(self, index: Index) -> NDArray[np.int8] | None:
         """Return (n, k) the worse quality flags of both components; None without flags."""
         if not self._flags:
             return None
-        every = [self._along(one, index, flags_of) for one in self._flags]
+        every = [self._along(one, index, velocity.flags_of) for one in self._flags]
         worst: NDArray[np.int8] = np.maximum.reduce(every)
         return worst
 
-    def remarks(self, index: slice | NDArray[np.intp]) -> list[str]:
+    def remarks(self, index: Index) -> list[str]:
         """Return what is odd about the currents of some times; of a part where they are many."""
         said, times = [], self.times
         if times is not None:
@@ -156,15 +130,13 @@ class CurrentDataset:
                     f"outside its valid range, {low:g} to {high:g}"
                 )
         for variable in () if self._terms.on_the_line else self._flags:
-            bad = self._along(variable, index, marked_bad)
+            bad = self._along(variable, index, velocity.marked_bad)
             if bad.any():
                 said.append(
                     f"{bad.sum()} of {bad.size} currents are left out, as `{variable.name}` marks "
                     "them as bad"
                 )
-        arrays = self.read(index)
-        levels = arrays.depth, arrays.u, arrays.v
-        return [*said, *current_notices(levels, times, self._terms.water_depth)]
+        return [*said, *current_notices(self.read(index)[:3], times, self._terms.water_depth)]
 
     def _along(
         self, variable: xr.DataArray, index: Any, read: Callable[[xr.DataArray], Any]
@@ -192,22 +164,22 @@ def understand(dataset: xr.Dataset, terms: Terms) -> CurrentDataset:
 
 
 def _understood(dataset: xr.Dataset, terms: Terms) -> CurrentDataset:
-    dataset = with_components(dataset)
-    velocity = find_velocity(dataset, regular=is_regular(dataset))
-    refuse_ragged(dataset, velocity.names[0])
-    turned = _turned(velocity, terms.declination)
-    name_of_time = cf_files.find_times(dataset, velocity.names[0])
+    dataset = velocity.with_components(dataset)
+    current = velocity.find_velocity(dataset, regular=is_regular(dataset))
+    velocity.refuse_ragged(dataset, current.names[0])
+    turned = _turned(current, terms.declination)
+    name_of_time = cf_files.find_times(dataset, current.names[0])
     times = None if name_of_time is None else cf_files.read_times(dataset, name_of_time)
     time = None if name_of_time is None else next(map(str, dataset[name_of_time].dims), None)
     column, levels, labels = GridColumn({}, None), None, tuple[str, ...]()
-    along = [str(dim) for dim in dataset[velocity.names[0]].dims if dim != time]
+    along = [str(dim) for dim in dataset[current.names[0]].dims if dim != time]
     if terms.on_the_line and len(along) == 1:  # levels may be parts of a line
         labels = cf_files.labels_along(dataset, along[0]) or ()
     if not labels:
-        column = choose_column(dataset, velocity.names, time, terms.place)
-        level, dataset = _single_levels(dataset.isel(column.index), velocity, time)
+        column = choose_column(dataset, current.names, time, terms.place)
+        level, dataset = _single_levels(dataset.isel(column.index), current, time)
         levels = find_levels(dataset, level, time, terms.water_depth)
-    source, notices = {"velocity": ", ".join(velocity.all_names)}, [*column.notes]
+    source, notices = {"velocity": ", ".join(current.all_names)}, [*column.notes]
     if levels is not None:
         source["levels"] = str(levels.variable.name)
     if name_of_time is not None:
@@ -216,34 +188,34 @@ def _understood(dataset: xr.Dataset, terms: Terms) -> CurrentDataset:
     if column.place is not None:
         latitude, longitude = (f"{degrees:.6g}" for degrees in column.place)
         source |= {"latitude": latitude, "longitude": longitude}
-    found = (flag_variable(dataset, name) for name in velocity.names)
+    found = (velocity.flag_variable(dataset, name) for name in current.names)
     flags = {str(one.name): one for one in found if one is not None}
     return CurrentDataset(
         times=times,
         notices=(*notices, *remarks_in_texts(dataset.attrs)),
         turned=turned,
-        rules=(*velocity.notes, *(() if levels is None else levels.notes)),
+        rules=(*current.notes, *(() if levels is None else levels.notes)),
         source=source,
         labels=labels,
-        _parts=tuple(_parts(dataset, velocity)),
+        _parts=tuple(_parts(dataset, current)),
         _flags=tuple(flags.values()),
-        _turn=velocity.turn,
+        _turn=current.turn,
         _terms=terms,
         _levels=levels,
         _time=time,
     )
 
 
-def _turned(velocity: Velocity, declination: float | None) -> tuple[str, ...]:
+def _turned(current: velocity.Velocity, declination: float | None) -> tuple[str, ...]:
     """Return what is reported of a current that is relative to magnetic north."""
-    counted = velocity.names if velocity.turn is None else velocity.names[1:]
+    counted = current.names if current.turn is None else current.names[1:]
     which = " and ".join(f"`{name}`" for name in counted)
-    if velocity.magnetic and declination is None:
+    if current.magnetic and declination is None:
         raise cf_files.UnreadableError(
             f"{which} are relative to magnetic north; give the `declination` there, positive "
             "to the east (beside `file:`, or `--declination`)"
         )
-    if declination is not None and not velocity.magnetic:
+    if declination is not None and not current.magnetic:
         raise cf_files.UnreadableError(
             f"{which} are not said to be relative to magnetic north, so no `declination` is "
             "applied; leave it out"
@@ -254,13 +226,13 @@ def _turned(velocity: Velocity, declination: float | None) -> tuple[str, ...]:
 
 
 def _single_levels(
-    dataset: xr.Dataset, velocity: Velocity, time: str | None
+    dataset: xr.Dataset, current: velocity.Velocity, time: str | None
 ) -> tuple[str | None, xr.Dataset]:
     """Return the dimension of the levels, and the dataset without dimensions of one value."""
-    name = velocity.names[0]
+    name = current.names[0]
     single = [dim for dim, size in dataset.sizes.items() if size == 1 and dim != time]
     dataset = dataset.isel(dict.fromkeys(single, 0))
-    for other in velocity.all_names[1:]:
+    for other in current.all_names[1:]:
         if set(dataset[other].dims) != set(dataset[name].dims):
             raise cf_files.UnreadableError(
                 f"`{name}` and `{other}` have different dimensions: "
@@ -274,12 +246,12 @@ def _single_levels(
     return (levels[0] if levels else None), dataset
 
 
-def _parts(dataset: xr.Dataset, velocity: Velocity) -> list[tuple[xr.DataArray, float]]:
+def _parts(dataset: xr.Dataset, current: velocity.Velocity) -> list[tuple[xr.DataArray, float]]:
     """Return the variables of the current, each with its factor to SI (angles: degrees)."""
-    dimensions = ("speed", "speed" if velocity.turn is None else "angle", "speed")
+    dimensions = ("speed", "speed" if current.turn is None else "angle", "speed")
     return [
         (dataset[name], cf_files.factor_of(dataset[name], dimension))
-        for name, dimension in zip(velocity.all_names, dimensions, strict=False)
+        for name, dimension in zip(current.all_names, dimensions, strict=False)
     ]
 
 
@@ -313,22 +285,21 @@ class ArrayRecord(Record):
         found = self._current
         self.notes = (*chosen, *found.notices, *found.turned, *remarks, *found.rules, *RULES)
         self.source = {"file": path.name, **self._current.source}
-        self._ahead: tuple[int, int, CurrentArrays] | None = None
+        self._ahead: tuple[int, int, Levels] | None = None
 
     def profiles(self, start: int, stop: int) -> Levels:
         """See `Record`."""
-        first, _, arrays = self._window(start, stop)
+        first, _, (depth, u, v, w) = self._window(start, stop)
         mine = slice(start - first, stop - first)
-        depth = arrays.depth[mine] if self._current.moves else arrays.depth
-        w = None if arrays.w is None else arrays.w[mine]
-        return depth, arrays.u[mine], arrays.v[mine], w
+        depth = depth[mine] if self._current.moves else depth
+        return depth, u[mine], v[mine], None if w is None else w[mine]
 
     def flags(self, start: int, stop: int) -> NDArray[np.int8] | None:
         """See `Record`."""
         with cf_files.reading(self._path):
             return self._current.flags(part(self._index, start, stop))
 
-    def _window(self, start: int, stop: int) -> tuple[int, int, CurrentArrays]:
+    def _window(self, start: int, stop: int) -> tuple[int, int, Levels]:
         """Return which profiles are decompressed with those wanted, and these profiles."""
         if self._ahead is not None and self._ahead[0] <= start and stop <= self._ahead[1]:
             return self._ahead

@@ -20,16 +20,14 @@ from calm.errors import InputError, Problem, UsageError, refused
 from calm.physics.line import Floats, Integers
 from calm.records import current_terms, delimited
 from calm.records.attributes import refused_by_comments, remarks_in_comments
-from calm.records.cf_files import UnreadableError, is_dataset, open_current, reading
-from calm.records.current_dataset import ArrayRecord, CurrentArrays, understand
+from calm.records.cf_files import UnreadableError, holds_arrays, open_current, reading
+from calm.records.current_dataset import ArrayRecord, understand
 from calm.records.current_terms import Terms, TimeChoiceError, choose_time, current_notices
 from calm.records.delimited import COMMENT, CellRow, NumberedLine, abridged, is_gap, read_table
 from calm.records.grids import Place
 from calm.records.headings import heading, is_time, magnetic_columns, zone_complaint
 from calm.records.profile_tables import CurrentTable, QuantityTable, read_currents, turned_notices
 from calm.records.record import RULES, Levels, Period, Record, choose_profiles, part
-
-_ZARR = ("zarr.json", ".zgroup", ".zmetadata")
 
 _BLOCK = 10_000
 AT_ONCE = 50_000
@@ -106,18 +104,6 @@ def open_record(
     return (ArrayRecord if holds_arrays(path) else CsvRecord)(path, terms, time, every)
 
 
-def holds_arrays(path: Path) -> bool:
-    """Return whether a file is NetCDF or text of one instrument, or a folder zarr; others are CSV.
-
-    InputError: it is a folder of something else.
-    """
-    if not path.is_dir():
-        return is_dataset(path)
-    if not any((path / name).is_file() for name in _ZARR):
-        raise refused(path, "is a folder, and not a zarr store; join its files into one first")
-    return True
-
-
 def _from_arrays(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable, list[str]]:
     with reading(path), open_current(path) as dataset:
         current = understand(dataset, terms)
@@ -133,10 +119,11 @@ def _from_arrays(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTab
         return table, [*notices, *current.remarks(chosen)]
 
 
-def _profile(arrays: CurrentArrays, terms: Terms, notices: list[str]) -> CurrentTable:
+def _profile(found: Levels, terms: Terms, notices: list[str]) -> CurrentTable:
     """Return the levels in water that have a value, by depth."""
-    up = np.zeros_like(arrays.u) if arrays.w is None else arrays.w
-    depth, u, v, w = (values.ravel() for values in (arrays.depth, arrays.u, arrays.v, up))
+    depth, u, v, up = found
+    up = np.zeros_like(u) if up is None else up
+    depth, u, v, w = (values.ravel() for values in (depth, u, v, up))
     known = ~np.isnan(u + v + w) & np.isfinite(depth)
     below = known & (depth >= 0)
     for left, what in ((~known, "without a value"), (known & ~below, "above the surface")):
@@ -144,10 +131,10 @@ def _profile(arrays: CurrentArrays, terms: Terms, notices: list[str]) -> Current
             notices.append(f"{count} level{'s' * (count > 1)} {what} left out of the current")
     if not below.any():
         raise UnreadableError("no level below the surface has a value")
-    for level, east, north, up in zip(*(one[below] for one in (depth, u, v, w)), strict=True):
+    for level, east, north, rise in zip(*(one[below] for one in (depth, u, v, w)), strict=True):
         if reason := current_terms.too_deep(level):
             raise UnreadableError(f"its {reason}")
-        if reason := current_terms.too_fast(east, north, up, terms.maximum_speed):
+        if reason := current_terms.too_fast(east, north, rise, terms.maximum_speed):
             raise UnreadableError(f"its current at {level:g} m, {reason}")
     order = np.argsort(depth[below])
     levels, *speeds = (tuple(values[below][order].tolist()) for values in (depth, u, v, w))

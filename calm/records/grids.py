@@ -16,14 +16,7 @@ from numpy.typing import NDArray
 
 from calm.errors import refused
 from calm.positions import SEMI_MAJOR, Frame
-from calm.records.cf_files import (
-    UnreadableError,
-    factor_of,
-    first_present,
-    holdings,
-    open_current,
-    reading,
-)
+from calm.records import cf_files
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -91,13 +84,13 @@ def choose_column(
     horizontal = [str(dim) for dim in dims if dim in latitude.dims or dim in longitude.dims]
     if not all(set(horizontal) <= set(dataset[name].dims) for name in velocity):
         names = " and ".join(f"`{name}`" for name in velocity)
-        raise UnreadableError(f"{names} are on different points of a staggered grid")
+        raise cf_files.UnreadableError(f"{names} are on different points of a staggered grid")
     count = int(np.prod([dataset.sizes[dim] for dim in horizontal]))
     if count == 1:
         place = latitude.values.item(), _signed(longitude.values.item())
         return GridColumn({dim: 0 for dim in horizontal}, place, _far(place, wanted))
     if wanted is None:
-        raise UnreadableError(
+        raise cf_files.UnreadableError(
             f"it has {count} columns, {_span(latitude.values, longitude.values)}: say which by "
             "`--at LAT,LON`, or by the `position` of the mooring file"
         )
@@ -112,12 +105,12 @@ def choose_column(
     distance = kilometres_from(lat, lon, wanted)
     nearest = np.unravel_index(np.nanargmin(distance), distance.shape)
     if len(horizontal) > 1 and distance[nearest] > _spacing(lat, lon, nearest):
-        raise UnreadableError(
+        raise cf_files.UnreadableError(
             f"{written(wanted)} is outside its grid, {_span(latitude.values, longitude.values)}"
         )
     wet = _wet(near, velocity, time, horizontal)
     if not wet.any():
-        raise UnreadableError(
+        raise cf_files.UnreadableError(
             f"no column of {distance.size} around {written(wanted)} has a current"
         )
     chosen = np.unravel_index(np.nanargmin(np.where(wet, distance, np.inf)), distance.shape)
@@ -141,7 +134,7 @@ def written(place: Place) -> str:
 
 
 def _named(dataset: xr.Dataset, coordinate: str, usual: tuple[str, ...]) -> list[str]:
-    return first_present(dataset, [*dataset.cf.coordinates.get(coordinate, []), *usual])
+    return cf_files.first_present(dataset, [*dataset.cf.coordinates.get(coordinate, []), *usual])
 
 
 def _positions(dataset: xr.Dataset, dims: set[Any]) -> tuple[xr.DataArray, xr.DataArray] | None:
@@ -312,11 +305,11 @@ class SeabedGrid:
             raise refused(path, f"is a GeoTIFF, which is not read; turn it into NetCDF: `{turn}`")
         digest = hashlib.sha256(path.read_bytes()).hexdigest()
         grid = cls(str(path), digest, latitude, longitude, reach)
-        with reading(path):
+        with cf_files.reading(path):
             if np.isnan(grid.depth):
-                raise UnreadableError("has no depth at the position of the mooring")
+                raise cf_files.UnreadableError("has no depth at the position of the mooring")
             if grid.depth <= 0.0:
-                raise UnreadableError(
+                raise cf_files.UnreadableError(
                     f"has land, {-grid.depth:.4g} m high, at the position of the mooring; if that "
                     "is water, let `positive` of its variable say `down`, or `up`"
                 )
@@ -369,13 +362,13 @@ class SeabedGrid:
 def _nodes(grid: SeabedGrid) -> tuple[Floats, Floats, Floats]:
     """East (n,) and north (m,) of the nodes from the origin, and the depths (m, n) there [m]."""
     latitude, longitude = grid.latitude, grid.longitude
-    with open_current(Path(grid.path)) as dataset:
+    with cf_files.open_current(Path(grid.path)) as dataset:
         name = next((each for each in (*_UP, *_DOWN) if each in dataset.data_vars), None)
         axes = {str(each).lower()[:3]: str(each) for each in dataset.dims}
         lat, lon = axes.get("lat"), axes.get("lon")
         if name is None or lat is None or lon is None:
             wanted = f"none of {', '.join((*_UP, *_DOWN))} over latitude and longitude"
-            raise UnreadableError(f"has {wanted}; it holds {holdings(dataset)}")
+            raise cf_files.UnreadableError(f"has {wanted}; it holds {cf_files.holdings(dataset)}")
         turned = longitude + (dataset[lon] - longitude + 180.0) % 360.0 - 180.0
         whole = dataset[name].squeeze(drop=True).assign_coords({lon: turned}).sortby([lat, lon])
         high = np.degrees(grid.reach / SEMI_MAJOR)
@@ -385,11 +378,11 @@ def _nodes(grid: SeabedGrid) -> tuple[Floats, Floats, Floats]:
         here = here.transpose(lat, lon)
         here = here[tuple(slice(None, None, -(-size // _MOST) or 1) for size in here.shape)]
         if min(here.shape) < 2:
-            raise UnreadableError("has too few nodes about the position of the mooring")
+            raise cf_files.UnreadableError("has too few nodes about the position of the mooring")
         north, east = (np.asarray(here[each].values, float) for each in (lat, lon))
         attributes = dataset[name].attrs
         down = attributes.get("positive", "up" if name in _UP else "down") == "down"
-        metre = factor_of(dataset[name], "length") if attributes.get("units") else 1.0
+        metre = cf_files.factor_of(dataset[name], "length") if attributes.get("units") else 1.0
         depth = np.asarray(here.values, float) * (metre if down else -metre)
     frame = Frame(latitude, longitude)
     north = frame.place(north, np.full(len(north), longitude), 0.0 * north)[:, 1]

@@ -16,22 +16,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.errors import InputError, Problem, UsageError, refused
-from calm.records import cf_files, measured_quantities
+from calm.physics.line import Floats
+from calm.records import cf_files, measured_quantities, velocity
 from calm.records.cf_files import UnreadableError, factor_of, first_present, holdings, known_values
 from calm.records.level_depths import find_levels
-from calm.records.velocity import (
-    Velocity,
-    find_velocity,
-    flag_variable,
-    flags_of,
-    refuse_ragged,
-    with_components,
-)
 
 if TYPE_CHECKING:
     import xarray as xr
-
-    Floats = NDArray[np.float64]
 
 _ENDINGS = (".nc", ".cnv", ".use", ".microcat", ".rcm")
 _SAID = ", ".join(_ENDINGS)
@@ -161,11 +152,11 @@ def split_label(text: str) -> tuple[str, Path]:
 def _of_file(
     path: Path, names: Sequence[str], flags: frozenset[int], seabed: float
 ) -> dict[str, list[InstrumentSeries]]:
-    if not path.is_dir() and not cf_files.is_dataset(path):
+    if not cf_files.holds_arrays(path):
         raise refused(path, "is not NetCDF, RODB, .cnv or RBR's table")
     with cf_files.reading(path), cf_files.open_current(path) as dataset:
         try:
-            file = _SeriesFile(with_components(dataset), path.name, flags, seabed)
+            file = _SeriesFile(velocity.with_components(dataset), path.name, flags, seabed)
             found = {name: series for name in names if (series := file.series(name))}
         except UnreadableError as error:
             raise UnreadableError(f"{error}; it holds {holdings(dataset)}") from None
@@ -187,20 +178,20 @@ class _SeriesFile:
         """Return what the instruments measured of a quantity; nothing where they did not."""
         dataset, quantity = self.dataset, measured_quantities.QUANTITIES_MEASURED[name]
         moving = quantity.dimension == "speed"
-        velocity = self._velocity(quantity) if moving else None
-        variables: Sequence[str] = velocity.names if velocity else ()
+        current = self._velocity(quantity) if moving else None
+        variables: Sequence[str] = current.names if current else ()
         if not moving:
             variables = named(dataset, quantity.sought, quantity.usual)[:1]
         if not variables:
             return []
         found = readings(dataset, variables, self.flags)
         first, values = dataset[variables[0]], found.values
-        if velocity is not None and velocity.turn is None:
+        if current is not None and current.turn is None:
             which = 0 if name == "u" else 1
             value = values[which] * factor_of(dataset[variables[which]], "speed")
-        elif velocity is not None and velocity.turn is not None:
+        elif current is not None and current.turn is not None:
             angles = values[1] * factor_of(dataset[variables[1]], "angle")
-            angle = np.radians(angles + velocity.turn)
+            angle = np.radians(angles + current.turn)
             speed = values[0] * factor_of(first, "speed")
             value = speed * (np.sin(angle) if name == "u" else np.cos(angle))
         elif quantity.dimension == "temperature":
@@ -226,21 +217,21 @@ class _SeriesFile:
             for j in range(value.shape[1])
         ]
 
-    def _velocity(self, quantity: measured_quantities.Measured) -> Velocity | None:
+    def _velocity(self, quantity: measured_quantities.Measured) -> velocity.Velocity | None:
         """Return the velocity of the file; None where it has none."""
         try:
-            velocity = find_velocity(self.dataset, regular=False)
+            current = velocity.find_velocity(self.dataset, regular=False)
         except UnreadableError:
             sought = quantity.sought
             if first_present(self.dataset, sought) or _standard(self.dataset, sought):
                 raise
             return None
-        if velocity.magnetic:
+        if current.magnetic:
             raise UnreadableError(
-                f"`{velocity.names[-1]}` is relative to magnetic north; turn it to true north "
+                f"`{current.names[-1]}` is relative to magnetic north; turn it to true north "
                 "before it is gridded"
             )
-        return velocity
+        return current
 
     def _bins(self, along: str, time: str) -> Floats:
         """Return how far the bins of a profiler are below it [m]; nowhere else are they known."""
@@ -304,7 +295,7 @@ def readings(dataset: xr.Dataset, names: Sequence[str], flags: frozenset[int]) -
     clock = cf_files.find_times(dataset, names[0])
     if clock is None or dataset[clock].ndim != 1:
         raise UnreadableError(f"`{first.name}` has no times")
-    refuse_ragged(dataset, names[0])
+    velocity.refuse_ragged(dataset, names[0])
     time = str(dataset[clock].dims[0])
     others = [str(dim) for dim, size in first.sizes.items() if dim != time and size > 1]
     if len(others) > 1 or time not in first.dims:
@@ -323,8 +314,8 @@ def readings(dataset: xr.Dataset, names: Sequence[str], flags: frozenset[int]) -
     parts = [table(dataset[name], known_values(dataset[name])) for name in names]
     dropped = np.zeros(parts[0].shape, bool)
     for name, values in zip(names, parts, strict=True):
-        if (marks := flag_variable(dataset, name)) is not None:
-            given = np.broadcast_to(table(marks, flags_of(marks)), values.shape)
+        if (marks := velocity.flag_variable(dataset, name)) is not None:
+            given = np.broadcast_to(table(marks, velocity.flags_of(marks)), values.shape)
             dropped |= ~np.isin(given, sorted(flags - {INTERPOLATED})) & np.isfinite(values)
     return Readings(times[order], time, along, parts, dropped)
 

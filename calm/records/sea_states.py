@@ -11,7 +11,7 @@ import numpy as np
 
 from calm.errors import InputError, Problem, UsageError, refused
 from calm.physics.line import Floats
-from calm.records.cf_files import UnreadableError, is_dataset, known_values, open_current, reading
+from calm.records.cf_files import UnreadableError, holds_arrays, known_values, open_current, reading
 from calm.records.delimited import read_table
 
 Density = Callable[[Floats], Floats]
@@ -255,7 +255,7 @@ def measured_spectrum(path: Path) -> SeaState:
 
     InputError: it is no spectrum, or its frequencies do not grow.
     """
-    if is_dataset(path):
+    if holds_arrays(path):
         return _sea_of(path, *_spectral_arrays(path))
     rows = _figures(path, ("frequency[Hz]", "density[m^2/Hz]"))
     frequency, density = np.array([row for _, row in rows]).reshape(-1, 2).T

@@ -9,14 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.records.attributes import (
-    another_way,
-    is_magnetic,
-    not_a_current,
-    other_frame,
-    part_in_texts,
-    way_of,
-)
+from calm.records import attributes
 from calm.records.cf_files import UnreadableError, factor_of, first_present
 
 if TYPE_CHECKING:
@@ -105,12 +98,16 @@ def find_velocity(dataset: xr.Dataset, *, regular: bool) -> Velocity:
     UnreadableError: there is none, there are several, or what is there is not a current to the east
     and north.
     """
-    if (reason := other_frame(dataset.attrs) or part_in_texts(dataset.attrs)) is not None:
+    if (
+        reason := attributes.other_frame(dataset.attrs) or attributes.part_in_texts(dataset.attrs)
+    ) is not None:
         raise UnreadableError(f"its current {reason}")
     notes: list[str] = []
     east, north, up = (_find(dataset, one, regular, notes) for one in (_EAST, _NORTH, _UP))
     if east is not None and north is not None:
-        magnetic = [name for name in (east, north) if is_magnetic(dataset[name], dataset.attrs)]
+        magnetic = [
+            name for name in (east, north) if attributes.is_magnetic(dataset[name], dataset.attrs)
+        ]
         if len(magnetic) == 1:
             other = north if magnetic == [east] else east
             raise UnreadableError(f"`{magnetic[0]}` is to magnetic north, `{other}` is not")
@@ -124,7 +121,7 @@ def find_velocity(dataset: xr.Dataset, *, regular: bool) -> Velocity:
     if speed is not None and direction is not None and way is not None:
         notes.append(f"`{direction}` is the direction the current {_FLOWS[way]}")
         turn = 0.0 if way == "to" else 180.0
-        magnetic_north = is_magnetic(dataset[direction], dataset.attrs)
+        magnetic_north = attributes.is_magnetic(dataset[direction], dataset.attrs)
         return Velocity((speed, direction), up, turn, magnetic_north, tuple(notes))
     if speed is not None and direction is not None:
         raise UnreadableError(
@@ -145,7 +142,7 @@ def _direction(
     for sought, way in ((_TOWARD, "to"), (_FROM, "from")):
         name = _find(dataset, sought, regular, notes)
         if name is not None:
-            stated = way_of(dataset[name], "long_name", "comment")
+            stated = attributes.way_of(dataset[name], "long_name", "comment")
             if stated not in (way, None):
                 said = dataset[name].attrs.get("long_name") or dataset[name].attrs.get("comment")
                 raise UnreadableError(
@@ -156,7 +153,7 @@ def _direction(
     unclear = next((name for name in _AMBIGUOUS if name in dataset.data_vars), None)
     if unclear is None:
         return None, None
-    return _believed(dataset, unclear, _TOWARD), way_of(dataset[unclear])
+    return _believed(dataset, unclear, _TOWARD), attributes.way_of(dataset[unclear])
 
 
 def _find(dataset: xr.Dataset, sought: _Sought, regular: bool, notes: list[str]) -> str | None:
@@ -164,7 +161,9 @@ def _find(dataset: xr.Dataset, sought: _Sought, regular: bool, notes: list[str])
     for standard_name in sought.standard:
         found = [str(name) for name in dataset.cf.standard_names.get(standard_name, [])]
         found = [one for one in found if not any(one.startswith(f"{two}_") for two in found)]
-        true = [name for name in found if not is_magnetic(dataset[name])]  # not `UCUR_max`
+        true = [
+            name for name in found if not attributes.is_magnetic(dataset[name])
+        ]  # not `UCUR_max`
         if len(true or found) > 1:
             listed = ", ".join(true or found)
             raise UnreadableError(f"several variables are {standard_name}: {listed}")
@@ -194,9 +193,9 @@ def _only_marked(own: str, sought: _Sought) -> bool:
 
 def _believed(dataset: xr.Dataset, name: str, sought: _Sought) -> str:
     """Return the name of a variable whose own words do not speak against it."""
-    reason = not_a_current(dataset[name])
+    reason = attributes.not_a_current(dataset[name])
     if reason is None and sought.way:
-        reason = another_way(dataset[name], sought.way)
+        reason = attributes.another_way(dataset[name], sought.way)
     if reason is not None:
         raise UnreadableError(f"`{name}` {reason}")
     return name
@@ -235,10 +234,10 @@ def with_components(dataset: xr.Dataset) -> xr.Dataset:
     if name is None:
         return dataset
     vector = dataset[name]
-    for attributes in (dataset.attrs, vector.attrs):
-        if (reason := other_frame(attributes)) is not None:
+    for said in (dataset.attrs, vector.attrs):
+        if (reason := attributes.other_frame(said)) is not None:
             raise UnreadableError(f"`{name}` {reason}")
-    if (reason := not_a_current(vector)) is not None:
+    if (reason := attributes.not_a_current(vector)) is not None:
         raise UnreadableError(f"`{name}` {reason}")
     labels = [str(label).strip().upper() for label in vector[_DIRECTIONS].values.tolist()]
     places = {

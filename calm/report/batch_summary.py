@@ -106,11 +106,14 @@ def _rule(rule: RuleShare) -> dict[str, Any]:
 
 
 def _limit(rule: RuleShare, one: Exceedance) -> dict[str, Any]:
+    criterion = one.limit.criterion
     return {
         "rule": rule.name,
-        **members(one.limit, "component", "quantity", "limit"),
-        "bound": "at least" if one.limit.least else "at most",
-        "beyond": one.limit.beyond.value,
+        "component": criterion.part.label,
+        "quantity": one.limit.rule.quantity,
+        "limit": criterion.limit,
+        "bound": "at least" if criterion.least else "at most",
+        "beyond": criterion.beyond.value,
         "judged": one.count,
         **members(one, "share", "worst"),
         "time": _time(one.time),
@@ -150,7 +153,9 @@ def rules_table(summary: Summary) -> Table:
 def _most_often(rule: RuleShare) -> str:
     """The part that breaks a rule most often, and how many cannot be judged by it."""
     most = max(rule.exceedances, key=lambda one: one.share or 0.0, default=None)
-    worst = f"{most.limit.component}, {percent(most.share)} %" if most and most.share else ""
+    worst = ""
+    if most and most.share:
+        worst = f"{most.limit.criterion.part.label}, {percent(most.share)} %"
     unknown = f"{rule.unknown} unknown" if rule.unknown else ""
     return "; ".join(filter(None, (worst, unknown)))
 

@@ -10,14 +10,11 @@ from dataclasses import dataclass
 from operator import attrgetter, itemgetter
 from typing import TYPE_CHECKING, Any
 
-from calm.checks.finding import Finding, State
+from calm.checks.finding import State
 from calm.quantities import QUANTITIES
 
 if TYPE_CHECKING:
     from calm.report.check_facts import CheckFacts
-
-ON_THE_WAY = "launch, recovery, breaks"
-"""The column of a summary for what is judged of a mooring outside its environments."""
 
 
 @dataclass(frozen=True)
@@ -177,19 +174,6 @@ class ReportPart:
 
 
 @dataclass(frozen=True)
-class Worst:
-    """The worst that a rule finds in one column of the summary.
-
-    `column` is an environment, or `ON_THE_WAY` for what is judged once for a mooring; `unknown`
-    counts the findings that lack a figure, which a pass of others must not hide.
-    """
-
-    column: str
-    finding: Finding
-    unknown: int
-
-
-@dataclass(frozen=True)
 class Section:
     """All that a report says of one mooring or tow; it may be made in a process of its own.
 
@@ -197,15 +181,11 @@ class Section:
     ----------
     name : of the mooring or tow
     parts : what is printed
-    columns : the environments and what else was judged, in order; none of a single result
-    worst : for each column and rule that applies there
-    facts : what is signed, of a design check
+    facts : what is concluded, of a design check
     """
 
     name: str
     parts: tuple[ReportPart, ...]
-    columns: tuple[str, ...] = ()
-    worst: tuple[Worst, ...] = ()
     facts: CheckFacts | None = None
 
 
@@ -308,10 +288,6 @@ def quantity_column(name: str, heading: str | None = None) -> Column:
     return Column(heading or shown.heading, shown.display_unit, True, short=short, marked=marked)
 
 
-_MARKS = {State.WARN: "~", State.FAIL: "!"}
-"""The sign after a figure that is near its limit or beyond it: legible without colour."""
-
-
 def figure_cell(name: str, value: float | None, state: State | None = None) -> Cell:
     """Return a value of a quantity as it stands under its `quantity_column`.
 
@@ -321,7 +297,7 @@ def figure_cell(name: str, value: float | None, state: State | None = None) -> C
     value : SI, degrees; None where it is not known
     state : warns or fails where the figure is near a limit or beyond it, and marks it so
     """
-    return Cell(QUANTITIES[name].format(value), state=state, mark=_MARKS[state] if state else "")
+    return Cell(QUANTITIES[name].format(value), state=state, mark=state.sign if state else "")
 
 
 def table_of(

@@ -3,9 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from calm.deck import Deck
+from calm.deck import Deck, RecoveredItem
 from calm.deck.deck_items import DeckItem, DeckRow, Order, rows_on_paper
-from calm.deck.model import RecoveredItem
 from calm.drop import DropPlan
 from calm.quantities import QUANTITIES, say
 from calm.report import blocks

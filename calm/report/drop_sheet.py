@@ -16,7 +16,7 @@ from calm.physics.line import Floats
 from calm.quantities import QUANTITIES, bearing_text, duration, say
 from calm.report import blocks
 from calm.report.blocks import Cell, Figure, Prose, ReportPart, Table, number, quantity, table_of
-from calm.report.check_summary import grouped
+from calm.report.check_tables import grouped
 from calm.report.provenance import position_text
 from calm.units import KNOT
 

@@ -71,7 +71,7 @@ class Picture(DrawnRows, can_focus=True):
             return [Text(""), *(Text(line, style="dim") for line in wrap(words, size.width))]
         from calm.drawing.line_picture import lines_of
         from calm.drawing.schematic.in_terminal import schematic_text
-        from calm.drawing.sketch.views import plan, tension
+        from calm.drawing.sketch import plan, tension
 
         if self.tab == "plan":
             return plan(result, *size, self._beside)
@@ -88,7 +88,7 @@ class Picture(DrawnRows, can_focus=True):
 
     def _elevation(self, result: AnyResult, size: Size) -> list[Text]:
         from calm.drawing.line_picture import water_of
-        from calm.drawing.sketch.views import current_profile, elevation
+        from calm.drawing.sketch import current_profile, elevation
 
         if size.width < _LEAST_BESIDE or result.file.environment.depth is None:
             return elevation(result, *size, self._beside)
@@ -221,7 +221,7 @@ class ProfilePicture(DrawnRows):
         if _is_small(size) or file is None:
             return []
         from calm.assemble import assemble_water
-        from calm.drawing.sketch.views import current_profile
+        from calm.drawing.sketch import current_profile
 
         if file.environment.depth is None:
             rows = [Text("No depth is given: the water is deep.", style="dim")]

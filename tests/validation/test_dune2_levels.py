@@ -12,7 +12,7 @@ import pytest
 
 from calm.grid.field import estimate, field_of, posterior
 from calm.grid.samples import MooringDepths, Samples, gather
-from calm.motion.line_places import points_of
+from calm.motion.line_places import LinePlaces, points_of
 from calm.records.instrument_series import read_series
 
 FIELD = Path(__file__).parents[2] / "docs" / "field" / "dune2"
@@ -25,10 +25,11 @@ def measured():
     with np.load(DEPTHS) as kept:
         time = kept["time"].astype("M8[s]").astype("M8[ns]")
         labels = tuple(str(one) for one in kept["label"])
-        depths = MooringDepths(
-            DEPTHS, time, labels, ("",) * len(labels), len(labels),
-            kept["depth"].astype(float), kept["deviation"].astype(float), (), 792.3, {},
-        )  # fmt: skip
+        depth = kept["depth"].astype(float)
+        still = np.nanpercentile(depth, 5.0, axis=0)
+        places = LinePlaces(DEPTHS.name, labels, ("",) * len(labels), len(labels), still)
+        deviation = kept["deviation"].astype(float)
+        depths = MooringDepths(time, places, depth, deviation, (), 792.3, {})
     series = read_series(
         [str(FIELD / "temperatures.nc")], ("temperature",), frozenset({1, 2}), 792.3
     )["temperature"]

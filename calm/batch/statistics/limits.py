@@ -33,7 +33,7 @@ class CountedLimit:
 
     Attributes
     ----------
-    rule : of the design check
+    rule : of the design check, whose quantity the values are
     criterion : what it asks
     mooring : of what, a leg of a net among them
     leg : where that has its columns
@@ -44,31 +44,6 @@ class CountedLimit:
     mooring: Mooring
     leg: LegSeats | None = None
 
-    @property
-    def component(self) -> str:
-        """Label of the piece or the clamp."""
-        return self.criterion.part.label
-
-    @property
-    def quantity(self) -> str:
-        """Of `calm.quantities`, whose unit the values have."""
-        return self.rule.quantity
-
-    @property
-    def limit(self) -> float | None:
-        """SI units and degrees; None where a figure of the component is missing."""
-        return self.criterion.limit
-
-    @property
-    def least(self) -> bool:
-        """Return whether values may not fall short of the limit, rather than not pass it."""
-        return self.criterion.least
-
-    @property
-    def beyond(self) -> State:
-        """State of a value that does: fail or warn."""
-        return self.criterion.beyond
-
     def values(self, series: ResultColumns) -> Column:
         """The (n,) values of a batch; NaN where there is nothing to judge."""
         own = series if self.leg is None else series.of_leg(self.leg)
@@ -76,8 +51,9 @@ class CountedLimit:
 
     def broken(self, values: Column) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
         """(n,) where values are beyond the limit; never where they are NaN."""
-        assert self.limit is not None
-        beyond = values < self.limit if self.least else values > self.limit
+        limit = self.criterion.limit
+        assert limit is not None
+        beyond = values < limit if self.criterion.least else values > limit
         return np.asarray(beyond, np.bool_)
 
 
@@ -253,7 +229,7 @@ def shares_of(
         beyond = {state: np.zeros(len(series), np.bool_) for state in (State.FAIL, State.WARN)}
         judged = np.zeros(len(series), np.bool_)
         exceedances = tuple(
-            _exceedance(series, limit, beyond[limit.beyond], judged) for limit in group
+            _exceedance(series, limit, beyond[limit.criterion.beyond], judged) for limit in group
         )
         beyond[State.WARN] &= ~beyond[State.FAIL]
         yield _rule_share(
@@ -291,7 +267,7 @@ def _exceedance(
     series: ResultColumns, limit: CountedLimit, beyond: NDArray[np.bool_], judged: NDArray[np.bool_]
 ) -> Exceedance:
     """Return how often a limit is broken; add the profiles beyond it and judged to the others."""
-    if limit.limit is None:
+    if limit.criterion.limit is None:
         return Exceedance(limit, 0, None, None, None)
     values = limit.values(series)
     broken, known = limit.broken(values), np.isfinite(values)
@@ -300,6 +276,6 @@ def _exceedance(
     count = int(np.count_nonzero(known))
     if not count:
         return Exceedance(limit, 0, None, None, None)
-    edge = np.fmin.reduce(values) if limit.least else np.fmax.reduce(values)
+    edge = np.fmin.reduce(values) if limit.criterion.least else np.fmax.reduce(values)
     share = int(np.count_nonzero(broken)) / count
     return Exceedance(limit, count, share, float(edge), series.time[np.argmax(values == edge)])

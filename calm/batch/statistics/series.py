@@ -6,14 +6,17 @@ from collections.abc import Callable, Sequence
 from copy import copy
 from pathlib import Path
 from tempfile import TemporaryFile
-from typing import Any, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.batch.finished import Stored, labels_of, readable, statuses_of, times_of
+from calm.batch.finished import labels_of, readable, statuses_of
 from calm.dataset.netcdf import OF_ENDS
 from calm.files import MooringFile
+
+if TYPE_CHECKING:
+    from xarray import Dataset
 
 Column = NDArray[np.floating[Any]]
 Times = NDArray[np.datetime64]
@@ -88,7 +91,7 @@ class ResultColumns:
 
     def __init__(
         self,
-        dataset: Stored,
+        dataset: Dataset,
         folder: Path | None = None,
         check: Callable[[], None] = lambda: None,
         source: Path = Path("the result"),
@@ -96,7 +99,7 @@ class ResultColumns:
         self.dataset = dataset
         self._source = source
         self._check = check
-        self.time: Times = times_of(dataset)
+        self.time: Times = dataset["time"].values
         self.statuses = statuses_of(dataset)
         self.component_label = labels_of(dataset, "component_label")
         self.clamp_label = labels_of(dataset, "clamp_label")

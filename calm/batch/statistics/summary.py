@@ -6,11 +6,11 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import hypot, nan
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.batch.finished import Stored
 from calm.batch.statistics import limits
 from calm.batch.statistics.extremes import Fit, LevelsRefused, median_step, return_levels, years_of
 from calm.batch.statistics.series import Column, LegSeats, ResultColumns, Seat, Times
@@ -23,6 +23,9 @@ from calm.checks.posture import reaches_the_surface
 from calm.files import Profiler
 from calm.files.check_limits import LimitKey
 from calm.physics.seawater import MID_LATITUDE, pressure_at
+
+if TYPE_CHECKING:
+    from xarray import Dataset
 
 WORST = 20
 """Profiles listed as the worst of a response."""
@@ -139,7 +142,7 @@ class Summary:
 
 
 def summarize(
-    dataset: Stored,
+    dataset: Dataset,
     mooring: Mooring | Net,
     folder: Path | None = None,
     check: Callable[[], None] = lambda: None,

@@ -13,7 +13,7 @@ from rich.text import Text
 from calm.drawing.picture import encodable
 from calm.drawing.schematic.pen import ELLIPSIS
 from calm.drawing.schematic.shown_parts import HEADINGS, Schematic, TextRow, schematic_of
-from calm.drawing.schematic.sign import BALLS, LINES, Sign, Symbol
+from calm.drawing.schematic.symbols import BALLS, LINES, Sign, Symbol
 from calm.quantities import QUANTITIES
 
 if TYPE_CHECKING:

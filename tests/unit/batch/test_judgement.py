@@ -29,7 +29,8 @@ def test_shares_of_limits_and_rules_by_hand(mooring):
     )  # fmt: skip
     rules = {rule.name: rule for rule in summary.rules}
     assert (rules["tilt"].fails, rules["tilt"].warns) == (0.80, 0.10)
-    failing, warning = (one for one in rules["tilt"].exceedances if one.limit.component == "meter")
+    labelled = ((one, one.limit.criterion.part.label) for one in rules["tilt"].exceedances)
+    failing, warning = (one for one, label in labelled if label == "meter")
     assert (failing.share, failing.worst) == (0.80, 100.0)
     assert failing.time == np.datetime64("2001-01-05T03:00")
     assert warning.share == 0.90

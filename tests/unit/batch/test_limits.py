@@ -35,17 +35,17 @@ def judged_here(mooring, result):
     found = {}
     with ResultColumns(one_profile(result)) as series:
         for limit in limits_of(mooring):
-            key = (limit.rule.name, limit.component)
-            if limit.limit is None:
+            key = (limit.rule.name, limit.criterion.part.label)
+            if limit.criterion.limit is None:
                 found[key] = State.UNKNOWN, None, None
                 continue
             value = limit.values(series)
             if np.isnan(value).any():
                 found.setdefault(key, (State.UNKNOWN, None, None))
                 continue
-            state = limit.beyond if limit.broken(value)[0] else State.PASS
+            state = limit.criterion.beyond if limit.broken(value)[0] else State.PASS
             if key not in found or state.severity > found[key][0].severity:
-                found[key] = state, float(value[0]), limit.limit
+                found[key] = state, float(value[0]), limit.criterion.limit
     return found
 
 
@@ -107,9 +107,13 @@ def test_every_rule_is_judged_or_said_not_to_be():
 def test_a_value_at_its_limit_is_within_it():
     mooring = calm.load(shipped_folder("lines") / "s1000.yaml")
     for limit in limits_of(mooring):
-        if limit.limit is not None:
-            beyond = limit.limit - 1.0 if limit.least else limit.limit + 1.0
-            values = np.array([limit.limit, beyond, np.nan])
+        if limit.criterion.limit is not None:
+            beyond = (
+                limit.criterion.limit - 1.0
+                if limit.criterion.least
+                else limit.criterion.limit + 1.0
+            )
+            values = np.array([limit.criterion.limit, beyond, np.nan])
             assert limit.broken(values).tolist() == [False, True, False]
 
 
@@ -124,7 +128,7 @@ def test_a_clamp_bears_on_the_strength_of_its_piece():
     with ResultColumns(made) as series:
         for limit in limits_of(mooring):
             if limit.rule.name == "strength":
-                greatest[limit.component] = float(limit.values(series)[0])
+                greatest[limit.criterion.part.label] = float(limit.values(series)[0])
     assert greatest.pop(piece.label) == 9000.0
     assert set(greatest.values()) == {1.0}
 
