@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel
 
-from calm.assemble.datasheet import Datasheet, datasheet
+from calm.assemble.component_forces import Datasheet, datasheet
 from calm.files import Catalogue
 from calm.files.catalogue import Defined
 from calm.files.components import FLEXIBLE_KINDS, KINDS, Outline
