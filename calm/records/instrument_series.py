@@ -183,14 +183,12 @@ class _SeriesFile:
             return []
         found = readings(dataset, variables, self.flags)
         first, values = dataset[variables[0]], found.values
-        if current is not None and current.turn is None:
-            which = 0 if name == "u" else 1
-            value = values[which] * factor_of(dataset[variables[which]], "speed")
-        elif current is not None and current.turn is not None:
-            angles = values[1] * factor_of(dataset[variables[1]], "angle")
-            angle = np.radians(angles + current.turn)
-            speed = values[0] * factor_of(first, "speed")
-            value = speed * (np.sin(angle) if name == "u" else np.cos(angle))
+        if current is not None:
+            dimensions = ("speed", "speed" if current.turn is None else "angle")
+            pairs = zip(variables, dimensions, strict=True)
+            factors = (factor_of(dataset[one], dimension) for one, dimension in pairs)
+            parts = (each * factor for each, factor in zip(values, factors, strict=True))
+            value = current.components(*parts)[0 if name == "u" else 1]
         elif quantity.dimension == "temperature":
             value = values[0] - measured_quantities.celsius_zero(first)
         elif quantity.dimension == "salinity":
