@@ -117,13 +117,17 @@ def _duration(span: np.timedelta64) -> str:
 
 
 def with_flags(
-    variables: Iterable[Variable], names: Mapping[str, Sequence[str]]
+    variables: Iterable[Variable],
+    names: Mapping[str, Sequence[str]],
+    cell_methods: str = "time: point",
 ) -> tuple[Variable, ...]:
     """Return variables that name what goes with them, each followed by its flags.
 
     Parameters
     ----------
+    variables : of the result
     names : of the variables that have flags, what else goes with them: deviations
+    cell_methods : of the variables that have flags
     """
     found = []
     for one in variables:
@@ -132,7 +136,7 @@ def with_flags(
             found.append(one)
             continue
         flags = f"{one.name}_qc"
-        more = {"ancillary_variables": " ".join([*beside, flags]), "cell_methods": "time: point"}
+        more = {"ancillary_variables": " ".join([*beside, flags]), "cell_methods": cell_methods}
         about: Attributes = {
             "standard_name": "quality_flag",
             "long_name": f"quality flag of {one.attributes['long_name']}",

@@ -306,12 +306,7 @@ DEEPER = 0.05
 def located_mooring(path: Path) -> MooringFile:
     """Return the mooring file that a place is for.
 
-    Raises
-    ------
-    InputError
-        The file has mistakes.
-    UsageError
-        It is a tow.
+    InputError: the file has mistakes. UsageError: it is a tow.
     """
     file = read_mooring(path)
     if file.tow is not None:
