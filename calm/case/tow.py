@@ -277,13 +277,7 @@ def sensitivity(tow: Tow) -> list[Variation]:
     for name in _COEFFICIENTS:
         for change in (-CHANGE, CHANGE):
             changed = keys.model_copy(update={name: getattr(keys, name) * (1.0 + change)})
-            variations.append(
-                Variation(name, change, or_why_not(_with_strumming(tow, changed).solve))
-            )
+            solver = tow.file.solver.model_copy(update={"strumming": changed})
+            other = Tow(replace(cut_like(tow.file, tow), solver=solver))
+            variations.append(Variation(name, change, or_why_not(other.solve)))
     return variations
-
-
-def _with_strumming(tow: Tow, keys: BourgetMarichalKeys) -> Tow:
-    """Return the same tow, a fitted cable as long as it is, with other coefficients."""
-    solver = tow.file.solver.model_copy(update={"strumming": keys})
-    return Tow(replace(cut_like(tow.file, tow), solver=solver))

@@ -285,7 +285,8 @@ def read_accepts(
     top : the mooring file
     """
     found = [_accept(one, number, labels, top) for number, one in enumerate(keys)]
-    return tuple(sorted(found, key=lambda one: _breadth(one, labels or ())))
+    known = labels or ()
+    return tuple(sorted(found, key=lambda one: (one.component is None, one.component not in known)))
 
 
 def _accept(
@@ -323,8 +324,3 @@ def _nothing_called(component: str, labels: Sequence[str]) -> str:
     if any(label.startswith(f"{component} ") for label in labels):
         return f"{message}; did you mean `{text} *`?"
     return unknown(message, component, labels)
-
-
-def _breadth(accept: Accept, labels: Sequence[str]) -> int:
-    """Return 0 for a label, 1 for a pattern, 2 for every component."""
-    return 2 if accept.component is None else int(accept.component not in labels)
