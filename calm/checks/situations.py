@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 
 from calm.case import Mooring, Result
+from calm.case.mooring import held, profilers_in
 from calm.case.parts import cut_like
-from calm.case.profilers import held, profilers_in
 from calm.case.strumming import FACTOR
 from calm.checks.assessment import Situation
 from calm.checks.finding import (
