@@ -161,10 +161,7 @@ def spot_of(result: Result | NetResult, place: Place | None = None) -> Spot:
     row: ComponentRow | ClampRow = result.components[0]
     if place is not None:
         row = rows_by_place(result)[place]
-    if isinstance(row, ComponentRow):
-        depth, x, y = row.depth_top, row.x_top, row.y_top
-    else:
-        depth, x, y = row.depth, row.x, row.y
+    depth, x, y = row.upper
     known = row.knockdown == row.knockdown
     return Spot(depth, hypot(x, y), row.knockdown if known else None, row.tilt, row.tension)
 
