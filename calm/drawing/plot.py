@@ -8,20 +8,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from calm.case import TowResult
+from calm.case.result import AnyResult
+from calm.case.uncertain import Uncertain
 from calm.drawing import line_picture
 from calm.drawing.line_picture import LineKind, LinePicture, PictureMark, along, current_between
 from calm.drawing.picture import image
+from calm.physics.line import Floats
 from calm.quantities import QUANTITIES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-    from numpy.typing import NDArray
-
-    from calm.case.result import AnyResult
-    from calm.case.uncertain import Uncertain
-
-    Floats = NDArray[np.float64]
 
 
 WIDTH = 11.0  # inches
