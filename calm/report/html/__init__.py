@@ -69,9 +69,11 @@ def _environment() -> Environment:
 
 
 def _breakable(text: str) -> str:
-    """The text escaped; a word too long for a column may break, and is still one when copied."""
+    """A text in which a word too long for a column may break, and is still one when copied."""
     from markupsafe import Markup
 
+    if not _LONG_WORD.search(text):  # as nearly always
+        return text
     words = _LONG_WORD.split(text)
     words[1::2] = [Markup("<wbr>").join(_STEPS.findall(word)) for word in words[1::2]]
     return Markup("").join(words)
