@@ -1,7 +1,5 @@
 """What comes to the deck: every piece and every clamped instrument, with its mass and weight."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 

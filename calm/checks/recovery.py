@@ -13,8 +13,6 @@ it in the line, and that floats which have come up are half out of the water. In
 Back-up buoyancy is what brings up the release when the line breaks above it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field

@@ -1,22 +1,17 @@
 """What was put onto fixed levels: the scales found, sections over time, words for a report."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from calm.drawing.picture import figure_svg
+from calm.grid.field import GriddedQuantity
+from calm.physics.line import Floats
 from calm.report import blocks
 from calm.report.blocks import Figure, Note, Prose, Report, ReportPart, Table, number, table_of
 from calm.report.provenance import report_of
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from calm.grid.field import GriddedQuantity
 
 MOST_DRAWN = 600
 """Times of a section that are drawn; of more, every few."""
@@ -32,7 +27,7 @@ def grid_report(
     output: Path,
     fields: Mapping[str, GriddedQuantity],
     names: Mapping[str, str],
-    levels: NDArray[np.float64],
+    levels: Floats,
 ) -> Report:
     """Return the report: a section of each quantity, its scales, words for the methods.
 
@@ -89,9 +84,7 @@ def scales_table(fields: Mapping[str, GriddedQuantity]) -> Table:
     )
 
 
-def methods_text(
-    fields: Mapping[str, GriddedQuantity], levels: NDArray[np.float64]
-) -> tuple[str, ...]:
+def methods_text(fields: Mapping[str, GriddedQuantity], levels: Floats) -> tuple[str, ...]:
     """Return sentences to paste into the methods of a cruise report."""
     from calm.version import __version__
 
