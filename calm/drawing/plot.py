@@ -12,7 +12,7 @@ from calm.case.result import AnyResult
 from calm.case.uncertain import Uncertain
 from calm.drawing import line_picture
 from calm.drawing.line_picture import LineKind, LinePicture, PictureMark, along, current_between
-from calm.drawing.picture import image
+from calm.drawing.picture import empty_figure, image
 from calm.physics.line import Floats
 from calm.quantities import QUANTITIES
 
@@ -65,8 +65,6 @@ def draw(result: AnyResult, uncertain: Uncertain | None = None) -> Figure:
     a tow; and the line from above, where it leaves the plane of a tow. The band of an uncertain
     mooring is drawn behind the line.
     """
-    from matplotlib.figure import Figure
-
     side, plane = (
         line_picture.elevation_of(result, uncertain=uncertain),
         line_picture.plane_of(result),
@@ -75,7 +73,7 @@ def draw(result: AnyResult, uncertain: Uncertain | None = None) -> Figure:
     near = extent * _LINE_HEIGHT / (_LEAST_HEIGHT - _FRAME)
     written = sorted(line_picture.names(list(side.marks), near), key=lambda named: named[1].depth)
     height = min(max(_LEAST_HEIGHT, len(written) * _LINE_HEIGHT + _FRAME), _GREATEST_HEIGHT)
-    figure = Figure(figsize=(WIDTH, height), layout="constrained")
+    figure = empty_figure(WIDTH, height, layout="constrained")
     flat = side.ship is not None and not _leaves_plane(result, plane)
     views = (7, 2) if flat else (5, 1.5, 3)
     elevation, flow, *plan = figure.subplots(1, len(views), width_ratios=views)

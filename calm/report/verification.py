@@ -11,6 +11,7 @@ from calm.report import blocks
 from calm.report.blocks import Block, Cell, Heading, Line, Prose, ReportPart, Span, table_of, warned
 from calm.report.result_files import members
 from calm.verification import Case, CaseOutcome, Kind, Source
+from calm.version import __version__
 
 Findings = Sequence[tuple[Source, Sequence[CaseOutcome]]]
 
@@ -27,8 +28,6 @@ def verification_document(findings: Findings) -> dict[str, Any]:
     `tolerance`, `unit`, `why` (the reason for the tolerance), `within`, and `reason` where nothing
     was got.
     """
-    from calm.version import __version__
-
     cases = [_case(source, outcome) for source, outcomes in findings for outcome in outcomes]
     kinds = by_kind(outcome.case for _, outcomes in findings for outcome in outcomes)
     return {
