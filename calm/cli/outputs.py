@@ -105,9 +105,10 @@ class FileOutcome:
             from calm.report.result_files import result_netcdf
 
             return result_netcdf(self.result)
-        from calm.drawing.plot import picture
+        from calm.drawing.picture import image
+        from calm.drawing.plot import draw
 
-        return picture(self.result, suffix, self.uncertain)
+        return image(draw(self.result, self.uncertain), suffix)
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from calm.case.result import AnyResult
 from calm.case.uncertain import Uncertain
 from calm.drawing import line_picture
 from calm.drawing.line_picture import LineKind, LinePicture, PictureMark, along, current_between
-from calm.drawing.picture import empty_figure, image
+from calm.drawing.picture import empty_figure
 from calm.physics.line import Floats
 from calm.quantities import QUANTITIES
 
@@ -49,11 +49,6 @@ _SAME_SPEED = 0.01
 # A line that leaves the plane of the tow by more than this share of its layback is drawn in plan.
 _PLANE_WITHIN = 0.01
 _SHIP: dict[str, Any] = {"linestyle": "none", "marker": "^", "color": "black", "markersize": 8}
-
-
-def picture(result: AnyResult, suffix: str, uncertain: Uncertain | None = None) -> bytes:
-    """Return the drawing of a line or a net as a file; `suffix` is one of `picture.FORMATS`."""
-    return image(draw(result, uncertain), suffix)
 
 
 def draw(result: AnyResult, uncertain: Uncertain | None = None) -> Figure:
