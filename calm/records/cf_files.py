@@ -93,6 +93,16 @@ def reading(path: Path) -> Iterator[None]:
         raise refused(path, f"cannot be read as {kind}: {reason}") from None
 
 
+@contextmanager
+def opened(path: Path) -> Iterator[xr.Dataset]:
+    """Open a dataset; what is wrong with the file is an InputError that says what it holds."""
+    with reading(path), open_current(path) as dataset:
+        try:
+            yield dataset
+        except UnreadableError as error:
+            raise UnreadableError(f"{error}; it holds {holdings(dataset)}") from None
+
+
 def open_current(path: Path) -> xr.Dataset:
     """Return the dataset of a file, its values read as they are asked for, its times undecoded."""
     import cf_xarray  # noqa: F401  (gives datasets their `cf`)

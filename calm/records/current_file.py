@@ -22,9 +22,8 @@ from calm.records import current_terms, delimited
 from calm.records.attributes import refused_by_comments, remarks_in_comments
 from calm.records.cf_files import UnreadableError, holds_arrays, open_current, reading
 from calm.records.current_dataset import ArrayRecord, understand
-from calm.records.current_terms import Terms, TimeChoiceError, choose_time, current_notices
+from calm.records.current_terms import Place, Terms, TimeChoiceError, choose_time, current_notices
 from calm.records.delimited import COMMENT, CellRow, NumberedLine, abridged, is_gap, read_table
-from calm.records.grids import Place
 from calm.records.headings import heading, is_time, magnetic_columns, zone_complaint
 from calm.records.profile_tables import CurrentTable, QuantityTable, read_currents, turned_notices
 from calm.records.record import RULES, Levels, Period, Record, choose_profiles, part

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from calm.errors import InputError, Problem, UsageError, refused
 from calm.physics.line import Floats
 from calm.records import cf_files, measured_quantities, velocity
-from calm.records.cf_files import UnreadableError, factor_of, first_present, holdings, known_values
+from calm.records.cf_files import UnreadableError, factor_of, first_present, known_values
 from calm.records.level_depths import find_levels
 
 if TYPE_CHECKING:
@@ -154,14 +154,11 @@ def _of_file(
 ) -> dict[str, list[InstrumentSeries]]:
     if not cf_files.holds_arrays(path):
         raise refused(path, "is not NetCDF, RODB, .cnv or RBR's table")
-    with cf_files.reading(path), cf_files.open_current(path) as dataset:
-        try:
-            file = _SeriesFile(velocity.with_components(dataset), path.name, flags, seabed)
-            found = {name: series for name in names if (series := file.series(name))}
-        except UnreadableError as error:
-            raise UnreadableError(f"{error}; it holds {holdings(dataset)}") from None
+    with cf_files.opened(path) as dataset:
+        file = _SeriesFile(velocity.with_components(dataset), path.name, flags, seabed)
+        found = {name: series for name in names if (series := file.series(name))}
         if not found:
-            raise UnreadableError(f"holds no {' or '.join(names)}; it holds {holdings(dataset)}")
+            raise UnreadableError(f"holds no {' or '.join(names)}")
     return found
 
 

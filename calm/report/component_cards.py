@@ -8,7 +8,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from calm.assemble.datasheet import Datasheet, datasheet
+from calm.assemble.component_forces import Datasheet, datasheet
 from calm.checks.catalogue_rules import CatalogueFinding, MissingFigures
 from calm.files import Catalogue
 from calm.files.catalogue import Defined

@@ -204,9 +204,9 @@ All are compared with `calm.analytic.chart`, the buoy and the tow with the march
         ),
         *table(
             [
-                CaseColumn[CurvePoints]("s′", "", 5.5e-6, lambda point: float(point.arc)),
-                CaseColumn[CurvePoints]("y′", "", 5.5e-6, lambda point: float(point.distance)),
-                CaseColumn[CurvePoints]("z′", "", 5.5e-6, lambda point: float(point.height)),
+                CaseColumn[CurvePoints]("s′", "", 5.5e-6, lambda at: float(at.arc)),
+                CaseColumn[CurvePoints]("y′", "", 5.5e-6, lambda at: float(at.distance)),
+                CaseColumn[CurvePoints]("z′", "", 5.5e-6, lambda at: float(at.height)),
             ],
             [("curve at 75°", _point, (0.96945, 0.75437, 0.49348))],
             PRINTED,

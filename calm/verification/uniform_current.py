@@ -287,8 +287,8 @@ def _functions(critical: float, friction: float, angle: float) -> uniform.CableF
 def _march(critical: float, friction: float, arc: float) -> Wake:
     """Return a body of 100 N without drag on a cable whose normal drag is 1 N/m at 1 m/s."""
     weight = float(uniform.critical_weight_ratio(radians(critical)))
-    cable = LinePiece(_PULL * arc, True, -weight, 1.0, friction)
-    line = replace(line_of(cable, point(-_PULL, 0.0)), friction=Friction.CONSTANT)
+    rope = LinePiece(_PULL * arc, True, -weight, 1.0, friction)
+    line = replace(line_of(rope, point(-_PULL, 0.0)), friction=Friction.CONSTANT)
     return towed(line, deep_water(), 1.0)
 
 

@@ -15,7 +15,7 @@ from calm.records.current_file import open_record, read_current_file
 from calm.records.current_terms import Terms
 from calm.records.delimited import copied_table
 from calm.records.headings import heading
-from calm.tui.water.tables_to_begin import offered_headings, rows_in
+from calm.tui.water_tables import offered_headings, rows_in
 
 Table = list[list[str]]
 
