@@ -169,6 +169,10 @@ class Mooring(parts.ReadFromFile):
             "line may lie there."
         )
 
+    def solved(self, line: Line) -> Solution:
+        """Return another line in the same water; NoEquilibrium: it has no equilibrium."""
+        return solve_mooring(line, self.water, self.settings)
+
     def still_beside(self, solution: Solution) -> Solution | None:
         """Return the same line without current; None where it has no unique shape."""
         floating = self.line.floating

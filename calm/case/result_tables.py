@@ -55,7 +55,11 @@ class ColumnTable(Generic[Row]):
     def joined(cls, tables: Sequence[Self]) -> Self:
         """Return tables one after another."""
         columns = {name: [getattr(table, name) for table in tables] for name in cls.names()}
-        return cls(**{name: _end_to_end(parts) for name, parts in columns.items()})
+        whole = {
+            name: [*chain(*parts)] if isinstance(parts[0], list) else np.concatenate(parts)
+            for name, parts in columns.items()
+        }
+        return cls(**whole)
 
     def __repr__(self) -> str:
         """Return how many rows there are, and the labels at both ends."""
@@ -130,11 +134,6 @@ def _dataset(columns: Mapping[str, Any], along: str) -> Dataset:
         if name in QUANTITIES
     }
     return Dataset({name: (along, [*columns[name]], said.get(name)) for name in columns})
-
-
-def _end_to_end(parts: Sequence[Any]) -> Any:
-    """Return parts of a column as one; it is a list where the first is one."""
-    return [*chain(*parts)] if isinstance(parts[0], list) else np.concatenate(parts)
 
 
 def _known(value: Any) -> Any:

@@ -116,7 +116,7 @@ def _section(
 ) -> Figure:
     """A section over time, the deviation below it."""
     from calm.grid.field import DOUBTFUL
-    from calm.records.measured_quantities import QUANTITIES_MEASURED
+    from calm.quantities import QUANTITIES_MEASURED
 
     every = max(len(value) // MOST_DRAWN, 1)
     time = field.samples.time[::every].astype("datetime64[s]").astype(object)

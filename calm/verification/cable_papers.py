@@ -49,6 +49,7 @@ BUOY_LIFT = _BUOY_TENSION * sin(_BUOY_ANGLE)
 """What the buoy's cable takes of its buoyancy [N]."""
 
 
+@cache
 def _only(k: float, weight: float, **given: float) -> ChartSolution:
     """Return the cable that three givens fix; the first of several does not dip below A."""
     answer = chart_solve(k, weight, **given)
@@ -57,29 +58,15 @@ def _only(k: float, weight: float, **given: float) -> ChartSolution:
     return answer.solutions[0]
 
 
-@cache
 def _buoy(k: float) -> ChartSolution:
     return _only(k, _BUOY_WEIGHT, phi_b=_BUOY_ANGLE, tension_b=_BUOY_TENSION, height=20.0)
 
 
-@cache
 def _tow(k: float) -> ChartSolution:
     return _only(k, _TOW_WEIGHT, phi_b=radians(140.0), tension_b=100.0, length=100.0)
 
 
-@cache
-def _second_branch() -> ChartSolution:
-    return _only(_K, _TOW_WEIGHT, phi_a=radians(165.0), tension_a=40.0, length=100.0)
-
-
-@cache
-def _through_the_apex() -> ChartSolution:
-    return _only(_K, _TOW_WEIGHT, phi_a=radians(-20.0), tension_a=60.0, length=200.0)
-
-
-@cache
-def _point() -> CurvePoints:
-    return curve(_K, radians(75.0))
+_below = partial(_only, _K, _TOW_WEIGHT)
 
 
 def buoy(buoyancy: float, depth: float) -> tuple[Line, Water]:
@@ -195,8 +182,11 @@ All are compared with `calm.analytic.chart`, the buoy and the tow with the march
         *table(
             [_EIGHT[name] for name in ("phi_b", "T_B", "H", "D")],
             [
-                ("second branch", _second_branch, (145.83813, 63.9741152, 47.9482305, -87.2866976)),
-                ("through the apex", _through_the_apex,
+                ("second branch",
+                 partial(_below, phi_a=radians(165.0), tension_a=40.0, length=100.0),
+                 (145.83813, 63.9741152, 47.9482305, -87.2866976)),
+                ("through the apex",
+                 partial(_below, phi_a=radians(-20.0), tension_a=60.0, length=200.0),
                  (107.31124, 105.978848, 91.9576956, 126.772138)),
             ],
             PRINTED,
@@ -208,7 +198,7 @@ All are compared with `calm.analytic.chart`, the buoy and the tow with the march
                 CaseColumn[CurvePoints]("y′", "", 5.5e-6, lambda at: float(at.distance)),
                 CaseColumn[CurvePoints]("z′", "", 5.5e-6, lambda at: float(at.height)),
             ],
-            [("curve at 75°", _point, (0.96945, 0.75437, 0.49348))],
+            [("curve at 75°", partial(curve, _K, radians(75.0)), (0.96945, 0.75437, 0.49348))],
             PRINTED,
             Kind.INDEPENDENT,
         ),
