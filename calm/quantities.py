@@ -1,12 +1,14 @@
 """The quantities CALM reports: one table of names, symbols, units and meanings.
 
 Table headings, CSV headers, plot labels and the manual all read it, so that a quantity is called
-the same and carries the same unit wherever it is shown.
+the same and carries the same unit wherever it is shown. A second one has what instruments measure.
 """
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import atan2, ceil, degrees, floor, log10
+
+from calm.errors import UsageError, unknown
 
 
 @dataclass(frozen=True)
@@ -260,3 +262,63 @@ def duration(seconds: float) -> str:
         return f"{seconds:.0f} s"
     minutes = round(seconds / 60.0)
     return f"{minutes} min" if minutes < 90 else f"{minutes // 60} h {minutes % 60:02d} min"
+
+
+@dataclass(frozen=True)
+class MeasuredQuantity:
+    """A quantity that instruments of a mooring measure and that is put on levels.
+
+    Attributes
+    ----------
+    archive : its name in files of OceanSITES
+    standard_name, long_name, units : of what is written
+    dimension : of its unit, in the sense of `calm.units`
+    sought, usual : CF standard names, and usual names, by which it is found
+    noise : standard deviation of a good sensor that a user has not told otherwise
+    """
+
+    archive: str
+    standard_name: str
+    long_name: str
+    units: str
+    dimension: str
+    sought: tuple[str, ...]
+    usual: tuple[str, ...]
+    noise: float
+
+
+QUANTITIES_MEASURED = {
+    "temperature": MeasuredQuantity(
+        "TEMP", "sea_water_temperature", "temperature of the sea water", "degree_Celsius",
+        "temperature", ("sea_water_temperature",),
+        ("TEMP", "temperature", "temp", "Temperature"), 0.002,
+    ),
+    "salinity": MeasuredQuantity(
+        "PSAL", "sea_water_practical_salinity", "practical salinity", "1", "salinity",
+        ("sea_water_practical_salinity", "sea_water_salinity"),
+        ("PSAL", "salinity", "psal", "Salinity"), 0.003,
+    ),
+    "u": MeasuredQuantity(
+        "UCUR", "eastward_sea_water_velocity", "velocity of the water to the east", "m s-1",
+        "speed", ("eastward_sea_water_velocity",), (), 0.01,
+    ),
+    "v": MeasuredQuantity(
+        "VCUR", "northward_sea_water_velocity", "velocity of the water to the north", "m s-1",
+        "speed", ("northward_sea_water_velocity",), (), 0.01,
+    ),
+}  # fmt: skip
+"""By the names that commands take; noise: what makers state of the usual instruments."""
+
+
+def chosen_quantities(text: str | None) -> tuple[str, ...]:
+    """Return the names of a text such as ``temperature,salinity``; without one, all.
+
+    UsageError: a name is none of `QUANTITIES_MEASURED`, neither there nor in the archive.
+    """
+    archived = {one.archive: name for name, one in QUANTITIES_MEASURED.items()}
+    wanted = [part.strip() for part in (text or ",".join(QUANTITIES_MEASURED)).split(",")]
+    for name in wanted:
+        if name not in QUANTITIES_MEASURED and name not in archived:
+            known = (*QUANTITIES_MEASURED, *archived)
+            raise UsageError(unknown(f"--variables: `{name}` is not gridded", name, known))
+    return tuple(dict.fromkeys(archived.get(name, name) for name in wanted))

@@ -11,7 +11,7 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import islice
+from itertools import groupby, islice
 from pathlib import Path
 
 import numpy as np
@@ -296,12 +296,11 @@ def _whole_profiles(lines: Iterable[NumberedLine], header: CellRow) -> Iterator[
     The rows of a profile follow each other with one time.
     """
     gathered: list[CellRow] = []
-    for line in lines:
-        row = header.below(*line)
-        if len(gathered) >= AT_ONCE and row.cells[0] != gathered[-1].cells[0]:
+    for _, rows in groupby((header.below(*line) for line in lines), lambda row: row.cells[0]):
+        gathered += rows
+        if len(gathered) >= AT_ONCE:
             yield gathered
             gathered = []
-        gathered.append(row)
     if gathered:
         yield gathered
 
