@@ -173,6 +173,11 @@ class ComponentRow:
         """Return which piece it is."""
         return self.part.place
 
+    @property
+    def upper(self) -> tuple[float, float, float]:
+        """Depth, east and north of its upper end [m]."""
+        return self.depth_top, self.x_top, self.y_top
+
 
 @dataclass(frozen=True, slots=True)
 class ClampRow:
@@ -193,6 +198,11 @@ class ClampRow:
     def place(self) -> Place:
         """Return which clamp it is."""
         return self.part.place
+
+    @property
+    def upper(self) -> tuple[float, float, float]:
+        """Depth, east and north of where it sits [m]."""
+        return self.depth, self.x, self.y
 
 
 class Components(ColumnTable[ComponentRow]):
