@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +22,24 @@ MOST_PIECES = 2_000
 
 FigureOrWord = float | str
 """A number in SI, or a word of the mooring file such as ``insensitive``."""
+
+
+@dataclass(frozen=True)
+class ImportOptions:
+    """Hold how a file is to be read.
+
+    Attributes
+    ----------
+    defines : macros of WHOI Cable; ids of the catalogue by the names of oceanarray
+    columns : the headings of a table, by what they hold
+    elements : a library with the figures that a table lacks
+    allow_include : whether a file may include another from outside its folder
+    """
+
+    defines: Mapping[str, str] = field(default_factory=dict)
+    columns: Mapping[str, str] = field(default_factory=dict)
+    elements: Path | None = None
+    allow_include: bool = False
 
 
 @dataclass(frozen=True)
