@@ -30,7 +30,6 @@ from calm.files import Anchor, Catalogue, Rigid, read_mooring
 from calm.files.components import FLEXIBLE_KINDS, KINDS, Component
 from calm.files.editing.writing import WritingStyle
 from calm.files.yaml_document import read_document
-from calm.version import __version__
 
 _HEAD = 70_000  # bytes from which a format is recognised
 
@@ -114,9 +113,8 @@ def import_file(
             raise refused(
                 path, f"has {count} {what}; more than {model.MOST_PIECES} are not imported"
             )
-    lines = None
     if environment is not None:
-        lines = environment_lines(environment, output)
+        design.environment = environment_lines(environment, output)
         if design.water is not None:
             what = f"the water of the file: {environment.name} replaces it"
             design.dropped.append(model.Remark("environment", what))
@@ -125,8 +123,8 @@ def import_file(
         message = "has no environment; give one: --environment FILE (depth, current, density)"
         raise refused(path, message)
     matched = match_catalogue_entries(design) if match_catalogue else ()
-    secure_anchors(design, lines, output)
-    text, guessed = mooring_text(design, path.name, lines, __version__)
+    secure_anchors(design, output)
+    text, guessed = mooring_text(design, path.name)
     _check(path, output, text)
     return Imported(
         path, chosen.name, text, tuple(guessed + design.guessed),

@@ -231,6 +231,7 @@ class Design:
     items : from the top down; of a tow, from the ship; of a net, one leg after the other
     legs : of a net
     water : None where the file gives no environment
+    environment : lines of the `environment` key in its place
     solver : keys of `solver`, each with a comment
     guessed : guesses that belong to no figure; figures carry their own
     dropped : what the file says and CALM cannot use
@@ -243,6 +244,7 @@ class Design:
     name: str
     items: list[ImportedPiece]
     water: ImportedWater | None
+    environment: list[str] = field(default_factory=list)
     description: str = ""
     tow: ImportedTow | None = None
     record: CurrentRecord | None = None
