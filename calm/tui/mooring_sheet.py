@@ -87,10 +87,10 @@ def filled(draft: Draft, asked: Iterable[Asked]) -> list[Asked]:
     return [replace(each, text=draft.text_at(tuple(each.key.split(".")))) for each in asked]
 
 
-def written(draft: Draft, texts: Mapping[str, str]) -> Draft:
+def written(draft: Draft, texts: Mapping[str, str], below: Location = ()) -> Draft:
     """The file with the texts of a sheet in their places; a blank one takes its key away."""
     for key, new in texts.items():
-        place = tuple(key.split("."))
+        place = (*below, *key.split("."))
         if new != draft.text_at(place):
             draft = draft.put_at(place, new or None)
     return draft

@@ -276,13 +276,6 @@ class Session:
     def _called(self, chosen: Sequence[Place]) -> str:
         return _label(self.item(chosen[0])) if len(chosen) == 1 else f"{len(chosen)} rows"
 
-    def put_all(self, changes: Mapping[Location, str | None], label: str) -> None:
-        """Set values around the line by their places; None takes one away."""
-        draft = self.draft
-        for location, value in changes.items():
-            draft = draft.put_at(location, value)
-        self.do(draft, label)
-
     # saving
 
     def save(self) -> str:
