@@ -9,9 +9,8 @@ from typing import Any
 
 from calm.files import Place, editing
 from calm.files.editing import LINE, Draft, History, LineItem, Value, WorkingFile, clamps_of
+from calm.files.yaml_document import Location
 from calm.tui.names import Named, Standing, followed, widened
-
-Location = tuple[str | int, ...]
 
 _OF_THE_ROW = frozenset({"use", "label", "count", "at", "clamps"})
 """Keys of a row that hold whatever component is there."""
