@@ -155,7 +155,7 @@ def run_kept(
     folder = finished.store_folder(output)
     identity, work = "", None
     try:
-        with _reported_when_long("reading the whole record, to check that it is unchanged", say):
+        with _reported_when_long(say):
             identity = identify()
         if finished.is_finished(output, identity):
             if finished.left_behind(output):
@@ -206,8 +206,8 @@ def _block_for(count: int) -> int:
 
 
 @contextmanager
-def _reported_when_long(what: str, tell: Callable[[str], None]) -> Iterator[None]:
-    timer = Timer(LONG, tell, (what,))
+def _reported_when_long(tell: Callable[[str], None]) -> Iterator[None]:
+    timer = Timer(LONG, tell, ("reading the whole record, to check that it is unchanged",))
     timer.daemon = True
     timer.start()
     try:

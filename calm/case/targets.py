@@ -145,8 +145,7 @@ def spot_of(result: Result | NetResult, place: Place | None = None) -> dict[str,
     row: ComponentRow | ClampRow = result.components[0]
     if place is not None:
         row = rows_by_place(result)[place]
-    end = "_top" if isinstance(row, ComponentRow) else ""
-    depth, x, y = (getattr(row, name + end) for name in ("depth", "x", "y"))
+    depth, x, y = row.upper
     return {
         "depth": depth,
         "excursion": hypot(x, y),

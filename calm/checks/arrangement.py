@@ -1,20 +1,18 @@
 """How a line is put together: its release, its swivels, its metals, and whether its clamps hold."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from math import cos, radians, sin
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from calm.assemble import axial_drag_of, drag_of, net_buoyancy
 from calm.case import Mooring, Result
-from calm.case.profilers import ProfilerTravel
+from calm.case.mooring import ProfilerTravel
 from calm.case.result_tables import ClampRow
 from calm.case.warnings import is_synthetic
+from calm.checks.assessment import Handling
 from calm.checks.criterion import JudgedPart, parts_of
 from calm.checks.finding import (
     State,
@@ -35,9 +33,6 @@ from calm.files.mooring_file import parts_of as every_part
 from calm.physics.materials import materials_in, potential_of
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.quantities import duration, say
-
-if TYPE_CHECKING:
-    from calm.checks.handling import Handling
 
 GREATEST_DIFFERENCE = 0.2
 """Beyond it two metals that touch corrode each other in sea water [V]."""

@@ -24,6 +24,7 @@ from calm.checks import arrangement, catalogue_rules, handling, posture, situati
 from calm.checks.assessment import (
     Acceptance,
     Assessment,
+    Handling,
     MooringInEnvironment,
     Situation,
     estimated,
@@ -41,7 +42,6 @@ from calm.checks.finding import (
     verdict_on,
     worst_of_each_rule,
 )
-from calm.checks.handling import Handling
 from calm.checks.inventory import inventory_of
 from calm.checks.posture import left_out_of_a_leg, reaches_the_surface
 from calm.checks.recovery import breaks_of, losses_of, recovery_of

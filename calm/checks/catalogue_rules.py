@@ -3,15 +3,13 @@
 Only figures that a definition gives are judged; a missing one is no fault, except a missing source.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import chain
 from math import pi
-from typing import TYPE_CHECKING
 
 from calm.assemble import drag_of, mass_in_air
+from calm.checks.assessment import Handling
 from calm.checks.criterion import said
 from calm.checks.finding import State, Verdict, rule, unknown, verdict_on
 from calm.checks.posture import JUDGED_ROLES
@@ -31,9 +29,6 @@ from calm.physics.materials import (
     materials_in,
 )
 from calm.physics.seawater import REFERENCE_DENSITY
-
-if TYPE_CHECKING:
-    from calm.checks.handling import Handling
 
 ROUNDING = 1.05
 """Excess that rounded figures of a data sheet may show: 5 %, or 1.7 % of a sphere's diameter."""

@@ -1,10 +1,10 @@
 """Deployment and recovery: back-up buoyancy, launch and rise."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import isnan
 
-from calm.case import Mooring
+from calm.checks.assessment import Handling
 from calm.checks.criterion import cited
 from calm.checks.finding import (
     State,
@@ -19,7 +19,6 @@ from calm.checks.finding import (
 from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Break, Loss, Recovery
 from calm.checks.strength import lesser_load, passes_load_on
-from calm.drop.launch import Launch
 from calm.errors import NoEquilibrium
 from calm.files import LinePart
 from calm.quantities import QUANTITIES, say
@@ -30,17 +29,6 @@ USUAL_RISE_SPEED = 0.7
 """A rise slower than this is warned of: it takes hours from the deep sea, and drifts away [m/s]."""
 FAST_RISE_SPEED = 3.0
 """A rise faster than this is warned of: the floats leap beside the ship, the line loops [m/s]."""
-
-
-@dataclass(frozen=True)
-class Handling:
-    """What the rules of launch, recovery and breaks look at, or why it could not be solved."""
-
-    mooring: Mooring
-    launch: Launch | NoEquilibrium
-    recovery: Recovery | NoEquilibrium
-    backup: tuple[Break, ...]
-    losses: tuple[Loss, ...] = ()
 
 
 @rule("backup", once=True)

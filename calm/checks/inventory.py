@@ -1,18 +1,13 @@
 """What comes to the deck: every piece and every clamped instrument, with its mass and weight."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 from calm.assemble import mass_in_air, net_buoyancy
+from calm.case import Mooring
 from calm.errors import NoEquilibrium
 from calm.files import Clamp, Component, Flexible, Piece
 from calm.physics.materials import CONCRETE_DENSITY, STEEL_DENSITY
-
-if TYPE_CHECKING:
-    from calm.case import Mooring
 
 
 @dataclass(frozen=True)

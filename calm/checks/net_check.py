@@ -25,6 +25,7 @@ from calm.checks.assess import (
 from calm.checks.assessment import (
     Acceptance,
     Assessment,
+    Handling,
     MooringInEnvironment,
     Situation,
     estimated,
@@ -33,7 +34,7 @@ from calm.checks.catalogue_rules import figures
 from calm.checks.criterion import limits_used
 from calm.checks.finding import AS_GIVEN, OWN, State, Verdict, unknown, verdict_on
 from calm.checks.growth import grown
-from calm.checks.handling import Handling, backup
+from calm.checks.handling import backup
 from calm.checks.inventory import inventory_of
 from calm.checks.recovery import Break, Loss, lifts_of, losses_among, required_margin
 from calm.checks.situations import (

@@ -287,8 +287,8 @@ def grid(
     from calm.grid.product import grid_layout, parse_levels, write_grid
     from calm.grid.samples import read_depths
     from calm.motion.sensors import parse_flags
+    from calm.quantities import QUANTITIES_MEASURED, chosen_quantities
     from calm.records.instrument_series import files_given, read_series
-    from calm.records.measured_quantities import QUANTITIES_MEASURED, chosen_quantities
     from calm.report.folder import check_folder, write_pages
     from calm.report.grid_report import grid_part, grid_report
 
@@ -343,7 +343,7 @@ def fields_of(
     from calm.grid.field import field_of
     from calm.grid.samples import common_times, gather
     from calm.motion.line_places import points_of
-    from calm.records.measured_quantities import QUANTITIES_MEASURED
+    from calm.quantities import QUANTITIES_MEASURED
 
     matched = {name: points_of(each, where.places) for name, each in series.items() if each}
     told = [line for _, said in matched.values() for line in said]

@@ -207,17 +207,20 @@ class FileOutcome:
 
             report = result_report(self.result, self.uncertain)
             if suffix == ".pdf":
-                from calm.report import folder, result_files
+                from calm.report.folder import printed
 
-                return folder.printed(report)
+                return printed(report)
             from calm.report.html import page
 
             return page(report).encode("utf-8", "replace")
         if suffix == ".nc":
-            return result_files.result_netcdf(self.result)
-        from calm.drawing.plot import picture
+            from calm.report.result_files import result_netcdf
 
-        return picture(self.result, suffix, self.uncertain)
+            return result_netcdf(self.result)
+        from calm.drawing.picture import image
+        from calm.drawing.plot import draw
+
+        return image(draw(self.result, self.uncertain), suffix)
 
 
 @dataclass(frozen=True)

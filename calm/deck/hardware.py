@@ -211,19 +211,14 @@ def hardware_of(legs: Sequence[Sequence[DeckItem]]) -> tuple[Stock, ...]:
     return tuple(sorted(found, key=lambda stock: ORDER.index(stock.kind)))
 
 
-def kind_of(words: str) -> str | None:
-    """The kind of hardware that some words tell of."""
-    found = (kind for kind, word in _KINDS.items() if re.search(word, words.lower()))
-    return next(found, None)
-
-
 def _kind(one: DeckItem) -> str | None:
     component = one.part.component
     if isinstance(component, Chain):
         return _CHAIN
     if isinstance(component, Cable):
         return None
-    kind = kind_of(f"{one.part.use.replace('-', ' ')} {component.name or ''} {one.label}")
+    words = f"{one.part.use.replace('-', ' ')} {component.name or ''} {one.label}".lower()
+    kind = next((kind for kind, word in _KINDS.items() if re.search(word, words)), None)
     if one.role == "connector":
         return kind or _OTHER
     return kind if kind in ("anodes", "isolators", "thimbles", "cotter pins") else None

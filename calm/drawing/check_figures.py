@@ -1,29 +1,22 @@
 """A mooring drawn in all of its environments: elevation, current, tension, plan, and breaks."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from math import ceil
-from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from calm.case import Result
+from calm.checks.assessment import Assessment
 from calm.checks.posture import reaches_the_surface
+from calm.checks.recovery import Break
 from calm.checks.strength import allowable_load
 from calm.drawing import graph, line_picture
 from calm.drawing.line_picture import NAMED_ROLES, LineKind, along_the_line, current_between
 from calm.drawing.plot import SEABED_COLOUR, SIGNS, WATER_COLOUR
 from calm.quantities import QUANTITIES
 
-if TYPE_CHECKING:
-    from calm.case import Result
-    from calm.checks.assessment import Assessment
-    from calm.checks.recovery import Break
+Solved = Sequence[tuple[str, Result]]
 
-    Solved = Sequence[tuple[str, Result]]
-
-Floats = NDArray[np.float64]
 
 _SIZE = 8.0  # points, of the letters
 _WIDTH, _HEIGHT = 533.0, 576.0  # points: an A4 page between its margins

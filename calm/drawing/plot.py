@@ -8,20 +8,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from calm.case import TowResult
+from calm.case.result import AnyResult
+from calm.case.uncertain import Uncertain
 from calm.drawing import line_picture
 from calm.drawing.line_picture import LineKind, LinePicture, PictureMark, along, current_between
-from calm.drawing.picture import image
+from calm.drawing.picture import empty_figure
+from calm.physics.line import Floats
 from calm.quantities import QUANTITIES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-    from numpy.typing import NDArray
-
-    from calm.case.result import AnyResult
-    from calm.case.uncertain import Uncertain
-
-    Floats = NDArray[np.float64]
 
 
 WIDTH = 11.0  # inches
@@ -54,11 +51,6 @@ _PLANE_WITHIN = 0.01
 _SHIP: dict[str, Any] = {"linestyle": "none", "marker": "^", "color": "black", "markersize": 8}
 
 
-def picture(result: AnyResult, suffix: str, uncertain: Uncertain | None = None) -> bytes:
-    """Return the drawing of a line or a net as a file; `suffix` is one of `picture.FORMATS`."""
-    return image(draw(result, uncertain), suffix)
-
-
 def draw(result: AnyResult, uncertain: Uncertain | None = None) -> Figure:
     """Draw a mooring or a tow as a figure of two or three views, which belongs to no window.
 
@@ -68,8 +60,6 @@ def draw(result: AnyResult, uncertain: Uncertain | None = None) -> Figure:
     a tow; and the line from above, where it leaves the plane of a tow. The band of an uncertain
     mooring is drawn behind the line.
     """
-    from matplotlib.figure import Figure
-
     side, plane = (
         line_picture.elevation_of(result, uncertain=uncertain),
         line_picture.plane_of(result),
@@ -78,7 +68,7 @@ def draw(result: AnyResult, uncertain: Uncertain | None = None) -> Figure:
     near = extent * _LINE_HEIGHT / (_LEAST_HEIGHT - _FRAME)
     written = sorted(line_picture.names(list(side.marks), near), key=lambda named: named[1].depth)
     height = min(max(_LEAST_HEIGHT, len(written) * _LINE_HEIGHT + _FRAME), _GREATEST_HEIGHT)
-    figure = Figure(figsize=(WIDTH, height), layout="constrained")
+    figure = empty_figure(WIDTH, height, layout="constrained")
     flat = side.ship is not None and not _leaves_plane(result, plane)
     views = (7, 2) if flat else (5, 1.5, 3)
     elevation, flow, *plan = figure.subplots(1, len(views), width_ratios=views)

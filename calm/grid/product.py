@@ -15,8 +15,8 @@ from calm.dataset.discovery import coverage, in_capitals, kept, with_flags, writ
 from calm.errors import UsageError
 from calm.grid.field import BLOCK, GriddedQuantity, estimate
 from calm.grid.samples import MooringDepths
+from calm.quantities import QUANTITIES_MEASURED
 from calm.records import delimited
-from calm.records.measured_quantities import QUANTITIES_MEASURED
 from calm.units import QuantityError, parse_quantity
 from calm.version import __version__
 from calm.whole_file import beside
@@ -107,13 +107,7 @@ def grid_layout(
             about["units_metadata"] = "temperature: on_scale"
             spread["units_metadata"] = "temperature: difference"
         flagged[called] = [f"{called}_sd"]
-    whole = with_flags(variables, flagged)
-    if averaged is not None:
-        means = f"time: mean (interval: {averaged})"
-        whole = tuple(
-            replace(one, attributes={**one.attributes, "cell_methods": means})
-            if one.name in flagged else one for one in whole
-        )  # fmt: skip
+    means = "time: point" if averaged is None else f"time: mean (interval: {averaged})"
     before = [str(depths.attributes[key]) for key in ("history",) if key in depths.attributes]
     labels = list(dict.fromkeys(label for one in fields.values() for label in one.samples.label))
     attributes: netcdf.Attributes = {
@@ -141,11 +135,11 @@ def grid_layout(
         "history": "\n".join(
             [*before, f"{written()} calm {__version__} grid: {', '.join(inputs)}"]
         ),
-        "featureType": "timeSeriesProfile",
     }
-    if not depths.place:
-        attributes.pop("featureType")
-    layout = netcdf.ResultLayout({"time": len(time), "depth": len(levels)}, whole, attributes)
+    if depths.place:
+        attributes["featureType"] = "timeSeriesProfile"
+    sizes, whole = {"time": len(time), "depth": len(levels)}, with_flags(variables, flagged, means)
+    layout = netcdf.ResultLayout(sizes, whole, attributes)
     return in_capitals(layout) if all(one.isupper() for one in names.values()) else layout
 
 
@@ -183,7 +177,7 @@ def write_grid(
     time = next(iter(fields.values())).samples.time
     kinds = {one.name: one for one in layout.in_blocks}
     capitals = all(one.isupper() for one in names.values())
-    lower, upper = ("_SD", "_QC") if capitals else ("_sd", "_qc")
+    deviation, flag = ("_SD", "_QC") if capitals else ("_sd", "_qc")
     with tempfile.TemporaryDirectory(dir=output.parent, prefix=f".{output.name[:40]}.") as folder:
         chunks: list[netcdf.Chunk] = []
 
@@ -205,8 +199,8 @@ def write_grid(
             times = np.arange(start, min(start + BLOCK, len(time)))
             found = estimate(fields[name], levels, times)
             keep(names[name], start, found.value)
-            keep(names[name] + lower, start, found.deviation)
-            keep(names[name] + upper, start, found.flag)
+            keep(names[name] + deviation, start, found.deviation)
+            keep(names[name] + flag, start, found.flag)
         with beside(output) as part:
             netcdf.write_netcdf(layout, BLOCK, chunks, part, lambda: None)
 

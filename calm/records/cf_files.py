@@ -173,6 +173,33 @@ def factor_of(variable: xr.DataArray, dimension: str) -> float:
         raise UnreadableError(message) from None
 
 
+_CELSIUS = ("degree_celsius", "degrees_celsius", "celsius", "degc", "deg_c", "°c", "degree_c", "c",
+            "degrees celsius", "degree celsius", "degrees_c", "deg c")  # fmt: skip
+_KELVIN = ("k", "kelvin", "degree_kelvin", "degrees_kelvin")
+
+
+def celsius_zero(variable: xr.DataArray) -> float:
+    """Return what is taken from a temperature to have it in °C."""
+    unit = str(variable.attrs.get("units", "")).strip()
+    if unit.rpartition(",")[2].strip().lower() in _CELSIUS:  # `ITS-90, deg C`
+        return 0.0
+    if unit.lower() in _KELVIN:
+        return 273.15
+    said = f"`{unit}`, is not degree_Celsius or K" if unit else "is missing: degree_Celsius or K"
+    raise UnreadableError(f"`{variable.name}`: its unit, {said}")
+
+
+_PRACTICAL = ("", "1", "psu", "pss", "pss-78", "pss78", "1e-3", "0.001", "ppt", "psal")
+
+
+def refuse_other_salinity(variable: xr.DataArray) -> None:
+    """Refuse a salinity that is not practical by its unit (UnreadableError)."""
+    unit = str(variable.attrs.get("units", "")).strip()
+    if unit.lower() not in _PRACTICAL:
+        said = f"`{unit}`, is not that of a practical salinity: 1 (or PSU)"
+        raise UnreadableError(f"`{variable.name}`: its unit, {said}")
+
+
 def first_present(dataset: xr.Dataset, names: Iterable[str]) -> list[str]:
     """Return those of the names that the dataset has, each once."""
     return [name for name in dict.fromkeys(names) if name in dataset.variables]

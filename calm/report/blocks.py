@@ -5,8 +5,8 @@ Every text is plain: a printer escapes it in its own way, and nothing in a text 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
 from operator import attrgetter, itemgetter
 from typing import TYPE_CHECKING, Any
 
@@ -77,11 +77,18 @@ class Table:
         count = len(self.columns)
         full = [row for row in self.rows if len(row) == count]
         kept = [at for at in range(count) if any(row[at] != _EMPTY for row in full)]
-        if self.by_hand or not full or len(kept) == count:
-            return
-        rows = (row if len(row) < count else tuple(row[at] for at in kept) for row in self.rows)
-        object.__setattr__(self, "rows", tuple(rows))
-        object.__setattr__(self, "columns", tuple(self.columns[at] for at in kept))
+        if full and len(kept) < count and not self.by_hand:
+            for name, value in self._of(kept).items():
+                object.__setattr__(self, name, value)
+
+    def narrow(self) -> Table:
+        """Return the table without the columns for which there is no room."""
+        return replace(self, **self._of([n for n, one in enumerate(self.columns) if one.narrow]))
+
+    def _of(self, kept: Sequence[int]) -> dict[str, Any]:
+        """Columns by their numbers, and their rows; a single cell heads the rows below it."""
+        rows = (row if len(row) == 1 else tuple(row[at] for at in kept) for row in self.rows)
+        return {"columns": tuple(self.columns[at] for at in kept), "rows": tuple(rows)}
 
 
 _EMPTY = Cell()

@@ -37,6 +37,7 @@ from calm.report.check_tables import figure_of, named_components, place_of
 from calm.report.provenance import title_pairs
 from calm.report.result_files import members
 from calm.units import KILOGRAM_FORCE, KNOT
+from calm.version import __version__
 
 _ABREAST = 5
 """Environments beside each other in a table; more of them take another table."""
@@ -221,8 +222,6 @@ def _both(quantity: str, value: float, scale: float, unit: str, decimals: int) -
 
 def facts_part(facts: CheckFacts, title: str = "") -> ReportPart:
     """Return page one of a mooring, but for the verdict above it and the signatures below."""
-    from calm.version import __version__
-
     lacking = [name for name in _TITLES if name not in dict(facts.titles)]
     origin = [("not given", ", ".join(lacking))] if lacking else []
     origin += [("computed with", f"CALM {__version__}")]

@@ -13,6 +13,7 @@ from calm.checks.finding import ON_THE_WAY, Finding, State, by_rule, worst_state
 from calm.checks.inventory import total_of
 from calm.checks.recovery import Recovery
 from calm.drawing.check_figures import check_figure
+from calm.drawing.schematic import schematic_svg
 from calm.drop.launch import Launch
 from calm.files.check_limits import LimitKey
 from calm.quantities import QUANTITIES
@@ -24,6 +25,7 @@ from calm.report.check_tables import place_of, verdict_prose
 from calm.report.explanation import comparison_part
 from calm.report.result_files import members
 from calm.report.sheet import quality_of, summary_of, table_of_line
+from calm.version import __version__
 
 
 def mooring_section(assessment: Assessment, against: Comparison | None = None) -> Section:
@@ -98,8 +100,6 @@ def _judgement(assessment: Assessment, facts: CheckFacts) -> Iterator[Block]:
 
 def _line(assessment: Assessment) -> Iterator[Block]:
     """The schematic and the table of the line in the first environment that it stands in."""
-    from calm.drawing.schematic import schematic_svg
-
     solved = ((one.environment, one.result) for one in assessment.stands if one.result is not None)
     environment, result = next(solved, ("", None))
     where = environment and f", environment: {environment}"
@@ -263,7 +263,6 @@ def check_document(assessments: Sequence[Assessment]) -> dict[str, Any]:
         `inventory` and its `totals`, and its `document` where files give any; and `situations`,
         what was solved of each mooring in each environment.
     """
-    from calm.version import __version__
 
     def by_name(told: Callable[[Assessment], Any]) -> dict[str, Any]:
         return {each.name: told(each) for each in assessments}

@@ -21,6 +21,7 @@ from calm.physics.line import Water
 from calm.quantities import bearing_of, say
 from calm.report import blocks
 from calm.report.blocks import Listing, Prose, Report, ReportPart, number, quantity, table_of, words
+from calm.version import __version__
 from calm.whole_file import read_text
 
 _LIBRARIES = ("numpy", "pydantic", "matplotlib", "jinja2", "typst")
@@ -28,8 +29,6 @@ _LIBRARIES = ("numpy", "pydantic", "matplotlib", "jinja2", "typst")
 
 def made_by() -> str:
     """Name and version of CALM, of Python, and of the libraries that compute and draw."""
-    from calm.version import __version__
-
     libraries = (f"{name} {version(name)}" for name in _LIBRARIES)
     return ", ".join((f"calm {__version__}", f"python {platform.python_version()}", *libraries))
 

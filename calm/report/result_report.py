@@ -12,6 +12,7 @@ from calm.checks.posture import reaches_the_surface
 from calm.drawing.line_picture import water_of
 from calm.drawing.picture import figure_svg
 from calm.drawing.plot import draw
+from calm.drawing.schematic import schematic_svg
 from calm.files import Uncertainty
 from calm.files.uncertainty import Spread
 from calm.quantities import QUANTITIES
@@ -24,8 +25,6 @@ from calm.report.sheet import leg_title, net_part, quality_of, summary_of, table
 
 def result_report(result: AnyResult, uncertain: Uncertain | None = None) -> blocks.Report:
     """Schematic, table, drawing and inputs of one result, and how sure its figures are."""
-    from calm.drawing.schematic import schematic_svg
-
     file = result.file
     limits: tuple[ReportPart, ...] = ()
     if isinstance(result, NetResult):

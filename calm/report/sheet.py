@@ -4,11 +4,11 @@ Of a net they are the table of its legs, its nodes, and what its ends bear.
 """
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from calm.case import Result, TowResult
-from calm.case.profilers import ProfilerTravel
+from calm.case.mooring import ProfilerTravel
 from calm.case.result import AnyResult, NetResult, legs_of
 from calm.case.result_tables import ClampRow, ComponentRow, rows_down
 from calm.case.strumming import StrummingBand
@@ -194,21 +194,19 @@ def table_of_line(result: AnyResult, title: str = "", *, places: bool = False) -
     for number, (piece, clamps) in enumerate(rows_down(result)):
         if piece.index in heads:
             rows.append((Cell(heads[piece.index], strong=True),))
-        component, upper = piece.part.component, (piece.depth_top, piece.x_top, piece.y_top)
-        states = {"tilt": tilt_state(component, piece.tilt)}
-        states["safety_factor"] = safety_state(result, piece)
-        label = Cell(piece.label, strong=piece.role == "instrument")
-        rows.append((Cell(str(number)), label, *_cells(result, names, piece, upper, states)))
+        label, factor = (
+            Cell(piece.label, strong=piece.role == "instrument"),
+            safety_state(result, piece),
+        )
+        rows.append((Cell(str(number)), label, *_cells(result, names, piece, factor)))
         for clamp in clamps:
-            component = clamp.part.component
-            states = {"tilt": tilt_state(component, clamp.tilt)}
-            there = clamp.depth, clamp.x, clamp.y
-            cells = [*_cells(result, names, clamp, there, states)]
+            cells = [*_cells(result, names, clamp)]
             if places:
                 from calm.drawing.schematic.shown_parts import place_text
 
                 cells[names.index("length")] = Cell(place_text(clamp.part.at))
-            label = Cell(clamp.label, indented=True, strong=component.role == "instrument")
+            strong = clamp.part.component.role == "instrument"
+            label = Cell(clamp.label, indented=True, strong=strong)
             rows.append((Cell(), label, *cells))
     columns += map(blocks.quantity_column, names)
     return Table(title, tuple(columns), tuple(rows), f"{of_an_end}: {_NOTE}", dense=True)
@@ -240,11 +238,11 @@ def _cells(
     result: AnyResult,
     names: tuple[str, ...],
     row: ComponentRow | ClampRow,
-    place: tuple[float, float, float],
-    states: Mapping[str, State | None],
+    factor: State | None = None,
 ) -> Iterator[Cell]:
-    """The figures of a piece or a clamp, at a depth and a place east and north [m]."""
-    depth, x, y = place
+    """The figures of a piece or a clamp; a safety factor is marked by its state."""
+    depth, x, y = row.upper
+    states = {"tilt": tilt_state(row.part.component, row.tilt), "safety_factor": factor}
     bottom, distance = result.file.environment.depth, math.hypot(x, y)
     where = {"depth": depth, "offset": distance, "layback": distance, "x": x, "y": y}
     where["height"] = math.nan if bottom is None else bottom - depth

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from calm.checks.finding import State
 from calm.drawing import plot
+from calm.drawing.picture import empty_figure
 from calm.errors import NoEquilibrium
 from calm.physics.strumming import BourgetMarichal
 from calm.quantities import QUANTITIES, Quantity
@@ -20,6 +21,7 @@ from calm.records.delimited import table_csv
 from calm.report import blocks
 from calm.report.blocks import Cell, Field, Pairs, ReportPart, number, quiet, table_of, warned
 from calm.units import KNOT
+from calm.version import __version__
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -138,8 +140,6 @@ def to_document(tabulation: Tabulation) -> dict[str, Any]:
     A row has what was chosen, `status` and `FIGURES` (SI and degrees; `frequency` only where the
     cable strums), and its `warnings`, or, without an equilibrium, `message` and `advice`.
     """
-    from calm.version import __version__
-
     return {
         "calm": __version__,
         "name": tabulation.name,
@@ -276,9 +276,7 @@ def draw_sweep(tabulation: Tabulation) -> Figure:
     Depth of the body, its layback, and the tension at the tow point and at the body. A speed
     without equilibrium is a gap.
     """
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(plot.WIDTH, _SWEEP_HEIGHT), layout="constrained")
+    figure = empty_figure(plot.WIDTH, _SWEEP_HEIGHT, layout="constrained")
     depth, layback, tension = figure.subplots(1, 3)
     figure.suptitle(tabulation.name, parse_math=False)
     _draw_figure(depth, tabulation, "depth")

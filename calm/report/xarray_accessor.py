@@ -11,6 +11,7 @@ import xarray as xr
 from calm.batch.finished import place_of
 from calm.drawing import plot
 from calm.drawing.line_picture import LineKind, LinePicture, PictureMark, Polyline, along
+from calm.drawing.picture import empty_figure
 from calm.errors import UsageError
 from calm.quantities import QUANTITIES
 from calm.report.batch_summary import when
@@ -79,8 +80,6 @@ def draw_shape(dataset: xr.Dataset, time: str | np.datetime64) -> Figure:
     the upper end of one component to that of the next. The elevation is in the vertical plane of
     the anchor and the top. UsageError: the profile has no equilibrium.
     """
-    from matplotlib.figure import Figure
-
     row = dataset.sel(time=np.datetime64(time), method="nearest")
     prefix, end = ("shape_", "") if "shape_depth" in row else ("", "_top")
     names = (f"{prefix}{name}{end}" for name in ("depth", "x", "y"))
@@ -109,7 +108,7 @@ def draw_shape(dataset: xr.Dataset, time: str | np.datetime64) -> Figure:
         height=height,
         surface=True,
     )
-    figure = Figure(figsize=(plot.WIDTH, _HEIGHT), layout="constrained")
+    figure = empty_figure(plot.WIDTH, _HEIGHT, layout="constrained")
     elevation, plan = figure.subplots(1, 2)
     figure.suptitle(f"{dataset.attrs.get('title', '')}\n{moment}".strip(), parse_math=False)
     plot.draw_elevation(elevation, side)

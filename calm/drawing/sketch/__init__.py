@@ -4,12 +4,9 @@ Each picture is drawn with braille dots, a text for each row of any number of ce
 cells on it shows a scale; more room shows more.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from math import hypot
-from typing import TYPE_CHECKING
 
 import numpy as np
 from rich.cells import cell_len
@@ -17,6 +14,7 @@ from rich.text import Text
 
 from calm.case import Result, TowResult
 from calm.case.result import AnyResult, NetResult
+from calm.case.result_tables import Shape
 from calm.checks.posture import reaches_the_surface
 from calm.checks.strength import allowable_load
 from calm.drawing import line_picture
@@ -25,16 +23,8 @@ from calm.drawing.line_picture import LineKind, LinePicture, PictureMark, along_
 from calm.drawing.schematic.pen import ELLIPSIS
 from calm.drawing.sketch import canvas
 from calm.drawing.sketch.canvas import ACROSS, AXIS, DOWN, header_rows, levels, scaled_frame
+from calm.physics.line import Floats, Water
 from calm.quantities import bearing_of, bearing_text, say
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from calm.case.result_tables import Shape
-    from calm.physics.line import Water
-
-    Floats = NDArray[np.float64]
-
 
 _LEAST_SPAN = 0.1
 """Share of the height that distances are drawn to at least: a line that stands looks as it does."""
