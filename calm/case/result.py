@@ -20,9 +20,8 @@ from calm.files.legs import leg_numbers
 from calm.physics.line import Floats
 
 if TYPE_CHECKING:
-    from calm.case.mooring import Mooring
+    from calm.case.mooring import Mooring, ProfilerTravel
     from calm.case.net import Net
-    from calm.case.profilers import ProfilerTravel
     from calm.case.tow import TowResult
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from calm.assemble import axial_drag_of, drag_of, net_buoyancy
 from calm.case import Mooring, Result
-from calm.case.profilers import ProfilerTravel
+from calm.case.mooring import ProfilerTravel
 from calm.case.result_tables import ClampRow
 from calm.case.warnings import is_synthetic
 from calm.checks.assessment import Handling

@@ -12,8 +12,8 @@ from typing import TypeVar
 import numpy as np
 
 from calm.case import Mooring, Result
+from calm.case.mooring import held, profilers_in
 from calm.case.parts import cut_like
-from calm.case.profilers import held, profilers_in
 from calm.case.strumming import FACTOR
 from calm.checks.assessment import Handling, Situation
 from calm.checks.finding import AS_GIVEN, State, Verdict, at_least, at_most, rule, verdict_on

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from calm.case import Result, TowResult
-from calm.case.profilers import ProfilerTravel
+from calm.case.mooring import ProfilerTravel
 from calm.case.result import AnyResult, NetResult, legs_of
 from calm.case.result_tables import ClampRow, ComponentRow, rows_down
 from calm.case.strumming import StrummingBand

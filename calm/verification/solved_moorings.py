@@ -75,15 +75,12 @@ a second independent integration.""",
             _figures(5e-5 * 1100.0, 2e-4 * TENSION),
             [("S1000 at 1°", lambda: solved_s1000(1.0), _EXPECTED)],
             "What CALM promises at its default angle step: 5e-5 of the water depth, 2e-4 of the "
-            "tension.",
-            Kind.INDEPENDENT,
-        ),
+            "tension.", Kind.INDEPENDENT),
         *table(
             _figures(1e-4, 1e-3),
             [("S1000 at 0.02°", lambda: solved_s1000(_FINEST), _EXPECTED)],
             "One unit of the last digit printed: half for its rounding, half for the march.",
-            Kind.INDEPENDENT,
-        ),
+            Kind.INDEPENDENT),
         Case("S1000 order of convergence, 2° to 0.5°", 2.0, "", 0.25,
              "Second order, disturbed by the cuts at the profile's levels, which shift the "
              "segments.",
@@ -235,9 +232,7 @@ drag and no tangential drag here; it agrees with the independent solution to 0.1
             [replace(_HEIGHT, tolerance=0.1), _OFFSET, *_tensions(0.002)],
             [("C16 independent solution", solved_cdms_1, PROGRAMS["independent"])],
             "Heights 0.1 m, offset 0.2 m, tensions 0.2 %: the printed data define the mooring no "
-            "better.",
-            Kind.INDEPENDENT,
-        ),
+            "better.", Kind.INDEPENDENT),
         *(
             Case(f"C16 independent solution: {name}", kgf, "kgf", 0.002 * kgf,
                  "0.2 %: the printed data define the mooring no better.", got,

@@ -127,51 +127,39 @@ moored, with the march.""",
                 ("C12 suspended", partial(between, 400.0, 300.0, 520.0, 50.0, 5e6),
                  (*_SUSPENDED, 30611.346, 291.876)),
             ],
-            PRINTED,
-            Kind.CLOSED_FORM,
-        ),
+            PRINTED, Kind.CLOSED_FORM),
         *table(
             _pulls(5.5e-4),
             [
                 ("C12 taut", partial(between, 400.0, 300.0, 490.0, 50.0, 5e6),
                  (*_TAUT, 116583.005)),
             ],
-            PRINTED,
-            Kind.CLOSED_FORM,
-        ),
+            PRINTED, Kind.CLOSED_FORM),
         *table(
             [*_pulls(5.5e-7), _GROUNDED],
             [
                 ("C13 touchdown", partial(between, 5.3, _DEPTH, 6.98, 1.036, 560e3, seabed=True),
                  (*_TOUCHDOWN, 3.508667, 3.674364)),
             ],
-            PRINTED,
-            Kind.CLOSED_FORM,
-        ),
+            PRINTED, Kind.CLOSED_FORM),
         *table(
             _SAG,
             [
                 ("C14 level span", partial(between, 300.0, 0.0, 330.0, 20.0),
                  (3929.783686, 5131.588430, 60.090237)),
             ],
-            PRINTED,
-            Kind.CLOSED_FORM,
-        ),
+            PRINTED, Kind.CLOSED_FORM),
         *table(
             _SPAN,
             [
                 ("C12 suspended", lambda: _march(_SUSPENDED, 520.0), (400.0, 300.0)),
                 ("C12 taut", lambda: _march(_TAUT, 490.0), (400.0, 300.0)),
             ],
-            _MARCH,
-            Kind.CLOSED_FORM,
-        ),
+            _MARCH, Kind.CLOSED_FORM),
         *table(
             _LANDED,
             [("C13 touchdown", _march_to_the_seabed, (5.3, 3.424639, 3.674364, 0.763277))],
-            _MARCH,
-            Kind.CLOSED_FORM,
-        ),
+            _MARCH, Kind.CLOSED_FORM),
     ),
 )  # fmt: skip
 

@@ -16,8 +16,8 @@ from calm.batch.statistics.extremes import Fit, LevelsRefused, median_step, retu
 from calm.batch.statistics.series import Column, LegSeats, ResultColumns, Seat, Times
 from calm.batch.statuses import Ending, endings
 from calm.case import Mooring
+from calm.case.mooring import profilers_in
 from calm.case.net import Net
-from calm.case.profilers import profilers_in
 from calm.checks.criterion import limits_used
 from calm.checks.posture import reaches_the_surface
 from calm.files import Profiler
