@@ -52,36 +52,28 @@ __all__ = [
 ]
 
 _HOMES = {
-    "load": "calm.case.net",
-    "check": "calm.checks.net_check",
-    "drop_plan": "calm.drop.plan",
-    "estimate_motion": "calm.motion.motion_estimate",
-    "explain": "calm.case.explain",
-    "locate": "calm.ranging",
-    "size": "calm.case.size",
-    "Profiles": "calm.batch.profiles",
-    "solve_profiles": "calm.batch.profiles",
-    "Mooring": "calm.case",
-    "MotionEstimate": "calm.motion.motion_estimate",
-    "Net": "calm.case.net",
-    "NetResult": "calm.case.result",
-    "Result": "calm.case",
-    "Tow": "calm.case",
-    "TowResult": "calm.case",
-    "CalmError": "calm.errors",
-    "InputError": "calm.errors",
-    "NoEquilibrium": "calm.errors",
-    "UsageError": "calm.errors",
+    "calm.batch.profiles": ("Profiles", "solve_profiles"),
+    "calm.case": ("Mooring", "Result", "Tow", "TowResult"),
+    "calm.case.explain": ("explain",),
+    "calm.case.net": ("Net", "load"),
+    "calm.case.result": ("NetResult",),
+    "calm.case.size": ("size",),
+    "calm.checks.net_check": ("check",),
+    "calm.drop.plan": ("drop_plan",),
+    "calm.errors": ("CalmError", "InputError", "NoEquilibrium", "UsageError"),
+    "calm.motion.motion_estimate": ("MotionEstimate", "estimate_motion"),
+    "calm.ranging": ("locate",),
 }
 
 
 def __getattr__(name: str) -> object:
-    if name not in _HOMES:
+    home = next((home for home, names in _HOMES.items() if name in names), None)
+    if home is None:
         raise AttributeError(f"module 'calm' has no attribute {name!r}")
     from importlib import import_module
 
-    value = getattr(import_module(_HOMES[name]), name)
-    if _HOMES[name].startswith("calm.case"):
+    value = getattr(import_module(home), name)
+    if home.startswith("calm.case"):
         _give_results_their_forms()
     globals()[name] = value
     return value

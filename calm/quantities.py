@@ -1,12 +1,14 @@
 """The quantities CALM reports: one table of names, symbols, units and meanings.
 
 Table headings, CSV headers, plot labels and the manual all read it, so that a quantity is called
-the same and carries the same unit wherever it is shown.
+the same and carries the same unit wherever it is shown. A second one has what instruments measure.
 """
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import atan2, ceil, degrees, floor, log10
+
+from calm.errors import UsageError, unknown
 
 
 @dataclass(frozen=True)
@@ -122,14 +124,8 @@ _TABLE = (
     Quantity("layback", "layback", "m", "Horizontal distance behind the tow point."),
     Quantity("x", "east", "m", "Distance east of the anchor or the tow point.", 1, "x"),
     Quantity("y", "north", "m", "Distance north of the anchor or the tow point.", 1, "y"),
-    Quantity(
-        "length",
-        "length",
-        "m",
-        "Length along the line; in results, as stretched by its load.",
-        2,
-        "L",
-    ),
+    Quantity("length", "length", "m",
+             "Length along the line; in results, as stretched by its load.", 2, "L"),
     Quantity("cut_length", "cut length", "m", "Length before any load.", 2),
     Quantity("depth_top", "depth, upper end", "m", "Depth of the upper end."),
     Quantity("depth_bottom", "depth, lower end", "m", "Depth of the lower end."),
@@ -144,41 +140,18 @@ _TABLE = (
     Quantity("knockdown", "knockdown", "m", "How much deeper than in still water."),
     Quantity("safety_factor", "safety factor", "", "Breaking load over the greatest tension."),
     Quantity("utilisation", "utilisation", "", "Greatest tension over the working load.", 2),
-    Quantity(
-        "used_buoyancy",
-        "used buoyancy",
-        "",
-        "Share of the buoyancy of a float at the surface that is in use.",
-        3,
-    ),
+    Quantity("used_buoyancy", "used buoyancy", "",
+             "Share of the buoyancy of a float at the surface that is in use.", 3),
     Quantity("reserve", "reserve", "N", "Buoyancy of the surface float that is not in use.", 0),
     Quantity("draft", "draft", "m", "How deep a floating hull is immersed.", 2),
     Quantity("freeboard", "freeboard", "m", "How far a floating hull stands out.", 2),
-    Quantity(
-        "vertical",
-        "vertical pull",
-        "N",
-        "Upward pull on the anchor, downward pull on the tow point.",
-        0,
-        "V",
-    ),
-    Quantity(
-        "horizontal",
-        "horizontal pull",
-        "N",
-        "Sideways pull on the anchor or the tow point.",
-        0,
-        "H",
-    ),
-    Quantity(
-        "angle",
-        "angle",
-        "deg",
-        "Angle of the pull: on an anchor from the vertical, in a tow from the horizontal.",
-        1,
-        "",
-        "°",
-    ),
+    Quantity("vertical", "vertical pull", "N",
+             "Upward pull on the anchor, downward pull on the tow point.", 0, "V"),
+    Quantity("horizontal", "horizontal pull", "N",
+             "Sideways pull on the anchor or the tow point.", 0, "H"),
+    Quantity("angle", "angle", "deg",
+             "Angle of the pull: on an anchor from the vertical, in a tow from the horizontal.",
+             1, "", "°"),
     Quantity("potential", "potential", "V", "Difference of two metals in sea water.", 2),
     Quantity("life", "life in waves", "s", "Until fatigue in waves breaks it.", 1, "", "years"),
     Quantity("body_tension", "tension at the body", "N", "Pull on the towed body.", 0),
@@ -190,16 +163,10 @@ _TABLE = (
     Quantity("diameter", "diameter", "m", "Outside diameter; of a chain, its bar.", 1, "", "mm"),
     Quantity("mass", "mass", "kg", "Mass in air.", 2),
     Quantity("buoyancy", "buoyancy", "N", "Net force in sea water of 1025 kg/m³, upward.", 2, "B"),
-    Quantity(
-        "weight", "weight in water", "N", "Net force in sea water of 1025 kg/m³, downward.", 2
-    ),
-    Quantity(
-        "net_buoyancy",
-        "net force in water",
-        "N",
-        "Net force in sea water of 1025 kg/m³, upward, by weight or by mass and volume.",
-        0,
-    ),
+    Quantity("weight", "weight in water", "N",
+             "Net force in sea water of 1025 kg/m³, downward.", 2),
+    Quantity("net_buoyancy", "net force in water", "N",
+             "Net force in sea water of 1025 kg/m³, upward, by weight or by mass and volume.", 0),
     Quantity("dry_mass", "mass in air", "kg", "Mass of a piece as it lies on the deck."),
     Quantity("wet_weight", "weight in water", "N", "Net force of a piece, downward.", 0),
     Quantity("lift_mass", "mass of the lift", "kg", "Mass of a piece with its clamps."),
@@ -211,12 +178,10 @@ _TABLE = (
     Quantity("breaking_load", "breaking load", "N", "Load at which it breaks.", 1, "", "kN"),
     Quantity("working_load", "working load", "N", "Load it is made for.", 1, "", "kN"),
     Quantity("depth_rating", "depth rating", "m", "Greatest depth it stands.", 0),
-    Quantity(
-        "max_tilt", "greatest tilt", "deg", "Tilt beyond which it is not to be trusted.", 0, "", "°"
-    ),
-    Quantity(
-        "warn_tilt", "tilt of warning", "deg", "Tilt from which its data need a look.", 0, "", "°"
-    ),
+    Quantity("max_tilt", "greatest tilt", "deg",
+             "Tilt beyond which it is not to be trusted.", 0, "", "°"),
+    Quantity("warn_tilt", "tilt of warning", "deg",
+             "Tilt from which its data need a look.", 0, "", "°"),
     Quantity("kn", "normal drag", "N/(m/s)²", "Drag across its axis at 1 m/s.", 2, "Kn"),
     Quantity("kt", "axial drag", "N/(m/s)²", "Drag along its axis at 1 m/s.", 2, "Kt"),
     Quantity("k_surface", "drag afloat", "N/(m/s)²", "Drag at 1 m/s when it floats.", 2),
@@ -230,7 +195,7 @@ _TABLE = (
     Quantity("cd", "Cd", "", "Drag coefficient.", 3),
     Quantity("wind_cd", "Cd in the wind", "", "Drag coefficient of the part in the air.", 2),
     Quantity("friction", "friction", "", "Coefficient of friction on the seabed.", 2),
-)
+)  # fmt: skip
 
 QUANTITIES = {quantity.name: quantity for quantity in _TABLE}
 """Every quantity by its name."""
@@ -297,3 +262,63 @@ def duration(seconds: float) -> str:
         return f"{seconds:.0f} s"
     minutes = round(seconds / 60.0)
     return f"{minutes} min" if minutes < 90 else f"{minutes // 60} h {minutes % 60:02d} min"
+
+
+@dataclass(frozen=True)
+class MeasuredQuantity:
+    """A quantity that instruments of a mooring measure and that is put on levels.
+
+    Attributes
+    ----------
+    archive : its name in files of OceanSITES
+    standard_name, long_name, units : of what is written
+    dimension : of its unit, in the sense of `calm.units`
+    sought, usual : CF standard names, and usual names, by which it is found
+    noise : standard deviation of a good sensor that a user has not told otherwise
+    """
+
+    archive: str
+    standard_name: str
+    long_name: str
+    units: str
+    dimension: str
+    sought: tuple[str, ...]
+    usual: tuple[str, ...]
+    noise: float
+
+
+QUANTITIES_MEASURED = {
+    "temperature": MeasuredQuantity(
+        "TEMP", "sea_water_temperature", "temperature of the sea water", "degree_Celsius",
+        "temperature", ("sea_water_temperature",),
+        ("TEMP", "temperature", "temp", "Temperature"), 0.002,
+    ),
+    "salinity": MeasuredQuantity(
+        "PSAL", "sea_water_practical_salinity", "practical salinity", "1", "salinity",
+        ("sea_water_practical_salinity", "sea_water_salinity"),
+        ("PSAL", "salinity", "psal", "Salinity"), 0.003,
+    ),
+    "u": MeasuredQuantity(
+        "UCUR", "eastward_sea_water_velocity", "velocity of the water to the east", "m s-1",
+        "speed", ("eastward_sea_water_velocity",), (), 0.01,
+    ),
+    "v": MeasuredQuantity(
+        "VCUR", "northward_sea_water_velocity", "velocity of the water to the north", "m s-1",
+        "speed", ("northward_sea_water_velocity",), (), 0.01,
+    ),
+}  # fmt: skip
+"""By the names that commands take; noise: what makers state of the usual instruments."""
+
+
+def chosen_quantities(text: str | None) -> tuple[str, ...]:
+    """Return the names of a text such as ``temperature,salinity``; without one, all.
+
+    UsageError: a name is none of `QUANTITIES_MEASURED`, neither there nor in the archive.
+    """
+    archived = {one.archive: name for name, one in QUANTITIES_MEASURED.items()}
+    wanted = [part.strip() for part in (text or ",".join(QUANTITIES_MEASURED)).split(",")]
+    for name in wanted:
+        if name not in QUANTITIES_MEASURED and name not in archived:
+            known = (*QUANTITIES_MEASURED, *archived)
+            raise UsageError(unknown(f"--variables: `{name}` is not gridded", name, known))
+    return tuple(dict.fromkeys(archived.get(name, name) for name in wanted))

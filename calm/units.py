@@ -38,92 +38,40 @@ class Dimension:
 
 DIMENSIONS: Mapping[str, Dimension] = {
     "number": Dimension("a plain number", "", {"": 1.0, "%": 0.01}),
-    "length": Dimension(
-        "a length",
-        "m",
-        {
-            "m": 1.0,
-            "mm": 1e-3,
-            "cm": 1e-2,
-            "km": 1e3,
-            "in": _INCH,
-            "ft": _FOOT,
-            "yd": 3 * _FOOT,
-            "fathom": 6 * _FOOT,
-            "nmi": 1852.0,
-        },
-    ),
-    "speed": Dimension(
-        "a speed",
-        "m/s",
-        {"m/s": 1.0, "cm/s": 1e-2, "mm/s": 1e-3, "knot": KNOT, "km/h": 1 / 3.6, "ft/s": _FOOT},
-    ),
+    "length": Dimension("a length", "m",
+        {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "km": 1e3, "in": _INCH, "ft": _FOOT, "yd": 3 * _FOOT,
+         "fathom": 6 * _FOOT, "nmi": 1852.0}),
+    "speed": Dimension("a speed", "m/s",
+        {"m/s": 1.0, "cm/s": 1e-2, "mm/s": 1e-3, "knot": KNOT, "km/h": 1 / 3.6, "ft/s": _FOOT}),
     "acceleration": Dimension("an acceleration", "m/s^2", {"m/s^2": 1.0, "ft/s^2": _FOOT}),
     "mass": Dimension("a mass", "kg", {"kg": 1.0, "g": 1e-3, "t": 1e3, "lb": _POUND}),
-    "force": Dimension(
-        "a force",
-        "N",
-        {
-            "N": 1.0,
-            "kN": 1e3,
-            "kgf": KILOGRAM_FORCE,
-            "lbf": _POUND_FORCE,
-            "daN": 10.0,
-            "MN": 1e6,
-            "gf": KILOGRAM_FORCE / 1e3,
-            "tf": KILOGRAM_FORCE * 1e3,
-        },
-    ),
-    "mass per length": Dimension(
-        "a mass per length",
-        "kg/m",
-        {"kg/m": 1.0, "g/m": 1e-3, "kg/km": 1e-3, "lb/ft": _POUND / _FOOT},
-    ),
-    "force per length": Dimension(
-        "a force per length",
-        "N/m",
-        {
-            "N/m": 1.0,
-            "kN/m": 1e3,
-            "N/km": 1e-3,
-            "kgf/m": KILOGRAM_FORCE,
-            "gf/m": KILOGRAM_FORCE / 1e3,
-            "kgf/km": KILOGRAM_FORCE / 1e3,
-            "lbf/ft": _POUND_FORCE / _FOOT,
-        },
-    ),
-    "density": Dimension(
-        "a density",
-        "kg/m^3",
-        {"kg/m^3": 1.0, "g/cm^3": 1e3, "kg/L": 1e3, "t/m^3": 1e3, "lb/ft^3": _POUND / _FOOT**3},
-    ),
+    "force": Dimension("a force", "N",
+        {"N": 1.0, "kN": 1e3, "kgf": KILOGRAM_FORCE, "lbf": _POUND_FORCE, "daN": 10.0, "MN": 1e6,
+         "gf": KILOGRAM_FORCE / 1e3, "tf": KILOGRAM_FORCE * 1e3}),
+    "mass per length": Dimension("a mass per length", "kg/m",
+        {"kg/m": 1.0, "g/m": 1e-3, "kg/km": 1e-3, "lb/ft": _POUND / _FOOT}),
+    "force per length": Dimension("a force per length", "N/m",
+        {"N/m": 1.0, "kN/m": 1e3, "N/km": 1e-3, "kgf/m": KILOGRAM_FORCE,
+         "gf/m": KILOGRAM_FORCE / 1e3, "kgf/km": KILOGRAM_FORCE / 1e3,
+         "lbf/ft": _POUND_FORCE / _FOOT}),
+    "density": Dimension("a density", "kg/m^3",
+        {"kg/m^3": 1.0, "g/cm^3": 1e3, "kg/L": 1e3, "t/m^3": 1e3, "lb/ft^3": _POUND / _FOOT**3}),
     "area": Dimension("an area", "m^2", {"m^2": 1.0, "cm^2": 1e-4, "mm^2": 1e-6, "ft^2": _FOOT**2}),
-    "volume": Dimension(
-        "a volume", "m^3", {"m^3": 1.0, "L": 1e-3, "dm^3": 1e-3, "cm^3": 1e-6, "ft^3": _FOOT**3}
-    ),
-    "drag": Dimension(
-        "a drag at unit speed",
-        "N/(m/s)^2",
-        {"N/(m/s)^2": 1.0, "kgf/(m/s)^2": KILOGRAM_FORCE, "lbf/(ft/s)^2": _POUND_FORCE / _FOOT**2},
-    ),
+    "volume": Dimension("a volume", "m^3",
+        {"m^3": 1.0, "L": 1e-3, "dm^3": 1e-3, "cm^3": 1e-6, "ft^3": _FOOT**3}),
+    "drag": Dimension("a drag at unit speed", "N/(m/s)^2",
+        {"N/(m/s)^2": 1.0, "kgf/(m/s)^2": KILOGRAM_FORCE, "lbf/(ft/s)^2": _POUND_FORCE / _FOOT**2}),
     "temperature": Dimension("a temperature", "degC", {"degC": 1.0}),
-    "salinity": Dimension(
-        "a salinity (practical: 35; or in g/kg)",
-        "",
-        {"": 1.0, "PSU": 1.0, "psu": 1.0, "g/kg": 35 / 35.16504},
-    ),
-    "pressure": Dimension(
-        "a pressure",
-        "Pa",
-        {"Pa": 1.0, "hPa": 1e2, "kPa": 1e3, "MPa": 1e6, "dbar": 1e4, "mbar": 1e2, "bar": 1e5},
-    ),
-    "time": Dimension(
-        "a time", "s", {"s": 1.0, "ms": 1e-3, "min": 60.0, "h": 3600.0, "d": 86400.0}
-    ),
+    "salinity": Dimension("a salinity (practical: 35; or in g/kg)", "",
+        {"": 1.0, "PSU": 1.0, "psu": 1.0, "g/kg": 35 / 35.16504}),
+    "pressure": Dimension("a pressure", "Pa",
+        {"Pa": 1.0, "hPa": 1e2, "kPa": 1e3, "MPa": 1e6, "dbar": 1e4, "mbar": 1e2, "bar": 1e5}),
+    "time": Dimension("a time", "s",
+        {"s": 1.0, "ms": 1e-3, "min": 60.0, "h": 3600.0, "d": 86400.0}),
     "angle": Dimension("an angle", "deg", {"deg": 1.0, "rad": 180 / math.pi}),
     "latitude": Dimension("a latitude", "deg", {"deg": 1.0}),
     "longitude": Dimension("a longitude", "deg", {"deg": 1.0}),
-}
+}  # fmt: skip
 """Every kind of quantity, by name.
 
 Angles are kept in degrees and temperatures in degrees Celsius, as files and reports have them.

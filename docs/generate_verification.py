@@ -142,13 +142,16 @@ def draw_cdms_1() -> Figure:
     figure = Figure(figsize=(9, 5), layout="constrained")
     shape, tension = figure.subplots(1, 2, sharey=True)
     answer = solved_moorings.solved_cdms_1()
-    shape.plot(answer.offset, answer.height, color=LINE, label="CALM")
-    tension.plot(answer.tension[1:], answer.height[1:], color=LINE, label="CALM")
-    heights = [answer.height[node] for node in answer.nodes_of_tensions]
-    for program, (height, offset, *tensions) in solved_moorings.PROGRAMS.items():
+    nodes = range(len(answer.tension))
+    height = [solved_moorings.height_at(answer, node) for node in nodes]
+    pull = [solved_moorings.tension_at(answer, node) for node in nodes]
+    shape.plot(answer.position[:, 0], height, color=LINE, label="CALM")
+    tension.plot(pull[1:], height[1:], color=LINE, label="CALM")
+    heights = [height[node] for node in solved_moorings.nodes_of_tensions(answer)]
+    for program, (high, offset, *tensions) in solved_moorings.PROGRAMS.items():
         marker, colour = STYLES[program]
         look = {"marker": marker, "color": colour, "linestyle": "none", "fillstyle": "none"}
-        shape.plot(offset, height, label=program, **look)
+        shape.plot(offset, high, label=program, **look)
         tension.plot(tensions, heights, label=program, **look)
     shape.set(xlabel="offset [m]", ylabel="height above the seabed [m]", title="shape")
     tension.set(xlabel="tension [kgf]", title="tension; printed below the sphere,\nbelow the third "

@@ -15,7 +15,7 @@ import numpy as np
 
 from calm.analytic.chart_branch import Branch, check_k, critical_angle
 from calm.analytic.chart_search import ChartSearch, LengthSearch, Piece, size_of
-from calm.errors import UsageError
+from calm.errors import NoEquilibrium, UsageError
 
 
 @dataclass(frozen=True)
@@ -109,7 +109,7 @@ def chart_solve(
         for name, value in sunk.items()
     }
     answer = _solve(float(k), over_weight, floats)
-    if isinstance(answer, ChartRefusal):
+    if isinstance(answer, NoEquilibrium):
         return ChartAnswer(answer.status, float(k), (), answer.message, answer.advice)
     pull = abs(weight)
     solutions = [
@@ -121,7 +121,7 @@ def chart_solve(
     return ChartAnswer("converged", float(k), tuple(solutions))
 
 
-def _solve(k: float, known: dict[str, float], floats: bool) -> list[ChartSolution] | ChartRefusal:
+def _solve(k: float, known: dict[str, float], floats: bool) -> list[ChartSolution] | NoEquilibrium:
     """The cables that sink, tensions over w; those that float have been turned upside down."""
     refusal = contradiction(known)
     if refusal:
@@ -247,23 +247,14 @@ _ROUNDING = 1e-9
 _LEAST_SLACK = 1e-12
 
 
-@dataclass(frozen=True)
-class ChartRefusal:
-    """Describe why there is no answer: its status, what is wrong and what to change."""
-
-    status: str
-    message: str
-    advice: str
-
-
-def family(what: str) -> ChartRefusal:
+def family(what: str) -> NoEquilibrium:
     """The refusal of quantities that leave one free."""
-    return ChartRefusal(
+    return NoEquilibrium(
         "one-parameter-family", what, "Give another quantity in place of one of these."
     )
 
 
-def contradiction(known: Mapping[str, float]) -> ChartRefusal | None:
+def contradiction(known: Mapping[str, float]) -> NoEquilibrium | None:
     """Return what is wrong with the quantities of a sinking cable whatever K is, if anything.
 
     Tensions are over w [m]. A cable that floats comes here upside down; messages hold for both.
@@ -297,7 +288,7 @@ def is_taut(known: Mapping[str, float]) -> bool:
     return "length" in known and chord >= known["length"] * (1.0 - _LEAST_SLACK)
 
 
-def reason(k: float, known: Mapping[str, float], floats: bool) -> ChartRefusal:
+def reason(k: float, known: Mapping[str, float], floats: bool) -> NoEquilibrium:
     """Return why no cable has quantities that do not contradict each other.
 
     Parameters
@@ -335,15 +326,15 @@ def reason(k: float, known: Mapping[str, float], floats: bool) -> ChartRefusal:
     )
 
 
-def _inconsistent(message: str, advice: str) -> ChartRefusal:
-    return ChartRefusal("inconsistent", message, advice)
+def _inconsistent(message: str, advice: str) -> NoEquilibrium:
+    return NoEquilibrium("inconsistent", message, advice)
 
 
-def _none(message: str, advice: str) -> ChartRefusal:
-    return ChartRefusal("no-equilibrium", message, advice)
+def _none(message: str, advice: str) -> NoEquilibrium:
+    return NoEquilibrium("no-equilibrium", message, advice)
 
 
-def straight(k: float, known: Mapping[str, float]) -> ChartSolution | ChartRefusal | None:
+def straight(k: float, known: Mapping[str, float]) -> ChartSolution | NoEquilibrium | None:
     """The straight cable at the critical angle, the only one that no branch of the curve holds.
 
     It has three quantities [rad, m] to 1e-9, tensions over w; a refusal where they do not fix its

@@ -326,7 +326,7 @@ Figures = dict[str, float | None]
 
 def figures_of(catalogue: Catalogue, id: str) -> Figures:
     """The figures of a component or assembly by the keys of `COLUMNS`; SI units."""
-    from calm.assemble.datasheet import datasheet
+    from calm.assemble.component_forces import datasheet
 
     try:
         definition = catalogue.get(id)

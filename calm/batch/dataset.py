@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import ceil
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,9 +22,7 @@ from calm.files.legs import leg_numbers
 from calm.files.mooring_file import clamps_down
 from calm.files.rigid import Body
 from calm.physics.line import Floats
-
-if TYPE_CHECKING:
-    from calm.records.record import Record
+from calm.records.record import Record
 
 _ALONG = {"component": netcdf.OF_COMPONENT, "clamp": OF_CLAMP, "node": netcdf.OF_NODE}
 _LABELLED = {"component": "component_label", "clamp": "clamp_label", "node": "node_distance"}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
@@ -16,7 +17,6 @@ from calm.batch import solving
 from calm.batch.net_profiles import NetProfiles
 from calm.batch.solving import LACKS_ROOM, OF_CLAMP, OF_ENDS, OF_PIECE, ProfileArrays, Results
 from calm.batch.statuses import STATUSES, implausible, status_of
-from calm.batch.threads import processors
 from calm.case import Mooring
 from calm.case.measure import clamps_of, components_of
 from calm.case.net import Net
@@ -302,6 +302,13 @@ class Batch:
             endings[again] = ends
             for array, solved in zip(rows, found, strict=True):
                 array[again] = solved
+
+
+def processors() -> int:
+    """Return how many processors this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
 
 
 def _checked(

@@ -1,28 +1,23 @@
 """Every profile of a record: solved in blocks, kept at once, taken up again where it stopped."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from threading import Event, Timer
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 from calm.batch import finished
 from calm.batch.dataset import layout_of, nodes_of
-from calm.batch.profiles import Batch
+from calm.batch.profiles import Batch, processors
 from calm.batch.statuses import Ending, endings
-from calm.batch.threads import Stopped, go_on, processors
 from calm.batch.work import BatchWork, Progress, compile_solver
-from calm.batch.work_store import identity_of, open_store, to_text
+from calm.batch.work_store import Stopped, go_on, identity_of, open_store, to_text
 from calm.case import Mooring
 from calm.case.net import Net
 from calm.errors import UsageError
-
-if TYPE_CHECKING:
-    from calm.records.record import Record
+from calm.records.record import Record
 
 BLOCK = 8192
 """Profiles to a block: what is written at once, and lost where a process is stopped."""
@@ -160,7 +155,7 @@ def run_kept(
     folder = finished.store_folder(output)
     identity, work = "", None
     try:
-        with _reported_when_long("reading the whole record, to check that it is unchanged", say):
+        with _reported_when_long(say):
             identity = identify()
         if finished.is_finished(output, identity):
             if finished.left_behind(output):
@@ -211,8 +206,8 @@ def _block_for(count: int) -> int:
 
 
 @contextmanager
-def _reported_when_long(what: str, tell: Callable[[str], None]) -> Iterator[None]:
-    timer = Timer(LONG, tell, (what,))
+def _reported_when_long(tell: Callable[[str], None]) -> Iterator[None]:
+    timer = Timer(LONG, tell, ("reading the whole record, to check that it is unchanged",))
     timer.daemon = True
     timer.start()
     try:

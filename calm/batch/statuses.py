@@ -1,23 +1,18 @@
 """How the profiles of a batch end, and what that means for what is counted of them."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from enum import Enum
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from calm.batch.solving import HEAPED, LEVELS_COINCIDE, NO_CURRENT
+from calm.case import Mooring
 from calm.physics.line import Floats
 from calm.records.current_terms import DEEPEST, IMPOSSIBLE
+from calm.records.record import Record
 from calm.solve import Status
 from calm.solve.finish import STATUS_OF
-
-if TYPE_CHECKING:
-    from calm.case import Mooring
-    from calm.records.record import Record
 
 
 class Ending(Enum):

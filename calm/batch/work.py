@@ -4,16 +4,14 @@ They are solved here, or by the workers of a dask scheduler on this machine or o
 is made ready before the first, and what is reported meanwhile.
 """
 
-from __future__ import annotations
-
-from collections.abc import Callable, Generator, Iterator, Mapping
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 from contextlib import closing
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import islice
-from threading import Event, Lock
+from threading import Event, Lock, Thread
 from time import monotonic, perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numba.core import event
@@ -22,16 +20,13 @@ from numpy.typing import NDArray
 from calm.batch.dataset import ShapeNodes, arrays_of
 from calm.batch.profiles import Batch, Profiles
 from calm.batch.statuses import STATUSES, Ending, endings
-from calm.batch.threads import in_threads
 from calm.batch.work_store import Arrays, Store
 from calm.case import Mooring
 from calm.case.net import Net
 from calm.errors import UsageError
 from calm.physics.compiled import cache_folder
+from calm.records.record import Levels, Record
 from calm.version import __version__
-
-if TYPE_CHECKING:
-    from calm.records.record import Levels, Record
 
 FIRST, FEWEST = 256, 8
 """Profiles solved before progress is reported or a stop heeded: at first, and at least. `SLICE`
@@ -163,6 +158,54 @@ class BatchWork:
         with self._counting:
             self._kept[number] = _counted(arrays["status"])
             self.tell()
+
+
+def in_threads(
+    job: Callable[[int], None], numbers: Iterable[int], workers: int, stop: Event
+) -> None:
+    """Do a job for every number, each thread taking the next.
+
+    What a job raises, or Ctrl-C, sets `stop` and is raised once every thread has ended: those under
+    way have to look at it. A second Ctrl-C changes nothing. Set from outside, it ends them as well.
+    """
+    remaining = iter(numbers)
+    taking = Lock()
+    raised: list[BaseException] = []
+
+    def work() -> None:
+        while not stop.is_set():
+            with taking:
+                number = next(remaining, None)
+            if number is None:
+                return
+            try:
+                job(number)
+            except BaseException as error:
+                raised.append(error)
+                stop.set()
+
+    threads = [Thread(target=work, daemon=True) for _ in range(workers)]
+    for thread in threads:
+        thread.start()
+    try:
+        for thread in threads:
+            thread.join()
+    except BaseException:
+        stop.set()
+        raise
+    finally:
+        for thread in threads:
+            _outlive(thread)
+    if raised:
+        raise raised[0]
+
+
+def _outlive(thread: Thread) -> None:
+    while thread.is_alive():
+        try:
+            thread.join()
+        except KeyboardInterrupt:
+            continue
 
 
 _NONE = np.zeros(len(STATUSES), np.int64)

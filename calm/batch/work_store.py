@@ -26,18 +26,16 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel
 
-from calm.batch.threads import go_on
 from calm.case import Mooring
 from calm.case.net import Net
 from calm.dataset.netcdf import LEVEL, Chunk, ResultLayout, chunk_shape
 from calm.errors import UsageError
+from calm.records.record import Record
 from calm.version import __version__
 from calm.whole_file import flush_to_disk, put
 
 if TYPE_CHECKING:
     import zarr
-
-    from calm.records.record import Record
 
 WORK = ".batch"
 """The folder of a store that its result is without."""
@@ -47,6 +45,16 @@ IDENTITY = "input_resolved"
 
 Arrays = Mapping[str, NDArray[Any]]
 """Values of some profiles, by the names of the variables that go with time."""
+
+
+class Stopped(Exception):
+    """Work was asked to stop, by an event, and does so where it loses nothing."""
+
+
+def go_on(stop: Event) -> None:
+    """Stop here where that is asked for (Stopped: see above)."""
+    if stop.is_set():
+        raise Stopped
 
 
 @dataclass(frozen=True)
@@ -262,7 +270,7 @@ def identity_of(
 ) -> dict[str, Any]:
     """All that the figures of a result follow from, as JSON has it.
 
-    calm.batch.threads.Stopped: while the record is read through, which may take long.
+    Stopped: while the record is read through, which may take long.
     """
     ends = (record.time[0], record.time[-1])
     identity = {

@@ -18,7 +18,7 @@ from calm.errors import NoEquilibrium, UsageError
 from calm.files import Place
 from calm.files.mooring_file import clamps_in
 from calm.physics.line import Floats, Line, Water
-from calm.solve import expect_many, solve_mooring
+from calm.solve import expect_many
 
 SOLVES = 100.0
 """About how many equilibria an explanation takes, by work."""
@@ -268,7 +268,7 @@ def _drags(result: Result | NetResult, parts: list[attribution.SolverPart]) -> F
     if isinstance(mooring, Net):
         solutions = mooring.standing.legs
     else:
-        solutions = (solve_mooring(mooring.line, mooring.water, mooring.settings),)
+        solutions = (mooring.solved(mooring.line),)
     found = []
     for leg, p, m in parts:
         one = solutions[leg]

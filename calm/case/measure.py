@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from math import isnan, nan
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -26,31 +26,11 @@ if TYPE_CHECKING:
     from calm.case.mooring import Mooring
 
 
-class PieceMeasures(NamedTuple):
-    """The n pieces that are solved for, first-listed first.
+def measured(solution: Solution, still: Solution | None = None) -> dict[str, Floats]:
+    """Figures of the pieces that are solved for, first-listed first, as columns of `Components`.
 
-    Attributes
-    ----------
-    top, bottom : (n, 3) their ends: east and north of the line's end, and height above the surface
-        [m]
-    tension_top, tension_bottom, tension, least : at the ends, the greatest and the least of
-        what hangs, NaN where nothing does [N]
-    tilt : [degrees]
-    knockdown : below the same line in still water [m]; NaN where that is not known
+    `still` is the same line in still water, for the knockdown; without it that is NaN.
     """
-
-    top: Floats
-    bottom: Floats
-    tension_top: Floats
-    tension_bottom: Floats
-    tension: Floats
-    least: Floats
-    tilt: Floats
-    knockdown: Floats
-
-
-def measured(solution: Solution, still: Solution | None = None) -> PieceMeasures:
-    """The pieces of a solution; `still` is the same line in still water, for the knockdown."""
     towed = solution.line.towed
     ahead = slice(None, None, -1) if towed else slice(None)
     first, last = solution.piece_nodes.T
@@ -72,16 +52,20 @@ def measured(solution: Solution, still: Solution | None = None) -> PieceMeasures
     if still is not None:
         before = still.piece_nodes[ahead, 1 if towed else 0]
         knockdown = still.position[before, 2] - top[:, 2]
-    return PieceMeasures(
-        top=top,
-        bottom=bottom,
-        tension_top=tension[upper],
-        tension_bottom=tension[lower],
-        tension=greatest,
-        least=np.where(np.isfinite(least), least, np.nan),
-        tilt=lean,
-        knockdown=knockdown,
-    )
+    return {
+        "depth_top": -top[:, 2],
+        "depth_bottom": -bottom[:, 2],
+        "x_top": top[:, 0],
+        "y_top": top[:, 1],
+        "x_bottom": bottom[:, 0],
+        "y_bottom": bottom[:, 1],
+        "tension_top": tension[upper],
+        "tension_bottom": tension[lower],
+        "tension": greatest,
+        "least_tension": np.where(np.isfinite(least), least, np.nan),
+        "tilt": lean,
+        "knockdown": knockdown,
+    }
 
 
 def components_of(
@@ -96,6 +80,7 @@ def components_of(
     """
     ahead = slice(None, None, -1) if solution.line.towed else slice(None)
     found = measured(solution, still)
+    tension = found["tension"]
     stretched = np.zeros(len(pieces))
     np.add.at(stretched, solution.element_piece, solution.cut * (1.0 + solution.strain))
     breaking, working = (_figures(pieces, name) for name in ("breaking_load", "working_load"))
@@ -108,21 +93,10 @@ def components_of(
         role=[piece.component.role for piece in pieces],
         length=stretched[ahead],
         cut_length=solution.line.length[ahead],
-        depth_top=-found.top[:, 2],
-        depth_bottom=-found.bottom[:, 2],
-        x_top=found.top[:, 0],
-        y_top=found.top[:, 1],
-        x_bottom=found.bottom[:, 0],
-        y_bottom=found.bottom[:, 1],
-        tension_top=found.tension_top,
-        tension_bottom=found.tension_bottom,
-        tension=found.tension,
-        least_tension=found.least,
-        tilt=found.tilt,
-        knockdown=found.knockdown,
-        safety_factor=breaking / np.where(found.tension > 0, found.tension, np.nan),
-        utilisation=found.tension / working,
+        safety_factor=breaking / np.where(tension > 0, tension, np.nan),
+        utilisation=tension / working,
         reynolds=_reynolds(pieces, solution)[ahead] * _figures(pieces, "diameter"),
+        **found,
     )
 
 
@@ -147,7 +121,7 @@ def clamps_of(pieces: Sequence[Piece], solution: Solution, still: Solution | Non
     cable = solution.line.flexible[solution.element_piece[elements]]
     tilt = leaning_of(-pull if towed else pull)
     if not cable.all():
-        tilt = np.where(cable, tilt, measured(solution).tilt[index])
+        tilt = np.where(cable, tilt, measured(solution)["tilt"][index])
     clamps = [order[m] for m in which]
     return Clamps(
         part=clamps,

@@ -1,9 +1,10 @@
-"""A mooring file ready to be solved."""
+"""A mooring file ready to be solved, and its profilers at their stops and between them."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from math import isinf
 
 import numpy as np
 
@@ -11,10 +12,10 @@ from calm.assemble import assemble_floating, assemble_line, assemble_water
 from calm.case import parts
 from calm.case.measure import anchor_weight_of, result_of
 from calm.case.memory import Forgetful, Memory
-from calm.case.profilers import profilers_of
 from calm.case.result import Result
 from calm.errors import NoEquilibrium
-from calm.files import MooringFile
+from calm.files import Clamp, MooringFile, Place, Profiler
+from calm.files.mooring_file import clamps_in
 from calm.physics.drag import BLOCK_CD, area_drag
 from calm.physics.line import Line, Water
 from calm.physics.materials import STEEL_DENSITY
@@ -22,6 +23,9 @@ from calm.physics.seawater import REFERENCE_DENSITY
 from calm.solve import Settings, Solution, Status, fit_length, solve_mooring
 from calm.solve.problem import COARSE_STEP
 from calm.solve.solution import standing_lift, too_heavy
+
+PLACES = 11
+"""Where on its way a profiler is solved for, its two stops among them."""
 
 
 @dataclass(frozen=True, init=False)
@@ -109,10 +113,6 @@ class Mooring(parts.ReadFromFile):
             volume = self.anchor_weight / ((density - REFERENCE_DENSITY) * self.water.gravity)
         return area_drag(max(volume, 0.0) ** (2.0 / 3.0), BLOCK_CD)
 
-    def with_file(self, file: MooringFile) -> Mooring:
-        """Return another line in the same water, meant for what this one is meant for."""
-        return Mooring(file, self.for_surface, self.memory, water=self.water)
-
     def solve(self, environment: parts.OtherEnvironment | None = None) -> Result:
         """Find the static equilibrium, in another of its environments where one is given.
 
@@ -169,6 +169,10 @@ class Mooring(parts.ReadFromFile):
             "line may lie there."
         )
 
+    def solved(self, line: Line) -> Solution:
+        """Return another line in the same water; NoEquilibrium: it has no equilibrium."""
+        return solve_mooring(line, self.water, self.settings)
+
     def still_beside(self, solution: Solution) -> Solution | None:
         """Return the same line without current; None where it has no unique shape."""
         floating = self.line.floating
@@ -210,3 +214,95 @@ def refuse_in_the_slope(file: MooringFile, solution: Solution, depth: float) -> 
             f"{piece.label} comes {below[worst]:.2f} m below the sloping seabed.",
             advice="Raise it, or move it down the slope.",
         )
+
+
+@dataclass(frozen=True)
+class ProfilerPlace:
+    """Hold what a profiler finds at a place on its way: depth [m], tension [N], tilt [degrees].
+
+    `at` is the distance from the top of its wire, without load [m].
+    """
+
+    at: float
+    depth: float
+    tension: float
+    tilt: float
+
+
+@dataclass(frozen=True)
+class ProfilerTravel:
+    """Hold a profiler at its upper and its lower stop, and where its wire leans most.
+
+    `distance` is between its stops, without load [m], `time` what a profile takes [s], `profiles`
+    how many its batteries last for; None where its speed or its endurance is not given.
+    """
+
+    label: str
+    upper: ProfilerPlace
+    lower: ProfilerPlace
+    worst: ProfilerPlace
+    distance: float
+    time: float | None
+    profiles: int | None
+
+
+def profilers_of(mooring: Mooring) -> tuple[ProfilerTravel, ...]:
+    """Return every profiler of a line on its way; the others stay at their upper stops.
+
+    NoEquilibrium: the line does not stand with a profiler at one of its `PLACES`.
+    """
+    return tuple(_travel(mooring, clamp) for clamp in profilers_in(mooring))
+
+
+def profilers_in(mooring: Mooring) -> list[Clamp]:
+    """Return the profilers that travel on a line."""
+    return [clamp for clamp in clamps_in(mooring.file.pieces) if clamp.travel is not None]
+
+
+def _travel(mooring: Mooring, clamp: Clamp) -> ProfilerTravel:
+    assert clamp.travel is not None
+    upper, lower = clamp.travel
+    if isinf(lower):  # the end of its wire
+        on = next(piece.index for piece in mooring.file.pieces if clamp in piece.clamps)
+        lower = float(mooring.line.length[on])
+    places = [_found(mooring, clamp, float(at)) for at in np.linspace(upper, lower, PLACES)]
+    component, distance = clamp.component, lower - upper
+    assert isinstance(component, Profiler)
+    return ProfilerTravel(
+        label=clamp.label,
+        upper=places[0],
+        lower=places[-1],
+        worst=max(places, key=lambda place: place.tilt),
+        distance=distance,
+        time=None if component.speed is None else distance / component.speed,
+        profiles=None if component.endurance is None else int(component.endurance // distance),
+    )
+
+
+def _found(mooring: Mooring, clamp: Clamp, at: float) -> ProfilerPlace:
+    try:
+        file = held(parts.cut_like(mooring.file, mooring), clamp.place, at)
+        other = Mooring(file, mooring.for_surface, mooring.memory, water=mooring.water)
+        clamps = other.solve().clamps
+    except NoEquilibrium as failure:
+        message = f"With {clamp.label} {at:.0f} m down its wire: {failure.message}"
+        raise NoEquilibrium(failure.status, message, failure.advice) from None
+    row = clamps.label.index(clamp.label)
+    return ProfilerPlace(
+        at, float(clamps.depth[row]), float(clamps.tension[row]), float(clamps.tilt[row])
+    )
+
+
+def held(file: MooringFile, place: Place | None = None, at: float = 0.0) -> MooringFile:
+    """Return a file whose profilers stay where they are, one of them at another place.
+
+    Parameters
+    ----------
+    place : of that profiler in the line; None where all stay
+    at : distance from the top of its wire, without load [m]
+    """
+
+    def stays(clamp: Clamp) -> Clamp:
+        return replace(clamp, at=at if clamp.place == place else clamp.at, travel=None)
+
+    return replace(file, pieces=tuple(piece.with_clamps(stays) for piece in file.pieces))

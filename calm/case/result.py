@@ -14,15 +14,14 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 import numpy as np
 
 from calm.case.result_tables import Clamps, Components, Shape
-from calm.case.strumming import Strumming, StrummingBand, mooring_band
+from calm.case.strumming import Strumming, StrummingBand, band_of
 from calm.files import Clamp, MooringFile, Piece
 from calm.files.legs import leg_numbers
 from calm.physics.line import Floats
 
 if TYPE_CHECKING:
-    from calm.case.mooring import Mooring
+    from calm.case.mooring import Mooring, ProfilerTravel
     from calm.case.net import Net
-    from calm.case.profilers import ProfilerTravel
     from calm.case.tow import TowResult
 
 
@@ -230,7 +229,7 @@ class Result(Solved):
     def strumming_band(self) -> StrummingBand | None:
         """Return the same mooring with more drag on its cables; solved when first asked for."""
         still = self.still_shape
-        return mooring_band(self.mooring, None if still is None else float(still.depth[0]))
+        return band_of(self.mooring, None if still is None else float(still.depth[0]))
 
     def to_dict(self) -> dict[str, Any]:
         """The JSON object of the result format; None stands where a figure is unknown."""

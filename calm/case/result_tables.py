@@ -55,7 +55,11 @@ class ColumnTable(Generic[Row]):
     def joined(cls, tables: Sequence[Self]) -> Self:
         """Return tables one after another."""
         columns = {name: [getattr(table, name) for table in tables] for name in cls.names()}
-        return cls(**{name: _end_to_end(parts) for name, parts in columns.items()})
+        whole = {
+            name: [*chain(*parts)] if isinstance(parts[0], list) else np.concatenate(parts)
+            for name, parts in columns.items()
+        }
+        return cls(**whole)
 
     def __repr__(self) -> str:
         """Return how many rows there are, and the labels at both ends."""
@@ -132,11 +136,6 @@ def _dataset(columns: Mapping[str, Any], along: str) -> Dataset:
     return Dataset({name: (along, [*columns[name]], said.get(name)) for name in columns})
 
 
-def _end_to_end(parts: Sequence[Any]) -> Any:
-    """Return parts of a column as one; it is a list where the first is one."""
-    return [*chain(*parts)] if isinstance(parts[0], list) else np.concatenate(parts)
-
-
 def _known(value: Any) -> Any:
     return None if isinstance(value, float) and not isfinite(value) else value
 
@@ -174,6 +173,11 @@ class ComponentRow:
         """Return which piece it is."""
         return self.part.place
 
+    @property
+    def upper(self) -> tuple[float, float, float]:
+        """Depth, east and north of its upper end [m]."""
+        return self.depth_top, self.x_top, self.y_top
+
 
 @dataclass(frozen=True, slots=True)
 class ClampRow:
@@ -194,6 +198,11 @@ class ClampRow:
     def place(self) -> Place:
         """Return which clamp it is."""
         return self.part.place
+
+    @property
+    def upper(self) -> tuple[float, float, float]:
+        """Depth, east and north of where it sits [m]."""
+        return self.depth, self.x, self.y
 
 
 class Components(ColumnTable[ComponentRow]):

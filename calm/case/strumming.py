@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -13,13 +12,12 @@ from calm.errors import NoEquilibrium
 from calm.files import Solver
 from calm.physics.drag import line_drag
 from calm.physics.strumming import BourgetMarichal, shedding_frequency
-from calm.solve import Solution, Status, solve_mooring, solve_tow
+from calm.solve import Solution, Status
 from calm.solve.audit import amplification, flow_across
 
 if TYPE_CHECKING:
     from calm.case.mooring import Mooring
     from calm.case.tow import Tow
-    from calm.physics.line import Line
 
 
 @dataclass(frozen=True)
@@ -75,31 +73,17 @@ class StrummingBand:
     tension: float | None = None
 
 
-def mooring_band(mooring: Mooring, still_depth: float | None) -> StrummingBand | None:
-    """The band of a mooring that is `still_depth` deep in still water [m].
+def band_of(case: Mooring | Tow, still_depth: float | None = None) -> StrummingBand | None:
+    """The band of a tow, or of a mooring that is `still_depth` deep in still water [m].
 
     None where nothing can strum or a law of strumming is already in use.
     """
-    return _band(
-        mooring,
-        lambda line: solve_mooring(line, mooring.water, mooring.settings),
-        still_depth,
-    )
-
-
-def tow_band(tow: Tow) -> StrummingBand | None:
-    """The band of a tow; None as for `mooring_band`."""
-    return _band(tow, lambda line: solve_tow(line, tow.water, tow.towing, tow.settings))
-
-
-def _band(
-    case: Mooring | Tow, solve: Callable[[Line], Solution], still_depth: float | None = None
-) -> StrummingBand | None:
-    line = _strumming(case.line)
-    if line is None or case.file.solver.strumming is not None:
+    line, cables = case.line, case.line.diameter > 0.0
+    if case.file.solver.strumming is not None or not (line.normal_drag[cables] > 0.0).any():
         return None
     try:
-        solution = solve(line)
+        raised = np.where(cables, FACTOR, 1.0) * line.normal_drag
+        solution = case.solved(replace(line, normal_drag=raised))
     except NoEquilibrium as failure:
         return StrummingBand(FACTOR, failure.status)
     node = solution.body_node if solution.line.towed else 0
@@ -111,13 +95,6 @@ def _band(
         None if still_depth is None else depth - still_depth,
         float(solution.tension[-1]),
     )
-
-
-def _strumming(line: Line) -> Line | None:
-    cables = line.diameter > 0.0
-    if not (line.normal_drag[cables] > 0.0).any():
-        return None
-    return replace(line, normal_drag=np.where(cables, FACTOR, 1.0) * line.normal_drag)
 
 
 @dataclass(frozen=True)

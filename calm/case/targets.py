@@ -70,7 +70,7 @@ class Target:
                 return result.anchor.required_weight
             (anchor,) = (one for one in result.anchors if self.label in (None, one.leg))
             return anchor.required_weight
-        value: float | None = getattr(spot_of(result, self.place), self.quantity)
+        value: float | None = spot_of(result, self.place)[self.quantity]
         return value
 
     def to_dict(self) -> dict[str, Any]:
@@ -136,37 +136,23 @@ def parse_target(text: str, file: MooringFile) -> Target:
     return Target(text, quantity, label, RELATIONS[relation], limit, place)
 
 
-@dataclass(frozen=True)
-class Spot:
-    """One piece (its upper end) or clamped instrument of a result.
+def spot_of(result: Result | NetResult, place: Place | None = None) -> dict[str, Any]:
+    """Return depth, excursion and knockdown [m], tilt [degrees] and tension [N] of a part.
 
-    Attributes
-    ----------
-    depth, excursion, knockdown : [m]; knockdown is None where still water has no unique shape
-    tilt : from the vertical [degrees]
-    tension : the greatest in it [N]
-    """
-
-    depth: float
-    excursion: float
-    knockdown: float | None
-    tilt: float
-    tension: float
-
-
-def spot_of(result: Result | NetResult, place: Place | None = None) -> Spot:
-    """Return what a result says of the part at a place; of the top of the line where none is
-    given.
+    Of a piece they are those of its upper end, and the tension is the greatest in it; the knockdown
+    is None where still water has no unique shape. Without a place it is the top of the line.
     """
     row: ComponentRow | ClampRow = result.components[0]
     if place is not None:
         row = rows_by_place(result)[place]
-    if isinstance(row, ComponentRow):
-        depth, x, y = row.depth_top, row.x_top, row.y_top
-    else:
-        depth, x, y = row.depth, row.x, row.y
-    known = row.knockdown == row.knockdown
-    return Spot(depth, hypot(x, y), row.knockdown if known else None, row.tilt, row.tension)
+    depth, x, y = row.upper
+    return {
+        "depth": depth,
+        "excursion": hypot(x, y),
+        "knockdown": row.knockdown if row.knockdown == row.knockdown else None,
+        "tilt": row.tilt,
+        "tension": row.tension,
+    }
 
 
 @dataclass(frozen=True)
@@ -201,7 +187,7 @@ def figures_of(result: Result | NetResult, place: Place | None = None) -> Figure
         anchor = max(result.anchors, key=lambda one: one.required_weight or 0.0, default=None)
     names = ("tension", "vertical", "horizontal", "required_weight")
     return Figures(
-        *(spot.depth, spot.knockdown, spot.excursion, leg.top.used_buoyancy),
+        *(spot["depth"], spot["knockdown"], spot["excursion"], leg.top.used_buoyancy),
         *(None if anchor is None else getattr(anchor, name) for name in names),
     )
 

@@ -13,7 +13,7 @@ from calm.case.measure import clamps_of, components_of, shape_of
 from calm.case.memory import Forgetful, Memory
 from calm.case.parts import Origin, OtherEnvironment, ReadFromFile, cut_like, naming_the_piece
 from calm.case.result import Accuracy, Solved, line_document
-from calm.case.strumming import StrummingBand, strumming_of, tow_band
+from calm.case.strumming import StrummingBand, band_of, strumming_of
 from calm.case.warnings import warnings_of
 from calm.errors import NoEquilibrium, UsageError, or_why_not
 from calm.files import MooringFile, TowKeys
@@ -78,7 +78,7 @@ class TowResult(Solved):
     @cached_property
     def strumming_band(self) -> StrummingBand | None:
         """Return the same tow with more drag on its cables; solved when first asked for."""
-        return tow_band(self.tow)
+        return band_of(self.tow)
 
     def to_dict(self) -> dict[str, Any]:
         """The JSON object of the result format; None stands where a figure is unknown."""
@@ -157,6 +157,10 @@ class Tow(ReadFromFile):
                     )  # fmt: skip
                 return line.with_length(piece.index, length)
         return line
+
+    def solved(self, line: Line) -> Solution:
+        """Return another line towed likewise; NoEquilibrium: it has no equilibrium."""
+        return solve_tow(line, self.water, self.towing, self.settings)
 
     def at_speed(self, speed: float) -> Tow:
         """Return the same tow at another speed of the ship [m/s], a fitted cable as long as at its
@@ -273,13 +277,7 @@ def sensitivity(tow: Tow) -> list[Variation]:
     for name in _COEFFICIENTS:
         for change in (-CHANGE, CHANGE):
             changed = keys.model_copy(update={name: getattr(keys, name) * (1.0 + change)})
-            variations.append(
-                Variation(name, change, or_why_not(_with_strumming(tow, changed).solve))
-            )
+            solver = tow.file.solver.model_copy(update={"strumming": changed})
+            other = Tow(replace(cut_like(tow.file, tow), solver=solver))
+            variations.append(Variation(name, change, or_why_not(other.solve)))
     return variations
-
-
-def _with_strumming(tow: Tow, keys: BourgetMarichalKeys) -> Tow:
-    """Return the same tow, a fitted cable as long as it is, with other coefficients."""
-    solver = tow.file.solver.model_copy(update={"strumming": keys})
-    return Tow(replace(cut_like(tow.file, tow), solver=solver))

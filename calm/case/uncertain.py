@@ -199,11 +199,11 @@ def _figures_of(mooring: Mooring) -> tuple[Floats, tuple[float, float]]:
     still = mooring.still_beside(solution)
     rows = measured(solution, still)
     load = anchor_load(mooring, solution)
-    x, y, z = rows.top.T
+    x, y, tension = rows["x_top"], rows["y_top"], rows["tension"]
     excursion = hypot(x[0], y[0])
     offset = (x * x[0] + y * y[0]) / excursion if excursion else np.zeros(len(x))
-    pieces = np.stack([-z, rows.knockdown, rows.tilt, rows.tension, offset])
-    anchor = [-rows.bottom[-1, 2], 0.0, 0.0, load.tension, 0.0]
+    pieces = np.stack([rows["depth_top"], rows["knockdown"], rows["tilt"], tension, offset])
+    anchor = [rows["depth_bottom"][-1], 0.0, 0.0, load.tension, 0.0]
     held = clamps_of(mooring.file.pieces[:-1], solution, still)
     clamps = np.stack([held.depth, held.knockdown, held.tilt, held.tension, 0.0 * held.depth])
     return np.column_stack([pieces, anchor, clamps]), (load.tension, load.required_weight)

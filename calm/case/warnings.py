@@ -10,7 +10,6 @@ import numpy as np
 from calm.case.parts import below_the_seabed
 from calm.files import Cable, Component
 from calm.files.mooring_file import clamps_in, parts_of
-from calm.physics.line import Floats
 from calm.physics.materials import fibre_of, published_stiffnesses
 from calm.quantities import say
 from calm.solve import Solution
@@ -134,17 +133,13 @@ def _percent(share: float) -> str:
 
 
 def _overstretched(result: Result | TowResult, solution: Solution) -> Iterator[str]:
-    for label, strain in zip(result.components.label, _greatest_strain(solution), strict=False):
-        if strain > LARGEST_STRAIN:
-            yield f"{label} stretches by {100 * strain:.0f} %: beyond any linear stiffness."
-
-
-def _greatest_strain(solution: Solution) -> Floats:
-    """(n,) of every piece with a linear stiffness, in file order; 0 of the others."""
     line, greatest = solution.line, np.zeros(len(solution.line.length))
     linear = line.compliance[solution.element_piece] > 0.0
     np.maximum.at(greatest, solution.element_piece, np.where(linear, solution.strain, 0.0))
-    return greatest[::-1] if line.towed else greatest
+    ahead = greatest[::-1] if line.towed else greatest
+    for label, strain in zip(result.components.label, ahead, strict=False):
+        if strain > LARGEST_STRAIN:
+            yield f"{label} stretches by {100 * strain:.0f} %: beyond any linear stiffness."
 
 
 def _beyond_the_table(result: Result | TowResult, solution: Solution) -> Iterator[str]:

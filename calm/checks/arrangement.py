@@ -1,31 +1,20 @@
 """How a line is put together: its release, its swivels, its metals, and whether its clamps hold."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from math import cos, radians, sin
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from calm.assemble import axial_drag_of, drag_of, net_buoyancy
 from calm.case import Mooring, Result
-from calm.case.profilers import ProfilerTravel
+from calm.case.mooring import ProfilerTravel
 from calm.case.result_tables import ClampRow
 from calm.case.warnings import is_synthetic
+from calm.checks.assessment import Handling
 from calm.checks.criterion import JudgedPart, parts_of
-from calm.checks.finding import (
-    State,
-    Verdict,
-    at_least,
-    at_most,
-    reported,
-    rule,
-    unknown,
-    verdict_on,
-)
+from calm.checks.finding import State, Verdict, at_least, at_most, rule, unknown, verdict_on
 from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Recovery
 from calm.drop.launch import Launch
@@ -35,9 +24,6 @@ from calm.files.mooring_file import parts_of as every_part
 from calm.physics.materials import materials_in, potential_of
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.quantities import duration, say
-
-if TYPE_CHECKING:
-    from calm.checks.handling import Handling
 
 GREATEST_DIFFERENCE = 0.2
 """Beyond it two metals that touch corrode each other in sea water [V]."""
@@ -217,14 +203,21 @@ def metals(handling: Handling) -> Iterator[Verdict]:
     for base, noble, volts in unlike_metals(handling.mooring.file.pieces):
         if base.label not in warned:
             warned.add(base.label)
-            yield _corrodes(base, noble, volts)
+            message = (
+                f"{base.label} ({base.component.material}) touches {noble.label} "
+                f"({noble.component.material}), {volts:.2f} V nobler in sea water, and corrodes."
+            )
+            remedy = "Insulate them from each other, or give an anode."
+            margin = GREATEST_DIFFERENCE - volts
+            yield verdict_on(base, State.WARN, message, remedy, volts, GREATEST_DIFFERENCE, margin)
 
 
 def unlike_metals(pieces: Sequence[Piece]) -> Iterator[tuple[Piece | Clamp, Piece | Clamp, float]]:
     """Return what touches far apart in the galvanic series: base, noble, and how far [V]."""
     pairs: list[tuple[Piece | Clamp, Piece | Clamp]] = [*pairwise(pieces)]
     for piece in pieces:
-        if not _insulated(piece):
+        said = _words(piece.use, piece.component.name, piece.component.material)
+        if not any(word in said for word in _INSULATED):
             pairs += [(piece, clamp) for clamp in piece.clamps]
     for one, other in pairs:
         first, second = (potential_of(part.component.material) for part in (one, other))
@@ -232,21 +225,6 @@ def unlike_metals(pieces: Sequence[Piece]) -> Iterator[tuple[Piece | Clamp, Piec
             continue
         base, noble = (one, other) if first < second else (other, one)
         yield base, noble, abs(first - second)
-
-
-def _corrodes(base: Piece | Clamp, noble: Piece | Clamp, volts: float) -> Verdict:
-    message = (
-        f"{base.label} ({base.component.material}) touches {noble.label} "
-        f"({noble.component.material}), {volts:.2f} V nobler in sea water, and corrodes."
-    )
-    remedy = "Insulate them from each other, or give an anode."
-    return verdict_on(base, State.WARN, message, remedy, volts, GREATEST_DIFFERENCE,
-                      GREATEST_DIFFERENCE - volts)  # fmt: skip
-
-
-def _insulated(piece: Piece) -> bool:
-    said = _words(piece.use, piece.component.name, piece.component.material)
-    return any(word in said for word in _INSULATED)
 
 
 def _words(*texts: str | None) -> str:
@@ -388,4 +366,4 @@ def _verdict(part: JudgedPart, pull: float, when: str) -> Verdict:
     if breaking is not None:
         message = f"{pulls}; it breaks at {say('tension', breaking)}."
         return at_most(part, pull, breaking, message, _HOLDS)
-    return reported(part, pull, f"{pulls}; its `grip` is not given.")
+    return verdict_on(part, State.PASS, f"{pulls}; its `grip` is not given.", value=pull)

@@ -24,6 +24,7 @@ from calm.checks import arrangement, catalogue_rules, handling, posture, situati
 from calm.checks.assessment import (
     Acceptance,
     Assessment,
+    Handling,
     MooringInEnvironment,
     Situation,
     estimated,
@@ -41,7 +42,6 @@ from calm.checks.finding import (
     verdict_on,
     worst_of_each_rule,
 )
-from calm.checks.handling import Handling
 from calm.checks.inventory import inventory_of
 from calm.checks.posture import left_out_of_a_leg, reaches_the_surface
 from calm.checks.recovery import breaks_of, losses_of, recovery_of
@@ -82,7 +82,13 @@ def judged_stand(
     if not mooring.file.legs:
         given += _findings_in_waves(situations[0], name, environment, day)
     states = {_of(finding): finding.state.severity for finding in given}
-    others = [_softened(finding) for findings in changed for finding in findings]
+    others = [
+        replace(one, state=State.WARN)
+        if one.situation == STRUMMING and one.state is State.FAIL
+        else one
+        for findings in changed
+        for one in findings
+    ]
     graver = [each for each in others if each.state.severity > states.get(_of(each), -1)]
     listed = (*given, *graver)
     worst = worst_of_each_rule((*listed, *others))
@@ -199,11 +205,6 @@ def _findings_in_waves(
 
 def _of(finding: Finding) -> tuple[str, Place | None]:
     return finding.rule, finding.place
-
-
-def _softened(finding: Finding) -> Finding:
-    strums = finding.situation == STRUMMING
-    return replace(finding, state=State.WARN) if strums and finding.state is State.FAIL else finding
 
 
 def handled(mooring: Mooring, result: Result) -> Handling:

@@ -6,21 +6,19 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from datetime import date
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 from calm.case import Mooring, Result
 from calm.checks.finding import AS_GIVEN, Finding, Rule, State, Verdict, worst_state
+from calm.checks.inventory import InventoryItem
+from calm.checks.recovery import Break, Loss, Recovery
+from calm.drop.launch import Launch
 from calm.errors import NoEquilibrium
 from calm.files import Accept, Clamp, MooringFile, Piece
 from calm.files.check_limits import LimitKey
 from calm.files.definition import EstimatedFigure
 from calm.files.mooring_file import parts_of
 from calm.files.rule_texts import RULES
-
-if TYPE_CHECKING:
-    from calm.checks.inventory import InventoryItem
-    from calm.checks.recovery import Break, Loss, Recovery
-    from calm.drop.launch import Launch
 
 _Part = TypeVar("_Part", Piece, Clamp)
 
@@ -130,6 +128,17 @@ class Assessment:
         """Of every environment, where another situation leaves less margin."""
         for stand in self.stands:
             yield from stand.tighter
+
+
+@dataclass(frozen=True)
+class Handling:
+    """What the rules of launch, recovery and breaks look at, or why it could not be solved."""
+
+    mooring: Mooring
+    launch: Launch | NoEquilibrium
+    recovery: Recovery | NoEquilibrium
+    backup: tuple[Break, ...]
+    losses: tuple[Loss, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -3,15 +3,13 @@
 Only figures that a definition gives are judged; a missing one is no fault, except a missing source.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import chain
 from math import pi
-from typing import TYPE_CHECKING
 
 from calm.assemble import drag_of, mass_in_air
+from calm.checks.assessment import Handling
 from calm.checks.criterion import said
 from calm.checks.finding import State, Verdict, rule, unknown, verdict_on
 from calm.checks.posture import JUDGED_ROLES
@@ -22,18 +20,9 @@ from calm.files.components import KINDS, Outline
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
 from calm.files.mooring_file import parts_of
 from calm.files.rigid import Shaped
-from calm.physics.materials import (
-    LEAD_DENSITY,
-    MATERIAL_NAMES,
-    MATERIALS,
-    STEEL_DENSITY,
-    density_of,
-    materials_in,
-)
+from calm.physics import materials
+from calm.physics.materials import LEAD_DENSITY, MATERIAL_NAMES, STEEL_DENSITY, materials_in
 from calm.physics.seawater import REFERENCE_DENSITY
-
-if TYPE_CHECKING:
-    from calm.checks.handling import Handling
 
 ROUNDING = 1.05
 """Excess that rounded figures of a data sheet may show: 5 %, or 1.7 % of a sphere's diameter."""
@@ -166,7 +155,7 @@ def _of_a_rope(rope: Cable) -> Iterator[str]:
     that is known, else of steel.
     """
     section = _section(rope)
-    density = rope.density or density_of(rope.material) or STEEL_DENSITY
+    density = rope.density or materials.density_of(rope.material) or STEEL_DENSITY
     bar = ROPE_ROUNDING * density * section
     weight = max(bar - CATALOGUE_DENSITY * section, 0.0) * STANDARD_GRAVITY
     lift = ROPE_ROUNDING * CATALOGUE_DENSITY * STANDARD_GRAVITY * section
@@ -301,7 +290,7 @@ def _of_unknown_material(component: Component | Outline) -> Iterator[str]:
     """Yield that the material a component names is none of those known."""
     material = component.material
     if material and not materials_in(material):
-        near = nearest(material, [each.name for each in MATERIALS])
+        near = nearest(material, [each.name for each in materials.MATERIALS])
         yield (
             f"is of `{material}`, a material that is not known: what it may bear, how it stretches "
             "and what it corrodes cannot be judged by it"

@@ -8,7 +8,7 @@ from typing import Any
 from calm.case import Mooring, Result, Tow, TowResult
 from calm.case.net import Net
 from calm.case.result import AnyResult, NetResult
-from calm.case.result_tables import ClampRow, ComponentRow, rows_by_place
+from calm.case.result_tables import ComponentRow, rows_by_place
 from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment
 from calm.checks.finding import State, worst_of_each_rule
@@ -198,9 +198,7 @@ def _parts(found: Differences, designs: tuple[_Design, _Design]) -> Iterator[Com
         rows, label = (first[before.place], second[after.place]), before.label
         sides: dict[str, list[float]] = {}
         if before.component.role == "instrument":
-            sides["depth"] = [
-                row.depth if isinstance(row, ClampRow) else row.depth_top for row in rows
-            ]
+            sides["depth"] = [row.upper[0] for row in rows]
             sides["tilt"] = [row.tilt for row in rows]
         if isinstance(before.component, Flexible):
             sides["cut_length"] = [row.cut_length for row in rows if isinstance(row, ComponentRow)]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, fields
 from enum import StrEnum
 from functools import partial
@@ -17,6 +17,9 @@ AS_GIVEN = "as given"
 
 OWN = "own"
 """Name of the environment that a mooring file gives itself."""
+
+ON_THE_WAY = "launch, recovery, breaks"
+"""What stands in its place for what is judged of a mooring outside its environments."""
 
 
 class State(StrEnum):
@@ -38,6 +41,11 @@ class State(StrEnum):
     def severity(self) -> int:
         """0 for what passes, more the graver."""
         return _SEVERITIES[self]
+
+    @property
+    def sign(self) -> str:
+        """What stands before a verdict or after a figure, legible without colour."""
+        return "✓◦≈~?!"[self.severity]
 
 
 _SEVERITIES = {state: severity for severity, state in enumerate(State)}
@@ -108,11 +116,6 @@ def at_most(
 
 at_least = partial(at_most, least=True)
 """The verdict on a value that may not fall short of a limit."""
-
-
-def reported(part: LinePart | None, value: float, message: str) -> Verdict:
-    """The verdict on a value that has no limit: it passes as nothing is asked of it."""
-    return verdict_on(part, State.PASS, message, value=value)
 
 
 def unknown(
@@ -218,9 +221,19 @@ class Finding(Verdict):
         return {name: values.pop(name) for name in first} | values | said
 
 
-def worst_of_each_rule(findings: Sequence[Finding]) -> list[Finding]:
-    """The first of those that are as bad as any of their rule."""
+def by_rule(findings: Iterable[Finding]) -> dict[str, list[Finding]]:
+    """The findings of each rule, in the order in which these come."""
     found: dict[str, list[Finding]] = {}
     for finding in findings:
         found.setdefault(finding.rule, []).append(finding)
-    return [min(each, key=lambda one: one.rank) for each in found.values()]
+    return found
+
+
+def worst_of_each_rule(findings: Iterable[Finding]) -> list[Finding]:
+    """The first of those that are as bad as any of their rule."""
+    return [worst_of(each) for each in by_rule(findings).values()]
+
+
+def worst_of(findings: Iterable[Finding]) -> Finding:
+    """The first of those that are as bad as any."""
+    return min(findings, key=lambda one: one.rank)

@@ -1,25 +1,15 @@
 """Deployment and recovery: back-up buoyancy, launch and rise."""
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from dataclasses import replace
 from math import isnan
 
-from calm.case import Mooring
+from calm.checks.assessment import Handling
 from calm.checks.criterion import cited
-from calm.checks.finding import (
-    State,
-    Verdict,
-    at_least,
-    at_most,
-    reported,
-    rule,
-    unknown,
-    verdict_on,
-)
+from calm.checks.finding import State, Verdict, at_least, at_most, rule, unknown, verdict_on
 from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Break, Loss, Recovery
 from calm.checks.strength import lesser_load, passes_load_on
-from calm.drop.launch import Launch
 from calm.errors import NoEquilibrium
 from calm.files import LinePart
 from calm.quantities import QUANTITIES, say
@@ -30,17 +20,6 @@ USUAL_RISE_SPEED = 0.7
 """A rise slower than this is warned of: it takes hours from the deep sea, and drifts away [m/s]."""
 FAST_RISE_SPEED = 3.0
 """A rise faster than this is warned of: the floats leap beside the ship, the line loops [m/s]."""
-
-
-@dataclass(frozen=True)
-class Handling:
-    """What the rules of launch, recovery and breaks look at, or why it could not be solved."""
-
-    mooring: Mooring
-    launch: Launch | NoEquilibrium
-    recovery: Recovery | NoEquilibrium
-    backup: tuple[Break, ...]
-    losses: tuple[Loss, ...] = ()
 
 
 @rule("backup", once=True)
@@ -194,7 +173,11 @@ def tangling(handling: Handling) -> Iterator[Verdict]:
         (handling.recovery, rise, "Put more of the buoyancy at the top."),
     ):
         if not isinstance(motion, NoEquilibrium) and motion.tangles:
-            yield _tangled(handling, motion.tangles, what, remedy)
+            pieces = [handling.mooring.file.pieces[piece] for piece in motion.tangles]
+            named = ", ".join(piece.label for piece in pieces[:3])
+            more = f" and {len(pieces) - 3} more" if len(pieces) > 3 else ""
+            message = f"{what} {named}{more}: the line doubles back and may tangle."
+            yield verdict_on(pieces[0], State.WARN, message, remedy)
 
 
 def _hauled_in(lowest: LinePart, arrival: float, rise: Recovery) -> Verdict:
@@ -207,20 +190,10 @@ def _hauled_in(lowest: LinePart, arrival: float, rise: Recovery) -> Verdict:
         remedy = "Haul it in; mind its weight."
         return verdict_on(lowest, State.WARN, message, remedy)
     minutes = arrival / 60.0
-    return reported(
-        lowest, rise.rise_speed, f"Released, {lowest.label} comes up after {minutes:.0f} minutes."
-    )
+    message = f"Released, {lowest.label} comes up after {minutes:.0f} minutes."
+    return verdict_on(lowest, State.PASS, message, value=rise.rise_speed)
 
 
 def _unsolved(motion: str, failure: NoEquilibrium) -> Verdict:
     message = f"The {motion} of the line is not known ({failure.status}): {failure.message}"
     return unknown(None, message, failure.advice)
-
-
-def _tangled(handling: Handling, tangles: Sequence[int], what: str, remedy: str) -> Verdict:
-    pieces = [handling.mooring.file.pieces[piece] for piece in tangles]
-    named = ", ".join(piece.label for piece in pieces[:3])
-    if len(pieces) > 3:
-        named += f" and {len(pieces) - 3} more"
-    message = f"{what} {named}: the line doubles back and may tangle."
-    return verdict_on(pieces[0], State.WARN, message, remedy)

@@ -1,18 +1,13 @@
 """What comes to the deck: every piece and every clamped instrument, with its mass and weight."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 from calm.assemble import mass_in_air, net_buoyancy
+from calm.case import Mooring
 from calm.errors import NoEquilibrium
 from calm.files import Clamp, Component, Flexible, Piece
 from calm.physics.materials import CONCRETE_DENSITY, STEEL_DENSITY
-
-if TYPE_CHECKING:
-    from calm.case import Mooring
 
 
 @dataclass(frozen=True)
@@ -66,15 +61,9 @@ class Total:
 
 def total_of(items: Sequence[InventoryItem]) -> Total:
     """The sums over pieces and clamps."""
-    masses, weights = ([getattr(each, name) for each in items] for name in _SUMMED)
-    return Total(_known(masses), masses.count(None), _known(weights), weights.count(None))
-
-
-_SUMMED = ("dry_mass", "wet_weight")
-
-
-def _known(values: Sequence[float | None]) -> float:
-    return sum(value for value in values if value is not None)
+    masses, weights = [each.dry_mass for each in items], [each.wet_weight for each in items]
+    mass, weight = (sum(one for one in each if one is not None) for each in (masses, weights))
+    return Total(mass, masses.count(None), weight, weights.count(None))
 
 
 def inventory_of(mooring: Mooring) -> tuple[InventoryItem, ...]:
@@ -105,8 +94,8 @@ def _items(piece: Piece, length: float | None, gravity: float) -> Iterator[Inven
             name=part.component.name,
             clamped_on=None if part is piece else piece.label,
             cut_length=along,
-            dry_mass=_dry_mass(part.component, along),
-            wet_weight=_wet_weight(part.component, along, gravity),
+            dry_mass=_in_all(part.component, mass_in_air(part.component), along),
+            wet_weight=_in_all(part.component, -net_buoyancy(part.component, gravity), along),
             lift_mass=None,
             at=getattr(part, "at", None),
         )
@@ -117,19 +106,11 @@ def _items(piece: Piece, length: float | None, gravity: float) -> Iterator[Inven
     yield from found[1:]
 
 
-def _wet_weight(component: Component, length: float | None, gravity: float) -> float | None:
-    weight = -net_buoyancy(component, gravity)
-    if not isinstance(component, Flexible):
-        return weight
-    return None if length is None else weight * length
-
-
-def _dry_mass(component: Component, length: float | None) -> float | None:
-    """Of a piece of a length [m], in kg."""
-    mass = mass_in_air(component)
-    if not isinstance(component, Flexible):
-        return mass
-    return None if mass is None or length is None else mass * length
+def _in_all(component: Component, figure: float | None, length: float | None) -> float | None:
+    """A figure of a piece; of a cable or chain, which has it for each metre, times its length."""
+    if figure is None or not isinstance(component, Flexible):
+        return figure
+    return None if length is None else figure * length
 
 
 def anchor_dry_mass(required_weight: float, density: float, gravity: float) -> tuple[float, float]:

@@ -13,18 +13,17 @@ it in the line, and that floats which have come up are half out of the water. In
 Back-up buoyancy is what brings up the release when the line breaks above it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import islice
 from math import ceil, isnan, nan
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from calm.assemble import net_buoyancy, with_axial_clamps
+from calm.case import Mooring, Result
 from calm.errors import NoEquilibrium
 from calm.files import Component, Flexible, Piece, Place
 from calm.files.definition import CATALOGUE_DENSITY
@@ -34,9 +33,6 @@ from calm.physics.seawater import REFERENCE_DENSITY
 from calm.physics.track import head_count
 from calm.solve import FreeMotion, Settings, part_of, solve_rise
 from calm.solve.solution import standing_lift
-
-if TYPE_CHECKING:
-    from calm.case import Mooring, Result
 
 MOST_SOLVED = 48
 """Buoyant pieces whose rise is solved one by one; of more, some rise as the one before them."""

@@ -4,30 +4,19 @@ The currents: how strong they are, and whether they cover the line. Changed: sti
 growth, strumming; and as deployed.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from math import hypot
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
 from calm.case import Mooring, Result
+from calm.case.mooring import held, profilers_in
 from calm.case.parts import cut_like
-from calm.case.profilers import held, profilers_in
 from calm.case.strumming import FACTOR
-from calm.checks.assessment import Situation
-from calm.checks.finding import (
-    AS_GIVEN,
-    State,
-    Verdict,
-    at_least,
-    at_most,
-    rule,
-    unknown,
-    verdict_on,
-)
+from calm.checks.assessment import Handling, Situation
+from calm.checks.finding import AS_GIVEN, State, Verdict, at_least, at_most, rule, verdict_on
 from calm.checks.growth import grown
 from calm.checks.posture import reaches_the_surface
 from calm.errors import NoEquilibrium, UsageError, or_why_not
@@ -40,9 +29,6 @@ from calm.records.current_file import strongest_of
 from calm.records.current_terms import left_out
 from calm.records.grids import kilometres_from
 from calm.solve import Status
-
-if TYPE_CHECKING:
-    from calm.checks.handling import Handling
 
 STILL, STILL_LOW = "still water", "still low water"
 HIGH, LOW = "high water", "low water"
@@ -237,7 +223,8 @@ def _far_away(mooring: Mooring) -> Verdict | None:
         f"Deployed {away:.0f} km from the planned position: the water and the currents of "
         "this design are those of another place."
     )
-    return unknown(None, message, "Check both positions, or give the environment of the site.")
+    remedy = "Check both positions, or give the environment of the site."
+    return verdict_on(None, State.UNKNOWN, message, remedy)
 
 
 def _as_cut(piece: Piece, items: dict[str, DeployedItem]) -> Piece:

@@ -9,10 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
-from calm.cli.check_files import DesignFile, read_designs
-from calm.cli.options import CatalogFiles, Units, quantities, show_units
-from calm.cli.outputs import OutputPath, Outputs
-from calm.cli.streams import ExitCode, narrate
+from calm.cli import options, reading
+from calm.cli.outputs import ExitCode, OutputPath, Outputs, narrate
 from calm.errors import NoEquilibrium, UsageError
 from calm.version import __version__
 
@@ -22,20 +20,11 @@ if TYPE_CHECKING:
     from calm.report.diagram import Paper
 
 
-DECK_EXAMPLES = """Examples:
-
-  calm deck mooring.yaml -o cruise/
-  calm deck mooring.yaml -o cruise/ --page a3 --environment storm
-  calm deck north.yaml south.yaml -o cruise/
-  calm deck mooring.yaml -o cruise/ --ship-speed "2 knot" --course "245 deg" --deck-time "3 min"
-  calm deck shallow.yaml -o cruise/ --order anchor-first"""
-
-
 def deck(
-    files: list[Path],
+    files: options.MooringPaths,
     /,
     *,
-    output: Annotated[Path, Parameter(alias="-o")],
+    output: options.OutputFile,
     page: Literal["a4", "a3", "letter"] = "a4",
     environment: list[str] | None = None,
     order: Literal["anchor-last", "anchor-first"] = "anchor-last",
@@ -43,8 +32,8 @@ def deck(
     streamed: str | None = None,
     course: str | None = None,
     deck_time: str | None = None,
-    catalog: CatalogFiles = None,
-    units: Units = None,
+    catalog: options.CatalogFiles = None,
+    units: options.Units = None,
 ) -> ExitCode:
     """Draw the diagram and write the lists for the deployment of moorings and nets.
 
@@ -57,8 +46,6 @@ def deck(
 
     Parameters
     ----------
-    files
-        Mooring files.
     output
         The folder to write; with several moorings, each gets a subfolder of its
         name.
@@ -84,46 +71,52 @@ def deck(
         min", except shackles and rings; by default by role, from `document:
         deck_time:` in the file. Without either the plan has no start of the
         run.
+
+    Examples
+    --------
+      calm deck mooring.yaml -o cruise/
+      calm deck mooring.yaml -o cruise/ --page a3 --environment storm
+      calm deck north.yaml south.yaml -o cruise/
+      calm deck mooring.yaml -o cruise/ --ship-speed "2 knot" --course "245 deg" --deck-time "3 min"
+      calm deck shallow.yaml -o cruise/ --order anchor-first
     """
-    from calm.deck import deck_of
-    from calm.deck.deck_items import Order
-    from calm.report.diagram import Paper
+    from calm.deck import deck_items, deck_of
+    from calm.report import diagram, provenance
     from calm.report.folder import check_folder
-    from calm.report.provenance import moment
 
     check_folder(output)
-    moment()
-    ship = quantities(
+    provenance.moment()
+    ship = options.quantities(
         ship_speed=(ship_speed, "speed"),
         streamed=(streamed, "length"),
         course=(course, "angle"),
         deck_time=(deck_time, "time"),
     )
-    designs, tows = read_designs(files, environment, catalog or [], None, "calm deck")
+    designs, tows = reading.read_designs(files, environment, catalog or [], None, "calm deck")
     if tows:
         narrate(f"not drawn, because they are tows: {', '.join(map(str, tows))}")
-    show_units(units, [one.file for design in designs for one in design.moorings])
+    options.show_units(units, [one.file for design in designs for one in design.moorings])
     folders = _folders(designs, output)
     decks: list[Deck] = []
     for design in designs:
         for notice in dict.fromkeys(n for one in design.moorings for n in one.file.notices):
             narrate(f"{design.path}: {notice}")
         try:
-            decks.append(deck_of(design.moorings, Order(order), **ship))
+            decks.append(deck_of(design.moorings, deck_items.Order(order), **ship))
         except NoEquilibrium as failure:
             narrate(f"{design.path}: {failure}")
             return ExitCode.NO_EQUILIBRIUM
     for folder, design, one in zip(folders, designs, decks, strict=True):
-        _write(folder, design.path, one, Paper(page))
+        _write(folder, design.path, one, diagram.Paper(page))
     return ExitCode.DONE
 
 
 def _write(folder: Path, path: Path, deck: Deck, paper: Paper) -> None:
-    from calm.report.check_summary import SIGNS, verdict_of
+    from calm.report.check_tables import verdict_of
     from calm.report.folder import write_report
 
     state, words = verdict_of(deck.assessment.all_findings())
-    narrate(f"{path}: {SIGNS[state]} {words}: calm check {path}")
+    narrate(f"{path}: {state.sign} {words}: calm check {path}")
     notes = _signs_that_are_lacking(deck)
     for note in (*deck.notes, *notes):
         narrate(f"{path}: {note}")
@@ -133,29 +126,23 @@ def _write(folder: Path, path: Path, deck: Deck, paper: Paper) -> None:
 
 def _contents(deck: Deck, paper: Paper, notes: tuple[str, ...]) -> Mapping[str, bytes]:
     from calm.checks.finding import State
-    from calm.report import check_summary
-    from calm.report.deck_files import (
-        deck_csvs,
-        deck_report,
-        deck_workbook,
-        diagram_report,
-        net_svg,
-    )
+    from calm.report import check_tables, deck_files, result_files
     from calm.report.diagram import diagram_svg
     from calm.report.folder import printed
-    from calm.report.result_files import to_json
 
-    texts = {"diagram.svg": diagram_svg(deck, paper), **deck_csvs(deck)}
+    texts = {"diagram.svg": diagram_svg(deck, paper), **deck_files.deck_csvs(deck)}
     if deck.file.legs:
-        texts["net.svg"] = net_svg(deck)
-    counts = check_summary.counted_states(deck.assessment.all_findings())
+        texts["net.svg"] = deck_files.net_svg(deck)
+    counts = check_tables.counted_states(deck.assessment.all_findings())
     fails, unknown = counts[State.FAIL], counts[State.UNKNOWN]
     verdict = {"state": str(deck.assessment.state), "fails": fails, "unknown": unknown}
-    texts["plan.json"] = to_json([{"calm": __version__, **_plan(deck), "verdict": verdict}])
+    texts["plan.json"] = result_files.to_json(
+        [{"calm": __version__, **_plan(deck), "verdict": verdict}]
+    )
     return {
-        "deck.pdf": printed(deck_report(deck, paper, notes), paper, least=7.5),
-        "deck.xlsx": deck_workbook(deck),
-        "diagram.pdf": printed(diagram_report(deck, paper), paper, least=7.5),
+        "deck.pdf": printed(deck_files.deck_report(deck, paper, notes), paper, least=7.5),
+        "deck.xlsx": deck_files.deck_workbook(deck),
+        "diagram.pdf": printed(deck_files.diagram_report(deck, paper), paper, least=7.5),
         **{name: text.encode("utf-8", "replace") for name, text in texts.items()},
     }
 
@@ -200,7 +187,7 @@ def _texts(deck: Deck) -> Iterator[tuple[str, str]]:
         yield " ".join(filter(None, texts)), f"`{one.label}`"
 
 
-def _folders(designs: Sequence[DesignFile], output: Path) -> list[Path]:
+def _folders(designs: Sequence[reading.DesignFile], output: Path) -> list[Path]:
     """Where each mooring's sheets go.
 
     UsageError: two moorings would have the same folder, or a file that is read stands where one
@@ -219,19 +206,6 @@ def _folders(designs: Sequence[DesignFile], output: Path) -> list[Path]:
 
 DEFAULT_SPEED = "1500 m/s"
 
-LOCATE_EXAMPLES = """Examples:
-
-  calm locate ranges.csv
-  calm locate times.csv --sound-speed "1492 m/s" --transducer "5 m" --plot circles.png
-  calm locate times.csv --sound-speed profile.csv --depth "1103 m"
-  calm locate ranges.csv --depth "1103 m" --near "48 18.0 N, 5 12.0 W"
-  calm locate ranges.csv --update mooring.yaml   (its deployed: gets position and depth)
-
-ranges.csv:
-
-  latitude[deg],longitude[deg],range[m]
-  48.30120,-5.19870,1432.5"""
-
 
 def locate(
     file: Path,
@@ -243,7 +217,7 @@ def locate(
     above_seabed: str = "0 m",
     plot: Path | None = None,
     json: OutputPath = None,
-    near: Annotated[str | None, Parameter(allow_leading_hyphen=True)] = None,
+    near: options.Signed = None,
     update: Path | None = None,
     accept: bool = False,
     output: Annotated[Path | None, Parameter(name=["--output", "-o"], show=False)] = None,
@@ -287,11 +261,23 @@ def locate(
         doubt nothing is written, and the exit code is 1.
     accept
         Write the position in spite of a doubt.
+
+    Examples
+    --------
+      calm locate ranges.csv
+      calm locate times.csv --sound-speed "1492 m/s" --transducer "5 m" --plot circles.png
+      calm locate times.csv --sound-speed profile.csv --depth "1103 m"
+      calm locate ranges.csv --depth "1103 m" --near "48 18.0 N, 5 12.0 W"
+      calm locate ranges.csv --update mooring.yaml   (its deployed: gets position and depth)
+
+    ranges.csv:
+
+      latitude[deg],longitude[deg],range[m]
+      48.30120,-5.19870,1432.5
     """
     from calm.drawing.picture import check_format, image
     from calm.ranging import locate as found_at
-    from calm.ranging import read_ranges
-    from calm.ranging.range_fit import located_mooring, with_deployed
+    from calm.ranging import range_fit, read_ranges
     from calm.records.record import parse_place
     from calm.report.folder import check_destination, write_file
     from calm.report.located_anchor import located_figure, located_part
@@ -300,7 +286,7 @@ def locate(
     if plot is not None:
         check_format(plot, (".png", ".svg", ".pdf"))
         check_destination(plot)
-    given = quantities(
+    given = options.quantities(
         transducer=(transducer, "length"),
         depth=(depth, "length"),
         above_seabed=(above_seabed, "length"),
@@ -321,7 +307,7 @@ def locate(
     if output is not None:
         narrate("-o is now --update: the file is edited in place")
         update = update or output
-    mooring = None if update is None else located_mooring(update)
+    mooring = None if update is None else range_fit.located_mooring(update)
     about = None if near is None else parse_place(near)
     if about is None and mooring is not None and mooring.position is not None:
         about = mooring.position.latitude, mooring.position.longitude
@@ -329,7 +315,7 @@ def locate(
     water_depth = located.depth + height
     doubts, edited = located.doubts, None
     if update is not None and mooring is not None:
-        working, text, beside, far = with_deployed(update, mooring, located, water_depth)
+        working, text, beside, far = range_fit.with_deployed(update, mooring, located, water_depth)
         edited, doubts = (working, text), (*doubts, *far)
         for line in beside:
             narrate(f"{update}: {line}")
@@ -351,12 +337,11 @@ def locate(
 
 def _sound(text: str) -> Sound:
     """One speed, or the profile of a file."""
-    from calm.ranging import Sound
-    from calm.ranging.ranges import FASTEST, SLOWEST, read_sound, sound_complaint
+    from calm.ranging import Sound, ranges
 
     if text.lower().endswith((".csv", ".txt", ".tsv")):
-        return read_sound(Path(text))
-    speed = quantities(sound_speed=(text, "speed"))["sound_speed"]
-    if not SLOWEST <= speed <= FASTEST:
-        raise UsageError(f"--sound-speed: `{text}` {sound_complaint()}")
+        return ranges.read_sound(Path(text))
+    speed = options.quantities(sound_speed=(text, "speed"))["sound_speed"]
+    if not ranges.SLOWEST <= speed <= ranges.FASTEST:
+        raise UsageError(f"--sound-speed: `{text}` {ranges.sound_complaint()}")
     return Sound.constant(speed)

@@ -8,47 +8,36 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from threading import Event, current_thread, main_thread
-from typing import TYPE_CHECKING, Annotated
-
-from cyclopts import Parameter
+from typing import TYPE_CHECKING
 
 from calm.cli import options
-from calm.cli.options import CatalogFiles, Declination, EnvironmentName, Threads, Units, quantities
+from calm.cli.outputs import ExitCode, narrate, show_parts
 from calm.cli.progress import ProgressTeller, grouped
-from calm.cli.streams import ExitCode, narrate, show_parts
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
     from calm.batch.run import BatchOutcome
-    from calm.case import Mooring
-    from calm.case.net import Net
+    from calm.case import Mooring, net
     from calm.records.record import Record
-
-BATCH_EXAMPLES = """Examples:
-
-  calm batch mooring.yaml --currents adcp.nc -o moved.nc
-  calm batch mooring.yaml --currents glorys.nc --at 48.3,-5.2 -o hindcast.nc
-  calm batch mooring.yaml --currents adcp.nc --time 2024-03/2024-05 -o spring.nc
-  calm batch mooring.yaml --currents ensemble.zarr -o moved.zarr --workers 32"""
 
 
 def batch(
-    file: Path,
+    file: options.MooringPath,
     /,
     *,
     currents: Path,
-    output: Annotated[Path, Parameter(name=["--output", "-o"])],
+    output: options.OutputFile,
     time: str | None = None,
     every: int = 1,
-    at: Annotated[str | None, Parameter(allow_leading_hyphen=True)] = None,
-    declination: Declination = None,
-    workers: Threads = None,
+    at: options.Signed = None,
+    declination: options.Declination = None,
+    workers: options.Threads = None,
     scheduler: str | None = None,
     shape: bool = False,
     no_statistics: bool = False,
-    environment: EnvironmentName = None,
-    catalog: CatalogFiles = None,
-    units: Units = None,
+    environment: options.EnvironmentName = None,
+    catalog: options.CatalogFiles = None,
+    units: options.Units = None,
 ) -> ExitCode:
     """Solve a mooring, or a net of legs, in every profile of a record or a hindcast.
 
@@ -62,8 +51,6 @@ def batch(
 
     Parameters
     ----------
-    file
-        Mooring file.
     currents
         The record: NetCDF, zarr or CSV.
     output
@@ -81,15 +68,20 @@ def batch(
         Store the shape of the line too.
     no_statistics
         Write no statistics, for a part of a longer record.
+
+    Examples
+    --------
+      calm batch mooring.yaml --currents adcp.nc -o moved.nc
+      calm batch mooring.yaml --currents glorys.nc --at 48.3,-5.2 -o hindcast.nc
+      calm batch mooring.yaml --currents adcp.nc --time 2024-03/2024-05 -o spring.nc
+      calm batch mooring.yaml --currents ensemble.zarr -o moved.zarr --workers 32
     """
-    if every < 1:
-        raise UsageError(f"--every: {every} is not 1 or more")
-    if workers is not None and workers < 1:
-        raise UsageError(f"--workers: {workers} is not 1 or more")
+    options.from_one(every=every, workers=workers)
     from calm.batch.run import run_batch
     from calm.case import Tow
     from calm.case.net import load
     from calm.records.current_file import open_record
+    from calm.records.current_terms import Terms
     from calm.records.record import RULES, parse_period, parse_place
 
     period = None if time is None else parse_period(time)
@@ -103,11 +95,10 @@ def batch(
     place = own if at is None else parse_place(at)
     seabed = float(mooring.water.depth)
     teller = ProgressTeller()
-    turned = quantities(declination=(declination, "angle")).get("declination")
+    turned = options.quantities(declination=(declination, "angle")).get("declination")
     with stopped_by_a_signal() as stop:
-        with open_record(
-            currents, seabed=seabed, at=place, declination=turned, time=period, every=every
-        ) as record:
+        terms = Terms(seabed, place, turned)
+        with open_record(currents, terms, period, every) as record:
             for notice in (*mooring.file.notices, *record.notes):
                 if notice not in RULES:
                     narrate(f"{currents}: {notice}")
@@ -128,12 +119,12 @@ def batch(
     return code
 
 
-def _summarized(output: Path, mooring: Mooring | Net, stop: Event) -> bool:
+def _summarized(output: Path, mooring: Mooring | net.Net, stop: Event) -> bool:
     """Show what the result says, and write it beside the result; whether that was possible.
 
     UsageError: the result cannot be read.
     """
-    from calm.batch.threads import Stopped, go_on
+    from calm.batch.work_store import Stopped, go_on
     from calm.report.batch_page import summary_part, write_summary
 
     try:
@@ -150,7 +141,7 @@ def _summarized(output: Path, mooring: Mooring | Net, stop: Event) -> bool:
     return False
 
 
-def _implausible(outcome: BatchOutcome, mooring: Mooring | Net, record: Record) -> str:
+def _implausible(outcome: BatchOutcome, mooring: Mooring | net.Net, record: Record) -> str:
     """How many profiles have a current that cannot be true, and the first of them."""
     from calm.batch.statuses import first_implausible
 

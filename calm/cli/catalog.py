@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import App, Parameter
 
-from calm.cli.streams import ExitCode, narrate, show, show_parts
+from calm.cli.outputs import ExitCode, narrate, show, show_parts
 from calm.errors import InputError, UsageError
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ def search(words: list[str], /, *, json: bool = False) -> ExitCode:
         As JSON: objects with every field, in SI units and degrees.
     """
     from calm.assemble.catalogue_search import Index
-    from calm.tui.catalogue.catalogue_pane import Remembered
+    from calm.files.editing.user_state import Remembered
 
     catalogue, text = _load(), " ".join(words)
     index, remembered = Index(catalogue), Remembered()
@@ -146,8 +146,7 @@ def add(
     from calm.checks.catalogue_rules import check_catalogue, missing_figures
     from calm.errors import Problem
     from calm.files.catalogue import defined, read_level, tidy_id, user_folder
-    from calm.report.component_cards import in_words, to_card
-    from calm.report.folder import check_destination, write_file
+    from calm.report import component_cards, folder
     from calm.whole_file import read_text
 
     if tidy_id(id) != id:
@@ -161,7 +160,7 @@ def add(
     path = output or user_folder() / "own.yaml"
     if output is None:
         path.parent.mkdir(parents=True, exist_ok=True)
-    check_destination(path)
+    folder.check_destination(path)
     catalogue, problems = _load(), list[Problem]()
     own = read_level([path], problems) if path.exists() else {}
     if id in own:
@@ -177,11 +176,11 @@ def add(
     lines = [
         f"  {key}: {json_module.dumps(each, ensure_ascii=False)}" for key, each in values.items()
     ]
-    write_file(path, "\n".join([f"{before}{id}:", *lines, ""]).encode())
+    folder.write_file(path, "\n".join([f"{before}{id}:", *lines, ""]).encode())
     narrate(f"{id} added to {path}" + (", in place of the catalogue's" * bool(catalogue.entry(id))))
     for each in missing_figures(definitions):
-        narrate(f"{each.id}: {in_words(each)}")
-    show_parts(to_card(id, component, catalogue))
+        narrate(f"{each.id}: {component_cards.in_words(each)}")
+    show_parts(component_cards.to_card(id, component, catalogue))
     return ExitCode.DONE
 
 

@@ -6,9 +6,8 @@ from typing import Annotated, Literal
 
 from cyclopts import App, Group, Parameter
 
-from calm.cli.options import option, quantities
-from calm.cli.outputs import Outputs
-from calm.cli.streams import ExitCode, narrate
+from calm.cli import options
+from calm.cli.outputs import ExitCode, Outputs, narrate
 from calm.errors import UsageError
 
 _BUOY = """  calm chart solve --k 2.4 --weight "5 N/m" \\
@@ -103,7 +102,7 @@ def solve(
     from calm.report.chart_page import answer_document, answer_part
 
     outputs = Outputs(json=json)
-    known = quantities(
+    known = options.quantities(
         weight=(weight, "force per length"), k=(k, "number"), diameter=(diameter, "length"),
         cd=(cd, "number"), speed=(speed, "speed"), density=(density, "density"),
         phi_a=(phi_a, "angle"), phi_b=(phi_b, "angle"),
@@ -126,7 +125,7 @@ def solve(
 def draw(
     *,
     k: Annotated[str, Parameter(allow_leading_hyphen=True)],
-    output: Annotated[Path, Parameter(alias="-o")],
+    output: options.OutputFile,
     lower_end: Literal["below-90", "above-90"] = "below-90",
 ) -> ExitCode:
     """Draw the chart of one K, on a page of A4.
@@ -147,7 +146,7 @@ def draw(
 
     check_format(output, CHART_FORMATS)
     check_destination(output)
-    (drag_over_weight,) = quantities(k=(k, "number")).values()
+    (drag_over_weight,) = options.quantities(k=(k, "number")).values()
     write_file(output, image(draw_chart(drag_over_weight, lower_end), output.suffix))
     narrate(f"{output} written")
     return ExitCode.DONE
@@ -162,16 +161,16 @@ def _drag_over_weight(cable: dict[str, float]) -> float:
 
     parts = ("diameter", "cd", "speed")
     if "k" in cable:
-        also = [option(name) for name in (*parts, "density") if name in cable]
+        also = [options.option(name) for name in (*parts, "density") if name in cable]
         if also:
             raise UsageError(f"give either --k or {', '.join(also)}")
         return cable["k"]
-    missing = [option(name) for name in parts if name not in cable]
+    missing = [options.option(name) for name in parts if name not in cable]
     if missing:
         raise UsageError(f"give --k, or also {', '.join(missing)}")
     for name in (*parts, "density"):
         if cable.get(name, 0.0) < 0.0:
-            raise UsageError(f"{option(name)} must not be negative")
+            raise UsageError(f"{options.option(name)} must not be negative")
     if cable["weight"] == 0.0:
         raise UsageError("--weight must not be 0")
     density = cable.get("density", REFERENCE_DENSITY)

@@ -10,46 +10,33 @@ from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from calm.cli.check_files import DesignFile, read_designs
-from calm.cli.options import CatalogFiles, Samples, Seed, Units, show_units
-from calm.cli.outputs import OutputPath, Outputs
-from calm.cli.progress import FEW, mapped
-from calm.cli.run import draws_of
-from calm.cli.streams import ExitCode, gravest, narrate
+from calm.cli import options, progress, run
+from calm.cli.outputs import ExitCode, OutputPath, Outputs, gravest, narrate
+from calm.cli.reading import DesignFile, read_designs
 from calm.errors import InputError, Problem, UsageError, internal_failure
 
 if TYPE_CHECKING:
-    from calm.case import Mooring
+    from calm.case import Mooring, uncertain
     from calm.case.net import Net
-    from calm.case.uncertain import Mapped
     from calm.checks.assessment import Assessment, MooringInEnvironment
     from calm.report.blocks import Section
 
-CHECK_EXAMPLES = """Examples:
-
-  calm check mooring.yaml
-  calm check mooring.yaml --environment storm.yaml --environment neap.yaml
-  calm check north.yaml south.yaml --report cruise/
-  calm check revised.yaml --report cruise/ --against design.yaml
-  calm check mooring.yaml --uncertainty --samples 512
-  calm check mooring.yaml --json - | jq '.findings[] | select(.state == "fail")'"""
-
 
 def check(
-    files: list[Path],
+    files: options.MooringPaths,
     /,
     *,
     environment: list[str] | None = None,
-    catalog: CatalogFiles = None,
+    catalog: options.CatalogFiles = None,
     json: OutputPath = None,
     report: Path | None = None,
     against: Path | None = None,
     allow_unknown: bool = False,
     uncertainty: bool = False,
-    samples: Samples = 2048,
-    seed: Seed = 0,
+    samples: options.Samples = 2048,
+    seed: options.Seed = 0,
     workers: int | None = None,
-    units: Units = None,
+    units: options.Units = None,
 ) -> ExitCode:
     """Check designs: solve every mooring in every environment, and judge it by rule.
 
@@ -61,8 +48,6 @@ def check(
 
     Parameters
     ----------
-    files
-        Mooring files.
     environment
         An environment named in the files, or an environment file. Repeatable. By default, every
         environment of each file.
@@ -79,13 +64,21 @@ def check(
         uncertain as `uncertainty` in the file says, and list the designs by it.
     workers
         Number of processes; by default one for each core.
+
+    Examples
+    --------
+      calm check mooring.yaml
+      calm check mooring.yaml --environment storm.yaml --environment neap.yaml
+      calm check north.yaml south.yaml --report cruise/
+      calm check revised.yaml --report cruise/ --against design.yaml
+      calm check mooring.yaml --uncertainty --samples 512
+      calm check mooring.yaml --json - | jq '.findings[] | select(.state == "fail")'
     """
     outputs = Outputs(tuple(files), json)
-    if workers is not None and workers < 1:
-        raise UsageError(f"--workers: {workers} is not 1 or more")
+    options.from_one(workers=workers)
     if against is not None and (report is None or len(files) > 1):
         raise UsageError("--against compares one mooring with an earlier design in its --report")
-    draws = draws_of(uncertainty, samples, seed)
+    draws = run.draws_of(uncertainty, samples, seed)
     if report is not None:
         given = [*files, *map(Path, environment or ()), *(catalog or ()), *filter(None, [against])]
         _check_report(report, json, given)
@@ -100,7 +93,7 @@ def check(
         from calm.files.legs import NET_SURE
 
         raise UsageError(f"--uncertainty is for {NET_SURE}: {nets[0]}")
-    show_units(units, [one.file for design in designs for one in design.moorings])
+    options.show_units(units, [one.file for design in designs for one in design.moorings])
     judged = _judged(designs, workers, drawn, draws)
     assessments = [each.assessment for each in judged]
     for design, assessment in zip(designs, assessments, strict=True):
@@ -131,8 +124,7 @@ def _read(
 
     `ready` is called while other processes read.
     """
-    from calm.case import Tow
-    from calm.case.net import load
+    from calm.case import Tow, net
 
     problems: list[Problem] = []
     earlier: Mooring | Tow | Net | None = None
@@ -144,7 +136,7 @@ def _read(
         problems += error.problems
     try:
         first = environments[0] if environments else None
-        earlier = None if against is None else load(against, first, catalogs)
+        earlier = None if against is None else net.load(against, first, catalogs)
     except InputError as error:
         problems += error.problems
     if problems:
@@ -208,12 +200,12 @@ def _judged(
     day = (moment() or datetime.now()).date()
     stands = [(design.name, mooring, day) for design in designs for mooring in design.moorings]
     expect_many(SOLVES * len(stands))
-    if len(designs) > FEW:
+    if len(designs) > progress.FEW:
         _ready(len(stands), drawn)
         whole = [(number, design, day, drawn, draws) for number, design in enumerate(designs, 1)]
-        return mapped(_solve_and_conclude, whole, workers, "moorings judged")
-    solved = iter(mapped(_stands, stands, workers, "environments solved"))
-    shared = partial(mapped, workers=workers, what="blocks of samples solved")
+        return progress.mapped(_solve_and_conclude, whole, workers, "moorings judged")
+    solved = iter(progress.mapped(_stands, stands, workers, "environments solved"))
+    shared = partial(progress.mapped, workers=workers, what="blocks of samples solved")
     return [
         _concluded(
             number,
@@ -262,26 +254,22 @@ def _concluded(
     day: date,
     drawn: bool,
     draws: tuple[int, int] | None,
-    shared: Mapped,
+    shared: uncertain.Mapped,
 ) -> CheckedMooring:
     """What is judged of a mooring as a whole, and the `number`th section of the report.
 
     `draws` are samples and seed of the probabilities, where they are asked for; `shared` has blocks
     of them solved.
     """
-    from calm.checks.assess import assessment_of
+    from calm.checks import assess, net_check
     from calm.report.check_report import mooring_section
 
     if stands[0].mooring.file.legs:
-        from calm.checks.net_check import assessment_of_net
-
-        assessment = assessment_of_net(name, stands, day)
+        assessment = net_check.assessment_of_net(name, stands, day)
     else:
-        assessment = assessment_of(name, stands, day)
+        assessment = assess.assessment_of(name, stands, day)
     if draws is not None:
-        from calm.checks.assess import with_probabilities
-
-        assessment = with_probabilities(assessment, *draws, shared)
+        assessment = assess.with_probabilities(assessment, *draws, shared)
     return CheckedMooring(
         assessment, _drawn(mooring_section(assessment), number) if drawn else None
     )
@@ -319,8 +307,8 @@ def _answer(
     """
     from concurrent.futures import ThreadPoolExecutor
 
-    from calm.report.check_report import check_document, checks_csv, inventory_csv
-    from calm.report.check_tables import check_part
+    from calm.report import result_files
+    from calm.report.check_report import check_document, check_part, checks_csv, inventory_csv
     from calm.report.folder import write_report
 
     document = cache(lambda: check_document(assessments))
@@ -330,7 +318,6 @@ def _answer(
     from calm.report.check_report import check_report
     from calm.report.folder import printed
     from calm.report.html import page
-    from calm.report.result_files import to_json
 
     report = check_report([each.section for each in drawings])
     with ThreadPoolExecutor(1) as beside:
@@ -338,7 +325,7 @@ def _answer(
         outputs.write_answer(document, check_part(assessments))
         texts = {
             "report.html": page(report, [each.html for each in drawings]),
-            "report.json": to_json([document()]),
+            "report.json": result_files.to_json([document()]),
             "checks.csv": checks_csv(assessments),
             "inventory.csv": inventory_csv(assessments),
         }

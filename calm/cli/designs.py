@@ -8,23 +8,14 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from calm.cli.options import CatalogFiles, EnvironmentName, Units, show_units
-from calm.cli.outputs import OutputPath, Outputs
-from calm.cli.run import read_all
-from calm.cli.streams import ExitCode, narrate
+from calm.cli import options, reading
+from calm.cli.outputs import ExitCode, OutputPath, Outputs, narrate
 from calm.errors import NoEquilibrium, UsageError
 
 if TYPE_CHECKING:
     from calm.case import Mooring, Tow
     from calm.case.net import Net
     from calm.checks.comparison import Comparison
-
-DIFF_EXAMPLES = """Examples:
-
-  calm diff design-A.yaml design-B.yaml
-  calm diff design-A.yaml design-B.yaml --environment storm.yaml
-  calm diff mooring.yaml             (its design against its deployed:)
-  calm diff design-A.yaml design-B.yaml --json - | jq '.changed[].where'"""
 
 
 def diff(
@@ -33,7 +24,7 @@ def diff(
     /,
     *,
     environment: str | None = None,
-    catalog: CatalogFiles = None,
+    catalog: options.CatalogFiles = None,
     json: OutputPath = None,
 ) -> ExitCode:
     """Compare two designs piece by piece, and show the effect of the changes.
@@ -56,12 +47,19 @@ def diff(
         environment file.
     json
         Write the differences as JSON, - to print it.
+
+    Examples
+    --------
+      calm diff design-A.yaml design-B.yaml
+      calm diff design-A.yaml design-B.yaml --environment storm.yaml
+      calm diff mooring.yaml             (its design against its deployed:)
+      calm diff design-A.yaml design-B.yaml --json - | jq '.changed[].where'
     """
     files = (before,) if after is None else (before, after)
     outputs = Outputs(files, json)
     from calm.case.net import load
 
-    lines = read_all(load, files, environment, catalog or [])
+    lines = reading.read_all(load, files, environment, catalog or [])
     for file, line in zip(files, lines, strict=True):
         for notice in line.file.notices:
             narrate(f"{file}: {notice}")
@@ -77,8 +75,7 @@ def compared(files: tuple[Path, ...], lines: list[Mooring | Tow | Net]) -> Compa
 
     UsageError: a mooring and a tow; a single tow, or a file that says nothing of a deployment.
     """
-    from calm.case import Mooring, Tow
-    from calm.case.net import Net
+    from calm.case import Mooring, Tow, net
     from calm.checks.comparison import comparison_of
     from calm.checks.situations import as_deployed, deployed_file
 
@@ -89,32 +86,16 @@ def compared(files: tuple[Path, ...], lines: list[Mooring | Tow | Net]) -> Compa
         return comparison_of((str(files[0]), str(files[1])), first, last)
     if isinstance(first, Tow):
         raise UsageError(f"{files[0]} is a tow; give the file to compare it with")
-    if isinstance(first, Net):
+    if isinstance(first, net.Net):
         laid = replace(deployed_file(first.file), deployed=None)
         planned = replace(first.file, deployed=None)
-        return comparison_of(("design", "deployed"), Net(planned), Net(laid))
+        return comparison_of(("design", "deployed"), net.Net(planned), net.Net(laid))
     try:
         deployed = as_deployed(first)
         design, there = (Mooring(replace(one.file, deployed=None)) for one in (first, deployed))
         return comparison_of(("design", "deployed"), design, there)
     except NoEquilibrium as failure:
         raise UsageError(f"{files[0]}: what is cut to fit has no length: {failure}") from failure
-
-
-SIZE_EXAMPLES = """Examples:
-
-  calm size mooring.yaml --target "knockdown(top) <= 20 m" \\
-      --change "top float.buoyancy"
-  calm size mooring.yaml --target "tilt(current meter) <= 5 deg" \\
-      --change "back-up glass.count" --between 4 40
-  calm size mooring.yaml --target "depth(CTD 130 m) = 130 m" \\
-      --change wire.length --environment storm
-  calm size mooring.yaml --target "required_weight <= 8 kN" \\
-      --change "top float.buoyancy" --json -
-
-Targets: knockdown, depth, excursion, tilt or tension of a label or of top, and
-required_weight of the anchor, in a net required_weight(LEG). Changes:
-LABEL.buoyancy, LABEL.length, LABEL.count."""
 
 
 def size(
@@ -124,10 +105,10 @@ def size(
     target: str,
     change: str,
     between: Annotated[tuple[str, str] | None, Parameter(allow_leading_hyphen=True)] = None,
-    environment: EnvironmentName = None,
-    catalog: CatalogFiles = None,
-    json: OutputPath = None,
-    units: Units = None,
+    environment: options.EnvironmentName = None,
+    catalog: options.CatalogFiles = None,
+    json: options.JsonAnswer = None,
+    units: options.Units = None,
 ) -> ExitCode:
     """Find the smallest change of a mooring that meets a target.
 
@@ -148,8 +129,21 @@ def size(
         The least and the greatest value, with units; by default a buoyancy may
         change from 0 to 100 times itself, a length up to twice the water depth,
         a count up to 1000.
-    json
-        Write the answer as JSON, - to print it.
+
+    Examples
+    --------
+      calm size mooring.yaml --target "knockdown(top) <= 20 m" \\
+          --change "top float.buoyancy"
+      calm size mooring.yaml --target "tilt(current meter) <= 5 deg" \\
+          --change "back-up glass.count" --between 4 40
+      calm size mooring.yaml --target "depth(CTD 130 m) = 130 m" \\
+          --change wire.length --environment storm
+      calm size mooring.yaml --target "required_weight <= 8 kN" \\
+          --change "top float.buoyancy" --json -
+
+    Targets: knockdown, depth, excursion, tilt or tension of a label or of top, and
+    required_weight of the anchor, in a net required_weight(LEG). Changes:
+    LABEL.buoyancy, LABEL.length, LABEL.count.
     """
     outputs = Outputs((file,), json)
     from calm.case import Tow
@@ -159,8 +153,8 @@ def size(
 
     mooring = load(file, environment, catalog or [])
     if isinstance(mooring, Tow):
-        raise UsageError(f"{file} is a tow; calm size changes moorings")
-    show_units(units, [mooring.file])
+        raise UsageError(f"{file} is a tow; calm size is for moorings")
+    options.show_units(units, [mooring.file])
     sizing = sized(mooring, target, change, between)
     if sizing.after is not None:
         outputs.write_answer(sizing.to_dict, sizing_part(sizing))

@@ -8,25 +8,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from calm.cli.options import CatalogFiles, EnvironmentName
-from calm.cli.outputs import STDOUT, OutputPath
-from calm.cli.streams import ExitCode, narrate, show
+from calm.cli import options
+from calm.cli.outputs import STDOUT, ExitCode, OutputPath, narrate, show
 from calm.errors import InputError, Problem, UsageError
 
 if TYPE_CHECKING:
     from calm.exchange.importing import Imported
 
-IMPORT_EXAMPLES = """Examples:
-
-  calm import moor001.mat -o moor001.yaml
-  calm import *.cbl -o moorings/ --environment site.yaml
-  calm import snare.cbl -o snare.yaml -D DEPTH=1200 --strict
-  calm import list.csv -o list.yaml --columns name=Item,length=Len --environment site.yaml"""
-
 
 def import_(
     *files: Path,
-    output: Annotated[Path, Parameter(name=["--output", "-o"])],
+    output: options.OutputFile,
     format: str | None = None,
     strict: bool = False,
     define: Annotated[list[str] | None, Parameter(name=["--define", "-D"])] = None,
@@ -71,24 +63,30 @@ def import_(
         Allow a file to include others from outside its own folder.
     json
         Write what was guessed and left out as JSON, - to print it.
+
+    Examples
+    --------
+      calm import moor001.mat -o moor001.yaml
+      calm import *.cbl -o moorings/ --environment site.yaml
+      calm import snare.cbl -o snare.yaml -D DEPTH=1200 --strict
+      calm import list.csv -o list.yaml --columns name=Item,length=Len --environment site.yaml
     """
     from calm.exchange.importing import ImportOptions, import_file, record_file
-    from calm.report.folder import check_destination, write_file
-    from calm.report.result_files import to_json
+    from calm.report import folder, result_files
 
     if not files:
         raise UsageError("calm import needs a file")
     headings = _pairs("--columns", columns.split(",") if columns else [])
-    options = ImportOptions(_pairs("--define", define or []), headings, elements, allow_include)
+    given = ImportOptions(_pairs("--define", define or []), headings, elements, allow_include)
     targets = _targets(files, output)
     if json is not None and json != STDOUT:
-        check_destination(json)
+        folder.check_destination(json)
     done: list[tuple[Imported, Path]] = []
     problems: list[Problem] = []
     for file, target in zip(files, targets, strict=True):
         try:
             imported = import_file(
-                file, target, format=format, environment=environment, options=options,
+                file, target, format=format, environment=environment, options=given,
                 match_catalogue=match_catalogue,
             )  # fmt: skip
         except InputError as error:
@@ -107,12 +105,12 @@ def import_(
     for imported, target in done:
         record = _record_of(target) if imported.record is not None else None
         if record is not None and imported.record is not None:
-            write_file(record, record_file(imported.record, imported.file.name))
-        write_file(target, imported.text.encode("utf-8", "replace"))
+            folder.write_file(record, record_file(imported.record, imported.file.name))
+        folder.write_file(target, imported.text.encode("utf-8", "replace"))
         _tell(imported, target, record)
     if json is not None:
-        text = to_json([_document(imported, target) for imported, target in done])
-        show(text) if json == STDOUT else write_file(json, text.encode())
+        text = result_files.to_json([_document(imported, target) for imported, target in done])
+        show(text) if json == STDOUT else folder.write_file(json, text.encode())
     return ExitCode.DONE
 
 
@@ -181,22 +179,14 @@ def _document(imported: Imported, target: Path) -> dict[str, Any]:
     }
 
 
-EXPORT_EXAMPLES = """Examples:
-
-  calm export mooring.yaml --to mdd -o mooring.mat
-  calm export mooring.yaml --to cbl -o mooring.cbl --environment storm
-  calm export mooring.yaml --to moordyn -o moordyn/mooring.txt
-  calm export mooring.yaml --to csv -o mooring.csv"""
-
-
 def export(
-    file: Path,
+    file: options.MooringPath,
     /,
     *,
     to: str,
-    output: Annotated[Path, Parameter(name=["--output", "-o"])],
-    environment: EnvironmentName = None,
-    catalog: CatalogFiles = None,
+    output: options.OutputFile,
+    environment: options.EnvironmentName = None,
+    catalog: options.CatalogFiles = None,
 ) -> ExitCode:
     """Write a mooring or a tow for another program.
 
@@ -205,13 +195,18 @@ def export(
 
     Parameters
     ----------
-    file
-        Mooring file.
     to
         The program: mdd (Mooring Design & Dynamics), cbl (WHOI Cable), moordyn (MoorDyn 2,
         with the current in a file beside it) or csv (a list).
     output
         The file to write.
+
+    Examples
+    --------
+      calm export mooring.yaml --to mdd -o mooring.mat
+      calm export mooring.yaml --to cbl -o mooring.cbl --environment storm
+      calm export mooring.yaml --to moordyn -o moordyn/mooring.txt
+      calm export mooring.yaml --to csv -o mooring.csv
     """
     from calm.exchange.exporting import export_file
     from calm.report.folder import check_destination, write_file

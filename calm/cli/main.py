@@ -8,27 +8,23 @@ import re
 import sys
 import traceback
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from inspect import cleandoc
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import App, CycloptsError, Group, Parameter, UnusedCliTokensError
 
-from calm.cli import starter
-from calm.cli.at_sea import DECK_EXAMPLES, LOCATE_EXAMPLES, deck, locate
-from calm.cli.batch import BATCH_EXAMPLES, batch
+from calm.cli import at_sea, designs, exchange, starter
+from calm.cli.batch import batch
 from calm.cli.catalog import catalog
 from calm.cli.chart import chart
-from calm.cli.check import CHECK_EXAMPLES, check
-from calm.cli.designs import DIFF_EXAMPLES, SIZE_EXAMPLES, diff, size
-from calm.cli.exchange import EXPORT_EXAMPLES, IMPORT_EXAMPLES, export, import_
-from calm.cli.grid import GRID_EXAMPLES, grid
-from calm.cli.motion import MOTION_EXAMPLES, motion
-from calm.cli.run import RUN_EXAMPLES, run
-from calm.cli.starter import BUILD_EXAMPLES, DOCS_EXAMPLES, NEW_EXAMPLES, SCHEMA_EXAMPLES, build
-from calm.cli.streams import ExitCode, narrate, prepare, show
-from calm.cli.tow import STRUMMING_EXAMPLES, TOW_EXAMPLES, strumming, tow
-from calm.cli.verify import VERIFY_EXAMPLES, verify
-from calm.cli.waves import WAVES_EXAMPLES, waves
+from calm.cli.check import check
+from calm.cli.motion import grid, motion
+from calm.cli.outputs import ExitCode, narrate, prepare, show
+from calm.cli.run import run
+from calm.cli.tow import strumming, tow
+from calm.cli.verify import verify
+from calm.cli.waves import waves
 from calm.errors import CalmError, InputError, NoEquilibrium
 
 if TYPE_CHECKING:
@@ -122,18 +118,17 @@ class HelpAtWidth:
         DefaultFormatter().render_usage(console, options, _with_values(str(usage)))
 
 
+def _examples(command: Callable[..., object]) -> str:
+    """The section of a docstring that ends it, as `--help` has it."""
+    text = cleandoc(command.__doc__ or "").partition("Examples\n--------\n")[2]
+    return f"Examples:\n\n{text}"
+
+
 def _version() -> str:
     from calm.version import __version__, built_from
 
     commit = built_from()
     return f"{__version__} (commit {commit})" if commit else __version__
-
-
-COMPLETION_EXAMPLES = """Examples:
-
-  calm completion bash > ~/.local/share/bash-completion/completions/calm
-  calm completion zsh > "${fpath[1]}/_calm"
-  calm completion fish > ~/.config/fish/completions/calm.fish"""
 
 
 # The file of an autoloaded function runs at the first Tab; one that is sourced names its function.
@@ -150,6 +145,12 @@ def completion(shell: Literal["bash", "zsh", "fish"], /) -> ExitCode:
     ----------
     shell
         The shell that reads it.
+
+    Examples
+    --------
+      calm completion bash > ~/.local/share/bash-completion/completions/calm
+      calm completion zsh > "${fpath[1]}/_calm"
+      calm completion fish > ~/.config/fish/completions/calm.fish
     """
     script = app.generate_completion(prog_name="calm", shell=shell)
     if shell == "zsh":  # which calls the function that has the name of the file
@@ -172,50 +173,50 @@ app = App(
 _TOW = App(
     name="tow",
     usage="Usage: calm tow [OPTIONS] FILE...\n       calm tow strumming [OPTIONS]",
-    help_epilogue=TOW_EXAMPLES,
+    help_epilogue=_examples(tow),
 )
 _TOW.default(tow)
-_TOW.command(strumming, help_epilogue=STRUMMING_EXAMPLES)
+_TOW.command(strumming, help_epilogue=_examples(strumming))
 
-_GROUPS: dict[str, tuple[tuple[Any, str, str], ...]] = {
+_GROUPS: dict[str, tuple[tuple[Any, str], ...]] = {
     "Design": (
-        (starter.new, "", NEW_EXAMPLES),
-        (build, "", BUILD_EXAMPLES),
-        (run, "[OPTIONS] FILE...", RUN_EXAMPLES),
-        (size, "", SIZE_EXAMPLES),
-        (waves, "", WAVES_EXAMPLES),
-        (check, "[OPTIONS] FILE...", CHECK_EXAMPLES),
-        (diff, "[OPTIONS] FILE [FILE]", DIFF_EXAMPLES),
+        (starter.new, ""),
+        (starter.build, ""),
+        (run, "[OPTIONS] FILE..."),
+        (designs.size, ""),
+        (waves, ""),
+        (check, "[OPTIONS] FILE..."),
+        (designs.diff, "[OPTIONS] FILE [FILE]"),
     ),
     "At sea": (
-        (deck, "[OPTIONS] FILE...", DECK_EXAMPLES),
-        (locate, "[OPTIONS] FILE", LOCATE_EXAMPLES),
+        (at_sea.deck, "[OPTIONS] FILE..."),
+        (at_sea.locate, "[OPTIONS] FILE"),
     ),
     "Records": (
-        (batch, "", BATCH_EXAMPLES),
-        (motion, "", MOTION_EXAMPLES),
-        (grid, "[OPTIONS] DEPTHS VALUES...", GRID_EXAMPLES),
+        (batch, ""),
+        (motion, ""),
+        (grid, "[OPTIONS] DEPTHS VALUES..."),
     ),
     "Files": (
-        (import_, "[OPTIONS] FILE...", IMPORT_EXAMPLES),
-        (export, "", EXPORT_EXAMPLES),
-        (catalog, "", ""),
-        (starter.schema, "", SCHEMA_EXAMPLES),
+        (exchange.import_, "[OPTIONS] FILE..."),
+        (exchange.export, ""),
+        (catalog, ""),
+        (starter.schema, ""),
     ),
     "More": (
-        (_TOW, "", ""),
-        (chart, "", ""),
-        (verify, "[OPTIONS] [WORD...]", VERIFY_EXAMPLES),
-        (starter.docs, "[OPTIONS] [PAGE]", DOCS_EXAMPLES),
-        (completion, "SHELL", COMPLETION_EXAMPLES),
+        (_TOW, ""),
+        (chart, ""),
+        (verify, "[OPTIONS] [WORD...]"),
+        (starter.docs, "[OPTIONS] [PAGE]"),
+        (completion, "SHELL"),
     ),
 }
 """The commands by what they are for, in the order of `--help`: each with its usage, where that is
-not the one made from its options, and its examples."""
+not the one made from its options."""
 
 for _number, (_name, _commands) in enumerate(_GROUPS.items()):
     _group = Group(_name, sort_key=_number)
-    for _place, (_command, _usage, _examples) in enumerate(_commands):
+    for _place, (_command, _usage) in enumerate(_commands):
         if isinstance(_command, App):
             _command.group, _command.sort_key = _group, _place
             app.command(_command)
@@ -223,8 +224,9 @@ for _number, (_name, _commands) in enumerate(_GROUPS.items()):
         _called = _command.__name__.rstrip("_")
         _how = {"usage": f"Usage: calm {_called} {_usage}"} if _usage else {}
         app.command(
-            _command, name=_called, group=_group, sort_key=_place, help_epilogue=_examples, **_how
-        )
+            _command, name=_called, group=_group, sort_key=_place,
+            help_epilogue=_examples(_command), **_how,
+        )  # fmt: skip
 app["--help"].group = app["--version"].group = Group("Options", sort_key=len(_GROUPS))
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from calm.cli.streams import narrate
+from calm.cli.outputs import narrate
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
@@ -23,6 +23,8 @@ CatalogFiles = Annotated[
         help="A catalogue of your own; its components replace others of the same id. Repeatable."
     ),
 ]
+MooringPath = Annotated[Path, Parameter(help="Mooring file.")]
+MooringPaths = Annotated[list[Path], Parameter(help="Mooring files.")]
 EnvironmentName = Annotated[
     str | None,
     Parameter(help="The environment to use instead: a name from the file, or an environment file."),
@@ -40,6 +42,13 @@ Declination = Annotated[
         allow_leading_hyphen=True,
     ),
 ]
+OutputFile = Annotated[Path, Parameter(alias="-o")]
+JsonAnswer = Annotated[
+    Path | None,
+    Parameter(help="Write the answer as JSON, - to print it.", allow_leading_hyphen=True),
+]
+Signed = Annotated[str | None, Parameter(allow_leading_hyphen=True)]
+"""A quantity that may be negative, which must not be taken for an option."""
 Units = Annotated[
     str | None,
     Parameter(
@@ -109,6 +118,13 @@ def quantities(**given: tuple[str | None, str]) -> dict[str, float]:
     if complaints:
         raise UsageError("; ".join(complaints))
     return values
+
+
+def from_one(**given: int | None) -> None:
+    """Refuse counts that were given and are not 1 or more, by the name of the parameter."""
+    for name, count in given.items():
+        if count is not None and count < 1:
+            raise UsageError(f"{option(name)}: {count} is not 1 or more")
 
 
 def span_of(option: str, text: str, between: tuple[float, float], in_words: str) -> np.timedelta64:

@@ -10,7 +10,7 @@ from functools import partial
 from time import monotonic
 from typing import TYPE_CHECKING, ParamSpec, TypeVar
 
-from calm.cli.streams import narrate
+from calm.cli.outputs import narrate
 from calm.quantities import duration, show_in, shown_units
 
 if TYPE_CHECKING:

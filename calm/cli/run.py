@@ -7,14 +7,13 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from itertools import zip_longest
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, TypeVar
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from calm.cli.options import CatalogFiles, EnvironmentName, Samples, Seed, Units, show_units
-from calm.cli.outputs import FileOutcome, OutputPath, Outputs
-from calm.cli.streams import ExitCode, gravest, narrate
-from calm.errors import InputError, NoEquilibrium, Problem, UsageError
+from calm.cli import options, reading
+from calm.cli.outputs import ExitCode, FileOutcome, OutputPath, Outputs, gravest, narrate
+from calm.errors import NoEquilibrium, UsageError
 
 if TYPE_CHECKING:
     from calm.case import Mooring, Result, Tow
@@ -24,26 +23,13 @@ if TYPE_CHECKING:
     from calm.case.uncertain import Uncertain
     from calm.drawing.schematic.in_terminal import TerminalSchematic
 
-Line = TypeVar("Line")
-
-RUN_EXAMPLES = """Examples:
-
-  calm run mooring.yaml
-  calm run mooring.yaml --environment storm --plot storm.png
-  calm run mooring.yaml --csv components.csv --json result.json
-  calm run mooring.yaml --explain
-  calm run mooring.yaml --uncertainty --plot band.png
-  calm run mooring.yaml --schematic
-  calm run mooring.yaml --html mooring.html --pdf mooring.pdf
-  calm run spring.yaml neap.yaml tow.yaml --json -"""
-
 
 def run(
     files: list[Path],
     /,
     *,
-    environment: EnvironmentName = None,
-    catalog: CatalogFiles = None,
+    environment: options.EnvironmentName = None,
+    catalog: options.CatalogFiles = None,
     json: OutputPath = None,
     csv: OutputPath = None,
     netcdf: Path | None = None,
@@ -53,9 +39,9 @@ def run(
     explain: bool = False,
     schematic: bool = False,
     uncertainty: bool = False,
-    samples: Samples = 2048,
-    seed: Seed = 0,
-    units: Units = None,
+    samples: options.Samples = 2048,
+    seed: options.Seed = 0,
+    units: options.Units = None,
     verbose: Annotated[bool, Parameter(name=["--verbose", "-v"], negative=())] = False,
 ) -> ExitCode:
     """Solve moorings, tows and nets of legs, and print the table of each line.
@@ -95,18 +81,28 @@ def run(
         JSON, the picture and the reports too.
     verbose
         Also say below the table how the solution was found.
+
+    Examples
+    --------
+      calm run mooring.yaml
+      calm run mooring.yaml --environment storm --plot storm.png
+      calm run mooring.yaml --csv components.csv --json result.json
+      calm run mooring.yaml --explain
+      calm run mooring.yaml --uncertainty --plot band.png
+      calm run mooring.yaml --schematic
+      calm run mooring.yaml --html mooring.html --pdf mooring.pdf
+      calm run spring.yaml neap.yaml tow.yaml --json -
     """
     outputs = Outputs(tuple(files), json, csv, plot, html, pdf, netcdf)
     draws = draws_of(uncertainty, samples, seed)
-    from calm.case import Tow
-    from calm.case.net import Net, load
+    from calm.case import Tow, net
     from calm.files.legs import NET_SURE
 
-    lines = read_all(load, files, environment, catalog or [])
-    show_units(units, [line.file for line in lines])
+    lines = reading.read_all(net.load, files, environment, catalog or [])
+    options.show_units(units, [line.file for line in lines])
     drawn = {"--uncertainty": uncertainty}
     _refuse({"--explain": explain} | drawn, "moorings; these are tows", Tow, files, lines)
-    _refuse(drawn, NET_SURE, Net, files, lines)
+    _refuse(drawn, NET_SURE, net.Net, files, lines)
     return solve_and_show(
         lines, outputs, explain=explain, schematic=schematic, draws=draws, verbose=verbose
     )
@@ -129,26 +125,6 @@ def draws_of(uncertainty: bool, samples: int, seed: int) -> tuple[int, int] | No
     if seed < 0:
         raise UsageError(f"--seed: {seed} is below 0")
     return samples, seed
-
-
-def read_all(
-    load: Callable[[Path, str | None, Sequence[Path]], Line],
-    files: Sequence[Path],
-    environment: str | None,
-    catalogs: Sequence[Path],
-) -> list[Line]:
-    """Read all files by `calm.case.load`, or one like it; or an `InputError` with all mistakes."""
-    read: list[Line] = []
-    problems: dict[Problem, None] = {}
-    for file in files:
-        try:
-            read.append(load(file, environment, catalogs))
-        except InputError as error:
-            # A catalogue that all files share has its mistakes told once.
-            problems |= dict.fromkeys(error.problems)
-    if problems:
-        raise InputError(list(problems))
-    return read
 
 
 def solve_and_show(

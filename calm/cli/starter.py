@@ -10,21 +10,10 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from calm.cli.options import CatalogFiles
-from calm.cli.streams import ExitCode, narrate, show
+from calm.cli import options
+from calm.cli.outputs import ExitCode, narrate, show
 from calm.errors import UsageError
 from calm.templates import Template, template
-
-NEW_EXAMPLES = """Examples:
-
-  calm new
-  calm new -o mooring.yaml
-  calm new taut-surface -o buoy.yaml
-  calm new --record -o record.nc"""
-
-SCHEMA_EXAMPLES = """Examples:
-
-  calm schema > mooring.schema.json"""
 
 
 def new(
@@ -47,6 +36,13 @@ def new(
         The file to write; by default the standard output.
     force
         Overwrite an existing file.
+
+    Examples
+    --------
+      calm new
+      calm new -o mooring.yaml
+      calm new taut-surface -o buoy.yaml
+      calm new --record -o record.nc
     """
     if record:
         return _new_record(output, force)
@@ -81,19 +77,17 @@ def _write(output: Path, content: bytes, force: bool) -> None:
 
 
 def schema() -> ExitCode:
-    """Print the JSON Schema of mooring files, for editors."""
+    """Print the JSON Schema of mooring files, for editors.
+
+    Examples
+    --------
+      calm schema > mooring.schema.json
+    """
     from calm.files import mooring_schema
 
     show(json.dumps(mooring_schema(), indent=2) + "\n")
     return ExitCode.DONE
 
-
-DOCS_EXAMPLES = """Examples:
-
-  calm docs
-  calm docs batch
-  calm docs --open
-  calm docs reference/mooring-file --open"""
 
 SITE = "_site"
 """The folder of the built site inside the manual's."""
@@ -113,6 +107,13 @@ def docs(
         Its name, with or without its book: batch, reference/batch, how-to.
     open_
         Open the page in a browser.
+
+    Examples
+    --------
+      calm docs
+      calm docs batch
+      calm docs --open
+      calm docs reference/mooring-file --open
     """
     from calm.shipped import shipped_folder
 
@@ -174,13 +175,6 @@ def _open(name: str, texts: dict[str, Path], built: dict[str, Path]) -> None:
         raise UsageError(f"no browser could be opened; the page is {built[name]}")
 
 
-BUILD_EXAMPLES = """Examples:
-
-  calm build
-  calm build mooring.yaml
-  calm build mooring.yaml --environment storm
-  calm build mooring.yaml --serve"""
-
 PORT = 8000
 IDLE = 120.0  # minutes
 
@@ -198,7 +192,7 @@ def build(
     /,
     *,
     environment: str | None = None,
-    catalog: CatalogFiles = None,
+    catalog: options.CatalogFiles = None,
     serve: bool = False,
     port: int = PORT,
     allow_host: list[str] | None = None,
@@ -228,6 +222,13 @@ def build(
     idle_timeout
         Minutes without a key after which a page of --serve is closed and its
         work kept; 0 for never.
+
+    Examples
+    --------
+      calm build
+      calm build mooring.yaml
+      calm build mooring.yaml --environment storm
+      calm build mooring.yaml --serve
     """
     if serve:
         if not 0.0 <= idle_timeout < inf:

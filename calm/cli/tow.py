@@ -10,12 +10,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from calm.cli import options
-from calm.cli.options import CatalogFiles, EnvironmentName, Units, option, quantities, show_units
-from calm.cli.outputs import FileOutcome, OutputPath, Outputs
+from calm.cli import options, reading, run
+from calm.cli.outputs import ExitCode, FileOutcome, OutputPath, Outputs, gravest, narrate
 from calm.cli.progress import progress
-from calm.cli.run import read_all, solve_and_show
-from calm.cli.streams import ExitCode, gravest, narrate
 from calm.errors import NoEquilibrium, UsageError
 
 if TYPE_CHECKING:
@@ -24,27 +21,20 @@ if TYPE_CHECKING:
     from calm.cli.outputs import Shows
     from calm.report.tabulation import Tabulation
 
-TOW_EXAMPLES = """Examples:
-
-  calm tow tow.yaml
-  calm tow tow.yaml --speeds "1 knot:12 knot:0.5 knot" --plot sweep.png
-  calm tow tow.yaml --speeds "0.5 m/s:3 m/s:0.1 m/s" --csv sweep.csv
-  calm tow tow.yaml --sensitivity"""
-
 
 def tow(
     files: list[Path],
     /,
     *,
-    environment: EnvironmentName = None,
-    catalog: CatalogFiles = None,
+    environment: options.EnvironmentName = None,
+    catalog: options.CatalogFiles = None,
     json: OutputPath = None,
     csv: OutputPath = None,
     plot: Path | None = None,
-    speeds: Annotated[str | None, Parameter(allow_leading_hyphen=True)] = None,
+    speeds: options.Signed = None,
     sensitivity: bool = False,
     schematic: bool = False,
-    units: Units = None,
+    units: options.Units = None,
 ) -> ExitCode:
     """Solve towed lines, at the speed of their file or at many speeds.
 
@@ -68,6 +58,13 @@ def tow(
         Solve with A1, B1 and C1 of bourget-marichal strumming each 10 % smaller and greater.
     schematic
         Draw the line as `calm run` does; only at the speed of its file.
+
+    Examples
+    --------
+      calm tow tow.yaml
+      calm tow tow.yaml --speeds "1 knot:12 knot:0.5 knot" --plot sweep.png
+      calm tow tow.yaml --speeds "0.5 m/s:3 m/s:0.1 m/s" --csv sweep.csv
+      calm tow tow.yaml --sensitivity
     """
     if speeds is not None and sensitivity:
         raise UsageError("give either --speeds or --sensitivity")
@@ -78,12 +75,12 @@ def tow(
     chosen = None if speeds is None else options.speed_range(speeds)
     outputs = Outputs(tuple(files), json, csv, plot)
     tows = _only_tows(files, environment, catalog or [])
-    show_units(units, [tow.file for tow in tows])
+    options.show_units(units, [tow.file for tow in tows])
     if chosen is not None:
         return _tabulate(tows, outputs, lambda file, each: _sweep(file, each, chosen))
     if sensitivity:
         return _tabulate(tows, outputs, _vary)
-    return solve_and_show(tows, outputs, schematic=schematic)
+    return run.solve_and_show(tows, outputs, schematic=schematic)
 
 
 @dataclass(frozen=True)
@@ -114,16 +111,15 @@ class TabulatedTow:
 
     def rendered(self, suffix: str) -> bytes:
         from calm.drawing.picture import image
-        from calm.drawing.plot import draw_sweep
+        from calm.report.tabulation import draw_sweep
 
         return image(draw_sweep(self.tabulation), suffix)
 
 
 def _only_tows(files: list[Path], environment: str | None, catalogs: list[Path]) -> list[Tow]:
-    from calm.case import Tow
-    from calm.case.net import load_line
+    from calm.case import Tow, net
 
-    read = read_all(load_line, files, environment, catalogs)
+    read = reading.read_all(net.load_line, files, environment, catalogs)
     moorings = [file for file, line in zip(files, read, strict=True) if not isinstance(line, Tow)]
     if moorings:
         raise UsageError(
@@ -181,14 +177,6 @@ def _tabulate(
     return gravest(each.code for each in shown)
 
 
-STRUMMING_EXAMPLES = """Examples:
-
-  calm tow strumming --angle "30 deg" --speed "1 m/s" --diameter "17 mm" \\
-      --weight "3.1 N/m"
-  calm tow strumming --angle "18 deg" --speed "1.3 m/s" --diameter "17 mm" \\
-      --solid-density "2383 kg/m^3" --density "1000 kg/m^3" --json -"""
-
-_Given = Annotated[str | None, Parameter(allow_leading_hyphen=True)]
 _Asked = Annotated[str, Parameter(allow_leading_hyphen=True)]
 
 
@@ -197,10 +185,10 @@ def strumming(
     angle: _Asked,
     speed: _Asked,
     diameter: _Asked,
-    weight: _Given = None,
-    solid_density: _Given = None,
-    density: _Given = None,
-    json: OutputPath = None,
+    weight: options.Signed = None,
+    solid_density: options.Signed = None,
+    density: options.Signed = None,
+    json: options.JsonAnswer = None,
 ) -> ExitCode:
     """Find how a bare towed cable vibrates from the angle at which it tows.
 
@@ -223,13 +211,18 @@ def strumming(
         Density of the cable, in place of its weight.
     density
         Density of the water; 1025 kg/m^3 by default.
-    json
-        Write the answer as JSON, - to print it.
+
+    Examples
+    --------
+      calm tow strumming --angle "30 deg" --speed "1 m/s" --diameter "17 mm" \\
+          --weight "3.1 N/m"
+      calm tow strumming --angle "18 deg" --speed "1.3 m/s" --diameter "17 mm" \\
+          --solid-density "2383 kg/m^3" --density "1000 kg/m^3" --json -
     """
     from calm.report.tabulation import bare_cable_document, bare_cable_part
 
     outputs = Outputs(json=json)
-    given = quantities(
+    given = options.quantities(
         angle=(angle, "angle"), speed=(speed, "speed"), diameter=(diameter, "length"),
         weight=(weight, "force per length"), solid_density=(solid_density, "density"),
         density=(density, "density"),
@@ -248,7 +241,7 @@ def _cable(given: dict[str, float]) -> BareCable:
         raise UsageError("give one of --weight and --solid-density")
     given.setdefault("density", CATALOGUE_DENSITY)
     complaints = [
-        f"{option(name)} must be above 0" for name, value in given.items() if value <= 0.0
+        f"{options.option(name)} must be above 0" for name, value in given.items() if value <= 0.0
     ]
     if given["angle"] >= 90.0:
         complaints.append("--angle must be below 90 deg")

@@ -6,20 +6,12 @@ from collections.abc import Sequence
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
-from calm.cli.outputs import OutputPath, Outputs
+from calm.cli.outputs import ExitCode, OutputPath, Outputs
 from calm.cli.progress import progress
-from calm.cli.streams import ExitCode
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
     from calm.verification import Source
-
-VERIFY_EXAMPLES = """Examples:
-
-  calm verify
-  calm verify cdms tension
-  calm verify braconnot --json -
-  calm verify --field"""
 
 
 def verify(
@@ -41,6 +33,13 @@ def verify(
         with the measured depths: see `calm docs motion`.
     json
         Write the figures, with the reason for each tolerance, as JSON, - to print it.
+
+    Examples
+    --------
+      calm verify
+      calm verify cdms tension
+      calm verify braconnot --json -
+      calm verify --field
     """
     from calm.report.verification import verification_document, verification_part
     from calm.solve import expect_many
@@ -86,31 +85,21 @@ def verify_field(outputs: Outputs) -> ExitCode:
     import calm
     from calm.case import Mooring
     from calm.checks.finding import State
-    from calm.motion.correction import estimate_in_memory
-    from calm.motion.line_response import Forward
-    from calm.motion.matching import read_measured
-    from calm.motion.motion_estimate import fitted
-    from calm.motion.study import intervals, judge_hidden, prepare
-    from calm.report.blocks import Heading, Prose, ReportPart
-    from calm.report.motion_report import (
-        factors_document,
-        factors_table,
-        held_out_document,
-        held_out_table,
-    )
+    from calm.motion import correction, line_response, matching, motion_estimate, study
+    from calm.report import blocks, motion_report
     from calm.shipped import shipped_folder
 
     folder = shipped_folder("docs") / "field" / "dune2"
     mooring = calm.load(folder / "mooring.yaml")
     assert isinstance(mooring, Mooring)
     files = [str(folder / f"{name}.nc") for name in ("pressures", "currents")]
-    measured, _, _ = read_measured(mooring, files[:1], files[1:])
-    task = prepare(mooring, measured, fitted(), HIDDEN)
+    measured, _, _ = matching.read_measured(mooring, files[:1], files[1:])
+    task = study.prepare(mooring, measured, motion_estimate.fitted(), HIDDEN)
     points = [int(measured.point[measured.label.index(label)]) for label in HIDDEN]
-    depth, spread = estimate_in_memory(task, points)
-    still = Forward(mooring, {}).still
+    depth, spread = correction.estimate_in_memory(task, points)
+    still = line_response.Forward(mooring, {}).still
     held = tuple(
-        judge_hidden(measured, task.measured, label, depth[:, j], spread[:, j], still)
+        study.judge_hidden(measured, task.measured, label, depth[:, j], spread[:, j], still)
         for j, label in enumerate(HIDDEN)
     )
     ratio = float(np.mean([one.rms for one in held]) / np.mean([one.linear_rms for one in held]))
@@ -122,21 +111,21 @@ def verify_field(outputs: Outputs) -> ExitCode:
         f"{worst:.2f} at worst (at most {EACH}); within the 95 % bands: "
         f"{100.0 * inside:.0f} % ({100.0 * BANDS[0]:.0f} to {100.0 * BANDS[1]:.0f} %)"
     )
-    factors = intervals(task)
+    factors = study.intervals(task)
     document: dict[str, Any] = {
         "calm": calm.__version__,
-        "factors": factors_document(factors),
-        "held_out": held_out_document(held),
+        "factors": motion_report.factors_document(factors),
+        "held_out": motion_report.held_out_document(held),
         "ratio": ratio,
         "within": good,
     }
-    part = ReportPart(
+    part = blocks.ReportPart(
         "",
         (
-            Heading("dune2, Denmark Strait: depths at hidden sensors"),
-            factors_table(factors, task.common.datum),
-            held_out_table(held),
-            Prose((verdict,), State.PASS if good else State.FAIL),
+            blocks.Heading("dune2, Denmark Strait: depths at hidden sensors"),
+            motion_report.factors_table(factors, task.common.datum),
+            motion_report.held_out_table(held),
+            blocks.Prose((verdict,), State.PASS if good else State.FAIL),
         ),
     )
     outputs.write_answer(lambda: document, part)

@@ -3,46 +3,32 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
-
-from cyclopts import Parameter
+from typing import TYPE_CHECKING
 
 from calm.cli import options
-from calm.cli.options import option
-from calm.cli.outputs import OutputPath, Outputs
-from calm.cli.streams import ExitCode, narrate
+from calm.cli.outputs import ExitCode, Outputs, narrate
 from calm.errors import NoEquilibrium, UsageError
 
 if TYPE_CHECKING:
     from calm.records.sea_states import SeaState
 
-Signed = Annotated[str | None, Parameter(allow_leading_hyphen=True)]
-
-WAVES_EXAMPLES = """Examples:
-
-  calm waves buoy.yaml --hs "5 m" --tp "8.4 s"
-  calm waves buoy.yaml --hs "2 m" --tp "6 s" --swell "3 m" --swell-tp "14 s"
-  calm waves buoy.yaml --hs "3 m" --tp "7 s" --spectrum jonswap --toward "45 deg"
-  calm waves buoy.yaml --scatter site.csv --json waves.json
-  calm waves buoy.yaml --spectrum measured.csv"""
-
 
 def waves(
-    file: Path,
+    file: options.MooringPath,
     /,
     *,
     environment: options.EnvironmentName = None,
     catalog: options.CatalogFiles = None,
-    hs: Signed = None,
-    tp: Signed = None,
+    hs: options.Signed = None,
+    tp: options.Signed = None,
     spectrum: str = "bretschneider",
     gamma: float = 3.3,
-    swell: Signed = None,
-    swell_tp: Signed = None,
-    toward: Signed = None,
+    swell: options.Signed = None,
+    swell_tp: options.Signed = None,
+    toward: options.Signed = None,
     scatter: Path | None = None,
     duration: str = "3 h",
-    json: OutputPath = None,
+    json: options.JsonAnswer = None,
     report: Path | None = None,
     units: options.Units = None,
 ) -> ExitCode:
@@ -56,8 +42,6 @@ def waves(
 
     Parameters
     ----------
-    file
-        A mooring file.
     hs
         Significant wave height, such as "5 m".
     tp
@@ -80,29 +64,34 @@ def waves(
         A CSV file of seas: significant_wave_height[m],peak_period[s],share.
     duration
         Time over which the greatest and the least tension are sought; 3 h by default.
-    json
-        Write the answer as JSON, - to print it.
     report
         A folder for waves.html and waves.pdf, with pictures of the tension.
+
+    Examples
+    --------
+      calm waves buoy.yaml --hs "5 m" --tp "8.4 s"
+      calm waves buoy.yaml --hs "2 m" --tp "6 s" --swell "3 m" --swell-tp "14 s"
+      calm waves buoy.yaml --hs "3 m" --tp "7 s" --spectrum jonswap --toward "45 deg"
+      calm waves buoy.yaml --scatter site.csv --json waves.json
+      calm waves buoy.yaml --spectrum measured.csv
     """
     outputs = Outputs((file,), json)
     from calm.case import Tow
     from calm.case.net import load_line
     from calm.cli.progress import progress
     from calm.records.sea_states import OF_HEIGHT
-    from calm.report.folder import check_folder, write_pages
-    from calm.report.sea_response import sea_response_part, sea_response_report
+    from calm.report import folder, sea_response
     from calm.waves.analysis import SLACK, analyse
 
     if report is not None:
-        check_folder(report)
+        folder.check_folder(report)
     asked, way, length = _asked(
         {"hs": hs, "tp": tp, "swell": swell, "swell_tp": swell_tp},
         spectrum, gamma, toward, scatter, duration,
     )  # fmt: skip
-    mooring = load_line(file, environment=environment, catalogs=catalog or [])
+    mooring = load_line(file, environment, catalog or [])
     if isinstance(mooring, Tow):
-        raise UsageError(f"{file} is a tow; calm waves judges moorings")
+        raise UsageError(f"{file} is a tow; calm waves is for moorings")
     given, seas = mooring.file.environment.waves, asked or mooring.file.environment.seas
     if not seas:
         missing = "--hs: missing" if spectrum in OF_HEIGHT else "--hs, --tp: missing"
@@ -117,9 +106,9 @@ def waves(
         outputs.write_answer(lambda: answer, None)
         narrate(f"{file}: {failure.status}: {failure.message} {failure.advice}")
         return ExitCode.NO_EQUILIBRIUM
-    outputs.write_answer(analysis.to_dict, sea_response_part(analysis))
+    outputs.write_answer(analysis.to_dict, sea_response.sea_response_part(analysis))
     if report is not None:
-        write_pages(report, "waves", sea_response_report(analysis))
+        folder.write_pages(report, "waves", sea_response.sea_response_report(analysis))
     if analysis.status != SLACK:
         return ExitCode.DONE
     narrate(
@@ -154,7 +143,7 @@ def _asked(
         duration=(duration, "time"),
     )
     complaints = [
-        f"{option(name)}: must be above 0"
+        f"{options.option(name)}: must be above 0"
         for name in (*waves, "duration")
         if name in given and not given[name] > 0.0
     ]
@@ -169,7 +158,7 @@ def _asked(
         complaints.append(
             f"--spectrum: `{spectrum}` is neither {', '.join(sea_states.SPECTRA)} nor a file{meant}"
         )
-    chosen = [option(name) for name, each in waves.items() if each is not None]
+    chosen = [options.option(name) for name, each in waves.items() if each is not None]
     swells = [name for name in ("--swell", "--swell-tp") if name in chosen]
     if len(swells) == 1:
         complaints.append("--swell, --swell-tp: a swell has both a height and a period")

@@ -5,7 +5,6 @@ Attribute Convention for Data Discovery 1.3.
 """
 
 import hashlib
-import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from datetime import UTC, datetime
@@ -15,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.dataset.netcdf import Attributes, ResultLayout, Variable
+from calm.dataset.netcdf import Attributes, ResultLayout, Variable, source_date
 
 CONVENTIONS = "CF-1.11, ACDD-1.3, OceanSITES-1.4"
 FLAGS: Mapping[int, str] = {
@@ -37,9 +36,7 @@ _KEPT_BEGIN = ("creator_", "platform_", "site_", "principal_investigator", "publ
 
 def written() -> str:
     """Return the time of writing, as ISO 8601: that of SOURCE_DATE_EPOCH where it is given."""
-    epoch = os.environ.get("SOURCE_DATE_EPOCH", "")
-    when = datetime.fromtimestamp(int(epoch), UTC) if epoch.isdigit() else datetime.now(UTC)
-    return f"{when:%Y-%m-%dT%H:%M:%SZ}"
+    return f"{source_date() or datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ}"
 
 
 def hashed(path: Path) -> str:
@@ -120,13 +117,17 @@ def _duration(span: np.timedelta64) -> str:
 
 
 def with_flags(
-    variables: Iterable[Variable], names: Mapping[str, Sequence[str]]
+    variables: Iterable[Variable],
+    names: Mapping[str, Sequence[str]],
+    cell_methods: str = "time: point",
 ) -> tuple[Variable, ...]:
     """Return variables that name what goes with them, each followed by its flags.
 
     Parameters
     ----------
+    variables : of the result
     names : of the variables that have flags, what else goes with them: deviations
+    cell_methods : of the variables that have flags
     """
     found = []
     for one in variables:
@@ -135,7 +136,7 @@ def with_flags(
             found.append(one)
             continue
         flags = f"{one.name}_qc"
-        more = {"ancillary_variables": " ".join([*beside, flags]), "cell_methods": "time: point"}
+        more = {"ancillary_variables": " ".join([*beside, flags]), "cell_methods": cell_methods}
         about: Attributes = {
             "standard_name": "quality_flag",
             "long_name": f"quality flag of {one.attributes['long_name']}",

@@ -341,6 +341,12 @@ def station(name: str, place: Sequence[float], of_what: str) -> tuple[list[Varia
     ], f" {' '.join(_PLACE)} station"  # fmt: skip
 
 
+def source_date() -> datetime | None:
+    """Return the time that SOURCE_DATE_EPOCH gives, in UTC; None without it."""
+    epoch = os.environ.get("SOURCE_DATE_EPOCH", "")
+    return datetime.fromtimestamp(int(epoch), UTC) if epoch.isdigit() else None
+
+
 def origin(path: str, name: str, description: str, command: str) -> Attributes:
     """The attributes of a result that tell where it comes from; what is not known is empty.
 
@@ -352,9 +358,8 @@ def origin(path: str, name: str, description: str, command: str) -> Attributes:
     command : of CALM
     """
     made = f"calm {__version__} {command}"
-    epoch = os.environ.get("SOURCE_DATE_EPOCH")
-    if epoch:
-        made = f"{datetime.fromtimestamp(int(epoch), UTC):%Y-%m-%dT%H:%M:%SZ} {made}"
+    if date := source_date():
+        made = f"{date:%Y-%m-%dT%H:%M:%SZ} {made}"
     return {
         "Conventions": "CF-1.11",
         "title": name or Path(path).stem,

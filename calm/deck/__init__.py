@@ -1,5 +1,351 @@
-"""What goes to sea with a mooring: what hangs where, in which order, cut how, and how heavy."""
+"""What goes to sea with a mooring: what hangs where, in which order, cut how, and how heavy.
 
-from calm.deck.model import Deck, deck_of
+The one model of the sheets and of their files.
+"""
 
-__all__ = ["Deck", "deck_of"]
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import groupby
+from math import inf, isnan
+from typing import TypeVar
+
+from calm.case import Mooring, Result
+from calm.case.net import Net
+from calm.case.result import NetResult, legs_of
+from calm.checks.assessment import Assessment
+from calm.checks.finding import OWN
+from calm.checks.inventory import InventoryItem
+from calm.checks.net_check import NetGraph, check
+from calm.checks.recovery import Recovery, recovery_of
+from calm.deck import deck_items
+from calm.deck.deck_items import DeckInstrument, DeckItem, Order, deck_items_of, instruments_of
+from calm.deck.hardware import Cut, ShippedComponent, Stock, cuts_of, hardware_of, shipped_of
+from calm.drop import DropPlan, drop_plan
+from calm.drop.launch import SHIP_SPEED
+from calm.errors import NoEquilibrium
+from calm.files import CurrentTable, MooringFile
+from calm.files.components import FLEXIBLE_KINDS
+from calm.files.legs import leg_numbers
+from calm.solve import Status
+
+HANDLED = ("float", "instrument", "release", "line")
+"""Roles of what takes time on deck by itself; what joins pieces is shackled on with them."""
+FAINT = 0.1
+"""Current in which a line is drawn that still water leaves slack [m/s]."""
+
+_Listed = TypeVar("_Listed")
+
+
+@dataclass(frozen=True)
+class RecoveredItem:
+    """A piece or clamp as it comes up.
+
+    Attributes
+    ----------
+    item : which
+    time : after the release [s]; None of what does not come up by itself
+    hangs_at : depth of the upper end of a piece, or of a clamp where it is on one, when all is up
+        that comes up [m]; None where not known
+    by_itself : whether it is buoyant enough to come up without what is above it
+    """
+
+    item: DeckItem
+    time: float | None
+    hangs_at: float | None
+    by_itself: bool
+
+
+@dataclass(frozen=True)
+class Lift:
+    """A stage: a piece at the rail, with what is clamped on it, and all that is over the side.
+
+    Attributes
+    ----------
+    index, label : of the piece
+    mass : of the lift in air [kg]; None where a mass in it is not known, or that of a cable, which
+        is not lifted but paid out
+    weight : of the lift in water [N], + down; None where a length is not known
+    hanging : weight in water of all that is over the side with it [N], + down: what a winch holds
+        where all of it hangs from there; negative where it floats
+    """
+
+    index: int
+    label: str
+    mass: float | None
+    weight: float | None
+    hanging: float | None
+
+
+@dataclass(frozen=True)
+class Lifts:
+    """The stages of a deployment and of a recovery.
+
+    Attributes
+    ----------
+    deployment : in the order over the side
+    recovery : from the top of the line down to the release
+    unknown : labels of the pieces whose mass in air is not known: the heaviest lift may be one
+    """
+
+    deployment: tuple[Lift, ...]
+    recovery: tuple[Lift, ...]
+    unknown: tuple[str, ...]
+
+    @property
+    def heaviest(self) -> Lift | None:
+        """The heaviest single lift in air, of those that are known."""
+        known = [lift for lift in self.deployment if lift.mass is not None]
+        return max(known, key=lambda lift: lift.mass or 0.0, default=None)
+
+
+@dataclass(frozen=True)
+class Deck:
+    """The sheets of one mooring, or of a net of legs.
+
+    Attributes
+    ----------
+    result : in the environment of the sheets
+    environment : its name
+    order : in which the line goes over the side
+    parts : every piece and clamp, down the line, of a net leg by leg
+    deployment, recovery : in the order over the side, and in that of surfacing
+    rise : of the line without its anchor; None where it could not be solved, and of a net
+    cuts, hardware, shipped, lifts, instruments : what the sheets of these names say
+    plan : of the anchor drop, or why it could not be solved; None where the anchor goes first,
+        and of a net
+    notes : what is not known, and why
+    assessment : what the design check says of the mooring
+    """
+
+    result: Result | NetResult
+    environment: str
+    order: Order
+    parts: tuple[DeckItem, ...]
+    deployment: tuple[DeckItem, ...]
+    recovery: tuple[RecoveredItem, ...]
+    rise: Recovery | None
+    cuts: tuple[Cut, ...]
+    hardware: tuple[Stock, ...]
+    shipped: tuple[ShippedComponent, ...]
+    lifts: Lifts
+    instruments: tuple[DeckInstrument, ...]
+    environments: tuple[str, ...]
+    notes: tuple[str, ...]
+    assessment: Assessment
+    plan: DropPlan | NoEquilibrium | None = None
+
+    @property
+    def file(self) -> MooringFile:
+        """Return the file as read, in the environment of the sheets."""
+        return self.result.file
+
+    def leg(self, index: int) -> str:
+        """Return the name of the leg that a piece is in; nothing of a single line."""
+        return self.file.legs[leg_numbers(self.file)[index]].name if self.file.legs else ""
+
+    def by_leg(
+        self, items: Iterable[_Listed], index: Callable[[_Listed], int]
+    ) -> Iterator[tuple[str, list[_Listed]]]:
+        """Yield the name of each leg, and what is listed of it; of a line all at once."""
+        for name, group in groupby(items, key=lambda one: self.leg(index(one))):
+            yield name, [*group]
+
+
+def deck_of(
+    moorings: Sequence[Mooring | Net],
+    order: Order = Order.ANCHOR_LAST,
+    ship_speed: float = SHIP_SPEED,
+    streamed: float | None = None,
+    course: float | None = None,
+    deck_time: float | None = None,
+) -> Deck:
+    """The sheets of a mooring, or of a net, of which neither drop nor rise is solved.
+
+    Parameters
+    ----------
+    moorings : the same one in each environment, that of the sheets first, and cut alike in all
+    ship_speed, streamed, course : of the anchor drop, see `calm.drop.drop_plan` [m/s], [m],
+        [degrees]
+    deck_time : of handling a piece on deck, but what joins pieces [s]; by role in the file's
+        `document` where not given
+
+    Raises
+    ------
+    NoEquilibrium
+        It does not stand in the first environment.
+    UsageError
+        The ship streams no line, or not so far.
+    """
+    first = moorings[0]
+    notes: list[str] = []
+    result = _standing(first, notes)
+    notes += result.warnings
+    results = [(_name(first), result)]
+    for other in moorings[1:]:
+        try:
+            there = other.solve()
+        except NoEquilibrium as failure:
+            notes.append(f"The mooring has no equilibrium in {_name(other)}: {failure}")
+            continue
+        results.append((_name(other), there))
+    parts = deck_items_of(result)
+    assessment = check(*moorings)
+    inventory, legs = assessment.inventory, leg_numbers(first.file)
+    rise: Recovery | None = None
+    plan: DropPlan | NoEquilibrium | None = None
+    if isinstance(first, Net):
+        notes += assessment.notices
+        rising = NetGraph(legs_of(result)).coming_up
+    else:
+        assert isinstance(result, Result)
+        try:
+            rise = recovery_of(first, result)
+        except NoEquilibrium as failure:
+            notes.append(f"The rise of the line is not known: {failure}")
+        released = first.file.pieces[-1].index if rise is None else rise.released + 1
+        rising = set(range(released))
+    if order is Order.ANCHOR_LAST and isinstance(first, Mooring):
+        try:
+            stands = result if result.mooring is first else None
+            times = _deck_times(first.file, deck_time)
+            plan = drop_plan(first, ship_speed, streamed, course, result=stands, deck_time=times)
+        except NoEquilibrium as failure:
+            plan = failure
+            notes.append(f"The anchor drop is not planned: {failure}")
+    return Deck(
+        result=result,
+        environment=_name(first),
+        order=order,
+        parts=parts,
+        deployment=deck_items.over_the_side(parts, order),
+        recovery=surfacing(parts, rising, rise),
+        rise=rise,
+        cuts=cuts_of(result, parts, order),
+        hardware=hardware_of([[*leg] for _, leg in groupby(parts, lambda one: legs[one.index])]),
+        shipped=shipped_of(first.file, inventory),
+        lifts=lifts_of(inventory, legs, rising, order),
+        instruments=instruments_of(parts, results),
+        environments=tuple(name for name, _ in results),
+        notes=tuple(notes),
+        assessment=assessment,
+        plan=plan,
+    )
+
+
+def _deck_times(file: MooringFile, each: float | None) -> Mapping[str, float] | None:
+    """Return the time of handling a piece by its role [s]; None where nobody gives it."""
+    if each is not None:
+        return dict.fromkeys(HANDLED, each)
+    given = None if file.document is None else file.document.deck_time
+    return None if given is None else {str(role): time for role, time in given.items()}
+
+
+def _standing(mooring: Mooring | Net, notes: list[str]) -> Result | NetResult:
+    """The mooring solved; one that still water leaves slack in a current that hardly moves it.
+
+    Raises
+    ------
+    NoEquilibrium
+        It does not stand.
+    """
+    try:
+        return mooring.solve()
+    except NoEquilibrium as failure:
+        if failure.status != Status.SLACK.label or isinstance(mooring, Net):
+            raise
+        faint = CurrentTable((0.0,), (FAINT,), (0.0,), (0.0,))
+        environment = replace(mooring.file.environment, current=faint)
+        try:
+            result = Mooring(replace(mooring.file, environment=environment)).solve()
+        except NoEquilibrium:
+            raise failure from None
+        notes.append(
+            "The line is longer than the water is deep and slack in still water: the sheets "
+            f"show it in a current of {FAINT:g} m/s to the east; the anchor drop is computed "
+            "in still water"
+        )
+        return result
+
+
+def _name(mooring: Mooring | Net) -> str:
+    return mooring.file.environment.name or OWN
+
+
+def surfacing(
+    parts: Sequence[DeckItem], pieces: Collection[int], recovery: Recovery | None
+) -> tuple[RecoveredItem, ...]:
+    """Return what comes up, the first first; what hangs below, and what stays, comes after it in
+    order.
+
+    Without a solved rise there are no times, and the order is that of the line.
+
+    Parameters
+    ----------
+    parts : down the line
+    pieces : indices of those that come up
+    """
+    rising = [one for one in parts if one.index in pieces]
+    if recovery is None:
+        return tuple(RecoveredItem(one, None, None, False) for one in rising)
+    found = [_surfacing(one, recovery) for one in rising]
+    times = [inf if one.time is None else one.time for one in found]
+    # stable: what comes up with a piece stays after it
+    return tuple(found[i] for i in sorted(range(len(found)), key=times.__getitem__))
+
+
+def _surfacing(one: DeckItem, recovery: Recovery) -> RecoveredItem:
+    time = float(recovery.arrival[one.index])
+    share = one.at / one.of_length if one.at is not None and one.of_length else 0.0
+    hangs_at = recovery.depth_at(one.index, share)
+    return RecoveredItem(
+        one,
+        None if isnan(time) else time,
+        None if isnan(hangs_at) else hangs_at,
+        one.index in recovery.order and one.on is None,
+    )
+
+
+def lifts_of(
+    inventory: Sequence[InventoryItem], legs: Sequence[int], rising: Collection[int], order: Order
+) -> Lifts:
+    """The stages of a mooring, leg by leg.
+
+    Parameters
+    ----------
+    legs : number of the leg of each piece
+    rising : indices of the pieces that come up
+    """
+    pieces = [one for one in inventory if one.clamped_on is None]
+    weights = _weights(inventory)
+    down: list[Lift] = []
+    up: list[Lift] = []
+    step = 1 if order is Order.ANCHOR_LAST else -1
+    by_leg = [[*group] for _, group in groupby(pieces, key=lambda one: legs[one.index])]
+    for leg in by_leg[::step]:
+        down += _stages(leg[::step], weights)
+    for leg in by_leg:
+        up += [*_stages([one for one in leg if one.index in rising][::-1], weights)][::-1]
+    unknown = tuple(one.label for one in pieces if _is_lifted(one) and one.lift_mass is None)
+    return Lifts(tuple(down), tuple(up), unknown)
+
+
+def _weights(inventory: Sequence[InventoryItem]) -> dict[int, float | None]:
+    """Return the weight in water of each piece with its clamps [N]."""
+    weights: dict[int, float | None] = {}
+    for one in inventory:
+        before, own = weights.get(one.index, 0.0), one.wet_weight
+        weights[one.index] = None if before is None or own is None else before + own
+    return weights
+
+
+def _stages(pieces: Sequence[InventoryItem], weights: dict[int, float | None]) -> Iterator[Lift]:
+    hanging: float | None = 0.0
+    for one in pieces:
+        weight = weights[one.index]
+        hanging = None if hanging is None or weight is None else hanging + weight
+        mass = one.lift_mass if _is_lifted(one) else None
+        yield Lift(one.index, one.label, mass, weight, hanging)
+
+
+def _is_lifted(one: InventoryItem) -> bool:
+    return one.kind not in FLEXIBLE_KINDS

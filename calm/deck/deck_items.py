@@ -225,11 +225,6 @@ def deck_items_of(result: Result | NetResult) -> tuple[DeckItem, ...]:
     return tuple(found)
 
 
-def depth_of(row: ComponentRow | ClampRow) -> float:
-    """Return the depth of the upper end of a piece, or of the place of a clamp [m]."""
-    return row.depth if isinstance(row, ClampRow) else row.depth_top
-
-
 def _deck_item(
     piece: ComponentRow,
     row: ComponentRow | ClampRow,
@@ -239,7 +234,7 @@ def _deck_item(
     part = row.part
     item = items.get(part.label)
     clamp = row.part if isinstance(row, ClampRow) else None
-    depth = depth_of(row)
+    depth, _, _ = row.upper
     return DeckItem(
         part=part, index=piece.index, serial=part.serial, remark=item.remark if item else None,
         deployed_serial=(item.serial if item else None) or part.serial,
@@ -290,7 +285,7 @@ def instruments_of(
         if one.role not in ("instrument", "release"):
             continue
         there = [(name, places[one.part.place]) for name, places in rows]
-        depths = [Extreme(depth_of(row), name) for name, row in there]
+        depths = [Extreme(row.upper[0], name) for name, row in there]
         knockdown = there[0][1].knockdown
         still = None if knockdown != knockdown else one.depth - knockdown
         found.append(

@@ -1,19 +1,22 @@
-"""What is cut, how long and how exactly; and what joins the pieces, counted with its spares."""
+"""What is cut, and how exactly; what joins the pieces, with its spares; and what is shipped."""
 
 import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from math import ceil
+from math import ceil, pi
 
 from calm.case import Mooring, Result
 from calm.case.net import Net
 from calm.case.result import NetResult, legs_of
 from calm.checks.arrangement import unlike_metals
+from calm.checks.inventory import InventoryItem
 from calm.deck.deck_items import DeckItem, Order
 from calm.errors import NoEquilibrium
-from calm.files import Cable, Chain, Flexible, Piece
+from calm.files import Cable, Chain, Component, Cylinder, Flexible, MooringFile, Piece, Sphere
+from calm.files.components import FLEXIBLE_KINDS
 from calm.files.legs import leg_numbers
+from calm.files.mooring_file import parts_of
 from calm.solve import expect_many
 
 LENGTH_ERROR = 0.005
@@ -208,19 +211,14 @@ def hardware_of(legs: Sequence[Sequence[DeckItem]]) -> tuple[Stock, ...]:
     return tuple(sorted(found, key=lambda stock: ORDER.index(stock.kind)))
 
 
-def kind_of(words: str) -> str | None:
-    """The kind of hardware that some words tell of."""
-    found = (kind for kind, word in _KINDS.items() if re.search(word, words.lower()))
-    return next(found, None)
-
-
 def _kind(one: DeckItem) -> str | None:
     component = one.part.component
     if isinstance(component, Chain):
         return _CHAIN
     if isinstance(component, Cable):
         return None
-    kind = kind_of(f"{one.part.use.replace('-', ' ')} {component.name or ''} {one.label}")
+    words = f"{one.part.use.replace('-', ' ')} {component.name or ''} {one.label}".lower()
+    kind = next((kind for kind, word in _KINDS.items() if re.search(word, words)), None)
     if one.role == "connector":
         return kind or _OTHER
     return kind if kind in ("anodes", "isolators", "thimbles", "cotter pins") else None
@@ -267,3 +265,92 @@ def _thimbles(parts: Sequence[DeckItem]) -> Iterator[Stock]:
     for (use, name), pieces in ends.items():
         basis = "two for each cable, by its termination"
         yield Stock("thimbles", use, f"thimble for {name}", 2 * pieces, basis=basis)
+
+
+@dataclass(frozen=True)
+class ShippedComponent:
+    """All of one component.
+
+    Attributes
+    ----------
+    use, name, count : of the component
+    length : of cables and chains, in all [m]
+    mass : in air, of those whose mass is known [kg]
+    volume : of the things themselves, of those whose volume is known [m³]
+    missing_masses, missing_volumes : of how many it is not known: the sum is a lower bound
+    """
+
+    use: str
+    name: str
+    count: int
+    length: float | None
+    mass: float
+    volume: float
+    missing_masses: int
+    missing_volumes: int
+
+    @property
+    def known_mass(self) -> float | None:
+        """The mass, or its lower bound; None where that of none is known."""
+        return None if self.missing_masses == self.count else self.mass
+
+    @property
+    def known_volume(self) -> float | None:
+        """The volume, or its lower bound; None where that of none is known."""
+        return None if self.missing_volumes == self.count else self.volume
+
+
+def shipped_of(
+    file: MooringFile, inventory: Sequence[InventoryItem]
+) -> tuple[ShippedComponent, ...]:
+    """A row for each component, in the order of the line."""
+    components = {
+        (piece.index, part.label): part.component
+        for piece in file.pieces
+        for part in parts_of([piece])
+    }
+    groups: dict[str, list[InventoryItem]] = {}
+    for item in inventory:
+        groups.setdefault(item.use, []).append(item)
+    return tuple(_shipped_component(use, group, components) for use, group in groups.items())
+
+
+def all_shipped(shipped: Sequence[ShippedComponent]) -> ShippedComponent:
+    """The total of what is shipped."""
+    names = ("count", "mass", "volume", "missing_masses", "missing_volumes")
+    sums = {name: sum(getattr(one, name) for one in shipped) for name in names}
+    return ShippedComponent(use="", name="Total", length=None, **sums)
+
+
+def volume_of(component: Component, length: float | None) -> float | None:
+    """Volume of a piece [m³]: of a sphere, cylinder, cable by its size; else what it displaces.
+
+    None where it is not known.
+    """
+    if isinstance(component, Sphere):
+        return pi * component.diameter**3 / 6.0
+    if isinstance(component, Cylinder | Cable):
+        along = component.length if isinstance(component, Cylinder) else length
+        return None if along is None else pi * component.diameter**2 / 4.0 * along
+    if isinstance(component, Chain):
+        displaced = component.displaced_volume
+        return None if displaced is None or length is None else displaced * length
+    return component.displaced_volume
+
+
+def _shipped_component(
+    use: str, group: Sequence[InventoryItem], components: dict[tuple[int, str], Component]
+) -> ShippedComponent:
+    volumes = [volume_of(components[one.index, one.label], one.cut_length) for one in group]
+    masses = [one.dry_mass for one in group]
+    lengths = [one.cut_length for one in group if one.kind in FLEXIBLE_KINDS]
+    return ShippedComponent(
+        use=use,
+        name=group[0].name or use,
+        count=len(group),
+        length=sum(one for one in lengths if one is not None) if lengths else None,
+        mass=sum(one for one in masses if one is not None),
+        volume=sum(one for one in volumes if one is not None),
+        missing_masses=masses.count(None),
+        missing_volumes=volumes.count(None),
+    )

@@ -1,36 +1,28 @@
 """A mooring drawn in all of its environments: elevation, current, tension, plan, and breaks."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from math import ceil
-from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from calm.case import Result
+from calm.checks.assessment import Assessment
 from calm.checks.posture import reaches_the_surface
+from calm.checks.recovery import Break
 from calm.checks.strength import allowable_load
 from calm.drawing import graph, line_picture
 from calm.drawing.line_picture import NAMED_ROLES, LineKind, along_the_line, current_between
 from calm.drawing.plot import SEABED_COLOUR, SIGNS, WATER_COLOUR
 from calm.quantities import QUANTITIES
 
-if TYPE_CHECKING:
-    from calm.case import Result
-    from calm.checks.assessment import Assessment
-    from calm.checks.recovery import Break
+Solved = Sequence[tuple[str, Result]]
 
-    Solved = Sequence[tuple[str, Result]]
-
-Floats = NDArray[np.float64]
 
 _SIZE = 8.0  # points, of the letters
 _WIDTH, _HEIGHT = 533.0, 576.0  # points: an A4 page between its margins
 _LEGEND_ROW, _LEGEND_COLUMNS = 13.5, 4
 _LEAST_SPAN = 0.1  # of the depth: a line that hardly leans is not drawn as if it did
 _FURTHEST_LIMIT = 4.0  # times the greatest tension; what is beyond is drawn at the edge
-_COLOURS = ("#0b3c5d", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#a6761d", "#332288")
 _DASHES: tuple[tuple[float, ...], ...] = ((), (7.0, 2.5), (1.8, 1.8))
 _STILL = graph.Stroke("grey", 1.0, (3.0, 2.0))
 _LIMIT = graph.Stroke("#b3261e", 2.0, square=True)
@@ -85,8 +77,8 @@ def _legend(solved: Solved) -> list[graph.LegendEntry]:
 
 def _stroke(number: int) -> graph.Stroke:
     """Colour and dashes of an environment: no two of the first twenty-one are alike."""
-    dashes = _DASHES[number // len(_COLOURS) % len(_DASHES)]
-    return graph.Stroke(_COLOURS[number % len(_COLOURS)], 1.2, dashes)
+    turn, colour = divmod(number, len(graph.COLOURS))
+    return graph.Stroke(graph.COLOURS[colour], 1.2, _DASHES[turn % len(_DASHES)])
 
 
 def _draw_elevation(page: graph.Graph, place: Place, solved: Solved, depths: graph.Scale) -> None:

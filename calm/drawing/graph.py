@@ -18,6 +18,9 @@ from calm.drawing.picture import within_xml
 from calm.drawing.schematic.pen import INK, Pen, picture, text_width
 from calm.physics.line import Floats
 
+COLOURS = ("#0b3c5d", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#a6761d", "#332288")
+"""Of lines that are to be told apart; a single one has the first."""
+
 _MARGIN = 0.05  # of the range, on either side
 
 

@@ -4,28 +4,19 @@
 and `calm.drawing.sketch` for a terminal.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from itertools import repeat
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from calm.case import Result, TowResult
 from calm.case.result import AnyResult, NetResult, legs_of
 from calm.case.result_tables import Shape, rows_down
+from calm.case.uncertain import Uncertain
+from calm.physics.line import Floats, Water
 from calm.quantities import QUANTITIES, bearing_of, bearing_text
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from calm.case.uncertain import Uncertain
-    from calm.physics.line import Water
-
-    Floats = NDArray[np.float64]
 
 # The seabed is drawn when it is no deeper than this many times the line.
 _SEABED_NEAR = 1.5

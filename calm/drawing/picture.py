@@ -27,6 +27,13 @@ def check_format(path: Path, formats: Sequence[str] = FORMATS) -> None:
         raise UsageError(f"cannot draw {path}: a picture's name ends in {allowed}")
 
 
+def empty_figure(width: float, height: float, **options: Any) -> Figure:
+    """A figure of a size [inches] that belongs to no window."""
+    from matplotlib.figure import Figure
+
+    return Figure(figsize=(width, height), **options)
+
+
 def image(figure: Figure, suffix: str) -> bytes:
     """The figure as a file: PNG at 150 dots per inch, or vectors with their texts as text.
 

@@ -1,30 +1,24 @@
-"""A result drawn as a file: a mooring or a tow, from the side and above; a tow at many speeds."""
+"""A result drawn as a file: a mooring or a tow, from the side and above."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from calm.case import TowResult
+from calm.case.result import AnyResult
+from calm.case.uncertain import Uncertain
 from calm.drawing import line_picture
 from calm.drawing.line_picture import LineKind, LinePicture, PictureMark, along, current_between
-from calm.drawing.picture import image
+from calm.drawing.picture import empty_figure
+from calm.physics.line import Floats
 from calm.quantities import QUANTITIES
-from calm.units import KNOT
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-    from numpy.typing import NDArray
-
-    from calm.case.result import AnyResult
-    from calm.case.uncertain import Uncertain
-    from calm.report.tabulation import Tabulation
-
-    Floats = NDArray[np.float64]
 
 
 WIDTH = 11.0  # inches
@@ -57,11 +51,6 @@ _PLANE_WITHIN = 0.01
 _SHIP: dict[str, Any] = {"linestyle": "none", "marker": "^", "color": "black", "markersize": 8}
 
 
-def picture(result: AnyResult, suffix: str, uncertain: Uncertain | None = None) -> bytes:
-    """Return the drawing of a line or a net as a file; `suffix` is one of `picture.FORMATS`."""
-    return image(draw(result, uncertain), suffix)
-
-
 def draw(result: AnyResult, uncertain: Uncertain | None = None) -> Figure:
     """Draw a mooring or a tow as a figure of two or three views, which belongs to no window.
 
@@ -71,8 +60,6 @@ def draw(result: AnyResult, uncertain: Uncertain | None = None) -> Figure:
     a tow; and the line from above, where it leaves the plane of a tow. The band of an uncertain
     mooring is drawn behind the line.
     """
-    from matplotlib.figure import Figure
-
     side, plane = (
         line_picture.elevation_of(result, uncertain=uncertain),
         line_picture.plane_of(result),
@@ -81,7 +68,7 @@ def draw(result: AnyResult, uncertain: Uncertain | None = None) -> Figure:
     near = extent * _LINE_HEIGHT / (_LEAST_HEIGHT - _FRAME)
     written = sorted(line_picture.names(list(side.marks), near), key=lambda named: named[1].depth)
     height = min(max(_LEAST_HEIGHT, len(written) * _LINE_HEIGHT + _FRAME), _GREATEST_HEIGHT)
-    figure = Figure(figsize=(WIDTH, height), layout="constrained")
+    figure = empty_figure(WIDTH, height, layout="constrained")
     flat = side.ship is not None and not _leaves_plane(result, plane)
     views = (7, 2) if flat else (5, 1.5, 3)
     elevation, flow, *plan = figure.subplots(1, len(views), width_ratios=views)
@@ -209,51 +196,3 @@ def write_names(axes: Axes, written: list[tuple[str, PictureMark]], height: floa
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5},
             arrowprops={"arrowstyle": "-", "color": "grey", "linewidth": 0.5, "relpos": (0.0, 0.5)},
         )  # fmt: skip
-
-
-_SWEEP_HEIGHT = 4.5  # inches
-_MOST_MARKED = 60  # points that can still be told apart
-
-
-def draw_sweep(tabulation: Tabulation) -> Figure:
-    """A figure of three panels against the speed, which belongs to no window.
-
-    Depth of the body, its layback, and the tension at the tow point and at the body. A speed
-    without equilibrium is a gap.
-    """
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(WIDTH, _SWEEP_HEIGHT), layout="constrained")
-    depth, layback, tension = figure.subplots(1, 3)
-    figure.suptitle(tabulation.name, parse_math=False)
-    _draw_figure(depth, tabulation, "depth")
-    depth.axhline(0.0, color=WATER_COLOUR, linewidth=1)
-    depth.invert_yaxis()
-    _draw_figure(layback, tabulation, "layback")
-    _draw_figure(tension, tabulation, "tension", label="at the tow point")
-    _draw_figure(tension, tabulation, "body_tension", "--", label="at the body")
-    tension.set_ylabel(QUANTITIES["tension"].label)
-    tension.set_ylim(bottom=0.0)
-    tension.legend(frameon=False)
-    return figure
-
-
-def _draw_figure(
-    axes: Axes, tabulation: Tabulation, name: str, dashes: str = "-", label: str = ""
-) -> None:
-    from matplotlib.ticker import MaxNLocator
-
-    speeds = [float(row.chosen["speed"]) for row in tabulation.rows]
-    figures = [row.figures[name] for row in tabulation.rows]
-    values = [float("nan") if value is None else value for value in figures]
-    marker = "." if dashes == "-" and len(speeds) <= _MOST_MARKED else ""
-    axes.plot(speeds, values, linestyle=dashes, marker=marker, label=label, **LINE_STYLE)
-    margin = 0.04 * (speeds[-1] - speeds[0]) or speeds[0]
-    axes.set_xlim(speeds[0] - margin, speeds[-1] + margin)
-    axes.set(xlabel=QUANTITIES["speed"].label, ylabel=QUANTITIES[name].label)
-    axes.grid(alpha=0.3)
-    if not axes.child_axes:
-        to_knots, from_knots = partial(np.multiply, 1.0 / KNOT), partial(np.multiply, KNOT)
-        knots = axes.secondary_xaxis("top", functions=(to_knots, from_knots))
-        knots.set_xlabel("speed [knot]")
-        knots.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))

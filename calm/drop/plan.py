@@ -125,11 +125,6 @@ class DropPlan:
         return Position.model_construct(latitude=latitude, longitude=longitude)
 
     @property
-    def beyond_rating(self) -> tuple[DepthReached, ...]:
-        """Return what comes deeper in the drop than it is made for."""
-        return tuple(each for each in self.depths if each.beyond)
-
-    @property
     def warnings(self) -> tuple[str, ...]:
         """Return what makes the plan less certain than it looks."""
         said = []
@@ -155,7 +150,7 @@ class DropPlan:
             )
         if self.mooring.line.strumming is not None:
             said.append("Strumming is neglected: cables have their drag at rest.")
-        names = ", ".join(each.label for each in self.beyond_rating)
+        names = ", ".join(each.label for each in self.depths if each.beyond)
         if names:
             said.append(f"Below their depth rating during the drop: {names}.")
         return tuple(said)

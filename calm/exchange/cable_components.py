@@ -223,24 +223,21 @@ def _displacement(
         return _turned(definition)
     if across <= 0.0:
         raise definition.token.refuse(f"buoy `{definition.name}` has no diameter")
-    radius = across / 2.0
-    top = height if shape == "cylinder" else across
-    if top <= 0.0:
+    if shape == "cylinder" and height <= 0.0:
         raise definition.token.refuse(f"buoy `{definition.name}` has no height `h`")
+    if shape == "cylinder":
+        return ((height, math.pi / 4.0 * across**2 * height, across * height),)
+    if shape not in ("sphere", "capsule"):
+        raise definition.token.refuse(f"buoy `{definition.name}` is of an unknown type")
+    radius, beside = across / 2.0, max(height - across, 0.0) if shape == "capsule" else 0.0
     rows = []
     for step in range(2 * _STEPS + 1):
-        draft = top * step / (2 * _STEPS)
-        if shape == "cylinder":
-            rows.append((draft, math.pi * radius**2 * draft, across * draft))
-            continue
+        draft = across * step / (2 * _STEPS)
         angle = 2.0 * math.acos(max(-1.0, min(1.0, (radius - draft) / radius)))
         disc = 0.5 * radius**2 * (angle - math.sin(angle))
-        volume = (1.5 * across - draft) * draft**2 * math.pi / 3.0
-        if shape == "capsule":
-            volume += disc * max(height - across, 0.0)
-        elif shape != "sphere":
-            raise definition.token.refuse(f"buoy `{definition.name}` is of an unknown type")
-        rows.append((draft, volume, disc))
+        rows.append(
+            (draft, (1.5 * across - draft) * draft**2 * math.pi / 3.0 + disc * beside, disc)
+        )
     return tuple(rows)
 
 

@@ -101,14 +101,9 @@ class Expression:
     token: Token
 
     def at(self, **values: float) -> float:
-        """Its value.
+        """Return its value.
 
-        Raises
-        ------
-        UnknownNameError
-            It depends on something else.
-        InputError
-            It has no value.
+        UnknownNameError: it depends on something else. InputError: it has no value.
         """
         unknown = sorted(self.names - values.keys())
         if unknown:

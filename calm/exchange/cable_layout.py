@@ -18,12 +18,8 @@ _ON_THE_BED = 0.05
 """Share of the depth: an anchor no higher above the seabed stands on it."""
 
 
-@dataclass(frozen=True)
-class _Start:
-    """Where a leg of the layout begins: at a terminal, or at a node."""
-
-    terminal: cable_grammar.CableTerminal | None = None
-    node: str = ""
+_End = cable_grammar.CableTerminal | str
+"""Where a leg of the layout begins or ends: a terminal, or the name of a node."""
 
 
 @dataclass
@@ -97,8 +93,7 @@ class CableLayout:
         """
         first, *others = self.problem.layout
         assert isinstance(first, cable_grammar.CableTerminal)
-        self._lay(others, _Start(first))
-        self.design.items = [item for leg in self.design.legs for item in leg.items]
+        self._lay(others, first)
 
     def _anchor(self, end: cable_grammar.CableTerminal) -> model.ImportedComponent:
         """Return the anchor of an end, as high as that stands."""
@@ -197,68 +192,63 @@ class CableLayout:
             raise token.refuse(f"the connector `{token.text}` is defined nowhere")
         return self.makers.connector(found)
 
-    def _lay(self, layout: cable_grammar.CableItems, start: _Start) -> None:
+    def _lay(self, layout: cable_grammar.CableItems, start: _End) -> None:
         """Lay what follows a terminal or a node, and the branches at the nodes on the way."""
         segments: list[cable_grammar.CableSegment] = []
         branched = any(isinstance(each, cable_grammar.CableBranch) for each in layout)
         last = layout[-1] if layout else None
-        ends = [start.terminal, last if isinstance(last, cable_grammar.CableTerminal) else None]
+        anchored = (
+            isinstance(end, cable_grammar.CableTerminal) and "anchor" in end.values
+            for end in (start, last)
+        )
         # a line from anchor to anchor is cut where it first can be
-        whole = not branched and all(end is not None and "anchor" in end.values for end in ends)
+        whole = not branched and all(anchored)
         for each, following in zip_longest(layout, layout[1:]):
             if isinstance(each, cable_grammar.CableTerminal):
-                self._leg(start, segments, _Start(each))
+                self._leg(start, segments, each)
                 segments = []
             elif isinstance(each, cable_grammar.CableBranch):
                 self._lay(each.layout, start)
             else:
                 segments.append(each)
-                cut = whole and not start.node and each.connector is not None
+                cut = whole and not isinstance(start, str) and each.connector is not None
                 if isinstance(following, cable_grammar.CableBranch) or cut:
                     self.nodes += 1
-                    node = _Start(node=f"node-{self.nodes}")
+                    node = f"node-{self.nodes}"
                     self._leg(start, segments, node)
                     start, segments = node, []
         if segments or not isinstance(last, cable_grammar.CableTerminal):
             message = "the layout has no `terminal` at the end of a line"
             raise last.token.refuse(message) if last else refused(self.problem.path, message)
 
-    def _leg(self, start: _Start, segments: list[cable_grammar.CableSegment], end: _Start) -> None:
+    def _leg(self, start: _End, segments: list[cable_grammar.CableSegment], end: _End) -> None:
         """Add a leg, turned where what the layout has last is its lower end."""
         items = self._pieces_of(segments)[::-1]
         first, lower, low = self._end(start)
         last, upper, high = self._end(end)
         if not segments or (low and high):
-            where = end.terminal or start.terminal
-            assert where is not None
+            where = start if isinstance(end, str) else end
+            assert not isinstance(where, str)
             raise where.token.refuse("nothing stands between its two ends, which both go down")
         if high:
             items = [_turned(each) for each in items[::-1]]
             first, lower, last, upper = last, upper, first, lower
-        legs = self.design.legs
-        legs.append(
-            model.ImportedLeg(f"leg-{len(legs) + 1}", [*last, *items, *first], upper, lower)
-        )
+        self.design.lay([*last, *items, *first], upper, lower)
 
-    def _end(self, at: _Start) -> tuple[list[model.ImportedPiece], str, bool]:
+    def _end(self, at: _End) -> tuple[list[model.ImportedPiece], str, bool]:
         """What stands at an end, what holds it, and whether it is a lower one."""
-        if at.terminal is None:
-            return [], f"{{join: {at.node}}}", False
-        values, token = at.terminal.values, at.terminal.token
+        if isinstance(at, str):
+            return [], model.joined_at(at), False
+        values, token = at.values, at.token
         if "node" in values:
             raise token.refuse("a loop: its end is tied to a node of the line")
         x, y, z = (values.number(key) for key in ("x", "y", "z"))
-        place = f"[{x:.9g} m, {y:.9g} m]"
         if "anchor" not in values:
-            buoy = self._buoy(at.terminal, afloat=self.problem.kind == "surface")
+            buoy = self._buoy(at, afloat=self.problem.kind == "surface")
             return [buoy], "free", buoy.component.figures.get("role") != "float"
         if z > _ON_THE_BED * self.depth:
-            return [], f"{{held: {{depth: {self.depth - z:.9g} m, at: {place}}}}}", False
-        return (
-            [model.ImportedPiece(self._anchor(at.terminal))],
-            f"{{anchor: {{at: {place}}}}}",
-            True,
-        )
+            return [], model.held_at(self.depth - z, x, y), False
+        return [model.ImportedPiece(self._anchor(at))], model.anchored_at(x, y), True
 
 
 def _turned(item: model.ImportedPiece) -> model.ImportedPiece:

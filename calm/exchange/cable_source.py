@@ -67,13 +67,8 @@ class Preprocessor:
     def read(self, path: Path) -> list[SourceLine]:
         """Return the lines of a file, and of those it includes.
 
-        Raises
-        ------
-        InputError
-            A file cannot be read or may not be included, a directive cannot be read, or macros
-            expand without end.
-        UsageError
-            A macro given from outside has no proper name.
+        InputError: a file cannot be read or may not be included, a directive cannot be read, or
+        macros expand without end. UsageError: a macro given from outside has no proper name.
         """
         for name, value in self.defines.items():
             if not _NAME.fullmatch(name):

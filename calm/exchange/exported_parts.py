@@ -14,6 +14,7 @@ from calm.files import Anchor, Component, Sphere
 from calm.files.definition import STANDARD_GRAVITY
 from calm.files.legs import EndKeys
 from calm.files.rigid import Displacement
+from calm.physics.line import Floats
 from calm.physics.seawater import REFERENCE_DENSITY
 
 AS_A_POINT = (
@@ -163,18 +164,12 @@ def unique_name(known: dict[str, str], name: str, figures: str) -> str:
     return chosen
 
 
-@dataclass(frozen=True)
-class PartPath:
-    """Hold where a part lies in equilibrium: (n, 3) `Coordinates` of nodes from its upper end."""
-
-    nodes: np.ndarray[tuple[int, int], np.dtype[np.float64]]
-
-    def at(self, share: float) -> Coordinates:
-        """Return the place at a share of its length from its upper end."""
-        steps = np.linalg.norm(np.diff(self.nodes, axis=0), axis=1)
-        along = np.concatenate([[0.0], np.cumsum(steps)])
-        place = [float(np.interp(share * along[-1], along, column)) for column in self.nodes.T]
-        return place[0], place[1], place[2]
+def place_along(path: Floats, share: float) -> Coordinates:
+    """Return the place at a share of the length of a part, whose nodes (n, 3) are its `path`."""
+    steps = np.linalg.norm(np.diff(path, axis=0), axis=1)
+    along = np.concatenate([[0.0], np.cumsum(steps)])
+    east, north, depth = (float(np.interp(share * along[-1], along, each)) for each in path.T)
+    return east, north, depth
 
 
 @dataclass(frozen=True)
@@ -233,8 +228,8 @@ class ExportedLine:
         """Return what another program cannot hold, each remark once, `more` first."""
         return tuple(dict.fromkeys((*more, *self.omitted)))
 
-    def paths(self) -> list[PartPath]:
-        """Return where each part lies in equilibrium, from the top down.
+    def paths(self) -> list[Floats]:
+        """Return where each part lies in equilibrium, from the top down: `Coordinates` of nodes.
 
         NoEquilibrium: there is none.
         """
@@ -249,9 +244,8 @@ class ExportedLine:
             low = np.array([row.x_bottom, row.y_bottom, row.depth_bottom])
             gap = np.linalg.norm(nodes[start:] - low, axis=1)
             end = start + int(np.flatnonzero(gap <= gap.min() + 1e-9)[0])
-            first = np.array([[row.x_top, row.y_top, row.depth_top]])
-            inner = nodes[start + 1 : end]
-            paths.append(PartPath(np.vstack([first, inner, low[np.newaxis]])))
+            first = np.array([row.x_top, row.y_top, row.depth_top])
+            paths.append(np.vstack([first, nodes[start + 1 : end], low]))
             start = end
         return paths
 

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 from pydantic import ValidationError
 
-from calm.assemble.line_arrays import drag_of
+from calm.assemble.component_forces import drag_of
 from calm.errors import InputError, UsageError, one_line, refused
 from calm.exchange import model
 from calm.exchange.cable_reader import is_cbl, read_cbl

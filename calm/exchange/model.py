@@ -140,6 +140,22 @@ class ImportedLeg:
     bottom: str = ""
 
 
+def held_at(depth: float, east: float, north: float) -> str:
+    """Return the key of an end of a leg that is held at a depth and a place [m]."""
+    return f"{{held: {{depth: {depth:.9g} m, at: [{east:.9g} m, {north:.9g} m]}}}}"
+
+
+def anchored_at(east: float, north: float, depth: float | None = None) -> str:
+    """Return the key of a lower end with an anchor [m]; its depth where it is not the water's."""
+    deeper = "" if depth is None else f", depth: {depth:.9g} m"
+    return f"{{anchor: {{at: [{east:.9g} m, {north:.9g} m]{deeper}}}}}"
+
+
+def joined_at(node: str) -> str:
+    """Return the key of an end that joins others at a node."""
+    return f"{{join: {node}}}"
+
+
 @dataclass(eq=False)
 class CurrentRecord:
     """Hold currents at several times: `u`, `v`, `w` [m/s] by time and level, `depth` [m].
@@ -218,6 +234,11 @@ class Design:
     heading: dict[str, str] = field(default_factory=dict)
     in_kilograms: bool = False
     legs: list[ImportedLeg] = field(default_factory=list)
+
+    def lay(self, items: list[ImportedPiece], top: str, bottom: str) -> None:
+        """Add a leg, from its upper end, to those of a net."""
+        self.legs.append(ImportedLeg(f"leg-{len(self.legs) + 1}", items, top, bottom))
+        self.items += items
 
     def components(self) -> Iterator[ImportedComponent]:
         """Every definition in use, those of clamps after that of their piece; repeats included."""

@@ -360,11 +360,9 @@ def _lay_net(file: _File, path: Path) -> None:
             else:
                 halves = [(names, lines)]
             for half in halves:
-                name = f"leg-{len(file.design.legs) + 1}"
-                file.design.legs.append(_leg(file, name, *half, told))
+                _lay_leg(file, *half, told)
     if left or not breaks:
         raise refused(path, "lines go round in a ring that nothing holds")
-    file.design.items = [item for leg in file.design.legs for item in leg.items]
 
 
 def _is_anchor(file: _File, name: str) -> bool:
@@ -373,27 +371,22 @@ def _is_anchor(file: _File, name: str) -> bool:
     return fixed and point.number("z") <= -(1.0 - _ON_THE_BED) * file.depth
 
 
-def _leg(
-    file: _File, name: str, names: list[str], lines: list[_Row], told: set[str]
-) -> model.ImportedLeg:
-    """Return a leg from its upper end; what is at a point goes to the first leg that has it."""
+def _lay_leg(file: _File, names: list[str], lines: list[_Row], told: set[str]) -> None:
+    """Add a leg from its upper end; what is at a point goes to the first leg that has it."""
     items = file.along(names, lines, told)
     upper, lower = (_end(file, at) for at in (names[0], names[-1]))
     if _is_anchor(file, names[-1]):
         point = file.points[names[-1]]
         items.append(model.ImportedPiece(_anchor_of(point, file.depth)))
         depth = 0.0 - point.number("z")
-        deeper = f", depth: {depth:.9g} m" if depth > file.depth else ""
-        lower = f"{{anchor: {{at: {_at(point)}{deeper}}}}}"
-    return model.ImportedLeg(name, items, upper, lower)
+        deeper = depth if depth > file.depth else None
+        lower = model.anchored_at(point.number("x"), point.number("y"), deeper)
+    file.design.lay(items, upper, lower)
 
 
 def _end(file: _File, name: str) -> str:
     point = file.points[name]
     if _is_held(point):
-        return f"{{held: {{depth: {0.0 - point.number('z'):.9g} m, at: {_at(point)}}}}}"
-    return f"{{join: point-{name}}}" if len(file.at[name]) > 1 else "free"
-
-
-def _at(point: _Row) -> str:
-    return f"[{point.number('x'):.9g} m, {point.number('y'):.9g} m]"
+        east, north, up = (point.number(axis) for axis in "xyz")
+        return model.held_at(0.0 - up, east, north)
+    return model.joined_at(f"point-{name}") if len(file.at[name]) > 1 else "free"

@@ -11,10 +11,11 @@ from calm.exchange.exported_parts import (
     ExportedLine,
     ExportedPart,
     PartLoad,
-    PartPath,
+    place_along,
     unique_name,
 )
 from calm.files.legs import EndKeys
+from calm.physics.line import Floats
 
 CURRENTS = "current_profile.txt"
 """The name under which that program looks for the current, beside its input."""
@@ -157,10 +158,10 @@ def _lay_line(system: _System, design: ExportedLine) -> None:
     """Lay a line, or a leg, from its lower end up."""
     paths, (top, bottom) = design.paths(), design.ends or (EndKeys(), None)
     if bottom is not None and bottom.join is not None:
-        system.begin_at(bottom.join, paths[-1].at(1.0))
+        system.begin_at(bottom.join, place_along(paths[-1], 1.0))
     else:
         hangs = bottom is not None and bottom.free
-        system.begin(paths[-1].at(1.0), "Free" if hangs else "Fixed")
+        system.begin(place_along(paths[-1], 1.0), "Free" if hangs else "Fixed")
     numbered = list(enumerate(design.parts))[::-1]
     for flexible, group in groupby(numbered, key=lambda pair: pair[1].flexible):
         members = list(group)
@@ -173,7 +174,9 @@ def _lay_line(system: _System, design: ExportedLine) -> None:
         if floats:
             members.pop()
         if members:
-            _lay_rigid(system, [part for _, part in members], paths[members[-1][0]].at(0.0))
+            _lay_rigid(
+                system, [part for _, part in members], place_along(paths[members[-1][0]], 0.0)
+            )
         if floats:
             _lay_float(system, design, paths[0])
     if top.join is not None:
@@ -182,7 +185,7 @@ def _lay_line(system: _System, design: ExportedLine) -> None:
         system.here.kind = "Fixed"
 
 
-def _lay(system: _System, part: ExportedPart, path: PartPath) -> None:
+def _lay(system: _System, part: ExportedPart, path: Floats) -> None:
     """Lay a cable or chain from its lower end up, cut where something is clamped on.
 
     It is cut into short lengths too, since that program starts with each as it hangs in still
@@ -200,7 +203,7 @@ def _lay(system: _System, part: ExportedPart, path: PartPath) -> None:
     below = part.length
     for at in sorted(cuts, reverse=True):
         if below > at:
-            system.line(_word(part.use), figures, below - at, path.at(at / part.length))
+            system.line(_word(part.use), figures, below - at, place_along(path, at / part.length))
             below = at
         for clamp in cuts[at]:
             system.here.load.add(clamp)
@@ -219,20 +222,20 @@ def _lay_rigid(system: _System, parts: list[ExportedPart], top: Coordinates) -> 
     system.line(name, system.figures(load.per_metre(length), _stiff(length)), length, top)
 
 
-def _lay_float(system: _System, design: ExportedLine, path: PartPath) -> None:
+def _lay_float(system: _System, design: ExportedLine, path: Floats) -> None:
     """Lay the uppermost piece: a point, on a stiff length as long as its draft.
 
     That length takes a share of its mass, neutral in water: that program steps too finely where a
     length is light.
     """
     part = design.parts[0]
-    top, bottom = path.at(0.0), path.at(1.0)
+    top, bottom = place_along(path, 0.0), place_along(path, 1.0)
     below = bottom[2] / (bottom[2] - top[2]) if top[2] < 0.0 else 1.0
     length = part.length * below
     if length > 0.0:
         own = PartLoad(system.density, mass=_OWN * part.likely_mass).per_metre(length)
         figures = system.figures(own, _stiff(length))
-        system.line("float", figures, length, path.at(1.0 - below))
+        system.line("float", figures, length, place_along(path, 1.0 - below))
         system.here.load.mass -= own.mass * length
     system.here.load.add_whole(part, design.riding[1])
     if not design.afloat:

@@ -8,22 +8,15 @@ from calm.files.mooring_file import Clamp, LinePart, MooringFile, Piece, Place, 
 from calm.files.reader import read_mooring
 from calm.files.rigid import Body, Cylinder, Profiler, Rigid, Shaped, Sphere
 from calm.files.schema import mooring_schema
-from calm.files.strumming_keys import (
-    AmplitudeModel,
-    BourgetMarichalKeys,
-    ConstantCn,
-    Strumming,
-    StrummingFactor,
-)
+from calm.files.strumming_keys import Strumming, StrummingFactor
 from calm.files.uncertainty import Spread, Uncertainty
 from calm.files.water import Wind
 from calm.records.profile_tables import CurrentTable, DepthTable, SeaWater
 
 __all__ = [
-    "Accept", "AmplitudeModel", "Anchor", "Assembly", "Body", "BourgetMarichalKeys", "Cable",
-    "Catalogue", "Chain", "Checks", "Clamp", "Component", "ConstantCn", "CurrentTable",
-    "Cylinder", "DepthTable", "Environment", "Flexible", "Fouling", "LinePart", "MooringFile",
-    "Piece", "Place", "Position", "Profiler", "Rigid", "SafetyFactors", "SeaWater", "Shaped",
-    "Solver", "Sphere", "Spread", "Strumming", "StrummingFactor", "TowKeys", "Uncertainty",
-    "Wind", "mooring_schema", "read_mooring",
+    "Accept", "Anchor", "Assembly", "Body", "Cable", "Catalogue", "Chain", "Checks", "Clamp",
+    "Component", "CurrentTable", "Cylinder", "DepthTable", "Environment", "Flexible", "Fouling",
+    "LinePart", "MooringFile", "Piece", "Place", "Position", "Profiler", "Rigid", "SafetyFactors",
+    "SeaWater", "Shaped", "Solver", "Sphere", "Spread", "Strumming", "StrummingFactor", "TowKeys",
+    "Uncertainty", "Wind", "mooring_schema", "read_mooring",
 ]  # fmt: skip

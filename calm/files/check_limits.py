@@ -6,10 +6,9 @@ Each limit has its default and the source of that; each finding accepted has a r
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from datetime import date as calendar_date
 from fnmatch import fnmatchcase
-from functools import cache
 from typing import Annotated
 
 from pydantic import AfterValidator, WithJsonSchema, model_validator
@@ -194,27 +193,15 @@ def limit_keys(checks: definition.Model, prefix: str = "") -> Iterator[LimitKey]
 
     `prefix` is that of the names where the model stands under a key of another one.
     """
-    for name, default in _defaults(type(checks)).items():
-        value = getattr(checks, name)
+    for name, field in type(checks).model_fields.items():
+        value, quantity = getattr(checks, name), definition.quantity_of(field)
+        limit = next((one for one in field.metadata if isinstance(one, Limit)), None)
         if isinstance(value, definition.Model):
             yield from limit_keys(value, f"{prefix}{name}.")
-        elif default is not None:
-            used = default.value if value is None else value
-            own = prefix or used != default.value
-            yield replace(default, name=prefix + name, value=used) if own else default
-
-
-@cache
-def _defaults(model: type[definition.Model]) -> dict[str, LimitKey | None]:
-    """Return for each field the limit that it is unless given; None of one that is no limit."""
-    found: dict[str, LimitKey | None] = {}
-    for name, field in model.model_fields.items():
-        limit = next((one for one in field.metadata if isinstance(one, Limit)), None)
-        quantity, found[name] = definition.quantity_of(field), None
-        if limit is not None and quantity is not None:
+        elif limit is not None and quantity is not None:
             default = limit.default if field.default is None else field.default
-            found[name] = LimitKey(name, quantity.dimension, default, default, limit.source)
-    return found
+            used = default if value is None else value
+            yield LimitKey(prefix + name, quantity.dimension, used, default, limit.source)
 
 
 def _day(text: str) -> str:
@@ -298,7 +285,8 @@ def read_accepts(
     top : the mooring file
     """
     found = [_accept(one, number, labels, top) for number, one in enumerate(keys)]
-    return tuple(sorted(found, key=lambda one: _breadth(one, labels or ())))
+    known = labels or ()
+    return tuple(sorted(found, key=lambda one: (one.component is None, one.component not in known)))
 
 
 def _accept(
@@ -336,8 +324,3 @@ def _nothing_called(component: str, labels: Sequence[str]) -> str:
     if any(label.startswith(f"{component} ") for label in labels):
         return f"{message}; did you mean `{text} *`?"
     return unknown(message, component, labels)
-
-
-def _breadth(accept: Accept, labels: Sequence[str]) -> int:
-    """Return 0 for a label, 1 for a pattern, 2 for every component."""
-    return 2 if accept.component is None else int(accept.component not in labels)

@@ -15,8 +15,9 @@ from calm.errors import InputError, shown
 from calm.files import definition, water
 from calm.files.definition import DENSITY, Model, QuantityField, Text, described, optional
 from calm.files.yaml_document import SourceMapping, validate
+from calm.physics.line import Floats
 from calm.records.current_terms import DEEPEST, Terms, TimeChoiceError, too_fast
-from calm.records.grids import Floats, SeabedGrid
+from calm.records.grids import SeabedGrid
 from calm.records.profile_tables import CurrentTable, DepthTable, SeaWater, components, read_current
 from calm.records.sea_states import SeaState
 from calm.units import QuantityError

@@ -143,15 +143,7 @@ class SourceMapping:
     def problem(
         self, location: Sequence[str | int], message: str, *, key: bool = False, lacks: str = ""
     ) -> Problem:
-        """Return a problem at a value below this mapping, or at its key.
-
-        Parameters
-        ----------
-        location : of the value, below this
-        message : for people
-        key : put it at the key of the value
-        lacks : what is missing, where nothing is wrong
-        """
+        """Return a problem at a value below this mapping, as `Document.problem`."""
         home = self.home(location[0]) if location else self
         place = (*home.location, *location)
         return home.document.problem(place, message, key=key, lacks=lacks)

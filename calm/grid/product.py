@@ -15,7 +15,8 @@ from calm.dataset.discovery import coverage, in_capitals, kept, with_flags, writ
 from calm.errors import UsageError
 from calm.grid.field import BLOCK, GriddedQuantity, estimate
 from calm.grid.samples import MooringDepths
-from calm.records.measured_quantities import QUANTITIES_MEASURED
+from calm.quantities import QUANTITIES_MEASURED
+from calm.records import delimited
 from calm.units import QuantityError, parse_quantity
 from calm.version import __version__
 from calm.whole_file import beside
@@ -28,38 +29,30 @@ def parse_levels(text: str) -> NDArray[np.float64]:
 
     UsageError: it is neither, they do not go down, or are too many.
     """
-    parts = text.split(":")
-    wanted = "write FIRST:STEP:LAST in metres, such as 0:20:1500, or 50,100,250"
-    if len(parts) == 3:
-        first, step, last = (_metres(part, text, wanted) for part in parts)
+    given, wanted = text[:40], "write FIRST:STEP:LAST in metres, such as 0:20:1500, or 50,100,250"
+    by_step = text.count(":") == 2
+    try:
+        levels = np.array([_metres(part) for part in text.split(":" if by_step else ",")])
+    except QuantityError:
+        raise UsageError(f"--levels: `{given}` is not understood; {wanted}") from None
+    if by_step:
+        first, step, last = levels.tolist()
         if step <= 0.0 or last < first:
             raise UsageError(f"--levels: `{text}` does not go down; {wanted}")
         if (last - first) / step >= MOST_LEVELS:
             raise UsageError(f"--levels: `{text}` are more than {MOST_LEVELS} levels")
-        count = int((last - first) / step + 1e-9) + 1
-        levels = np.array([first + step * i for i in range(count)])
-    elif len(parts) == 1:
-        levels = np.array([_metres(part, text, wanted) for part in text.split(",")])
-    else:
-        raise UsageError(f"--levels: `{text[:40]}` is not understood; {wanted}")
+        levels = first + step * np.arange(int((last - first) / step + 1e-9) + 1)
     if (np.diff(levels) <= 0.0).any():
-        raise UsageError(f"--levels: `{text[:40]}` do not go down one after the other; {wanted}")
+        raise UsageError(f"--levels: `{given}` do not go down one after the other; {wanted}")
     if levels[0] < 0.0:
-        raise UsageError(f"--levels: `{text[:40]}`: {levels[0]:g} m is above the sea surface")
+        raise UsageError(f"--levels: `{given}`: {levels[0]:g} m is above the sea surface")
     return levels
 
 
-def _metres(part: str, text: str, wanted: str) -> float:
-    try:
-        number = float(part)
-    except ValueError:
-        try:
-            number = parse_quantity(part, "length", usual_unit="m")
-        except QuantityError:
-            raise UsageError(f"--levels: `{text[:40]}` is not understood; {wanted}") from None
-    if not np.isfinite(number):
-        raise UsageError(f"--levels: `{text[:40]}` is not understood; {wanted}")
-    return number
+def _metres(part: str) -> float:
+    """Return a number of metres, with its unit or without (QuantityError: it is none)."""
+    plain = "" if delimited.NUMBER.fullmatch(part.strip()) is None else " m"
+    return parse_quantity(f"{part}{plain}", "length", usual_unit="m")
 
 
 def grid_layout(
@@ -114,13 +107,7 @@ def grid_layout(
             about["units_metadata"] = "temperature: on_scale"
             spread["units_metadata"] = "temperature: difference"
         flagged[called] = [f"{called}_sd"]
-    whole = with_flags(variables, flagged)
-    if averaged is not None:
-        means = f"time: mean (interval: {averaged})"
-        whole = tuple(
-            replace(one, attributes={**one.attributes, "cell_methods": means})
-            if one.name in flagged else one for one in whole
-        )  # fmt: skip
+    means = "time: point" if averaged is None else f"time: mean (interval: {averaged})"
     before = [str(depths.attributes[key]) for key in ("history",) if key in depths.attributes]
     labels = list(dict.fromkeys(label for one in fields.values() for label in one.samples.label))
     attributes: netcdf.Attributes = {
@@ -148,11 +135,11 @@ def grid_layout(
         "history": "\n".join(
             [*before, f"{written()} calm {__version__} grid: {', '.join(inputs)}"]
         ),
-        "featureType": "timeSeriesProfile",
     }
-    if not depths.place:
-        attributes.pop("featureType")
-    layout = netcdf.ResultLayout({"time": len(time), "depth": len(levels)}, whole, attributes)
+    if depths.place:
+        attributes["featureType"] = "timeSeriesProfile"
+    sizes, whole = {"time": len(time), "depth": len(levels)}, with_flags(variables, flagged, means)
+    layout = netcdf.ResultLayout(sizes, whole, attributes)
     return in_capitals(layout) if all(one.isupper() for one in names.values()) else layout
 
 
@@ -190,7 +177,7 @@ def write_grid(
     time = next(iter(fields.values())).samples.time
     kinds = {one.name: one for one in layout.in_blocks}
     capitals = all(one.isupper() for one in names.values())
-    lower, upper = ("_SD", "_QC") if capitals else ("_sd", "_qc")
+    deviation, flag = ("_SD", "_QC") if capitals else ("_sd", "_qc")
     with tempfile.TemporaryDirectory(dir=output.parent, prefix=f".{output.name[:40]}.") as folder:
         chunks: list[netcdf.Chunk] = []
 
@@ -212,8 +199,8 @@ def write_grid(
             times = np.arange(start, min(start + BLOCK, len(time)))
             found = estimate(fields[name], levels, times)
             keep(names[name], start, found.value)
-            keep(names[name] + lower, start, found.deviation)
-            keep(names[name] + upper, start, found.flag)
+            keep(names[name] + deviation, start, found.deviation)
+            keep(names[name] + flag, start, found.flag)
         with beside(output) as part:
             netcdf.write_netcdf(layout, BLOCK, chunks, part, lambda: None)
 

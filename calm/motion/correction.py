@@ -14,9 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.batch.dataset import laid_out, layout_of
-from calm.batch.profiles import Batch, Profiles
+from calm.batch.profiles import Batch, Profiles, processors
 from calm.batch.statuses import STATUSES
-from calm.batch.threads import processors
 from calm.batch.work import BatchWork, Progress
 from calm.batch.work_store import Store
 from calm.case import Mooring

@@ -17,7 +17,6 @@ from calm.motion.line_places import LinePlaces, points_of
 from calm.motion.measurements import interpolated
 from calm.motion.study import depths_at
 from calm.records import cf_files
-from calm.records.cf_files import holdings
 from calm.records.instrument_series import Identity, files_given, who_along
 from calm.version import __version__
 from calm.whole_file import beside
@@ -97,7 +96,7 @@ def read_instruments(
 def _read(path: Path, seabed: float, replacing: bool) -> Instruments:
     if not path.is_file() or not cf_files.holds_arrays(path):
         raise InputError([Problem(str(path), 0, 0, "is not NetCDF, RODB, .cnv or RBR's table")])
-    with cf_files.reading(path), cf_files.open_current(path) as dataset:
+    with cf_files.opened(path) as dataset:
         if groups := cf_files.groups_of(path):
             raise cf_files.UnreadableError(
                 f"has groups, which a copy would lack: {', '.join(groups)}; give the variables of "
@@ -105,7 +104,7 @@ def _read(path: Path, seabed: float, replacing: bool) -> Instruments:
             )
         clock = next((name for name in _TIMES if name in dataset.variables), None)
         if clock is None or dataset[clock].ndim != 1:
-            raise cf_files.UnreadableError(f"has no times; it holds {holdings(dataset)}")
+            raise cf_files.UnreadableError("has no times")
         dimension = str(dataset[clock].dims[0])
         along, who = _who(dataset, dimension, seabed, path)
         _refuse_depths(dataset, path, dimension, along, replacing)
@@ -128,7 +127,7 @@ def _who(
     if not alone[0].known:
         raise cf_files.UnreadableError(
             "has no labels of instruments (`instrument` or `label`), and no serial number or "
-            f"nominal depth of one; it holds {holdings(dataset)}"
+            "nominal depth of one"
         )
     return None, tuple(alone)
 

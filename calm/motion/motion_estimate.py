@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from calm.batch.finished import open_result
+from calm.batch.profiles import processors
 from calm.batch.run import BatchOutcome, run_kept
-from calm.batch.threads import processors
 from calm.batch.work import Progress
 from calm.batch.work_store import identity_of, open_store, to_text
 from calm.case import Mooring

@@ -15,7 +15,7 @@ from calm.errors import InputError, Problem, UsageError
 from calm.physics.line import Floats
 from calm.records import cf_files, instrument_series
 from calm.records.attributes import words_of
-from calm.records.cf_files import UnreadableError, factor_of, find_times, holdings, open_current
+from calm.records.cf_files import UnreadableError, factor_of, find_times
 from calm.records.headings import read_time_columns
 from calm.records.velocity import MISSING, flag_variable
 
@@ -83,11 +83,11 @@ def read_sensors(
         label, path = instrument_series.split_label(text)
         if not path.exists():
             raise InputError([Problem(str(path), 0, 0, "no such file")])
-        mine = (
-            _from_arrays(path, flags, latitude, seabed)
-            if cf_files.holds_arrays(path)
-            else _from_csv(path, latitude)
-        )
+        if cf_files.holds_arrays(path):
+            with cf_files.opened(path) as dataset:
+                mine = _from_arrays(dataset, path, flags, latitude, seabed)
+        else:
+            mine = _from_csv(path, latitude)
         if label:
             if len(mine) > 1:
                 raise UsageError(f"{path} holds {len(mine)} sensors; `{label}=` names only one")
@@ -111,15 +111,7 @@ def depth_of(dbar: Floats, latitude: float) -> Floats:
     return depths
 
 
-def _from_arrays(path: Path, flags: frozenset[int], latitude: float, seabed: float) -> list[Sensor]:
-    with cf_files.reading(path), open_current(path) as dataset:
-        try:
-            return _understood(dataset, path, flags, latitude, seabed)
-        except UnreadableError as error:
-            raise UnreadableError(f"{error}; it holds {holdings(dataset)}") from None
-
-
-def _understood(
+def _from_arrays(
     dataset: xr.Dataset, path: Path, flags: frozenset[int], latitude: float, seabed: float
 ) -> list[Sensor]:
     name, is_pressure = _find(dataset)
@@ -229,7 +221,7 @@ def read_sea_level(path: Path) -> tuple[NDArray[np.datetime64], Floats]:
             raise InputError([Problem(str(path), 1, 1, message)])
         _refuse_far(path, table.time, table.values[:, 0])
         return table.time, table.values[:, 0]
-    with cf_files.reading(path), open_current(path) as dataset:
+    with cf_files.opened(path) as dataset:
         for standard in _STANDARD:
             for name in map(str, dataset.cf.standard_names.get(standard, [])):
                 clock = find_times(dataset, name)
@@ -241,7 +233,7 @@ def read_sea_level(path: Path) -> tuple[NDArray[np.datetime64], Floats]:
                 level = cf_files.known_values(variable) * factor_of(variable, "length")
                 _refuse_far(path, times, level)
                 return times[order], level[order]
-        raise UnreadableError(f"holds no height of the sea surface; it holds {holdings(dataset)}")
+        raise UnreadableError("holds no height of the sea surface")
 
 
 def _refuse_far(path: Path, time: NDArray[np.datetime64], level: Floats) -> None:

@@ -161,8 +161,8 @@ def locate(
     frame = survey.frame
     ships = frame.place(survey.latitude, survey.longitude, np.full(count, survey.transducer))
     model = range_model.RangeModel(survey, sound, frame, ships, depth)
-    x, used = range_model.fitted(model)
-    inconsistent = range_model.consistency(model, x, used)  # a wrong unit is named for what it is
+    x, used = model.fitted()
+    inconsistent = model.consistency(x, used)  # a wrong unit is named for what it is
     missed, reach = (
         float(np.median(np.abs(each[used]))) for each in (model.residuals(x), model.measured(x))
     )
@@ -172,7 +172,7 @@ def locate(
             f"{missed:.0f} m, for ranges of {reach:.0f} m; are positions and ranges from one "
             "survey?"
         )
-    x, other, meant = _nearer(model, x, range_model.another_place(model, x, used), near)
+    x, other, meant = _nearer(model, x, model.another_place(x, used), near)
     residuals = model.residuals(x)
     freedom = int(used.sum()) - unknowns
     rms = _scatter(residuals[used], freedom)
@@ -306,12 +306,7 @@ DEEPER = 0.05
 def located_mooring(path: Path) -> MooringFile:
     """Return the mooring file that a place is for.
 
-    Raises
-    ------
-    InputError
-        The file has mistakes.
-    UsageError
-        It is a tow.
+    InputError: the file has mistakes. UsageError: it is a tow.
     """
     file = read_mooring(path)
     if file.tow is not None:

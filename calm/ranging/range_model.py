@@ -17,6 +17,17 @@ from calm.physics.line import Booleans, Floats
 from calm.positions import Frame
 from calm.ranging.ranges import Sound, Survey
 
+BY_CHANCE = 0.01
+"""Of a survey without an outlier: how often one is called so."""
+FLOOR = 2.0
+"""Scatter that no range is better than [m]: the ship's antenna is some metres from its transducer,
+and both move while the sound travels."""
+SPARE = 2
+"""Ranges beyond the unknowns that are left when others are rejected: with fewer, any two that are
+wrong alike outvote a third that is right."""
+APART = 10.0
+"""Distance from which two places are two [m]."""
+
 
 @dataclass(frozen=True)
 class RangeModel:
@@ -59,81 +70,159 @@ class RangeModel:
     def jacobian(self, x: Floats) -> Floats:
         """Return (n, unknowns) of the residuals."""
         step = 0.01
-        columns = []
-        for i in range(self.unknowns):
-            ahead, behind = x.copy(), x.copy()
-            ahead[i] += step
-            behind[i] -= step
-            columns.append((self.residuals(ahead) - self.residuals(behind)) / (2.0 * step))
-        return np.stack(columns, axis=1)
+        ways = step * np.eye(self.unknowns)
+        columns = [self.residuals(x + way) - self.residuals(x - way) for way in ways]
+        return np.stack(columns, axis=1) / (2.0 * step)
 
+    def fitted(self) -> tuple[Floats, Booleans]:
+        """Return the unknowns, and which ranges belong."""
+        count = len(self.ships)
+        used = np.ones(count, dtype=bool)
+        if count <= self.unknowns + SPARE:
+            fits = (self.least_squares(start, used) for start in self._starts())
+            return min(fits, key=lambda x: float(np.sum(self.residuals(x) ** 2))), used
+        x = self._sturdy()
+        residuals = np.abs(self.residuals(x))
+        used = residuals <= 5.0 * scatter(residuals, self.unknowns)
+        used[np.argsort(residuals)[: self.unknowns + SPARE]] = True
+        for _ in range(2 * len(used)):
+            x = self.least_squares(x, used)
+            changed = self.judged(x, used)
+            if (changed == used).all():
+                break
+            used = changed
+        return x, used
 
-BY_CHANCE = 0.01
-"""Of a survey without an outlier: how often one is called so."""
-FLOOR = 2.0
-"""Scatter that no range is better than [m]: the ship's antenna is some metres from its transducer,
-and both move while the sound travels."""
-SPARE = 2
-"""Ranges beyond the unknowns that are left when others are rejected: with fewer, any two that are
-wrong alike outvote a third that is right."""
+    def _sturdy(self) -> Floats:
+        """Return the unknowns by a fit that outliers hardly move, from several sides."""
+        from scipy.optimize import least_squares
 
+        found = []
+        for start in self._starts():
+            x, scale = start, 0.1 * float(np.median(self.measured(start)))
+            for _ in range(4):
+                fit = least_squares(
+                    self.residuals, x, self.jacobian, loss="cauchy", f_scale=scale, x_scale="jac",
+                    max_nfev=200,
+                )  # fmt: skip
+                x = self._below(fit.x)
+                scale = 2.0 * scatter(np.abs(self.residuals(x)), self.unknowns)
+            found.append((float(np.log1p((self.residuals(x) / FLOOR) ** 2).sum()), x))
+        return min(found, key=lambda each: each[0])[1]
 
-def fitted(model: RangeModel) -> tuple[Floats, Booleans]:
-    """Return the unknowns, and which ranges belong."""
-    count = len(model.ships)
-    used = np.ones(count, dtype=bool)
-    if count <= model.unknowns + SPARE:
-        fits = (least_squares_of(model, start, used) for start in starts_of(model))
-        return min(fits, key=lambda x: float(np.sum(model.residuals(x) ** 2))), used
-    x = _sturdy(model)
-    residuals = np.abs(model.residuals(x))
-    used = residuals <= 5.0 * scatter(residuals, model.unknowns)
-    used[np.argsort(residuals)[: model.unknowns + SPARE]] = True
-    for _ in range(2 * len(used)):
-        x = least_squares_of(model, x, used)
-        changed = _judged(model, x, used)
-        if (changed == used).all():
-            break
-        used = changed
-    return x, used
+    def _starts(self) -> list[Floats]:
+        """Return the unknowns of places in the middle of the survey, and on its four sides."""
+        middle = self.ships.mean(axis=0)
+        _, _, axes = np.linalg.svd((self.ships - middle)[:, :2], full_matrices=True)
+        reach = float(np.median(self.measured(np.array([0.0, 0.0, -1000.0])[: self.unknowns])))
+        starts = []
+        for side in (np.zeros(2), axes[1], -axes[1], axes[0], -axes[0]):
+            start = np.array([*(middle[:2] + 0.7 * reach * side), -0.7 * reach])
+            starts.append(start[: self.unknowns])
+        return starts
 
+    def _below(self, x: Floats) -> Floats:
+        """Return the same place below the ship, where a fit has found its mirror image above."""
+        if self.depth is None:
+            level = float(self.ships[:, 2].mean())
+            x = np.array([x[0], x[1], min(x[2], 2.0 * level - x[2])])
+        return x
 
-def _sturdy(model: RangeModel) -> Floats:
-    """Return the unknowns by a fit that outliers hardly move, from several sides."""
-    from scipy.optimize import least_squares
+    def least_squares(self, x: Floats, used: Booleans) -> Floats:
+        """Return the unknowns that fit the ranges in use best, from a guess."""
+        from scipy.optimize import least_squares
 
-    found = []
-    for start in starts_of(model):
-        x, scale = start, 0.1 * float(np.median(model.measured(start)))
-        for _ in range(4):
-            fit = least_squares(
-                model.residuals, x, model.jacobian, loss="cauchy", f_scale=scale, x_scale="jac",
-                max_nfev=200,
-            )  # fmt: skip
-            x = _below(model, fit.x)
-            scale = 2.0 * scatter(np.abs(model.residuals(x)), model.unknowns)
-        found.append((float(np.log1p((model.residuals(x) / FLOOR) ** 2).sum()), x))
-    return min(found, key=lambda each: each[0])[1]
+        fit = least_squares(
+            lambda x: self.residuals(x)[used], x, lambda x: self.jacobian(x)[used], x_scale="jac",
+            xtol=1e-12, ftol=1e-14, gtol=1e-14, max_nfev=200,
+        )  # fmt: skip
+        return self._below(fit.x)
 
+    def judged(self, x: Floats, used: Booleans) -> Booleans:
+        """Return the ranges that belong: the worst of them out, or what fits the others in.
 
-def starts_of(model: RangeModel) -> list[Floats]:
-    """Return the unknowns of places in the middle of the survey, and on its four sides."""
-    middle = model.ships.mean(axis=0)
-    _, _, axes = np.linalg.svd((model.ships - middle)[:, :2], full_matrices=True)
-    reach = float(np.median(model.measured(np.array([0.0, 0.0, -1000.0])[: model.unknowns])))
-    starts = []
-    for side in (np.zeros(2), axes[1], -axes[1], axes[0], -axes[0]):
-        start = np.array([*(middle[:2] + 0.7 * reach * side), -0.7 * reach])
-        starts.append(start[: model.unknowns])
-    return starts
+        A range is judged by its residual over its standard error as the others give it.
+        """
+        from scipy.stats import t as student
 
+        residuals, jacobian = self.residuals(x), self.jacobian(x)
+        freedom = int(used.sum()) - self.unknowns
+        if freedom < SPARE:
+            return used
+        inverse = np.linalg.pinv(jacobian[used].T @ jacobian[used])
+        leverage = np.einsum("ij,jk,ik->i", jacobian, inverse, jacobian)
+        square = float(residuals[used] @ residuals[used])
+        kept = np.maximum(1.0 - leverage, 1e-9)
+        without = np.where(used, square - residuals**2 / kept, square)
+        free = np.where(used, freedom - 1, freedom)
+        variance = np.maximum(without / free, FLOOR**2)
+        spread = np.sqrt(variance * np.where(used, kept, 1.0 + leverage))
+        ratio = np.abs(residuals) / spread
+        limit = student.ppf(1.0 - 0.5 * BY_CHANCE / len(used), free)
+        changed = used.copy()
+        back = ~used & (ratio < limit)
+        if back.any():
+            changed[np.argmin(np.where(back, ratio, np.inf))] = True
+            return changed
+        worst = int(np.argmax(np.where(used, ratio, 0.0)))
+        if ratio[worst] > limit[worst] and freedom > SPARE:
+            changed[worst] = False
+        return changed
 
-def _below(model: RangeModel, x: Floats) -> Floats:
-    """Return the same place below the ship, where a fit has found its mirror image above."""
-    if model.depth is None:
-        level = float(model.ships[:, 2].mean())
-        x = np.array([x[0], x[1], min(x[2], 2.0 * level - x[2])])
-    return x
+    def consistency(self, x: Floats, used: Booleans) -> list[str]:
+        """Return whether the ranges fit better when all are longer or shorter by a factor.
+
+        UsageError: by a factor of two: one-way for two-way times, or the other way round.
+        """
+        from scipy.optimize import least_squares
+        from scipy.stats import t as student
+
+        unknowns, count = self.unknowns, len(used)
+        if count < unknowns + 3:
+            return []
+
+        def residuals(y: Floats) -> Floats:
+            place = y[:-1]
+            found: Floats = self.residuals(place) + (y[-1] - 1.0) * self.measured(place)
+            return found
+
+        own = self.residuals(x)
+        scale = 2.0 * scatter(np.abs(own), unknowns)
+        for factor in (2.0, 0.5):
+            start = np.append(x if unknowns == 2 else x * [1.0, 1.0, factor], factor)
+            fit = least_squares(residuals, start, loss="cauchy", f_scale=scale, x_scale="jac")
+            again = residuals(fit.x)
+            much_better = np.median(np.abs(again)) < 0.1 * np.median(np.abs(own))
+            if much_better and abs(fit.x[-1] / factor - 1.0) < 0.05:
+                raise UsageError(f"{self.survey.path}: {_doubled(self.survey.timed, factor)}")
+        if used.sum() < unknowns + 3:
+            return []
+        fit = least_squares(lambda y: residuals(y)[used], np.append(x, 1.0), x_scale="jac")
+        freedom = int(used.sum()) - unknowns - 1
+        square = float(fit.fun @ fit.fun) / freedom
+        deviation = sqrt(square * float(np.linalg.pinv(fit.jac.T @ fit.jac)[-1, -1]))
+        away = float(fit.x[-1]) - 1.0
+        if abs(away) <= max(student.ppf(1.0 - 0.5 * BY_CHANCE, freedom) * deviation, 1e-3):
+            return []
+        said = f"The ranges fit better when all are {abs(100.0 * away):.1f} % "
+        said += "longer" if away > 0.0 else "shorter"
+        if self.survey.timed:
+            said += f": is the speed of sound {(1.0 + away) * self.mean_speed(x):.0f} m/s?"
+            return [said]
+        return [f"{said}: were they taken with another speed of sound?"]
+
+    def another_place(self, x: Floats, used: Booleans) -> Floats | None:
+        """Return the unknowns of another place that fits nearly as well; None without one."""
+        starts = [mirrored(self.ships[used], self.place(x))[: len(x)], *self._starts()]
+        fits = [self.least_squares(start, used) for start in starts]
+
+        def misses(x: Floats) -> float:
+            return float(np.sum(self.residuals(x)[used] ** 2))
+
+        most = 4.0 * max(misses(x), float(used.sum()) * FLOOR**2)
+        apart = [fit for fit in fits if np.linalg.norm((fit - x)[:2]) > APART]
+        best = min(apart, key=misses, default=None)
+        return None if best is None or misses(best) > most else best
 
 
 def scatter(residuals: Floats, unknowns: int) -> float:
@@ -143,155 +232,18 @@ def scatter(residuals: Floats, unknowns: int) -> float:
     return max(1.4826 * float(np.median(residuals)) * sqrt(count / freedom), FLOOR)
 
 
-def least_squares_of(model: RangeModel, x: Floats, used: Booleans) -> Floats:
-    """Return the unknowns that fit the ranges in use best, from a guess.
-
-    Parameters
-    ----------
-    model : of the ranges
-    x : a guess of the unknowns
-    used : (n,) which ranges count
-    """
-    from scipy.optimize import least_squares
-
-    fit = least_squares(
-        lambda x: model.residuals(x)[used], x, lambda x: model.jacobian(x)[used], x_scale="jac",
-        xtol=1e-12, ftol=1e-14, gtol=1e-14, max_nfev=200,
-    )  # fmt: skip
-    return _below(model, fit.x)
-
-
-def _judged(model: RangeModel, x: Floats, used: Booleans) -> Booleans:
-    """Return the ranges that belong: the worst of them out, or what fits the others in.
-
-    A range is judged by its residual over its standard error as the others give it.
-    """
-    from scipy.stats import t as student
-
-    residuals, jacobian = model.residuals(x), model.jacobian(x)
-    freedom = int(used.sum()) - model.unknowns
-    if freedom < SPARE:
-        return used
-    inverse = np.linalg.pinv(jacobian[used].T @ jacobian[used])
-    leverage = np.einsum("ij,jk,ik->i", jacobian, inverse, jacobian)
-    square = float(residuals[used] @ residuals[used])
-    kept = np.maximum(1.0 - leverage, 1e-9)
-    without = np.where(used, square - residuals**2 / kept, square)
-    free = np.where(used, freedom - 1, freedom)
-    variance = np.maximum(without / free, FLOOR**2)
-    spread = np.sqrt(variance * np.where(used, kept, 1.0 + leverage))
-    ratio = np.abs(residuals) / spread
-    limit = student.ppf(1.0 - 0.5 * BY_CHANCE / len(used), free)
-    changed = used.copy()
-    back = ~used & (ratio < limit)
-    if back.any():
-        changed[np.argmin(np.where(back, ratio, np.inf))] = True
-        return changed
-    worst = int(np.argmax(np.where(used, ratio, 0.0)))
-    if ratio[worst] > limit[worst] and freedom > SPARE:
-        changed[worst] = False
-    return changed
-
-
-def consistency(model: RangeModel, x: Floats, used: Booleans) -> list[str]:
-    """Return whether the ranges fit better when all are longer or shorter by a factor.
-
-    Parameters
-    ----------
-    model : of the ranges
-    x : the unknowns found
-    used : (n,) which ranges count
-
-    Raises
-    ------
-    UsageError
-        By a factor of two: one-way for two-way times, or the other way round.
-    """
-    from scipy.optimize import least_squares
-    from scipy.stats import t as student
-
-    unknowns, count = model.unknowns, len(used)
-    if count < unknowns + 3:
-        return []
-
-    def residuals(y: Floats) -> Floats:
-        place = y[:-1]
-        found: Floats = model.residuals(place) + (y[-1] - 1.0) * model.measured(place)
-        return found
-
-    own = model.residuals(x)
-    scale = 2.0 * scatter(np.abs(own), unknowns)
-    for factor in (2.0, 0.5):
-        start = np.append(x if unknowns == 2 else x * [1.0, 1.0, factor], factor)
-        fit = least_squares(residuals, start, loss="cauchy", f_scale=scale, x_scale="jac")
-        again = residuals(fit.x)
-        much_better = np.median(np.abs(again)) < 0.1 * np.median(np.abs(own))
-        if much_better and abs(fit.x[-1] / factor - 1.0) < 0.05:
-            raise UsageError(f"{model.survey.path}: {_doubled(model.survey.timed, factor)}")
-    if used.sum() < unknowns + 3:
-        return []
-    fit = least_squares(lambda y: residuals(y)[used], np.append(x, 1.0), x_scale="jac")
-    freedom = int(used.sum()) - unknowns - 1
-    square = float(fit.fun @ fit.fun) / freedom
-    deviation = sqrt(square * float(np.linalg.pinv(fit.jac.T @ fit.jac)[-1, -1]))
-    away = float(fit.x[-1]) - 1.0
-    if abs(away) <= student.ppf(1.0 - 0.5 * BY_CHANCE, freedom) * deviation:
-        return []
-    if abs(away) < 1e-3:
-        return []
-    said = f"The ranges fit better when all are {abs(100.0 * away):.1f} % "
-    said += "longer" if away > 0.0 else "shorter"
-    if model.survey.timed:
-        said += f": is the speed of sound {(1.0 + away) * model.mean_speed(x):.0f} m/s?"
-        return [said]
-    return [f"{said}: were they taken with another speed of sound?"]
-
-
 def _doubled(timed: bool, factor: float) -> str:
-    what = "times" if timed else "ranges"
-    if factor > 1.0:
-        one_way = (
-            "one-way times: two-way times are needed, there and back"
-            if timed
-            else ("half the distances: give the distance from the ship to the transponder")
-        )
-        return f"the {what} fit far better as {one_way}"
-    two_way = (
-        "twice the two-way times"
-        if timed
-        else ("distances there and back: give the distance from the ship to the transponder")
-    )
-    return f"the {what} fit far better as {two_way}"
+    """Return what ranges are that fit when all are twice as long, or half as long."""
+    instead = "give the distance from the ship to the transponder"
+    meant = {
+        (True, 2.0): "one-way times: two-way times are needed, there and back",
+        (True, 0.5): "twice the two-way times",
+        (False, 2.0): f"half the distances: {instead}",
+        (False, 0.5): f"distances there and back: {instead}",
+    }
+    return f"the {'times' if timed else 'ranges'} fit far better as {meant[timed, factor]}"
 
 
-def another_place(model: RangeModel, x: Floats, used: Booleans) -> Floats | None:
-    """Return the unknowns of another place that fits nearly as well; None where there is none.
-
-    Parameters
-    ----------
-    model : of the ranges
-    x : the unknowns found
-    used : (n,) which ranges count
-    """
-    starts = [mirrored(model.ships[used], model.place(x))[: len(x)], *starts_of(model)]
-    fits = [least_squares_of(model, start, used) for start in starts]
-    least = float(used.sum()) * FLOOR**2
-    most = 4.0 * max(_squares(model, x, used), least)
-    others = [
-        fit
-        for fit in fits
-        if np.linalg.norm((fit - x)[:2]) > APART and _squares(model, fit, used) <= most
-    ]
-    return min(others, key=lambda fit: _squares(model, fit, used), default=None)
-
-
-def _squares(model: RangeModel, x: Floats, used: Booleans) -> float:
-    """Return the sum of the squares of the residuals of the ranges in use [m²]."""
-    return float(np.sum(model.residuals(x)[used] ** 2))
-
-
-APART = 10.0
-"""Distance from which two places are two [m]."""
 NARROW = 0.15
 """Width over length of a track that is as good as a straight line."""
 WIDEST_GAP = 180.0

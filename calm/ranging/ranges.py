@@ -289,6 +289,8 @@ _OTHER_NAMES: Mapping[str, str] = {
 _PART = re.compile(r"(?i)(?:ship[ _]?)?(lat|lon)\w*?[ _\[(]*(deg|min|hem|ns|ew|dir)\w*[\])]*")
 _LARGEST = 5_000_000
 _NEAR = 1.0  # degrees between a survey's positions, at most
+_BareRow = tuple[int, list[str]]
+"""The number of a line and its cells."""
 
 
 def _survey_table(path: Path) -> tuple[delimited.TextTable, float | None, list[str]]:
@@ -296,69 +298,58 @@ def _survey_table(path: Path) -> tuple[delimited.TextTable, float | None, list[s
 
     InputError: it cannot be read, is empty, or has no header and is of neither form without one.
     """
-    bare = _without_heading(path)
-    if bare is None:
-        return _joined(delimited.read_table(path, EXAMPLE)), None, []
-    rows, columns = bare
-    if columns == 5:
-        lines = []
-        for row in rows:
-            place = f"{_placed(row.cells[:2])},{_placed(row.cells[2:4])}"
-            lines.append((row.number, f"{place},{2.0 * float(row.cells[4]):.9g}"))
+    rows = _bare_rows(path)
+    columns = len(rows[0][1]) if rows else 0
+    transducer = None
+    if columns == 5 and all(0.0 <= float(cells[at]) < 60.0 for _, cells in rows for at in (1, 3)):
+        header = "latitude,longitude,time[s]"
+        lines = [
+            (number, f"{_placed(cells[:2])},{_placed(cells[2:4])},{2.0 * float(cells[4]):.9g}")
+            for number, cells in rows
+        ]
         said = (
             "has no heading: read as degrees, minutes, degrees, minutes and the seconds one way; "
             "south and west are negative"
         )
-        table = delimited.read_table(path, EXAMPLE, [(1, "latitude,longitude,time[s]"), *lines])
-        return table, None, [said]
-    above = 1 if _are_near(rows[1:]) else 2  # rows with the depths, and before them the target
-    depth, release, transducer = map(float, rows[above - 1].cells)
-    lines = [(row.number, ",".join(row.cells)) for row in rows[above + 1 :]]
-    said = (
-        "has no heading: read as range, latitude and longitude below the depths and the drop; its "
-        f"transducer is {transducer:g} m deep; the depth of the water in it, {depth:g} m, and the "
-        f"release {release:g} m above the seabed count when given: --depth, --above-seabed"
-    )
-    table = delimited.read_table(path, EXAMPLE, [(1, "range[m],latitude,longitude"), *lines])
-    return table, transducer, [said]
-
-
-def _without_heading(path: Path) -> tuple[list[delimited.CellRow], int] | None:
-    """Return the rows of one of the two forms without a heading, and how many columns it has."""
-    lines = [
-        (number, line.partition("%")[0].partition("#")[0])
-        for number, line in enumerate(read_text(path, largest=_LARGEST).splitlines(), 1)
-    ]
-    there = [(number, line.strip()) for number, line in lines if line.strip()]
-    if not there:
-        return None
-    dialect: delimited.Dialect = delimited.dialect_of([line for _, line in there])
-    blanks = not any(sign in line for _, line in there for sign in ",;")  # of any kind and number
-    rows = [
-        delimited.CellRow(
-            path, number, line, line.split() if blanks else dialect.cells(line), dialect
+    elif columns == 3 and (above := _row_of_depths(rows)):
+        header = "range[m],latitude,longitude"
+        depth, release, transducer = map(float, rows[above - 1][1])
+        lines = [(number, ",".join(cells)) for number, cells in rows[above + 1 :]]
+        said = (
+            "has no heading: read as range, latitude and longitude below the depths and the drop; "
+            f"its transducer is {transducer:g} m deep; the depth of the water in it, {depth:g} m, "
+            f"and the release {release:g} m above the seabed count when given: --depth, "
+            "--above-seabed"
         )
-        for number, line in there
-    ]
-    counts = {len(row.cells) for row in rows}
-    if len(counts) != 1 or not all(
-        delimited.NUMBER.fullmatch(cell) for row in rows for cell in row.cells
-    ):
-        return None
-    count = counts.pop()
-    values = [[float(cell) for cell in row.cells] for row in rows]
-    if count == 5 and all(0.0 <= row[1] < 60.0 and 0.0 <= row[3] < 60.0 for row in values):
-        return rows, count
-    in_form = count == 3 and len(rows) > 4
-    if in_form and (_are_near(rows[1:]) or _are_near([rows[0], *rows[2:]])):
-        return rows, count
-    return None
+    else:
+        return _joined(delimited.read_table(path, EXAMPLE)), None, []
+    return delimited.read_table(path, EXAMPLE, [(1, header), *lines]), transducer, [said]
 
 
-def _are_near(rows: Sequence[delimited.CellRow]) -> bool:
-    """Return whether the last two of three cells are places of one survey."""
-    places = zip(*(map(float, row.cells[1:]) for row in rows), strict=True)
-    return all(max(each) - min(each) < _NEAR for each in places)
+def _bare_rows(path: Path) -> list[_BareRow]:
+    """Return the rows of a file of numbers alone, as many in each; none of any other file."""
+    whole = enumerate(read_text(path, largest=_LARGEST).splitlines(), 1)
+    bare = ((number, re.split("[%#]", line)[0].strip()) for number, line in whole)
+    lines = [(number, line) for number, line in bare if line]
+    parted = any(sign in line for _, line in lines for sign in ",;")  # else by blanks of any kind
+    dialect = delimited.dialect_of([line for _, line in lines]) if parted else None
+    rows = [(number, dialect.cells(line) if dialect else line.split()) for number, line in lines]
+    plain = all(delimited.NUMBER.fullmatch(cell) for _, cells in rows for cell in cells)
+    return rows if plain and len({len(cells) for _, cells in rows}) == 1 else []
+
+
+def _row_of_depths(rows: Sequence[_BareRow]) -> int:
+    """Return which row, from 1, has the depths: the first, or the second, below the target.
+
+    Only the others have places of one survey in their last two cells; 0 where neither is so.
+    """
+    if len(rows) <= 4:
+        return 0
+    for above in (1, 2):
+        others = (map(float, cells[1:]) for _, cells in (*rows[: above - 1], *rows[above:]))
+        if all(max(each) - min(each) < _NEAR for each in zip(*others, strict=True)):
+            return above
+    return 0
 
 
 def _placed(cells: Sequence[str]) -> str:

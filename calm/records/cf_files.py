@@ -93,6 +93,16 @@ def reading(path: Path) -> Iterator[None]:
         raise refused(path, f"cannot be read as {kind}: {reason}") from None
 
 
+@contextmanager
+def opened(path: Path) -> Iterator[xr.Dataset]:
+    """Open a dataset; what is wrong with the file is an InputError that says what it holds."""
+    with reading(path), open_current(path) as dataset:
+        try:
+            yield dataset
+        except UnreadableError as error:
+            raise UnreadableError(f"{error}; it holds {holdings(dataset)}") from None
+
+
 def open_current(path: Path) -> xr.Dataset:
     """Return the dataset of a file, its values read as they are asked for, its times undecoded."""
     import cf_xarray  # noqa: F401  (gives datasets their `cf`)
@@ -161,6 +171,33 @@ def factor_of(variable: xr.DataArray, dimension: str) -> float:
     except QuantityError as error:
         message = f"`{variable.name}`: its unit, `{unit}`, {error.complaint}"
         raise UnreadableError(message) from None
+
+
+_CELSIUS = ("degree_celsius", "degrees_celsius", "celsius", "degc", "deg_c", "°c", "degree_c", "c",
+            "degrees celsius", "degree celsius", "degrees_c", "deg c")  # fmt: skip
+_KELVIN = ("k", "kelvin", "degree_kelvin", "degrees_kelvin")
+
+
+def celsius_zero(variable: xr.DataArray) -> float:
+    """Return what is taken from a temperature to have it in °C."""
+    unit = str(variable.attrs.get("units", "")).strip()
+    if unit.rpartition(",")[2].strip().lower() in _CELSIUS:  # `ITS-90, deg C`
+        return 0.0
+    if unit.lower() in _KELVIN:
+        return 273.15
+    said = f"`{unit}`, is not degree_Celsius or K" if unit else "is missing: degree_Celsius or K"
+    raise UnreadableError(f"`{variable.name}`: its unit, {said}")
+
+
+_PRACTICAL = ("", "1", "psu", "pss", "pss-78", "pss78", "1e-3", "0.001", "ppt", "psal")
+
+
+def refuse_other_salinity(variable: xr.DataArray) -> None:
+    """Refuse a salinity that is not practical by its unit (UnreadableError)."""
+    unit = str(variable.attrs.get("units", "")).strip()
+    if unit.lower() not in _PRACTICAL:
+        said = f"`{unit}`, is not that of a practical salinity: 1 (or PSU)"
+        raise UnreadableError(f"`{variable.name}`: its unit, {said}")
 
 
 def first_present(dataset: xr.Dataset, names: Iterable[str]) -> list[str]:

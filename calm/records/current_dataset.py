@@ -52,7 +52,7 @@ class CurrentDataset:
     labels: tuple[str, ...]
     _parts: tuple[tuple[xr.DataArray, float], ...]
     _flags: tuple[xr.DataArray, ...]
-    _turn: float | None
+    _velocity: velocity.Velocity
     _terms: Terms
     _levels: LevelDepths | None
     _time: str | None
@@ -89,10 +89,9 @@ class CurrentDataset:
         if not self._terms.on_the_line:
             for variable in self._flags:
                 first[self._along(variable, index, velocity.marked_bad)] = np.nan
-        if self._turn is not None:
-            angle = np.radians(second + self._turn)
+        if self._velocity.turn is not None:
             impossible = (first < 0.0) | (np.abs(second) > 360.0)
-            first, second = first * np.sin(angle), first * np.cos(angle)
+            first, second = self._velocity.components(first, second)
             first[impossible] = second[impossible] = np.inf  # to be refused by whoever asked
         if self._terms.declination:
             with np.errstate(invalid="ignore"):  # of what is infinite
@@ -199,7 +198,7 @@ def _understood(dataset: xr.Dataset, terms: Terms) -> CurrentDataset:
         labels=labels,
         _parts=tuple(_parts(dataset, current)),
         _flags=tuple(flags.values()),
-        _turn=current.turn,
+        _velocity=current,
         _terms=terms,
         _levels=levels,
         _time=time,

@@ -1,12 +1,9 @@
 """How a person wants the currents of a file taken, at which time, and which of them cannot be."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from math import hypot, inf, isinf, pi
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,8 +11,8 @@ from numpy.typing import NDArray
 from calm.physics.line import Floats
 from calm.quantities import say
 
-if TYPE_CHECKING:
-    from calm.records.grids import Place
+Place = tuple[float, float]
+"""Latitude and longitude [degrees north, degrees east]."""
 
 DEEPEST = 11_000.0
 """Depth that no sea exceeds [m]."""

@@ -15,15 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.errors import refused
+from calm.physics.line import Floats
 from calm.positions import SEMI_MAJOR, Frame
 from calm.records import cf_files
+from calm.records.current_terms import Place
 
 if TYPE_CHECKING:
     import xarray as xr
-
-Floats = NDArray[np.float64]
-Place = tuple[float, float]
-"""Latitude and longitude [degrees north, degrees east]."""
 
 REACH = 8
 """Columns to each side of the nearest among which one with water is looked for."""

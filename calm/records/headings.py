@@ -241,7 +241,7 @@ def read_time_columns(path: Path, dimensions: Sequence[str], example: str) -> Ti
     problems: list[Problem] = []
     if complaint := zone_complaint(header.cells[0]):
         problems.append(header.problem(complaint, 0))
-    columns: dict[int, _LabelledColumn] = {}
+    columns: dict[int, tuple[str, float, QuantityRange]] = {}
     for j, column in enumerate(header.cells[1:], 1):
         name, unit = heading(column, dimensions)
         try:
@@ -250,7 +250,7 @@ def read_time_columns(path: Path, dimensions: Sequence[str], example: str) -> Ti
             problems.append(header.problem(str(error), j))
         else:
             usual = DIMENSIONS[dimension].unit
-            columns[j] = _LabelledColumn(name, dimension, unit or usual, factor)
+            columns[j] = name, factor, QuantityRange(dimension, unit or usual)
     rows = table.whole_rows(problems)
     if not rows and not problems:
         problems.append(header.problem("the table has no rows"))
@@ -261,32 +261,23 @@ def read_time_columns(path: Path, dimensions: Sequence[str], example: str) -> Ti
             times[i] = parse_time(row.cells[0])
         except TimeChoiceError as error:
             problems.append(row.problem(str(error), 0))
-        for k, (j, labelled) in enumerate(columns.items()):
+        for k, (j, (name, factor, quantity)) in enumerate(columns.items()):
             try:
-                values[i, k] = labelled.value(row.cells[j])
+                values[i, k] = _number_of(row.cells[j], factor, quantity)
             except QuantityError as error:
-                problems.append(row.problem(about_quantity(labelled.name, row.cells[j], error), j))
+                problems.append(row.problem(about_quantity(name, row.cells[j], error), j))
     if problems:
         raise InputError(delimited.abridged(problems))
     order = np.argsort(times, kind="stable")
-    found = columns.values()
-    names, kinds = tuple(one.name for one in found), tuple(one.dimension for one in found)
-    return TimeColumns(times[order], names, kinds, values[order])
+    labels = tuple(name for name, _, _ in columns.values())
+    kinds = tuple(quantity.dimension for _, _, quantity in columns.values())
+    return TimeColumns(times[order], labels, kinds, values[order])
 
 
-@dataclass(frozen=True)
-class _LabelledColumn:
-    """A column whose name is a label."""
-
-    name: str
-    dimension: str
-    unit: str
-    factor: float
-
-    def value(self, cell: str) -> float:
-        """Return the number of a cell in SI, NaN of a gap; QuantityError where it is none."""
-        if delimited.NUMBER.fullmatch(cell):
-            return float(cell) * self.factor
-        if cell.lower() in delimited.GAPS or cell.lower().lstrip("+-") in _INFINITE:
-            return float("nan")
-        return QuantityRange(self.dimension, self.unit).read(cell)
+def _number_of(cell: str, factor: float, quantity: QuantityRange) -> float:
+    """Return the number of a cell in SI, NaN of a gap; QuantityError where it is none."""
+    if delimited.NUMBER.fullmatch(cell):
+        return float(cell) * factor
+    if delimited.is_gap(cell) or cell.lower().lstrip("+-") in _INFINITE:
+        return float("nan")
+    return quantity.read(cell)

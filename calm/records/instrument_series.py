@@ -17,8 +17,9 @@ from numpy.typing import NDArray
 
 from calm.errors import InputError, Problem, UsageError, refused
 from calm.physics.line import Floats
-from calm.records import cf_files, measured_quantities, velocity
-from calm.records.cf_files import UnreadableError, factor_of, first_present, holdings, known_values
+from calm.quantities import QUANTITIES_MEASURED, MeasuredQuantity
+from calm.records import cf_files, velocity
+from calm.records.cf_files import UnreadableError, factor_of, first_present, known_values
 from calm.records.level_depths import find_levels
 
 if TYPE_CHECKING:
@@ -154,14 +155,11 @@ def _of_file(
 ) -> dict[str, list[InstrumentSeries]]:
     if not cf_files.holds_arrays(path):
         raise refused(path, "is not NetCDF, RODB, .cnv or RBR's table")
-    with cf_files.reading(path), cf_files.open_current(path) as dataset:
-        try:
-            file = _SeriesFile(velocity.with_components(dataset), path.name, flags, seabed)
-            found = {name: series for name in names if (series := file.series(name))}
-        except UnreadableError as error:
-            raise UnreadableError(f"{error}; it holds {holdings(dataset)}") from None
+    with cf_files.opened(path) as dataset:
+        file = _SeriesFile(velocity.with_components(dataset), path.name, flags, seabed)
+        found = {name: series for name in names if (series := file.series(name))}
         if not found:
-            raise UnreadableError(f"holds no {' or '.join(names)}; it holds {holdings(dataset)}")
+            raise UnreadableError(f"holds no {' or '.join(names)}")
     return found
 
 
@@ -176,7 +174,7 @@ class _SeriesFile:
 
     def series(self, name: str) -> list[InstrumentSeries]:
         """Return what the instruments measured of a quantity; nothing where they did not."""
-        dataset, quantity = self.dataset, measured_quantities.QUANTITIES_MEASURED[name]
+        dataset, quantity = self.dataset, QUANTITIES_MEASURED[name]
         moving = quantity.dimension == "speed"
         current = self._velocity(quantity) if moving else None
         variables: Sequence[str] = current.names if current else ()
@@ -186,20 +184,17 @@ class _SeriesFile:
             return []
         found = readings(dataset, variables, self.flags)
         first, values = dataset[variables[0]], found.values
-        if current is not None and current.turn is None:
-            which = 0 if name == "u" else 1
-            value = values[which] * factor_of(dataset[variables[which]], "speed")
-        elif current is not None and current.turn is not None:
-            angles = values[1] * factor_of(dataset[variables[1]], "angle")
-            angle = np.radians(angles + current.turn)
-            speed = values[0] * factor_of(first, "speed")
-            value = speed * (np.sin(angle) if name == "u" else np.cos(angle))
-        elif quantity.dimension == "temperature":
-            value = values[0] - measured_quantities.celsius_zero(first)
-        elif quantity.dimension == "salinity":
-            value = values[0] * measured_quantities.practical_factor(first)
+        if current is not None:
+            dimensions = ("speed", "speed" if current.turn is None else "angle")
+            pairs = zip(variables, dimensions, strict=True)
+            factors = (factor_of(dataset[one], dimension) for one, dimension in pairs)
+            parts = (each * factor for each, factor in zip(values, factors, strict=True))
+            value = current.components(*parts)[0 if name == "u" else 1]
+        elif name == "temperature":
+            value = values[0] - cf_files.celsius_zero(first)
         else:
-            value = values[0] * factor_of(first, quantity.dimension)
+            cf_files.refuse_other_salinity(first)
+            value = values[0]
         value = np.where(found.dropped, np.nan, value)
         who = who_along(dataset, found.along, self.seabed, self.name)
         below = np.zeros(len(who))
@@ -217,7 +212,7 @@ class _SeriesFile:
             for j in range(value.shape[1])
         ]
 
-    def _velocity(self, quantity: measured_quantities.Measured) -> velocity.Velocity | None:
+    def _velocity(self, quantity: MeasuredQuantity) -> velocity.Velocity | None:
         """Return the velocity of the file; None where it has none."""
         try:
             current = velocity.find_velocity(self.dataset, regular=False)

@@ -18,8 +18,7 @@ from numpy.typing import NDArray
 from calm.errors import UsageError, refused
 from calm.physics.line import Floats
 from calm.positions import plain_degrees
-from calm.records.current_terms import TimeChoiceError, parse_time, time_text
-from calm.records.grids import Place
+from calm.records.current_terms import Place, TimeChoiceError, parse_time, time_text
 
 Times = NDArray[np.datetime64]
 Index = slice | NDArray[np.intp]

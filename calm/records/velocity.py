@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from calm.physics.line import Floats
 from calm.records import attributes
 from calm.records.cf_files import UnreadableError, factor_of, first_present
 
@@ -85,6 +86,13 @@ class Velocity:
     turn: float | None
     magnetic: bool
     notes: tuple[str, ...]
+
+    def components(self, first: Floats, second: Floats) -> tuple[Floats, Floats]:
+        """Return the flow to the east and to the north by the two variables in SI and degrees."""
+        if self.turn is None:
+            return first, second
+        angle = np.radians(second + self.turn)
+        return first * np.sin(angle), first * np.cos(angle)
 
     @property
     def all_names(self) -> tuple[str, ...]:

@@ -1,24 +1,30 @@
-"""The statistics of a batch as a page with tables, in short, and the files beside its result."""
+"""The statistics of a batch as a page with tables and drawings, in short, and as files."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
+from math import floor, log10
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
+
+import numpy as np
 
 from calm.batch.finished import open_result
+from calm.batch.statistics import summary as statistics
 from calm.batch.statistics.extremes import EXTRAPOLATION, METHODS, Fit, Level
 from calm.batch.statistics.limits import Exceedance
-from calm.batch.statistics.summary import PERCENTILES, WORST, Distribution, Summary, summarize
+from calm.batch.statistics.summary import PERCENTILES, RESPONSES, Distribution, Response, Summary
 from calm.case import Mooring
 from calm.case.net import Net
 from calm.checks.finding import State
+from calm.drawing import graph
+from calm.drawing.graph import COLOURS, Graph, LegendEntry, Scale, Stroke, covering, seconds
 from calm.quantities import QUANTITIES, Quantity
-from calm.report import batch_figures, batch_summary, blocks, check_summary
+from calm.report import batch_summary, blocks, check_tables
 from calm.report.batch_summary import QUANTITY, TITLES, percent, when
 from calm.report.blocks import Cell, Figure, Prose, ReportPart, Table, number, table_of, words
 from calm.report.html import page
-from calm.report.provenance import NOT_JUDGED, report_of, versions
+from calm.report.provenance import NOT_JUDGED, made_by, report_of
 from calm.report.result_files import to_json
 from calm.whole_file import put
 
@@ -34,10 +40,9 @@ def summary_report(summary: Summary) -> blocks.Report:
     left_out = blocks.warned(filter(None, [batch_summary.left_out(summary)]))
     not_judged = (f"Not judged: {name}, {why}." for name, why in summary.not_judged.items())
     moving = [part for part in summary.parts if part.clamped] or list(summary.parts[:-1])
-    made_by = ", ".join(f"{name} {number}" for name, number in versions())
-    through_time = batch_figures.series_figure(summary)
-    responses = Figure("Responses of the line", batch_figures.exceedance_figure(summary))
-    instruments = batch_figures.parts_figure(moving)
+    through_time = series_figure(summary)
+    responses = Figure("Responses of the line", exceedance_figure(summary))
+    instruments = parts_figure(moving)
     parts: dict[str, tuple[blocks.Block, ...]] = {
         "Result": (
             Prose((f"{batch_summary.standing(summary)}.",), lost),
@@ -55,7 +60,7 @@ def summary_report(summary: Summary) -> blocks.Report:
         "Limits": (
             limits_table(summary),
             Prose(tuple(not_judged)),
-            check_summary.limits_table(summary.limits_used),
+            check_tables.limits_table(summary.limits_used),
         ),
         "Distributions": (*left_out, *statistics_tables(summary)),
         NOT_JUDGED.title: NOT_JUDGED.blocks,
@@ -64,7 +69,7 @@ def summary_report(summary: Summary) -> blocks.Report:
                 blocks.Listing(name.replace("_", " ").capitalize(), text)
                 for name, text in summary.source.items()
             ),
-            Prose((f"Gathered with {made_by}",)),
+            Prose((f"Gathered with {made_by()}",)),
         ),
     }  # fmt: skip
     extent = batch_summary.extent(summary)
@@ -140,8 +145,8 @@ def worst_tables(summary: Summary) -> Iterator[Table | Prose]:
         if not profiles:
             yield Prose((f"The {TITLES[name]} is not known in any profile.",), State.UNKNOWN)
             continue
-        count = f"{len(profiles)} profiles" if len(profiles) < WORST else f"{WORST} worst profiles"
-        title = f"The {count} by {TITLES[name]}"
+        worst = "worst " * (len(profiles) == statistics.WORST)
+        title = f"The {len(profiles)} {worst}profiles by {TITLES[name]}"
         yield batch_summary.profiles_table(title, [("", profile) for profile in profiles])
 
 
@@ -163,7 +168,7 @@ def levels_tables(summary: Summary) -> Iterator[Table | Prose]:
                 number("return period", 1, "years"),
                 number("level", 2, quantity.display_unit),
                 number("95 % interval", 3, quantity.display_unit),
-                note=" ".join(f"{_rules(fit)}." for fit in fits),
+                note=" ".join(map(_fitted, fits)),
             )
     for reason in batch_summary.refusals(summary):
         yield Prose((f"{reason[0].upper()}{reason[1:]}.",), State.UNKNOWN)
@@ -174,9 +179,9 @@ def _ends(level: Level, quantity: Quantity, unknown: str) -> Iterator[str]:
         yield unknown if end is None else quantity.format(end)
 
 
-def _rules(fit: Fit) -> str:
+def _fitted(fit: Fit) -> str:
     fitted = f"location {fit.location:.4g}, scale {fit.scale:.4g}, shape {fit.shape:.3f}"
-    return f"{METHODS[fit.method]}: {fitted}; {fit.rules}"
+    return f"{METHODS[fit.method]}: {fitted}; {fit.rules}."
 
 
 def write_summary(
@@ -202,7 +207,7 @@ def write_summary(
         The result cannot be read.
     """
     with open_result(result) as stored:
-        summary = summarize(stored, mooring, result.parent, check, result)
+        summary = statistics.summarize(stored, mooring, result.parent, check, result)
     document, page = summary_paths(result)
     put(document, to_json([batch_summary.summary_document(summary)]).encode())
     put(page, summary_html(summary).encode())
@@ -282,3 +287,108 @@ def _level_text(level: Level | None, quantity: Quantity) -> str:
     if level is None:
         return "-"
     return f"{quantity.format(level.level)}\n{'–'.join(_ends(level, quantity, '?'))}"
+
+
+_WIDTH = 533.0  # points: an A4 page between its margins
+_SIZE = 7.0  # points, of the letters
+_LEFT, _RIGHT, _BELOW, _GAP = 60.0, 6.0, 30.0, 14.0  # points: room around axes, and between them
+_LIMIT = Stroke("#b3261e", 1.0, (4.0, 2.0))
+
+
+def series_figure(summary: Summary) -> str:
+    """Least and greatest value of every response in each interval of time, as SVG."""
+    tall = 108.0
+    page = Graph(_WIDTH, len(RESPONSES) * (tall + _GAP) + 20.0, "responses through time", _SIZE)
+    begin = summary.responses[0].begin
+    across = covering(seconds(begin))
+    ticks = graph.moments(begin[0], begin[-1], 7)
+    for row, response in enumerate(summary.responses):
+        quantity, limit = QUANTITIES[QUANTITY[response.name]], _limit_of(summary, response)
+        low, high = (quantity.scale * edge for edge in (response.low, response.high))
+        up = covering(low, high, [limit or np.nan])
+        top = 6.0 + row * (tall + _GAP)
+        axes = page.axes(_LEFT, top, _WIDTH - _LEFT - _RIGHT, tall, across, up)
+        if np.array_equal(low, high, equal_nan=True):
+            axes.line(seconds(begin), high, Stroke(COLOURS[0], 0.8))
+        else:
+            axes.band(seconds(begin), low, high, COLOURS[0])
+        if limit is not None:
+            axes.level(limit, _LIMIT)
+        axes.frame(
+            ticks, 5,
+            beside=f"{TITLES[response.name]}\n[{quantity.display_unit}]",
+            grid=True, numbered=(row == len(RESPONSES) - 1, True),
+        )  # fmt: skip
+    return page.svg()
+
+
+class _Panel(NamedTuple):
+    """What curves show, of which quantity; each with its stroke and label; and the limit on it."""
+
+    title: str
+    name: str
+    curves: Sequence[tuple[Distribution, Stroke, str]]
+    limit: float | None = None
+
+
+def exceedance_figure(summary: Summary) -> str:
+    """Share of the profiles beyond each value: of the responses, as SVG."""
+    panels = []
+    for response in summary.responses:
+        one, limit = response.distribution, _limit_of(summary, response)
+        curves = [] if one is None else [(one, Stroke(COLOURS[0], 1.5), "")]
+        panels.append(_Panel(TITLES[response.name], QUANTITY[response.name], curves, limit))
+    return _shares("how often values are exceeded", panels, 150.0)
+
+
+def parts_figure(parts: Sequence[statistics.PartDistributions]) -> str:
+    """Return the same of the knockdown and the tilt of some parts, those that move most, as SVG."""
+    panels = []
+    for name in ("knockdown", "tilt"):
+        known = [(part.label, getattr(part, name)) for part in parts]
+        curves = [(label, one) for label, one in known if one is not None]
+        curves.sort(key=lambda curve: -curve[1].maximum)
+        drawn = [
+            (one, Stroke(colour), label)
+            for (label, one), colour in zip(curves, COLOURS, strict=False)
+        ]
+        panels.append(_Panel(name, name, drawn))
+    return _shares("how often parts exceed values", panels, 200.0)
+
+
+def _shares(title: str, panels: Sequence[_Panel], tall: float) -> str:
+    """Panels two by two, with one scale of shares."""
+    rows, wide = -(-len(panels) // 2), (_WIDTH - _LEFT - _RIGHT - _GAP) / 2
+    page = Graph(_WIDTH, rows * (tall + _BELOW) + 6.0, title, _SIZE)
+    least = min([0.1, *(one.share[-1] for panel in panels for one, _, _ in panel.curves)])
+    up = Scale(100.0 * 10.0 ** floor(log10(least) + 1e-9), 100.0, logarithmic=True)
+    for at, panel in enumerate(panels):
+        row, column = divmod(at, 2)
+        quantity = QUANTITIES[panel.name]
+        values = [one.value * quantity.scale for one, _, _ in panel.curves]
+        across = covering(*values, [np.nan if panel.limit is None else panel.limit])
+        left, top = _LEFT + column * (wide + _GAP), 6.0 + row * (tall + _BELOW)
+        axes = page.axes(left, top, wide, tall, across, up)
+        for value, (one, stroke, _) in zip(values, panel.curves, strict=True):
+            axes.line(value, 100.0 * one.share, stroke)
+        if panel.limit is not None:
+            axes.plumb(panel.limit, _LIMIT)
+        axes.frame(
+            6, graph.decades(up.low, up.high),
+            below=f"{panel.title} [{quantity.display_unit}]",
+            beside="" if column else "reached or exceeded in [% of profiles]",
+            grid=True, numbered=(True, not column),
+        )  # fmt: skip
+        named = [LegendEntry(label, line=stroke) for _, stroke, label in panel.curves if label]
+        page.legend(named, (left + 0.6 * wide, top + 4.0), 0.4 * wide, 10.0)
+    return page.svg()
+
+
+def _limit_of(summary: Summary, response: Response) -> float | None:
+    """The limit of the design on a response, as it is shown; None where it gives none."""
+    wanted = {"knockdown": "knockdown", "offset": "excursion"}.get(response.name)
+    for rule in summary.rules:
+        if rule.name == wanted:
+            limit = rule.exceedances[0].limit.criterion.limit
+            return (limit or 0.0) * QUANTITIES[QUANTITY[response.name]].scale
+    return None

@@ -21,6 +21,7 @@ from calm.checks.finding import State
 from calm.report.blocks import Cell, Field, Table, number, quantity, table_of, words
 from calm.report.check_report import limit_document
 from calm.report.result_files import members
+from calm.version import __version__
 
 
 def summary_document(summary: Summary) -> dict[str, Any]:
@@ -31,7 +32,6 @@ def summary_document(summary: Summary) -> dict[str, Any]:
     judge; `responses` of the line as a whole with their exceedance curves and return levels;
     `worst` profiles of each response.
     """
-    from calm.version import __version__
 
     def told(*, clamped: bool) -> list[dict[str, Any]]:
         return [

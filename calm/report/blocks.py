@@ -5,19 +5,16 @@ Every text is plain: a printer escapes it in its own way, and nothing in a text 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
 from operator import attrgetter, itemgetter
 from typing import TYPE_CHECKING, Any
 
-from calm.checks.finding import Finding, State
+from calm.checks.finding import State
 from calm.quantities import QUANTITIES
 
 if TYPE_CHECKING:
     from calm.report.check_facts import CheckFacts
-
-ON_THE_WAY = "launch, recovery, breaks"
-"""The column of a summary for what is judged of a mooring outside its environments."""
 
 
 @dataclass(frozen=True)
@@ -80,11 +77,18 @@ class Table:
         count = len(self.columns)
         full = [row for row in self.rows if len(row) == count]
         kept = [at for at in range(count) if any(row[at] != _EMPTY for row in full)]
-        if self.by_hand or not full or len(kept) == count:
-            return
-        rows = (row if len(row) < count else tuple(row[at] for at in kept) for row in self.rows)
-        object.__setattr__(self, "rows", tuple(rows))
-        object.__setattr__(self, "columns", tuple(self.columns[at] for at in kept))
+        if full and len(kept) < count and not self.by_hand:
+            for name, value in self._of(kept).items():
+                object.__setattr__(self, name, value)
+
+    def narrow(self) -> Table:
+        """Return the table without the columns for which there is no room."""
+        return replace(self, **self._of([n for n, one in enumerate(self.columns) if one.narrow]))
+
+    def _of(self, kept: Sequence[int]) -> dict[str, Any]:
+        """Columns by their numbers, and their rows; a single cell heads the rows below it."""
+        rows = (row if len(row) == 1 else tuple(row[at] for at in kept) for row in self.rows)
+        return {"columns": tuple(self.columns[at] for at in kept), "rows": tuple(rows)}
 
 
 _EMPTY = Cell()
@@ -177,19 +181,6 @@ class ReportPart:
 
 
 @dataclass(frozen=True)
-class Worst:
-    """The worst that a rule finds in one column of the summary.
-
-    `column` is an environment, or `ON_THE_WAY` for what is judged once for a mooring; `unknown`
-    counts the findings that lack a figure, which a pass of others must not hide.
-    """
-
-    column: str
-    finding: Finding
-    unknown: int
-
-
-@dataclass(frozen=True)
 class Section:
     """All that a report says of one mooring or tow; it may be made in a process of its own.
 
@@ -197,15 +188,11 @@ class Section:
     ----------
     name : of the mooring or tow
     parts : what is printed
-    columns : the environments and what else was judged, in order; none of a single result
-    worst : for each column and rule that applies there
-    facts : what is signed, of a design check
+    facts : what is concluded, of a design check
     """
 
     name: str
     parts: tuple[ReportPart, ...]
-    columns: tuple[str, ...] = ()
-    worst: tuple[Worst, ...] = ()
     facts: CheckFacts | None = None
 
 
@@ -308,10 +295,6 @@ def quantity_column(name: str, heading: str | None = None) -> Column:
     return Column(heading or shown.heading, shown.display_unit, True, short=short, marked=marked)
 
 
-_MARKS = {State.WARN: "~", State.FAIL: "!"}
-"""The sign after a figure that is near its limit or beyond it: legible without colour."""
-
-
 def figure_cell(name: str, value: float | None, state: State | None = None) -> Cell:
     """Return a value of a quantity as it stands under its `quantity_column`.
 
@@ -321,7 +304,7 @@ def figure_cell(name: str, value: float | None, state: State | None = None) -> C
     value : SI, degrees; None where it is not known
     state : warns or fails where the figure is near a limit or beyond it, and marks it so
     """
-    return Cell(QUANTITIES[name].format(value), state=state, mark=_MARKS[state] if state else "")
+    return Cell(QUANTITIES[name].format(value), state=state, mark=state.sign if state else "")
 
 
 def table_of(

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from calm.analytic.chart_branch import CurvePoints, critical_angle, curve
+from calm.drawing.picture import empty_figure
 from calm.errors import UsageError
 from calm.physics.line import Floats
 from calm.report.blocks import Field, Note, ReportPart, number, table_of, words
@@ -66,13 +67,12 @@ def draw_chart(k: float, lower_end: str = "below-90") -> Figure:
     K out of range; ``above-90`` at K = 0, whose curve ends at 90°.
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
 
     points = _points(k)
     above = lower_end == "above-90"
     if above and k == 0.0:
         raise UsageError("at K = 0 no angle reaches 90°; there is no chart above it")
-    figure = Figure(figsize=_PAGE)
+    figure = empty_figure(*_PAGE)
     FigureCanvasAgg(figure)
     axes = figure.add_axes((0.1, 0.1, 0.85, 0.8))
     _frame(axes, points, above)

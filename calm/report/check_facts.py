@@ -1,8 +1,13 @@
-"""What an engineer signs: the figures that decide a design check, for page one and for JSON."""
+"""What a design check concludes: the worst in each environment, and what an engineer signs.
+
+The figures that decide are on page one of the report and in its JSON.
+"""
 
 import hashlib
-from collections.abc import Iterator, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import accumulate
 from math import ceil, hypot
 from operator import attrgetter
@@ -13,15 +18,19 @@ import numpy as np
 
 from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment
-from calm.checks.finding import AS_GIVEN, Finding, State
+from calm.checks.finding import AS_GIVEN, ON_THE_WAY, OWN, Finding, State, by_rule, worst_of
 from calm.files.check_limits import LimitKey
 from calm.quantities import say
-from calm.report import blocks, check_summary
-from calm.report.blocks import Cell, Column, Pairs, ReportPart, Section, Table, table_of, words
-from calm.report.check_summary import counted_states, named_components, worst_by_part
+from calm.report import blocks, check_tables
+from calm.report.blocks import Cell, Column, Pairs, ReportPart, Table, number, table_of, words
+from calm.report.check_tables import figure_of, named_components, place_of
 from calm.report.provenance import title_pairs
 from calm.report.result_files import members
 from calm.units import KILOGRAM_FORCE, KNOT
+from calm.version import __version__
+
+_ABREAST = 5
+"""Environments beside each other in a table; more of them take another table."""
 
 PAGE_ONE = 9.0
 """Size of the smallest text of page one [pt]."""
@@ -56,13 +65,18 @@ class LeastFactor:
     unknown: int
 
 
+Columns = Mapping[str, Mapping[str, Sequence[Finding]]]
+"""Findings by the columns of a summary, and by their rules."""
+
+
 @dataclass(frozen=True)
 class CheckFacts:
-    """Hold what is signed of one mooring.
+    """Hold what is concluded and signed of one mooring.
 
     Attributes
     ----------
     mooring : its name
+    columns : what each rule finds in each environment, and `ON_THE_WAY`
     titles : name and value of what the title block says
     sha256 : of the mooring file, byte for byte; None where it can no longer be read
     current, anchor, factor : what decides; None where it is not known
@@ -71,6 +85,7 @@ class CheckFacts:
     """
 
     mooring: str
+    columns: Columns
     titles: tuple[tuple[str, str], ...]
     sha256: str | None
     current: StrongestCurrent
@@ -86,7 +101,7 @@ class CheckFacts:
         if self.anchor is not None:
             anchor = members(self.anchor, "component", "environment", "situation", "margin")
             anchor |= {"weight": self.anchor.value, "required_weight": self.anchor.limit}
-        counts = counted_states(self.findings)
+        counts = check_tables.counted_states(self.findings)
         return {
             "sha256": self.sha256,
             "strongest_current": vars(self.current),
@@ -102,24 +117,21 @@ def facts_of(assessment: Assessment) -> CheckFacts:
     file = assessment.mooring.file
     every = (*assessment.all_findings(), *assessment.tighter_findings())
     anchors = [one for one in every if one.rule == "anchor-weight" and one.value is not None]
+    columns = {
+        stand.environment: by_rule((*stand.findings, *stand.tighter)) for stand in assessment.stands
+    }
     return CheckFacts(
         assessment.name,
+        columns | {ON_THE_WAY: by_rule(assessment.findings)},
         tuple(title_pairs(file)),
         _file_hash(Path(file.path)),
         _strongest_current(assessment),
-        min(anchors, key=lambda one: one.rank, default=None),
+        worst_of(anchors) if anchors else None,
         _least_factor(assessment),
         every,
         tuple(assessment.accepted_findings()),
         tuple(key for key in assessment.limits if key.departs),
     )
-
-
-def judged_section(assessment: Assessment) -> Section:
-    """What is concluded of one mooring; nothing of it is printed yet."""
-    columns = (*(stand.environment for stand in assessment.stands), blocks.ON_THE_WAY)
-    name, worst = assessment.name, check_summary.worst_by_rule(assessment)
-    return Section(name, (), columns, worst, facts_of(assessment))
 
 
 def _file_hash(path: Path) -> str | None:
@@ -169,9 +181,9 @@ def key_pairs(facts: CheckFacts) -> Pairs:
             margin, weight, needed = (
                 _both("tension", each, KILOGRAM_FORCE, "kgf", 0) for each in figures
             )
-            place = check_summary.place_of(anchor)
+            place = place_of(anchor)
             held = f"{margin}: {weight} held, {needed} needed, environment {place}"
-    counts = counted_states(facts.findings)
+    counts = check_tables.counted_states(facts.findings)
     named = (State.FAIL, State.WARN, State.UNKNOWN, State.ESTIMATED, State.ACCEPTED)
     return Pairs((
         ("strongest current", strongest),
@@ -200,8 +212,6 @@ def _both(quantity: str, value: float, scale: float, unit: str, decimals: int) -
 
 def facts_part(facts: CheckFacts, title: str = "") -> ReportPart:
     """Return page one of a mooring, but for the verdict above it and the signatures below."""
-    from calm.version import __version__
-
     lacking = [name for name in _TITLES if name not in dict(facts.titles)]
     origin = [("not given", ", ".join(lacking))] if lacking else []
     origin += [("computed with", f"CALM {__version__}")]
@@ -246,13 +256,13 @@ def _lines_of(row: Sequence[Cell], columns: Sequence[Column], signs: float) -> f
 def settled_tables(facts: CheckFacts) -> Iterator[Table]:
     """What the designer has decided: what is accepted, and limits of the design's own."""
     terms = attrgetter("accept.reason", "accept.by", "accept.date", "accept.until")
-    groups = check_summary.grouped(facts.accepted, terms)
+    groups = check_tables.grouped(facts.accepted, terms)
     rows = [(accept, found) for found in groups if (accept := found[0].accept) is not None]
     if rows:
         yield table_of(
             "Accepted",
             rows,
-            words("rule", lambda row: ", ".join(check_summary.rules_of(row[1]))),
+            words("rule", lambda row: ", ".join(RULES[name].title for name in by_rule(row[1]))),
             words("component", lambda row: named_components(row[1])),
             *blocks.of_first(
                 words("reason", share=1.8),
@@ -262,20 +272,113 @@ def settled_tables(facts: CheckFacts) -> Iterator[Table]:
         )
     if facts.departures:
         title = "Limits that depart from their defaults"
-        yield check_summary.limits_table(facts.departures, title)
+        yield check_tables.limits_table(facts.departures, title)
 
 
 def _mending(findings: Sequence[Finding]) -> Iterator[Table]:
     """The gravest of what fails, is unknown or warns; like findings are one row."""
-    shown = (State.FAIL, State.UNKNOWN, State.WARN)
-    groups = check_summary.joined(one for one in worst_by_part(findings) if one.state in shown)
+    groups = check_tables.to_mend(findings)
     if groups:
         yield table_of(
             _MENDING,
             groups,
             *blocks.of_first(
-                check_summary.STATE, words("rule", lambda one: RULES[one.rule].title, 0.8)
+                check_tables.FIGURES[0], words("rule", lambda one: RULES[one.rule].title, 0.8)
             ),
             words("component", named_components),
-            words("finding", lambda found: check_summary.said_of(found[0]).text, 2.2),
+            words("finding", lambda found: check_tables.said_of(found[0]).text, 2.2),
         )
+
+
+def rules_tables(facts: CheckFacts) -> Iterator[Table]:
+    """Rules by environments: state, margin and component of the worst finding of each."""
+    rows = [
+        (
+            rule.title,
+            {column: {name: of[name]} for column, of in facts.columns.items() if name in of},
+        )
+        for name, rule in RULES.items()
+    ]
+    note = "Under each state: the least margin, its component, and what is unknown."
+    return _states("Rules by environment", [*facts.columns], rows, note,
+                   lambda one: f"{figure_of(one, 'margin')} {one.component or ''}")  # fmt: skip
+
+
+def matrix_tables(moorings: Sequence[CheckFacts]) -> Iterator[Table]:
+    """Moorings by environments: the worst state in each, the rule that makes it, and its margin."""
+    every = dict.fromkeys(column for each in moorings for column in each.columns)
+    del every[ON_THE_WAY]
+    rows = [(each.mooring, each.columns) for each in moorings]
+    note = "Under each state: the rule that makes it, its least margin, and how many unknown."
+    return _states("Moorings by environment", [*every, ON_THE_WAY], rows, note,
+                   lambda one: f"{RULES[one.rule].title} {figure_of(one, 'margin')}")  # fmt: skip
+
+
+def _states(
+    title: str,
+    columns: Sequence[str],
+    rows: Iterable[tuple[str, Columns]],
+    note: str,
+    detail: Callable[[Finding], str],
+) -> Iterator[Table]:
+    """Tables of the worst state of each row, a name and what was found of it, in each column.
+
+    The detail of a state stands under it.
+    """
+
+    def cell(row: tuple[str, Columns], column: str) -> Cell:
+        found = row[1].get(column)
+        if not found:
+            return Cell("–")
+        worst = worst_of(map(worst_of, found.values()))
+        missing = sum(one.state is State.UNKNOWN for each in found.values() for one in each)
+        texts = (detail(worst).strip(), f"{missing} unknown" if missing else "")
+        return Cell(worst.state.value, "; ".join(filter(None, texts)), worst.state)
+
+    size = ceil(len(columns) / ceil(len(columns) / _ABREAST))  # of groups much the same
+    for start in range(0, len(columns), size):
+        beside = columns[start : start + size]
+        yield table_of(
+            title,
+            [row for row in rows if any(map(row[1].get, beside))],
+            words(title.split()[0].lower().removesuffix("s"), 0),
+            *(words(name, partial(cell, column=name)) for name in beside),
+            note=note,
+        )
+
+
+def worst_table(moorings: Sequence[CheckFacts]) -> Table:
+    """Each rule with the worst of all its findings, and in how many moorings it fails or warns."""
+    several, rows = len(moorings) > 1, []
+    for name in RULES:
+        found = [
+            (one.mooring, of[name]) for one in moorings for of in one.columns.values() if name in of
+        ]
+        if found:
+            worst = [worst_of(each) for _, each in found]
+            states = {(mooring, one.state) for (mooring, _), one in zip(found, worst, strict=True)}
+            counts = Counter(state for _, state in states) if several else Counter[State]()
+            unknown = sum(one.state is State.UNKNOWN for _, each in found for one in each)
+            rows.append((worst_of(worst), unknown, counts))
+
+    def in_so_many(heading: str, state: State) -> blocks.Field:
+        return number(heading, lambda row: row[2][state] or None, narrow=False)
+
+    return table_of(
+        "Worst finding of each rule",
+        rows,
+        *blocks.of_first(words("rule", share=0.0), *check_tables.FIGURES),
+        number("unknown", lambda row: row[1] or None, short="?"),
+        in_so_many("moorings that fail", State.FAIL),
+        in_so_many("that warn", State.WARN),
+        words("where", lambda row: _where(row[0], several)),
+        sortable=True,
+    )
+
+
+def _where(finding: Finding, several: bool) -> str:
+    """The component, with mooring, environment and situation where they are not plain."""
+    places = [finding.component, finding.mooring if several else None]
+    if several or finding.environment != OWN or finding.situation != AS_GIVEN:
+        places.append(place_of(finding))
+    return ", ".join(filter(None, places))

@@ -1,36 +1,31 @@
-"""A mooring's part of a design check, what it concludes, and the whole report of several.
+"""A design check as a report, on a terminal, as JSON and as CSV."""
 
-As a document it is JSON, and its findings and pieces are CSV.
-"""
-
-from __future__ import annotations
-
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import asdict, replace
-from typing import TYPE_CHECKING, Any
+from itertools import groupby
+from math import inf
+from typing import Any
 
 from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment, Situation
-from calm.checks.finding import Finding, State, worst_state
+from calm.checks.comparison import Comparison
+from calm.checks.finding import ON_THE_WAY, Finding, State, by_rule, worst_state
 from calm.checks.inventory import total_of
+from calm.checks.recovery import Recovery
 from calm.drawing.check_figures import check_figure
+from calm.drawing.schematic import schematic_svg
+from calm.drop.launch import Launch
 from calm.files.check_limits import LimitKey
 from calm.quantities import QUANTITIES
 from calm.records.delimited import table_csv
-from calm.report import blocks, check_summary, check_tables, provenance
-from calm.report.blocks import Block, Figure, Prose, Report, ReportPart, Section, Signatures
-from calm.report.check_facts import PAGE_ONE, facts_of, facts_part, judged_section, left_out
-from calm.report.check_summary import limits_table, matrix_tables, rules_tables, verdict_prose
-from calm.report.check_tables import breaks_table, checks_table, deck_table, likelihood_tables
+from calm.report import blocks, check_facts, check_tables, provenance
+from calm.report.blocks import Block, Figure, Prose, ReportPart, Section, Span, number, words
+from calm.report.check_facts import PAGE_ONE, CheckFacts, facts_of
+from calm.report.check_tables import place_of, verdict_prose
 from calm.report.explanation import comparison_part
-from calm.report.provenance import BY_WAVES, NOT_JUDGED, UNJUDGED, date, history_part, inputs_part
 from calm.report.result_files import members
 from calm.report.sheet import quality_of, summary_of, table_of_line
-
-if TYPE_CHECKING:
-    from calm.checks.comparison import Comparison
-    from calm.checks.recovery import Recovery
-    from calm.drop.launch import Launch
+from calm.version import __version__
 
 
 def mooring_section(assessment: Assessment, against: Comparison | None = None) -> Section:
@@ -38,92 +33,79 @@ def mooring_section(assessment: Assessment, against: Comparison | None = None) -
 
     `against` is the mooring compared with the design that it came from.
     """
-    stands, facts = assessment.stands, facts_of(assessment)
-    judged = judged_section(assessment)
-    compared = () if against is None else (comparison_part(against),)
+    facts, items = facts_of(assessment), assessment.inventory
+    inputs = [(one.environment, one.mooring.file, one.mooring.water) for one in assessment.stands]
+    checks = (
+        *check_tables.checks_table(assessment.all_findings()),
+        *check_facts.left_out(facts),
+        check_tables.limits_table(assessment.limits),
+    )
     parts = (
-        *history_part(assessment.mooring.file),
-        *compared,
-        ReportPart("Judgement", tuple(_judgement(assessment, judged))),
+        *provenance.history_part(assessment.mooring.file),
+        *([] if against is None else [comparison_part(against)]),
+        ReportPart("Judgement", tuple(_judgement(assessment, facts))),
         ReportPart("The line", tuple(_line(assessment))),
         ReportPart("Shape, tension and breaks", tuple(_drawn(assessment))),
-        ReportPart(
-            "Checks",
-            (
-                *checks_table(assessment.all_findings()),
-                *left_out(facts),
-                limits_table(assessment.limits),
-            ),
-        ),
+        ReportPart("Checks", checks),
         ReportPart("Launch, recovery, breaks", tuple(_on_the_way(assessment))),
         ReportPart(
-            "Inventory",
-            (check_tables.inventory_table(assessment.inventory), deck_table(assessment.inventory)),
+            "Inventory", (check_tables.inventory_table(items), check_tables.deck_table(items))
         ),
-        inputs_part(
-            [stand.mooring.file for stand in stands],
-            [stand.environment for stand in stands],
-            [stand.mooring.water for stand in stands],
-        ),
+        provenance.inputs_part(inputs),
     )
-    return replace(judged, parts=parts)
+    return Section(assessment.name, parts, facts)
 
 
-def check_report(sections: Sequence[Section]) -> Report:
+def check_report(sections: Sequence[Section]) -> blocks.Report:
     """The report of a design check: what is signed, then all that it rests on.
 
     Page one is all that an engineer signs, of one mooring; of several, a summary follows it.
     """
     count = len(sections)
-    environments = {column for each in sections for column in each.columns} - {blocks.ON_THE_WAY}
+    facts = [each.facts for each in sections if each.facts is not None]
+    environments = {column for each in facts for column in each.columns} - {ON_THE_WAY}
     moorings = sections[0].name if count == 1 else f"{count} moorings"
     in_all = f"{len(environments)} environment{'s' if len(environments) != 1 else ''}"
-    facts = [each.facts for each in sections if each.facts is not None]
-    verdict = verdict_prose(finding for each in facts for finding in each.findings)
-    seen = provenance.unseen(finding for each in facts for finding in each.findings)
-    signatures = Signatures(("Designed by", "Checked by"))
-    return Report(
+    findings = [one for each in facts for one in each.findings]
+    signatures = blocks.Signatures(("Designed by", "Checked by"))
+    unseen = Prose(provenance.unseen(findings), State.UNKNOWN)
+    return blocks.Report(
         title="Design check",
         subtitle=f"{moorings}, {in_all}",
         front=(
-            ReportPart("", (verdict,), least=PAGE_ONE),
-            *(facts_part(each, each.mooring if count > 1 else "") for each in facts),
+            ReportPart("", (verdict_prose(findings),), least=PAGE_ONE),
+            *(check_facts.facts_part(each, each.mooring if count > 1 else "") for each in facts),
             ReportPart("Signatures", (signatures, blocks.PageBreak()), least=PAGE_ONE),
-            *((ReportPart("Summary", tuple(_summary(sections))),) if count > 1 else ()),
-            ReportPart(NOT_JUDGED.title, (Prose(seen, State.UNKNOWN),)),
+            *((ReportPart("Summary", tuple(_summary(facts))),) if count > 1 else ()),
+            ReportPart(provenance.NOT_JUDGED.title, (unseen,)),
         ),
         sections=tuple(sections),
-        date=date(),
+        date=provenance.date(),
     )
 
 
-def _summary(sections: Sequence[Section]) -> Iterator[Block]:
-    yield from matrix_tables(sections)
-    findings = [(each.name, each.facts.findings) for each in sections if each.facts is not None]
-    yield from likelihood_tables(findings)
-    yield check_summary.worst_table(sections)
+def _summary(facts: Sequence[CheckFacts]) -> Iterator[Block]:
+    yield from check_facts.matrix_tables(facts)
+    yield from likelihood_tables([(each.mooring, each.findings) for each in facts])
+    yield check_facts.worst_table(facts)
 
 
-def _judgement(assessment: Assessment, judged: Section) -> Iterator[Block]:
-    description = assessment.mooring.file.description
-    if description:
+def _judgement(assessment: Assessment, facts: CheckFacts) -> Iterator[Block]:
+    if description := assessment.mooring.file.description:
         yield Prose((description,))
-    yield from rules_tables(judged.columns, judged.worst)
+    yield from check_facts.rules_tables(facts)
     yield from likelihood_tables([(assessment.name, [*assessment.all_findings()])])
     yield check_tables.results_table(assessment.stands)
 
 
 def _line(assessment: Assessment) -> Iterator[Block]:
     """The schematic and the table of the line in the first environment that it stands in."""
-    from calm.drawing.schematic import schematic_svg
-
-    stand = next((stand for stand in assessment.stands if stand.result is not None), None)
-    result = stand.result if stand else None
-    title = f"Schematic, environment: {stand.environment}" if stand else "Schematic"
-    yield Figure(title, schematic_svg(assessment.mooring.file, result), tall=True)
-    if stand is not None and result is not None:
-        title = f"Table of the line, environment: {stand.environment}"
-        yield table_of_line(result, title, places=True)
+    solved = ((one.environment, one.result) for one in assessment.stands if one.result is not None)
+    environment, result = next(solved, ("", None))
+    where = environment and f", environment: {environment}"
+    yield Figure(f"Schematic{where}", schematic_svg(assessment.mooring.file, result), tall=True)
+    if result is not None:
+        yield table_of_line(result, f"Table of the line{where}", places=True)
         yield from (*summary_of(result), quality_of(result))
 
 
@@ -142,12 +124,11 @@ def _on_the_way(assessment: Assessment) -> Iterator[Block]:
         yield check_tables.handling_summary(assessment)
         yield check_tables.handling_table(assessment)
     else:
-        net = bool(assessment.mooring.file.legs)
-        said = "The launch and the recovery of a net of legs are not judged."
-        said = said if net else "Neither the launch nor the recovery could be solved."
-        yield Prose((said,), State.UNKNOWN)
+        of_net = "The launch and the recovery of a net of legs are not judged."
+        of_line = "Neither the launch nor the recovery could be solved."
+        yield Prose((of_net if assessment.mooring.file.legs else of_line,), State.UNKNOWN)
     if assessment.backup:
-        yield breaks_table(assessment.backup)
+        yield check_tables.breaks_table(assessment.backup)
 
 
 _FIGURE_NOTE = (
@@ -157,6 +138,117 @@ _FIGURE_NOTE = (
     "safety factor; beyond four times the tension it is drawn at the edge), that "
     "over the breaks the buoyancy required. Grey breaks are not judged."
 )
+
+
+_NOTE = (
+    "Each rule is shown for the component that breaks its limit most often; launch, recovery and "
+    "breaks are counted in the first 64 samples. A sample without equilibrium breaks every limit."
+)
+
+
+def likelihood_tables(named: Iterable[tuple[str, Sequence[Finding]]]) -> Iterator[blocks.Table]:
+    """The designs, by name, by their greatest probability; nothing where none was counted."""
+    designs = [(_likeliest(findings), name) for name, findings in named]
+    designs.sort(key=lambda one: -(one[0][0].probability or 0.0) if one[0] else inf)
+    if not any(found for found, _ in designs):
+        return
+    rows: list[tuple[Finding | None, str]] = []
+    for found, name in designs:
+        likely = [each for each in found if each.probability]
+        rows += zip(likely or (None,), (name, *("" for _ in likely[1:])), strict=True)
+
+    def share(finding: Finding) -> blocks.Cell:
+        percent = 100.0 * (finding.probability or 0.0)
+        digits = 0 if percent >= 9.5 else 1
+        text = f"{percent:.{digits}f}" if percent >= 0.05 else "<0.1"
+        return blocks.Cell(text, strong=percent >= 5.0)
+
+    fields = [
+        words("component", lambda one: one.component or "whole line"),
+        check_tables.FIGURES[2],
+        words("where", place_of),
+        number("broken in", share, "%"),
+    ]
+    yield blocks.table_of(
+        "Probability of breaking a limit",
+        rows,
+        words("design", lambda row: row[1]),
+        words("rule", lambda row: row[0].rule if row[0] else "none in any sample", 0.0),
+        *((column, lambda row, show=show: row[0] and show(row[0])) for column, show in fields),
+        note=_NOTE,
+    )
+
+
+def _likeliest(findings: Sequence[Finding]) -> list[Finding]:
+    """Return the finding of each rule with the greatest probability, the greatest first."""
+    counted = by_rule(one for one in findings if one.probability is not None)
+    groups = (counted[name] for name in RULES if name in counted)
+    found = (max(group, key=lambda one: one.probability or 0.0) for group in groups)
+    return sorted(found, key=lambda one: -(one.probability or 0.0))
+
+
+_TOLD = 12
+"""Most failures, or warnings, shown of a mooring; a report has them all."""
+_LACKING = 60
+"""Most components named that lack a figure."""
+
+
+def check_part(assessments: Sequence[Assessment]) -> blocks.ReportPart:
+    """Everything that a design check says in short.
+
+    Moorings by environments with the worst state in each; what decides, what is accepted and what
+    departs of each; of each rule the finding with the worst margin; every failure and warning with
+    its figures and remedy. No rule hangs on colour.
+    """
+    facts = [check_facts.facts_of(each) for each in assessments]
+    findings = [one for each in facts for one in each.findings]
+    shown = (
+        *(replace(each, title="", note="") for each in check_facts.matrix_tables(facts)),
+        check_tables.verdict_prose(findings),
+        *(block for each in facts for block in _decisive(each, several=len(facts) > 1)),
+        replace(check_facts.worst_table(facts), title=""),
+        *likelihood_tables([(each.name, [*each.all_findings()]) for each in assessments]),
+        *(block for each in facts for block in _told(each)),
+        blocks.Note(provenance.unseen(findings)[:1]),
+    )
+    return blocks.ReportPart("", shown)
+
+
+def _decisive(facts: CheckFacts, *, several: bool) -> Iterator[blocks.Block]:
+    """What decides of a mooring, what is accepted, and what departs."""
+    if several:
+        yield blocks.Heading(facts.mooring)
+    yield check_facts.key_pairs(facts)
+    yield from check_facts.settled_tables(facts)
+
+
+def _told(facts: CheckFacts) -> Iterator[blocks.Block]:
+    """What a mooring fails, lacks or is warned of, the gravest first, with its remedy."""
+    listed = check_tables.to_mend(facts.findings)
+    if not listed:
+        return
+    lines: list[blocks.Line] = []
+    for state, groups in groupby(listed, key=lambda found: found[0].state):
+        found = list(groups)
+        most = len(found) if state is State.UNKNOWN else _TOLD
+        lines += map(_sentence, found[:most])
+        if len(found) > most:
+            lines.append(f"  and {len(found) - most} more that {state}; --json has them")
+    yield blocks.Heading(facts.mooring)
+    yield Prose(tuple(lines))
+
+
+def _sentence(found: Sequence[Finding]) -> blocks.Line:
+    """What is found alike of some components, told of the worst of them."""
+    worst = found[0]
+    sign, quiet = Span(f"{worst.state.sign} ", worst.state), worst.state is not State.FAIL
+    if worst.state is State.UNKNOWN and worst.component is not None and worst.limit is None:
+        names = check_tables.named((one.component or "" for one in found), _LACKING)
+        return sign, Span(f"{worst.rule} of {names} is unknown. {worst.remedy}", quiet=True)
+    others = check_tables.named_components(found[1:])
+    others = others and f" The same holds for {others}."
+    told = Span(f"{worst.rule}, {place_of(worst)}: {worst.message}{others}")
+    return (sign, told, Span(f" {worst.remedy}", quiet=quiet)) if worst.remedy else (sign, told)
 
 
 def check_document(assessments: Sequence[Assessment]) -> dict[str, Any]:
@@ -171,65 +263,43 @@ def check_document(assessments: Sequence[Assessment]) -> dict[str, Any]:
         `inventory` and its `totals`, and its `document` where files give any; and `situations`,
         what was solved of each mooring in each environment.
     """
-    from calm.version import __version__
 
-    documents = {
-        each.name: each.mooring.file.document.to_dict()
-        for each in assessments
-        if each.mooring.file.document is not None
-    }
+    def by_name(told: Callable[[Assessment], Any]) -> dict[str, Any]:
+        return {each.name: told(each) for each in assessments}
+
+    def listed(told: Callable[[Assessment], Iterable[Any]]) -> list[Any]:
+        return [one for each in assessments for one in told(each)]
+
+    stands = [stand for each in assessments for stand in each.stands]
+    seen = provenance.BY_WAVES if all(one.mooring.file.environment.waves for one in stands) else ()
+    given = by_name(lambda each: each.mooring.file.document)
+    documents = {name: one.to_dict() for name, one in given.items() if one is not None}
     return {
         "calm": __version__,
         **({"document": documents} if documents else {}),
         "state": worst_state(each.state for each in assessments),
-        "estimated": sum(
-            finding.state is State.ESTIMATED
-            for each in assessments
-            for finding in each.all_findings()
+        "estimated": sum(one.state is State.ESTIMATED for one in listed(Assessment.all_findings)),
+        "accepted": listed(_accepted),
+        "limits": listed(
+            lambda each: ({"mooring": each.name} | limit_document(key) for key in each.limits)
         ),
-        "accepted": [
-            _accepted(each.name, finding)
-            for each in assessments
-            for finding in each.accepted_findings()
-        ],
-        "limits": [
-            {"mooring": each.name} | limit_document(key)
-            for each in assessments
-            for key in each.limits
-        ],
-        "key_figures": {each.name: facts_of(each).to_dict() for each in assessments},
-        "not_judged": [
-            one
-            for one in UNJUDGED
-            if one not in BY_WAVES
-            or not all(
-                stand.mooring.file.environment.waves
-                for each in assessments
-                for stand in each.stands
-            )
-        ],
-        "findings": [
-            _finding(each, finding) for each in assessments for finding in each.all_findings()
-        ],
-        "tighter": [
-            _finding(each, finding) for each in assessments for finding in each.tighter_findings()
-        ],
-        "situations": {
-            each.name: [
+        "key_figures": by_name(lambda each: facts_of(each).to_dict()),
+        "not_judged": [one for one in provenance.UNJUDGED if one not in seen],
+        "findings": listed(lambda each: _findings(each, each.all_findings())),
+        "tighter": listed(lambda each: _findings(each, each.tighter_findings())),
+        "situations": by_name(
+            lambda each: [
                 {"environment": stand.environment, **_situation(situation)}
                 for stand in each.stands
                 for situation in stand.situations
             ]
-            for each in assessments
-        },
-        "launch": {each.name: _handled(each.launch, _OF_LAUNCH) for each in assessments},
-        "recovery": {each.name: _handled(each.recovery, _OF_RECOVERY) for each in assessments},
-        "backup": {each.name: [asdict(one) for one in each.backup] for each in assessments},
-        "losses": {
-            each.name: [members(one, *_OF_LOSS) for one in each.losses] for each in assessments
-        },
-        "inventory": {each.name: [asdict(one) for one in each.inventory] for each in assessments},
-        "totals": {each.name: asdict(total_of(each.inventory)) for each in assessments},
+        ),
+        "launch": by_name(lambda each: _handled(each.launch, _OF_LAUNCH)),
+        "recovery": by_name(lambda each: _handled(each.recovery, _OF_RECOVERY)),
+        "backup": by_name(lambda each: [*map(asdict, each.backup)]),
+        "losses": by_name(lambda each: [members(one, *_OF_LOSS) for one in each.losses]),
+        "inventory": by_name(lambda each: [*map(asdict, each.inventory)]),
+        "totals": by_name(lambda each: asdict(total_of(each.inventory))),
     }
 
 
@@ -238,18 +308,16 @@ def limit_document(key: LimitKey) -> dict[str, Any]:
     return members(key, "name", "value", "default", "source", "departs")
 
 
-def _finding(assessment: Assessment, finding: Finding) -> dict[str, Any]:
-    """Return a finding, with its probability if those were counted: null without a limit."""
-    counted = {"probability": finding.probability} if assessment.draws else {}
-    return finding.to_dict() | counted
+def _findings(assessment: Assessment, findings: Iterable[Finding]) -> Iterator[dict[str, Any]]:
+    """Yield findings, with their probability if those were counted: null without a limit."""
+    for one in findings:
+        yield one.to_dict() | (members(one, "probability") if assessment.draws else {})
 
 
-def _accepted(mooring: str, finding: Finding) -> dict[str, Any]:
-    return {
-        "mooring": mooring,
-        **members(finding, "rule", "component"),
-        **members(finding.accept, "reason", "by", "date", "until"),
-    }
+def _accepted(assessment: Assessment) -> Iterator[dict[str, Any]]:
+    for one in assessment.accepted_findings():
+        by = members(one.accept, "reason", "by", "date", "until")
+        yield {"mooring": assessment.name, **members(one, "rule", "component"), **by}
 
 
 def _situation(situation: Situation) -> dict[str, Any]:

@@ -1,30 +1,190 @@
-"""The tables of one mooring in a design check: findings, handling, parts, likelihood.
+"""What is judged of a mooring as tables; findings, the worst of many, and the verdict in words."""
 
-In short they are the matrix, the worst of each rule, and what to mend.
-"""
-
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import replace
+import re
+from collections import Counter
+from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from functools import partial
 from itertools import groupby
-from math import hypot, inf, isnan
-from typing import Any
+from math import hypot, isnan
+from operator import attrgetter
+from typing import Any, TypeVar
 
 from calm.case import Result
 from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment, MooringInEnvironment
-from calm.checks.finding import Finding, State
+from calm.checks.criterion import said
+from calm.checks.finding import AS_GIVEN, Finding, State, worst_of, worst_state
 from calm.checks.inventory import InventoryItem
 from calm.checks.recovery import Break
 from calm.drawing.schematic.shown_parts import place_text
+from calm.files.check_limits import LimitKey
 from calm.files.components import FLEXIBLE_KINDS
 from calm.physics.line import Floats
 from calm.quantities import QUANTITIES, say
-from calm.report import blocks, check_summary
+from calm.report import blocks
 from calm.report.blocks import Cell, Field, Prose, Span, Table, number, quantity, table_of, words
-from calm.report.check_facts import CheckFacts, judged_section, key_pairs, settled_tables
-from calm.report.check_summary import grouped, joined, place_of
-from calm.report.provenance import unseen
+
+Item = TypeVar("Item")
+
+
+def figure_of(finding: Finding, name: str) -> str:
+    """The value, limit or margin of a finding with its unit; nothing where it is unknown."""
+    value = getattr(finding, name)
+    if value is None:
+        return ""
+    text = QUANTITIES[RULES[finding.rule].quantity].say(value)
+    return text if name != "margin" or text.startswith("-") else f"+{text}"
+
+
+FIGURES = (
+    words("state", lambda one: Cell(one.state.value, state=one.state), 0.0),
+    *(number(name, partial(figure_of, name=name)) for name in ("value", "limit", "margin")),
+)
+"""Columns of findings."""
+
+
+def place_of(finding: Finding) -> str:
+    """The environment, and what was changed in it."""
+    changed = "" if finding.situation == AS_GIVEN else f", {finding.situation}"
+    return f"{finding.environment}{changed}"
+
+
+def worst_by_part(findings: Iterable[Finding]) -> list[Finding]:
+    """The worst finding of each rule on each component, the gravest first."""
+    groups = grouped(findings, lambda each: (each.rule, each.place))
+    return sorted(map(worst_of, groups), key=attrgetter("rank"))
+
+
+def grouped(items: Iterable[Item], key: Callable[[Item], Hashable]) -> list[list[Item]]:
+    """Return the items of each key together, in the order in which the keys come."""
+    groups: dict[Hashable, list[Item]] = {}
+    for item in items:
+        groups.setdefault(key(item), []).append(item)
+    return list(groups.values())
+
+
+def joined(findings: Iterable[Finding]) -> list[list[Finding]]:
+    """Return together the findings of one rule that say the same of several components."""
+    return grouped(findings, lambda one: (one.rule, one.state, _wording(one)))
+
+
+def to_mend(findings: Iterable[Finding]) -> list[list[Finding]]:
+    """What fails, is unknown or warns, the gravest first, what says the same together."""
+    states = (State.FAIL, State.UNKNOWN, State.WARN)
+    return joined(one for one in worst_by_part(findings) if one.state in states)
+
+
+def _wording(finding: Finding) -> str:
+    """What a finding says and advises, without its component and figures."""
+    text = f"{finding.message} {finding.remedy or ''}"
+    if finding.component is not None:
+        text = text.replace(finding.component, "")
+    return re.sub(r"\d[\d.]*", "#", text)
+
+
+def named(labels: Iterable[str], most: int = 3) -> str:
+    """Name labels, each once, such as ``glass 1 to 4, cable``.
+
+    Of more than `most` names, successive numbers as one, how many are left is said.
+    """
+    numbered: dict[str, list[int]] = {}
+    for label in labels:
+        match = re.fullmatch(r"(.+ )([1-9]\d{0,5})", label)
+        stem, number = match.groups() if match else (label, "0")
+        numbered.setdefault(stem, []).append(int(number))
+    runs = [run for stem, numbers in numbered.items() for run in _runs(stem, numbers)]
+    left = sum(count for _, count in runs[most:])
+    return ", ".join(name for name, _ in runs[:most]) + (f" and {left} more" if left else "")
+
+
+def _runs(stem: str, numbers: Iterable[int]) -> Iterator[tuple[str, int]]:
+    """Name each run of successive numbers, and count what it stands for."""
+    each = sorted(set(numbers))
+    for _, group in groupby(enumerate(each), lambda pair: pair[1] - pair[0]):
+        run = [number for _, number in group]
+        last = f"{' and ' if len(run) == 2 else ' to '}{run[-1]}" if len(run) > 1 else ""
+        yield f"{stem}{run[0] or ''}{last}", len(run)
+
+
+def named_components(findings: Iterable[Finding]) -> str:
+    """Name the components of some findings."""
+    return named(one.component or "whole line" for one in findings)
+
+
+def said_of(finding: Finding) -> Cell:
+    """Return what was found and what to do; the figures of a pass say it all, and so does a remedy
+    that names the figure missing."""
+    if finding.state is State.PASS:
+        return Cell()
+    if finding.state is State.UNKNOWN and finding.remedy:
+        return Cell(finding.remedy)
+    return Cell(finding.message, finding.remedy or "")
+
+
+def counted_states(findings: Iterable[Finding]) -> Counter[State]:
+    """How many parts of one or several moorings each state is the worst of, rule by rule.
+
+    A missing figure of a component is counted once.
+    """
+    by_mooring = grouped(findings, attrgetter("mooring"))
+    return Counter(one.state for each in by_mooring for one in worst_by_part(each))
+
+
+def verdict_of(findings: Iterable[Finding]) -> tuple[State, str]:
+    """The worst state of one or several moorings, and the verdict in words."""
+    findings = list(findings)
+    counts = counted_states(findings)
+    unsigned = [one for one in findings if one.accept is not None and one.accept.by is None]
+    nobody = len(worst_by_part(unsigned))
+    # what is accepted may be a failure, and not only unknown
+    failing = any(one.accept is not None and (one.margin or 0.0) < 0.0 for one in findings)
+    other = "else " if failing else ""
+    state = worst_state(counts)
+    told = [
+        _counted(counts[State.FAIL], "failure") if counts[State.FAIL] else f"nothing {other}fails",
+        _counted(counts[State.UNKNOWN], "figure") + " unknown" if counts[State.UNKNOWN] else "",
+        _counted(counts[State.WARN], "warning") if counts[State.WARN] else "",
+        f"{counts[State.ESTIMATED]} estimated" if counts[State.ESTIMATED] else "",
+        f"{counts[State.ACCEPTED]} accepted" if counts[State.ACCEPTED] else "",
+        f"{nobody} of them by nobody" if nobody else "",
+    ]
+    return state, ", ".join(filter(None, told))
+
+
+def verdict_prose(findings: Iterable[Finding]) -> Prose:
+    """The verdict with its sign, such as ``? nothing fails, 34 figures unknown``."""
+    state, told = verdict_of(findings)
+    return Prose(((Span(f"{state.sign} {told}", state),),), state)
+
+
+def short_verdict(findings: Iterable[Finding]) -> Span:
+    """The verdict for the head of a page, such as ``? 0 fail, 34 unknown, 1 warn``."""
+    given = [*findings]
+    counts = Counter(finding.state for finding in given)
+    states = (State.FAIL, State.UNKNOWN, State.WARN)
+    state, _ = verdict_of(given)
+    return Span(f"{state.sign} {', '.join(f'{counts[one]} {one}' for one in states)}", state)
+
+
+def limits_table(limits: Iterable[LimitKey], title: str = "Limits as used") -> Table:
+    """Limits with their defaults and the sources of those; departures come first."""
+    departs = Cell("departs", state=State.WARN)
+    return table_of(
+        title,
+        sorted(limits, key=lambda key: not key.departs),
+        words("", lambda key: departs if key.departs else None, 0.0),
+        words("limit", "name", 1.2),
+        number("as used", lambda key: said(key, key.value)),
+        number("default", lambda key: said(key, key.default)),
+        words("source of the default", "source", 2.0),
+        note="A limit that departs from its default is the design's own; no source is given "
+        "for it.",
+    )
+
+
+def _counted(count: int, word: str) -> str:
+    return f"{count} {word}{'s' * (count != 1)}"
+
 
 _RESULTS: dict[str, Callable[[Result], float | None]] = {
     "depth": lambda result: result.top.depth,
@@ -60,7 +220,7 @@ def results_table(stands: Sequence[MooringInEnvironment]) -> Table:
 
 def checks_table(findings: Iterable[Finding]) -> Iterator[Table | Prose]:
     """The worst finding of each rule on each component, and the sources of the rules."""
-    kept = check_summary.worst_by_part(findings)
+    kept = worst_by_part(findings)
     sources = list(dict.fromkeys(finding.source for finding in kept))
 
     def rule(found: Sequence[Finding]) -> Cell:
@@ -70,16 +230,17 @@ def checks_table(findings: Iterable[Finding]) -> Iterator[Table | Prose]:
         """The components, and where the first, the worst, has its figures."""
         place = place_of(found[0])
         where = f"{found[0].component}, {place}" if len(found) > 1 else place
-        return Cell(check_summary.named_components(found), where)
+        return Cell(named_components(found), where)
 
+    state, *figures = FIGURES
     yield table_of(
         "Worst finding of each rule on each component",
         joined(kept),
-        *blocks.of_first(check_summary.STATE),
+        *blocks.of_first(state),
         words("rule", rule),
         words("component", component, 1.8),
-        *blocks.of_first(check_summary.VALUE, check_summary.LIMIT, check_summary.MARGIN),
-        *blocks.of_first(words("finding and remedy", check_summary.said_of, 2.5)),
+        *blocks.of_first(*figures),
+        *blocks.of_first(words("finding and remedy", said_of, 2.5)),
         note="Components with the same finding share a row, which shows the worst of them; "
         "every finding is in checks.csv and report.json. [1] is the first source below "
         "the table.",
@@ -208,126 +369,3 @@ def _sum(name: str, items: Sequence[InventoryItem]) -> Cell:
     least = "≥ " if missing and name == "dry_mass" else ""
     text = f"{least}{QUANTITIES[name].format(sum(known))}"
     return Cell(text, f"{missing} unknown" if missing else "")
-
-
-_NOTE = (
-    "Each rule is shown for the component that breaks its limit most often; launch, recovery and "
-    "breaks are counted in the first 64 samples. A sample without equilibrium breaks every limit."
-)
-
-
-def likelihood_tables(named: Iterable[tuple[str, Sequence[Finding]]]) -> Iterator[Table]:
-    """The designs, by name, by their greatest probability; nothing where none was counted."""
-    designs = [(_likeliest(findings), name) for name, findings in named]
-    designs.sort(key=lambda one: -(one[0][0].probability or 0.0) if one[0] else inf)
-    if not any(found for found, _ in designs):
-        return
-    rows: list[tuple[Finding | None, str]] = []
-    for found, name in designs:
-        likely = [each for each in found if each.probability]
-        rows += zip(likely or (None,), (name, *("" for _ in likely[1:])), strict=True)
-
-    def share(finding: Finding) -> Cell:
-        percent = 100.0 * (finding.probability or 0.0)
-        digits = 0 if percent >= 9.5 else 1
-        text = f"{percent:.{digits}f}" if percent >= 0.05 else "<0.1"
-        return Cell(text, strong=percent >= 5.0)
-
-    fields = [
-        words("component", lambda one: one.component or "whole line"),
-        check_summary.LIMIT,
-        words("where", place_of),
-        number("broken in", share, "%"),
-    ]
-    yield table_of(
-        "Probability of breaking a limit",
-        rows,
-        words("design", lambda row: row[1]),
-        words("rule", lambda row: row[0].rule if row[0] else "none in any sample", 0.0),
-        *((column, lambda row, show=show: row[0] and show(row[0])) for column, show in fields),
-        note=_NOTE,
-    )
-
-
-def _likeliest(findings: Sequence[Finding]) -> list[Finding]:
-    """Return the finding of each rule with the greatest probability, the greatest first."""
-    order = list(RULES)
-    counted = (one for one in findings if one.probability is not None)
-    found = (
-        max(group, key=lambda one: one.probability or 0.0)
-        for group in grouped(counted, lambda one: one.rule)
-    )
-    return sorted(found, key=lambda one: (-(one.probability or 0.0), order.index(one.rule)))
-
-
-_SIGNS = {State.FAIL: "!", State.WARN: "~", State.UNKNOWN: "?"}
-_TOLD = 12
-"""Most failures, or warnings, shown of a mooring; a report has them all."""
-_LACKING = 60
-"""Most components named that lack a figure."""
-
-
-def check_part(assessments: Sequence[Assessment]) -> blocks.ReportPart:
-    """Everything that a design check says in short.
-
-    Moorings by environments with the worst state in each; what decides, what is accepted and what
-    departs of each; of each rule the finding with the worst margin; every failure and warning with
-    its figures and remedy. No rule hangs on colour.
-    """
-    sections = [judged_section(each) for each in assessments]
-    facts = [each.facts for each in sections if each.facts is not None]
-    shown = (
-        *(replace(each, title="", note="") for each in check_summary.matrix_tables(sections)),
-        check_summary.verdict_prose(finding for each in facts for finding in each.findings),
-        *(block for each in facts for block in _decisive(each, several=len(facts) > 1)),
-        replace(check_summary.worst_table(sections), title=""),
-        *likelihood_tables([(each.name, [*each.all_findings()]) for each in assessments]),
-        *(block for each in facts for block in _told(each)),
-    )
-    return blocks.ReportPart(
-        "", (*shown, blocks.Note(unseen(each for one in facts for each in one.findings)[:1]))
-    )
-
-
-def _decisive(facts: CheckFacts, *, several: bool) -> Iterator[blocks.Block]:
-    """What decides of a mooring, what is accepted, and what departs."""
-    if several:
-        yield blocks.Heading(facts.mooring)
-    yield key_pairs(facts)
-    yield from settled_tables(facts)
-
-
-def _told(facts: CheckFacts) -> Iterator[blocks.Block]:
-    """Return what a mooring fails or is warned of, the gravest first with its remedy; what is
-    missing.
-    """
-    listed = joined(
-        one for one in check_summary.worst_by_part(facts.findings) if one.state in _SIGNS
-    )
-    if not listed:
-        return
-    lines: list[blocks.Line] = []
-    for state, groups in groupby(listed, key=lambda found: found[0].state):
-        found = list(groups)
-        most = len(found) if state is State.UNKNOWN else _TOLD
-        lines += map(_sentence, found[:most])
-        if len(found) > most:
-            lines.append(f"  and {len(found) - most} more that {state}; --json has them")
-    yield blocks.Heading(facts.mooring)
-    yield Prose(tuple(lines))
-
-
-def _sentence(found: Sequence[Finding]) -> blocks.Line:
-    """What is found alike of some components, told of the worst of them."""
-    worst = found[0]
-    sign, quiet = Span(f"{_SIGNS[worst.state]} ", worst.state), worst.state is not State.FAIL
-    if worst.state is State.UNKNOWN and worst.component is not None and worst.limit is None:
-        names = check_summary.named((one.component or "" for one in found), _LACKING)
-        return sign, Span(f"{worst.rule} of {names} is unknown. {worst.remedy}", quiet=True)
-    others = (
-        ""
-        if len(found) == 1
-        else f" The same holds for {check_summary.named_components(found[1:])}."
-    )
-    told = Span(f"{worst.rule}, {place_of(worst)}: {worst.message}{others}")
-    return (sign, told, Span(f" {worst.remedy}", quiet=quiet)) if worst.remedy else (sign, told)

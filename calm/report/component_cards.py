@@ -1,16 +1,15 @@
 """Components of the catalogue as a list, as cards and as JSON, and what they lack."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from pydantic import BaseModel
 
-from calm.assemble.datasheet import Datasheet, datasheet
+from calm.assemble.component_forces import Datasheet, datasheet
+from calm.checks.catalogue_rules import CatalogueFinding, MissingFigures
 from calm.files import Catalogue
 from calm.files.catalogue import Defined
 from calm.files.components import FLEXIBLE_KINDS, KINDS, Outline
@@ -18,10 +17,6 @@ from calm.files.definition import EstimatedFigure
 from calm.quantities import QUANTITIES
 from calm.report import blocks
 from calm.report.blocks import Cell, Field, Heading, Pairs, ReportPart, number, table_of, words
-
-if TYPE_CHECKING:
-    from calm.checks.catalogue_rules import CatalogueFinding, MissingFigures
-
 
 _PER_METRE = ("mass", "weight", "buoyancy", "net_buoyancy")
 _FIRST = ("name", "kind", "role")

@@ -13,12 +13,11 @@ from calm.drawing.picture import figure_svg
 from calm.drawing.plot import draw
 from calm.drop import DropPlan
 from calm.records.delimited import table_csv
-from calm.report import deck_lists, deck_logs
+from calm.report import deck_lists, deck_logs, provenance
 from calm.report.blocks import Figure, PageBreak, Report, ReportPart, warned
-from calm.report.check_summary import short_verdict
+from calm.report.check_tables import short_verdict
 from calm.report.diagram import Paper, diagram_pages
 from calm.report.drop_sheet import drop_part
-from calm.report.provenance import date, document_part, input_hash, moment, report_of, versions
 from calm.report.sheet import net_part
 
 Rows = Iterable[Sequence[object]]
@@ -32,13 +31,15 @@ def deck_csvs(deck: Deck) -> dict[str, str]:
 def deck_workbook(deck: Deck) -> bytes:
     """The same sheets as one Excel workbook, units in the headings, ready to print.
 
-    Texts are texts, whatever they begin with; the date of the workbook is `moment`.
+    Texts are texts, whatever they begin with; the date of the workbook is `provenance.moment`.
     """
     from xlsxwriter import Workbook
 
     content = BytesIO()
     book = Workbook(content, {"in_memory": True})
-    book.set_properties({"title": deck.file.name, "created": moment() or datetime(1980, 1, 1)})
+    book.set_properties(
+        {"title": deck.file.name, "created": provenance.moment() or datetime(1980, 1, 1)}
+    )
     bold = book.add_format({"bold": True, "text_wrap": True, "valign": "top", "bottom": 1})
     for name, (header, rows) in deck_sheets(deck).items():
         sheet = book.add_worksheet(name)
@@ -155,7 +156,7 @@ def deck_report(deck: Deck, paper: Paper, notes: tuple[str, ...] = ()) -> Report
 
     `notes` is what else is to be said on the first sheet.
     """
-    parts: list[ReportPart] = [*document_part(deck.file)]
+    parts: list[ReportPart] = [*provenance.document_part(deck.file)]
     if told := warned((*deck.notes, *notes)):
         parts.append(ReportPart("Warnings", told))
     if isinstance(deck.result, NetResult):
@@ -171,18 +172,18 @@ def deck_report(deck: Deck, paper: Paper, notes: tuple[str, ...] = ()) -> Report
         *([drop_part(deck.plan)] if isinstance(deck.plan, DropPlan) else []),
     ]
     parts[-1] = replace(parts[-1], blocks=(*parts[-1].blocks, PageBreak()))
-    report = report_of(
+    report = provenance.report_of(
         deck.file.name,
         f"{deck.order}, environment: {deck.environment}",
         *parts,
         deck_logs.recovery_part(deck),
     )
-    made_by = " ".join(versions()[0])
+    made_by, *_ = provenance.made_by().split(",")
     return replace(
         report,
         plates=plates(deck, paper),
         verdict=short_verdict(deck.assessment.all_findings()),
-        foot=f"{made_by}, inputs SHA-256 {input_hash([deck.file])}",
+        foot=f"{made_by}, inputs SHA-256 {provenance.input_hash([deck.file])}",
     )
 
 
@@ -193,7 +194,7 @@ def net_svg(deck: Deck) -> str:
 
 def diagram_report(deck: Deck, paper: Paper) -> Report:
     """The diagram alone."""
-    return Report(deck.file.name, "mooring diagram", (), (), date(), plates(deck, paper))
+    return Report(deck.file.name, "mooring diagram", (), (), provenance.date(), plates(deck, paper))
 
 
 def plates(deck: Deck, paper: Paper) -> tuple[Figure, ...]:

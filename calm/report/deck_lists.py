@@ -6,8 +6,7 @@ from typing import Any
 
 from calm.deck import Deck
 from calm.deck.deck_items import DeckInstrument, DeckItem, label_of_run, name_of_run, rows_on_paper
-from calm.deck.hardware import LENGTH_ERROR, Cut, Mark
-from calm.deck.shipping import total_of
+from calm.deck.hardware import LENGTH_ERROR, Cut, Mark, all_shipped
 from calm.quantities import QUANTITIES, say
 from calm.report import blocks
 from calm.report.blocks import Cell, Field, Note, ReportPart, number, quantity, table_of, words
@@ -156,7 +155,7 @@ def shipping_part(deck: Deck) -> ReportPart:
         note="Volumes are of the parts themselves, without packing: spheres, cylinders and "
         "cables by their size, others by what they displace. ≥ marks a lower bound, "
         "because figures are missing. Spares are not included.",
-        sums=[total_of(deck.shipped)],
+        sums=[all_shipped(deck.shipped)],
     )
     return ReportPart("Shipping list", (table,))
 

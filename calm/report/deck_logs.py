@@ -3,9 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from calm.deck import Deck
+from calm.deck import Deck, RecoveredItem
 from calm.deck.deck_items import DeckItem, DeckRow, Order, rows_on_paper
-from calm.deck.model import RecoveredItem
 from calm.drop import DropPlan
 from calm.quantities import QUANTITIES, say
 from calm.report import blocks
@@ -43,7 +42,7 @@ def deployment_part(deck: Deck) -> ReportPart:
     shown: tuple[Block, ...] = (
         _station(deck, _deployed(deck)[0]),
         Prose((said,)),
-        *_releases(deck, _TESTED, [_BOX] * len(_TESTED)),
+        *_releases(deck, _TESTED, boxes=True),
         soundings,
         _positions(deck),
         *_over_the_side(deck),
@@ -90,7 +89,7 @@ def recovery_part(deck: Deck) -> ReportPart:
         _station(deck, ""),
         *([blocks.Pairs(known)] if known else []),
         Prose(tuple(said)),
-        *_releases(deck, _FIRED, ()),
+        *_releases(deck, _FIRED, boxes=False),
         events,
         *_surfacing(deck),
     )
@@ -165,7 +164,7 @@ def _piece(row: DeckRow) -> Cell:
     return Cell(row.label, detail, indented=row.first.on is not None, strong=True, goes_on=True)
 
 
-def _releases(deck: Deck, checks: Sequence[str], boxes: Sequence[Cell]) -> list[Table]:
+def _releases(deck: Deck, checks: Sequence[str], *, boxes: bool) -> list[Table]:
     """The releases with their codes, and what is checked of each: in boxes or in writing."""
     releases = deck.file.releases
     known = {release.serial for release in releases}

@@ -15,10 +15,9 @@ from calm.drawing.schematic import FONT, HEAD, LEADING, PlacedPart, placed
 from calm.drawing.schematic.deck_parts import parts_of
 from calm.drawing.schematic.pen import INK, SOFT, Pen, picture, svg_text, wrapped
 from calm.drawing.schematic.shown_parts import TextRow, one_line
-from calm.drawing.schematic.sign import LINES, Sign
-from calm.drawing.schematic.symbols import draw_cable, figure_of
+from calm.drawing.schematic.symbols import LINES, Sign, draw_cable, figure_of
 from calm.quantities import QUANTITIES, say
-from calm.report.check_summary import short_verdict
+from calm.report.check_tables import short_verdict
 from calm.report.provenance import title_pairs
 from calm.report.sheet import ends_told, leg_title
 

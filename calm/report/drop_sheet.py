@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from calm.checks.finding import State
-from calm.drawing.picture import figure_svg
+from calm.drawing.picture import empty_figure, figure_svg
 from calm.drop import DropPlan
 from calm.drop.fall_record import DepthReached
 from calm.physics.line import Floats
 from calm.quantities import QUANTITIES, bearing_text, duration, say
 from calm.report import blocks
 from calm.report.blocks import Cell, Figure, Prose, ReportPart, Table, number, quantity, table_of
-from calm.report.check_summary import grouped
+from calm.report.check_tables import grouped
 from calm.report.provenance import position_text
 from calm.units import KNOT
 
@@ -202,9 +202,7 @@ def drop_figure(plan: DropPlan) -> str:
     Left, to one scale, the path of the anchor and the line at moments, each with its own dashes and
     named where it ends: it reads in black and white too. Right the fall speed over depth.
     """
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(_WIDTH, _HEIGHT))
+    figure = empty_figure(_WIDTH, _HEIGHT)
     figure.subplots_adjust(0.08, 0.14, 0.985, 0.97, wspace=0.06)
     shapes, speed = figure.subplots(1, 2, sharey=True, width_ratios=(3.2, 1.0))
     _draw_shapes(shapes, plan)

@@ -321,14 +321,12 @@ def _figures(
 
 
 def _figure(one: Compared) -> tuple[str, str, Cell, Cell, str]:
-    from calm.report.check_summary import SIGNS
-
     quantity, states = QUANTITIES.get(one.quantity), one.states or (None, None)
     before, after = (
         Cell(
             _text(value, quantity, state),
             state=state,
-            mark="" if state is None or value is None else SIGNS[state],
+            mark=state.sign if state and value is not None else "",
         )
         for value, state in zip((one.before, one.after), states, strict=True)
     )

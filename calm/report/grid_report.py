@@ -1,22 +1,18 @@
 """What was put onto fixed levels: the scales found, sections over time, words for a report."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from calm.drawing.picture import figure_svg
+from calm.drawing.picture import empty_figure, figure_svg
+from calm.grid.field import GriddedQuantity
+from calm.physics.line import Floats
 from calm.report import blocks
 from calm.report.blocks import Figure, Note, Prose, Report, ReportPart, Table, number, table_of
 from calm.report.provenance import report_of
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from calm.grid.field import GriddedQuantity
+from calm.version import __version__
 
 MOST_DRAWN = 600
 """Times of a section that are drawn; of more, every few."""
@@ -32,7 +28,7 @@ def grid_report(
     output: Path,
     fields: Mapping[str, GriddedQuantity],
     names: Mapping[str, str],
-    levels: NDArray[np.float64],
+    levels: Floats,
 ) -> Report:
     """Return the report: a section of each quantity, its scales, words for the methods.
 
@@ -89,12 +85,8 @@ def scales_table(fields: Mapping[str, GriddedQuantity]) -> Table:
     )
 
 
-def methods_text(
-    fields: Mapping[str, GriddedQuantity], levels: NDArray[np.float64]
-) -> tuple[str, ...]:
+def methods_text(fields: Mapping[str, GriddedQuantity], levels: Floats) -> tuple[str, ...]:
     """Return sentences to paste into the methods of a cruise report."""
-    from calm.version import __version__
-
     return (
         f"{', '.join(fields)} at the estimated depths of the instruments were mapped to "
         f"{len(levels)} levels between {levels[0]:g} and {levels[-1]:g} m by a Gaussian process "
@@ -123,14 +115,12 @@ def _section(
     name: str, field: GriddedQuantity, levels: Any, value: Any, deviation: Any, flag: Any
 ) -> Figure:
     """A section over time, the deviation below it."""
-    from matplotlib.figure import Figure as Drawing
-
     from calm.grid.field import DOUBTFUL
-    from calm.records.measured_quantities import QUANTITIES_MEASURED
+    from calm.quantities import QUANTITIES_MEASURED
 
     every = max(len(value) // MOST_DRAWN, 1)
     time = field.samples.time[::every].astype("datetime64[s]").astype(object)
-    drawing = Drawing(figsize=(_WIDTH, 2 * _HEIGHT))
+    drawing = empty_figure(_WIDTH, 2 * _HEIGHT)
     drawing.subplots_adjust(0.08, 0.07, 0.98, 0.96, hspace=0.25)
     upper, lower = drawing.subplots(2, 1, sharex=True)
     unit = QUANTITIES_MEASURED[name].units.replace("degree_Celsius", "°C").replace("m s-1", "m/s")

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from calm.checks.finding import State
+from calm.drawing.picture import empty_figure
 from calm.report import blocks
 from calm.report.blocks import Block, Cell, Note, Pairs, Prose, ReportPart, Table, number, table_of
 from calm.report.provenance import degrees_text
@@ -98,9 +99,7 @@ def located_figure(located: Located) -> Figure:
     Left all of the survey, right the place itself with its 95 % ellipse. What is not used is
     grey and dashed, and carries the number of its line.
     """
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(9.6, 4.9))
+    figure = empty_figure(9.6, 4.9)
     figure.subplots_adjust(0.075, 0.1, 0.985, 0.93, wspace=0.22)
     whole, near = figure.subplots(1, 2)
     frame, survey = located.survey.frame, located.survey

@@ -10,18 +10,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from calm.checks.finding import State
-from calm.drawing.picture import figure_svg
+from calm.drawing.picture import empty_figure, figure_svg
 from calm.motion.remarks import Agreement, Fault, no_drag
 from calm.motion.study import HeldOut, SensorSeries, Study, knockdown
 from calm.report import blocks
 from calm.report.blocks import Figure, Note, Prose, ReportPart, Table, number, table_of, words
 from calm.report.provenance import report_of
 from calm.report.result_files import members
+from calm.version import __version__
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure as Drawing
-    from numpy import datetime64
     from numpy.typing import NDArray
 
 
@@ -42,7 +42,7 @@ _NOTHING = "Nothing is clearly wrong: no clock, gain, offset, drift, slipped cla
 def motion_report(
     study: Study,
     series: Sequence[SensorSeries],
-    time: NDArray[datetime64],
+    time: NDArray[np.datetime64],
     name: str,
     notes: Sequence[str],
 ) -> blocks.Report:
@@ -87,8 +87,6 @@ MOST_PANELS = 12
 
 def methods_text(study: Study, series: Sequence[SensorSeries]) -> tuple[str, ...]:
     """Return sentences to paste into the methods of a cruise report."""
-    from calm.version import __version__
-
     used, common, time = study.task.measured, study.task.common, series[0].time
     levels = used.u.shape[1]
     by = f"the currents at {levels} levels" if study.plain else "no measured current"
@@ -257,8 +255,6 @@ def motion_document(study: Study, name: str) -> dict[str, Any]:
     `sensors` has for each sensor that was used the agreement of what is estimated, and as `plain`
     that of the currents alone; `held_out` those that were hidden.
     """
-    from calm.version import __version__
-
     sensors = [
         {"label": label, **_agreement(fit), "offset": float(offset)}
         | ({"plain": _agreement(study.plain[label])} if label in study.plain else {})
@@ -332,9 +328,7 @@ def depth_figure(series: Sequence[SensorSeries]) -> str:
 
 
 def _empty(height: float, left: float, bottom: float, top: float = 0.98, **more: float) -> Drawing:
-    from matplotlib.figure import Figure as Drawing
-
-    figure = Drawing(figsize=(_WIDTH, height))
+    figure = empty_figure(_WIDTH, height)
     figure.subplots_adjust(left, bottom, 0.99, top, **more)
     return figure
 

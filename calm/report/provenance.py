@@ -21,17 +21,16 @@ from calm.physics.line import Water
 from calm.quantities import bearing_of, say
 from calm.report import blocks
 from calm.report.blocks import Listing, Prose, Report, ReportPart, number, quantity, table_of, words
+from calm.version import __version__
 from calm.whole_file import read_text
 
 _LIBRARIES = ("numpy", "pydantic", "matplotlib", "jinja2", "typst")
 
 
-def versions() -> tuple[tuple[str, str], ...]:
+def made_by() -> str:
     """Name and version of CALM, of Python, and of the libraries that compute and draw."""
-    from calm.version import __version__
-
-    libraries = tuple((name, version(name)) for name in _LIBRARIES)
-    return (("calm", __version__), ("python", platform.python_version()), *libraries)
+    libraries = (f"{name} {version(name)}" for name in _LIBRARIES)
+    return ", ".join((f"calm {__version__}", f"python {platform.python_version()}", *libraries))
 
 
 _LATEST = 253_402_300_799  # the last second of the year 9999
@@ -135,10 +134,10 @@ def unseen(findings: Iterable[Finding]) -> tuple[str, ...]:
 _MOST_LEVELS = 40
 
 
-def environments_table(names: Sequence[str], waters: Sequence[Water]) -> blocks.Table:
+def environments_table(waters: Iterable[tuple[str, Water]]) -> blocks.Table:
     """Depth, density and the greatest current of each environment, and where it is."""
     rows = []
-    for name, water in zip(names, waters, strict=True):
+    for name, water in waters:
         speed = np.hypot(water.u, water.v)
         fastest = int(speed.argmax())
         densities = sorted({f"{density:.0f}" for density in water.density})
@@ -222,20 +221,15 @@ def degrees_text(degrees: float, sides: str, digits: int) -> str:
     return f"{whole:0{digits}d}° {minutes / 1000:06.3f}′ {sides[degrees < 0.0]}"
 
 
-def inputs_part(
-    files: Sequence[MooringFile], names: Sequence[str], waters: Sequence[Water]
-) -> ReportPart:
+def inputs_part(inputs: Sequence[tuple[str, MooringFile, Water]]) -> ReportPart:
     """Return the environments, the mooring file, the currents, the hash and the versions.
 
-    Parameters
-    ----------
-    files : one mooring or tow as read in each of its environments
-    names, waters : of these environments
+    The inputs are one mooring or tow as read in each of its environments: the name of that, the
+    file, and its water.
     """
-    table = environments_table(names, waters)
+    files, waters = [file for _, file, _ in inputs], [(name, water) for name, _, water in inputs]
     text = source_text(files[0])
     said = "The file could not be read again." if text is None else text.rstrip()
-    made_by = ", ".join(f"{name} {number}" for name, number in versions())
-    origin = (f"SHA-256 of the inputs: {input_hash(files)}", f"Computed with {made_by}")
-    listed = (Listing("Mooring file", said), *map(current_listing, names, waters))
-    return ReportPart("Inputs", (table, *listed, Prose(origin)))
+    origin = (f"SHA-256 of the inputs: {input_hash(files)}", f"Computed with {made_by()}")
+    listed = (Listing("Mooring file", said), *(current_listing(*each) for each in waters))
+    return ReportPart("Inputs", (environments_table(waters), *listed, Prose(origin)))

@@ -1,7 +1,7 @@
 """The report of a single solved mooring or tow."""
 
-from collections.abc import Iterable
-from math import isnan
+from collections.abc import Iterable, Iterator
+from functools import partial
 from typing import Any
 
 from calm.case import Result
@@ -12,20 +12,20 @@ from calm.checks.posture import reaches_the_surface
 from calm.drawing.line_picture import water_of
 from calm.drawing.picture import figure_svg
 from calm.drawing.plot import draw
+from calm.drawing.schematic import schematic_svg
 from calm.files import Uncertainty
 from calm.files.uncertainty import Spread
+from calm.quantities import QUANTITIES
 from calm.report import blocks
 from calm.report.blocks import Block, Field, Figure, ReportPart, Table, number, table_of, words
-from calm.report.check_summary import limits_table
+from calm.report.check_tables import limits_table
 from calm.report.provenance import NOT_JUDGED, document_part, inputs_part, report_of
 from calm.report.sheet import leg_title, net_part, quality_of, summary_of, table_of_line, title_of
 
 
 def result_report(result: AnyResult, uncertain: Uncertain | None = None) -> blocks.Report:
     """Schematic, table, drawing and inputs of one result, and how sure its figures are."""
-    from calm.drawing.schematic import schematic_svg
-
-    file, water = result.file, water_of(result)
+    file = result.file
     limits: tuple[ReportPart, ...] = ()
     if isinstance(result, NetResult):
         net = net_part(result)
@@ -55,7 +55,7 @@ def result_report(result: AnyResult, uncertain: Uncertain | None = None) -> bloc
         *(() if uncertain is None else (uncertainty_part(uncertain),)),
         *limits,
         NOT_JUDGED,
-        inputs_part([file], [file.environment.name or "own"], [water]),
+        inputs_part([(file.environment.name or "own", file, water_of(result))]),
     )
 
 
@@ -100,15 +100,15 @@ def _words(name: str) -> str:
 
 def _ends(uncertain: Uncertain) -> Table:
     rows = [
-        ("depth of the top", "m", uncertain.depth_top[:, 0], 1),
-        ("knockdown", "m", uncertain.knockdown[:, 0], 1),
-        ("excursion of the top", "m", uncertain.offset[:, 0], 1),
-        ("pull on the anchor", "N", uncertain.anchor_tension, 0),
-        ("weight needed", "N", uncertain.required_weight, 0),
+        ("depth of the top", QUANTITIES["depth"], uncertain.depth_top[:, 0]),
+        ("knockdown", QUANTITIES["knockdown"], uncertain.knockdown[:, 0]),
+        ("excursion of the top", QUANTITIES["offset"], uncertain.offset[:, 0]),
+        ("pull on the anchor", QUANTITIES["tension"], uncertain.anchor_tension),
+        ("weight needed", QUANTITIES["required_weight"], uncertain.required_weight),
     ]
     return table_of(
         "",
-        [(name, unit, *_figures(values, decimals)) for name, unit, values, decimals in rows],
+        [(name, of.display_unit, *map(of.format, values)) for name, of, values in rows],
         words("", 0),
         *(number(end, at) for at, end in enumerate(_ENDS, 2)),
         words("unit", 1, 0.0),
@@ -123,18 +123,20 @@ def _pieces(uncertain: Uncertain) -> Table:
         uncertain.clamped, uncertain.clamps.T, strict=True
     ):
         rows.append((index, f"  {label}", depth, tilt, tension))
-    heads = [(f"depth\n{end}", "m") for end in _ENDS]
-    heads += [(f"tilt\n{end}", "°") for end in _ENDS[1:]]
-    heads += [(f"tension\n{end}", "N") for end in _ENDS[1:]]
-    return table_of(
-        "",
-        [
-            (label, *_figures(depth, 1), *_figures(tilt[1:], 1), *_figures(tension[1:], 0))
-            for _, label, depth, tilt, tension in sorted(rows, key=lambda row: row[0])
-        ],
-        words("component", 0),
-        *(number(head, at, unit) for at, (head, unit) in enumerate(heads, 1)),
+    rows.sort(key=lambda row: row[0])
+
+    def figures(at: int, name: str, ends: Iterable[int]) -> Iterator[Field]:
+        shown = QUANTITIES[name]
+        for end in ends:
+            text = partial(lambda end, row: shown.format(row[at][end]), end)
+            yield number(f"{name}\n{_ENDS[end]}", text, shown.display_unit)
+
+    spread = (
+        *figures(2, "depth", range(3)),
+        *figures(3, "tilt", (1, 2)),
+        *figures(4, "tension", (1, 2)),
     )
+    return table_of("", rows, words("component", 1), *spread)
 
 
 def _contributions(uncertain: Uncertain) -> Table:
@@ -156,7 +158,3 @@ def _contributions(uncertain: Uncertain) -> Table:
         share("in all", "total"),
         note=note if unexplained > 0.05 else "",
     )
-
-
-def _figures(values: Iterable[float], decimals: int) -> list[str]:
-    return ["-" if isnan(value) else f"{value:z.{decimals}f}" for value in values]

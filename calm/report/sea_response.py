@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from math import isnan
 
 from calm.checks.finding import State
-from calm.drawing.picture import figure_svg
+from calm.drawing.picture import empty_figure, figure_svg
 from calm.quantities import QUANTITIES, say
 from calm.records.sea_states import doubted
 from calm.report import blocks
@@ -150,10 +150,8 @@ def _told(analysis: WaveAnalysis, state: MooringInSea) -> list[blocks.Line]:
 
 
 def _drawn(analysis: WaveAnalysis, several: bool) -> str:
-    from matplotlib import figure as drawing
-
     state = _highest(analysis)
-    figure = drawing.Figure(figsize=(7.4, 3.2), layout="constrained")
+    figure = empty_figure(7.4, 3.2, layout="constrained")
     left, right, *over = figure.subplots(1, 3 if several else 2)
     omega, density = state.spectrum
     left.plot(omega, 1e-6 * density, color="#0b3c5d")

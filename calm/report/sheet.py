@@ -4,11 +4,11 @@ Of a net they are the table of its legs, its nodes, and what its ends bear.
 """
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from calm.case import Result, TowResult
-from calm.case.profilers import ProfilerTravel
+from calm.case.mooring import ProfilerTravel
 from calm.case.result import AnyResult, NetResult, legs_of
 from calm.case.result_tables import ClampRow, ComponentRow, rows_down
 from calm.case.strumming import StrummingBand
@@ -23,12 +23,11 @@ from calm.report import blocks
 from calm.report.blocks import Cell, Column, Line, Note, Prose, ReportPart, Span, Table, words
 from calm.solve import Status
 
-NO_HEADS: Mapping[int, Cell] = {}
-
 _MOORING_COLUMNS = (
     "length", "depth", "height", "knockdown", "offset", "tilt", "tension", "safety_factor",
 )  # fmt: skip
 _TOW_COLUMNS = ("length", "depth", "layback", "tilt", "tension", "safety_factor")
+_NET_COLUMNS = ("length", "depth", "x", "y", "knockdown", "tilt", "tension", "safety_factor")
 _NOTE = "of the upper end. Tension: the greatest in the piece. ~ near a limit, ! beyond it."
 _TYPES = {"subsurface": "sub-surface mooring", "surface": "surface mooring"}
 
@@ -48,7 +47,7 @@ def result_part(
     if isinstance(result, NetResult):
         return net_part(result)
     table, (summary, *warnings) = table_of_line(result), summary_of(result)
-    quality = quality_of(result).lines if verbose else quality_of(result).lines[:1]
+    quality = quality_of(result).lines[: None if verbose else 1]
     ends = replace(summary, lines=(*summary.lines, *facts))
     shown: tuple[blocks.Block, ...] = (ends, *warnings, Note((table.note, *map(str, quality))))
     return ReportPart(title_of(result), (replace(table, note=""), *shown))
@@ -60,16 +59,6 @@ def title_of(result: Result | TowResult) -> str:
         return f"{result.name}: tow at {say('speed', result.speed)} towards {result.toward:.0f}°"
     depth = say("depth", result.file.environment.depth)
     return f"{result.name}: {_TYPES[result.type]}, {depth} of water"
-
-
-def table_of_line(result: Result | TowResult, title: str = "", *, places: bool = False) -> Table:
-    """A row for each component and clamp, in file order; `places` as in `line_table`."""
-    names: tuple[str, ...]
-    if isinstance(result, TowResult):
-        names, note = _TOW_COLUMNS, f"Depth and layback: {_NOTE}"
-    else:
-        names, note = _MOORING_COLUMNS, f"Depth, height and offset: {_NOTE}"
-    return replace(line_table(result, names, note, places=places), title=title)
 
 
 def summary_of(result: Result | TowResult) -> tuple[Prose, ...]:
@@ -187,45 +176,40 @@ def _level(result: TowResult, depth: float) -> str:
     return f"{say('depth', depth)} deep" if depth >= 0.0 else f"{say('depth', -depth)} in the air"
 
 
-def line_table(
-    result: AnyResult,
-    names: tuple[str, ...],
-    note: str,
-    *,
-    places: bool = False,
-    heads: Mapping[int, Cell] = NO_HEADS,
-) -> Table:
+def table_of_line(result: AnyResult, title: str = "", *, places: bool = False) -> Table:
     """The line from its first-listed end, each clamped instrument indented below its piece.
 
-    Parameters
-    ----------
-    names : of the quantities in each row
-    note : how to read them
-    places : whether a clamp says where on its piece it sits, in place of a length
-    heads : what stands above pieces, by their index
+    The legs of a net have heads. With `places` a clamp says where on its piece it sits, in place of
+    a length.
     """
-    columns = (Column("no.", numeric=True, narrow=False), Column("piece", short=""))
+    names: tuple[str, ...] = _MOORING_COLUMNS
+    of_an_end, heads = "Depth, height and offset", {}
+    if isinstance(result, TowResult):
+        names, of_an_end = _TOW_COLUMNS, "Depth and layback"
+    elif isinstance(result, NetResult):
+        names, of_an_end = _NET_COLUMNS, "Depth, east and north"
+        heads = {leg.file.legs[0].first: leg_title(leg) for leg in result.legs}
+    columns = [Column("no.", numeric=True, narrow=False), Column("piece", short="")]
     rows: list[tuple[Cell, ...]] = []
     for number, (piece, clamps) in enumerate(rows_down(result)):
         if piece.index in heads:
-            rows.append((heads[piece.index],))
-        component, upper = piece.part.component, (piece.depth_top, piece.x_top, piece.y_top)
-        states = {"tilt": tilt_state(component, piece.tilt)}
-        states["safety_factor"] = safety_state(result, piece)
-        label = Cell(piece.label, strong=piece.role == "instrument")
-        rows.append((Cell(str(number)), label, *_cells(result, names, piece, upper, states)))
+            rows.append((Cell(heads[piece.index], strong=True),))
+        label, factor = (
+            Cell(piece.label, strong=piece.role == "instrument"),
+            safety_state(result, piece),
+        )
+        rows.append((Cell(str(number)), label, *_cells(result, names, piece, factor)))
         for clamp in clamps:
-            component = clamp.part.component
-            states = {"tilt": tilt_state(component, clamp.tilt)}
-            there = clamp.depth, clamp.x, clamp.y
-            cells = [*_cells(result, names, clamp, there, states)]
+            cells = [*_cells(result, names, clamp)]
             if places:
                 from calm.drawing.schematic.shown_parts import place_text
 
                 cells[names.index("length")] = Cell(place_text(clamp.part.at))
-            label = Cell(clamp.label, indented=True, strong=component.role == "instrument")
+            strong = clamp.part.component.role == "instrument"
+            label = Cell(clamp.label, indented=True, strong=strong)
             rows.append((Cell(), label, *cells))
-    return Table("", (*columns, *map(blocks.quantity_column, names)), tuple(rows), note, dense=True)
+    columns += map(blocks.quantity_column, names)
+    return Table(title, tuple(columns), tuple(rows), f"{of_an_end}: {_NOTE}", dense=True)
 
 
 def tilt_state(component: Component, tilt: float) -> State | None:
@@ -254,11 +238,11 @@ def _cells(
     result: AnyResult,
     names: tuple[str, ...],
     row: ComponentRow | ClampRow,
-    place: tuple[float, float, float],
-    states: Mapping[str, State | None],
+    factor: State | None = None,
 ) -> Iterator[Cell]:
-    """The figures of a piece or a clamp, at a depth and a place east and north [m]."""
-    depth, x, y = place
+    """The figures of a piece or a clamp; a safety factor is marked by its state."""
+    depth, x, y = row.upper
+    states = {"tilt": tilt_state(row.part.component, row.tilt), "safety_factor": factor}
     bottom, distance = result.file.environment.depth, math.hypot(x, y)
     where = {"depth": depth, "offset": distance, "layback": distance, "x": x, "y": y}
     where["height"] = math.nan if bottom is None else bottom - depth
@@ -267,22 +251,15 @@ def _cells(
         yield blocks.figure_cell(name, value, states.get(name))
 
 
-_NET_COLUMNS = ("length", "depth", "x", "y", "knockdown", "tilt", "tension", "safety_factor")
-
-
 def net_part(result: NetResult) -> ReportPart:
     """A net in short: a table of the pieces leg by leg, its nodes, its anchors and held ends."""
     depth = say("depth", result.file.environment.depth)
     count = len(result.legs)
     title = f"{result.name}: net of {count} leg{'s' * (count != 1)}, {depth} of water"
-    heads = {leg.file.legs[0].first: Cell(leg_title(leg), strong=True) for leg in result.legs}
-    table = line_table(result, _NET_COLUMNS, "", heads=heads)
-    how = (
-        "Depth, east and north: of the upper end. Tension: the greatest in the piece. "
-        "~ near a limit, ! beyond it."
-    )
-    note = Note((how, _convergence(result)))
-    return ReportPart(title, (table, *_ends(result), *blocks.warned(result.warnings), note))
+    table = table_of_line(result)
+    note = Note((table.note, _convergence(result)))
+    shown = (replace(table, note=""), *_ends(result), *blocks.warned(result.warnings), note)
+    return ReportPart(title, shown)
 
 
 def leg_title(leg: Result) -> str:
@@ -317,19 +294,18 @@ def end_text(end: EndKeys) -> str:
     return "free end" if end.anchor is None else "anchor"
 
 
-def _ends(result: NetResult) -> list[Table | Prose]:
+def _ends(result: NetResult) -> Iterator[Table | Prose]:
     """Nodes, anchors and held ends, and floats at the surface."""
-    found: list[Table | Prose] = []
     if result.nodes:
         places = map(blocks.quantity, ("depth", "x", "y"))
-        found.append(blocks.table_of("Nodes", result.nodes, words("", "name"), *places))
+        yield blocks.table_of("Nodes", result.nodes, words("", "name"), *places)
     heads = {"tension": "pull", "vertical": "up", "horizontal": "sideways"}
     heads |= {"depth": "depth", "x": "east", "y": "north", "required_weight": "needs"}
     fields = [blocks.quantity(name, heading=head) for name, head in heads.items()]
     if result.anchors:
-        found.append(blocks.table_of("Anchors", result.anchors, words("leg"), *fields))
+        yield blocks.table_of("Anchors", result.anchors, words("leg"), *fields)
     if result.held:
-        found.append(blocks.table_of("Held ends", result.held, words("leg"), *fields[:-1]))
+        yield blocks.table_of("Held ends", result.held, words("leg"), *fields[:-1])
     afloat = [
         f"{leg.name}: float at the surface, {leg.top.used_buoyancy:.1%} of its buoyancy used, "
         f"{say('reserve', leg.top.reserve)} in reserve"
@@ -337,8 +313,7 @@ def _ends(result: NetResult) -> list[Table | Prose]:
         if leg.type == "surface"
     ]
     if afloat:
-        found.append(Prose(tuple(afloat)))
-    return found
+        yield Prose(tuple(afloat))
 
 
 def _convergence(result: NetResult) -> str:

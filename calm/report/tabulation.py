@@ -1,23 +1,32 @@
-"""One tow solved many times, a row each, and what the angle of a bare cable gives."""
+"""One tow solved many times, a row each, and drawn; what the angle of a bare cable gives."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import starmap
 from math import floor, log10
+from operator import mul
 from typing import TYPE_CHECKING, Any
 
 from calm.checks.finding import State
+from calm.drawing import plot
+from calm.drawing.picture import empty_figure
 from calm.errors import NoEquilibrium
 from calm.physics.strumming import BourgetMarichal
 from calm.quantities import QUANTITIES, Quantity
 from calm.records.delimited import table_csv
 from calm.report import blocks
 from calm.report.blocks import Cell, Field, Pairs, ReportPart, number, quiet, table_of, warned
+from calm.units import KNOT
+from calm.version import __version__
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
     from calm.case import Tow, TowResult
     from calm.case.strumming import BareCable
     from calm.case.tow import Variation
@@ -131,8 +140,6 @@ def to_document(tabulation: Tabulation) -> dict[str, Any]:
     A row has what was chosen, `status` and `FIGURES` (SI and degrees; `frequency` only where the
     cable strums), and its `warnings`, or, without an equilibrium, `message` and `advice`.
     """
-    from calm.version import __version__
-
     return {
         "calm": __version__,
         "name": tabulation.name,
@@ -257,3 +264,49 @@ def _notes(cable: BareCable) -> Iterator[str]:
         yield f"C* is not above C0 = {law.rest:g}, a cable at rest: it does not vibrate."
     if cn > law.ceiling:
         yield f"C* is above {law.ceiling:g}, the maximum of the method: check the measurements."
+
+
+_SWEEP_HEIGHT = 4.5  # inches
+_MOST_MARKED = 60  # points that can still be told apart
+
+
+def draw_sweep(tabulation: Tabulation) -> Figure:
+    """A figure of three panels against the speed, which belongs to no window.
+
+    Depth of the body, its layback, and the tension at the tow point and at the body. A speed
+    without equilibrium is a gap.
+    """
+    figure = empty_figure(plot.WIDTH, _SWEEP_HEIGHT, layout="constrained")
+    depth, layback, tension = figure.subplots(1, 3)
+    figure.suptitle(tabulation.name, parse_math=False)
+    _draw_figure(depth, tabulation, "depth")
+    depth.axhline(0.0, color=plot.WATER_COLOUR, linewidth=1)
+    depth.invert_yaxis()
+    _draw_figure(layback, tabulation, "layback")
+    _draw_figure(tension, tabulation, "tension", label="at the tow point")
+    _draw_figure(tension, tabulation, "body_tension", "--", label="at the body")
+    tension.set_ylabel(QUANTITIES["tension"].label)
+    tension.set_ylim(bottom=0.0)
+    tension.legend(frameon=False)
+    return figure
+
+
+def _draw_figure(
+    axes: Axes, tabulation: Tabulation, name: str, dashes: str = "-", label: str = ""
+) -> None:
+    from matplotlib.ticker import MaxNLocator
+
+    speeds = [float(row.chosen["speed"]) for row in tabulation.rows]
+    figures = [row.figures[name] for row in tabulation.rows]
+    values = [float("nan") if value is None else value for value in figures]
+    marker = "." if dashes == "-" and len(speeds) <= _MOST_MARKED else ""
+    axes.plot(speeds, values, linestyle=dashes, marker=marker, label=label, **plot.LINE_STYLE)
+    margin = 0.04 * (speeds[-1] - speeds[0]) or speeds[0]
+    axes.set_xlim(speeds[0] - margin, speeds[-1] + margin)
+    axes.set(xlabel=QUANTITIES["speed"].label, ylabel=QUANTITIES[name].label)
+    axes.grid(alpha=0.3)
+    if not axes.child_axes:
+        to_knots, from_knots = partial(mul, 1.0 / KNOT), partial(mul, KNOT)
+        knots = axes.secondary_xaxis("top", functions=(to_knots, from_knots))
+        knots.set_xlabel("speed [knot]")
+        knots.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))

@@ -73,19 +73,17 @@ class _Printer:
     def _table(self, block: Table) -> Iterator[RenderableType]:
         if block.title:
             yield self._text(block.title, "bold")
-        gap = 1 if block.dense else 2
+        gap, block = 1 if block.dense else 2, block.narrow()
         grid = table.Table(box=None, padding=(0, 0, 0, gap), pad_edge=False)
-        chosen = [number for number, column in enumerate(block.columns) if column.narrow]
-        for number in chosen:
-            self._add_column(grid, block.columns[number])
+        for column in block.columns:
+            self._add_column(grid, column)
         rows: list[Row] = []
         for count, row in enumerate(block.rows, 1):
             style = "bold" if count > len(block.rows) - block.totals else ""
             if len(row) < len(block.columns):
                 rows.append(([self._text(cell.text, "bold") for cell in row], style))
-                continue
-            said = [self._cell(row[number], block.columns[number]) for number in chosen]
-            rows.append((said, style))
+            else:
+                rows.append(([*map(self._cell, row, block.columns)], style))
         if len(rows) >= MANY:
             yield LongTable(grid, rows, gap)
         else:

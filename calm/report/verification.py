@@ -1,22 +1,19 @@
 """What a verification found: tables for people, a document for programs."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
 from math import ceil, isnan, log10
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from calm.checks.finding import State
 from calm.report import blocks
 from calm.report.blocks import Block, Cell, Heading, Line, Prose, ReportPart, Span, table_of, warned
 from calm.report.result_files import members
+from calm.verification import Case, CaseOutcome, Kind, Source
+from calm.version import __version__
 
-if TYPE_CHECKING:
-    from calm.verification import Case, CaseOutcome, Kind, Source
-
-    Findings = Sequence[tuple[Source, Sequence[CaseOutcome]]]
+Findings = Sequence[tuple[Source, Sequence[CaseOutcome]]]
 
 COLUMNS = ("case", "expected", "got", "difference", "tolerance", "unit")
 _SMALL = 1e-3
@@ -31,8 +28,6 @@ def verification_document(findings: Findings) -> dict[str, Any]:
     `tolerance`, `unit`, `why` (the reason for the tolerance), `within`, and `reason` where nothing
     was got.
     """
-    from calm.version import __version__
-
     cases = [_case(source, outcome) for source, outcomes in findings for outcome in outcomes]
     kinds = by_kind(outcome.case for _, outcomes in findings for outcome in outcomes)
     return {
@@ -46,8 +41,6 @@ def verification_document(findings: Findings) -> dict[str, Any]:
 
 def by_kind(cases: Iterable[Case]) -> dict[Kind, int]:
     """Return how many cases there are of each kind that has any, in the order of `Kind`."""
-    from calm.verification import Kind
-
     number = Counter(case.kind for case in cases)
     return {kind: number[kind] for kind in Kind if number[kind]}
 

@@ -1,15 +1,22 @@
-"""A batch result in xarray: `dataset.calm`, from when this module is imported."""
+"""A batch result in xarray: `dataset.calm`, from when this module is imported; a profile drawn."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
 import xarray as xr
 
 from calm.batch.finished import place_of
+from calm.drawing import plot
+from calm.drawing.line_picture import LineKind, LinePicture, PictureMark, Polyline, along
+from calm.drawing.picture import empty_figure
+from calm.errors import UsageError
+from calm.quantities import QUANTITIES
+from calm.report.batch_summary import when
 
 if TYPE_CHECKING:
-    import numpy as np
     from matplotlib.figure import Figure
 
 
@@ -52,8 +59,6 @@ class BatchAccessor:
 
         UsageError: the profile has no equilibrium.
         """
-        from calm.report.batch_figures import draw_shape
-
         return draw_shape(self._dataset, time)
 
     def _of(self, label: str, quantity: str, of_component: str) -> xr.DataArray:
@@ -63,3 +68,49 @@ class BatchAccessor:
         dimension = "clamp" if prefix else "component"
         column = self._dataset[variable].isel({dimension: index}, drop=True).rename(quantity)
         return column.assign_attrs(column.attrs | {"long_name": f"{quantity} of {label}"})
+
+
+_HEIGHT = 6.5  # inches
+
+
+def draw_shape(dataset: xr.Dataset, time: str | np.datetime64) -> Figure:
+    """Elevation and plan of the line in the profile nearest to a time.
+
+    The line is drawn through the nodes of a result that has them (`--shape`), else straight from
+    the upper end of one component to that of the next. The elevation is in the vertical plane of
+    the anchor and the top. UsageError: the profile has no equilibrium.
+    """
+    row = dataset.sel(time=np.datetime64(time), method="nearest")
+    prefix, end = ("shape_", "") if "shape_depth" in row else ("", "_top")
+    names = (f"{prefix}{name}{end}" for name in ("depth", "x", "y"))
+    depth, x, y = (np.asarray(row[name].values, np.float64) for name in names)
+    moment = when(row["time"].values)
+    if np.isnan(depth).any():
+        raise UsageError(f"the profile of {moment} has no equilibrium to draw")
+    distance = float(np.hypot(x[0], y[0]))
+    plane = np.array([x[0], y[0]]) / distance if distance > 0.0 else np.array([1.0, 0.0])
+    height = float(np.ptp(depth))
+    marks: tuple[PictureMark, ...] = ()
+    if "clamp_depth" in row:
+        clamps = zip(*(row[f"clamp_{name}"].values for name in ("x", "y", "depth")), strict=True)
+        marks = tuple(PictureMark("", "", "instrument", *map(float, each)) for each in clamps)
+    above = LinePicture(
+        (Polyline(LineKind.LINE, x, y),), marks, QUANTITIES["x"].label, QUANTITIES["y"].label
+    )
+    margin = 0.05 * height
+    side = LinePicture(
+        (Polyline(LineKind.LINE, along(x, y, plane), depth),),
+        tuple(replace(one, x=float(along(one.x, one.y, plane)), y=one.depth) for one in marks),
+        across=QUANTITIES["offset"].label,
+        up=QUANTITIES["depth"].label,
+        top=min(0.0, float(depth.min())) - margin,
+        bottom=float(depth.max()) + margin,
+        height=height,
+        surface=True,
+    )
+    figure = empty_figure(plot.WIDTH, _HEIGHT, layout="constrained")
+    elevation, plan = figure.subplots(1, 2)
+    figure.suptitle(f"{dataset.attrs.get('title', '')}\n{moment}".strip(), parse_math=False)
+    plot.draw_elevation(elevation, side)
+    plot.draw_plan(plan, above)
+    return figure

@@ -8,11 +8,9 @@ from contextlib import suppress
 from dataclasses import dataclass
 from math import ceil
 
-from calm.case import Mooring, Result
+from calm.case import Mooring, Result, net, targets
 from calm.case.adjustment import parse_change
-from calm.case.net import Net
 from calm.case.size import NOT_MET, size
-from calm.case.targets import parse_target
 from calm.checks.finding import Finding, State
 from calm.errors import CalmError, UsageError
 from calm.files import Anchor, Catalogue, Piece, Rigid
@@ -66,7 +64,7 @@ def _against_lifting(view: View, catalogue: Catalogue | None) -> Iterator[Offer]
         yield from _anchors(view.file.pieces[-1], needed, catalogue)
 
 
-def sized(mooring: Mooring | Net, target: str, change: str) -> Offer:
+def sized(mooring: Mooring | net.Net, target: str, change: str) -> Offer:
     """The smallest change that meets a target, both as `calm size` reads them.
 
     Raises
@@ -75,7 +73,7 @@ def sized(mooring: Mooring | Net, target: str, change: str) -> Offer:
         They cannot be understood.
     """
     adjustment = parse_change(change, mooring.file)
-    parse_target(target, mooring.file)
+    targets.parse_target(target, mooring.file)
     item = adjustment.parts[0].place.item
     key, unit = change.rpartition(".")[2], f" {adjustment.unit}" if adjustment.unit else ""
     clamps = (f"clamps.{part.place.clamp}" for part in adjustment.parts if part.place.is_clamp)

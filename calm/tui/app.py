@@ -20,17 +20,12 @@ from textual.timer import Timer
 from textual.widgets import OptionList
 
 from calm.errors import CalmError
-from calm.files import Catalogue
-from calm.files.editing import KeptWork, WorkingFile
-from calm.tui.dialogs import LongText
-from calm.tui.key_table import Actions, Commands, all_keys
-from calm.tui.line.builder import BuilderScreen
+from calm.files import Catalogue, editing
+from calm.tui import builder, dialogs, key_table, saving, workspace
 from calm.tui.painted import Pace, Painted, PlainSigns, shows_all_signs
-from calm.tui.saving import Saving
 from calm.tui.screen import DraftScreen
 from calm.tui.session import Session
 from calm.tui.theme import DARK, LIGHT, PICTURE_DARK, PICTURE_LIGHT, choose_theme, legible
-from calm.tui.workspace import Judging, Workspace
 
 _AUTOSAVED_AFTER = 0.3  # seconds
 _LOOKED_AT_DISK = 2.0  # seconds between two looks
@@ -65,7 +60,7 @@ class BuildApp(App[int]):
     """
 
     TITLE = "calm build"
-    COMMANDS: ClassVar[set[Any]] = {*App.COMMANDS, Actions}
+    COMMANDS: ClassVar[set[Any]] = {*App.COMMANDS, key_table.Actions}
     CSS = """
     * { scrollbar-size: 1 1; }
     Input > .input--placeholder { text-style: italic dim; }
@@ -79,15 +74,15 @@ class BuildApp(App[int]):
         self,
         session: Session,
         *,
-        kept: KeptWork | None = None,
+        kept: editing.KeptWork | None = None,
         environ: Mapping[str, str] = os.environ,
     ) -> None:
         super().__init__()
         self.session = session
-        self.workspace = Workspace(session, self.tell, self._edited)
-        self.judging = Judging(self, self.workspace, self._show_views)
-        self.saving = Saving(self, self.workspace)
-        self.builder = BuilderScreen(self.workspace)
+        self.workspace = workspace.Workspace(session, self.tell, self._edited)
+        self.judging = workspace.Judging(self, self.workspace, self._show_views)
+        self.saving = saving.Saving(self, self.workspace)
+        self.builder = builder.BuilderScreen(self.workspace)
         self.not_kept = ""
         self._painted, self._pace = Painted(), Pace()
         self._offered = kept
@@ -260,11 +255,11 @@ class BuildApp(App[int]):
     def action_command_palette(self) -> None:
         """Find a command by its name."""
         if not isinstance(self.screen, CommandPalette):
-            self.push_screen(Commands(id="--command-palette"))
+            self.push_screen(key_table.Commands(id="--command-palette"))
 
     def action_help(self) -> None:
         """All keys."""
-        self.push_screen(LongText(all_keys()))
+        self.push_screen(dialogs.LongText(key_table.all_keys()))
 
     # judging
 
@@ -316,8 +311,6 @@ class BuildApp(App[int]):
 
     @work(thread=True, exit_on_error=False)
     def _read_catalogue(self) -> None:
-        from calm.files import Catalogue
-
         try:
             self.call_later(self._take_catalogue, Catalogue.load(self.session.catalogs))
         except CalmError as error:
@@ -347,7 +340,7 @@ class BuildApp(App[int]):
             self._keep_aside(self.session.note_unsaved())
 
     @work(thread=True, group="keeping", exit_on_error=False)
-    def _keep_aside(self, file: WorkingFile) -> None:
+    def _keep_aside(self, file: editing.WorkingFile) -> None:
         """A slow disk holds up no key."""
         try:
             file.keep()

@@ -1,15 +1,13 @@
 """A table whose values are edited where they stand."""
 
-from typing import ClassVar, Literal
+from typing import Literal
 
 from textual import events
 from textual.app import ComposeResult
-from textual.binding import BindingType
 from textual.containers import Vertical
 
+from calm.tui import field, key_table
 from calm.tui.checking import Check, Reading, anything
-from calm.tui.field import ScrolledEntry
-from calm.tui.key_table import bindings
 from calm.tui.scrolled import TableCells
 from calm.tui.workspace import Workspace
 
@@ -41,9 +39,7 @@ class EditableTable(Vertical):
 
     def tell_reading(self, reading: Reading) -> None:
         """Tell what the text typed so far comes to."""
-        completed = reading.text if reading.text != self.editor.value.strip() else ""
-        note = reading.note or (f"= {completed}" if completed and reading.is_good else "")
-        self.workspace.tell(note, wrong=not reading.is_good)
+        self.workspace.tell(reading.told(self.editor.value), wrong=not reading.is_good)
 
     def go_on(self, then: Then, text: str | None) -> None:
         """Go on from a cell whose text was taken, None where it stays as it was."""
@@ -118,10 +114,10 @@ class EditableTable(Vertical):
             self.workspace.tell(reason, wrong=True)
 
 
-class CellEditor(ScrolledEntry):
+class CellEditor(field.ScrolledEntry):
     """A line of input laid over a cell; it says at each key what it makes of the text."""
 
-    BINDINGS: ClassVar[list[BindingType]] = [*bindings("cell")]
+    BINDINGS = key_table.bindings("cell")
     DEFAULT_CSS = """
     CellEditor, CellEditor:focus {
         layer: over; position: absolute; display: none; height: 1; border: none; padding: 0;

@@ -5,9 +5,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from datetime import date
 
+from calm.files import editing, logbook
 from calm.files.definition import LENGTH, POSITIVE_LENGTH, QuantityField
-from calm.files.editing import Value
-from calm.files.logbook import LOAD
 from calm.records.current_terms import TimeChoiceError, parse_time
 from calm.units import QuantityError, QuantityRange
 
@@ -45,6 +44,11 @@ class Reading:
         if self.offer:
             return f"{self.complaint}: {self.offer}?"
         return self.complaint
+
+    def told(self, typed: str) -> str:
+        """Return the note of a bad text; of a good one what it comes to, where that is more."""
+        is_completed = self.text and self.text != " ".join(typed.split())
+        return self.note or self.comes_to or (f"= {self.text}" if is_completed else "")
 
 
 Check = Callable[[str], Reading]
@@ -150,7 +154,7 @@ def length(before: str = "", *, towed: bool = False) -> Check:
     """A length, one with the load it is measured ``at``, or ``fit`` with the depth to reach."""
     plain = quantity(POSITIVE_LENGTH, usual_unit=unit_of(before))
     depth = quantity(QuantityField("length") if towed else LENGTH, usual_unit=unit_of(before))
-    load = quantity(LOAD, usual_unit="kN")
+    load = quantity(logbook.LOAD, usual_unit="kN")
     what = "the depth its lower end is to reach" if towed else "the depth the top is to reach"
 
     def check(text: str) -> Reading:
@@ -176,7 +180,7 @@ def _joined(long: Reading, load: Reading) -> Reading:
     return Reading(f"{long.text} at {load.text}", complaint, offer)
 
 
-def length_values(text: str, *, towed: bool = False) -> Mapping[str, Value | None]:
+def length_values(text: str, *, towed: bool = False) -> Mapping[str, editing.Value | None]:
     """The keys of an item with this length, as `length` has read it."""
     key, other = ("body_depth", "top_depth") if towed else ("top_depth", "body_depth")
     fit, measured = _FIT.fullmatch(text), _AT_LOAD.fullmatch(text)

@@ -4,21 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar, TypeVar
+from typing import Any, TypeVar
 
 from rich.console import RenderableType
 from textual import on
 from textual.app import App, ComposeResult
-from textual.binding import BindingType
 from textual.containers import Vertical, VerticalScroll
 from textual.events import Key
 from textual.markup import escape
 from textual.screen import ModalScreen, Screen
 from textual.widgets import Static
 
-from calm.tui.checking import Reading
+from calm.tui import checking, key_table
 from calm.tui.field import Asked, Field, all_settled
-from calm.tui.key_table import bindings
 
 _FRAME = """
     align: center middle;
@@ -47,9 +45,29 @@ def ask(app: App[Any], screen: Screen[T | None], take: Callable[[T], object]) ->
     app.push_screen(screen, taken)
 
 
-def choose(app: App[Any], question: Question) -> None:
-    """Ask a question, and do what the answer stands for."""
+def choose(
+    app: App[Any],
+    title: str,
+    text: str,
+    answers: Sequence[Answer],
+    *,
+    back: Then | None = None,
+    must: bool = False,
+) -> None:
+    """Ask a `Question`, and do what the answer stands for."""
+    question = Question(title, text, answers, back=back, must=must)
     ask(app, question, lambda then: then())
+
+
+def enter(
+    app: App[Any],
+    title: str,
+    text: str,
+    asked: Sequence[Asked],
+    take: Callable[[dict[str, str]], object],
+) -> None:
+    """Ask for some texts on an `InputSheet`, and take what is entered."""
+    ask(app, InputSheet(title, text, asked), take)
 
 
 @dataclass(frozen=True)
@@ -69,7 +87,7 @@ def numbered(answers: Iterable[tuple[str, Then]]) -> list[Answer]:
 class Question(ModalScreen[Then | None]):
     """One of several answers, by its key or with the mouse; Esc is `back` unless one `must` be."""
 
-    BINDINGS: ClassVar[list[BindingType]] = [*bindings("question")]
+    BINDINGS = key_table.bindings("question")
     DEFAULT_CSS = "Question {" + _FRAME + "}"
 
     def __init__(
@@ -146,7 +164,7 @@ class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
     It is wider where it is said beside them what they take.
     """
 
-    BINDINGS: ClassVar[list[BindingType]] = [*bindings("sheet")]
+    BINDINGS = key_table.bindings("sheet")
     DEFAULT_CSS = (
         "InputSheet {" + _FRAME + " & Field > Input { width: 1fr; }"
         " & .field-note { display: none; }"
@@ -189,7 +207,7 @@ class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
     def _judge(self, event: Field.Judged) -> None:
         self._tell(event.field, event.reading)
 
-    def _tell(self, field: Field, reading: Reading) -> None:
+    def _tell(self, field: Field, reading: checking.Reading) -> None:
         note = self.query_one("#sheet-note", Static)
         note.update(field.note(reading))
         note.set_class(not reading.is_good, "-wrong")
@@ -203,7 +221,7 @@ class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
 class LongText(ModalScreen[None]):
     """A text over the screen, scrolled where it is longer; of tables, `wide`."""
 
-    BINDINGS: ClassVar[list[BindingType]] = [*bindings("help")]
+    BINDINGS = key_table.bindings("help")
     DEFAULT_CSS = (
         "LongText {" + _FRAME + " & > VerticalScroll { width: 84; height: 90%; }"
         " &.-wide > VerticalScroll { width: 110; } }"

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import ClassVar
 
 from rich.text import Text
 from textual import events, on
 from textual.app import ComposeResult
-from textual.binding import BindingType
 from textual.containers import Horizontal
 from textual.geometry import Size
 from textual.message import Message
@@ -147,13 +145,8 @@ class Field(Horizontal):
             self._told.update(note, layout=False)
 
     def note(self, reading: Reading) -> str:
-        """Return what is said of the typed text: what is wrong, or what is added."""
-        if not reading.is_good:
-            return reading.note
-        if reading.comes_to:
-            return reading.comes_to
-        completed = reading.text != " ".join(self.input.value.split())
-        return f"= {reading.text}" if completed else self._note
+        """Return what is said of the typed text: what is wrong or added, else what it takes."""
+        return reading.told(self.input.value) or self._note
 
     def _tell(self, reading: Reading) -> None:
         self.set_class(not reading.is_good, "-wrong")
@@ -197,7 +190,7 @@ class Field(Horizontal):
 class Cycle(Widget, can_focus=True):
     """A name, and a word between two arrows."""
 
-    BINDINGS: ClassVar[list[BindingType]] = [*bindings("choice")]
+    BINDINGS = bindings("choice")
     DEFAULT_CSS = """
     Cycle { height: 1; width: 1fr; color: $foreground; }
     Cycle:focus { text-style: bold; }

@@ -256,7 +256,7 @@ def shown_keys(keys: str) -> str:
     return "  ".join(map(shown_key, keys.split(",")))
 
 
-def bindings(place: str) -> list[Binding]:
+def bindings(place: str) -> list[BindingType]:
     """The keys of a place for the widget or screen that has the methods."""
     return [Binding(each.keys, each.name, each.title, show=False) for each in ACTIONS[place]]
 
@@ -317,7 +317,7 @@ class Actions(Provider):
 
     @property
     def _offered(self) -> list[Action]:
-        from calm.tui.line.builder import BuilderScreen
+        from calm.tui.builder import BuilderScreen
 
         if not isinstance(self.screen, BuilderScreen):
             return []
@@ -338,7 +338,7 @@ class Actions(Provider):
                 yield Hit(score, title, self._run(action), help=action.meaning)
 
     def _run(self, action: Action) -> Callable[[], Awaitable[bool]]:
-        from calm.tui.line.line_pane import LinePane
+        from calm.tui.line_pane import LinePane
 
         name = action.name.removeprefix("screen.")
         is_of_line = action.place == "line" and name == action.name

@@ -18,16 +18,12 @@ from calm.case.memory import Memory
 from calm.case.net import Net
 from calm.case.parts import cut_like
 from calm.case.result import AnyResult, NetResult, legs_of
-from calm.checks.assess import findings_of
+from calm.checks import assess, net_check
 from calm.checks.assessment import MooringInEnvironment, Situation
 from calm.checks.finding import AS_GIVEN, OWN, Finding, State
-from calm.checks.net_check import check
 from calm.checks.strength import strength
 from calm.errors import InputError, NoEquilibrium, Problem, internal_failure
-from calm.files import MooringFile, Piece, Place, read_mooring
-from calm.files.editing import Draft, LineItem
-from calm.files.mooring_file import STAND_IN, parts_of
-from calm.files.yaml_document import compose
+from calm.files import MooringFile, Piece, Place, editing, mooring_file, read_mooring, yaml_document
 from calm.quantities import show_in
 
 UNNAMED = "unnamed.yaml"
@@ -80,9 +76,9 @@ class View:
         return (self.text, self.path, self.environment) == (text, _placed(path), environment)
 
     @cached_property
-    def items(self) -> tuple[LineItem, ...]:
+    def items(self) -> tuple[editing.LineItem, ...]:
         """The items of the text, as written."""
-        return Draft(self.text).items
+        return editing.Draft(self.text).items
 
     @property
     def here(self) -> str:
@@ -92,7 +88,7 @@ class View:
     @property
     def anchored(self) -> bool:
         """Return whether the line has an anchor of its own, or needs none."""
-        return self.file is not None and self.file.pieces[-1].use != STAND_IN
+        return self.file is not None and self.file.pieces[-1].use != mooring_file.STAND_IN
 
 
 def judge(
@@ -142,7 +138,7 @@ def judge_fully(view: View, catalogs: Sequence[str | Path] = ()) -> View:
         return view
     file = view.result.file
     moorings, problems = _in_all_environments(view, view.result.mooring, catalogs)
-    assessment = check(*moorings)
+    assessment = net_check.check(*moorings)
     findings, tighter = tuple(assessment.all_findings()), tuple(assessment.tighter_findings())
     rows = tuple(rows_of(file, view.result, (*findings, *tighter)))
     return replace(
@@ -177,7 +173,7 @@ def _in_all_environments(
 
 def _judged(view: View, catalogs: Sequence[str | Path]) -> View:
     try:
-        document = compose(str(view.path), view.text)
+        document = yaml_document.compose(str(view.path), view.text)
     except InputError as error:
         return _wrong(view, error.problems)
     named = document.data.get("environments")
@@ -204,7 +200,7 @@ def _lacking(file: MooringFile) -> Iterator[str]:
     parts = [*(piece.component for piece in file.pieces), *clamps]
     if not any(part.net_buoyancy > 0.0 for part in parts):
         yield "no float"
-    if file.pieces[-1].use == STAND_IN:
+    if file.pieces[-1].use == mooring_file.STAND_IN:
         yield "no anchor"
 
 
@@ -220,7 +216,7 @@ def _solved(view: View, file: MooringFile) -> View:
     if not isinstance(result, TowResult) and file.tow is None:  # no rule is of a tow
         for each in (None,) if result is None else legs_of(result):
             situation = Situation(AS_GIVEN, each, failure)
-            findings += findings_of(situation, file.name, file.environment.name or OWN)
+            findings += assess.findings_of(situation, file.name, file.environment.name or OWN)
     rows = tuple(rows_of(file, result, findings))
     return replace(
         view, result=result, failure=failure, findings=tuple(findings), rows=rows,
@@ -282,9 +278,9 @@ def rows_of(
     for finding in findings:
         found[finding.place].append(finding)
     for piece in file.pieces:
-        if piece.use == STAND_IN:
+        if piece.use == mooring_file.STAND_IN:
             continue
-        for part in parts_of([piece]):
+        for part in mooring_file.parts_of([piece]):
             own, length = found[part.place], part.length if isinstance(part, Piece) else None
             gravest = max(own, key=lambda each: each.state.severity, default=None)
             yield FoundRow(

@@ -7,11 +7,9 @@ from itertools import chain
 from typing import Any
 
 from calm.errors import CalmError
-from calm.files import Place
-from calm.files.check_limits import matching
+from calm.files import Place, check_limits, yaml_document
 from calm.files.editing import Draft, History
 from calm.files.mooring_file import numbered_labels
-from calm.files.yaml_document import Location
 
 _MOST_OF_A_COUNT = 1000
 
@@ -20,7 +18,7 @@ _MOST_OF_A_COUNT = 1000
 class Named:
     """A label, or a pattern of labels, as a file names it, and where."""
 
-    location: Location
+    location: yaml_document.Location
     text: str
 
     @property
@@ -32,13 +30,13 @@ class Named:
 def named_in(draft: Draft) -> Iterator[Named]:
     """All that a file names of its line: what is accepted, what was deployed, stops."""
 
-    def within(*location: str | int) -> Iterator[tuple[Location, Any]]:
+    def within(*location: str | int) -> Iterator[tuple[yaml_document.Location, Any]]:
         values = draft.value(location)
         if isinstance(values, dict | list):
             pairs = values.items() if isinstance(values, dict) else enumerate(values)
             yield from (((*location, key), value) for key, value in pairs)
 
-    def under(key: str, *location: str | int) -> list[tuple[Location, Any]]:
+    def under(key: str, *location: str | int) -> list[tuple[yaml_document.Location, Any]]:
         rows = (row for row, _ in within(*location))
         return [each for row in rows for each in within(*row) if each[0][-1] == key]
 
@@ -87,9 +85,9 @@ def followed(before: Draft, after: Draft, moved: Mapping[Place, Place]) -> tuple
     known, all_now = ([*chain.from_iterable(each.values())] for each in (old, new))
     told = []
     for each in names:
-        meant = set(matching(each.text, known))
+        meant = set(check_limits.matching(each.text, known))
         wanted = {renamed[label] for label in meant if label in renamed}
-        if not meant or (set(matching(each.text, all_now)) >= wanted and wanted):
+        if not meant or (set(check_limits.matching(each.text, all_now)) >= wanted and wanted):
             continue
         text = _called(each.text, wanted, renamed, all_now)
         try:
@@ -113,7 +111,7 @@ def _called(
     for label, now in renamed.items():
         base, its = label.rstrip("0123456789 "), now.rstrip("0123456789 ")
         tried = text.replace(base, its)
-        if base != its and wanted and set(matching(tried, labels)) == wanted:
+        if base != its and wanted and set(check_limits.matching(tried, labels)) == wanted:
             return tried
     return None
 

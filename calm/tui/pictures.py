@@ -4,19 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from textwrap import wrap
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, Literal
 
 from rich.text import Text
 from textual import events, on
 from textual.app import ComposeResult
-from textual.binding import BindingType
 from textual.containers import ScrollableContainer, Vertical
 from textual.geometry import Size
 from textual.reactive import reactive
 from textual.widgets import Static
 
-from calm.tui.scrolled import DrawnRows, Row
-from calm.tui.theme import CURSOR, ELLIPSIS
+from calm.tui import scrolled, theme
 
 if TYPE_CHECKING:
     from calm.case.result import AnyResult
@@ -31,7 +29,7 @@ _LEAST_BESIDE = 52
 _BESIDE, _MOST_BESIDE = 3, 26
 
 
-class Picture(DrawnRows, can_focus=True):
+class Picture(scrolled.DrawnRows, can_focus=True):
     """One picture, drawn for the cells it has."""
 
     DEFAULT_CSS = """
@@ -40,7 +38,7 @@ class Picture(DrawnRows, can_focus=True):
     Picture:focus { background-tint: $foreground 3%; }
     """
 
-    BINDINGS: ClassVar[list[BindingType]] = [*ScrollableContainer.BINDINGS]
+    BINDINGS = ScrollableContainer.BINDINGS
 
     def __init__(self) -> None:
         super().__init__()
@@ -55,7 +53,7 @@ class Picture(DrawnRows, can_focus=True):
         self._view, self.tab, self._beside = view, tab, beside
         self.draw_again()
 
-    def rows_for(self, size: Size) -> list[Row]:
+    def rows_for(self, size: Size) -> list[scrolled.Row]:
         """Draw the picture; one that is not to scale is as large as it needs."""
         rows = self._picture(size)
         widest = max((row.cell_len for row in rows), default=0)
@@ -67,11 +65,11 @@ class Picture(DrawnRows, can_focus=True):
         if _is_small(size):
             return [Text("(too small)", style="dim")]
         if result is None:
-            words = "A picture appears once the line stands." if self._view else ELLIPSIS
+            words = "A picture appears once the line stands." if self._view else theme.ELLIPSIS
             return [Text(""), *(Text(line, style="dim") for line in wrap(words, size.width))]
         from calm.drawing.line_picture import lines_of
         from calm.drawing.schematic.in_terminal import schematic_text
-        from calm.drawing.sketch.views import plan, tension
+        from calm.drawing.sketch import plan, tension
 
         if self.tab == "plan":
             return plan(result, *size, self._beside)
@@ -88,7 +86,7 @@ class Picture(DrawnRows, can_focus=True):
 
     def _elevation(self, result: AnyResult, size: Size) -> list[Text]:
         from calm.drawing.line_picture import water_of
-        from calm.drawing.sketch.views import current_profile, elevation
+        from calm.drawing.sketch import current_profile, elevation
 
         if size.width < _LEAST_BESIDE or result.file.environment.depth is None:
             return elevation(result, *size, self._beside)
@@ -184,7 +182,7 @@ class Pictures(Vertical):
     @on(events.DescendantBlur)
     def _show_tabs(self) -> None:
         """The names of the pictures, that shown in reverse; a sign where the keys go to it."""
-        parts = [CURSOR if self._picture.has_focus else " "]
+        parts = [theme.CURSOR if self._picture.has_focus else " "]
         for number, tab in enumerate(TABS, 1):
             style = ("[reverse bold]", "[/]") if tab == self.tab else ("", "")
             parts.append(f"[@click=screen.picture('{tab}')]{style[0]} {number} {tab} {style[1]}[/]")
@@ -196,7 +194,7 @@ class Pictures(Vertical):
         self._picture.focus()
 
 
-class ProfilePicture(DrawnRows):
+class ProfilePicture(scrolled.DrawnRows):
     """Speed and direction over depth, of the environment that the line was judged in."""
 
     DEFAULT_CSS = """
@@ -215,13 +213,13 @@ class ProfilePicture(DrawnRows):
             old = True
         self.set_class(old, "-old")
 
-    def rows_for(self, size: Size) -> list[Row]:
+    def rows_for(self, size: Size) -> list[scrolled.Row]:
         """Draw the profile; nothing where there is no room, or no environment yet."""
         file = None if self._view is None else self._view.file
         if _is_small(size) or file is None:
             return []
         from calm.assemble import assemble_water
-        from calm.drawing.sketch.views import current_profile
+        from calm.drawing.sketch import current_profile
 
         if file.environment.depth is None:
             rows = [Text("No depth is given: the water is deep.", style="dim")]

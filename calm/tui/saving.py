@@ -2,24 +2,18 @@
 
 from __future__ import annotations
 
-import contextlib
-import hashlib
-import json
 import os
 import time
 from collections.abc import Callable
-from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from calm import whole_file
 from calm.errors import CalmError, InputError
-from calm.files import read_mooring
-from calm.files.editing import KeptWork, state_folder
-from calm.files.editing.working_file import Keeper
+from calm.files import editing, read_mooring
+from calm.files.editing.user_state import Presence
 from calm.tui.checking import Reading
-from calm.tui.dialogs import Answer, InputSheet, Question, Then, ask, choose
+from calm.tui.dialogs import Answer, Question, Then, choose, enter
 from calm.tui.field import Asked
 from calm.tui.screen import DraftScreen
 from calm.tui.workspace import Workspace, place_of
@@ -98,7 +92,7 @@ class Saving:
         begun = str(begin or path or "")
         asked = [Asked("path", "File", begun, _is_writable, placeholder="e.g. iroise-2026.yaml")]
         text = f"In {Path.cwd()}, unless you give a folder."
-        ask(self._app, InputSheet("Save as", text, asked), take)
+        enter(self._app, "Save as", text, asked, take)
 
     def _ask_to_overwrite(self, path: Path, then: Then | None) -> None:
         """Of another file that is there, or of one's own that is protected or was changed."""
@@ -122,7 +116,7 @@ class Saving:
             title = f"{path.name} was changed by another program"
             text = "The file on the disk differs from your line. "
             text += f"It was written {moment(stamp[0] / 1e9)}."
-        choose(self._app, Question(title, text, answers))
+        choose(self._app, title, text, answers)
 
     # the file on the disk
 
@@ -159,7 +153,7 @@ class Saving:
 
     # work of an earlier run
 
-    def offer(self, kept: KeptWork) -> None:
+    def offer(self, kept: editing.KeptWork) -> None:
         """Ask whether it is to be recovered, saying when it was kept and whether the file is newer.
 
         To throw it away is asked about twice: nothing brings it back.
@@ -186,18 +180,18 @@ class Saving:
                 else f" The file was changed, {moment(stamp[0] / 1e9)}, after that work was begun: "
                 "saving will ask."
             )
-        sure = Question(
-            "Throw the work away?",
-            f"It was kept {moment(kept.at)}.",
-            [Answer("y", "yes, throw it away for good", throw_away)],
-            back=partial(self.offer, kept),
-        )
+
+        def ask_again() -> None:
+            yes = [Answer("y", "yes, throw it away for good", throw_away)]
+            told = f"It was kept {moment(kept.at)}."
+            choose(app, "Throw the work away?", told, yes, back=partial(self.offer, kept))
+
         answers = [
             Answer("r", "recover it; undo goes back to the file", recover),
             Answer("k", "keep it for later; go on with the file", go_on),
-            Answer("d", "throw it away", partial(choose, app, sure)),
+            Answer("d", "throw it away", ask_again),
         ]
-        choose(app, Question("Work that was not saved", text, answers, must=True))
+        choose(app, "Work that was not saved", text, answers, must=True)
 
     # the way out
 
@@ -221,37 +215,7 @@ class Saving:
         name, file = self._session.name, self._session.file
         is_gone = file.stamp is None and file.changed_on_disk()
         told = "is gone from the disk" if is_gone else "has changes that are not saved"
-        choose(self._app, Question("Not saved", f"{name} {told}.", answers))
-
-
-class Presence:
-    """Says in the state folder which file is open here."""
-
-    def __init__(self) -> None:
-        self._place: Path | None = None
-
-    def say(self, path: Path | None) -> list[int]:
-        """Say it of another file, or of none; the processes that have that one open, too."""
-        if self._place is not None:
-            with contextlib.suppress(OSError):
-                self._place.unlink(missing_ok=True)
-        self._place = None
-        if path is None:
-            return []
-        own, folder, others = Keeper.this(), state_folder(), []
-        sign = hashlib.sha256(os.fsencode(os.path.realpath(path))).hexdigest()[:12]
-        with contextlib.suppress(OSError):
-            folder.mkdir(parents=True, exist_ok=True)
-            for place in folder.glob(f"open-{sign}-*.json"):
-                with contextlib.suppress(OSError, ValueError, TypeError):
-                    keeper = Keeper(**json.loads(place.read_text(encoding="utf-8")))
-                    if keeper.is_here and not keeper.is_running:
-                        place.unlink(missing_ok=True)
-                    elif keeper != own:
-                        others.append(keeper.process)
-            self._place = folder / f"open-{sign}-{own.process}.json"
-            whole_file.put(self._place, json.dumps(asdict(own)).encode())
-        return others
+        choose(self._app, "Not saved", f"{name} {told}.", answers)
 
 
 def chosen_path(text: str) -> Path:

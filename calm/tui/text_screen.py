@@ -1,21 +1,16 @@
 """The file as text, its mistakes below it: where a broken file is mended."""
 
 import re
-from typing import ClassVar
 
 from textual import on
 from textual.app import ComposeResult
-from textual.binding import BindingType
 from textual.containers import VerticalScroll
 from textual.content import Content
 from textual.widgets import Static, TextArea
 
 from calm.errors import Problem
 from calm.files.editing.changes import retyped
-from calm.tui.dialogs import InputSheet, ask
-from calm.tui.field import Asked
-from calm.tui.key_table import bindings, hints
-from calm.tui.screen import DraftScreen, KeyBar
+from calm.tui import dialogs, field, key_table, screen
 from calm.tui.workspace import Workspace, is_elsewhere, mistakes, said
 
 _INDENT = 2
@@ -25,7 +20,7 @@ _LINE_BREAK = re.compile(r"\r\n?|\n")
 class YamlArea(TextArea):
     """Text whose tabs are blanks, as YAML wants them."""
 
-    BINDINGS: ClassVar[list[BindingType]] = [*bindings("area")]
+    BINDINGS = key_table.bindings("area")
 
     def action_indent(self) -> None:
         """Blanks up to the next column that is even."""
@@ -52,13 +47,13 @@ class YamlArea(TextArea):
         self.refresh()
 
 
-class TextScreen(DraftScreen):
+class TextScreen(screen.DraftScreen):
     """The text of the file, judged at each pause.
 
     Lines that are not touched keep their line breaks.
     """
 
-    BINDINGS: ClassVar[list[BindingType]] = [*bindings("text")]
+    BINDINGS = key_table.bindings("text")
 
     DEFAULT_CSS = """
     TextScreen {
@@ -87,7 +82,7 @@ class TextScreen(DraftScreen):
 
     def on_mount(self) -> None:
         """The cursor to the first mistake, or to the piece that it was on."""
-        self.query_one(KeyBar).show_keys(hints("text"))
+        self.query_one(screen.KeyBar).show_keys(key_table.hints("text"))
         self.show_view()
         self.text_area.focus()
         if self._here:
@@ -185,9 +180,9 @@ class TextScreen(DraftScreen):
 
     def action_find(self) -> None:
         """Ask for words, and go to them."""
-        asked = [Asked("words", "Find", placeholder="a label, a key, a number")]
-        sheet = InputSheet("Find in the text", "F3 goes to the next place.", asked)
-        ask(self.app, sheet, lambda texts: self.find(texts["words"]))
+        asked = [field.Asked("words", "Find", placeholder="a label, a key, a number")]
+        text, app = "F3 goes to the next place.", self.app
+        dialogs.enter(app, "Find in the text", text, asked, lambda it: self.find(it["words"]))
 
     def action_find_next(self) -> None:
         """To the next place of what was sought."""

@@ -213,8 +213,3 @@ CURSOR = "▸"
 MARK = "*"
 FAVOURITE = "★"
 ELLIPSIS = "…"
-
-
-def worst(states: list[State]) -> State | None:
-    """The gravest of some states; None of none."""
-    return max(states, key=lambda state: state.severity, default=None)

@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 from rich.segment import Segment
 from rich.style import Style
 from rich.table import Table
 from rich.text import Text
 from textual import events
-from textual.binding import BindingType
 from textual.geometry import Size
 from textual.strip import Strip
 
 from calm.checks.finding import State
-from calm.tui.key_table import bindings
-from calm.tui.scrolled import ScrolledText
-from calm.tui.theme import ELLIPSIS, LOOKS
+from calm.tui import key_table, scrolled, theme
 from calm.tui.verdict_text import Saying, headline, sayings
 
 if TYPE_CHECKING:
@@ -28,7 +25,7 @@ if TYPE_CHECKING:
 _CHOSEN = Style(reverse=True)
 
 
-class VerdictPane(ScrolledText, can_focus=True):
+class VerdictPane(scrolled.ScrolledText, can_focus=True):
     """What holds, what does not and why; the figures of the anchor and the top.
 
     Parameters
@@ -36,7 +33,7 @@ class VerdictPane(ScrolledText, can_focus=True):
     go_to : takes the rows that a chosen line is about, none to go back, and what it says
     """
 
-    BINDINGS: ClassVar[list[BindingType]] = [*bindings("verdict")]
+    BINDINGS = key_table.bindings("verdict")
     DEFAULT_CSS = """
     VerdictPane {
         height: auto; max-height: 60%; min-height: 5; width: 1fr; padding: 0 1; margin-top: 1;
@@ -125,13 +122,13 @@ class VerdictPane(ScrolledText, can_focus=True):
 def _parts(view: View | None, note: str) -> Iterator[tuple[Saying, RenderableType]]:
     """All that is said, and how it looks."""
     head = headline(view)
-    style = "dim" if head.state is None else LOOKS[head.state].style
+    style = "dim" if head.state is None else theme.LOOKS[head.state].style
     yield head, Text(f"{head.sign} {head.text}", style=f"{style} bold")
     for saying in sayings(view):
         table = Table.grid(padding=(0, 1, 0, 0), expand=True)
         table.add_column(width=1)
         table.add_column(overflow="fold", ratio=1)
-        look = LOOKS[saying.state].style if saying.state else ""
+        look = theme.LOOKS[saying.state].style if saying.state else ""
         grave = saying.state in (State.FAIL, State.WARN)
         heading = (f"{saying.heading}  " if saying.heading else "", look if grave else "dim")
         told = Text.assemble(heading, (saying.text, "dim" if saying.faint else ""))
@@ -143,5 +140,5 @@ def _parts(view: View | None, note: str) -> Iterator[tuple[Saying, RenderableTyp
 
 def state_word(view: View | None, *, old: bool = False) -> str:
     """The headline in one line with its sign; dots for that where it is of an `old` draft."""
-    sign = ELLIPSIS if old else headline(view).sign.strip()
+    sign = theme.ELLIPSIS if old else headline(view).sign.strip()
     return f"{sign} {headline(view).text}".strip()

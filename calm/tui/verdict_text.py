@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from calm.checks.finding import AS_GIVEN, OWN, Finding, Rule, State
 from calm.quantities import say
-from calm.tui.theme import ELLIPSIS, LOOKS, worst
+from calm.tui.theme import ELLIPSIS, LOOKS
 from calm.tui.workspace import mistakes, place_of
 
 if TYPE_CHECKING:
@@ -20,7 +19,6 @@ if TYPE_CHECKING:
     from calm.tui.live import View
 
 _MOST_PROBLEMS = 6
-_MOST_NAMED = 2
 
 
 @dataclass(frozen=True)
@@ -65,33 +63,13 @@ def headline(view: View | None) -> Saying:
 
 
 def _judged(findings: Sequence[Finding]) -> Saying:
-    """Return what is counted is a rule of a component in a situation, in whichever environments."""
-    states: dict[tuple[str, str | None, str], State] = {}
-    for each in sorted(findings, key=lambda each: each.rank):
-        states.setdefault((each.rule, each.component, each.situation), each.state)
-    counts = Counter(states.values())
-    state = worst(list(counts))
-    if state is None:
+    """The verdict in the words of `calm check`."""
+    from calm.report.check_tables import verdict_of
+
+    if not findings:
         return Saying("solved")
-
-    def counted(each: State, word: str, after: str = "") -> list[str]:
-        count = counts[each]
-        return [f"{count} {word}{'s' * (count != 1)}{after}"] if count else []
-
-    phrases = [*counted(State.FAIL, "failure"), *counted(State.WARN, "warning")]
-    unknown = counted(State.UNKNOWN, "figure", " unknown")
-    lesser = [
-        f"{counts[each]} {each}" for each in (State.ACCEPTED, State.ESTIMATED) if counts[each]
-    ]
-    if state is State.UNKNOWN:
-        said = f"nothing fails, {unknown[0]}"
-    elif phrases:
-        said = ", ".join([*phrases, *unknown])
-    elif lesser:
-        said = f"passes but for {' and '.join(lesser)}"
-    else:
-        said = "passes every check"
-    return Saying(said, state=state)
+    state, told = verdict_of(findings)
+    return Saying(told, state=state)
 
 
 def sayings(view: View | None) -> Iterator[Saying]:
@@ -240,22 +218,16 @@ def _found(findings: Sequence[Finding], *, pending: bool) -> Iterator[Saying]:
 
     A rule passes where it is met for every component: of a figure that is missing it is not known.
     """
+    from calm.report.check_tables import grouped, named_components
+
     for finding in sorted(findings, key=lambda each: each.rank):
         if _graver(finding):
             yield _told(finding)
-    unknown: dict[str, list[Finding]] = {}
-    for finding in findings:
-        if finding.state is State.UNKNOWN:
-            unknown.setdefault(_title(finding), []).append(finding)
-    for title, own in unknown.items():
-        names = dict.fromkeys(each.component or "the line" for each in own)
-        named = ", ".join(list(names)[:_MOST_NAMED])
-        if (more := len(names) - _MOST_NAMED) > 0:
-            named += f" and {more} more"
-        text = f"figures missing of {named}"
-        yield Saying(text, title, State.UNKNOWN, places=_places(own))
+    for own in grouped((each for each in findings if each.state is State.UNKNOWN), _title):
+        text = f"figures missing of {named_components(own)}"
+        yield Saying(text, _title(own[0]), State.UNKNOWN, places=_places(own))
+    other = {_title(each) for each in findings if _graver(each) or each.state is State.UNKNOWN}
     passed = dict.fromkeys(_title(each) for each in findings if each.state is State.PASS)
-    other = {*unknown, *(_title(each) for each in findings if _graver(each))}
     kept = [each for each in passed if each not in other]
     if kept:
         heading = "Pass so far" if pending else "Pass"

@@ -49,6 +49,7 @@ BUOY_LIFT = _BUOY_TENSION * sin(_BUOY_ANGLE)
 """What the buoy's cable takes of its buoyancy [N]."""
 
 
+@cache
 def _only(k: float, weight: float, **given: float) -> ChartSolution:
     """Return the cable that three givens fix; the first of several does not dip below A."""
     answer = chart_solve(k, weight, **given)
@@ -57,29 +58,15 @@ def _only(k: float, weight: float, **given: float) -> ChartSolution:
     return answer.solutions[0]
 
 
-@cache
 def _buoy(k: float) -> ChartSolution:
     return _only(k, _BUOY_WEIGHT, phi_b=_BUOY_ANGLE, tension_b=_BUOY_TENSION, height=20.0)
 
 
-@cache
 def _tow(k: float) -> ChartSolution:
     return _only(k, _TOW_WEIGHT, phi_b=radians(140.0), tension_b=100.0, length=100.0)
 
 
-@cache
-def _second_branch() -> ChartSolution:
-    return _only(_K, _TOW_WEIGHT, phi_a=radians(165.0), tension_a=40.0, length=100.0)
-
-
-@cache
-def _through_the_apex() -> ChartSolution:
-    return _only(_K, _TOW_WEIGHT, phi_a=radians(-20.0), tension_a=60.0, length=200.0)
-
-
-@cache
-def _point() -> CurvePoints:
-    return curve(_K, radians(75.0))
+_below = partial(_only, _K, _TOW_WEIGHT)
 
 
 def buoy(buoyancy: float, depth: float) -> tuple[Line, Water]:
@@ -137,14 +124,11 @@ All are compared with `calm.analytic.chart`, the buoy and the tow with the march
             [_READ[name] for name in ("L", "D", "phi_a", "T_A")],
             [("buoy as read off the charts", partial(_buoy, _K), (28.3, 18.5, 22.0, 250.0))],
             "2 % of the height or the tension and half a degree: the accuracy of reading a chart.",
-            Kind.PUBLISHED,
-        ),
+            Kind.PUBLISHED),
         *table(
             [_FIVE[name] for name in ("L", "D", "phi_a", "T_A")],
             [("buoy", partial(_buoy, _K), (28.467, 18.782, 22.027, 250.00))],
-            PRINTED,
-            Kind.INDEPENDENT,
-        ),
+            PRINTED, Kind.INDEPENDENT),
         *table(
             [
                 CaseColumn[Ends]("height of the buoy, march", "m", 1e-3, lambda ends: ends.z),
@@ -154,8 +138,7 @@ All are compared with `calm.analytic.chart`, the buoy and the tow with the march
             ],
             [("buoy", partial(finely, buoy, BUOY_LIFT, 25.0), (20.0, 18.782, 250.00, 22.027))],
             "The cable is cut to 28.467 m, half a millimetre being the last digit of its length.",
-            Kind.INDEPENDENT,
-        ),
+            Kind.INDEPENDENT),
         *table(
             [
                 CaseColumn[Solution](
@@ -165,20 +148,15 @@ All are compared with `calm.analytic.chart`, the buoy and the tow with the march
             ],
             [("buoy of 1000 N, afloat", _afloat, (338.0740, 661.9260))],
             "The cable is cut to 28.467 m, half a millimetre being the last digit of its length.",
-            Kind.INDEPENDENT,
-        ),
+            Kind.INDEPENDENT),
         *table(
             [_figures(5.5e-3, 0.0, 0.0)[name] for name in ("L", "D")],
             [("buoy at its true K, 2.7", partial(_buoy, 2.7), (30.71, 21.50))],
-            PRINTED,
-            Kind.INDEPENDENT,
-        ),
+            PRINTED, Kind.INDEPENDENT),
         *table(
             [_TOWED[name] for name in ("H", "D", "phi_a", "T_A")],
             [("tow", partial(_tow, _K), (73.198, -67.215, 116.373, 63.401))],
-            PRINTED,
-            Kind.INDEPENDENT,
-        ),
+            PRINTED, Kind.INDEPENDENT),
         *table(
             [
                 CaseColumn[Wake]("depth H, march", "m", 1e-3, lambda wake: wake.depth),
@@ -187,31 +165,28 @@ All are compared with `calm.analytic.chart`, the buoy and the tow with the march
                 CaseColumn[Wake]("tension T_B, march", "N", 2e-3, lambda wake: wake.tension),
             ],
             [("tow", _towed, (73.198, -67.215, 140.0, 100.0))],
-            "T_A and φ_A of the body are printed to 5e-4 N and 5e-4°.",
-            Kind.INDEPENDENT,
-        ),
+            "T_A and φ_A of the body are printed to 5e-4 N and 5e-4°.", Kind.INDEPENDENT),
         Case("tow at 1 knot, K 3.176: depth H", 82.87, "m", 5.5e-3, PRINTED,
              lambda: _tow(3.176).height, Kind.INDEPENDENT),
         *table(
             [_EIGHT[name] for name in ("phi_b", "T_B", "H", "D")],
             [
-                ("second branch", _second_branch, (145.83813, 63.9741152, 47.9482305, -87.2866976)),
-                ("through the apex", _through_the_apex,
+                ("second branch",
+                 partial(_below, phi_a=radians(165.0), tension_a=40.0, length=100.0),
+                 (145.83813, 63.9741152, 47.9482305, -87.2866976)),
+                ("through the apex",
+                 partial(_below, phi_a=radians(-20.0), tension_a=60.0, length=200.0),
                  (107.31124, 105.978848, 91.9576956, 126.772138)),
             ],
-            PRINTED,
-            Kind.INDEPENDENT,
-        ),
+            PRINTED, Kind.INDEPENDENT),
         *table(
             [
-                CaseColumn[CurvePoints]("s′", "", 5.5e-6, lambda point: float(point.arc)),
-                CaseColumn[CurvePoints]("y′", "", 5.5e-6, lambda point: float(point.distance)),
-                CaseColumn[CurvePoints]("z′", "", 5.5e-6, lambda point: float(point.height)),
+                CaseColumn[CurvePoints]("s′", "", 5.5e-6, lambda at: float(at.arc)),
+                CaseColumn[CurvePoints]("y′", "", 5.5e-6, lambda at: float(at.distance)),
+                CaseColumn[CurvePoints]("z′", "", 5.5e-6, lambda at: float(at.height)),
             ],
-            [("curve at 75°", _point, (0.96945, 0.75437, 0.49348))],
-            PRINTED,
-            Kind.INDEPENDENT,
-        ),
+            [("curve at 75°", partial(curve, _K, radians(75.0)), (0.96945, 0.75437, 0.49348))],
+            PRINTED, Kind.INDEPENDENT),
         Case("critical angle, K 2.4", 144.4, "°", 0.055, PRINTED,
              lambda: degrees(float(critical_angle(_K))), Kind.CLOSED_FORM),
     ),
@@ -308,9 +283,7 @@ The paper computes 3.56 Hz and measured 4.07 Hz; CALM's 3.559 Hz is the former, 
                 CaseColumn[Wake]("tension at the ship", "N", 5.5e-5, lambda wake: wake.tension),
             ],
             [("constant C = 1.2", lambda: _example(False), (24.362, 1.9191, 16.9495))],
-            PRINTED,
-            Kind.INDEPENDENT,
-        ),
+            PRINTED, Kind.INDEPENDENT),
     ),
 )  # fmt: skip
 

@@ -3,16 +3,16 @@
 S1000 is 1000 m of stretchy cable in a sheared current; two other programs have solved CDMS-1.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache, partial
-from math import atan2, degrees, log2, pi, radians
+from math import log2, pi, radians
 
 import numpy as np
 
-from calm.physics.line import Floats, Integers, Line, Water
+from calm.physics.line import Line, Water
 from calm.solve import Settings, Solution, solve_mooring
 from calm.verification import published_case
-from calm.verification.published_case import GRAVITY, Case, CaseColumn, Kind, LinePiece, table
+from calm.verification.published_case import GRAVITY, Case, CaseColumn, Ends, Kind, LinePiece, table
 
 S1000_SEA = published_case.profile(1100.0, [(0.0, 1.0), (200.0, 0.6), (500.0, 0.2), (1100.0, 0.05)])
 
@@ -75,15 +75,12 @@ a second independent integration.""",
             _figures(5e-5 * 1100.0, 2e-4 * TENSION),
             [("S1000 at 1°", lambda: solved_s1000(1.0), _EXPECTED)],
             "What CALM promises at its default angle step: 5e-5 of the water depth, 2e-4 of the "
-            "tension.",
-            Kind.INDEPENDENT,
-        ),
+            "tension.", Kind.INDEPENDENT),
         *table(
             _figures(1e-4, 1e-3),
             [("S1000 at 0.02°", lambda: solved_s1000(_FINEST), _EXPECTED)],
             "One unit of the last digit printed: half for its rounding, half for the march.",
-            Kind.INDEPENDENT,
-        ),
+            Kind.INDEPENDENT),
         Case("S1000 order of convergence, 2° to 0.5°", 2.0, "", 0.25,
              "Second order, disturbed by the cuts at the profile's levels, which shift the "
              "segments.",
@@ -100,40 +97,6 @@ CDMS_1_SEA = Water(
     w=_STILL, density=np.array([1024.0, 1025.0, 1026.0]), gravity=GRAVITY,
 )  # fmt: skip
 _FIRST_KEVLAR, _THIRD_METER, _FIRST_GLASS = 3, 6, 8
-
-
-@dataclass(frozen=True)
-class SolvedCdms1:
-    """Hold the mooring as CALM finds it; forces are in kilograms-force of the case's gravity.
-
-    Attributes
-    ----------
-    offset, height : (k+1,) of every node downstream of the anchor and above the seabed [m]
-    tension : (k+1,) at the nodes [kgf]
-    centre : (n, 2) offset and height of the middle of each piece [m]
-    last : (n,) node at the lower end of each piece
-    stretched : (n,) length of each piece under load [m]
-    horizontal, vertical : pull on the anchor [kgf]
-    """
-
-    offset: Floats
-    height: Floats
-    tension: Floats
-    centre: Floats
-    last: Integers
-    stretched: Floats
-    horizontal: float
-    vertical: float
-
-    @property
-    def nodes_of_tensions(self) -> tuple[int, int, int]:
-        """The nodes of printed tensions: below the sphere and the third meter, at the anchor."""
-        return int(self.last[0]), int(self.last[_THIRD_METER]), int(self.last[-1])
-
-    @property
-    def lean(self) -> float:
-        """Angle of the pull on the anchor from the vertical [degrees]."""
-        return degrees(atan2(self.horizontal, self.vertical))
 
 
 def _sphere(diameter: float, lift: float, cx: float) -> LinePiece:
@@ -162,36 +125,55 @@ def cdms_1_mooring(ct: float = 0.0) -> Line:
 
 
 @cache
-def solved_cdms_1() -> SolvedCdms1:
-    """CALM's answer at its default settings."""
-    solution = solve_mooring(cdms_1_mooring(), CDMS_1_SEA)
-    offset, height = solution.position[:, 0], _SEABED + solution.position[:, 2]
-    first, last = solution.piece_nodes.T
-    place = np.column_stack([offset, height])
-    segment = np.linalg.norm(np.diff(solution.position, axis=0), axis=1)
-    horizontal, _, vertical = (solution.force[-1] / GRAVITY).tolist()
-    return SolvedCdms1(
-        offset=offset,
-        height=height,
-        tension=solution.tension / GRAVITY,
-        centre=(place[first] + place[last]) / 2.0,
-        last=last,
-        stretched=np.add.reduceat(segment, first),
-        horizontal=horizontal,
-        vertical=vertical,
-    )
+def solved_cdms_1() -> Solution:
+    """CALM's answer at its default settings; the anchor is at the origin."""
+    return solve_mooring(cdms_1_mooring(), CDMS_1_SEA)
 
 
-_HEIGHT = CaseColumn[SolvedCdms1]("height of the sphere", "m", 1.0, lambda a: float(a.centre[0, 1]))
-_OFFSET = CaseColumn[SolvedCdms1]("offset of the sphere", "m", 0.2, lambda a: float(a.centre[0, 0]))
+def _ends() -> Ends:
+    return published_case.ends_of(solved_cdms_1())
+
+
+def height_at(solution: Solution, node: int) -> float:
+    """Return the height of a node above the seabed [m]."""
+    return _SEABED + float(solution.position[node, 2])
+
+
+def nodes_of_tensions(solution: Solution) -> list[int]:
+    """Return the nodes of printed tensions: below sphere and third meter, and at the anchor."""
+    last: list[int] = solution.piece_nodes[[0, _THIRD_METER, -1], 1].tolist()
+    return last
+
+
+def tension_at(solution: Solution, node: int) -> float:
+    """Return the tension at a node [kgf]."""
+    return float(solution.tension[node]) / GRAVITY
+
+
+def _centre(piece: int, solution: Solution) -> tuple[float, float]:
+    """Offset from the anchor and height above the seabed of the middle of a piece [m]."""
+    first, last = solution.piece_nodes[piece].tolist()
+    offset = 0.5 * float(solution.position[first, 0] + solution.position[last, 0])
+    return offset, 0.5 * (height_at(solution, first) + height_at(solution, last))
+
+
+def _stretched(piece: int, solution: Solution) -> float:
+    """Length of a piece under load [m]."""
+    first, last = solution.piece_nodes[piece].tolist()
+    place = solution.position[first : last + 1]
+    return float(np.linalg.norm(np.diff(place, axis=0), axis=1).sum())
+
+
+_HEIGHT = CaseColumn[Solution]("height of the sphere", "m", 1.0, lambda line: _centre(0, line)[1])
+_OFFSET = CaseColumn[Solution]("offset of the sphere", "m", 0.2, lambda line: _centre(0, line)[0])
 _PLACES = ("below the sphere", "below the third meter", "at the anchor")
 
 
-def _tension(number: int, answer: SolvedCdms1) -> float:
-    return float(answer.tension[answer.nodes_of_tensions[number]])
+def _tension(number: int, solution: Solution) -> float:
+    return tension_at(solution, nodes_of_tensions(solution)[number])
 
 
-def _tensions(share: float) -> list[CaseColumn[SolvedCdms1]]:
+def _tensions(share: float) -> list[CaseColumn[Solution]]:
     return [
         CaseColumn(f"tension {place}", "kgf", share, partial(_tension, number), True)
         for number, place in enumerate(_PLACES)
@@ -245,29 +227,27 @@ drag and no tangential drag here; it agrees with the independent solution to 0.1
              "71.0 m to 77.0 m: from SSMOOR's 71.0 past MD&D's 75.5 to the independent 76.8.",
              lambda: _OFFSET.of(solved_cdms_1()), Kind.PUBLISHED),
         Case("C16 both programs: angle at the anchor", 9.3, "°", 0.25, f"9.1° to 9.5°. {_RANGE}",
-             lambda: solved_cdms_1().lean, Kind.PUBLISHED),
+             lambda: _ends().lean, Kind.PUBLISHED),
         *table(
             [replace(_HEIGHT, tolerance=0.1), _OFFSET, *_tensions(0.002)],
             [("C16 independent solution", solved_cdms_1, PROGRAMS["independent"])],
             "Heights 0.1 m, offset 0.2 m, tensions 0.2 %: the printed data define the mooring no "
-            "better.",
-            Kind.INDEPENDENT,
-        ),
+            "better.", Kind.INDEPENDENT),
         *(
             Case(f"C16 independent solution: {name}", kgf, "kgf", 0.002 * kgf,
                  "0.2 %: the printed data define the mooring no better.", got,
                  Kind.INDEPENDENT)
             for name, kgf, got in (
-                ("anchor, horizontal", 131.6, lambda: solved_cdms_1().horizontal),
-                ("anchor, vertical", 804.4, lambda: solved_cdms_1().vertical),
+                ("anchor, horizontal", 131.6, lambda: _ends().horizontal / GRAVITY),
+                ("anchor, vertical", 804.4, lambda: _ends().vertical / GRAVITY),
             )
         ),
         Case("C16 printed: height of the first glass ball", 12.03, "m", 0.01,
              "Printed to the centimetre; the line below it hardly leans.",
-             lambda: float(solved_cdms_1().centre[_FIRST_GLASS, 1]), Kind.PUBLISHED),
+             lambda: _centre(_FIRST_GLASS, solved_cdms_1())[1], Kind.PUBLISHED),
         Case("C16 printed: 98 m of Kevlar under load", 98.24, "m", 0.011,
              "Printed to the centimetre, plus 2 % of the stretch for its tension.",
-             lambda: float(solved_cdms_1().stretched[_FIRST_KEVLAR]), Kind.PUBLISHED),
+             lambda: _stretched(_FIRST_KEVLAR, solved_cdms_1()), Kind.PUBLISHED),
     ),
     picture="verification-cdms-1",
 )  # fmt: skip

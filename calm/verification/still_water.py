@@ -5,8 +5,8 @@ The rope (C15) hangs from its load and its own weight; the slack mooring (C22) h
 
 import re
 from dataclasses import replace
-from functools import cache
-from math import inf, pi, sqrt
+from functools import cache, partial
+from math import pi, sqrt
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -52,26 +52,6 @@ _BUOYANCY = 10.0
 """More than the touchdown case needs, so that the float lies at the surface [N]."""
 
 
-@cache
-def _suspended() -> Catenary:
-    return between(400.0, 300.0, 520.0, 50.0, 5e6)
-
-
-@cache
-def _taut() -> Catenary:
-    return between(400.0, 300.0, 490.0, 50.0, 5e6)
-
-
-@cache
-def _touchdown() -> Catenary:
-    return between(5.3, _DEPTH, 6.98, 1.036, 560e3, seabed=True)
-
-
-@cache
-def _level() -> Catenary:
-    return between(300.0, 0.0, 330.0, 20.0, inf)
-
-
 def _number(field: ArrayLike) -> float:
     return float(np.asarray(field))
 
@@ -109,6 +89,11 @@ _LOWER_END = CaseColumn[Catenary](
 _GROUNDED = CaseColumn[Catenary](
     "length on the seabed", "m", 5.5e-7, lambda line: float(line.grounded)
 )
+_SAG = (
+    CaseColumn[Catenary]("horizontal pull", "N", 5.5e-7, lambda line: _number(line.horizontal)),
+    CaseColumn[Catenary]("greatest tension", "N", 5.5e-7, lambda line: float(line.tension_top)),
+    CaseColumn[Catenary]("sag", "m", 5.5e-7, lambda line: -float(line.position(165.0)[1])),
+)
 _SPAN = (
     CaseColumn[Solution]("distance of the ends, march", "m", 5e-4, lambda line: ends_of(line).x),
     CaseColumn[Solution]("height of the ends, march", "m", 5e-4, lambda line: ends_of(line).z),
@@ -138,45 +123,43 @@ moored, with the march.""",
     (
         *table(
             [*_pulls(5.5e-4), _LOWER_END],
-            [("C12 suspended", _suspended, (*_SUSPENDED, 30611.346, 291.876))],
-            PRINTED,
-            Kind.CLOSED_FORM,
-        ),
+            [
+                ("C12 suspended", partial(between, 400.0, 300.0, 520.0, 50.0, 5e6),
+                 (*_SUSPENDED, 30611.346, 291.876)),
+            ],
+            PRINTED, Kind.CLOSED_FORM),
         *table(
             _pulls(5.5e-4),
-            [("C12 taut", _taut, (*_TAUT, 116583.005))],
-            PRINTED,
-            Kind.CLOSED_FORM,
-        ),
+            [
+                ("C12 taut", partial(between, 400.0, 300.0, 490.0, 50.0, 5e6),
+                 (*_TAUT, 116583.005)),
+            ],
+            PRINTED, Kind.CLOSED_FORM),
         *table(
             [*_pulls(5.5e-7), _GROUNDED],
-            [("C13 touchdown", _touchdown, (*_TOUCHDOWN, 3.508667, 3.674364))],
-            PRINTED,
-            Kind.CLOSED_FORM,
-        ),
-        *(
-            Case(f"C14 level span: {name}", expected, unit, 5.5e-7, PRINTED, got, Kind.CLOSED_FORM)
-            for name, expected, unit, got in (
-                ("horizontal pull", 3929.783686, "N", lambda: _number(_level().horizontal)),
-                ("greatest tension", 5131.588430, "N", lambda: float(_level().tension_top)),
-                ("sag", 60.090237, "m", lambda: -float(_level().position(165.0)[1])),
-            )
-        ),
+            [
+                ("C13 touchdown", partial(between, 5.3, _DEPTH, 6.98, 1.036, 560e3, seabed=True),
+                 (*_TOUCHDOWN, 3.508667, 3.674364)),
+            ],
+            PRINTED, Kind.CLOSED_FORM),
+        *table(
+            _SAG,
+            [
+                ("C14 level span", partial(between, 300.0, 0.0, 330.0, 20.0),
+                 (3929.783686, 5131.588430, 60.090237)),
+            ],
+            PRINTED, Kind.CLOSED_FORM),
         *table(
             _SPAN,
             [
                 ("C12 suspended", lambda: _march(_SUSPENDED, 520.0), (400.0, 300.0)),
                 ("C12 taut", lambda: _march(_TAUT, 490.0), (400.0, 300.0)),
             ],
-            _MARCH,
-            Kind.CLOSED_FORM,
-        ),
+            _MARCH, Kind.CLOSED_FORM),
         *table(
             _LANDED,
             [("C13 touchdown", _march_to_the_seabed, (5.3, 3.424639, 3.674364, 0.763277))],
-            _MARCH,
-            Kind.CLOSED_FORM,
-        ),
+            _MARCH, Kind.CLOSED_FORM),
     ),
 )  # fmt: skip
 

@@ -130,18 +130,14 @@ except C2, ρ = 1025 kg/m³; CALM's march is compared with them at an angle step
                     (1.5, 588.6805, 4940.1994, 6.84370, 11.91613, 0.71251),
                 )
             ],
-            _PRINTED,
-            Kind.CLOSED_FORM,
-        ),
+            _PRINTED, Kind.CLOSED_FORM),
         *table(
             _thread(0.5, 5.5e-7, 5.5e-7, 5.5e-5),
             [
                 ("C2 ball on a thread", partial(finely, ball_on_a_thread),
                  (0.161321, 0.374174, 25.5398, 0.215569, 0.048857)),
             ],
-            _PRINTED,
-            Kind.CLOSED_FORM,
-        ),
+            _PRINTED, Kind.CLOSED_FORM),
         *table(
             [_TENSION, _ANGLE, _OFFSET, _KNOCKDOWN, _HORIZONTAL, _VERTICAL],
             [
@@ -152,9 +148,7 @@ except C2, ρ = 1025 kg/m³; CALM's march is compared with them at an angle step
                     (1.0, 4911.97295, 60.61696, 601.82678, 253.81368, 4280.0921, 2410.0395),
                 )
             ],
-            _SEVEN_DIGITS,
-            Kind.CLOSED_FORM,
-        ),
+            _SEVEN_DIGITS, Kind.CLOSED_FORM),
         *table(
             [_TENSION, _ANGLE, _OFFSET, _KNOCKDOWN],
             [
@@ -165,9 +159,7 @@ except C2, ρ = 1025 kg/m³; CALM's march is compared with them at an angle step
                     (1.0, 3617.23106, 75.74447, 671.31955, 352.62905),
                 )
             ],
-            _SEVEN_DIGITS,
-            Kind.INDEPENDENT,
-        ),
+            _SEVEN_DIGITS, Kind.INDEPENDENT),
         *(_identity(speed) for speed in (0.3, 0.5, 1.0)),
         *table(
             [_TENSION, _ANGLE, _OFFSET, _HEIGHT],
@@ -179,9 +171,7 @@ except C2, ρ = 1025 kg/m³; CALM's march is compared with them at an angle step
                     (1.0, 3720.85012, 75.41155, 670.62132, 648.89038),
                 )
             ],
-            _SEVEN_DIGITS,
-            Kind.INDEPENDENT,
-        ),
+            _SEVEN_DIGITS, Kind.INDEPENDENT),
     ),
 )  # fmt: skip
 
@@ -287,8 +277,8 @@ def _functions(critical: float, friction: float, angle: float) -> uniform.CableF
 def _march(critical: float, friction: float, arc: float) -> Wake:
     """Return a body of 100 N without drag on a cable whose normal drag is 1 N/m at 1 m/s."""
     weight = float(uniform.critical_weight_ratio(radians(critical)))
-    cable = LinePiece(_PULL * arc, True, -weight, 1.0, friction)
-    line = replace(line_of(cable, point(-_PULL, 0.0)), friction=Friction.CONSTANT)
+    rope = LinePiece(_PULL * arc, True, -weight, 1.0, friction)
+    line = replace(line_of(rope, point(-_PULL, 0.0)), friction=Friction.CONSTANT)
     return towed(line, deep_water(), 1.0)
 
 
@@ -341,9 +331,7 @@ p²/4) − p/2, is also given by E. E. Zajac (Bell System Technical Journal 36, 
             [(_name(*given), partial(_functions, *given), row)
              for *given, tau, sigma, xi, eta in _TABLE
              for row in [(tau, sigma, xi, eta)]],
-            PRINTED,
-            Kind.INDEPENDENT,
-        ),
+            PRINTED, Kind.INDEPENDENT),
         *table(
             [
                 CaseColumn[Wake]("φ, march", "°", 1e-4, lambda wake: wake.angle),
@@ -355,9 +343,7 @@ p²/4) − p/2, is also given by E. E. Zajac (Bell System Technical Journal 36, 
               (angle, tau, xi, eta))
              for critical, f, angle, tau, sigma, xi, eta in _TABLE if f > 0.0],
             "The cable is cut to σ, printed to 5e-7; the march errs by 1e-7 of its length, some "
-            "1e-6, at an angle step of 0.1°.",
-            Kind.INDEPENDENT,
-        ),
+            "1e-6, at an angle step of 0.1°.", Kind.INDEPENDENT),
         *(_tension(critical, angle, tau) for critical, f, angle, tau, *_ in _TABLE if f == 0.0),
         Case("C6 all rows: greatest |τ − 1 − p η − f σ|", 0.0, "", 1e-11,
              "Exact; the quadratures are good to 1e-12.", _identity_missed, Kind.PROPERTY),

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterator
 
-from calm.assemble.datasheet import datasheet
+from calm.assemble.component_forces import datasheet
 from calm.files import Catalogue, Component
 from calm.files.catalogue import Assembly
 from calm.quantities import QUANTITIES

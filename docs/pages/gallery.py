@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 
 import calm
 from calm.cli.main import main
-from calm.cli.streams import ExitCode
+from calm.cli.outputs import ExitCode
 from calm.drawing.picture import image
 from calm.drawing.plot import draw
 from calm.drawing.schematic import schematic_svg

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from calm.batch.statuses import STATUSES
-from calm.cli.streams import ExitCode
+from calm.cli.outputs import ExitCode
 from calm.solve.solution import Status
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -12,7 +12,6 @@ import pypdfium2
 import pypdfium2.raw as pdfium
 import pytest
 
-from calm.deck import model
 from calm.drop import drop_plan
 from calm.drop.fall import Fineness
 from calm.shipped import shipped_folder
@@ -90,7 +89,7 @@ def packed(text):
 @pytest.fixture(autouse=True)
 def dropped_in_few_steps(monkeypatch):
     """The plan of the drop from a chain of few bars: its figures are judged elsewhere."""
-    monkeypatch.setattr(model, "drop_plan", partial(drop_plan, fineness=Fineness(20, 20)))
+    monkeypatch.setattr("calm.deck.drop_plan", partial(drop_plan, fineness=Fineness(20, 20)))
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ import pytest
 
 import calm as package
 from calm import version
-from calm.cli.streams import ExitCode, gravest, narrate, show
+from calm.cli.outputs import ExitCode, gravest, narrate, show
 from calm.errors import UsageError
 
 

@@ -14,7 +14,7 @@ import openpyxl
 import pytest
 import yaml
 
-from calm.cli.streams import ExitCode
+from calm.cli.outputs import ExitCode
 from calm.shipped import shipped_folder
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -28,6 +28,18 @@ def test_the_table_and_the_json_say_the_same(calm, write_mooring):
         assert f"{figure:.1f}" in shown
 
 
+def test_the_table_is_in_the_units_asked_for(calm, write_mooring):
+    file = write_mooring()
+    (top, *_) = json.loads(calm("run", file, *DRAWS, "--json", "-").out)["uncertainty"][
+        "components"
+    ]
+    shown = calm("run", file, *DRAWS, "--units", "length=ft,force=kN").out
+    spread = shown[shown.index("Uncertainty of these figures") :]
+    assert " ft" in spread and " kN" in spread
+    for figure in top["depth_top"]:
+        assert f"{figure / 0.3048:.1f}" in spread
+
+
 @pytest.mark.thorough
 def test_contributions_are_of_every_cause(calm, write_mooring):
     done = calm("run", write_mooring(), "--uncertainty", "--samples", "512", "--json", "-")

@@ -11,7 +11,7 @@ from textual.pilot import Pilot
 
 from calm.case.memory import Memory
 from calm.tui.app import BuildApp
-from calm.tui.line.table import LineTable
+from calm.tui.line_table import LineTable
 from calm.tui.start import open_session
 
 MOORING = """\

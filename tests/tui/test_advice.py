@@ -7,7 +7,7 @@ from calm.errors import UsageError
 from calm.files import Catalogue
 from calm.files.editing import Draft
 from calm.tui.advice import differences, offers, sized
-from calm.tui.line.comparing import changed_lines
+from calm.tui.comparing import changed_lines
 from calm.tui.live import judge, judge_fully
 from tests.tui.conftest import MOORING
 

@@ -4,8 +4,9 @@ import pytest
 
 from calm.assemble.catalogue_search import Index
 from calm.files.catalogue import Catalogue
-from calm.tui.catalogue.catalogue_pane import ComponentList, Remembered
-from calm.tui.catalogue.component_screen import ComponentScreen
+from calm.files.editing.user_state import Remembered
+from calm.tui.catalogue_pane import ComponentList
+from calm.tui.component_screen import ComponentScreen
 from calm.tui.field import Field
 from tests.tui.conftest import MOORING
 

@@ -6,7 +6,7 @@ from calm.assemble.catalogue_search import Index
 from calm.files import Catalogue
 from calm.files.definition import QuantityField
 from calm.tui import checking
-from calm.tui.catalogue.component_screen import defined, form_fields
+from calm.tui.component_screen import defined, form_fields
 
 
 @pytest.mark.parametrize(

@@ -2,19 +2,19 @@
 
 import pytest
 
-from calm.tui.catalogue.catalogue_pane import CataloguePane
-from calm.tui.catalogue.component_screen import ComponentScreen
+from calm.tui.builder import BuilderScreen
+from calm.tui.catalogue_pane import CataloguePane
 from calm.tui.cell_editor import CellEditor
+from calm.tui.component_screen import ComponentScreen
 from calm.tui.dialogs import InputSheet, LongText, Question
 from calm.tui.field import Cycle
 from calm.tui.key_table import ACTIONS, PLACES, shown_key, shown_keys
-from calm.tui.line.builder import BuilderScreen
-from calm.tui.line.line_pane import LinePane
+from calm.tui.line_pane import LinePane
 from calm.tui.text_screen import TextScreen, YamlArea
 from calm.tui.verdict_pane import VerdictPane
-from calm.tui.water.form import FormChoice
-from calm.tui.water.grid import Grid
-from calm.tui.water.water_screen import WaterScreen
+from calm.tui.water_form import FormChoice
+from calm.tui.water_grid import Grid
+from calm.tui.water_screen import WaterScreen
 
 OWNERS = {
     "line": LinePane,

@@ -9,7 +9,7 @@ from calm.case import Mooring, Result
 from calm.checks.assess import RULES, assessment_of, stand_of
 from calm.checks.finding import AS_GIVEN, State
 from calm.checks.wave_rules import IN_WAVES
-from calm.cli.check_files import read_designs
+from calm.cli.reading import read_designs
 from calm.errors import NoEquilibrium
 from calm.files import Place
 from calm.tui.live import judge, judge_fully

@@ -4,8 +4,8 @@ import pytest
 
 from calm.checks.finding import State
 from calm.files.editing import Draft
-from calm.tui.line.mooring_sheet import missing_figures, with_figures
 from calm.tui.live import judge
+from calm.tui.mooring_sheet import missing_figures, with_figures
 from tests.tui.conftest import MOORING
 
 UNKNOWN = MOORING.replace(", depth_rating: 300 m", "")

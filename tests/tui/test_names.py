@@ -122,7 +122,8 @@ def test_a_line_that_is_not_complete_yet_is_saved_without_a_word(drive, folder):
 
 def test_a_second_builder_on_the_same_file_says_so(drive, small, tmp_path):
     hold = (
-        "import sys, time\nfrom pathlib import Path\nfrom calm.tui.saving import Presence\n"
+        "import sys, time\nfrom pathlib import Path\n"
+        "from calm.files.editing.user_state import Presence\n"
         "Presence().say(Path(sys.argv[1]))\nprint('open', flush=True)\ntime.sleep(60)\n"
     )
     other = subprocess.Popen(

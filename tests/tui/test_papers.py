@@ -4,7 +4,7 @@ import subprocess
 
 import pytest
 
-from calm.tui.line import comparing
+from calm.tui import comparing
 
 
 def test_the_bill_has_totals(drive, small):

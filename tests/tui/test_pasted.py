@@ -3,7 +3,7 @@
 import pytest
 
 from calm.records.delimited import NoTableError, copied_table
-from calm.tui.water.tables_to_begin import (
+from calm.tui.water_tables import (
     NoRows,
     Rows,
     UnknownColumns,

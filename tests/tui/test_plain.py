@@ -5,7 +5,7 @@ from io import BytesIO, TextIOWrapper
 import pytest
 
 from calm.drawing.sketch.canvas import Canvas
-from calm.tui.line.table import LineTable
+from calm.tui.line_table import LineTable
 from calm.tui.painted import plain, shows_all_signs
 from calm.tui.theme import CLAMP, CURSOR, LOOKS, MARK, ROLES, UNKNOWN_ROLE
 from tests.tui.conftest import MOORING

@@ -17,7 +17,7 @@ from calm.tui.field import Field
 from calm.tui.saving import chosen_path
 from calm.tui.start import open_session
 from calm.tui.text_screen import TextScreen
-from calm.tui.water.water_screen import WaterScreen
+from calm.tui.water_screen import WaterScreen
 
 
 def copies(path):

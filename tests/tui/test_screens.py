@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from calm.checks.finding import State
-from calm.tui.catalogue.component_screen import ComponentScreen
+from calm.tui.component_screen import ComponentScreen
 from calm.tui.field import Field
 from calm.tui.text_screen import TextScreen
 from tests.tui.conftest import MOORING

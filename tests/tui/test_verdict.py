@@ -8,7 +8,7 @@ import pytest
 
 from calm.checks.finding import State
 from calm.files.editing import Draft
-from calm.tui.line.rows import table_rows
+from calm.tui.line_rows import table_rows
 from calm.tui.live import judge, judge_fully
 from calm.tui.theme import ELLIPSIS, LOOKS
 from calm.tui.verdict_text import headline, sayings

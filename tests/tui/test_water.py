@@ -6,9 +6,9 @@ import xarray
 from textual.events import Paste
 
 from calm.tui.field import Field
-from calm.tui.water.grid import Grid, GridCells
-from calm.tui.water.tables_to_begin import _existing, imported
-from calm.tui.water.water_screen import WaterScreen
+from calm.tui.water_grid import Grid, GridCells
+from calm.tui.water_screen import WaterScreen
+from calm.tui.water_tables import _existing, imported
 from tests.tui.conftest import MOORING
 
 CURRENT = ("environment", "current")
@@ -638,7 +638,7 @@ def test_a_file_that_no_library_can_read_is_told(drive, small, monkeypatch):
         def fail(*_):
             raise RuntimeError("out of luck")
 
-        monkeypatch.setattr("calm.tui.water.tables_to_begin.imported", fail)
+        monkeypatch.setattr("calm.tui.water_tables.imported", fail)
         await load(driver)
         assert "bad.nc cannot be read: RuntimeError: out of luck" in driver.screen
         assert driver.text == before

@@ -8,7 +8,7 @@ from math import isfinite, pi
 import pytest
 
 from calm.assemble import drag_of
-from calm.assemble.datasheet import datasheet
+from calm.assemble.component_forces import datasheet
 from calm.checks.catalogue_rules import check_catalogue
 from calm.files import Anchor, Assembly, Cable, Catalogue, Chain, Component, Cylinder, Sphere
 

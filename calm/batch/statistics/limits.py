@@ -155,7 +155,7 @@ _VALUES: dict[str, Callable[[ResultColumns, JudgedPart, Mooring], Column]] = {
     "tension": _greatest_tension,
     "tension_bottom": lambda series, part, _: series.column("tension_bottom", part.index),
     "least_tension": _least_tension,
-    "tilt": lambda series, part, _: series.tilt(_seat(part)),
+    "tilt": lambda series, part, _: series.of_part("tilt", _seat(part)),
     "depth": _greatest_depth,
     "top_depth": lambda series, _, __: series.column("depth_top", 0),
     "knockdown": lambda series, _, __: top_knockdown(series),

@@ -162,13 +162,9 @@ class ResultColumns:
         """(n,) depth of the upper end of a component, or of a clamp [m]."""
         return self.column("clamp_depth" if seat.clamped else "depth_top", seat.number)
 
-    def knockdown(self, seat: Seat) -> Column:
-        """(n,) how much deeper than in still water [m]."""
-        return self.column("clamp_knockdown" if seat.clamped else "knockdown", seat.number)
-
-    def tilt(self, seat: Seat) -> Column:
-        """(n,) from the vertical [degrees]."""
-        return self.column("clamp_tilt" if seat.clamped else "tilt", seat.number)
+    def of_part(self, name: str, seat: Seat) -> Column:
+        """(n,) `tilt` [degrees] or `knockdown` [m] of a component or a clamp."""
+        return self.column(f"clamp_{name}" if seat.clamped else name, seat.number)
 
     def greatest_tension(self, seats: Sequence[Seat]) -> Column:
         """(n,) the greatest of those at the ends of components and at clamps [N]."""

@@ -16,8 +16,8 @@ from calm.batch.statistics.extremes import Fit, LevelsRefused, median_step, retu
 from calm.batch.statistics.series import Column, LegSeats, ResultColumns, Seat, Times
 from calm.batch.statuses import Ending, endings
 from calm.case import Mooring
+from calm.case.mooring import profilers_in
 from calm.case.net import Net
-from calm.case.profilers import profilers_in
 from calm.checks.criterion import limits_used
 from calm.checks.posture import reaches_the_surface
 from calm.files import Profiler
@@ -209,8 +209,8 @@ def _parts(series: ResultColumns) -> Iterator[PartDistributions]:
         yield PartDistributions(
             series.label(seat),
             seat.clamped,
-            of(series.knockdown(seat)),
-            of(series.tilt(seat)),
+            of(series.of_part("knockdown", seat)),
+            of(series.of_part("tilt", seat)),
             of(series.greatest_tension([seat])),
         )
 
@@ -235,7 +235,7 @@ def _stops(series: ResultColumns, mooring: Mooring) -> Iterator[StopDepths]:
 def _greatest_tilt(series: ResultColumns) -> Column:
     greatest = np.full(len(series), np.nan, np.float32)
     for seat in series.seats:
-        np.fmax(greatest, series.tilt(seat), out=greatest)
+        np.fmax(greatest, series.of_part("tilt", seat), out=greatest)
     return greatest
 
 

@@ -74,7 +74,8 @@ class Tail:
         100 standard deviations of the values: the data do not bound the level there. NotFitted: the
         search for a maximum failed.
         """
-        best, estimate = self._loss(self.location, self.scale, self.shape), self.level(growth)
+        estimate = self.level(growth)
+        best = _loss(self.values, self.location, self.scale, self.shape, self.maxima)
 
         def excess(level: float) -> float:
             deviance = 2.0 * (self._profile(level, growth) - best)
@@ -83,22 +84,20 @@ class Tail:
         spread = float(self.values.std())
         return _end(excess, estimate, -spread), _end(excess, estimate, spread)
 
-    def _loss(self, location: float, scale: float, shape: float) -> float:
-        return _loss(self.values, location, scale, shape, self.maxima)
-
     def _profile(self, level: float, growth: float) -> float:
         """The least loss of all distributions with a given level."""
         if not self.maxima:
 
             def of_shape(free: Floats) -> float:
                 scale = (level - self.location) / _grown(free[0], growth)
-                return self._loss(self.location, scale, free[0])
+                return _loss(self.values, self.location, scale, free[0], False)
 
             return _least(of_shape, [self.shape], [0.0])[1]
 
         def of_both(free: Floats) -> float:
             scale = exp(free[0])
-            return self._loss(level - scale * _grown(free[1], growth), scale, free[1])
+            location = level - scale * _grown(free[1], growth)
+            return _loss(self.values, location, scale, free[1], True)
 
         return _least(of_both, [log(self.scale), self.shape], [log(self.scale), 0.0])[1]
 

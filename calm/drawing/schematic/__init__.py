@@ -16,8 +16,7 @@ from calm.case import Result, TowResult
 from calm.drawing.schematic import symbols
 from calm.drawing.schematic.pen import FAINT, INK, SOFT, Pen, picture, svg_text, text_width, wrapped
 from calm.drawing.schematic.shown_parts import HEADINGS, Schematic, ShownPart, TextRow, schematic_of
-from calm.drawing.schematic.sign import LINES
-from calm.drawing.schematic.symbols import SEABED_ROOM, draw_cable, draw_clamp, figure_of
+from calm.drawing.schematic.symbols import LINES, SEABED_ROOM, draw_cable, draw_clamp, figure_of
 from calm.files import MooringFile
 from calm.quantities import QUANTITIES
 

@@ -8,7 +8,7 @@ from math import nan
 from calm.deck import Deck
 from calm.deck.deck_items import DeckItem, DeckRow, rows_on_paper
 from calm.drawing.schematic.shown_parts import ShownPart, TextRow, afloat, one_line, place_text
-from calm.drawing.schematic.sign import LINES, Sign, Symbol, sign_of
+from calm.drawing.schematic.symbols import LINES, Sign, Symbol, sign_of
 from calm.files.file_differences import own_labels
 from calm.quantities import QUANTITIES
 

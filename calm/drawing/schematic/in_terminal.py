@@ -1,26 +1,20 @@
 """The schematic of a line for a terminal: a row of text for each part, without colour."""
 
-from __future__ import annotations
-
 import textwrap
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 from rich.cells import cell_len, set_cell_size
+from rich.console import Console, ConsoleOptions, RenderResult
 from rich.text import Text
 
+from calm.case import Result, TowResult
 from calm.drawing.picture import encodable
 from calm.drawing.schematic.pen import ELLIPSIS
 from calm.drawing.schematic.shown_parts import HEADINGS, Schematic, TextRow, schematic_of
-from calm.drawing.schematic.sign import BALLS, LINES, Sign, Symbol
+from calm.drawing.schematic.symbols import BALLS, LINES, Sign, Symbol
+from calm.files import MooringFile
 from calm.quantities import QUANTITIES
-
-if TYPE_CHECKING:
-    from rich.console import Console, ConsoleOptions, RenderResult
-
-    from calm.case import Result, TowResult
-    from calm.files import MooringFile
 
 _SYMBOLS = {
     Symbol.SPHERE: "(   )", Symbol.BALL: "(o)", Symbol.GLASS: "(o)", Symbol.FOAM: "[===]",

@@ -10,7 +10,7 @@ from itertools import accumulate
 from calm.case import Result, TowResult
 from calm.drawing.line_picture import alike, together
 from calm.drawing.picture import printable
-from calm.drawing.schematic.sign import BALLS, LINES, Sign, Symbol, sign_of
+from calm.drawing.schematic.symbols import BALLS, LINES, Sign, Symbol, sign_of
 from calm.files import Clamp, MooringFile, Piece, Place, Rigid
 from calm.files.mooring_file import STAND_IN
 from calm.quantities import QUANTITIES, say

@@ -3,7 +3,7 @@
 from calm.files.editing.changes import EditError
 from calm.files.editing.draft import Draft, History, clamps_of
 from calm.files.editing.items import LINE, LineItem
-from calm.files.editing.working_file import KeptWork, NotWritten, WorkingFile, state_folder
+from calm.files.editing.working_file import KeptWork, NotWritten, WorkingFile
 from calm.files.editing.writing import Value
 
 __all__ = [
@@ -17,5 +17,4 @@ __all__ = [
     "Value",
     "WorkingFile",
     "clamps_of",
-    "state_folder",
 ]

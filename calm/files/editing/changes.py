@@ -236,14 +236,14 @@ def cells_that_differ(
     rows = old if isinstance(old, list | tuple) else []
     if [len(row) if isinstance(row, list | tuple) else -1 for row in rows] != [*map(len, new)]:
         return None
-    cells: list[tuple[int, int, str]] = []
-    for i, (before, row) in enumerate(zip(rows, new, strict=True)):
-        for j, (value, text) in enumerate(zip(before, row, strict=True)):
-            if value != text and text is None:
-                return None
-            if value != text and text is not None:
-                cells.append((i, j, text))
-    return cells
+    changed = [
+        (i, j, text)
+        for i, (before, row) in enumerate(zip(rows, new, strict=True))
+        for j, (value, text) in enumerate(zip(before, row, strict=True))
+        if value != text
+    ]
+    cells = [(i, j, text) for i, j, text in changed if text is not None]
+    return cells if len(cells) == len(changed) else None
 
 
 _ENDINGS = ("\r\n", "\n", "\r")

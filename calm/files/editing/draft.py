@@ -335,7 +335,7 @@ def _worded(snippets: Iterable[str]) -> Worded:
 
 
 class History:
-    """Keep a draft and the states before and after it.
+    """Keep a draft, the states before and after it, and the text that is saved.
 
     Parameters
     ----------
@@ -344,7 +344,7 @@ class History:
 
     def __init__(self, draft: Draft) -> None:
         self.draft = draft
-        self._saved = draft.text
+        self.saved_text = draft.text
         # Texts only: the nodes of thousands of drafts would take much memory.
         self._done: list[tuple[str, str]] = []
         self._undone: list[tuple[str, str]] = []
@@ -352,12 +352,7 @@ class History:
     @property
     def changed(self) -> bool:
         """Return whether the draft differs from what was saved."""
-        return self.draft.text != self._saved
-
-    @property
-    def saved_text(self) -> str:
-        """Return what was saved."""
-        return self._saved
+        return self.draft.text != self.saved_text
 
     @property
     def steps(self) -> tuple[str, ...]:
@@ -382,7 +377,7 @@ class History:
 
     def saved(self, text: str | None = None) -> None:
         """Take the draft, or another text, for what is now saved."""
-        self._saved = self.draft.text if text is None else text
+        self.saved_text = self.draft.text if text is None else text
 
     def _go(self, source: list[tuple[str, str]], target: list[tuple[str, str]]) -> str | None:
         if not source:

@@ -206,7 +206,8 @@ class WorkingFile:
         return [each for folder in self._folders() for each in _kept_in(*folder)]
 
     def _keep(self, text: str) -> Path:
-        content = _with_record(text, _digest(self._seen))
+        record = json.dumps(asdict(Keeper.this()) | {"base": _digest(self._seen)})
+        content = f"{_BEGIN}{record}\n{text}".encode()
         like = None if self.path is None else _status(self.path)
         reasons = []
         for place in self._places:
@@ -325,12 +326,6 @@ class KeptWork:
 def _digest(content: bytes | None) -> str:
     """Return a short sign of a content; empty of none."""
     return "" if content is None else hashlib.sha256(content).hexdigest()[:16]
-
-
-def _with_record(text: str, base: str) -> bytes:
-    """Return the content of a copy."""
-    record = json.dumps(asdict(Keeper.this()) | {"base": base})
-    return f"{_BEGIN}{record}\n{text}".encode()
 
 
 def _kept_in(folder: Path, stem: str) -> Iterator[KeptWork]:

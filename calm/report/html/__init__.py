@@ -10,7 +10,7 @@ from importlib.resources import files
 from typing import TYPE_CHECKING
 
 from calm.drawing.picture import set_apart
-from calm.report.blocks import Block, Column, Report, ReportPart, Section, Table
+from calm.report.blocks import Column, Report, ReportPart, Section, Table
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -46,21 +46,10 @@ def page(report: Report, leaves: Sequence[str] | None = None) -> str:
 
 def fragment(part: ReportPart) -> str:
     """A part as a notebook shows it: without the style of a page, and what fits its width."""
-    blocks = tuple(map(_narrow, part.blocks))
+    blocks = tuple(one.narrow() if isinstance(one, Table) else one for one in part.blocks)
     template = _environment().get_template("parts.html.jinja")
     shown: str = template.module.parts([replace(part, blocks=blocks)], "n")  # type: ignore[attr-defined]
     return f"<div>{shown}</div>"
-
-
-def _narrow(block: Block) -> Block:
-    """A table without the columns for which there is no room."""
-    if not isinstance(block, Table):
-        return block
-    kept = [number for number, column in enumerate(block.columns) if column.narrow]
-    rows = (  # a single cell heads the rows below it
-        tuple(row[number] for number in kept) if len(row) > 1 else row for row in block.rows
-    )
-    return replace(block, columns=tuple(block.columns[n] for n in kept), rows=tuple(rows))
 
 
 @cache
@@ -80,9 +69,11 @@ def _environment() -> Environment:
 
 
 def _breakable(text: str) -> str:
-    """The text escaped; a word too long for a column may break, and is still one when copied."""
+    """A text in which a word too long for a column may break, and is still one when copied."""
     from markupsafe import Markup
 
+    if not _LONG_WORD.search(text):  # as nearly always
+        return text
     words = _LONG_WORD.split(text)
     words[1::2] = [Markup("<wbr>").join(_STEPS.findall(word)) for word in words[1::2]]
     return Markup("").join(words)

@@ -4,7 +4,7 @@ from math import pi
 
 import pytest
 
-from calm.assemble.datasheet import datasheet
+from calm.assemble.component_forces import datasheet
 from calm.files import Anchor, Assembly, Cable, Catalogue, Cylinder
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import calm
-from calm.assemble.water import DEEPEST, assemble_water
+from calm.assemble.arrays import DEEPEST, assemble_water
 from calm.files import CurrentTable, DepthTable, Environment, Position, SeaWater, Wind
 
 SHEARED = CurrentTable((0.0, 200.0, 900.0), (0.8, 0.3, 0.1), (0.0, 0.1, -0.2), (0.0, 0.01, 0.0))

@@ -217,7 +217,7 @@ def test_the_lock_is_held_until_the_last_thread_has_ended(tmp_path, mooring, rec
 
     with monkeypatch.context() as patched:
         patched.setattr(work_module.BatchWork, "_keep", slowly)
-        patched.setattr("calm.batch.threads.Thread.join", interrupt)
+        patched.setattr("calm.batch.work.Thread.join", interrupt)
         patched.setattr(finished, "locked", watched)
         outcome = run_batch(mooring, record, output, workers=1, block=8)
     assert (outcome.done, outcome.reason) == (False, "interrupted")

@@ -14,8 +14,7 @@ from calm.batch.finished import open_result
 from calm.batch.profiles import Batch
 from calm.batch.run import LARGEST_BLOCK, run_batch
 from calm.batch.statuses import STATUSES, Ending
-from calm.batch.threads import in_threads
-from calm.batch.work import compile_solver
+from calm.batch.work import compile_solver, in_threads
 from calm.batch.work_store import identity_of, to_text
 from calm.errors import UsageError
 from tests.unit.batch.made import MOORING, MadeRecord, content, made_mooring

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from calm.case import load
-from calm.case.profilers import PLACES
+from calm.case.mooring import PLACES
 from calm.checks.arrangement import profiler
 from calm.checks.net_check import check
 from calm.errors import InputError

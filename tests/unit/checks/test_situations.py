@@ -14,7 +14,7 @@ from calm.checks.finding import State
 from calm.checks.net_check import check
 from calm.checks.posture import reaches_the_surface
 from calm.checks.situations import situations_of
-from calm.cli.check_files import read_designs
+from calm.cli.reading import read_designs
 from calm.physics.line import Line, Water
 from calm.solve import Settings, Solution, solve_mooring
 

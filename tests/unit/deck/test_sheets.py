@@ -6,10 +6,9 @@ from functools import partial
 import pytest
 
 import calm
-from calm.deck import Deck, deck_of, model
+from calm.deck import Deck, deck_of
 from calm.deck.deck_items import Order, rows_on_paper
-from calm.deck.hardware import Stock
-from calm.deck.shipping import total_of
+from calm.deck.hardware import Stock, all_shipped
 from calm.drop import drop_plan
 from calm.drop.fall import Fineness
 from calm.quantities import show_in
@@ -53,7 +52,7 @@ components:
 def dropped_in_few_steps():
     """The plan of the drop from a chain of few bars: its figures are judged elsewhere."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(model, "drop_plan", partial(drop_plan, fineness=Fineness(20, 20)))
+        patch.setattr("calm.deck.drop_plan", partial(drop_plan, fineness=Fineness(20, 20)))
         yield
 
 
@@ -189,7 +188,7 @@ def test_the_shipping_list_adds_up_and_says_what_it_lacks(deck):
     assert shipped["wire"].mass == pytest.approx(21.0, rel=2e-3)
     assert shipped["wire"].volume == pytest.approx(math.pi * 0.004**2 * 99.9, rel=1e-3)
     assert (shipped["rope"].mass, shipped["rope"].missing_masses) == (0.0, 1)
-    total = total_of(deck.shipped)
+    total = all_shipped(deck.shipped)
     assert total.count == len(deck.parts)
     assert total.mass == pytest.approx(sum(one.mass for one in deck.shipped))
     assert total.missing_masses == 1

@@ -5,15 +5,13 @@ from typing import get_args
 
 import pytest
 
-from calm.files import (
+from calm.files import MooringFile, Strumming, StrummingFactor
+from calm.files.strumming_keys import (
     AmplitudeModel,
+    AmplitudeName,
     BourgetMarichalKeys,
     ConstantCn,
-    MooringFile,
-    Strumming,
-    StrummingFactor,
 )
-from calm.files.strumming_keys import AmplitudeName
 from calm.physics.drag import Friction
 from calm.physics.strumming import AMPLIFICATIONS
 

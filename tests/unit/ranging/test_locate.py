@@ -16,9 +16,7 @@ from calm.ranging.range_model import (
     BY_CHANCE,
     FLOOR,
     RangeModel,
-    _judged,
     is_line,
-    least_squares_of,
     mirrored,
     scatter,
 )
@@ -273,8 +271,8 @@ def test_a_range_is_judged_by_its_residual_as_the_others_give_it(beyond, is_out)
         found = survey(bearing, distance, errors)
         ships = HERE.place(found.latitude, found.longitude, np.full(count, TRANSDUCER))
         model = RangeModel(found, ONE, HERE, ships, None)
-        x = least_squares_of(model, ANCHOR, used)
-        return _judged(model, x, used), model.jacobian(ANCHOR)
+        x = model.least_squares(ANCHOR, used)
+        return model.judged(x, used), model.jacobian(ANCHOR)
 
     every, others = np.full(count, True), np.arange(count) != odd
     _, slopes = judged(0.0, every)

@@ -34,8 +34,9 @@ def _of_the_file(components, clamps, pieces):
     """Tell every row what it is of."""
     for row, piece in zip(components, pieces, strict=True):
         row.part, row.place = piece, Place(row.index)
+        row.upper = row.depth_top, row.x_top, row.y_top
     for row, clamp in zip(clamps, [c for piece in pieces for c in piece.clamps], strict=True):
-        row.part = clamp
+        row.part, row.upper = clamp, (row.depth, row.x, row.y)
 
 
 def build_result(**changes):

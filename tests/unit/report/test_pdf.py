@@ -95,7 +95,7 @@ def test_a_single_result_has_pages(name, pages):
 
 def test_what_is_accepted_can_be_printed():
     """Findings of a section hold dates and models, which no printer looks at."""
-    accepted = Section("M", (ReportPart("Said", (Prose(("plain",)),)),), worst=(object(),))
+    accepted = Section("M", (ReportPart("Said", (Prose(("plain",)),)),), facts=object())
     report = Report("T", "S", (), (accepted,))
     assert printed(report).startswith(b"%PDF")
 

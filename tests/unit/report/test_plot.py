@@ -8,8 +8,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from calm.drawing.picture import check_format
-from calm.drawing.plot import draw, draw_flow, picture
+from calm.drawing.picture import check_format, image
+from calm.drawing.plot import draw, draw_flow
 from calm.errors import UsageError
 
 
@@ -91,19 +91,19 @@ def test_line_without_excursion_is_drawn(make_result):
 
 
 def test_png_and_svg(result):
-    assert picture(result, ".png").startswith(b"\x89PNG")
-    svg = picture(result, ".svg")
+    assert image(draw(result), ".png").startswith(b"\x89PNG")
+    svg = image(draw(result), ".svg")
     texts = "".join(ElementTree.fromstring(svg).itertext())
     assert "current meter" in texts
-    assert picture(result, ".SVG") == svg
+    assert image(draw(result), ".SVG") == svg
 
 
 @pytest.mark.thorough
 def test_labels_are_no_formulas_and_need_no_glyph(make_result):
     result = make_result()
     result.components[0].label = "float $x^$ \U0001f6df"
-    assert b"float $x^$" in picture(result, ".svg")
-    assert picture(result, ".png").startswith(b"\x89PNG")
+    assert b"float $x^$" in image(draw(result), ".svg")
+    assert image(draw(result), ".png").startswith(b"\x89PNG")
 
 
 def test_unknown_format_names_the_allowed():

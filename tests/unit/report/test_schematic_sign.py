@@ -1,7 +1,6 @@
 import pytest
 
-from calm.drawing.schematic.sign import LINES, Symbol, sign_of
-from calm.drawing.schematic.symbols import figure_of
+from calm.drawing.schematic.symbols import LINES, Symbol, figure_of, sign_of
 from calm.files import Body, Catalogue, Cylinder, Sphere
 
 CATALOGUE = Catalogue.shipped()

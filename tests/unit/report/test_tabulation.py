@@ -6,11 +6,11 @@ import pytest
 from rich.console import Console
 
 from calm.case.tow import Variation
-from calm.drawing.plot import draw_sweep
 from calm.errors import NoEquilibrium
 from calm.report.tabulation import (
     by_coefficient,
     by_speed,
+    draw_sweep,
     tabulation_part,
     to_csv,
     to_document,

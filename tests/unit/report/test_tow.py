@@ -10,7 +10,8 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from calm.case.strumming import StrummingBand
-from calm.drawing.plot import draw, picture
+from calm.drawing.picture import image
+from calm.drawing.plot import draw
 from calm.report.html import fragment
 from calm.report.result_files import to_csv
 from calm.report.sheet import result_part
@@ -115,7 +116,7 @@ def test_names_stand_beside_their_parts_and_need_no_formula(make_tow_result):
     figure = draw(result)
     FigureCanvasAgg(figure).draw()
     assert [text.get_text() for text in figure.axes[0].texts] == ["sbe37", "fish $x^$"]
-    assert b"fish $x^$" in picture(result, ".svg")
+    assert b"fish $x^$" in image(draw(result), ".svg")
 
 
 def test_a_bare_cable_is_drawn(make_tow_result):
@@ -127,7 +128,7 @@ def test_a_bare_cable_is_drawn(make_tow_result):
         shape=result.shape,
     )
     result.tow.file.pieces = (result.file.pieces[0],)
-    assert picture(result, ".png").startswith(b"\x89PNG")
+    assert image(draw(result), ".png").startswith(b"\x89PNG")
 
 
 def test_a_line_at_rest_is_drawn_plumb(make_tow_result):

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from calm.drawing.sketch.views import SIGNS, current_profile, elevation, plan, tension
+from calm.drawing.sketch import SIGNS, current_profile, elevation, plan, tension
 
 ALL = (
     "a-frame-sheared-tow",

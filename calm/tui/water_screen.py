@@ -2,11 +2,9 @@
 
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import ClassVar
 
 from textual import events, on
 from textual.app import ComposeResult
-from textual.binding import BindingType
 from textual.containers import Horizontal, Vertical, VerticalScroll
 from textual.content import Content
 from textual.dom import DOMNode
@@ -16,23 +14,17 @@ from textual.widgets import Static
 
 from calm.errors import Problem
 from calm.files.editing import Draft, Value
-from calm.tui.cell_editor import CellEditor
-from calm.tui.checking import needed
-from calm.tui.dialogs import InputSheet, ask
+from calm.tui import cell_editor, checking, dialogs, key_table, pictures, screen, verdict_pane
 from calm.tui.field import Asked, Field
-from calm.tui.key_table import bindings, hints
-from calm.tui.pictures import ProfilePicture
-from calm.tui.screen import DraftScreen, KeyBar
-from calm.tui.verdict_pane import state_word
-from calm.tui.water.form import (
+from calm.tui.water_form import (
     DENSITY_FORMS,
     FormChoice,
     Place,
     WaterForm,
     fields_of_water,
 )
-from calm.tui.water.grid import Grid, GridCells
-from calm.tui.water.tables_to_begin import CURRENT_COLUMNS, USUAL_DEPTH, Currents
+from calm.tui.water_grid import Grid, GridCells
+from calm.tui.water_tables import CURRENT_COLUMNS, USUAL_DEPTH, Currents
 from calm.tui.workspace import Workspace, said
 
 _ELSEWHERE = (
@@ -42,10 +34,10 @@ _ELSEWHERE = (
 _INHERITED = "as in the file's own environment"
 
 
-class WaterScreen(DraftScreen):
+class WaterScreen(screen.DraftScreen):
     """Depth, density, current and wind of each environment; the line stands in the one shown."""
 
-    BINDINGS: ClassVar[list[BindingType]] = [*bindings("water")]
+    BINDINGS = key_table.bindings("water")
     HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (112, "-wide")]  # noqa: RUF012
     DEFAULT_CSS = """
     WaterScreen {
@@ -74,7 +66,7 @@ class WaterScreen(DraftScreen):
                 yield Static(id="water-notes")
                 yield from fields_of_water(partial(Grid, self.workspace, self._take_rows))
             with Vertical(id="water-profile"):
-                yield ProfilePicture()
+                yield pictures.ProfilePicture()
 
     def on_mount(self) -> None:
         """Show what the file says."""
@@ -97,14 +89,14 @@ class WaterScreen(DraftScreen):
 
     def titles(self) -> tuple[str, str]:
         """Return what is shown, and the verdict."""
-        state = state_word(self.workspace.view, old=not self.workspace.is_fresh)
+        state = verdict_pane.state_word(self.workspace.view, old=not self.workspace.is_fresh)
         return f"The water of {self.workspace.called}", state
 
     def show_view(self) -> None:
         """The profile of a line as judged, dimmed where it is of what is edited no more."""
         view, fresh = self.workspace.view, self.workspace.is_fresh
         self._show_notes(view.problems if view is not None and fresh else ())
-        self.query_one(ProfilePicture).show(view, old=self.workspace.is_old)
+        self.query_one(pictures.ProfilePicture).show(view, old=self.workspace.is_old)
         self.show_title()
 
     def _show_notes(self, problems: Sequence[Problem]) -> None:
@@ -266,12 +258,12 @@ class WaterScreen(DraftScreen):
 
     @on(DescendantFocus)
     def _show_keys(self) -> None:
-        bar, focused = self.query_one(KeyBar), self.focused
-        if isinstance(focused, CellEditor):
-            bar.show_keys(hints("cell"))
+        bar, focused = self.query_one(screen.KeyBar), self.focused
+        if isinstance(focused, cell_editor.CellEditor):
+            bar.show_keys(key_table.hints("cell"))
         else:
-            grid = hints("grid") if isinstance(focused, GridCells) else []
-            bar.show_keys([*grid, *hints("water")])
+            grid = key_table.hints("grid") if isinstance(focused, GridCells) else []
+            bar.show_keys([*grid, *key_table.hints("water")])
         if not self._goes_on:
             bar.tell("")
         self._goes_on = False
@@ -298,9 +290,11 @@ class WaterScreen(DraftScreen):
                 self.workspace.tell(told)
 
         if self.settle():
-            asked = [Asked("name", "Name", check=needed("a name"), placeholder="e.g. storm")]
+            asked = [
+                Asked("name", "Name", check=checking.needed("a name"), placeholder="e.g. storm")
+            ]
             text = "It says only what differs from the file's own environment."
-            ask(self.app, InputSheet("Another environment", text, asked), take)
+            dialogs.enter(self.app, "Another environment", text, asked, take)
 
     def action_drop_environment(self) -> None:
         """Take the named environment out of the file."""

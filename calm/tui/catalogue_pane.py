@@ -1,8 +1,6 @@
 """The catalogue: a search that answers at each key, a card, and what else is asked for."""
 
-import json
 from collections.abc import Callable, Sequence
-from contextlib import suppress
 from itertools import zip_longest
 from typing import ClassVar, Literal
 
@@ -12,21 +10,17 @@ from rich.style import Style
 from rich.text import Text
 from textual import on
 from textual.app import ComposeResult
-from textual.binding import BindingType
 from textual.containers import Horizontal, Vertical
 from textual.widgets import Input, Static
 
-from calm import whole_file
 from calm.assemble.catalogue_search import COLUMNS, Index, Listed
 from calm.errors import CalmError
 from calm.files.components import FLEXIBLE_KINDS, RIGID_KINDS
-from calm.files.editing import state_folder
+from calm.files.editing.user_state import Remembered
+from calm.tui import dialogs, key_table, theme
 from calm.tui.checking import distance, length
-from calm.tui.dialogs import InputSheet, ask
 from calm.tui.field import Asked, ScrolledEntry
-from calm.tui.key_table import bindings
 from calm.tui.scrolled import ScrolledText, TableCells, TableColumn
-from calm.tui.theme import CURSOR, FAVOURITE, ROLES
 from calm.tui.workspace import Workspace
 
 _LEAD, _FIGURE = 4, 8
@@ -114,9 +108,9 @@ class ComponentList(TableCells, can_focus=False):
     def lead(self, number: int, style: Style) -> list[Segment]:
         """Return the cursor, the star of a favourite, and the sign of the role."""
         each: Listed = self.rows[number]
-        cursor = CURSOR if number == self.cursor else " "
-        star = FAVOURITE if each.id in self._favourites else " "
-        return [Segment(f"{cursor}{star}{ROLES.get(each.role, ' ')} ", style)]
+        cursor = theme.CURSOR if number == self.cursor else " "
+        star = theme.FAVOURITE if each.id in self._favourites else " "
+        return [Segment(f"{cursor}{star}{theme.ROLES.get(each.role, ' ')} ", style)]
 
     def row_style(self, number: int) -> Style:
         """Return how a row looks, that of the cursor whoever has the focus."""
@@ -130,56 +124,6 @@ class ComponentList(TableCells, can_focus=False):
         if look is None:
             return style
         return style + self.look(f"component-list--{look}")
-
-
-_NAME = "catalogue.json"
-_MOST_RECENT = 40
-
-
-class Remembered:
-    """Ids of components, each list the last one first; a file that cannot be read is none.
-
-    Attributes
-    ----------
-    favourites : marked by the person
-    recent : taken from the catalogue
-    """
-
-    def __init__(self) -> None:
-        try:
-            kept = json.loads((state_folder() / _NAME).read_text(encoding="utf-8"))
-            lists = [kept["favourites"], kept["recent"]]
-            ids = [[each for each in kept if isinstance(each, str)] for kept in lists]
-        except (OSError, ValueError, KeyError, TypeError):
-            ids = [[], []]
-        self.favourites, self.recent = ids
-
-    def take(self, id: str) -> None:
-        """Note that one was taken; where it cannot be kept, for this session only."""
-        self.recent = [id, *(each for each in self.recent if each != id)][:_MOST_RECENT]
-        with suppress(OSError):
-            self._keep()
-
-    def mark(self, id: str) -> bool:
-        """Mark a favourite, or unmark it; returns whether it is one now.
-
-        Raises
-        ------
-        OSError
-            It could not be kept, and is one in this session only.
-        """
-        is_new = id not in self.favourites
-        self.favourites = [each for each in self.favourites if each != id]
-        if is_new:
-            self.favourites.insert(0, id)
-        self._keep()
-        return is_new
-
-    def _keep(self) -> None:
-        folder = state_folder()
-        folder.mkdir(parents=True, exist_ok=True)
-        content = json.dumps({"favourites": self.favourites, "recent": self.recent}, indent=1)
-        whole_file.put(folder / _NAME, content.encode())
 
 
 Purpose = Literal["below", "above", "clamp", "replace"]
@@ -203,7 +147,7 @@ class CataloguePane(Vertical):
     close : leads back to the line
     """
 
-    BINDINGS: ClassVar[list[BindingType]] = [*bindings("catalogue")]
+    BINDINGS = key_table.bindings("catalogue")
     SCOPED_CSS = False  # the width of the screen counts
     DEFAULT_CSS = """
     CataloguePane {
@@ -374,7 +318,7 @@ class CataloguePane(Vertical):
             self._give({"use": chosen.id} | {key: text for key, text in texts.items() if text})
 
         label = Asked("label", "Label", placeholder="may stay empty")
-        ask(self.app, InputSheet(chosen.id, "", [asked, label]), take)
+        dialogs.enter(self.app, chosen.id, "", [asked, label], take)
 
     def action_close(self) -> None:
         """Leave the catalogue."""

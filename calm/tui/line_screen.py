@@ -7,16 +7,13 @@ from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical
 
 from calm.files import Place
-from calm.tui.catalogue.catalogue_pane import CataloguePane, Purpose
-from calm.tui.line.line_pane import LinePane
-from calm.tui.line.table import LineTable
-from calm.tui.pictures import Pictures
-from calm.tui.screen import DraftScreen
+from calm.tui import line_pane, line_table, pictures, screen
+from calm.tui.catalogue_pane import CataloguePane, Purpose
 from calm.tui.verdict_pane import VerdictPane, state_word
 from calm.tui.workspace import Workspace
 
 
-class LineScreen(DraftScreen):
+class LineScreen(screen.DraftScreen):
     """What the first screen shows of the line, and how its parts lead to each other."""
 
     HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (112, "-wide"), (176, "-huge")]  # noqa: RUF012
@@ -59,9 +56,9 @@ class LineScreen(DraftScreen):
 
     def __init__(self, workspace: Workspace) -> None:
         super().__init__(workspace)
-        self.line = LinePane(workspace, self.search)
+        self.line = line_pane.LinePane(workspace, self.search)
         self.catalogue = CataloguePane(workspace, self._take_component, self.close_catalogue)
-        self.pictures, self.verdict = Pictures(id="pictures"), VerdictPane(self._go_to_row)
+        self.pictures, self.verdict = pictures.Pictures(id="pictures"), VerdictPane(self._go_to_row)
         self._came_from_verdict = False
 
     def parts(self) -> ComposeResult:
@@ -197,7 +194,7 @@ class LineScreen(DraftScreen):
         self.remove_class("-searching")
         self.line.table.focus()
 
-    @on(LineTable.Moved)
+    @on(line_table.LineTable.Moved)
     def _retarget(self) -> None:
         if self.has_class("-searching"):
             self.catalogue.retitle(self._target(self.catalogue.purpose))

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any
 
 from textual import events, on
-from textual.binding import BindingType
 from textual.message import Message
 from textual.widget import Widget
 
@@ -15,13 +14,10 @@ from calm.files.definition import DENSITY, POSITIVE_LENGTH, QuantityField
 from calm.files.editing import Draft, Value
 from calm.files.water import USUAL_DENSITY
 from calm.files.yaml_document import Location
-from calm.records import profile_tables
-from calm.records.headings import heading
+from calm.records import headings, profile_tables
+from calm.tui import key_table, water_grid, water_tables
 from calm.tui.checking import Check, anything, needed, quantity
 from calm.tui.field import Asked, Cycle, Field
-from calm.tui.key_table import bindings
-from calm.tui.water.grid import Grid
-from calm.tui.water.tables_to_begin import CURRENT_COLUMNS, USUAL_DEPTH
 from calm.units import QuantityError, QuantityRange
 
 CURRENT_FORMS = ("still", "uniform", "table", "file")
@@ -160,7 +156,7 @@ class WaterForm:
         place = {name: self.text("current", name) for name in ("speed", "toward")}
         columns, rows = self.table("current")
         for column, text in zip(columns, rows[0] if rows else (), strict=False):
-            name, unit = heading(column)
+            name, unit = headings.heading(column)
             place[name] = f"{text} {unit}".strip()
         found = [_read(QuantityField("speed"), place.get(name, "")) for name in ("speed", "u", "v")]
         flow = found[0], _read(QuantityField("angle"), place["toward"])
@@ -170,7 +166,7 @@ class WaterForm:
         speed, toward = known if len(known) == 2 else _CURRENT
         if form == "table":
             rows_begun = [["0", speed, toward], [self._down_to, speed, toward]]
-            return {"columns": [*CURRENT_COLUMNS], "rows": rows_begun}
+            return {"columns": [*water_tables.CURRENT_COLUMNS], "rows": rows_begun}
         if form == "uniform":
             return {"speed": f"{speed} m/s", "toward": f"{toward} deg"}
         # one that flows in the file's own environment would be there in this one, too
@@ -178,7 +174,7 @@ class WaterForm:
 
     @property
     def _down_to(self) -> str:
-        return f"{self.depth or USUAL_DEPTH:g}"
+        return f"{self.depth or water_tables.USUAL_DEPTH:g}"
 
     def _with_own(self, keys: Sequence[str]) -> Draft:
         """The file with what its own environment says under the first key said here, too.
@@ -220,7 +216,7 @@ class FormChoice(Cycle):
     When it is left without, it shows the form there is again.
     """
 
-    BINDINGS: ClassVar[list[BindingType]] = [*bindings("given")]
+    BINDINGS = key_table.bindings("given")
 
     @dataclass
     class Taken(Message):
@@ -268,7 +264,7 @@ class FormChoice(Cycle):
         return _TAKE_IT if self.word != self._given else super().hint
 
 
-def fields_of_water(grid: Callable[..., Grid]) -> Iterator[Widget]:
+def fields_of_water(grid: Callable[..., water_grid.Grid]) -> Iterator[Widget]:
     """The parts of the form, tables made by `grid`; ids tell their places in an environment."""
 
     def field(place: str, title: str, check: Check = anything, placeholder: str = "") -> Field:

@@ -3,28 +3,26 @@
 from collections.abc import Collection, Iterator
 from dataclasses import replace
 from types import UnionType
-from typing import Any, ClassVar, Literal, Union, get_args, get_origin
+from typing import Any, Literal, Union, get_args, get_origin
 
 from textual import on
 from textual.app import ComposeResult
-from textual.binding import BindingType
 from textual.containers import Horizontal, Vertical, VerticalScroll
 from textual.widgets import Static
 
 from calm.files.catalogue import defined, tidy_id
 from calm.files.components import KINDS
 from calm.files.definition import QuantityField
+from calm.tui import dialogs, key_table
 from calm.tui.checking import Check, Reading, quantity
-from calm.tui.dialogs import Form
 from calm.tui.field import Asked, Cycle, Field, all_settled
-from calm.tui.key_table import bindings, hints
 from calm.tui.screen import KeyBar, TitleBar
 from calm.units import DIMENSIONS
 
 Defined = tuple[str, dict[str, str]]
 
 
-class ComponentScreen(Form[Defined]):
+class ComponentScreen(dialogs.Form[Defined]):
     """Gives the id and the values of a component; None where it is left.
 
     Parameters
@@ -34,7 +32,7 @@ class ComponentScreen(Form[Defined]):
     begun : a component that is to be changed, with all that the file says of it
     """
 
-    BINDINGS: ClassVar[list[BindingType]] = [*bindings("form")]
+    BINDINGS = key_table.bindings("form")
     HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (112, "-wide")]  # noqa: RUF012
     DEFAULT_CSS = """
     ComponentScreen {
@@ -78,7 +76,7 @@ class ComponentScreen(Form[Defined]):
         """The fields of the first kind."""
         what = f"{self._component}, a {self._kind}" if self._begun else "A component of your own"
         self.query_one(TitleBar).show(f"{what}, kept in this file   * needed", "")
-        self.query_one(KeyBar).show_keys(hints("form"))
+        self.query_one(KeyBar).show_keys(key_table.hints("form"))
         await self._show_fields()
         self.fields[0].input.focus()
 
@@ -119,8 +117,7 @@ class ComponentScreen(Form[Defined]):
         from rich.console import Group, RenderableType
         from rich.text import Text
 
-        from calm.report.component_cards import to_card
-        from calm.report.terminal import shown
+        from calm.report import component_cards, terminal
 
         id, values = self._all()
         component, problems = defined(id or "component", values)
@@ -134,7 +131,7 @@ class ComponentScreen(Form[Defined]):
         elif component is not None:
             parts.append(Text("✓ It can be used.", style="green"))
         if component is not None:
-            parts.append(shown(to_card(id or "component", component)))
+            parts.append(terminal.shown(component_cards.to_card(id or "component", component)))
         self.query_one("#outcome-text", Static).update(Group(*parts))
 
     def action_take(self) -> None:

@@ -3,22 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import ClassVar
 
 from rich.segment import Segment
 from rich.style import Style
 from textual import events, on
-from textual.binding import BindingType
 
 from calm.records.delimited import CopiedTable, NoTableError, copied_table
-from calm.tui.cell_editor import EditableTable, Then
-from calm.tui.checking import Reading
-from calm.tui.dialogs import InputSheet, ask
-from calm.tui.field import Asked
-from calm.tui.key_table import bindings
+from calm.tui import cell_editor, checking, dialogs, field, key_table, theme
 from calm.tui.scrolled import TableCells, TableColumn
-from calm.tui.theme import CURSOR
-from calm.tui.water.tables_to_begin import (
+from calm.tui.water_tables import (
     NoRows,
     Rows,
     UnknownColumns,
@@ -76,7 +69,7 @@ class GridCells(TableCells, can_focus=True):
     def lead(self, number: int, style: Style) -> list[Segment]:
         """Return the cursor, where the table has the focus."""
         here = number == self.cursor and self.has_focus
-        return [Segment(f"{CURSOR} " if here else "  ", style)]
+        return [Segment(f"{theme.CURSOR} " if here else "  ", style)]
 
     def go_on(self, by: int) -> bool:
         """Go to the next value or the one before, over the rows; whether there is one."""
@@ -87,7 +80,7 @@ class GridCells(TableCells, can_focus=True):
         return is_there
 
 
-class Grid(EditableTable):
+class Grid(cell_editor.EditableTable):
     """Edit the cells and the rows of a table of the water.
 
     Values are texts as the file has them: numbers where the heading of their column has a unit,
@@ -98,7 +91,7 @@ class Grid(EditableTable):
     changed : takes the table where its rows are other ones, and what was done to them
     """
 
-    BINDINGS: ClassVar[list[BindingType]] = [*bindings("grid")]
+    BINDINGS = key_table.bindings("grid")
     DEFAULT_CSS = """
     Grid { height: auto; min-height: 3; max-height: 16; }
     Grid GridCells { height: auto; min-height: 3; max-height: 16; }
@@ -213,7 +206,7 @@ class Grid(EditableTable):
 
     # what is typed
 
-    def go_on(self, then: Then, text: str | None) -> None:
+    def go_on(self, then: cell_editor.Then, text: str | None) -> None:
         """Go up or down, or to the next value; add a row below one that was added and is filled."""
         cells = self.cells
         if text is not None:
@@ -270,11 +263,11 @@ class Grid(EditableTable):
         def taken(text: str) -> Rows:
             return rows_in(columns, [one.strip() for one in text.split(",")], copied.rows)
 
-        def check(text: str) -> Reading:
+        def check(text: str) -> checking.Reading:
             try:
-                return Reading(text, comes_to=previewed(columns, taken(text)))
+                return checking.Reading(text, comes_to=previewed(columns, taken(text)))
             except NoRows as error:
-                return Reading(text, str(error))
+                return checking.Reading(text, str(error))
 
         def take(answers: dict[str, str]) -> None:
             rows, chosen = taken(answers["columns"]), answers["columns"]
@@ -286,8 +279,8 @@ class Grid(EditableTable):
             text += " It has no headings: are these its columns?"
         first = "   ".join(copied.rows[0])
         text += f" Its first row reads  {first}"
-        asked = Asked("columns", "Columns", ", ".join(headings), check)
-        ask(self.app, InputSheet("A table is pasted", text, [asked]), take)
+        asked = field.Asked("columns", "Columns", ", ".join(headings), check)
+        dialogs.enter(self.app, "A table is pasted", text, [asked], take)
 
 
 def _between(columns: Sequence[str], rows: Rows, at: int, seabed: float | None) -> tuple[str, ...]:

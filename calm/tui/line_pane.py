@@ -2,23 +2,21 @@
 
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import ClassVar
 
 from textual import on
-from textual.binding import BindingType
 
 from calm.checks.finding import State
 from calm.files import Place
-from calm.tui.catalogue.catalogue_pane import Purpose
-from calm.tui.catalogue.component_screen import id_check
+from calm.tui.catalogue_pane import Purpose
 from calm.tui.cell_editor import Then
 from calm.tui.checking import count
-from calm.tui.dialogs import Answer, InputSheet, Question, ask, choose
+from calm.tui.component_screen import id_check
+from calm.tui.dialogs import Answer, ask, choose, enter
 from calm.tui.field import Asked
 from calm.tui.key_table import bindings
-from calm.tui.line.mooring_sheet import equipment_changes, equipment_sheet
-from calm.tui.line.rows import ColumnFilling, LineCell, table_rows
-from calm.tui.line.table import EDITABLE, Column, LineSearch, LineTable
+from calm.tui.line_rows import ColumnFilling, LineCell, table_rows
+from calm.tui.line_table import EDITABLE, Column, LineSearch, LineTable
+from calm.tui.mooring_sheet import equipment_changes, equipment_sheet
 from calm.tui.names import Named, namings
 from calm.tui.verdict_text import Saying, why
 from calm.tui.workspace import Workspace
@@ -39,7 +37,7 @@ class LinePane(LineSearch):
     search : searches the catalogue for a component for the row under the cursor
     """
 
-    BINDINGS: ClassVar[list[BindingType]] = [*bindings("line")]
+    BINDINGS = bindings("line")
     DEFAULT_CSS = "LinePane { width: 3fr; height: 1fr; }"
 
     def __init__(self, workspace: Workspace, search: Callable[[Purpose], object]) -> None:
@@ -140,7 +138,7 @@ class LinePane(LineSearch):
             return
         text = "\n".join(f"{each.sign} {each.heading}  {each.text}" for each in found)
         called = row.texts.get("label") or row.texts["component"]
-        choose(self.app, Question(called, text, [Answer("b", "back to the row")]))
+        choose(self.app, called, text, [Answer("b", "back to the row")])
 
     # rows
 
@@ -180,7 +178,7 @@ class LinePane(LineSearch):
         check = id_check(self.session.components)
         asked = [Asked("id", "Id", check=check, placeholder="e.g. glass-pack-own")]
         text = "The pieces go into the file's components; `use` of this id stands for them."
-        ask(self.app, InputSheet("Make an assembly", text, asked), take)
+        enter(self.app, "Make an assembly", text, asked, take)
 
     def action_column(self) -> None:
         """Fill a column of the rows that are marked, else of all of the component of the row."""
@@ -204,7 +202,7 @@ class LinePane(LineSearch):
             Answer("c", "codes of releases that have serial numbers", partial(fill, "codes")),
         ]
         text = f"Of {len(spots)} rows, one below the other; a list copied elsewhere can be pasted."
-        choose(self.app, Question("Fill a column", text, answers))
+        choose(self.app, "Fill a column", text, answers)
 
     def action_repeat(self) -> None:
         """Repeat what is chosen several times."""
@@ -215,7 +213,7 @@ class LinePane(LineSearch):
 
         if chosen:
             asked = [Asked("count", "Copies below", check=count)]
-            ask(self.app, InputSheet("Repeat", "", asked), take)
+            enter(self.app, "Repeat", "", asked, take)
 
     def action_duplicate(self) -> None:
         """Repeat what is chosen."""
@@ -231,7 +229,7 @@ class LinePane(LineSearch):
                 Answer("o", "the one that is there; the copy stands for itself", duplicate),
                 Answer("b", "both (`NAME *`) in what is accepted", partial(duplicate, named)),
             ]
-            choose(self.app, Question("Is the copy meant, too?", text, answers))
+            choose(self.app, "Is the copy meant, too?", text, answers)
         elif chosen:
             duplicate()
 

@@ -1,29 +1,39 @@
-"""The pieces of a file as arrays: net forces, drags, stiffness, and how its cables strum."""
+"""The pieces and the environment of a file as the arrays that the march takes."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from math import cbrt, pi, sqrt
-from typing import assert_never
 
 import numpy as np
 
 from calm import files
-from calm.files import Cable, Solver, strumming_keys
-from calm.files.components import FlexibleComponent, RigidComponent
+from calm.assemble.component_forces import axial_drag_of, drag_of, net_buoyancy
+from calm.files import Cable, DepthTable, Environment, SeaWater, Solver, strumming_keys
+from calm.files.components import RigidComponent
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
-from calm.files.rigid import CylinderShape, Displacement, SphereShape
-from calm.physics import drag
+from calm.files.rigid import Displacement
+from calm.physics import drag, seawater
 from calm.physics.drag import Friction
 from calm.physics.hull import Floating, Hull, cylindrical_hull, spherical_hull, tabulated_hull
-from calm.physics.line import Line, Water
-from calm.physics.materials import STEEL_DENSITY
+from calm.physics.line import REFERENCE_VISCOSITY, Floats, Line, Water
 from calm.physics.reynolds import DragCurve
 from calm.physics.stretch import ElongationCurve
-from calm.physics.strumming import AMPLIFICATIONS, BourgetMarichal, line_amplitude
+from calm.physics.strumming import BourgetMarichal
 from calm.records.profile_tables import components
 
 TOWED_SPHERE_CX = 0.90
 """Cx of a sphere at the free end of a tow, which wavers; held, it has 0.45: Bourget & Marichal."""
+
+DEEPEST = 11_000.0
+"""Depth of the water where a tow gives none [m]: more than the deepest trench has."""
+
+LINEAR_WITHIN = 1e-5
+"""Share by which the density of sea water may differ from linear between levels."""
+
+AIR_VISCOSITY = 1.46e-5
+"""Kinematic viscosity of air [m²/s], in the standard atmosphere at sea level."""
+
+_QUARTERS = np.array([0.25, 0.5, 0.75])
 
 
 def assemble_line(
@@ -81,53 +91,6 @@ def assemble_line(
     )
 
 
-def net_buoyancy(component: files.Component, gravity: float) -> float:
-    """Net force in reference water, + up [N, N/m]: given, or from masses under a gravity [m/s²]."""
-    given = any(getattr(component, name, None) is not None for name in ("buoyancy", "weight"))
-    return component.net_buoyancy * (1.0 if given else gravity / STANDARD_GRAVITY)
-
-
-def mass_in_air(component: files.Component) -> float | None:
-    """Mass, per metre of a cable or chain, as given or from the weight in water [kg, kg/m].
-
-    It follows from the displaced volume, or from the density of the material: that of steel for a
-    chain or an anchor that does not say. None where it does not follow.
-    """
-    if component.mass is not None:
-        return component.mass
-    net = component.net_buoyancy / STANDARD_GRAVITY
-    if component.displaced_volume is not None:
-        return CATALOGUE_DENSITY * component.displaced_volume - net
-    density = component.density if isinstance(component, files.Flexible) else None
-    if isinstance(component, files.Anchor):
-        density = component.material_density
-    if density is None and isinstance(component, files.Chain | files.Anchor):
-        density = STEEL_DENSITY
-    if density is None or density == CATALOGUE_DENSITY:
-        return None
-    mass = -net / (1.0 - CATALOGUE_DENSITY / density)
-    return mass if mass >= 0.0 else None
-
-
-def drag_of(component: files.Component, solver: Solver | None = None) -> tuple[float, float, bool]:
-    """Kn, Kt [N/(m/s)², per metre of cable or chain] and whether drag depends on the axis.
-
-    Parameters
-    ----------
-    component : of any kind; an anchor has no drag
-    solver : the laws of friction and strumming of cables and chains; the usual ones where not given
-    """
-    if isinstance(component, SphereShape | CylinderShape):
-        return _shape_drag(component)
-    if isinstance(component, files.Shaped):
-        return _body_drag(component)
-    if isinstance(component, files.Flexible):
-        return *cable_drag(component, solver or Solver()), True
-    if isinstance(component, files.Anchor):
-        return 0.0, 0.0, False
-    assert_never(component)
-
-
 def _drag_curve(component: files.Component, solver: Solver) -> DragCurve | None:
     """The drag curve of a smooth sphere or cylinder; None where it gives a drag of its own."""
     if solver.drag == "constant":
@@ -151,45 +114,6 @@ def _elongation(component: files.Component) -> ElongationCurve | None:
     )
 
 
-def _body_drag(body: files.Shaped) -> tuple[float, float, bool]:
-    if body.made_of is not None:
-        each = [_shape_drag(shape) for shape in body.made_of]
-        follows = any(along for *_, along in each) and body.inclination != "insensitive"
-        return sum(kn for kn, *_ in each), sum(kt for _, kt, _ in each), follows
-    if body.drag_measurements is not None:
-        kn = drag.measured_drag(
-            [measured.speed for measured in body.drag_measurements],
-            [measured.force for measured in body.drag_measurements],
-        )
-    elif body.kn is not None:
-        kn = body.kn
-    else:
-        assert body.drag_area is not None and body.cd is not None
-        kn = drag.area_drag(body.drag_area, body.cd)
-    if body.kt is None or body.inclination == "insensitive":
-        return kn, kn, False
-    return kn, body.kt, True
-
-
-def _shape_drag(shape: SphereShape | CylinderShape) -> tuple[float, float, bool]:
-    if isinstance(shape, SphereShape):
-        k = drag.sphere_drag(shape.diameter, shape.cx)
-        return k, k, False
-    kn, kt = drag.cylinder_drag(shape.diameter, shape.length, shape.cn, shape.ct)
-    if shape.inclination == "insensitive":
-        return kn, kn, False
-    return kn, kt, True
-
-
-def axial_drag_of(component: files.Component) -> float:
-    """K of what is clamped on a line in a flow along that line [N/(m/s)²].
-
-    Its tangential drag; where its drag does not depend on the axis, that of any direction.
-    """
-    kn, kt, directional = drag_of(component)
-    return kt if directional else kn
-
-
 def with_axial_clamps(line: Line, pieces: Sequence[files.Piece]) -> Line:
     """The line of some pieces with its clamps in a flow along it, as in a fall and a rise."""
     clamps = [clamp.component for piece in pieces for clamp in piece.clamps]
@@ -201,53 +125,6 @@ def with_axial_clamps(line: Line, pieces: Sequence[files.Piece]) -> Line:
     return replace(line, clamp_drag=drags, clamp_drag_curve=curves)
 
 
-def cable_drag(component: FlexibleComponent, solver: Solver) -> tuple[float, float]:
-    """Kn and Kt of a metre of cable or chain [N/(m/s)²].
-
-    A cable's Kn includes its strumming; under Bourget & Marichal's law it is that of a cable at
-    rest, which the march raises. Pode's constant friction is Kt = Ct ½ρ Cn D. Where a cable or
-    chain gives no Ct, that of this law is such that its friction is the same as under the other
-    laws, Ct π/Cn: 0.012, 0.022 and 0.031 by finish.
-    """
-    if isinstance(component, Cable):
-        usual = drag.CABLE_CN, drag.CABLE_CT[component.finish or "smooth"]
-    elif isinstance(component, files.Chain):
-        usual = drag.CHAIN_CN, drag.CHAIN_CT
-    else:
-        assert_never(component)
-    cn = usual[0] if component.cn is None else component.cn
-    ct = usual[1] if component.ct is None else component.ct
-    kn, kt = drag.line_drag(component.diameter, cn, ct)
-    if solver.friction == "constant":
-        kt = kn * (ct * pi / usual[0] if component.ct is None else ct)
-    if isinstance(component, Cable):
-        cn = _strumming_cn(component, cn, solver)
-        kn, _ = drag.line_drag(component.diameter, cn, ct)
-    return kn, kt
-
-
-def _strumming_cn(cable: Cable, cn: float, solver: Solver) -> float:
-    law = solver.strumming
-    if isinstance(law, strumming_keys.StrummingFactor):
-        return cn * law.factor
-    if isinstance(law, strumming_keys.ConstantCn):
-        return law.cn
-    if isinstance(law, strumming_keys.BourgetMarichalKeys):
-        return law.c0
-    if isinstance(law, strumming_keys.AmplitudeModel):
-        amplitude = line_amplitude(_mass(cable), cable.diameter, CATALOGUE_DENSITY)
-        return cn * AMPLIFICATIONS[law.name](amplitude)
-    return cn
-
-
-def _mass(cable: Cable) -> float:
-    """Return the mass of a metre [kg/m], if need be from its weight in water and its diameter."""
-    if cable.mass is not None:
-        return cable.mass
-    displaced = CATALOGUE_DENSITY * pi * cable.diameter**2 / 4
-    return max(displaced - cable.net_buoyancy / STANDARD_GRAVITY, 0.0)
-
-
 def vibration_law(solver: Solver) -> BourgetMarichal | None:
     """The law by which the Cn of cables grows as they strum; None where the file chooses none."""
     keys = solver.strumming
@@ -257,7 +134,7 @@ def vibration_law(solver: Solver) -> BourgetMarichal | None:
 
 
 def assemble_floating(
-    pieces: Sequence[files.Piece], environment: files.Environment, water: Water
+    pieces: Sequence[files.Piece], environment: Environment, water: Water
 ) -> Floating | None:
     """Return how the first float rides at the surface; None where neither its draft nor its drag
     is known.
@@ -314,3 +191,107 @@ def _hull(component: RigidComponent) -> Hull | None:
     if hull == "cylinder" and component.length > 0.0:
         return cylindrical_hull(sqrt(4.0 * volume / (pi * component.length)), component.length)
     return None
+
+
+def assemble_water(environment: Environment) -> Water:
+    """Current and density on the union of their levels, viscosity on its own; linear between."""
+    flows = [environment.current, *_surface_drift(environment)]
+    density_levels, density = _density(environment)
+    # np.unique would import masked arrays
+    depths = {*density_levels.tolist(), *(depth for flow in flows for depth in flow.depth)}
+    levels = np.array(sorted(depths))
+    velocity = np.zeros((3, len(levels)))
+    for flow in flows:
+        velocity += [np.interp(levels, flow.depth, part) for part in (flow.u, flow.v, flow.w)]
+    u, v, w = velocity
+    viscosity_level, viscosity = _viscosity(environment, density_levels, density)
+    deeper = (0.0, 0.0) if environment.seabed is None else environment.seabed.plane
+    return Water(
+        depth=_depth(environment),
+        level=levels,
+        u=u,
+        v=v,
+        w=w,
+        density=np.interp(levels, density_levels, density),
+        gravity=_gravity(environment),
+        viscosity_level=viscosity_level,
+        viscosity=viscosity,
+        deeper_east=deeper[0],
+        deeper_north=deeper[1],
+    )
+
+
+def _viscosity(environment: Environment, levels: Floats, density: Floats) -> tuple[Floats, Floats]:
+    """Depths [m] and the kinematic viscosity at them [m²/s], from the levels of the density.
+
+    Where temperature and salinity are not given, it is that of sea water of 10 °C and salinity 35.
+    """
+    sea = environment.density
+    if not isinstance(sea, SeaWater):
+        in_air = environment.fluid == "air"
+        return np.zeros(1), np.array([AIR_VISCOSITY if in_air else REFERENCE_VISCOSITY])
+    return levels, seawater.kinematic_viscosity(*_probed(sea, levels), density)
+
+
+def _depth(environment: Environment) -> float:
+    return DEEPEST if environment.depth is None else environment.depth
+
+
+def _gravity(environment: Environment) -> float:
+    if environment.gravity is not None:
+        return environment.gravity
+    if isinstance(environment.density, SeaWater) and environment.position is not None:
+        return seawater.gravity(environment.position.latitude)
+    return STANDARD_GRAVITY
+
+
+def _surface_drift(environment: Environment) -> list[files.CurrentTable]:
+    """Return what the wind adds to the current; nothing where it drives no surface drift."""
+    wind = environment.wind
+    if wind is None or wind.surface_drift == 0.0:
+        return []
+    u, v = components(wind.surface_drift * wind.speed, wind.toward)
+    depth = wind.drift_depth or _depth(environment)
+    return [files.CurrentTable((0.0, depth), (u, 0.0), (v, 0.0), (0.0, 0.0))]
+
+
+def _density(environment: Environment) -> tuple[Floats, Floats]:
+    """Levels [m] and the density at them [kg/m³]."""
+    given = environment.density
+    if isinstance(given, DepthTable):
+        return np.array(given.depth), np.array(given.value)
+    if not isinstance(given, SeaWater):
+        # A constant asks for no level of its own.
+        return np.array(environment.current.depth[:1]), np.array([given])
+    position = environment.position
+    place = () if position is None else (position.latitude, position.longitude)
+
+    def density(depth: Floats) -> Floats:
+        return seawater.density(*_probed(given, depth), depth, *place)
+
+    # Without rows to the bottom the last ones hold, but pressure goes on rising.
+    rows = [*given.temperature.depth, *given.salinity.depth, 0.0, _depth(environment)]
+    levels = _refined(np.unique(rows), density)
+    return levels, density(levels)
+
+
+def _probed(sea: SeaWater, depth: Floats) -> tuple[Floats, Floats]:
+    """Temperature [°C] and practical salinity at depths of any shape [m]."""
+    temperature, salinity = sea.temperature, sea.salinity
+    return (
+        np.interp(depth, temperature.depth, temperature.value),
+        np.interp(depth, salinity.depth, salinity.value),
+    )
+
+
+def _refined(levels: Floats, values: Callable[[Floats], Floats]) -> Floats:
+    """Levels halved until `values` is linear between them; it may bend only at the levels given."""
+    while True:
+        thickness = np.diff(levels)[:, np.newaxis]
+        inside = levels[:-1, np.newaxis] + thickness * _QUARTERS
+        error = np.abs(np.interp(inside, levels, values(levels)) / values(inside) - 1.0)
+        # Half of what is promised: between the quarters it may be a little more.
+        bent = error.max(axis=1) > 0.5 * LINEAR_WITHIN
+        if not bent.any():
+            return levels
+        levels = np.union1d(levels, inside[bent, 1])

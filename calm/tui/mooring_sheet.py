@@ -2,31 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
 from calm.checks.finding import State
-from calm.files.rule_texts import RULES
-from calm.tui.catalogue.component_screen import form_fields
-from calm.tui.session import location
-
-if TYPE_CHECKING:
-    from calm.tui.live import View
-
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import replace
-from functools import partial
-from typing import Any
-
 from calm.files import Clamp, Flexible, MooringFile, Piece, Place
 from calm.files.definition import LENGTH, POSITIVE_LENGTH, QuantityField
 from calm.files.editing import Draft, EditError, Value
 from calm.files.mooring_file import parts_of
+from calm.files.rule_texts import RULES
 from calm.files.yaml_document import Location
 from calm.tui.checking import Reading, anything, day, moment, quantity
+from calm.tui.component_screen import form_fields
 from calm.tui.dialogs import InputSheet
 from calm.tui.field import Asked
+from calm.tui.session import location
+
+if TYPE_CHECKING:
+    from calm.tui.live import View
 
 _HISTORY: Location = ("document", "history")
 

@@ -1,21 +1,20 @@
 """The first screen: the line, its picture, the verdict, and the catalogue when it is wanted."""
 
 from functools import partial
-from typing import Any, ClassVar
+from typing import Any
 
 from textual import on
-from textual.binding import BindingType
 from textual.events import DescendantFocus, Key
 
 from calm.files.components import KINDS
 from calm.templates import TEMPLATES, Template, template
-from calm.tui.catalogue.catalogue_pane import Purpose
-from calm.tui.catalogue.component_screen import Defined
+from calm.tui.catalogue_pane import Purpose
 from calm.tui.cell_editor import CellEditor
-from calm.tui.dialogs import Question, ask, choose, numbered
+from calm.tui.comparing import ComparingScreen
+from calm.tui.component_screen import Defined
+from calm.tui.dialogs import ask, choose, numbered
 from calm.tui.key_table import bindings, hints
-from calm.tui.line.comparing import ComparingScreen
-from calm.tui.line.mooring_sheet import (
+from calm.tui.mooring_sheet import (
     SHEETS,
     figures_sheet,
     hung_at,
@@ -34,7 +33,7 @@ _MOST_STEPS = 9
 class BuilderScreen(ComparingScreen):
     """The line in the middle, and the ways to all other screens."""
 
-    BINDINGS: ClassVar[list[BindingType]] = [*bindings("anywhere")]
+    BINDINGS = bindings("anywhere")
 
     def on_resize(self) -> None:
         """The title says as much as there is room for."""
@@ -141,7 +140,7 @@ class BuilderScreen(ComparingScreen):
             (f"{kind}: {meaning}", partial(begin, kind)) for kind, meaning in TEMPLATES.items()
         )
         text = "Each stands as given: change depth, current and pieces to yours."
-        choose(self.app, Question("Begin with", text, answers))
+        choose(self.app, "Begin with", text, answers)
 
     def action_history(self) -> None:
         """Show what was done, and go back to before any of it."""
@@ -162,7 +161,7 @@ class BuilderScreen(ComparingScreen):
         text = f"Go back to before one of the last {len(answers)} changes; U does them again."
         if (more := len(steps.steps) - _MOST_STEPS) > 0:
             text += f" {more} are older; u goes back one by one."
-        choose(self.app, Question("What was done", text, answers))
+        choose(self.app, "What was done", text, answers)
 
     def action_search(self, purpose: Purpose) -> None:
         """Search the catalogue."""
@@ -170,7 +169,7 @@ class BuilderScreen(ComparingScreen):
 
     def action_define(self) -> None:
         """Define a component of one's own, and put it into the line."""
-        from calm.tui.catalogue.component_screen import ComponentScreen
+        from calm.tui.component_screen import ComponentScreen
 
         index, session = self.workspace.index, self.session
 
@@ -188,7 +187,7 @@ class BuilderScreen(ComparingScreen):
 
     def action_change_component(self) -> None:
         """Change the component of the row in its form; figures that it does not show stay."""
-        from calm.tui.catalogue.component_screen import ComponentScreen
+        from calm.tui.component_screen import ComponentScreen
 
         spot, session = self.line.table.spot, self.session
         if spot is None or not self.settle():
@@ -215,7 +214,7 @@ class BuilderScreen(ComparingScreen):
 
     def action_water(self) -> None:
         """Depth, density, current, wind."""
-        from calm.tui.water.water_screen import WaterScreen
+        from calm.tui.water_screen import WaterScreen
 
         self.app.push_screen(WaterScreen(self.workspace), self._back)
 

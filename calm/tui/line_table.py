@@ -16,12 +16,8 @@ from calm.checks.finding import State
 from calm.checks.strength import strength
 from calm.files import Place
 from calm.quantities import QUANTITIES
-from calm.tui.cell_editor import EditableTable
-from calm.tui.checking import needed
-from calm.tui.dialogs import InputSheet, ask
-from calm.tui.field import Asked
+from calm.tui import cell_editor, checking, dialogs, field, theme
 from calm.tui.scrolled import TableCells, TableColumn
-from calm.tui.theme import CURSOR, LOOKS, MARK
 
 _TAIL = 4
 _EMPTY = (
@@ -171,11 +167,11 @@ class LineTable(TableCells, can_focus=True):
         row = self.rows[number]
         sign = Segment(" ", style)
         if row.spot in self.marked:
-            sign = Segment(MARK, style)
+            sign = Segment(theme.MARK, style)
         elif row.state is not None and row.state.value not in ("pass", "accepted", "estimated"):
             colour = self.look(f"line-table--{row.state.value}")
-            sign = Segment(LOOKS[row.state].sign, style + colour)
-        cursor = CURSOR if number == self.cursor else " "
+            sign = Segment(theme.LOOKS[row.state].sign, style + colour)
+        cursor = theme.CURSOR if number == self.cursor else " "
         return [Segment(cursor, style), sign, Segment(f"{row.sign} ", style)]
 
 
@@ -254,7 +250,7 @@ def _text_room(shown: list[str], width: int, fixed: dict[str, int]) -> int:
     return width - LEAD - len(shown) - sum(fixed.get(name, 0) for name in shown)
 
 
-class LineSearch(EditableTable):
+class LineSearch(cell_editor.EditableTable):
     """A table of the line whose cursor goes to what is looked for, and which tells what it is."""
 
     table: LineTable
@@ -268,8 +264,8 @@ class LineSearch(EditableTable):
             self.action_find_next(1)
 
         takes = "id, label, serial, maker"
-        asked = [Asked("words", "Words", self.words, needed("a word"), takes)]
-        ask(self.app, InputSheet("Find in the line", "", asked), take)
+        asked = [field.Asked("words", "Words", self.words, checking.needed("a word"), takes)]
+        dialogs.enter(self.app, "Find in the line", "", asked, take)
 
     def action_find_next(self, by: int) -> None:
         """To the next row, or the one before, that has all words: id, label, serial, maker."""

@@ -21,15 +21,13 @@ from calm.files.definition import QuantityField
 from calm.records import profile_tables
 from calm.records.headings import heading
 from calm.records.profile_tables import QuantityTable, speed_and_direction
+from calm.tui import field, theme
 from calm.tui.checking import Check, Reading, number, quantity
-from calm.tui.dialogs import InputSheet, Question, choose, numbered
-from calm.tui.field import Asked
-from calm.tui.theme import ELLIPSIS
+from calm.tui.dialogs import InputSheet, choose, numbered
 from calm.units import DIMENSIONS, QuantityError, QuantityRange, unit_factor
 
 if TYPE_CHECKING:
-    from calm.tui.water.form import WaterForm
-    from calm.tui.water.water_screen import WaterScreen
+    from calm.tui import water_form, water_screen
 
 CURRENT_COLUMNS = ("depth m", "speed m/s", "toward deg")
 
@@ -56,7 +54,7 @@ _PRESETS: Mapping[str, Callable[[float], float]] = {
 class Currents:
     """What puts a whole current into the environment that the screen of the water shows."""
 
-    def __init__(self, screen: WaterScreen) -> None:
+    def __init__(self, screen: water_screen.WaterScreen) -> None:
         self._screen, self._workspace = screen, screen.workspace
 
     def offer_presets(self) -> None:
@@ -72,7 +70,7 @@ class Currents:
             down = f"{USUAL_DEPTH:g} m, as no depth is given" if depth is None else f"{depth:g} m"
             answers = numbered((name, partial(take, speed)) for name, speed in _PRESETS.items())
             text = f"A table down to {down}, towards the east, for you to change."
-            choose(self._screen.app, Question("A current to start from", text, answers))
+            choose(self._screen.app, "A current to start from", text, answers)
 
     def ask_for_file(self) -> None:
         """A current from CSV or NetCDF: referred to, or its profile copied."""
@@ -95,7 +93,7 @@ class Currents:
         if screen.settle():
             screen.app.push_screen(import_sheet(self._folder), take)
 
-    def _read(self, water: WaterForm, path: str, time: str) -> None:
+    def _read(self, water: water_form.WaterForm, path: str, time: str) -> None:
         """Read a file for an environment in a thread; what comes of it is taken by the form."""
         screen, tell = self._screen, self._workspace.tell
 
@@ -133,9 +131,9 @@ def import_sheet(folder: Path) -> InputSheet:
         f"CSV or CF NetCDF, from {folder} unless another is named. `refer` keeps the file's "
         "name in the mooring file; `copy` writes its profile as a table.",
         [
-            Asked("file", "File", check=_existing(folder), placeholder="e.g. adcp.nc"),
-            Asked("time", "Time", placeholder="e.g. 2026-03-01T06:00, if it is a record"),
-            Asked("how", "refer or copy", "refer", _how),
+            field.Asked("file", "File", check=_existing(folder), placeholder="e.g. adcp.nc"),
+            field.Asked("time", "Time", placeholder="e.g. 2026-03-01T06:00, if it is a record"),
+            field.Asked("how", "refer or copy", "refer", _how),
         ],
     )
 
@@ -259,7 +257,7 @@ def previewed(columns: Sequence[str], rows: Rows) -> str:
     """Rows under their columns as they would be taken, of many the first and the last."""
     lines: list[Sequence[str]] = [columns, *rows]
     if len(rows) > _MOST_SHOWN:
-        between = f"{ELLIPSIS} {len(rows) - _MOST_SHOWN} more"
+        between = f"{theme.ELLIPSIS} {len(rows) - _MOST_SHOWN} more"
         lines = [columns, *rows[: _MOST_SHOWN - 1], (between,), rows[-1]]
     widths = [max(len(row[n]) for row in [columns, *rows]) for n in range(len(columns))]
     return "\n".join(

@@ -11,16 +11,14 @@ from typing import TYPE_CHECKING
 
 from calm.errors import CalmError
 from calm.files.editing import Draft, WorkingFile
-from calm.tui.checking import needed
-from calm.tui.dialogs import Answer, InputSheet, LongText, Question, ask, choose, numbered
+from calm.tui import checking, line_screen
+from calm.tui.dialogs import Answer, LongText, choose, enter, numbered
 from calm.tui.field import Asked
-from calm.tui.line.line_screen import LineScreen
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-    from calm.case import Mooring, Result
-    from calm.case.net import Net
+    from calm.case import Mooring, Result, net
     from calm.case.result import NetResult
     from calm.tui.advice import Offer
     from calm.tui.live import View
@@ -31,7 +29,7 @@ _PAPERS = {"report": ("check", "--report"), "deck": ("deck", "--output")}
 """The command that writes each, and its option of where."""
 
 
-class ComparingScreen(LineScreen):
+class ComparingScreen(line_screen.LineScreen):
     """The line and what it is compared with: what was saved, other files, changes that help.
 
     All of it is judged in a thread; what comes of it is asked about or told.
@@ -64,7 +62,7 @@ class ComparingScreen(LineScreen):
         if self.settle():
             asked = [Asked("file", "File", placeholder="e.g. other.yaml")]
             text = "Its line is drawn dashed beside this one; no name takes it away again."
-            ask(self.app, InputSheet("Compare with another file", text, asked), take)
+            enter(self.app, "Compare with another file", text, asked, take)
 
     def _judge_beside(self, text: str, file: Path | None) -> None:
         """Judge a text beside the line's: of another file, or of its own as it was saved."""
@@ -89,7 +87,7 @@ class ComparingScreen(LineScreen):
             if shape is not None and now and type(before.result) is type(now.result):
                 self.pictures.put_beside((name, shape))
             answers = [Answer("b", "back to the line")]
-            choose(self.app, Question(f"Beside {name}", "\n".join(lines), answers))
+            choose(self.app, f"Beside {name}", "\n".join(lines), answers)
 
         self.tell("Comparing …")
         self.run_worker(work, thread=True, group="advice", exclusive=True)
@@ -125,9 +123,9 @@ class ComparingScreen(LineScreen):
             text = "No finding has a remedy that can be computed here. " + text
         if isinstance(result, Result) and not view.complete:
             text += " Launch, recovery, breaks and waves are still being judged."
-        choose(self.app, Question("Advice", text, answers))
+        choose(self.app, "Advice", text, answers)
 
-    def _ask_for_target(self, view: View, mooring: Mooring | Net) -> None:
+    def _ask_for_target(self, view: View, mooring: Mooring | net.Net) -> None:
         from calm.tui.advice import sized
 
         def take(texts: dict[str, str]) -> None:
@@ -141,11 +139,11 @@ class ComparingScreen(LineScreen):
         row = self.line.table.row
         label = "top float" if row is None else row.texts.get("label") or row.texts["component"]
         asked = [
-            Asked("target", "Target", "knockdown(top) <= 20 m", needed("a target")),
-            Asked("change", "Change", f"{label.strip('├ ')}.buoyancy", needed("a change")),
+            Asked("target", "Target", "knockdown(top) <= 20 m", checking.needed("a target")),
+            Asked("change", "Change", f"{label.strip('├ ')}.buoyancy", checking.needed("a change")),
         ]
         text = "LABEL.buoyancy, LABEL.length or LABEL.count; depth(LABEL) = 100 m, tilt(LABEL) …"
-        ask(self.app, InputSheet("A target to meet", text, asked), take)
+        enter(self.app, "A target to meet", text, asked, take)
 
     def _try(self, offer: Offer, before: View) -> None:
         """Work a change out in a thread, and ask whether it is wanted for what it would do."""
@@ -173,7 +171,7 @@ class ComparingScreen(LineScreen):
 
             self.workspace.tell("")
             answers, back = [Answer("y", "take it", take)], partial(self.tell, "Not taken")
-            choose(self.app, Question(offer.title, "\n".join(lines), answers, back=back))
+            choose(self.app, offer.title, "\n".join(lines), answers, back=back)
 
         self.tell(f"Working out {offer.label} …")
         self.run_worker(work, thread=True, group="advice", exclusive=True)
@@ -201,7 +199,7 @@ class ComparingScreen(LineScreen):
             Answer("r", "report of the design check: page, PDF, tables", report),
             Answer("d", "sheets for the deck: diagram, logs, cutting list, anchor drop", deck),
         ]
-        choose(self.app, Question("On paper", "", answers))
+        choose(self.app, "On paper", "", answers)
 
     def _ask_where(self, what: str) -> None:
         path = self.session.file.path
@@ -210,9 +208,9 @@ class ComparingScreen(LineScreen):
             return
 
         folder = path.with_name(f"{path.stem}-{what}")
-        asked = [Asked("folder", "Folder", str(folder), needed("a folder"))]
+        asked = [Asked("folder", "Folder", str(folder), checking.needed("a folder"))]
         write = partial(self._write, what, path)
-        ask(self.app, InputSheet("Where to write it", "", asked), write)
+        enter(self.app, "Where to write it", "", asked, write)
 
     def _write(self, what: str, path: Path, texts: dict[str, str]) -> None:
         """Have the command write it; what it says last is reported."""
@@ -245,9 +243,8 @@ def _bill(result: Result | NetResult) -> RenderableType:
     from calm.checks.inventory import inventory_of
     from calm.files.mooring_file import STAND_IN
     from calm.quantities import QUANTITIES
-    from calm.report.blocks import Pairs, ReportPart
+    from calm.report import blocks, terminal
     from calm.report.check_tables import inventory_table
-    from calm.report.terminal import shown
 
     listed = [item for leg in legs_of(result) for item in inventory_of(leg.mooring)]
     items = tuple(item for item in listed if item.use != STAND_IN)
@@ -263,4 +260,4 @@ def _bill(result: Result | NetResult) -> RenderableType:
         ("buoyancy", say["wet_weight"].say(-sum(each for each in weights if each < 0.0))),
         ("weight in water", say["wet_weight"].say(sum(each for each in weights if each > 0.0))),
     )
-    return shown(ReportPart("Bill", (inventory_table(items), Pairs(totals))))
+    return terminal.shown(blocks.ReportPart("Bill", (inventory_table(items), blocks.Pairs(totals))))

@@ -1,4 +1,4 @@
-"""Reading the moorings of a design check, each in all the environments it is judged in."""
+"""Reading lines, and the moorings of a design check in all the environments it is judged in."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from calm.cli.progress import mapped
 from calm.errors import InputError, NoEquilibrium, Problem, UsageError
@@ -14,6 +14,28 @@ from calm.errors import InputError, NoEquilibrium, Problem, UsageError
 if TYPE_CHECKING:
     from calm.case import Mooring, Tow
     from calm.case.net import Net
+
+Line = TypeVar("Line")
+
+
+def read_all(
+    load: Callable[[Path, str | None, Sequence[Path]], Line],
+    files: Sequence[Path],
+    environment: str | None,
+    catalogs: Sequence[Path],
+) -> list[Line]:
+    """Read all files by `calm.case.load`, or one like it; or an `InputError` with all mistakes."""
+    read: list[Line] = []
+    problems: dict[Problem, None] = {}
+    for file in files:
+        try:
+            read.append(load(file, environment, catalogs))
+        except InputError as error:
+            # A catalogue that all files share has its mistakes told once.
+            problems |= dict.fromkeys(error.problems)
+    if problems:
+        raise InputError(list(problems))
+    return read
 
 
 @dataclass(frozen=True)
@@ -85,16 +107,15 @@ def _cut_alike(moorings: Sequence[Mooring | Net]) -> tuple[Mooring | Net, ...]:
 
     What does not depend on the environment, such as the line in still water, is solved once.
     """
-    from calm.case import Mooring
+    from calm.case import Mooring, parts
     from calm.case.memory import Memory
-    from calm.case.parts import cut_like
 
     if any(not isinstance(each, Mooring) for each in moorings):
         return tuple(moorings)  # nothing in a net is cut to fit
     memory = Memory()
     first, *others = (Mooring(each.file, memory=memory) for each in moorings)
     try:
-        return first, *(Mooring(cut_like(each.file, first), memory=memory) for each in others)
+        return first, *(Mooring(parts.cut_like(each.file, first), memory=memory) for each in others)
     except NoEquilibrium:
         return first, *others  # the first is reported not to stand, and why
 
@@ -139,8 +160,7 @@ def _load(
 
 def _refuse_one_name(moorings: Sequence[Mooring | Net]) -> None:
     """Two environments of one name could not be told apart."""
-    from calm.checks.finding import OWN
-    from calm.report.blocks import ON_THE_WAY
+    from calm.checks.finding import ON_THE_WAY, OWN
 
     names = Counter(mooring.file.environment.name or OWN for mooring in moorings)
     names[ON_THE_WAY] += 1  # a column of its own

@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING
 from textual.events import Paste
 
 from calm.assemble.catalogue_search import Index, Listed
-from calm.checks.finding import State
-from calm.files import Place
-from calm.files.components import FLEXIBLE_KINDS
+from calm.checks.finding import State, worst_state
+from calm.files import Place, components
 from calm.files.editing import Draft, LineItem, Value
 from calm.quantities import QUANTITIES
 from calm.tui.checking import Check, anything, count, distance, length, length_text, length_values
 from calm.tui.dialogs import InputSheet
 from calm.tui.field import Asked
-from calm.tui.line.mooring_sheet import (
+from calm.tui.line_table import EDITABLE, TableRow
+from calm.tui.mooring_sheet import (
     RELEASES,
     entered,
     equipment_changes,
@@ -25,8 +25,7 @@ from calm.tui.line.mooring_sheet import (
     serial_of_equipment,
     texts_of_equipment,
 )
-from calm.tui.line.table import EDITABLE, TableRow
-from calm.tui.theme import CLAMP, ROLES, UNKNOWN_MARGIN, UNKNOWN_ROLE, worst
+from calm.tui.theme import CLAMP, ROLES, UNKNOWN_MARGIN, UNKNOWN_ROLE
 from calm.tui.workspace import Workspace
 
 if TYPE_CHECKING:
@@ -117,7 +116,8 @@ def _row(spot: Place, item: LineItem, found: Sequence[FoundRow], index: Index | 
         **_told(found),
     }
     states = [row.state for row in found if row.state is not None]
-    return TableRow(spot, sign if index else " ", texts, worst(states), unknown)
+    gravest = worst_state(states) if states else None
+    return TableRow(spot, sign if index else " ", texts, gravest, unknown)
 
 
 def _length(values: Mapping[str, str], found: Sequence[FoundRow]) -> str:
@@ -170,7 +170,7 @@ class LineCell:
             return _NO_SERIAL
         if self.spot.is_clamp:
             return _NO_COUNT if self.column == "count" else ""
-        is_rigid = listed is not None and listed.kind not in FLEXIBLE_KINDS
+        is_rigid = listed is not None and listed.kind not in components.FLEXIBLE_KINDS
         is_set = self.column == "length" and is_rigid and "length" not in self._values
         return _NO_LENGTH if is_set else ""
 

@@ -1,0 +1,227 @@
+"""What follows from the figures of a component: net force, mass, drags, and what they sum to."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, fields
+from math import pi
+from typing import Any, assert_never
+
+from calm import files
+from calm.files import Anchor, Cable, Chain, Flexible, Solver, strumming_keys
+from calm.files.catalogue import Defined
+from calm.files.components import FlexibleComponent, Outline
+from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
+from calm.files.rigid import CylinderShape, SphereShape
+from calm.physics import drag
+from calm.physics.materials import STEEL_DENSITY
+from calm.physics.strumming import AMPLIFICATIONS, line_amplitude
+from calm.units import QuantityError, parse_quantity
+
+
+def net_buoyancy(component: files.Component, gravity: float) -> float:
+    """Net force in reference water, + up [N, N/m]: given, or from masses under a gravity [m/s²]."""
+    given = any(getattr(component, name, None) is not None for name in ("buoyancy", "weight"))
+    return component.net_buoyancy * (1.0 if given else gravity / STANDARD_GRAVITY)
+
+
+def mass_in_air(component: files.Component) -> float | None:
+    """Mass, per metre of a cable or chain, as given or from the weight in water [kg, kg/m].
+
+    It follows from the displaced volume, or from the density of the material: that of steel for a
+    chain or an anchor that does not say. None where it does not follow.
+    """
+    if component.mass is not None:
+        return component.mass
+    net = component.net_buoyancy / STANDARD_GRAVITY
+    if component.displaced_volume is not None:
+        return CATALOGUE_DENSITY * component.displaced_volume - net
+    density = component.density if isinstance(component, Flexible) else None
+    if isinstance(component, Anchor):
+        density = component.material_density
+    if density is None and isinstance(component, Chain | Anchor):
+        density = STEEL_DENSITY
+    if density is None or density == CATALOGUE_DENSITY:
+        return None
+    mass = -net / (1.0 - CATALOGUE_DENSITY / density)
+    return mass if mass >= 0.0 else None
+
+
+def drag_of(component: files.Component, solver: Solver | None = None) -> tuple[float, float, bool]:
+    """Kn, Kt [N/(m/s)², per metre of cable or chain] and whether drag depends on the axis.
+
+    Parameters
+    ----------
+    component : of any kind; an anchor has no drag
+    solver : the laws of friction and strumming of cables and chains; the usual ones where not given
+    """
+    if isinstance(component, SphereShape | CylinderShape):
+        return _shape_drag(component)
+    if isinstance(component, files.Shaped):
+        return _body_drag(component)
+    if isinstance(component, Flexible):
+        return *cable_drag(component, solver or Solver()), True
+    if isinstance(component, Anchor):
+        return 0.0, 0.0, False
+    assert_never(component)
+
+
+def _body_drag(body: files.Shaped) -> tuple[float, float, bool]:
+    if body.made_of is not None:
+        each = [_shape_drag(shape) for shape in body.made_of]
+        follows = any(along for *_, along in each) and body.inclination != "insensitive"
+        return sum(kn for kn, *_ in each), sum(kt for _, kt, _ in each), follows
+    if body.drag_measurements is not None:
+        kn = drag.measured_drag(
+            [measured.speed for measured in body.drag_measurements],
+            [measured.force for measured in body.drag_measurements],
+        )
+    elif body.kn is not None:
+        kn = body.kn
+    else:
+        assert body.drag_area is not None and body.cd is not None
+        kn = drag.area_drag(body.drag_area, body.cd)
+    if body.kt is None or body.inclination == "insensitive":
+        return kn, kn, False
+    return kn, body.kt, True
+
+
+def _shape_drag(shape: SphereShape | CylinderShape) -> tuple[float, float, bool]:
+    if isinstance(shape, SphereShape):
+        k = drag.sphere_drag(shape.diameter, shape.cx)
+        return k, k, False
+    kn, kt = drag.cylinder_drag(shape.diameter, shape.length, shape.cn, shape.ct)
+    if shape.inclination == "insensitive":
+        return kn, kn, False
+    return kn, kt, True
+
+
+def axial_drag_of(component: files.Component) -> float:
+    """K of what is clamped on a line in a flow along that line [N/(m/s)²].
+
+    Its tangential drag; where its drag does not depend on the axis, that of any direction.
+    """
+    kn, kt, directional = drag_of(component)
+    return kt if directional else kn
+
+
+def cable_drag(component: FlexibleComponent, solver: Solver) -> tuple[float, float]:
+    """Kn and Kt of a metre of cable or chain [N/(m/s)²].
+
+    A cable's Kn includes its strumming; under Bourget & Marichal's law it is that of a cable at
+    rest, which the march raises. Pode's constant friction is Kt = Ct ½ρ Cn D. Where a cable or
+    chain gives no Ct, that of this law is such that its friction is the same as under the other
+    laws, Ct π/Cn: 0.012, 0.022 and 0.031 by finish.
+    """
+    if isinstance(component, Cable):
+        usual = drag.CABLE_CN, drag.CABLE_CT[component.finish or "smooth"]
+    elif isinstance(component, Chain):
+        usual = drag.CHAIN_CN, drag.CHAIN_CT
+    else:
+        assert_never(component)
+    cn = usual[0] if component.cn is None else component.cn
+    ct = usual[1] if component.ct is None else component.ct
+    kn, kt = drag.line_drag(component.diameter, cn, ct)
+    if solver.friction == "constant":
+        kt = kn * (ct * pi / usual[0] if component.ct is None else ct)
+    if isinstance(component, Cable):
+        cn = _strumming_cn(component, cn, solver)
+        kn, _ = drag.line_drag(component.diameter, cn, ct)
+    return kn, kt
+
+
+def _strumming_cn(cable: Cable, cn: float, solver: Solver) -> float:
+    law = solver.strumming
+    if isinstance(law, strumming_keys.StrummingFactor):
+        return cn * law.factor
+    if isinstance(law, strumming_keys.ConstantCn):
+        return law.cn
+    if isinstance(law, strumming_keys.BourgetMarichalKeys):
+        return law.c0
+    if isinstance(law, strumming_keys.AmplitudeModel):
+        amplitude = line_amplitude(_mass(cable), cable.diameter, CATALOGUE_DENSITY)
+        return cn * AMPLIFICATIONS[law.name](amplitude)
+    return cn
+
+
+def _mass(cable: Cable) -> float:
+    """Return the mass of a metre [kg/m], if need be from its weight in water and its diameter."""
+    if cable.mass is not None:
+        return cable.mass
+    displaced = CATALOGUE_DENSITY * pi * cable.diameter**2 / 4
+    return max(displaced - cable.net_buoyancy / STANDARD_GRAVITY, 0.0)
+
+
+_PART_KEYS = {"use", "label", "length", "count", "clamps", "at"}
+
+
+@dataclass(frozen=True)
+class Datasheet:
+    """Figures that follow, in sea water of `CATALOGUE_DENSITY`; per metre of a cable or chain.
+
+    Attributes
+    ----------
+    net_buoyancy : + up [N]
+    kn, kt : drag across and along the axis, in newtons at 1 m/s [N/(m/s)²]; `kn` is None for an
+        anchor, `kt` its drag in the fall
+    cd_area : drag coefficient times area, across the axis [m²]
+    """
+
+    net_buoyancy: float
+    kn: float | None
+    kt: float | None
+    cd_area: float | None
+
+
+def datasheet(definition: Defined, catalogue: files.Catalogue | None = None) -> Datasheet | None:
+    """Return what follows from the figures of a definition; for an assembly, the sums over its
+    parts.
+
+    None for an outline, and for an assembly whose parts cannot be summed here: they override
+    figures of a component, or use what the catalogue does not have (`catalogue` None: no catalogue
+    at all).
+    """
+    if isinstance(definition, files.Component):
+        return _of_component(definition, 1.0)
+    if catalogue is None or isinstance(definition, Outline):
+        return None
+    sheets = []
+    for item in _items(definition.parts):
+        component = _component(catalogue, item)
+        if component is None:
+            return None
+        try:
+            metres = parse_quantity(item["length"], "length") if "length" in item else 1.0
+        except QuantityError:
+            return None
+        sheets.append(_of_component(component, metres))
+    names = [each.name for each in fields(Datasheet)]
+    return Datasheet(*(sum(getattr(sheet, name) or 0.0 for sheet in sheets) for name in names))
+
+
+def _items(parts: tuple[dict[str, Any], ...]) -> Iterator[Mapping[str, Any]]:
+    for part in parts:
+        count = part.get("count", 1)
+        for _ in range(count if isinstance(count, int) else 1):
+            yield part
+            yield from part.get("clamps", ())
+
+
+def _component(catalogue: files.Catalogue, item: Mapping[str, Any]) -> files.Component | None:
+    """The component that an item uses as it is."""
+    if not item.keys() <= _PART_KEYS or catalogue.entry(str(item.get("use"))) is None:
+        return None
+    found = catalogue.get(str(item["use"]))
+    return found if isinstance(found, files.Component) else None
+
+
+def _of_component(component: files.Component, metres: float) -> Datasheet:
+    """Return the figures of some metres of a cable or chain; a rigid piece has its own length."""
+    if isinstance(component, Anchor):
+        return Datasheet(component.net_buoyancy, None, component.kt, None)
+    kn, kt, along = drag_of(component)
+    times = metres if isinstance(component, Flexible) else 1.0
+    return Datasheet(
+        times * component.net_buoyancy,
+        times * kn,
+        times * (kt if along else kn),
+        times * kn / (0.5 * CATALOGUE_DENSITY),
+    )

@@ -1,1 +1,0 @@
-"""The catalogue: its pane, its index, and components of one's own."""

@@ -1,1 +1,0 @@
-"""The line: its table, its verbs, and the first screen."""

@@ -1,1 +1,0 @@
-"""The water: its screen, its forms and tables, and currents from files."""
