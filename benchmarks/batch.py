@@ -26,6 +26,7 @@ from calm.batch.profiles import Batch, Profiles
 from calm.batch.run import BLOCK, run_batch
 from calm.batch.statuses import Ending
 from calm.records.current_file import open_record
+from calm.records.current_terms import Terms
 
 COUNTS = (100_000, 262_980)
 SMOKE = 2000
@@ -94,7 +95,7 @@ def write_record(path: Path, count: int) -> None:
 
 def solver_alone(mooring: calm.Mooring, path: Path, workers: int) -> float:
     """Profiles a second of `solve_profiles`, arrays in and arrays out."""
-    with open_record(path, seabed=5000.0) as record:
+    with open_record(path, Terms(5000.0)) as record:
         depth, u, v, _ = record.profiles(0, min(SAMPLE, record.count))
     calm.solve_profiles(mooring, u[:2048], v[:2048], depth, workers=workers)  # compiles, or fetches
     start = time.perf_counter()
@@ -107,7 +108,7 @@ def without_statistics(
 ) -> tuple[float, float]:
     """Profiles a second from record to result, in this process, and the bytes of each."""
     start = time.perf_counter()
-    with open_record(path, seabed=5000.0) as record:
+    with open_record(path, Terms(5000.0)) as record:
         outcome = run_batch(mooring, record, output, workers=workers)
         count = record.count
     rate = count / (time.perf_counter() - start)
@@ -119,7 +120,7 @@ def without_statistics(
 
 def without_solving(mooring: calm.Mooring, path: Path, output: Path) -> float:
     """Profiles a second that are read, hashed, packed and written: those of one block, again."""
-    with open_record(path, seabed=5000.0) as record:
+    with open_record(path, Terms(5000.0)) as record:
         depth, u, v, _ = record.profiles(0, min(BLOCK, record.count))
     known = vars(calm.solve_profiles(mooring, u, v, depth))
 
@@ -131,7 +132,7 @@ def without_solving(mooring: calm.Mooring, path: Path, output: Path) -> float:
         return Profiles(**columns)
 
     start = time.perf_counter()
-    with patch.object(Batch, "solve", solved), open_record(path, seabed=5000.0) as record:
+    with patch.object(Batch, "solve", solved), open_record(path, Terms(5000.0)) as record:
         assert run_batch(mooring, record, output, workers=1).done
         count = record.count
     output.unlink()

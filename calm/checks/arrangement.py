@@ -14,16 +14,7 @@ from calm.case.result_tables import ClampRow
 from calm.case.warnings import is_synthetic
 from calm.checks.assessment import Handling
 from calm.checks.criterion import JudgedPart, parts_of
-from calm.checks.finding import (
-    State,
-    Verdict,
-    at_least,
-    at_most,
-    reported,
-    rule,
-    unknown,
-    verdict_on,
-)
+from calm.checks.finding import State, Verdict, at_least, at_most, rule, unknown, verdict_on
 from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Recovery
 from calm.drop.launch import Launch
@@ -375,4 +366,4 @@ def _verdict(part: JudgedPart, pull: float, when: str) -> Verdict:
     if breaking is not None:
         message = f"{pulls}; it breaks at {say('tension', breaking)}."
         return at_most(part, pull, breaking, message, _HOLDS)
-    return reported(part, pull, f"{pulls}; its `grip` is not given.")
+    return verdict_on(part, State.PASS, f"{pulls}; its `grip` is not given.", value=pull)

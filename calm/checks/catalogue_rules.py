@@ -20,14 +20,8 @@ from calm.files.components import KINDS, Outline
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
 from calm.files.mooring_file import parts_of
 from calm.files.rigid import Shaped
-from calm.physics.materials import (
-    LEAD_DENSITY,
-    MATERIAL_NAMES,
-    MATERIALS,
-    STEEL_DENSITY,
-    density_of,
-    materials_in,
-)
+from calm.physics import materials
+from calm.physics.materials import LEAD_DENSITY, MATERIAL_NAMES, STEEL_DENSITY, materials_in
 from calm.physics.seawater import REFERENCE_DENSITY
 
 ROUNDING = 1.05
@@ -161,7 +155,7 @@ def _of_a_rope(rope: Cable) -> Iterator[str]:
     that is known, else of steel.
     """
     section = _section(rope)
-    density = rope.density or density_of(rope.material) or STEEL_DENSITY
+    density = rope.density or materials.density_of(rope.material) or STEEL_DENSITY
     bar = ROPE_ROUNDING * density * section
     weight = max(bar - CATALOGUE_DENSITY * section, 0.0) * STANDARD_GRAVITY
     lift = ROPE_ROUNDING * CATALOGUE_DENSITY * STANDARD_GRAVITY * section
@@ -296,7 +290,7 @@ def _of_unknown_material(component: Component | Outline) -> Iterator[str]:
     """Yield that the material a component names is none of those known."""
     material = component.material
     if material and not materials_in(material):
-        near = nearest(material, [each.name for each in MATERIALS])
+        near = nearest(material, [each.name for each in materials.MATERIALS])
         yield (
             f"is of `{material}`, a material that is not known: what it may bear, how it stretches "
             "and what it corrodes cannot be judged by it"

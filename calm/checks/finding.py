@@ -118,11 +118,6 @@ at_least = partial(at_most, least=True)
 """The verdict on a value that may not fall short of a limit."""
 
 
-def reported(part: LinePart | None, value: float, message: str) -> Verdict:
-    """The verdict on a value that has no limit: it passes as nothing is asked of it."""
-    return verdict_on(part, State.PASS, message, value=value)
-
-
 def unknown(
     part: LinePart | None, message: str, remedy: str, value: float | None = None
 ) -> Verdict:

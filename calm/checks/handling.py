@@ -6,16 +6,7 @@ from math import isnan
 
 from calm.checks.assessment import Handling
 from calm.checks.criterion import cited
-from calm.checks.finding import (
-    State,
-    Verdict,
-    at_least,
-    at_most,
-    reported,
-    rule,
-    unknown,
-    verdict_on,
-)
+from calm.checks.finding import State, Verdict, at_least, at_most, rule, unknown, verdict_on
 from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Break, Loss, Recovery
 from calm.checks.strength import lesser_load, passes_load_on
@@ -199,9 +190,8 @@ def _hauled_in(lowest: LinePart, arrival: float, rise: Recovery) -> Verdict:
         remedy = "Haul it in; mind its weight."
         return verdict_on(lowest, State.WARN, message, remedy)
     minutes = arrival / 60.0
-    return reported(
-        lowest, rise.rise_speed, f"Released, {lowest.label} comes up after {minutes:.0f} minutes."
-    )
+    message = f"Released, {lowest.label} comes up after {minutes:.0f} minutes."
+    return verdict_on(lowest, State.PASS, message, value=rise.rise_speed)
 
 
 def _unsolved(motion: str, failure: NoEquilibrium) -> Verdict:

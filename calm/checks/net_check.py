@@ -13,6 +13,7 @@ import numpy as np
 from calm.case import Mooring, Result
 from calm.case.net import Net
 from calm.case.result import NetResult
+from calm.checks import assessment
 from calm.checks.arrangement import clamp_place, hardware, metals, release_present, swivel
 from calm.checks.assess import (
     assessment_of,
@@ -22,14 +23,7 @@ from calm.checks.assess import (
     judged_stand,
     stand_of,
 )
-from calm.checks.assessment import (
-    Acceptance,
-    Assessment,
-    Handling,
-    MooringInEnvironment,
-    Situation,
-    estimated,
-)
+from calm.checks.assessment import Assessment, Handling, MooringInEnvironment, Situation, estimated
 from calm.checks.catalogue_rules import figures
 from calm.checks.criterion import limits_used
 from calm.checks.finding import AS_GIVEN, OWN, State, Verdict, unknown, verdict_on
@@ -154,7 +148,7 @@ def assessment_of_net(
     legs = [stand.result for stand in own.values() if stand.result is not None]
     lines = [leg.mooring for leg in legs] or [stands[0].mooring]
     whole = _whole(lines, any(leg.type == "surface" for leg in legs))
-    acceptance = Acceptance.of_file(whole.file, day)
+    acceptance = assessment.Acceptance.of_file(whole.file, day)
     graph = NetGraph(legs)
     breaks, losses = graph.breaks(whole), graph.losses(whole)
     handling = Handling(estimated(whole), _NOT_SOLVED, _NOT_SOLVED, breaks, losses)

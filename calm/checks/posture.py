@@ -6,25 +6,9 @@ from math import isnan
 
 from calm.case import Mooring, Result
 from calm.case.warnings import is_synthetic, unknown_stretch
-from calm.checks.criterion import (
-    AT_SURFACE,
-    Criterion,
-    JudgedPart,
-    cited,
-    criteria,
-    parts_of,
-    pieces_of,
-)
-from calm.checks.finding import (
-    State,
-    Verdict,
-    at_least,
-    at_most,
-    reported,
-    rule,
-    unknown,
-    verdict_on,
-)
+from calm.checks import criterion
+from calm.checks.criterion import Criterion, JudgedPart, cited, criteria, parts_of, pieces_of
+from calm.checks.finding import State, Verdict, at_least, at_most, rule, unknown, verdict_on
 from calm.files import MooringFile
 from calm.quantities import say
 from calm.solve.finish import watch_circle_radius
@@ -57,7 +41,7 @@ def reaches_the_surface(mooring: Mooring) -> bool:
         return True
     if mooring.at_rest is None:
         return float(mooring.line.length.sum()) >= mooring.water.depth
-    return -float(mooring.at_rest.position[0, 2]) <= AT_SURFACE
+    return -float(mooring.at_rest.position[0, 2]) <= criterion.AT_SURFACE
 
 
 def left_out_of_a_leg(file: MooringFile) -> tuple[str, ...]:
@@ -336,7 +320,7 @@ def watch_circle(result: Result) -> Iterator[Verdict]:
     top = result.file.pieces[0]
     message = f"The watch circle has a radius of {say('offset', radius)}"
     if limit is None:
-        yield reported(top, radius, f"{message}.")
+        yield verdict_on(top, State.PASS, f"{message}.", value=radius)
         return
     message += f"; {say('offset', limit)} is allowed."
     yield at_most(top, radius, limit, message, "Shorten the line.")
@@ -349,4 +333,5 @@ def scope(result: Result) -> Iterator[Verdict]:
         return
     depth = result.mooring.water.depth
     ratio = float(result.components.cut_length.sum()) / depth
-    yield reported(None, ratio, f"The line is {ratio:.3f} times as long as the water is deep.")
+    message = f"The line is {ratio:.3f} times as long as the water is deep."
+    yield verdict_on(None, State.PASS, message, value=ratio)

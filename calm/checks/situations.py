@@ -16,16 +16,7 @@ from calm.case.mooring import held, profilers_in
 from calm.case.parts import cut_like
 from calm.case.strumming import FACTOR
 from calm.checks.assessment import Handling, Situation
-from calm.checks.finding import (
-    AS_GIVEN,
-    State,
-    Verdict,
-    at_least,
-    at_most,
-    rule,
-    unknown,
-    verdict_on,
-)
+from calm.checks.finding import AS_GIVEN, State, Verdict, at_least, at_most, rule, verdict_on
 from calm.checks.growth import grown
 from calm.checks.posture import reaches_the_surface
 from calm.errors import NoEquilibrium, UsageError, or_why_not
@@ -232,7 +223,8 @@ def _far_away(mooring: Mooring) -> Verdict | None:
         f"Deployed {away:.0f} km from the planned position: the water and the currents of "
         "this design are those of another place."
     )
-    return unknown(None, message, "Check both positions, or give the environment of the site.")
+    remedy = "Check both positions, or give the environment of the site."
+    return verdict_on(None, State.UNKNOWN, message, remedy)
 
 
 def _as_cut(piece: Piece, items: dict[str, DeployedItem]) -> Piece:

@@ -81,6 +81,7 @@ def batch(
     from calm.case import Tow
     from calm.case.net import load
     from calm.records.current_file import open_record
+    from calm.records.current_terms import Terms
     from calm.records.record import RULES, parse_period, parse_place
 
     period = None if time is None else parse_period(time)
@@ -96,9 +97,8 @@ def batch(
     teller = ProgressTeller()
     turned = options.quantities(declination=(declination, "angle")).get("declination")
     with stopped_by_a_signal() as stop:
-        with open_record(
-            currents, seabed=seabed, at=place, declination=turned, time=period, every=every
-        ) as record:
+        terms = Terms(seabed, place, turned)
+        with open_record(currents, terms, period, every) as record:
             for notice in (*mooring.file.notices, *record.notes):
                 if notice not in RULES:
                     narrate(f"{currents}: {notice}")

@@ -6,7 +6,7 @@ Where no rope is listed between two pieces, there is one as long as their height
 """
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -39,50 +39,43 @@ def is_oceanarray(content: bytes) -> bool:
     return re.search(rb"^waterdepth *:", content, re.M) is not None and bool(_MARKS.search(content))
 
 
-def read_oceanarray(
-    path: Path, stands_for: Mapping[str, str], elements: Path | None = None
-) -> model.Design:
+def read_oceanarray(path: Path, options: model.ImportOptions) -> model.Design:
     """Read such a configuration.
 
-    Parameters
-    ----------
-    stands_for : ids of the catalogue by the names in the file
-    elements : a library with the figures of what it names
-
-    Raises
-    ------
-    InputError
-        It lists no line, a height or length is missing or wrong, or nothing is known of a name.
+    InputError: it lists no line, a height or length is missing or wrong, or nothing is known of a
+    name.
     """
-    document = read_document(path)
-    library = read_library(elements) if elements is not None else {}
-    problems: list[Problem] = []
-    depth = _metres(document, (), "waterdepth", problems)
-    line = [*_entries(document, "inline", depth, problems)]
-    beside = [
-        entry
-        for key in ("clamp", "instruments")
-        for entry in _entries(document, key, depth, problems)
-    ]
+    document, problems = read_document(path), list[Problem]()
+    library = {} if options.elements is None else read_library(options.elements)
+    reading = _Reading(document, problems)
+    depth = reading.depth = reading.metres(document.data, (), "waterdepth")
+    line = reading.entries("inline")
+    beside = [*reading.entries("clamp"), *reading.entries("instruments")]
     if depth is None and not problems:
-        problems.append(document.problem((), "needs `waterdepth`"))
+        reading.refuse((), "needs `waterdepth`")
     if not line:
         said = f"lists {len(beside)} instruments and no line: its floats, releases and anchor, with"
         said += " `hab` or `length` and a name in `label`, belong under `inline`"
-        problems.append(document.problem((), said))
+        reading.refuse((), said)
     if len(line) + len(beside) > model.MOST_PIECES:
-        problems.append(document.problem((), f"has more than {model.MOST_PIECES} pieces"))
+        reading.refuse((), f"has more than {model.MOST_PIECES} pieces")
     if problems:
         raise InputError(problems)
-    parts = _Parts(document, stands_for, library, problems)
+    parts = _Parts(reading, options.defines, library)
     design = model.Design("oceanarray", str(document.data.get("name") or path.stem), [], None)
     _hang(beside, _strung(line, parts, design), parts)
-    current = "the file has none: still water"
-    design.water = model.ImportedWater(depth, guesses={"current": current})
-    design.heading = _heading(document, problems)
+    design.water = model.ImportedWater(depth, guesses={"current": "the file has none: still water"})
+    design.heading = _heading(reading)
     if problems:
         raise InputError(sorted(problems, key=lambda problem: problem.line))
     return design
+
+
+_Location = tuple[str | int, ...]
+"""Where something stands in the file: keys, and numbers of items."""
+
+_Found = tuple[model.ImportedComponent, str]
+"""What a name stands for, and what of that is guessed."""
 
 
 @dataclass(frozen=True)
@@ -93,7 +86,7 @@ class _Entry:
     word of oceanarray for one; of `middle`, `bottom` and `top` one is known, or none.
     """
 
-    place: tuple[str | int, ...]
+    place: _Location
     names: tuple[str, ...]
     instrument: str
     label: str
@@ -126,107 +119,96 @@ class _Entry:
         return None if self.middle is None else self.middle - 0.5 * extent
 
 
-def _metres(
-    document: Document, place: tuple[str | int, ...], key: str, problems: list[Problem]
-) -> float | None:
-    """Return a length or height of the file [m]; None where there is none."""
-    mapping: Any = document.data
-    for step in place:
-        mapping = mapping[step]
-    text = mapping.get(key)
-    if text is None:
-        return None
-    found = number(str(text))
-    try:
-        unit = unit_called(found.rest, "length")
-        if found.value is None:
-            raise ValueError(found.wrong or "is empty")
-        return found.value * (unit.factor if unit else 1.0)
-    except ValueError as error:
-        problems.append(document.problem((*place, key), f"{key}: {error}"))
-        return None
+@dataclass
+class _Reading:
+    """Read the items of the file; what is wrong with it is added to `problems`."""
 
+    document: Document
+    problems: list[Problem]
+    depth: float | None = None
 
-def _entries(
-    document: Document, key: str, depth: float | None, problems: list[Problem]
-) -> Iterator[_Entry]:
-    """Yield the items of a list from the top down."""
-    items: Any = document.data.get(key) or []
-    if not isinstance(items, list):
-        problems.append(document.problem((key,), f"{key}: a list is needed"))
-        return
-    found = []
-    for index, item in enumerate(items):
-        place = (key, index)
+    def refuse(self, place: _Location, said: str) -> None:
+        """Add what is wrong at a place."""
+        self.problems.append(self.document.problem(place, said))
+
+    def metres(self, item: Mapping[str, Any], place: _Location, key: str) -> float | None:
+        """Return a length or height of an item [m]; None where there is none."""
+        if item.get(key) is None:
+            return None
+        found = number(str(item[key]))
+        try:
+            unit = unit_called(found.rest, "length")
+            if found.value is None:
+                raise ValueError(found.wrong or "is empty")
+            return found.value * (unit.factor if unit else 1.0)
+        except ValueError as error:
+            self.refuse((*place, key), f"{key}: {error}")
+            return None
+
+    def entries(self, key: str) -> list[_Entry]:
+        """Return the items of a list from the top down."""
+        items: Any = self.document.data.get(key) or []
+        if not isinstance(items, list):
+            self.refuse((key,), f"{key}: a list is needed")
+            return []
+        read = (self._entry(item, (key, index)) for index, item in enumerate(items))
+        found = [entry for entry in read if entry is not None]
+        ends = [entry.height for entry in found if entry.height is not None]
+        rising = len(ends) > 1 and ends[0] < ends[-1]
+        return found[::-1] if rising or (found and found[0].is_anchor) else found
+
+    def _entry(self, item: Any, place: _Location) -> _Entry | None:
         if not isinstance(item, dict):
-            problems.append(document.problem(place, "an item with keys is needed"))
-            continue
+            self.refuse(place, "an item with keys is needed")
+            return None
         words = [str(item[name]).strip() for name in _NAMES if item.get(name)]
         if not words:
-            problems.append(document.problem(place, f"needs a name: one of {', '.join(_NAMES)}"))
-            continue
-        height = {
-            name: _metres(document, place, name, problems)
-            for name in ("hab", "hab_bottom", "hab_top", "depth", "length", "repeat")
-        }
-        if height["hab"] is None and height["depth"] is not None and depth is not None:
-            height["hab"] = depth - height["depth"]
-        repeat = height["repeat"] or 1.0
-        if not 1.0 <= repeat <= model.MOST_PIECES:
-            said = f"repeat: 1 to {model.MOST_PIECES} are read"
-            problems.append(document.problem((*place, "repeat"), said))
-            continue
+            self.refuse(place, f"needs a name: one of {', '.join(_NAMES)}")
+            return None
+        keys = ("hab", "hab_bottom", "hab_top", "depth", "length", "repeat")
+        middle, bottom, top, down, length, repeat = (self.metres(item, place, key) for key in keys)
+        if middle is None and down is not None and self.depth is not None:
+            middle = self.depth - down
+        if not 1.0 <= (repeat or 1.0) <= model.MOST_PIECES:
+            self.refuse((*place, "repeat"), f"repeat: 1 to {model.MOST_PIECES} are read")
+            return None
         instrument = str(item.get("instrument") or "").strip()
-        found.append(
-            _Entry(
-                place, tuple(dict.fromkeys(words)), instrument,
-                label=str(item.get("label") or words[0]).strip(),
-                serial=str(item.get("serial") or "").strip().rstrip("*"),
-                length=height["length"],
-                middle=height["hab"], bottom=height["hab_bottom"], top=height["hab_top"],
-                count=int(repeat),
-            )
-        )  # fmt: skip
-    ends = [entry.height for entry in found if entry.height is not None]
-    rising = len(ends) > 1 and ends[0] < ends[-1]
-    yield from reversed(found) if rising or (found and found[0].is_anchor) else found
+        label = str(item.get("label") or words[0]).strip()
+        serial = str(item.get("serial") or "").strip().rstrip("*")
+        names, count = tuple(dict.fromkeys(words)), int(repeat or 1.0)
+        return _Entry(place, names, instrument, label, serial, length, middle, bottom, top, count)
 
 
 @dataclass
 class _Parts:
     """What names stand for: in the catalogue as asked, in the library, or in the catalogue."""
 
-    document: Document
+    reading: _Reading
     stands_for: Mapping[str, str]
     library: Library
-    problems: list[Problem]
     catalogue: Catalogue = field(default_factory=Catalogue.load)
-    _known: dict[tuple[str, ...], tuple[model.ImportedComponent, str] | None] = field(
-        default_factory=dict
-    )
+    _known: dict[tuple[str, ...], _Found | None] = field(default_factory=dict)
 
-    def of(self, entry: _Entry) -> tuple[model.ImportedComponent, str] | None:
+    def of(self, entry: _Entry) -> _Found | None:
         """Return what an item is, and what of that is guessed; None where nothing is known."""
         said = f"neither the library nor the catalogue has `{entry.names[0]}`"
         return self._named(entry.names, entry.instrument, entry.place, said)
 
-    def rope(self, entry: _Entry, between: str) -> tuple[model.ImportedComponent, str] | None:
+    def rope(self, entry: _Entry, between: str) -> _Found | None:
         """Return the rope below an item, between pieces where none is listed."""
         return self._named((ROPE,), "", entry.place, f"no line is listed {between}")
 
     def _named(
-        self, names: tuple[str, ...], instrument: str, place: tuple[str | int, ...], said: str
-    ) -> tuple[model.ImportedComponent, str] | None:
+        self, names: tuple[str, ...], instrument: str, place: _Location, said: str
+    ) -> _Found | None:
         if names not in self._known:
             self._known[names] = self._found(names, instrument)
             if self._known[names] is None:
                 said += f'; give it in --elements FILE, or an id for it: --define "{names[0]}=ID"'
-                self.problems.append(self.document.problem(place, said))
+                self.reading.refuse(place, said)
         return self._known[names]
 
-    def _found(
-        self, names: tuple[str, ...], instrument: str
-    ) -> tuple[model.ImportedComponent, str] | None:
+    def _found(self, names: tuple[str, ...], instrument: str) -> _Found | None:
         for name in names:
             if id := self.stands_for.get(name, ""):
                 return self._entry(name, id), ""
@@ -235,7 +217,8 @@ class _Parts:
                 row = ListRow(1, name, figures={"length": 1.0} if element.line else {})
                 complete_rows([row], self.library, "the library")
                 component = component_of(row, anchor=row.is_anchor)
-                self.problems += refused(self.document.path, *row.problems).problems
+                reading = self.reading
+                reading.problems += refused(reading.document.path, *row.problems).problems
                 return component, ""
         if model.is_called(" ".join(names), "anchor"):
             return self._anchor(names), ""
@@ -299,7 +282,7 @@ def _strung(line: list[_Entry], parts: _Parts, design: model.Design) -> _Strung:
         extent = entry.length if flexible else component.number("length")
         if extent is None:
             said = f"`{entry.label}` is a line and needs a `length`"
-            parts.problems.append(parts.document.problem(entry.place, said))
+            parts.reading.refuse(entry.place, said)
             continue
         at = nominal[-1]
         lower = None if flexible else entry.lower_end(extent * entry.count)
@@ -341,15 +324,14 @@ def _strung(line: list[_Entry], parts: _Parts, design: model.Design) -> _Strung:
 def _hang(beside: list[_Entry], strung: _Strung, parts: _Parts) -> None:
     """Clamp instruments on the lines at their heights, or at the nearest end of one."""
     lines = [i for i, one in enumerate(strung.items) if one.component.kind in FLEXIBLE_KINDS]
-    problems = parts.problems
-    if beside and not lines and not problems:
-        problems.append(parts.document.problem(("inline",), "has no line to clamp instruments on"))
+    if beside and not lines and not parts.reading.problems:
+        parts.reading.refuse(("inline",), "has no line to clamp instruments on")
     nominal, height = np.array(strung.nominal), np.array(strung.height)
     for entry in beside:
         found, asked = parts.of(entry), entry.height
         if asked is None:
             said = f"`{entry.label}` needs `hab`, its height above the bottom"
-            problems.append(parts.document.problem(entry.place, said))
+            parts.reading.refuse(entry.place, said)
         if found is None or asked is None or not lines:
             continue
         top = float(np.interp(asked, nominal, height)) + max(asked - float(nominal[-1]), 0.0)
@@ -363,9 +345,9 @@ def _hang(beside: list[_Entry], strung: _Strung, parts: _Parts) -> None:
         host.clamp(found[0], round(at, 3), guess, f"{entry.label} {asked:g}", entry.serial)
 
 
-def _heading(document: Document, problems: list[Problem]) -> dict[str, str]:
+def _heading(reading: _Reading) -> dict[str, str]:
     """Return further keys of the mooring file: position, ship and cruise."""
-    data, lines = document.data, dict[str, str]()
+    data, lines = reading.document.data, dict[str, str]()
     for name in _PLACES:
         keys = [f"{name}_{what}".lstrip("_") for what in ("latitude", "longitude")]
         if not all(data.get(key) for key in keys):
@@ -375,7 +357,7 @@ def _heading(document: Document, problems: list[Problem]) -> dict[str, str]:
             try:
                 found.append(plain_degrees(str(data[key]), key.rpartition("_")[2]))
             except ValueError as error:
-                problems.append(document.problem((key,), f"{key}: `{data[key]}` {error}"))
+                reading.refuse((key,), f"{key}: `{data[key]}` {error}")
         if len(found) == 2:
             place = (f"{angle:.6f}".rstrip("0").rstrip(".") for angle in found)
             latitude, longitude = place

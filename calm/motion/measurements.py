@@ -19,6 +19,7 @@ from calm.motion.common_unknowns import NOISE, NORMAL
 from calm.motion.sensors import Sensor
 from calm.physics.line import Floats, Integers
 from calm.records.current_file import open_record
+from calm.records.current_terms import Terms
 from calm.records.instrument_series import split_label
 from calm.records.record import RULES
 from calm.records.velocity import MISSING
@@ -340,7 +341,7 @@ def read_currents(
     ----------
     seabed : depth of the water [m]
     place : latitude and longitude of the mooring [degrees], where it is known
-    declination : see `calm.records.record.open_record`
+    declination : see `calm.records.current_terms.Terms`
     maximum_speed : what is faster is left out, and said [m/s]
 
     Raises
@@ -350,12 +351,10 @@ def read_currents(
     UsageError
         A label is given for a file of several levels.
     """
-    found = []
+    found, terms = [], Terms(seabed, place, declination, on_the_line=True)
     for text in given:
         label, path = split_label(str(text))
-        with open_record(
-            path, seabed=seabed, at=place, declination=declination, on_the_line=True
-        ) as record:
+        with open_record(path, terms) as record:
             depth, u, v, _ = record.profiles(0, record.count)
             marks = record.flags(0, record.count)
             mine = CurrentMeasurements(

@@ -22,7 +22,7 @@ from calm.records import current_terms, delimited
 from calm.records.attributes import refused_by_comments, remarks_in_comments
 from calm.records.cf_files import UnreadableError, holds_arrays, open_current, reading
 from calm.records.current_dataset import ArrayRecord, understand
-from calm.records.current_terms import Place, Terms, TimeChoiceError, choose_time, current_notices
+from calm.records.current_terms import Terms, TimeChoiceError, choose_time, current_notices
 from calm.records.delimited import COMMENT, CellRow, NumberedLine, abridged, is_gap, read_table
 from calm.records.headings import heading, is_time, magnetic_columns, zone_complaint
 from calm.records.profile_tables import CurrentTable, QuantityTable, read_currents, turned_notices
@@ -62,33 +62,21 @@ def read_current_file(path: Path, time: str | None, terms: Terms) -> tuple[Curre
 def strongest_of(path: Path, terms: Terms) -> float:
     """Return the greatest horizontal speed of a record at any time and depth [m/s]."""
     strongest = 0.0
-    with (ArrayRecord if holds_arrays(path) else CsvRecord)(path, terms, None, 1) as record:
+    with open_record(path, terms) as record:
         for start in range(0, record.count, _BLOCK):
             _, u, v, _ = record.profiles(start, min(start + _BLOCK, record.count))
             strongest = max(strongest, float(np.nanmax(np.hypot(u, v), initial=0.0)))
     return strongest
 
 
-def open_record(
-    path: Path,
-    *,
-    seabed: float,
-    at: Place | None = None,
-    declination: float | None = None,
-    time: Period | None = None,
-    every: int = 1,
-    on_the_line: bool = False,
-) -> Record:
+def open_record(path: Path, terms: Terms, time: Period | None = None, every: int = 1) -> Record:
     """Return a record in NetCDF, in zarr, or in CSV.
 
     Parameters
     ----------
-    seabed : depth of the water [m], where heights above the seabed begin
-    at : latitude and longitude whose column is wanted, where there are several
-    declination : turns what the record says is relative to magnetic north [degrees], east positive
+    path, terms : the record, and how its currents are to be taken
     time : first and last time, see `parse_period`
     every : take one profile in so many
-    on_the_line : see `Terms`
 
     Raises
     ------
@@ -99,7 +87,6 @@ def open_record(
     """
     if not (path.is_file() or path.is_dir()):
         raise refused(path, "is not a regular file" if path.exists() else "no such file")
-    terms = Terms(seabed, at, declination, on_the_line=on_the_line)
     return (ArrayRecord if holds_arrays(path) else CsvRecord)(path, terms, time, every)
 
 

@@ -22,17 +22,7 @@ from calm.checks.finding import AS_GIVEN, ON_THE_WAY, OWN, Finding, State, by_ru
 from calm.files.check_limits import LimitKey
 from calm.quantities import say
 from calm.report import blocks, check_tables
-from calm.report.blocks import (
-    Cell,
-    Column,
-    Field,
-    Pairs,
-    ReportPart,
-    Table,
-    number,
-    table_of,
-    words,
-)
+from calm.report.blocks import Cell, Column, Pairs, ReportPart, Table, number, table_of, words
 from calm.report.check_tables import figure_of, named_components, place_of
 from calm.report.provenance import title_pairs
 from calm.report.result_files import members
@@ -371,7 +361,7 @@ def worst_table(moorings: Sequence[CheckFacts]) -> Table:
             unknown = sum(one.state is State.UNKNOWN for _, each in found for one in each)
             rows.append((worst_of(worst), unknown, counts))
 
-    def in_so_many(heading: str, state: State) -> Field:
+    def in_so_many(heading: str, state: State) -> blocks.Field:
         return number(heading, lambda row: row[2][state] or None, narrow=False)
 
     return table_of(

@@ -24,8 +24,8 @@ LAYOUTS = [
 ]
 
 
-def opened(path: Path, **choice) -> Record:
-    return open_record(path, seabed=SEABED, at=HERE, **choice)
+def opened(path: Path, *, declination=None, **choice) -> Record:
+    return open_record(path, Terms(SEABED, HERE, declination), **choice)
 
 
 def table(record: Record, i: int) -> CurrentTable:
@@ -88,7 +88,7 @@ def test_the_nearest_column_with_water_is_taken(tmp_path: Path) -> None:
 @pytest.mark.parametrize("longitude", [-5.2, 354.8])
 def test_longitudes_begin_where_they_like(tmp_path: Path, longitude: float) -> None:
     path = write("hycom", tmp_path)
-    with open_record(path, seabed=SEABED, at=(48.29, longitude)) as record:
+    with open_record(path, Terms(SEABED, place=(48.29, longitude))) as record:
         assert (record.source["latitude"], record.source["longitude"]) == ("48.28", "-5.2")
         u = record.profiles(0, COUNT)[1]
     assert u == pytest.approx(hycom()["water_u"].isel(lat=1, lon=1).values, abs=1e-9)
@@ -106,7 +106,7 @@ def test_a_grid_round_the_earth_has_no_seam(tmp_path: Path) -> None:
          "lon": longitude, "depth": ("depth", [10.0], {"units": "m", "positive": "down"})},
     ).to_netcdf(path, engine="h5netcdf")  # fmt: skip
     for wanted, found, east in ((359.9, "-1.5", 0.2), (0.1, "1.5", 0.1), (-0.1, "-1.5", 0.2)):
-        with open_record(path, seabed=SEABED, at=(0.0, wanted)) as record:
+        with open_record(path, Terms(SEABED, place=(0.0, wanted))) as record:
             assert record.source["longitude"] == found
             assert record.profiles(0, 1)[1].item() == east
 

@@ -8,6 +8,7 @@ import pytest
 from calm.errors import InputError
 from calm.records import current_file
 from calm.records.current_file import open_record
+from calm.records.current_terms import Terms
 from calm.records.delimited import MOST_PROBLEMS
 from tests.unit.batch.records import COUNT, SEABED, write
 
@@ -22,7 +23,7 @@ def csv(tmp_path: Path) -> Path:
 def problems(path: Path, text: str) -> list[tuple[int, int, str]]:
     path.write_text(text)
     with pytest.raises(InputError) as caught:
-        open_record(path, seabed=SEABED)
+        open_record(path, Terms(SEABED))
     return [(one.line, one.column, one.message) for one in caught.value.problems]
 
 
@@ -32,7 +33,7 @@ def test_profiles_of_unlike_levels(csv: Path) -> None:
         "# a comment\n\n2026-03-01T01:00, 10 ,0.25,nan\n"
         "2026-03-01T02:00,0,1,2\n2026-03-01T02:00,20,3,4\n2026-03-01T02:00,40,5,6\n"
     )
-    with open_record(csv, seabed=SEABED) as record:
+    with open_record(csv, Terms(SEABED)) as record:
         depth, u, v, w = record.profiles(0, 3)
         nan = np.nan
         np.testing.assert_array_equal(depth, [[0, 50, nan], [10, nan, nan], [0, 20, 40]])
@@ -47,7 +48,7 @@ def test_cells_with_units_of_their_own(csv: Path) -> None:
     csv.write_text(
         "time,depth,u[m/s],v[m/s],w[cm/s]\n2026-03-01,5 m,50 cm/s,0,1\n2026-03-02,1 km,1,2,\n"
     )
-    with open_record(csv, seabed=SEABED) as record:
+    with open_record(csv, Terms(SEABED)) as record:
         depth, u, _, w = record.profiles(0, 2)
         assert depth[:, 0].tolist()[:1] == [5.0]
         assert np.isnan(u[1, 0])
@@ -60,11 +61,11 @@ def test_how_much_is_read_together_does_not_matter(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
 ) -> None:
     path = write(name, tmp_path, "csv")
-    with open_record(path, seabed=SEABED) as record:
+    with open_record(path, Terms(SEABED)) as record:
         whole = record.profiles(0, COUNT)
         digest = record.digest()
     monkeypatch.setattr(current_file, "AT_ONCE", 3)
-    with open_record(path, seabed=SEABED) as record:
+    with open_record(path, Terms(SEABED)) as record:
         assert record.digest() == digest
         for got, expected in zip(record.profiles(0, COUNT), whole, strict=True):
             assert got is expected is None or np.array_equal(got, expected, equal_nan=True)
@@ -124,4 +125,4 @@ def test_files_that_are_no_record(csv: Path, text: str, place: tuple[int, int, s
 def test_text_that_is_not_utf_8(csv: Path) -> None:
     csv.write_bytes(HEAD.encode() + b"2026-03-01,0,1,\xff\n")
     with pytest.raises(InputError, match="is not UTF-8 text"):
-        open_record(csv, seabed=SEABED)
+        open_record(csv, Terms(SEABED))

@@ -4,6 +4,7 @@ from pathlib import Path
 import numpy as np
 
 from calm.records.current_file import open_record
+from calm.records.current_terms import Terms
 from calm.records.record import DEPTHS, LATITUDE, LONGITUDE, made_record
 
 
@@ -17,7 +18,7 @@ def test_made_record_is_the_same_everywhere() -> None:
 def test_made_record_is_thirty_days_of_plausible_currents(tmp_path: Path) -> None:
     path = tmp_path / "record.nc"
     path.write_bytes(made_record())
-    with open_record(path, seabed=300.0, at=(LATITUDE, LONGITUDE)) as record:
+    with open_record(path, Terms(300.0, place=(LATITUDE, LONGITUDE))) as record:
         depth, u, v, w = record.profiles(0, record.count)
         assert depth.tolist() == list(DEPTHS)
         assert u.shape == (720, 10)

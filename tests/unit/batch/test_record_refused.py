@@ -9,6 +9,7 @@ import xarray as xr
 
 from calm.errors import InputError
 from calm.records.current_file import open_record
+from calm.records.current_terms import Terms
 from tests.unit.batch.records import HERE, SEABED, adcp, adcp_by_distance, curvilinear, glorys
 
 
@@ -16,7 +17,7 @@ def refusal(dataset: xr.Dataset, folder: Path, at: tuple[float, float] | None = 
     path = folder / "record.nc"
     dataset.to_netcdf(path, engine="h5netcdf")
     with pytest.raises(InputError) as caught:
-        open_record(path, seabed=SEABED, at=at)
+        open_record(path, Terms(SEABED, place=at))
     [problem] = caught.value.problems
     assert problem.path == str(path)
     return problem.message
@@ -151,7 +152,7 @@ def test_x_is_east_along_latitudes(tmp_path: Path) -> None:
     dataset = glorys()
     dataset["uo"].attrs["standard_name"] = "sea_water_x_velocity"
     dataset.to_netcdf(path, engine="h5netcdf")
-    with open_record(path, seabed=SEABED, at=HERE) as record:
+    with open_record(path, Terms(SEABED, place=HERE)) as record:
         note = "`uo`, sea_water_x_velocity, is eastward: the grid runs along latitudes"
         assert note in record.notes
 
@@ -160,7 +161,7 @@ def test_a_single_place_far_away_is_told(tmp_path: Path) -> None:
     path = tmp_path / "point.nc"
     dataset = adcp().assign_coords(lat=((), 49.0), lon=((), -5.2))
     dataset.to_netcdf(path, engine="h5netcdf")
-    with open_record(path, seabed=SEABED, at=HERE) as record:
+    with open_record(path, Terms(SEABED, place=HERE)) as record:
         # 0.7 degrees of 111.2 km
         assert record.notes[0] == "its only place, 49° N 5.2° W, is 78 km from 48.3° N 5.2° W"
 
@@ -168,7 +169,7 @@ def test_a_single_place_far_away_is_told(tmp_path: Path) -> None:
 def test_land_of_zeros_is_land(tmp_path: Path) -> None:
     path = tmp_path / "zeros.nc"
     glorys().fillna(0.0).to_netcdf(path, engine="h5netcdf")
-    with open_record(path, seabed=SEABED, at=HERE) as record:
+    with open_record(path, Terms(SEABED, place=HERE)) as record:
         assert record.source["longitude"] == "-5.12"
 
 
@@ -177,7 +178,7 @@ def test_damaged_files(tmp_path: Path, signature: bytes) -> None:
     path = tmp_path / "record.nc"
     path.write_bytes(signature + b"nothing that makes sense" * 9)
     with pytest.raises(InputError, match=r"record.nc: cannot be read as NetCDF: "):
-        open_record(path, seabed=SEABED)
+        open_record(path, Terms(SEABED))
 
 
 def test_a_record_without_a_profile(tmp_path: Path) -> None:

@@ -115,7 +115,7 @@ def test_the_current_of_a_mooring(write: Callable[[Table], Path]) -> None:
 @each_dialect
 def test_records_of_batch_and_motion(write: Callable[[Table], Path]) -> None:
     path = write(RECORD)
-    with open_record(path, seabed=100.0) as record:
+    with open_record(path, Terms(100.0)) as record:
         depth, u, v, _ = record.profiles(0, 2)
     assert depth.tolist() == [[0.0, 50.5]] * 2
     assert (u.tolist(), v.tolist()) == ([[0.5, 0.25]] * 2, [[0.125, 0.125]] * 2)
@@ -164,7 +164,7 @@ def test_lists_of_pieces_are_cut_alike(name: str, tmp_path: Path) -> None:
 
 WRONG = {
     "run": lambda path: read_current_file(path, None, Terms()),
-    "batch": lambda path: open_record(path, seabed=100.0),
+    "batch": lambda path: open_record(path, Terms(100.0)),
     "motion": lambda path: read_sensors([str(path)], frozenset({1}), 48.0, 300.0),
     "locate": read_ranges,
 }
@@ -214,9 +214,9 @@ def test_a_point_after_many_decimal_commas_is_not_taken_for_one(tmp_path: Path) 
     rows = [f"2026-03-{1 + i // 24:02d}T{i % 24:02d}:00;5;0,5;0,25\n" for i in range(300)]
     path.write_text("time;depth[m];u[m/s];v[m/s]\n" + "".join(rows) + "2026-04-01;5;1.234;0\n")
     with pytest.raises(InputError, match=r":302:14: `1.234` has a decimal point, and the"):
-        open_record(path, seabed=100.0)
+        open_record(path, Terms(100.0))
     path.write_text("time;depth[m];u[m/s];v[m/s]\n" + "".join(rows))
-    with open_record(path, seabed=100.0) as record:
+    with open_record(path, Terms(100.0)) as record:
         assert record.profiles(299, 300)[1].tolist() == [[0.5]]
 
 

@@ -74,7 +74,7 @@ def test_pressures_of_rodb(tmp_path: Path) -> None:
 def test_currents_of_rodb_are_where_their_pressure_was(tmp_path: Path) -> None:
     path = tmp_path / "wb1_12_2015_449.rcm"
     path.write_text(RCM)
-    with open_record(path, seabed=1401.0) as record:
+    with open_record(path, Terms(1401.0)) as record:
         depth, u, v, _ = record.profiles(0, record.count)
         assert record.time.astype("M8[m]").astype(str).tolist()[-1] == "2015-11-30T13:00"
     # at 26 deg 29.92 N, and the nominal depth where there is no pressure

@@ -32,13 +32,13 @@ def record(tmp_path: Path) -> xr.Dataset:
 
 def said(dataset: xr.Dataset, folder: Path, seabed: float = SEABED) -> list[str]:
     dataset.to_netcdf(folder / "r.nc", engine="h5netcdf")
-    with open_record(folder / "r.nc", seabed=seabed, at=(48.3, -5.2)) as read:
+    with open_record(folder / "r.nc", Terms(seabed, place=(48.3, -5.2))) as read:
         return [note for note in read.notes if note not in RULES]
 
 
 def refusal(path: Path) -> str:
     with pytest.raises(InputError) as caught:
-        open_record(path, seabed=SEABED, at=(48.3, -5.2))
+        open_record(path, Terms(SEABED, place=(48.3, -5.2)))
     return str(caught.value)
 
 
@@ -148,9 +148,9 @@ def test_flags_leave_out_what_is_bad_with_a_count(record, tmp_path) -> None:
     assert said(record, tmp_path) == [
         "2000 of 7200 currents are left out, as `v_qc` marks them as bad"
     ]
-    with open_record(tmp_path / "r.nc", seabed=SEABED) as read:
+    with open_record(tmp_path / "r.nc", Terms(SEABED)) as read:
         assert np.isnan(read.profiles(100, 101)[1]).all()
-    with open_record(tmp_path / "r.nc", seabed=SEABED, on_the_line=True) as read:
+    with open_record(tmp_path / "r.nc", Terms(SEABED, on_the_line=True)) as read:
         assert (read.profiles(100, 101)[1] == 3.0).all()
 
 
@@ -173,7 +173,7 @@ def test_flags_may_be_bits(record, tmp_path) -> None:
     assert said(record, tmp_path) == [
         "3600 of 7200 currents are left out, as `u_qc` marks them as bad"
     ]
-    with open_record(tmp_path / "r.nc", seabed=SEABED) as read:
+    with open_record(tmp_path / "r.nc", Terms(SEABED)) as read:
         assert read.flags(0, 1)[0, :4].tolist() == [1, 1, 4, 4]
 
 
@@ -203,7 +203,7 @@ def test_names_that_archives_use(record, tmp_path, names) -> None:
         other[name].attrs = {"units": "METER/SEC"}
     notes = said(other, tmp_path)
     assert notes == [] or "vozocrtx" in names
-    with open_record(tmp_path / "r.nc", seabed=SEABED) as read:
+    with open_record(tmp_path / "r.nc", Terms(SEABED)) as read:
         assert np.array_equal(read.profiles(0, 720)[1], record["u"].values)
 
 
@@ -242,7 +242,7 @@ def test_letters_of_comments_may_be_of_any_encoding(tmp_path: Path) -> None:
     rows = "\n".join(f"2026-03-01T{hour:02d}:00,10,0.{hour}1,0.2" for hour in range(9))
     text = f"# Messger\xe4t Nr. 3\ntime,depth[m],u[m/s],v[m/s]\n{rows}\n"
     (tmp_path / "r.csv").write_bytes(text.encode("latin-1"))
-    with open_record(tmp_path / "r.csv", seabed=11.0) as read:
+    with open_record(tmp_path / "r.csv", Terms(11.0)) as read:
         assert read.count == 9
     table, _ = read_current_file(tmp_path / "r.csv", "2026-03-01T03:00", Terms())
     assert table.u == (0.31,)
@@ -259,7 +259,7 @@ def components_of(i: int, z: int) -> str:
 
 
 def notes_of(path: Path) -> list[str]:
-    with open_record(path, seabed=SEABED) as read:
+    with open_record(path, Terms(SEABED)) as read:
         notes = [note for note in read.notes if note not in RULES]
     _, profile = read_current_file(path, "2026-03-01T05:00", Terms(water_depth=SEABED))
     assert [note for note in notes if note.startswith("its comment")] == profile
