@@ -206,17 +206,10 @@ def _judged(
         return progress.mapped(_solve_and_conclude, whole, workers, "moorings judged")
     solved = iter(progress.mapped(_stands, stands, workers, "environments solved"))
     shared = partial(progress.mapped, workers=workers, what="blocks of samples solved")
+    found = ([stand for _ in design.moorings for stand in next(solved)] for design in designs)
     return [
-        _concluded(
-            number,
-            design.name,
-            [stand for _ in design.moorings for stand in next(solved)],
-            day,
-            drawn,
-            draws,
-            shared,
-        )
-        for number, design in enumerate(designs, 1)
+        _concluded(number, design.name, stands, day, drawn, draws, shared)
+        for number, (design, stands) in enumerate(zip(designs, found, strict=True), 1)
     ]
 
 

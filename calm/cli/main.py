@@ -24,7 +24,6 @@ from calm.cli.outputs import ExitCode, narrate, prepare, show
 from calm.cli.run import run
 from calm.cli.tow import strumming, tow
 from calm.cli.verify import verify
-from calm.cli.waves import waves
 from calm.errors import CalmError, InputError, NoEquilibrium
 
 if TYPE_CHECKING:
@@ -184,7 +183,7 @@ _GROUPS: dict[str, tuple[tuple[Any, str], ...]] = {
         (starter.build, ""),
         (run, "[OPTIONS] FILE..."),
         (designs.size, ""),
-        (waves, ""),
+        (designs.waves, ""),
         (check, "[OPTIONS] FILE..."),
         (designs.diff, "[OPTIONS] FILE [FILE]"),
     ),

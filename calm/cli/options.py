@@ -181,10 +181,8 @@ def speed_range(text: str) -> list[float]:
         )
     if step <= 0.0:
         raise UsageError(f"--speeds: `{text}` has a step of {step:g} m/s; it must be above 0")
-    whole = math.floor((last - first) / step + _ROUNDING) if last > first else 0
+    whole = math.floor((last - first) / step + _ROUNDING)
     if whole >= MOST_SPEEDS:
         raise UsageError(f"--speeds: `{text}` makes more than {MOST_SPEEDS} speeds; widen the step")
-    speeds = [first + number * step for number in range(whole + 1)]
-    if last - speeds[-1] > _ROUNDING * step:
-        return [*speeds, last]
-    return [*speeds[:-1], last]
+    speeds = (first + number * step for number in range(whole + 1))
+    return [*(each for each in speeds if last - each > _ROUNDING * step), last]

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from math import copysign, sqrt
 
 import numpy as np
@@ -118,43 +119,34 @@ def _closed(moving: Moving, place: FreePlace, angle_step: float) -> tuple[FreePl
     """The motion near a place, on the segments that the march chooses there; None if there is none.
 
     With its free choice of segments the march is not quite continuous, so it is closed on given
-    ones, and once more on those that it chooses at the first answer.
+    ones: first on coarse ones, then on those that it chooses at that answer.
     """
-    for small in (NEAR, CLOSE):
+    unknown = np.array([not moving.plumb, not moving.plumb, True, True])
+    speed, span = max(float(np.linalg.norm(place.velocity)), SLOWEST), moving.water.depth
+    units = np.array([speed, speed, speed, span])[unknown]
+    values = np.append(place.velocity, place.depth)
+
+    def at(x: Floats) -> FreePlace:
+        values[unknown] = x * units
+        return FreePlace(values[:3].copy(), float(values[3]))
+
+    def left(step: float, cuts: Cuts, x: Floats) -> Floats:
+        here = at(x)
+        met = moving.meet(moving.flow(here.velocity), here.depth, step, cuts)
+        forces: Floats = np.append(met.force / moving.weight, met.gap / span)[unknown]
+        return forces
+
+    x, slopes = values[unknown] / units, None
+    for step, small in ((COARSE * angle_step, NEAR), (angle_step, CLOSE)):
         try:
-            cuts = moving.meet(moving.flow(place.velocity), place.depth, angle_step).cuts
+            cuts = moving.meet(moving.flow(at(x).velocity), at(x).depth, step).cuts
         except MarchError:
             return None
-        found = _on_cuts(moving, place, cuts, angle_step, small)
-        if found is None:
+        root = system_root(partial(left, step, cuts), x, small, slopes)
+        if root is None:
             return None
-        place = found
-    return place, cuts
-
-
-def _on_cuts(
-    moving: Moving, start: FreePlace, cuts: Cuts, angle_step: float, small: float
-) -> FreePlace | None:
-    """The motion near a place on given segments, forces closed to a share of the weight."""
-    unknown = np.array([not moving.plumb, not moving.plumb, True, True])
-    pace, span = max(float(np.linalg.norm(start.velocity)), SLOWEST), moving.water.depth
-    units = np.array([pace, pace, pace, span])[unknown]
-    origin = np.append(start.velocity, start.depth)
-
-    def place(x: Floats) -> FreePlace:
-        values = origin.copy()
-        values[unknown] += x * units
-        return FreePlace(values[:3], float(values[3]))
-
-    def system(x: Floats) -> Floats:
-        here = place(x)
-        flow = moving.flow(here.velocity)
-        meeting = moving.meet(flow, here.depth, angle_step, cuts)
-        values: Floats = np.append(meeting.force / moving.weight, meeting.gap / span)[unknown]
-        return values
-
-    root = system_root(system, np.zeros(len(units)), small)
-    return None if root is None else place(root)
+        x, slopes = root
+    return at(x), cuts
 
 
 _ROUNDS = 40
@@ -165,42 +157,44 @@ _DIFFERENCE = 1e-5
 System = Callable[[Floats], Floats]
 
 
-def system_root(system: System, start: Floats, small: float) -> Floats | None:
-    """Root of a system near a start; None where none is found.
+def system_root(
+    system: System, start: Floats, small: float, slopes: Floats | None = None
+) -> tuple[Floats, Floats | None] | None:
+    """Root of a system near a start, with the derivatives there; None where none is found.
 
     Parameters
     ----------
     system : from k unknowns to k values, both scaled so that 1 is much; it may raise `MarchError`
     small : stop when no value is greater than this
+    slopes : (k, k) derivatives of nearly the same system
 
     The derivatives are taken by differences once, then kept up by Broyden's rule, and taken anew
-    where the values do not fall to half. A step is halved until they fall.
+    where a step by updated ones does not halve the values. A step is halved until they fall.
 
     Source: C. G. Broyden (1965), Mathematics of Computation 19, 577-593.
     """
-    x = start
+    x, fresh = start, False
     value = _tried(system, x)
     if value is None:
         return None
-    slopes, fresh = _slopes(system, x, value), True
     for _ in range(_ROUNDS):
         if np.abs(value).max() <= small:
-            return x
+            return x, slopes
+        if slopes is None:
+            slopes, fresh = _slopes(system, x, value), True
         found = None if slopes is None else _step(system, x, value, slopes)
-        if found is None:
+        if found is None or slopes is None:
             if fresh:
                 return None
-            slopes, fresh = _slopes(system, x, value), True
+            slopes = None
             continue
         following, values = found
         halved = np.linalg.norm(values) <= 0.5 * np.linalg.norm(value)
-        assert slopes is not None
         step = following - x
         missed = values - value - slopes @ step
-        slopes = slopes + np.outer(missed, step) / (step @ step)
+        # across a bend, slopes of one side lead too far; with the update they are those of both
+        slopes = slopes + np.outer(missed, step) / (step @ step) if halved or fresh else None
         x, value, fresh = following, values, False
-        if not halved:
-            slopes, fresh = _slopes(system, x, value), True
     return None
 
 

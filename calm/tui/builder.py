@@ -20,10 +20,10 @@ from calm.tui.mooring_sheet import (
     hung_at,
     missing_figures,
     with_figures,
+    written,
 )
 from calm.tui.pictures import Picture, Tab
 from calm.tui.screen import KeyBar
-from calm.tui.session import Location
 from calm.tui.verdict_pane import VerdictPane
 
 _MOST_STEPS = 9
@@ -203,12 +203,10 @@ class BuilderScreen(ComparingScreen):
             return
 
         def take(defined: Defined) -> None:
-            changed: dict[Location, str | None] = {
-                ("components", id, key): text or None
-                for key, text in defined[1].items()
-                if text != values.get(key, "")
-            }
-            self.line.attempt(lambda: session.put_all(changed, f"change {id}"))
+            place = "components", id
+            self.line.attempt(
+                lambda: session.do(written(session.draft, defined[1], place), f"change {id}")
+            )
 
         ask(self.app, ComponentScreen(begun=(id, values)), take)
 

@@ -14,7 +14,7 @@ from textual.keys import key_to_character
 from textual.screen import Screen
 from textual.widgets import Input, TextArea
 
-from calm.tui.theme import LOOKS
+from calm.checks.finding import State
 
 
 @dataclass(frozen=True)
@@ -268,7 +268,7 @@ def hints(place: str) -> list[Action]:
     return sorted(own, key=lambda action: action.hint or 0)
 
 
-_SIGNS = "Signs: " + ", ".join(f"{look.sign} {look.word}" for look in LOOKS.values())
+_SIGNS = "Signs: " + ", ".join(f"{state.sign} {state}" for state in reversed(State))
 _GROUND = (
     "Every change is solved and judged at once; until then the figures of the line before are "
     "dimmed. A number without a unit takes the unit shown. With the mouse: press a cell to go "

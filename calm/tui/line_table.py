@@ -170,7 +170,7 @@ class LineTable(TableCells, can_focus=True):
             sign = Segment(theme.MARK, style)
         elif row.state is not None and row.state.value not in ("pass", "accepted", "estimated"):
             colour = self.look(f"line-table--{row.state.value}")
-            sign = Segment(theme.LOOKS[row.state].sign, style + colour)
+            sign = Segment(row.state.sign, style + colour)
         cursor = theme.CURSOR if number == self.cursor else " "
         return [Segment(cursor, style), sign, Segment(f"{row.sign} ", style)]
 

@@ -87,10 +87,10 @@ def filled(draft: Draft, asked: Iterable[Asked]) -> list[Asked]:
     return [replace(each, text=draft.text_at(tuple(each.key.split(".")))) for each in asked]
 
 
-def written(draft: Draft, texts: Mapping[str, str]) -> Draft:
+def written(draft: Draft, texts: Mapping[str, str], below: Location = ()) -> Draft:
     """The file with the texts of a sheet in their places; a blank one takes its key away."""
     for key, new in texts.items():
-        place = tuple(key.split("."))
+        place = (*below, *key.split("."))
         if new != draft.text_at(place):
             draft = draft.put_at(place, new or None)
     return draft
@@ -268,7 +268,6 @@ SHEETS = {
 """What is asked about a whole file, and of what hangs at the row under the cursor."""
 
 
-_MOST_LABELS = 4
 _ELSEWHERE = "part of an assembly of the catalogue: use its parts, or define it in the file (o)"
 _SOURCE = "data sheet, test certificate …"
 
@@ -308,9 +307,9 @@ class Missing:
     @property
     def called(self) -> str:
         """Return the component, with the labels of the first rows that lack a figure."""
-        labels = ", ".join(list(self.labels)[:_MOST_LABELS])
-        more = len(self.labels) - _MOST_LABELS
-        labels += f" and {more} more" if more > 0 else ""
+        from calm.report.check_tables import named
+
+        labels = named(self.labels)
         return self.use if labels == self.use else f"{self.use}: {labels}"
 
     @property

@@ -9,9 +9,8 @@ from typing import Any
 
 from calm.files import Place, editing
 from calm.files.editing import LINE, Draft, History, LineItem, Value, WorkingFile, clamps_of
+from calm.files.yaml_document import Location
 from calm.tui.names import Named, Standing, followed, widened
-
-Location = tuple[str | int, ...]
 
 _OF_THE_ROW = frozenset({"use", "label", "count", "at", "clamps"})
 """Keys of a row that hold whatever component is there."""
@@ -275,13 +274,6 @@ class Session:
 
     def _called(self, chosen: Sequence[Place]) -> str:
         return _label(self.item(chosen[0])) if len(chosen) == 1 else f"{len(chosen)} rows"
-
-    def put_all(self, changes: Mapping[Location, str | None], label: str) -> None:
-        """Set values around the line by their places; None takes one away."""
-        draft = self.draft
-        for location, value in changes.items():
-            draft = draft.put_at(location, value)
-        self.do(draft, label)
 
     # saving
 

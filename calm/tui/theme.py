@@ -1,7 +1,6 @@
 """The colours: a dark one and a light one, or those of a terminal that has but sixteen."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import lru_cache
 
 from rich.color import Color as Ink
@@ -177,24 +176,15 @@ def _luminance(colour: ColorTriplet) -> float:
     return 0.2126 * red + 0.7152 * green + 0.0722 * blue
 
 
-@dataclass(frozen=True)
-class Look:
-    """The sign and the word of a state, and the style of rich that goes with them."""
-
-    sign: str
-    word: str
-    style: str
-
-
 LOOKS = {
-    State.FAIL: Look("!", "FAIL", "bold red"),
-    State.WARN: Look("~", "warning", "yellow"),
-    State.UNKNOWN: Look("?", "unknown", "bold"),
-    State.ESTIMATED: Look("≈", "estimated", "green"),
-    State.ACCEPTED: Look("·", "accepted", "dim"),
-    State.PASS: Look("✓", "pass", "green"),
+    State.FAIL: "bold red",
+    State.WARN: "yellow",
+    State.UNKNOWN: "bold",
+    State.ESTIMATED: "green",
+    State.ACCEPTED: "dim",
+    State.PASS: "green",
 }
-"""As in the reports of the design check."""
+"""The styles of rich that go with the signs of the states."""
 
 ROLES = {
     "float": "o",

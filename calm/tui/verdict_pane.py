@@ -122,13 +122,13 @@ class VerdictPane(scrolled.ScrolledText, can_focus=True):
 def _parts(view: View | None, note: str) -> Iterator[tuple[Saying, RenderableType]]:
     """All that is said, and how it looks."""
     head = headline(view)
-    style = "dim" if head.state is None else theme.LOOKS[head.state].style
+    style = "dim" if head.state is None else theme.LOOKS[head.state]
     yield head, Text(f"{head.sign} {head.text}", style=f"{style} bold")
     for saying in sayings(view):
         table = Table.grid(padding=(0, 1, 0, 0), expand=True)
         table.add_column(width=1)
         table.add_column(overflow="fold", ratio=1)
-        look = theme.LOOKS[saying.state].style if saying.state else ""
+        look = theme.LOOKS[saying.state] if saying.state else ""
         grave = saying.state in (State.FAIL, State.WARN)
         heading = (f"{saying.heading}  " if saying.heading else "", look if grave else "dim")
         told = Text.assemble(heading, (saying.text, "dim" if saying.faint else ""))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from calm.checks.finding import AS_GIVEN, OWN, Finding, Rule, State
 from calm.quantities import say
-from calm.tui.theme import ELLIPSIS, LOOKS
+from calm.tui.theme import ELLIPSIS
 from calm.tui.workspace import mistakes, place_of
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ class Saying:
         """Return what stands in front."""
         if self.pending:
             return ELLIPSIS
-        return " " if self.state is None else LOOKS[self.state].sign
+        return " " if self.state is None else self.state.sign
 
 
 def headline(view: View | None) -> Saying:

@@ -4,10 +4,11 @@ from io import BytesIO, TextIOWrapper
 
 import pytest
 
+from calm.checks.finding import State
 from calm.drawing.sketch.canvas import Canvas
 from calm.tui.line_table import LineTable
 from calm.tui.painted import plain, shows_all_signs
-from calm.tui.theme import CLAMP, CURSOR, LOOKS, MARK, ROLES, UNKNOWN_ROLE
+from calm.tui.theme import CLAMP, CURSOR, MARK, ROLES, UNKNOWN_ROLE
 from tests.tui.conftest import MOORING
 from tests.tui.test_terminals import SCREENS
 
@@ -44,7 +45,7 @@ def test_the_picture_and_the_water_are_drawn_with_signs_alike(drive, small):
 
 
 def test_every_state_and_every_role_has_a_sign_of_its_own():
-    states = [plain(look.sign) for look in LOOKS.values()]
+    states = [plain(state.sign) for state in State]
     assert len(set(states)) == len(states)
     roles = [plain(sign) for sign in (*ROLES.values(), UNKNOWN_ROLE)]
     assert len(set(roles)) == len(roles)

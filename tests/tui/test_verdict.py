@@ -10,7 +10,7 @@ from calm.checks.finding import State
 from calm.files.editing import Draft
 from calm.tui.line_rows import table_rows
 from calm.tui.live import judge, judge_fully
-from calm.tui.theme import ELLIPSIS, LOOKS
+from calm.tui.theme import ELLIPSIS
 from calm.tui.verdict_text import headline, sayings
 from tests.tui.conftest import MOORING
 
@@ -140,7 +140,7 @@ def test_an_environment_that_cannot_be_read_is_named(tmp_path):
 def test_nothing_passes_before_all_is_judged_nor_where_a_figure_is_missing():
     early = judge(MOORING)
     signs = [headline(early).sign, *(each.sign for each in sayings(early))]
-    assert LOOKS[State.PASS].sign not in signs and signs[0] == ELLIPSIS
+    assert State.PASS.sign not in signs and signs[0] == ELLIPSIS
     told = [*sayings(judge_fully(early))]
     unknown = {each.heading for each in told if each.state is State.UNKNOWN}
     passed = next(each.text for each in told if each.heading == "Pass").split(", ")
