@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
 
 from calm.exchange.cable_formulas import Expression, TokenStream, read_expression
 from calm.exchange.cable_source import Preprocessor, Token, tokens_of
+from calm.exchange.model import ImportOptions
 
 _TEXTS = frozenset([
     "title", "color", "category", "comment", "type", "buoy", "platform", "anchor", "material",
@@ -142,12 +142,14 @@ class CableProblem:
 
     Attributes
     ----------
+    options : how it is read
     description, environment : key and value
     buoys, anchors, connectors, materials : by name
     layout : terminals, segments and branches in the order of the file
     """
 
     path: Path
+    options: ImportOptions
     description: KeyValues = field(default_factory=KeyValues)
     environment: KeyValues = field(default_factory=KeyValues)
     analysis: KeyValues = field(default_factory=KeyValues)
@@ -179,23 +181,10 @@ class CableProblem:
         return sum(segment.values.number("length") for segment in self.segments)
 
 
-def read_problem(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> CableProblem:
-    """Read a file.
-
-    Parameters
-    ----------
-    path : of the problem
-    defines : macros from outside, by name
-    allow_include : whether files outside its folder may be included
-
-    Raises
-    ------
-    InputError
-        It cannot be read; with line and column.
-    """
-    lines = Preprocessor(defines, allow_include).read(path)
-    words = TokenStream(list(tokens_of(lines)))
-    problem = CableProblem(path)
+def read_problem(path: Path, options: ImportOptions) -> CableProblem:
+    """Read a file (InputError: it cannot be read; with line and column)."""
+    words = TokenStream(list(tokens_of(Preprocessor(options).read(path))))
+    problem = CableProblem(path, options)
     while words.next.kind != "end":
         _section(words, problem)
     return problem

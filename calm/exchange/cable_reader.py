@@ -2,7 +2,8 @@
 
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -70,25 +71,16 @@ def is_cbl(content: bytes) -> bool:
     return b"\0" not in content and len(set(_HEADS.findall(text))) >= 2
 
 
-def read_cbl(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> model.Design:
+def read_cbl(path: Path, options: model.ImportOptions) -> model.Design:
     """Read a mooring or a tow.
 
-    Parameters
-    ----------
-    path : of the problem
-    defines : macros from outside, by name
-    allow_include : whether files outside its folder may be read
-
-    Raises
-    ------
-    InputError
-        The file cannot be read, or holds what CALM cannot represent. All undefined names that it
-        uses are named at once.
+    InputError: the file cannot be read, or holds what CALM cannot represent. All undefined names
+    that it uses are named at once.
     """
-    given, missing = dict(defines), list[Problem]()
+    given, missing = dict(options.defines), list[Problem]()
     while True:
         try:
-            design = _read(path, given, allow_include=allow_include)
+            design = _read(path, replace(options, defines=given))
         except UnknownNameError as error:
             missing += error.problems
             if any(name in given or not name.isidentifier() for name in error.names):
@@ -105,13 +97,13 @@ def read_cbl(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> 
     raise InputError(missing)
 
 
-def _read(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> model.Design:
-    problem = read_problem(path, defines, allow_include=allow_include)
+def _read(path: Path, options: model.ImportOptions) -> model.Design:
+    problem = read_problem(path, options)
     _refuse_other_shapes(problem)
     title, environment = problem.description.get("title"), problem.environment
     design = model.Design("WHOI Cable", title.text if title and title.text else path.stem, [], None)
     design.notes.append(_NOTE)
-    design.water = _water_of(problem, design.dropped, allow_include=allow_include)
+    design.water = _water_of(problem, design.dropped)
     if problem.analysis:
         design.dropped.append(
             model.Remark("analysis parameters", "how that program is to solve it")
@@ -173,16 +165,10 @@ def _refuse_other_shapes(problem: CableProblem) -> None:
                 raise values[key].token.refuse(f"`{key}` pulls at the line from outside")
 
 
-def _water_of(
-    problem: CableProblem, dropped: list[model.Remark], *, allow_include: bool
-) -> model.ImportedWater:
-    """Return depth, density, gravity, current and wind, with files of currents in its folder.
+def _water_of(problem: CableProblem, dropped: list[model.Remark]) -> model.ImportedWater:
+    """Return depth, density, gravity, current and wind; what has no counterpart is `dropped`.
 
-    Parameters
-    ----------
-    problem : whose length stands for the depth of a tow whose file gives none
-    dropped : to which what has no counterpart is added
-    allow_include : whether files may stand elsewhere
+    The length of the line stands for the depth of a tow whose file gives none.
     """
     environment = problem.environment
     depth = environment.number("depth")
@@ -193,7 +179,7 @@ def _water_of(
         water.guesses["gravity"] = "the file gives none; the usual value of such files"
     grid = None
     if (value := environment.get("current-file")) is not None:
-        grid = _gridded_current(value, problem.path.parent, dropped, allow_include=allow_include)
+        grid = _gridded_current(value, problem, dropped)
         if grid is None:
             what = f"still water: its current-file `{value.text}` is missing"
             water.guesses["current"] = what
@@ -272,15 +258,16 @@ def _refined(at: Callable[[float], tuple[float, float, float]], levels: list[flo
 
 
 def _gridded_current(
-    value: KeyValue, folder: Path, dropped: list[model.Remark], *, allow_include: bool
+    value: KeyValue, problem: CableProblem, dropped: list[model.Remark]
 ) -> _Grid | None:
     """Return the currents of a file beside the problem; None where there is no such file.
 
     It begins with step, start and count of time, depth, x and y; the speeds to x, y and z follow,
     the depth running fastest, then x, then y, then the time. What is left out of it is `dropped`.
     """
-    path = folder / value.text
-    if not allow_include and not path.resolve().is_relative_to(folder.resolve()):
+    folder = problem.path.parent
+    path, outside = folder / value.text, problem.options.allow_include
+    if not outside and not path.resolve().is_relative_to(folder.resolve()):
         raise value.token.refuse(
             f"`{value.text}` lies outside the folder of the file; --allow-include reads it"
         )

@@ -6,11 +6,12 @@ arguments, cut numbers such as `6e3` where `e3` is a macro, and let a comment wi
 
 import os
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from calm.errors import InputError, UsageError, refused
+from calm.exchange.model import ImportOptions
 from calm.whole_file import decoded, read_content
 
 _NAME = re.compile(r"[A-Za-z_]\w*")
@@ -49,16 +50,9 @@ class _Macro:
 
 @dataclass
 class Preprocessor:
-    """Resolves comments, macros, conditions and includes as the C preprocessor does.
+    """Resolves comments, macros, conditions and includes as the C preprocessor does."""
 
-    Attributes
-    ----------
-    defines : macros from outside, by name
-    allow_include : whether files outside the folder of the first may be included
-    """
-
-    defines: Mapping[str, str] = field(default_factory=dict)
-    allow_include: bool = False
+    options: ImportOptions
     _macros: dict[str, _Macro] = field(default_factory=dict)
     _lines: list[SourceLine] = field(default_factory=list)
     _size: int = 0
@@ -70,7 +64,7 @@ class Preprocessor:
         InputError: a file cannot be read or may not be included, a directive cannot be read, or
         macros expand without end. UsageError: a macro given from outside has no proper name.
         """
-        for name, value in self.defines.items():
+        for name, value in self.options.defines.items():
             if not _NAME.fullmatch(name):
                 raise UsageError(f"-D {name}={value}: `{name}` is not the name of a macro")
             self._macros[name] = _Macro(value)
@@ -153,7 +147,7 @@ class Preprocessor:
         found = re.match(r"([A-Za-z_]\w*)(\(([\w\s,]*)\))?(?:\s+(.*)|$)", rest, re.DOTALL)
         if found is None:
             raise ValueError(f"`#define {rest[:40]}` cannot be read")
-        if found[1] in self.defines:
+        if found[1] in self.options.defines:
             return  # what is given from outside holds
         parameters = None
         if found[2] is not None:
@@ -166,7 +160,7 @@ class Preprocessor:
             raise ValueError(f"`#include {rest[:60]}` names no file")
         target = path.parent / found[1]
         real = Path(os.path.realpath(target))
-        if not self.allow_include and not real.is_relative_to(root):
+        if not self.options.allow_include and not real.is_relative_to(root):
             raise ValueError(
                 f"`{found[1]}` lies outside the folder of the file; --allow-include reads it"
             )

@@ -21,6 +21,7 @@ from calm.files.editing.writing import written
 from calm.physics.materials import STEEL_DENSITY
 from calm.quantities import rounded
 from calm.units import KILOGRAM_FORCE
+from calm.version import __version__
 
 _WIDTH = 100
 _UNITS = {
@@ -52,21 +53,10 @@ class _Page:
         self.lines += [f"{indent}# {line}" for line in wrap(text, _WIDTH - len(indent) - 2)]
 
 
-def mooring_text(
-    design: model.Design, source: str, environment: list[str] | None = None, version: str = ""
-) -> tuple[str, list[model.Remark]]:
-    """Return the text of the mooring file of a design, and what was guessed in it.
-
-    Parameters
-    ----------
-    source : name of the file it comes from
-    environment : the lines of the `environment` key, in place of those of the design
-    """
-    page = _Page()
-    by = f" by CALM {version}" if version else ""
-    page.remark(
-        f"Imported from {one_line(source)}, a design of {design.program},{by} with its own figures."
-    )
+def mooring_text(design: model.Design, source: str) -> tuple[str, list[model.Remark]]:
+    """Return the text of the mooring file of a design from a file, and what was guessed in it."""
+    page, of = _Page(), f"{one_line(source)}, a design of {design.program}"
+    page.remark(f"Imported from {of}, by CALM {__version__} with its own figures.")
     for note in design.notes:
         page.remark(one_line(note))
     if design.dropped:
@@ -84,8 +74,8 @@ def mooring_text(
         toward = f"toward: {_number(design.tow.toward)} deg"
         page.add(f"tow: {{speed: {_number(design.tow.speed)} m/s, {toward}{height}}}")
         page.add()
-    if environment is not None:
-        page.lines += environment
+    if design.environment:
+        page.lines += design.environment
         page.add()
     elif design.water is not None:
         _write_water(page, design.water)
@@ -257,23 +247,18 @@ _DIGITS = 2  # that a guessed weight keeps
 _LEAST = 100.0  # N of a guessed weight
 
 
-def secure_anchors(design: model.Design, environment: list[str] | None, output: Path) -> None:
+def secure_anchors(design: model.Design, output: Path) -> None:
     """Give each anchor a weight where the file gives none, or one that the line would lift.
 
     The shape of the line does not depend on it. The weight is what `calm check` asks for in this
-    current. A line without an equilibrium is left to `calm run`, which says so.
-
-    Parameters
-    ----------
-    design : whose anchors are changed
-    environment : lines in place of the water of the design
-    output : path of the mooring file to come
+    current. A line without an equilibrium is left to `calm run`, which says so. The mooring file is
+    to stand at `output`.
     """
     last = design.items if design.legs else design.items[-1:]
     anchors = [item.component for item in last if item.component.kind == "anchor"]
     if design.tow is not None or not anchors:
         return
-    for anchor, pull, required in _pulls(design, anchors, environment, output):
+    for anchor, pull, required in _pulls(design, anchors, output):
         mass, weight = anchor.figures.get("mass"), anchor.figures.get("weight")
         given = weight if weight is not None or mass is None else _IN_WATER * float(mass)
         if isinstance(given, float) and (pull is None or pull <= given):
@@ -293,10 +278,7 @@ def secure_anchors(design: model.Design, environment: list[str] | None, output: 
 
 
 def _pulls(
-    design: model.Design,
-    anchors: list[model.ImportedComponent],
-    environment: list[str] | None,
-    output: Path,
+    design: model.Design, anchors: list[model.ImportedComponent], output: Path
 ) -> list[tuple[model.ImportedComponent, float | None, float]]:
     """Return each anchor, the upward pull of the line on it and the weight that holds it [N]."""
     before = [anchor.figures for anchor in anchors]
@@ -304,7 +286,7 @@ def _pulls(
         anchor.figures = {k: one for k, one in anchor.figures.items() if k != "mass"}
         anchor.figures["weight"] = _HOLDS
     try:
-        read = load(output, text=mooring_text(design, "", environment)[0])
+        read = load(output, text=mooring_text(design, "")[0])
         assert not isinstance(read, Tow)
         loads: Sequence[AnchorLoad | EndLoad] = (
             read.solve().anchors if isinstance(read, Net) else (read.solve().anchor,)

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -30,27 +30,8 @@ from calm.files import Anchor, Catalogue, Rigid, read_mooring
 from calm.files.components import FLEXIBLE_KINDS, KINDS, Component
 from calm.files.editing.writing import WritingStyle
 from calm.files.yaml_document import read_document
-from calm.version import __version__
 
 _HEAD = 70_000  # bytes from which a format is recognised
-
-
-@dataclass(frozen=True)
-class ImportOptions:
-    """Hold the options of a command line.
-
-    Attributes
-    ----------
-    defines : macros of WHOI Cable; ids of the catalogue by the names of oceanarray
-    columns : the headings of a table, by what they hold
-    elements : a library with the figures that a table lacks
-    allow_include : whether a file may include another from outside its folder
-    """
-
-    defines: Mapping[str, str] = field(default_factory=dict)
-    columns: Mapping[str, str] = field(default_factory=dict)
-    elements: Path | None = None
-    allow_include: bool = False
 
 
 @dataclass(frozen=True)
@@ -60,32 +41,17 @@ class ImportFormat:
     name: str
     program: str
     recognises: Callable[[bytes], bool]
-    read: Callable[[Path, ImportOptions], model.Design]
+    read: Callable[[Path, model.ImportOptions], model.Design]
 
 
 FORMATS = (
-    ImportFormat(
-        "mdd", "Mooring Design & Dynamics", is_mat, lambda path, options: read_mdd(path)
-    ),
-    ImportFormat(
-        "cbl", "WHOI Cable", is_cbl,
-        lambda path, options: read_cbl(
-            path, options.defines, allow_include=options.allow_include
-        ),
-    ),
-    ImportFormat(
-        "moordyn", "MoorDyn or MoorPy", is_moordyn, lambda path, options: read_moordyn(path)
-    ),
-    ImportFormat(
-        "oceanarray", "oceanarray", is_oceanarray,
-        lambda path, options: read_oceanarray(path, options.defines, options.elements),
-    ),
-    ImportFormat("moords", "moords", is_moords, lambda path, options: read_moords(path)),
-    ImportFormat(
-        "table", "a list in CSV or a spreadsheet", is_table,
-        lambda path, options: read_list(path, options.columns, options.elements),
-    ),
-)  # fmt: skip
+    ImportFormat("mdd", "Mooring Design & Dynamics", is_mat, lambda path, _: read_mdd(path)),
+    ImportFormat("cbl", "WHOI Cable", is_cbl, read_cbl),
+    ImportFormat("moordyn", "MoorDyn or MoorPy", is_moordyn, lambda path, _: read_moordyn(path)),
+    ImportFormat("oceanarray", "oceanarray", is_oceanarray, read_oceanarray),
+    ImportFormat("moords", "moords", is_moords, lambda path, _: read_moords(path)),
+    ImportFormat("table", "a list in CSV or a spreadsheet", is_table, read_list),
+)
 
 
 @dataclass(frozen=True)
@@ -117,7 +83,7 @@ def import_file(
     *,
     format: str | None = None,
     environment: Path | None = None,
-    options: ImportOptions | None = None,
+    options: model.ImportOptions | None = None,
     match_catalogue: bool = False,
 ) -> Imported:
     """Read a file of another program.
@@ -136,7 +102,7 @@ def import_file(
     UsageError
         There is no such format.
     """
-    options = options or ImportOptions()
+    options = options or model.ImportOptions()
     chosen = _format_of(path, format, listed=options.elements is not None)
     if options.elements is not None and chosen.name not in ("table", "oceanarray"):
         raise refused(path, f"is of {chosen.program}; --elements is for lists")
@@ -147,9 +113,8 @@ def import_file(
             raise refused(
                 path, f"has {count} {what}; more than {model.MOST_PIECES} are not imported"
             )
-    lines = None
     if environment is not None:
-        lines = environment_lines(environment, output)
+        design.environment = environment_lines(environment, output)
         if design.water is not None:
             what = f"the water of the file: {environment.name} replaces it"
             design.dropped.append(model.Remark("environment", what))
@@ -158,8 +123,8 @@ def import_file(
         message = "has no environment; give one: --environment FILE (depth, current, density)"
         raise refused(path, message)
     matched = match_catalogue_entries(design) if match_catalogue else ()
-    secure_anchors(design, lines, output)
-    text, guessed = mooring_text(design, path.name, lines, __version__)
+    secure_anchors(design, output)
+    text, guessed = mooring_text(design, path.name)
     _check(path, output, text)
     return Imported(
         path, chosen.name, text, tuple(guessed + design.guessed),

@@ -29,19 +29,12 @@ _WATER = ("z", "U", "V", "W", "rho")  # headings of a sheet of Mooring Design & 
 _NAMES = 3  # at least, in a list of names alone
 
 
-def read_list(path: Path, columns: Mapping[str, str], elements: Path | None = None) -> model.Design:
+def read_list(path: Path, options: model.ImportOptions) -> model.Design:
     """Read a CSV file or a workbook.
 
-    Parameters
-    ----------
-    columns : headings by what they hold
-    elements : a library with the figures that the list lacks
-
-    Raises
-    ------
-    InputError
-        No headings are recognised, a figure is missing, or no end is an anchor.
+    InputError: no headings are recognised, a figure is missing, or no end is an anchor.
     """
+    columns, elements = options.columns, options.elements
     sheets = read_sheets(path)
     check_given(sheets, columns, path)
     if elements is None and not columns and is_library(sheets):

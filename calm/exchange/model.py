@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +22,24 @@ MOST_PIECES = 2_000
 
 FigureOrWord = float | str
 """A number in SI, or a word of the mooring file such as ``insensitive``."""
+
+
+@dataclass(frozen=True)
+class ImportOptions:
+    """Hold how a file is to be read.
+
+    Attributes
+    ----------
+    defines : macros of WHOI Cable; ids of the catalogue by the names of oceanarray
+    columns : the headings of a table, by what they hold
+    elements : a library with the figures that a table lacks
+    allow_include : whether a file may include another from outside its folder
+    """
+
+    defines: Mapping[str, str] = field(default_factory=dict)
+    columns: Mapping[str, str] = field(default_factory=dict)
+    elements: Path | None = None
+    allow_include: bool = False
 
 
 @dataclass(frozen=True)
@@ -212,6 +231,7 @@ class Design:
     items : from the top down; of a tow, from the ship; of a net, one leg after the other
     legs : of a net
     water : None where the file gives no environment
+    environment : lines of the `environment` key in its place
     solver : keys of `solver`, each with a comment
     guessed : guesses that belong to no figure; figures carry their own
     dropped : what the file says and CALM cannot use
@@ -224,6 +244,7 @@ class Design:
     name: str
     items: list[ImportedPiece]
     water: ImportedWater | None
+    environment: list[str] = field(default_factory=list)
     description: str = ""
     tow: ImportedTow | None = None
     record: CurrentRecord | None = None

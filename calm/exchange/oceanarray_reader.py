@@ -39,23 +39,14 @@ def is_oceanarray(content: bytes) -> bool:
     return re.search(rb"^waterdepth *:", content, re.M) is not None and bool(_MARKS.search(content))
 
 
-def read_oceanarray(
-    path: Path, stands_for: Mapping[str, str], elements: Path | None = None
-) -> model.Design:
+def read_oceanarray(path: Path, options: model.ImportOptions) -> model.Design:
     """Read such a configuration.
 
-    Parameters
-    ----------
-    stands_for : ids of the catalogue by the names in the file
-    elements : a library with the figures of what it names
-
-    Raises
-    ------
-    InputError
-        It lists no line, a height or length is missing or wrong, or nothing is known of a name.
+    InputError: it lists no line, a height or length is missing or wrong, or nothing is known of a
+    name.
     """
     document, problems = read_document(path), list[Problem]()
-    library = read_library(elements) if elements is not None else {}
+    library = {} if options.elements is None else read_library(options.elements)
     reading = _Reading(document, problems)
     depth = reading.depth = reading.metres(document.data, (), "waterdepth")
     line = reading.entries("inline")
@@ -70,7 +61,7 @@ def read_oceanarray(
         reading.refuse((), f"has more than {model.MOST_PIECES} pieces")
     if problems:
         raise InputError(problems)
-    parts = _Parts(reading, stands_for, library)
+    parts = _Parts(reading, options.defines, library)
     design = model.Design("oceanarray", str(document.data.get("name") or path.stem), [], None)
     _hang(beside, _strung(line, parts, design), parts)
     design.water = model.ImportedWater(depth, guesses={"current": "the file has none: still water"})

@@ -10,7 +10,8 @@ import yaml
 from calm.case import load
 from calm.errors import InputError, UsageError
 from calm.exchange.cable_formulas import constant
-from calm.exchange.importing import ImportOptions, import_file
+from calm.exchange.importing import import_file
+from calm.exchange.model import ImportOptions
 
 PROBLEMS = Path(__file__).parent / "problems"
 

@@ -9,7 +9,8 @@ import pytest
 
 import calm
 from calm.errors import InputError, UsageError
-from calm.exchange.importing import ImportOptions, import_file
+from calm.exchange.importing import import_file
+from calm.exchange.model import ImportOptions
 
 LINE = """\
 inline:

@@ -7,8 +7,9 @@ import pytest
 
 from calm.case import load
 from calm.errors import InputError
-from calm.exchange.importing import ImportOptions, import_file
+from calm.exchange.importing import import_file
 from calm.exchange.list_cells import number
+from calm.exchange.model import ImportOptions
 
 SITE = """\
 environment:
