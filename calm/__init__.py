@@ -28,28 +28,10 @@ if TYPE_CHECKING:
     from calm.ranging import locate
 
 __all__ = [
-    "CalmError",
-    "InputError",
-    "Mooring",
-    "MotionEstimate",
-    "Net",
-    "NetResult",
-    "NoEquilibrium",
-    "Profiles",
-    "Result",
-    "Tow",
-    "TowResult",
-    "UsageError",
-    "__version__",
-    "check",
-    "drop_plan",
-    "estimate_motion",
-    "explain",
-    "load",
-    "locate",
-    "size",
-    "solve_profiles",
-]
+    "CalmError", "InputError", "Mooring", "MotionEstimate", "Net", "NetResult", "NoEquilibrium",
+    "Profiles", "Result", "Tow", "TowResult", "UsageError", "__version__", "check", "drop_plan",
+    "estimate_motion", "explain", "load", "locate", "size", "solve_profiles",
+]  # fmt: skip
 
 _HOMES = {
     "calm.batch.profiles": ("Profiles", "solve_profiles"),

@@ -284,24 +284,13 @@ def _strums_along_the_flow(result: TowResult, solution: Solution) -> Iterator[st
 
 
 _OF_ANY: tuple[Callable[[Result | TowResult, Solution], Iterator[str]], ...] = (
-    _same_serial,
-    _overloaded,
-    _tilted,
-    _stiffness_unknown,
-    _overstretched,
-    _beyond_the_table,
-    _fast_flow,
-    _other_equilibrium,
-)
+    _same_serial, _overloaded, _tilted, _stiffness_unknown, _overstretched, _beyond_the_table,
+    _fast_flow, _other_equilibrium,
+)  # fmt: skip
 _OF_A_MOORING: tuple[Callable[[Result, Solution], Iterator[str]], ...] = (
-    _anchor_too_light,
-    _anchor_of_unknown_material,
-    _bight,
-    _on_the_seabed,
-    _far_too_long,
-    _hull_unknown,
-    _wind_ignored,
-)
+    _anchor_too_light, _anchor_of_unknown_material, _bight, _on_the_seabed, _far_too_long,
+    _hull_unknown, _wind_ignored,
+)  # fmt: skip
 _OF_A_TOW: tuple[Callable[[TowResult, Solution], Iterator[str]], ...] = (
     _below_the_sea,
     _strums_along_the_flow,

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice, zip_longest
 from pathlib import Path
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal
 
 from pydantic import Field
 
@@ -236,14 +236,6 @@ class CatalogueEntry:
 Level = Mapping[str, CatalogueEntry]
 
 
-class _Cut(NamedTuple):
-    """Hold the text of one definition, and the lines of its file that are above it."""
-
-    path: Path
-    above: int
-    text: str
-
-
 class UnreadLevel(Level):
     """Hold the entries of files whose mistakes need not be known before they matter.
 
@@ -264,17 +256,17 @@ class UnreadLevel(Level):
     def __init__(self, paths: Sequence[Path]) -> None:
         self._paths = paths
         self._read: dict[str, CatalogueEntry] = {}
-        cuts = [cut for path in paths for cut in _cuts(path)]
-        self._cuts = {id: cut for id, cut in cuts if id}
+        cuts = [(id, path, cut) for path in paths for id, cut in _cuts(path)]
+        self._cuts = {id: (path, cut) for id, path, cut in cuts if id}
         if len(self._cuts) < len(cuts):
             self._read_whole()
 
     def __getitem__(self, id: str) -> CatalogueEntry:
         if id not in self._read:
-            path, above, text = self._cuts[id]
+            path, cut = self._cuts[id]
             problems: list[Problem] = []
             try:
-                document = compose(str(path), "\n" * above + text)
+                document = compose(str(path), cut)
                 for entry in _entries_of(document, problems):
                     self._read.setdefault(id, entry)
             except InputError as error:
@@ -332,16 +324,17 @@ def _entries_of(document: Document, problems: list[Problem]) -> list[CatalogueEn
     return entries_of(SourceMapping.of(document, problems), family)
 
 
-def _cuts(path: Path) -> list[tuple[str | None, _Cut]]:
-    """Return the text of each definition by its id, or by None where it does not begin plainly."""
+def _cuts(path: Path) -> Iterator[tuple[str | None, str]]:
+    """Yield the id of each definition, None where it does not begin plainly, and its text.
+
+    That is as far down as in the file, below empty lines.
+    """
     text = read_text(path)
-    heads = list(_HEAD.finditer(text))
-    cuts, above = [], text.count("\n", 0, heads[0].start()) if heads else 0
+    heads, above, end = list(_HEAD.finditer(text)), 0, 0
     for head, following in zip_longest(heads, heads[1:]):
-        part = text[head.start() : following.start() if following else None]
-        cuts.append((head[1], _Cut(path, above, part)))
-        above += part.count("\n")
-    return cuts
+        above += text.count("\n", end, head.start())
+        end = head.start()
+        yield head[1], "\n" * above + text[end : following.start() if following else None]
 
 
 _LOADED: FileCache[Catalogue] = FileCache()

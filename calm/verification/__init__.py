@@ -16,23 +16,9 @@ from calm.verification.still_water import ANCHOR_DROP, CATENARIES, ELASTIC_HANG,
 from calm.verification.uniform_current import PODE, TOWED_CABLES, UNIFORM_CURRENT
 
 SOURCES: tuple[Source, ...] = (
-    S1000,
-    CONVERGENCE,
-    INVARIANTS,
-    CDMS_1,
-    UNIFORM_CURRENT,
-    CATENARIES,
-    ELASTIC_HANG,
-    WATCH_CIRCLE,
-    TOWED_CABLES,
-    PODE,
-    BRACONNOT,
-    BOURGET_MARICHAL,
-    VILLAIN_GUILLOT,
-    drag_and_sea_water.DRAG_CURVES,
-    drag_and_sea_water.STRUMMING_FACTORS,
-    drag_and_sea_water.SEA_WATER,
-    ANCHOR_DROP,
-    drag_and_sea_water.CALM_PAPER,
-)
+    S1000, CONVERGENCE, INVARIANTS, CDMS_1, UNIFORM_CURRENT, CATENARIES, ELASTIC_HANG, WATCH_CIRCLE,
+    TOWED_CABLES, PODE, BRACONNOT, BOURGET_MARICHAL, VILLAIN_GUILLOT,
+    drag_and_sea_water.DRAG_CURVES, drag_and_sea_water.STRUMMING_FACTORS,
+    drag_and_sea_water.SEA_WATER, ANCHOR_DROP, drag_and_sea_water.CALM_PAPER,
+)  # fmt: skip
 """Every source, the solver's own first."""

@@ -4,6 +4,7 @@ C1 to C5 are a float on a thread, a neutral line and a heavy line; C7 and C8 a b
 critical angle and a cable that tows a body; C6 is Pode's cable functions and their identities.
 """
 
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import cache, partial
 from math import degrees, hypot, radians
@@ -20,6 +21,7 @@ from calm.verification.published_case import (
     Ends,
     Kind,
     LinePiece,
+    Solved,
     Source,
     Wake,
     cable,
@@ -99,6 +101,13 @@ def _thread(length: float, force: float, place: float, angle: float) -> list[Cas
     ]
 
 
+def _by_speed(
+    name: str, solve: Callable[[float], Solved], rows: Iterable[tuple[float, ...]]
+) -> list[tuple[str, Callable[[], Solved], list[float]]]:
+    """Return the rows of a table from those of a speed [m/s] and the figures at it."""
+    return [(f"{name}, {v} m/s", partial(solve, v), figures) for v, *figures in rows]
+
+
 _TENSION = CaseColumn[Ends]("tension at the anchor", "N", 1e-6, lambda ends: ends.tension, True)
 _ANGLE = CaseColumn[Ends]("angle at the anchor", "°", 6e-5, lambda ends: ends.lean)
 _OFFSET = CaseColumn[Ends]("offset of the float", "m", 1e-6 * _LENGTH, lambda ends: ends.x)
@@ -122,14 +131,11 @@ except C2, ρ = 1025 kg/m³; CALM's march is compared with them at an angle step
     (
         *table(
             _thread(100.0, 5.5e-5, 5.5e-6, 5.5e-6),
-            [
-                (f"C1 float on a thread, {speed} m/s", partial(_thread_ends, speed), figures)
-                for speed, *figures in (
-                    (0.5, 65.4089, 4905.4361, 0.76400, 1.33340, 0.00889),
-                    (1.0, 261.6358, 4911.9730, 3.05330, 5.32649, 0.14196),
-                    (1.5, 588.6805, 4940.1994, 6.84370, 11.91613, 0.71251),
-                )
-            ],
+            _by_speed("C1 float on a thread", _thread_ends, (
+                (0.5, 65.4089, 4905.4361, 0.76400, 1.33340, 0.00889),
+                (1.0, 261.6358, 4911.9730, 3.05330, 5.32649, 0.14196),
+                (1.5, 588.6805, 4940.1994, 6.84370, 11.91613, 0.71251),
+            )),
             _PRINTED, Kind.CLOSED_FORM),
         *table(
             _thread(0.5, 5.5e-7, 5.5e-7, 5.5e-5),
@@ -140,37 +146,28 @@ except C2, ρ = 1025 kg/m³; CALM's march is compared with them at an angle step
             _PRINTED, Kind.CLOSED_FORM),
         *table(
             [_TENSION, _ANGLE, _OFFSET, _KNOCKDOWN, _HORIZONTAL, _VERTICAL],
-            [
-                (f"C3 neutral line, {speed} m/s", partial(_rope_ends, 0.0, 0.0, speed), figures)
-                for speed, *figures in (
-                    (0.3, 4905.05652, 9.09326, 81.90536, 4.35144, 775.2048, 4843.4117),
-                    (0.5, 4905.43610, 23.96800, 218.62256, 31.25006, 1992.7172, 4482.4526),
-                    (1.0, 4911.97295, 60.61696, 601.82678, 253.81368, 4280.0921, 2410.0395),
-                )
-            ],
+            _by_speed("C3 neutral line", partial(_rope_ends, 0.0, 0.0), (
+                (0.3, 4905.05652, 9.09326, 81.90536, 4.35144, 775.2048, 4843.4117),
+                (0.5, 4905.43610, 23.96800, 218.62256, 31.25006, 1992.7172, 4482.4526),
+                (1.0, 4911.97295, 60.61696, 601.82678, 253.81368, 4280.0921, 2410.0395),
+            )),
             _SEVEN_DIGITS, Kind.CLOSED_FORM),
         *table(
             [_TENSION, _ANGLE, _OFFSET, _KNOCKDOWN],
-            [
-                (f"C4 heavy line, {speed} m/s", partial(_rope_ends, _HEAVY, 0.0, speed), figures)
-                for speed, *figures in (
-                    (0.3, 2923.34451, 15.16163, 112.91905, 9.14400),
-                    (0.5, 3026.41812, 37.45139, 288.75562, 60.49101),
-                    (1.0, 3617.23106, 75.74447, 671.31955, 352.62905),
-                )
-            ],
+            _by_speed("C4 heavy line", partial(_rope_ends, _HEAVY, 0.0), (
+                (0.3, 2923.34451, 15.16163, 112.91905, 9.14400),
+                (0.5, 3026.41812, 37.45139, 288.75562, 60.49101),
+                (1.0, 3617.23106, 75.74447, 671.31955, 352.62905),
+            )),
             _SEVEN_DIGITS, Kind.INDEPENDENT),
         *(_identity(speed) for speed in (0.3, 0.5, 1.0)),
         *table(
             [_TENSION, _ANGLE, _OFFSET, _HEIGHT],
-            [
-                (f"C5 with Ct, {speed} m/s", partial(_rope_ends, _HEAVY, 0.01, speed), figures)
-                for speed, *figures in (
-                    (0.3, 2923.67728, 15.16114, 112.91781, 990.85628),
-                    (0.5, 3032.17770, 37.43331, 288.70951, 939.53639),
-                    (1.0, 3720.85012, 75.41155, 670.62132, 648.89038),
-                )
-            ],
+            _by_speed("C5 with Ct", partial(_rope_ends, _HEAVY, 0.01), (
+                (0.3, 2923.67728, 15.16114, 112.91781, 990.85628),
+                (0.5, 3032.17770, 37.43331, 288.70951, 939.53639),
+                (1.0, 3720.85012, 75.41155, 670.62132, 648.89038),
+            )),
             _SEVEN_DIGITS, Kind.INDEPENDENT),
     ),
 )  # fmt: skip
@@ -206,14 +203,11 @@ error 1e-10) without CALM. CALM's march is compared with both, at an angle step 
     (
         *table(
             [CaseColumn[Wake](_AT_THE_SHIP, "°", 5.5e-5, lambda wake: wake.angle)],
-            [
-                (f"C7 bare cable, {speed} m/s", partial(_bare, speed), (angle,))
-                for speed, angle in ((1.0, 31.7304), (2.0, 16.2243), (3.0, 10.8582), (5.0, 6.5277))
-            ],
+            _by_speed("C7 bare cable", _bare, (
+                (1.0, 31.7304), (2.0, 16.2243), (3.0, 10.8582), (5.0, 6.5277),
+            )),
             "Half a unit of the last printed digit, plus a tenth: a straight cable is exact "
-            "whatever the angle step.",
-            Kind.CLOSED_FORM,
-        ),
+            "whatever the angle step.", Kind.CLOSED_FORM),
         *table(
             [
                 CaseColumn[Wake]("tension at the ship", "N", 1e-6, lambda wake: wake.tension, True),
@@ -221,20 +215,15 @@ error 1e-10) without CALM. CALM's march is compared with both, at an angle step 
                 CaseColumn[Wake]("body aft of the ship", "m", 3e-4, lambda wake: wake.aft),
                 CaseColumn[Wake]("depth of the body", "m", 3e-4, lambda wake: wake.depth),
             ],
-            [
-                (f"C8 with a body, {speed} m/s", partial(_with_body, speed), figures)
-                for speed, *figures in (
-                    (1.0, 2676.8181, 50.2681, 121.0705, 268.2631),
-                    (2.0, 2493.0209, 19.5421, 235.7036, 163.5868),
-                    (3.0, 2505.4823, 11.5260, 271.0537, 103.8530),
-                )
-            ],
+            _by_speed("C8 with a body", _with_body, (
+                (1.0, 2676.8181, 50.2681, 121.0705, 268.2631),
+                (2.0, 2493.0209, 19.5421, 235.7036, 163.5868),
+                (3.0, 2505.4823, 11.5260, 271.0537, 103.8530),
+            )),
             "1e-6 of the length and of the tension, 1e-4° for the angle; the figures are printed "
-            "to four decimals.",
-            Kind.INDEPENDENT,
-        ),
+            "to four decimals.", Kind.INDEPENDENT),
     ),
-)
+)  # fmt: skip
 
 
 _TABLE = (

@@ -7,14 +7,6 @@ from calm.files.editing.working_file import KeptWork, NotWritten, WorkingFile
 from calm.files.editing.writing import Value
 
 __all__ = [
-    "LINE",
-    "Draft",
-    "EditError",
-    "History",
-    "KeptWork",
-    "LineItem",
-    "NotWritten",
-    "Value",
-    "WorkingFile",
-    "clamps_of",
-]
+    "LINE", "Draft", "EditError", "History", "KeptWork", "LineItem", "NotWritten", "Value",
+    "WorkingFile", "clamps_of",
+]  # fmt: skip
