@@ -13,16 +13,8 @@ import numpy as np
 from calm.case import Mooring, Result
 from calm.case.net import Net
 from calm.case.result import NetResult
-from calm.checks import assessment
+from calm.checks import assess, assessment, situations
 from calm.checks.arrangement import clamp_place, hardware, metals, release_present, swivel
-from calm.checks.assess import (
-    assessment_of,
-    equilibrium,
-    failed_stand,
-    findings_of_currents,
-    judged_stand,
-    stand_of,
-)
 from calm.checks.assessment import Assessment, Handling, MooringInEnvironment, Situation, estimated
 from calm.checks.catalogue_rules import figures
 from calm.checks.criterion import limits_used
@@ -31,17 +23,6 @@ from calm.checks.growth import grown
 from calm.checks.handling import backup
 from calm.checks.inventory import inventory_of
 from calm.checks.recovery import Break, Loss, lifts_of, losses_among, required_margin
-from calm.checks.situations import (
-    DEPLOYED,
-    FOULED,
-    LEAST_CURRENT,
-    SOLVES,
-    STILL_ONLY,
-    STRUMMING,
-    deployed_file,
-    in_other_waters,
-    strumming_file,
-)
 from calm.errors import NoEquilibrium, or_why_not
 from calm.files import Flexible, Piece
 from calm.files.legs import stand_in_anchor
@@ -72,14 +53,16 @@ def check(*designs: Mooring | Net, day: date | None = None) -> Assessment:
     if kinds := [type(one).__name__ for one in designs if not isinstance(one, Mooring | Net)]:
         raise TypeError(f"a Mooring or a Net is needed, as calm.load gives it, not a {kinds[0]}")
     name = designs[0].file.name
-    expect_many(SOLVES * len(designs))
+    expect_many(situations.SOLVES * len(designs))
     stands: list[MooringInEnvironment] = []
     for each in designs:
         stands += (
-            stands_of_net(each, name, day) if isinstance(each, Net) else [stand_of(each, name, day)]
+            stands_of_net(each, name, day)
+            if isinstance(each, Net)
+            else [assess.stand_of(each, name, day)]
         )
-    assess = assessment_of_net if isinstance(designs[0], Net) else assessment_of
-    return assess(name, stands, day)
+    of = assessment_of_net if isinstance(designs[0], Net) else assess.assessment_of
+    return of(name, stands, day)
 
 
 def stands_of_net(net: Net, name: str, day: date | None = None) -> list[MooringInEnvironment]:
@@ -92,16 +75,16 @@ def stands_of_net(net: Net, name: str, day: date | None = None) -> list[MooringI
     Where the net does not stand there is one, with the reason.
     """
     environment = net.file.environment.name or OWN
-    situations = list(_situations(net))
-    if isinstance(situations[0][1], NoEquilibrium):
-        return [failed_stand(net.lines[0], name, situations[0][1])]
+    solved = list(_situations(net))
+    if isinstance(solved[0][1], NoEquilibrium):
+        return [assess.failed_stand(net.lines[0], name, solved[0][1])]
     return [
-        judged_stand(
+        assess.judged_stand(
             tuple(
                 Situation(said, None, found)
                 if isinstance(found, NoEquilibrium)
                 else Situation(said, found.legs[number], None)
-                for said, found in situations
+                for said, found in solved
             ),
             line,
             name,
@@ -117,18 +100,18 @@ def _situations(net: Net) -> Iterator[tuple[str, NetResult | NoEquilibrium]]:
     yield AS_GIVEN, given
     if isinstance(given, NoEquilibrium):
         return
-    for name, file in in_other_waters(net.file, net.water):
+    for name, file in situations.in_other_waters(net.file, net.water):
         yield name, or_why_not(Net(file).solve)
     fouling = net.file.environment.fouling
     if fouling is not None:
         legs = [grown(leg.file.pieces, leg, fouling) for leg in given.legs]
-        yield FOULED, or_why_not(net.with_lines(legs).solve)
-    if (strummed := strumming_file(net.file)) is not None:
-        yield STRUMMING, or_why_not(Net(strummed).solve)
+        yield situations.FOULED, or_why_not(net.with_lines(legs).solve)
+    if (strummed := situations.strumming_file(net.file)) is not None:
+        yield situations.STRUMMING, or_why_not(Net(strummed).solve)
     if net.file.deployed is not None:
-        deployed = deployed_file(net.file)
+        deployed = situations.deployed_file(net.file)
         if (deployed.pieces, deployed.environment) != (net.file.pieces, net.file.environment):
-            yield DEPLOYED, or_why_not(Net(deployed).solve)
+            yield situations.DEPLOYED, or_why_not(Net(deployed).solve)
 
 
 def assessment_of_net(
@@ -162,12 +145,14 @@ def assessment_of_net(
         once += [(each, each.judge(leg), stand.environment)
                  for each in (swivel, clamp_place, metals)]  # fmt: skip
     waters = {stand.mooring.file.environment.name: stand.mooring for stand in stands}
-    findings = list(findings_of_currents(list(waters.values()), name, acceptance))
+    findings = list(assess.findings_of_currents(list(waters.values()), name, acceptance))
     for rule, verdicts, environment in once:
         findings += acceptance.findings(rule, verdicts, name, environment)
     fast = (float(np.hypot(each.water.u, each.water.v).max()) for each in waters.values())
-    if legs and max(fast) < LEAST_CURRENT:
-        findings.insert(0, equilibrium.find(STILL_ONLY, name, first, AS_GIVEN))
+    if legs and max(fast) < situations.LEAST_CURRENT:
+        findings.insert(
+            0, situations.equilibrium.find(situations.STILL_ONLY, name, first, AS_GIVEN)
+        )
     surface = bool(whole.for_surface)
     accepted = [*(one for stand in stands for one in stand.accepted), *findings]
     return Assessment(

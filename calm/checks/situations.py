@@ -244,6 +244,14 @@ def _numbered(part: _Part, items: dict[str, DeployedItem]) -> _Part:
 LEAST_CURRENT = 0.01
 """Speed below which a current counts as none [m/s]."""
 
+
+@rule("equilibrium")
+def equilibrium(failure: NoEquilibrium) -> Iterator[Verdict]:
+    """Found only where there is none."""
+    message = f"{failure.status}: {failure.message}"
+    yield verdict_on(None, State.FAIL, message, failure.advice)
+
+
 STILL_ONLY = verdict_on(
     None,
     State.WARN,

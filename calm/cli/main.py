@@ -87,11 +87,6 @@ _VALUES = {
 _VALUE_OF = {f"--{name}": value for value, names in _VALUES.items() for name in names.split()}
 
 
-def _with_values(text: str) -> str:
-    """Return a line of usage with what each option wants in place of its type."""
-    return re.sub(r"(--[\w-]+) ([A-Z]+)", lambda m: f"{m[1]} {_VALUE_OF.get(m[1], m[2])}", text)
-
-
 class HelpAtWidth:
     """Sets `--help` to the width of the terminal, and says what the value of each option is."""
 
@@ -111,10 +106,12 @@ class HelpAtWidth:
         DefaultFormatter()(console, options, panel)
 
     def render_usage(self, console: Console, options: ConsoleOptions, usage: Any) -> None:
-        """Print the line of usage."""
+        """Print the line of usage, with what each option wants in place of its type."""
         from cyclopts.help import DefaultFormatter
 
-        DefaultFormatter().render_usage(console, options, _with_values(str(usage)))
+        known = re.compile(r"(--[\w-]+) ([A-Z]+)")
+        text = known.sub(lambda m: f"{m[1]} {_VALUE_OF.get(m[1], m[2])}", str(usage))
+        DefaultFormatter().render_usage(console, options, text)
 
 
 def _examples(command: Callable[..., object]) -> str:
@@ -131,10 +128,7 @@ def _version() -> str:
 
 
 # The file of an autoloaded function runs at the first Tab; one that is sourced names its function.
-_ZSH_CALL = """
-
-if [ "$funcstack[1]" = _calm ]; then _calm "$@"; else compdef _calm calm; fi
-"""
+_ZSH_CALL = '\n\nif [ "$funcstack[1]" = _calm ]; then _calm "$@"; else compdef _calm calm; fi\n'
 
 
 def completion(shell: Literal["bash", "zsh", "fish"], /) -> ExitCode:
@@ -221,10 +215,10 @@ for _number, (_name, _commands) in enumerate(_GROUPS.items()):
             app.command(_command)
             continue
         _called = _command.__name__.rstrip("_")
-        _how = {"usage": f"Usage: calm {_called} {_usage}"} if _usage else {}
         app.command(
             _command, name=_called, group=_group, sort_key=_place,
-            help_epilogue=_examples(_command), **_how,
+            usage=f"Usage: calm {_called} {_usage}" if _usage else None,
+            help_epilogue=_examples(_command),
         )  # fmt: skip
 app["--help"].group = app["--version"].group = Group("Options", sort_key=len(_GROUPS))
 

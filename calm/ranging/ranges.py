@@ -21,9 +21,9 @@ import numpy as np
 
 from calm.errors import InputError, Problem, shown
 from calm.physics.line import Floats
-from calm.positions import HEMISPHERES, Frame, degrees_of, plain_degrees
+from calm.positions import HEMISPHERES, Frame, degrees_of
 from calm.records import delimited
-from calm.records.headings import NamedRow, heading, read_named_columns
+from calm.records.headings import heading, read_named_columns
 from calm.units import DIMENSIONS
 from calm.whole_file import read_text
 
@@ -101,9 +101,13 @@ def read_ranges(path: Path, transducer: float = 0.0) -> Survey:
         if row.cells.get(measure, "").strip().lower() in delimited.GAPS:
             silent.append(row.row.number)
             continue
-        names = [name for name in ("latitude", "longitude", measure) if name in heads]
-        found = [_value(row, name, heads[name], problems) for name in names]
-        numbers = [value for value in found if value is not None]
+        numbers = []
+        for name in [name for name in ("latitude", "longitude", measure) if name in heads]:
+            try:
+                numbers.append(_figure(name, row.cells[name], heads[name]))
+            except ValueError as error:
+                told = f"`{name}: {shown(row.cells[name])}` {error}"
+                problems.append(row.problem(name, told))
         if len(numbers) == 3:
             values.append((row.row.number, numbers[0], numbers[1], numbers[2]))
     problems += _misplaced(path, values)
@@ -133,41 +137,29 @@ def read_ranges(path: Path, transducer: float = 0.0) -> Survey:
     )
 
 
-def _value(row: NamedRow, name: str, factor: float, problems: list[Problem]) -> float | None:
-    """Return a cell in SI or degrees; None, with a mistake added, where it is no such figure."""
-    text = row.cells[name]
-    refusal = _refusal(name, text, factor)
-    if refusal:
-        problems.append(row.problem(name, f"`{name}: {shown(text)}` {refusal}"))
-        return None
-    return plain_degrees(text, name) * factor if name in HEMISPHERES else float(text) * factor
-
-
-def _refusal(name: str, text: str, factor: float) -> str:
-    """Return what is wrong with a cell; empty where nothing is."""
+def _figure(name: str, text: str, factor: float) -> float:
+    """Return a cell in SI or degrees (ValueError: why it is no such figure)."""
     placed = name in HEMISPHERES
     if re.sub(r"\.0*$", "", text) in _FILLS:
         leave = "leave the row out" if placed else "leave the cell blank"
-        return f"is a fill value; {leave} where there is none"
-    try:
-        sexagesimal = degrees_of(text, name) if placed else None
-    except ValueError as error:
-        return str(error)
+        raise ValueError(f"is a fill value; {leave} where there is none")
+    sexagesimal = degrees_of(text, name) if placed else None
     if sexagesimal is None and (complaint := delimited.no_number(text)):
         degrees = "; degrees are needed, such as -5.2 or 5 12.0 W" if placed else ""
-        return complaint + degrees
+        raise ValueError(complaint + degrees)
     value = (float(text) if sexagesimal is None else sexagesimal) * factor
     if name == "latitude" and abs(value) > 90.0:
-        return "is beyond 90 degrees; are latitude and longitude exchanged?"
+        raise ValueError("is beyond 90 degrees; are latitude and longitude exchanged?")
     if name == "longitude" and abs(value) > 360.0:
-        return "is beyond 360 degrees"
+        raise ValueError("is beyond 360 degrees")
     if not placed and value <= 0.0:
-        return "must be above 0; leave the cell blank where there was no reply"
+        raise ValueError("must be above 0; leave the cell blank where there was no reply")
     if not placed and value > LONGEST[name]:
         hint = "; did you mean `time[ms]`?" if name == "time" and factor == 1.0 else ""
         unit = DIMENSIONS[_COLUMNS[name]].unit
-        return f"is more than {LONGEST[name]:g} {unit}, farther than a transponder replies{hint}"
-    return ""
+        farther = f"{LONGEST[name]:g} {unit}, farther than a transponder replies"
+        raise ValueError(f"is more than {farther}{hint}")
+    return value
 
 
 def _misplaced(path: Path, values: list[tuple[int, float, float, float]]) -> list[Problem]:

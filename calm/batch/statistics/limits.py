@@ -11,10 +11,11 @@ from calm.batch.statistics.series import Column, LegSeats, ResultColumns, Seat
 from calm.batch.statuses import Ending
 from calm.case import Mooring
 from calm.case.net import Net
-from calm.checks.assess import RULES, equilibrium, is_judged
+from calm.checks.assess import RULES, is_judged
 from calm.checks.criterion import AT_SURFACE, Criterion, JudgedPart
 from calm.checks.finding import Rule, State
 from calm.checks.posture import reaches_the_surface
+from calm.checks.situations import equilibrium
 from calm.files.mooring_file import STAND_IN
 from calm.files.rule_texts import RULES as TEXTS
 from calm.physics.seabed import required_weight
