@@ -35,14 +35,7 @@ from calm.checks.finding import AS_GIVEN, OWN, Finding, Rule, State, worst_of_ea
 from calm.checks.inventory import inventory_of
 from calm.checks.posture import left_out_of_a_leg, reaches_the_surface
 from calm.checks.recovery import breaks_of, losses_of, recovery_of
-from calm.checks.situations import (
-    LEAST_CURRENT,
-    STILL_ONLY,
-    STRUMMING,
-    currents,
-    equilibrium,
-    situations_of,
-)
+from calm.checks.situations import STRUMMING, currents, equilibrium, situations_of
 from calm.checks.wave_rules import IN_WAVES, MooringInWaves
 from calm.drop.launch import launch_of
 from calm.errors import NoEquilibrium, or_why_not
@@ -121,7 +114,7 @@ def assessment_of(
         verdicts = each.judge(handling)
         findings += acceptance.findings(each, verdicts, name, first.environment, each.situation)
     if first.result is not None and not moving(stand.mooring for stand in stands):
-        findings.insert(0, equilibrium.find(STILL_ONLY, name, first.environment))
+        findings.insert(0, equilibrium.find(situations.STILL_ONLY, name, first.environment))
     return Assessment(
         name=name,
         stands=tuple(stands),
@@ -150,7 +143,7 @@ def findings_of_currents(
 def moving(moorings: Iterable[Mooring]) -> bool:
     """Return whether current or wind moves any of them."""
     return any(
-        np.hypot(each.water.u, each.water.v).max() >= LEAST_CURRENT
+        np.hypot(each.water.u, each.water.v).max() >= situations.LEAST_CURRENT
         or each.file.environment.wind is not None
         for each in moorings
     )

@@ -14,21 +14,9 @@ from typing import Any, assert_never
 
 import numpy as np
 
+from calm import files
 from calm.assemble import drag_of, net_buoyancy
 from calm.case import Result
-from calm.files import (
-    Anchor,
-    Cable,
-    Chain,
-    Clamp,
-    Component,
-    Cylinder,
-    Flexible,
-    Fouling,
-    Piece,
-    Shaped,
-    Sphere,
-)
 from calm.files.components import FlexibleComponent, RigidComponent
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
 from calm.physics import drag
@@ -38,7 +26,9 @@ CHAIN_BREADTH = 1.8
 """Diameter of the cylinder that displaces what a chain does, over that of its bar: OrcaFlex."""
 
 
-def grown(pieces: Sequence[Piece], given: Result, fouling: Fouling) -> tuple[Piece, ...]:
+def grown(
+    pieces: Sequence[files.Piece], given: Result, fouling: files.Fouling
+) -> tuple[files.Piece, ...]:
     """The pieces with growth on all that is above a depth in still water.
 
     A cable or chain that reaches deeper is parted there, both parts under its label.
@@ -55,8 +45,8 @@ def grown(pieces: Sequence[Piece], given: Result, fouling: Fouling) -> tuple[Pie
 
 
 def _grown_pieces(
-    pieces: Sequence[Piece], given: Result, fouling: Fouling, gravity: float
-) -> Iterator[Piece]:
+    pieces: Sequence[files.Piece], given: Result, fouling: files.Fouling, gravity: float
+) -> Iterator[files.Piece]:
     sunk = np.nan_to_num(given.components.knockdown)  # none where still water has no shape
     below = np.append(sunk[1:], 0.0)
     for row, piece, high, low in zip(given.components, pieces, sunk, below, strict=True):
@@ -73,7 +63,7 @@ def _grown_pieces(
             yield whole
             continue
         share = 1.0
-        if isinstance(piece.component, Flexible) and bottom > fouling.depth:
+        if isinstance(piece.component, files.Flexible) and bottom > fouling.depth:
             share = (fouling.depth - top) / (bottom - top)
         upper, lower = _parted(whole, share)
         yield replace(upper, component=grown_component(piece.component, fouling, gravity))
@@ -81,14 +71,16 @@ def _grown_pieces(
             yield lower
 
 
-def grown_component(component: Component, fouling: Fouling, gravity: float) -> Component:
+def grown_component(
+    component: files.Component, fouling: files.Fouling, gravity: float
+) -> files.Component:
     """A component with growth all over it; an anchor has none.
 
     Parameters
     ----------
     gravity : [m/s²]
     """
-    if isinstance(component, Anchor):
+    if isinstance(component, files.Anchor):
         return component
     thickness = fouling.thickness
     drags, volume = _larger(component, thickness)
@@ -96,7 +88,9 @@ def grown_component(component: Component, fouling: Fouling, gravity: float) -> C
         return component.model_copy(update=drags)
     weight = (fouling.density - REFERENCE_DENSITY) * gravity * volume
     net = net_buoyancy(component, gravity) - weight
-    force: dict[str, Any] = {"weight": -net} if isinstance(component, Chain) else {"buoyancy": net}
+    force: dict[str, Any] = (
+        {"weight": -net} if isinstance(component, files.Chain) else {"buoyancy": net}
+    )
     if component.displaced_volume is not None:
         held = CATALOGUE_DENSITY * component.displaced_volume
         bare = held - component.net_buoyancy / STANDARD_GRAVITY
@@ -111,10 +105,10 @@ def _larger(
     component: RigidComponent | FlexibleComponent, t: float
 ) -> tuple[dict[str, Any], float]:
     """The figures of drag that growth changes, and its volume [m³, per metre of line]."""
-    if isinstance(component, Cable):
+    if isinstance(component, files.Cable):
         d = component.diameter
         return {"diameter": d + 2.0 * t}, pi * t * (d + t)
-    if isinstance(component, Chain):
+    if isinstance(component, files.Chain):
         wider = (component.diameter + 2.0 * t) / component.diameter
         cn = drag.CHAIN_CN if component.cn is None else component.cn
         ct = drag.CHAIN_CT if component.ct is None else component.ct
@@ -123,14 +117,14 @@ def _larger(
     kn, kt, directional = drag_of(component)
     across, along, volume = _scales(component, kn, t)
     update: dict[str, Any] = {}
-    if isinstance(component, Sphere):
+    if isinstance(component, files.Sphere):
         update["cx"] = across * (drag.SPHERE_CX if component.cx is None else component.cx)
-    elif isinstance(component, Cylinder):
+    elif isinstance(component, files.Cylinder):
         d, length = component.diameter, component.length
         if length > 0.0:
             update["cn"] = across * kn / (0.5 * REFERENCE_DENSITY * d * length)
         update["ct"] = along * kt / (0.5 * REFERENCE_DENSITY * pi * d**2 / 4.0)
-    elif isinstance(component, Shaped):
+    elif isinstance(component, files.Shaped):
         update = dict.fromkeys(("drag_area", "cd", "drag_measurements", "made_of", "inclination"))
         update |= {"kn": across * kn, "kt": along * kt if directional else None}
     else:
@@ -139,14 +133,14 @@ def _larger(
     return update | ({} if k_surface is None else {"k_surface": across * k_surface}), volume
 
 
-def _scales(component: Component, kn: float, t: float) -> tuple[float, float, float]:
+def _scales(component: files.Component, kn: float, t: float) -> tuple[float, float, float]:
     """By how much the areas across and along the axis grow, and the volume of the growth [m³]."""
-    if isinstance(component, Cylinder):
+    if isinstance(component, files.Cylinder):
         d, length = component.diameter, component.length
         wide, long = d + 2.0 * t, length + 2.0 * t
         across = wide * long / (d * length) if length > 0.0 else 1.0
         return across, (wide / d) ** 2, pi / 4.0 * (wide**2 * long - d**2 * length)
-    if isinstance(component, Sphere):
+    if isinstance(component, files.Sphere):
         d = component.diameter
     else:
         area = getattr(component, "drag_area", None)
@@ -157,13 +151,13 @@ def _scales(component: Component, kn: float, t: float) -> tuple[float, float, fl
     return (wide / d) ** 2, (wide / d) ** 2, pi / 6.0 * (wide**3 - d**3)
 
 
-def _parted(piece: Piece, share: float) -> tuple[Piece, Piece | None]:
+def _parted(piece: files.Piece, share: float) -> tuple[files.Piece, files.Piece | None]:
     """A piece above and below a share of its length, with their clamps; None for nothing below."""
     if share >= 1.0 or piece.length is None:
         return piece, None
     at = share * piece.length
 
-    def lowered(clamp: Clamp) -> Clamp:
+    def lowered(clamp: files.Clamp) -> files.Clamp:
         return replace(clamp, at=clamp.at - at)
 
     above = tuple(clamp for clamp in piece.clamps if clamp.at <= at)

@@ -7,16 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from calm.batch.statistics import summary as statistics
 from calm.batch.statistics.extremes import Fit, LevelsRefused
 from calm.batch.statistics.limits import Exceedance, RuleShare
-from calm.batch.statistics.summary import (
-    PERCENTILES,
-    STOP_SHARES,
-    Distribution,
-    Response,
-    Summary,
-    WorstProfile,
-)
+from calm.batch.statistics.summary import PERCENTILES, Distribution, Response, Summary, WorstProfile
 from calm.checks.finding import State
 from calm.report.blocks import Cell, Field, Table, number, quantity, table_of, words
 from calm.report.check_report import limit_document
@@ -264,8 +258,8 @@ def stops_tables(summary: Summary) -> Iterator[Table]:
     """Yield the depths of the stops of the profilers, as they are typed into these."""
     if not summary.stops:
         return
-    shares = (*(f"{share:g} %\ndbar" for share in STOP_SHARES),
-              *(f"{share:g} %\nm" for share in STOP_SHARES))  # fmt: skip
+    shares = (*(f"{share:g} %\ndbar" for share in statistics.STOP_SHARES),
+              *(f"{share:g} %\nm" for share in statistics.STOP_SHARES))  # fmt: skip
     yield table_of(
         "Stops of profilers",
         [

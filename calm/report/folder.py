@@ -15,6 +15,7 @@ from typing import Any
 
 from calm.errors import UsageError
 from calm.report.blocks import Report, Section
+from calm.report.html import page
 from calm.report.provenance import moment
 from calm.whole_file import put
 
@@ -83,8 +84,6 @@ def write_report(folder: Path, files: Mapping[str, bytes]) -> None:
 
 def write_pages(folder: Path, name: str, report: Report) -> None:
     """Write a report as a page and as a PDF of a name, as a set like `write_report`."""
-    from calm.report.html import page
-
     files = {f"{name}.html": page(report).encode(), f"{name}.pdf": printed(report)}
     write_report(folder, files)
 

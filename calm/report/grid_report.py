@@ -6,9 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from calm.batch.finished import open_result
 from calm.drawing.picture import empty_figure, figure_svg
-from calm.grid.field import GriddedQuantity
+from calm.grid.field import DOUBTFUL, GriddedQuantity
 from calm.physics.line import Floats
+from calm.quantities import QUANTITIES_MEASURED
 from calm.report import blocks
 from calm.report.blocks import Figure, Note, Prose, Report, ReportPart, Table, number, table_of
 from calm.report.provenance import report_of
@@ -37,8 +39,6 @@ def grid_report(
     output : the gridded file
     names : of each quantity in the file
     """
-    from calm.batch.finished import open_result
-
     figures: list[Figure] = []
     with open_result(output) as result:
         title = str(result.attrs["title"])
@@ -115,9 +115,6 @@ def _section(
     name: str, field: GriddedQuantity, levels: Any, value: Any, deviation: Any, flag: Any
 ) -> Figure:
     """A section over time, the deviation below it."""
-    from calm.grid.field import DOUBTFUL
-    from calm.quantities import QUANTITIES_MEASURED
-
     every = max(len(value) // MOST_DRAWN, 1)
     time = field.samples.time[::every].astype("datetime64[s]").astype(object)
     drawing = empty_figure(_WIDTH, 2 * _HEIGHT)

@@ -10,7 +10,6 @@ from rich.console import Console, ConsoleOptions, Group, RenderableType, RenderR
 from rich.containers import Lines
 from rich.padding import Padding
 from rich.segment import Segment
-from rich.table import Table as RichTable
 from rich.text import Text
 
 from calm.checks.finding import State
@@ -175,7 +174,7 @@ class LongTable:
     gap : blanks between columns
     """
 
-    def __init__(self, table: RichTable, rows: Sequence[Row], gap: int) -> None:
+    def __init__(self, table: table.Table, rows: Sequence[Row], gap: int) -> None:
         self._table, self._rows, self._gap = table, rows, gap
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
