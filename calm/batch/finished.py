@@ -174,8 +174,6 @@ def _is_still(lock: Path, handle: int) -> bool:
 TOP = "top"
 """What the first component, the free end of the line, is always called besides its own label."""
 
-_ROWS = 65536  # profiles read at a time
-
 
 def open_result(path: Path) -> Dataset:
     """A result of `calm batch`, a .nc file or a .zarr folder, of which nothing is loaded yet.
@@ -276,9 +274,6 @@ def statuses_of(dataset: Dataset) -> dict[str, int]:
 
     UsageError: the dataset is no result of `calm batch`.
     """
-    names, status = status_names(dataset), dataset["status"]
-    counts = np.zeros(len(names), np.int64)
-    for start in range(0, status.shape[0], _ROWS):
-        ended = np.asarray(status[start : start + _ROWS])
-        counts += np.bincount(ended, minlength=len(names))
+    names = status_names(dataset)
+    counts = np.bincount(np.asarray(dataset["status"]), minlength=len(names))
     return {name: count for name, count in zip(names, counts.tolist(), strict=True) if count}

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from calm.batch.finished import labels_of
 from calm.dataset.discovery import FLAGS, written
 from calm.errors import InputError, Problem, UsageError
 from calm.motion.correction import ESTIMATED, MEASURED, MISSING
@@ -190,12 +191,9 @@ def write_depths(
     # values as they stand, but for texts: kept as characters they would be split once more
     if engine := cf_files.engine_of(instruments.path):
         with xr.open_dataset(
-            instruments.path,
-            engine=engine,
-            mask_and_scale=False,
-            decode_times=False,
+            instruments.path, engine=engine, mask_and_scale=False, decode_times=False,
             decode_coords=False,
-        ) as own:
+        ) as own:  # fmt: skip
             copy = own.load()
     else:
         copy = cf_files.open_current(instruments.path)
@@ -242,9 +240,7 @@ def at_own_times(
     clamps = result.sizes.get("clamp", 0)
     names = ("clamp_label", point) if point < clamps else ("component_label", point - clamps)
     label = str(result[names[0]].values[names[1]]) if names[0] in result else ""
-    sensors = (
-        [str(one) for one in result["sensor_label"].values] if "sensor_label" in result else []
-    )
+    sensors = labels_of(result, "sensor_label")
     flag = np.where(np.isfinite(depth), ESTIMATED, MISSING).astype(np.int8)
     if label in sensors:
         own = np.asarray(result["residual"].values[:, sensors.index(label)], np.float64)
