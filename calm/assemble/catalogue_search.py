@@ -62,7 +62,9 @@ class Listed:
     @cached_property
     def searched(self) -> str:
         """The text in which words are looked for."""
-        return f"{with_synonyms(self.own_words.replace('-', ' '))} {self.own_words} {self.source}"
+        plain = self.own_words.replace("-", " ")
+        synonyms = (words for pattern, words in _FOUND if pattern.search(plain))
+        return " ".join([plain, *synonyms, self.own_words, self.source])
 
     @cached_property
     def sizes(self) -> tuple[float, ...]:
@@ -71,10 +73,6 @@ class Listed:
             _metres(*found) for found in _SIZE.findall(f"{self.name} {self.id}".casefold())
         )
         return told if self.diameter is None else (*told, self.diameter)
-
-    def has_size(self, size: float) -> bool:
-        """Return whether it has a size, in metres, to 2 %."""
-        return any(abs(each - size) <= _OF_A_SIZE * size for each in self.sizes)
 
 
 class Index:
@@ -140,7 +138,8 @@ class Index:
             if (only is None or each.kind in only)
             and all(word in each.searched for word in others)
             and all(
-                each.has_size(size) or all(word in each.searched for word in parts)
+                any(abs(one - size) <= _OF_A_SIZE * size for one in each.sizes)
+                or all(word in each.searched for word in parts)
                 for parts, size in sizes
             )
             and all(limit.holds(self.figures(each.id)) for limit in limits)
@@ -273,11 +272,6 @@ _FOUND = tuple(
     (re.compile(r"\b(" + "|".join(map(re.escape, group)) + r")s?\b"), " ".join(group))
     for group in _GROUPS
 )
-
-
-def with_synonyms(text: str) -> str:
-    """A text in small letters, with the synonyms of its words added."""
-    return " ".join([text, *(words for pattern, words in _FOUND if pattern.search(text))])
 
 
 @dataclass(frozen=True)

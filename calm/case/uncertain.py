@@ -281,11 +281,8 @@ def sobol_indices(normals: Floats, values: Floats) -> Indices | None:
     parts = coefficients[1:] ** 2
     explained = parts.sum()
     parts *= (1.0 - left) / explained
-    first, total = np.zeros(inputs), np.zeros(inputs)
-    for (i, _), part in zip(powers, parts, strict=False):
-        first[i] += part
-        total[i] += part
-    for (i, j), part in zip(pairs, parts[len(powers) :], strict=True):
-        total[i] += part
-        total[j] += part
+    first: Floats = parts[: len(powers)].reshape(inputs, ORDER).sum(axis=1)
+    total = first.copy()
+    for pair, part in zip(pairs, parts[len(powers) :], strict=True):
+        total[list(pair)] += part
     return Indices(first, total, left)

@@ -121,10 +121,11 @@ def quantities(**given: tuple[str | None, str]) -> dict[str, float]:
 
 
 def from_one(**given: int | None) -> None:
-    """Refuse counts that were given and are not 1 or more, by the name of the parameter."""
-    for name, count in given.items():
-        if count is not None and count < 1:
-            raise UsageError(f"{option(name)}: {count} is not 1 or more")
+    """Refuse the counts that were given and are not 1 or more, all at once."""
+    few = {name: count for name, count in given.items() if count is not None and count < 1}
+    if few:
+        said = (f"{option(name)}: {count} is not 1 or more" for name, count in few.items())
+        raise UsageError("; ".join(said))
 
 
 def span_of(option: str, text: str, between: tuple[float, float], in_words: str) -> np.timedelta64:

@@ -105,11 +105,6 @@ def piece_ends(chain: BarChain, state: ChainState) -> tuple[Floats, Floats]:
     return place_of(state, first, chain.span[:, 0]), place_of(state, last, chain.span[:, 1])
 
 
-def clamp_places(chain: BarChain, state: ChainState) -> Floats:
-    """(m, 3) of the clamps [m]."""
-    return place_of(state, chain.clamp_bar, chain.clamp_place)
-
-
 def end_tensions(mover: Mover, state: ChainState, *, within: bool = False) -> Floats:
     """Return (n, 2) in every bar at its upper and at its lower end [N]; 0 in one that is pushed.
 
@@ -189,7 +184,7 @@ def depths_of(pieces: Sequence[Piece], drop: Motion, rest: Motion) -> tuple[Dept
 def _depths(chain: BarChain, state: ChainState) -> Floats:
     """Of the deeper end of every piece, and of every clamp [m]."""
     upper, lower = piece_ends(chain, state)
-    clamps = clamp_places(chain, state)
+    clamps = place_of(state, chain.clamp_bar, chain.clamp_place)
     return -np.append(np.minimum(upper[:, 2], lower[:, 2]), clamps[:, 2])
 
 

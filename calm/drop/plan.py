@@ -8,19 +8,9 @@ from typing import Any
 import numpy as np
 
 from calm.case import Mooring, Result
-from calm.drop import launch
+from calm.drop import fall_record, launch
 from calm.drop.fall import Fineness, Motion, fall, settle, towed
-from calm.drop.fall_record import (
-    DepthReached,
-    FallPath,
-    Pull,
-    ShapeInTime,
-    depths_of,
-    moments_of,
-    path_of,
-    pulls_of,
-    rest_difference,
-)
+from calm.drop.fall_record import rest_difference
 from calm.drop.motion import ChainState
 from calm.errors import NoEquilibrium
 from calm.files import Position
@@ -106,10 +96,10 @@ class DropPlan:
     start: RunStart | None
     anchor_drag: float
     drag_known: bool
-    path: FallPath = field(repr=False)
-    moments: tuple[ShapeInTime, ...] = field(repr=False)
-    depths: tuple[DepthReached, ...] = field(repr=False)
-    pulls: tuple[Pull, ...] = field(repr=False)
+    path: fall_record.FallPath = field(repr=False)
+    moments: tuple[fall_record.ShapeInTime, ...] = field(repr=False)
+    depths: tuple[fall_record.DepthReached, ...] = field(repr=False)
+    pulls: tuple[fall_record.Pull, ...] = field(repr=False)
     rest_difference: float | None
 
     def position(self, place: tuple[float, float]) -> Position | None:
@@ -294,7 +284,7 @@ def drop_plan(
     way = np.array([sin(radians(course)), cos(radians(course))])
     released = -landed.node[-1, :2]
     past = float(released @ way)
-    pulls = pulls_of(mooring.file.pieces, drop)
+    pulls = fall_record.pulls_of(mooring.file.pieces, drop)
     return DropPlan(
         mooring=mooring,
         ship_speed=ship_speed,
@@ -316,9 +306,9 @@ def drop_plan(
         start=None if deck_time is None else _run_start(mooring, way, ship_speed, past, deck_time),
         anchor_drag=anchor.drag,
         drag_known=mooring.file.anchor.kt is not None,
-        path=path_of(drop, toward, mooring.line.anchor_height),
-        moments=moments_of(drop, None if astray else rest, toward),
-        depths=() if astray else depths_of(mooring.file.pieces, drop, rest),
+        path=fall_record.path_of(drop, toward, mooring.line.anchor_height),
+        moments=fall_record.moments_of(drop, None if astray else rest, toward),
+        depths=() if astray else fall_record.depths_of(mooring.file.pieces, drop, rest),
         pulls=pulls,
         rest_difference=difference,
     )

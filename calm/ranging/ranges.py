@@ -97,19 +97,20 @@ def read_ranges(path: Path, transducer: float = 0.0) -> Survey:
     measure = "time" if "time" in heads else "range"
     values: list[tuple[int, float, float, float]] = []
     silent: list[int] = []
+    places = columns.places
     for row in columns.rows:
-        if row.cells.get(measure, "").strip().lower() in delimited.GAPS:
-            silent.append(row.row.number)
+        if measure not in places or delimited.is_gap(row.cells[places[measure]]):
+            silent.append(row.number)
             continue
         numbers = []
-        for name in [name for name in ("latitude", "longitude", measure) if name in heads]:
+        for name in [name for name in ("latitude", "longitude", measure) if name in places]:
+            text = row.cells[places[name]]
             try:
-                numbers.append(_figure(name, row.cells[name], heads[name]))
+                numbers.append(_figure(name, text, heads[name]))
             except ValueError as error:
-                told = f"`{name}: {shown(row.cells[name])}` {error}"
-                problems.append(row.problem(name, told))
+                problems.append(row.problem(f"`{name}: {shown(text)}` {error}", places[name]))
         if len(numbers) == 3:
-            values.append((row.row.number, numbers[0], numbers[1], numbers[2]))
+            values.append((row.number, numbers[0], numbers[1], numbers[2]))
     problems += _misplaced(path, values)
     if problems:
         raise InputError(delimited.abridged(problems))
@@ -240,11 +241,11 @@ def read_sound(path: Path) -> Sound:
     depths: list[float] = []
     speeds: list[float] = []
     for row in columns.rows:
-        for name, text in row.cells.items():
-            factor = columns.factors[name]
+        for name, place in columns.places.items():
+            text, factor = row.cells[place], columns.factors[name]
             complaint = _complaint(name, text, factor, depths)
             if complaint:
-                problems.append(row.problem(name, f"`{name}: {shown(text)}` {complaint}"))
+                problems.append(row.problem(f"`{name}: {shown(text)}` {complaint}", place))
             else:
                 (depths if name == "depth" else speeds).append(float(text) * factor)
     if not problems and not depths:

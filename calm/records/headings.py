@@ -127,32 +127,21 @@ _INFINITE = ("inf", "infinity")
 
 
 @dataclass(frozen=True)
-class NamedRow:
-    """Hold the cells of a row by the names of their known columns, and the places of these."""
-
-    row: delimited.CellRow
-    cells: Mapping[str, str]
-    places: Mapping[str, int]
-
-    def problem(self, name: str, message: str) -> Problem:
-        """Return a mistake at the cell of a column."""
-        return self.row.problem(message, self.places[name])
-
-
-@dataclass(frozen=True)
 class NamedColumns:
     """Hold the rows of a table whose columns are known by name.
 
     Attributes
     ----------
     factors : of the known columns that are there, to SI (degrees)
+    places : of the known columns in a row
     rows : as many cells in each as there are headings
     others : headings of the other columns
     header : of the table
     """
 
     factors: Mapping[str, float]
-    rows: Sequence[NamedRow]
+    places: Mapping[str, int]
+    rows: Sequence[delimited.CellRow]
     others: Sequence[str]
     header: delimited.CellRow
 
@@ -210,13 +199,10 @@ def read_named_columns(
             factors[name] = 1.0
             problems.append(header.problem(str(error), j))
     places = {name: j for j, name in enumerate(names) if name in factors}
-    rows = [
-        NamedRow(row, {name: row.cells[j] for name, j in places.items()}, places)
-        for row in table.whole_rows(problems)
-    ]
+    rows = table.whole_rows(problems)
     pairs = zip(header.cells, names, strict=True)
     others = [column for column, name in pairs if column and name not in known]
-    return NamedColumns(factors, rows, others, header)
+    return NamedColumns(factors, places, rows, others, header)
 
 
 def read_time_columns(path: Path, dimensions: Sequence[str], example: str) -> TimeColumns:

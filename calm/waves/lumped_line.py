@@ -139,6 +139,7 @@ def lumped_line(mooring: Mooring, solution: Solution, longest: float) -> LumpedL
     node = {name: np.zeros(n) for name in _NODE_FIGURES}
     inextensible: dict[str, None] = {}
     stiffness = np.empty(n - 1)
+    stretches = ("stiffness", "elongation", "dynamic_stiffness")
     for number, (piece, length, cut, tension) in enumerate(elements):
         component = pieces[piece].component
         figures = _figures_of(component, 1.0 if isinstance(component, Flexible) else length)
@@ -153,7 +154,7 @@ def lumped_line(mooring: Mooring, solution: Solution, longest: float) -> LumpedL
             figures |= {"across_drag": 0.0, "along_drag": 0.0, "any_drag": drags[0]}
         for name, value in figures.items():
             node[name][number : number + 2] += 0.5 * scale * value
-        if isinstance(component, Cable) and not _gives_stiffness(component):
+        if isinstance(component, Cable) and not any(getattr(component, way) for way in stretches):
             inextensible[pieces[piece].label] = None
         stiffness[number] = _axial(component, tension) / (cut if cut > 0.0 else length)
     clamps = [clamp for each in pieces for clamp in each.clamps]
@@ -247,11 +248,6 @@ def _volume(component: Component, length: float) -> float:
     if component.kind == "sphere":
         return pi * diameter**3 / 6.0
     return 0.0
-
-
-def _gives_stiffness(cable: Cable) -> bool:
-    ways = (cable.stiffness, cable.elongation, cable.dynamic_stiffness)
-    return any(each is not None for each in ways)
 
 
 def _axial(component: Component, tension: float) -> float:
