@@ -20,11 +20,9 @@ Gauss–Legendre quadratures in λ of smooth functions, good to rounding.
 Source: H. Braconnot, charts for cables in a uniform current; closed form derived here.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TypeAlias
+from typing import Self, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -75,7 +73,7 @@ class Branch:
     sign: int
 
     @classmethod
-    def holding(cls, k: float, phi: float) -> tuple[Branch, float] | None:
+    def holding(cls, k: float, phi: float) -> tuple[Self, float] | None:
         """The branch and the λ of an angle φ [rad]; None for the critical angle.
 
         UsageError: an angle beyond ±180°.

@@ -163,9 +163,7 @@ class Tow(ReadFromFile):
         return solve_tow(line, self.water, self.towing, self.settings)
 
     def at_speed(self, speed: float) -> Tow:
-        """Return the same tow at another speed of the ship [m/s], a fitted cable as long as at its
-        own.
-        """
+        """Return the same tow at another speed [m/s], a fitted cable as long as at its own."""
         keys = self.keys.model_copy(update={"speed": speed})
         return Tow(replace(self.file, tow=keys), line=self.line)
 
@@ -262,8 +260,7 @@ def sweep(tow: Tow, speeds: Iterable[float]) -> list[TowResult | NoEquilibrium]:
 
 
 def sensitivity(tow: Tow) -> list[Variation]:
-    """Return a tow as it is, then with A₁, B₁ and C₁ of its strumming each smaller and greater by
-    `CHANGE`.
+    """Return a tow as it is, then with A₁, B₁ and C₁ each smaller and greater by `CHANGE`.
 
     UsageError: the tow does not strum by Bourget & Marichal. NoEquilibrium: as in `sweep`.
     """

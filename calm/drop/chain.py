@@ -5,8 +5,6 @@ free end are one together. The force of a load goes to the two nodes of its bar 
 equilibrium a bar then lies along the mean of the forces at its ends, as everywhere in CALM.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -23,6 +21,85 @@ LEAST = 0.12
 the seabed."""
 NOT_SHORT = 0.02
 """Share of all cables and chains from which on one is not short."""
+
+
+@dataclass(frozen=True)
+class Elements:
+    """The k loads of a chain, by growing bar; every bar has one at least.
+
+    Attributes
+    ----------
+    bar : (k,) the bar it is on
+    place : (k,) where on it, from 0 at its upper node to 1 at its lower
+    piece : (k,) that it is part of; -1 of a clamp
+    buoyancy, volume : (k,) whole, in reference water [N], [m³]
+    normal_drag, tangential_drag : (k,) Kn and Kt, whole [N/(m/s)²]
+    directional : (k,) False where the drag is Kn|V|V
+    flexible : (k,) whether it is cable or chain
+    thinning, lift : (k,) as in `Line`
+    push : (3, k) of the wind [N]
+    height : (k,) of what is rigid, from its top to its lower end [m]
+    out : (k,) whether it stands on the float, and so out of the water where that is at the surface
+    curve : (k,) of smooth spheres and cylinders, None of others
+    """
+
+    bar: Integers
+    place: Floats
+    piece: Integers
+    buoyancy: Floats
+    volume: Floats
+    normal_drag: Floats
+    tangential_drag: Floats
+    directional: Booleans
+    flexible: Booleans
+    thinning: Floats
+    lift: Floats
+    push: Floats
+    height: Floats
+    out: Booleans
+    curve: tuple[DragCurve | None, ...]
+
+    @cached_property
+    def lifts(self) -> bool:
+        """Return whether the flow lifts any."""
+        return bool(self.lift.any())
+
+    @cached_property
+    def share(self) -> Floats:
+        """(2, k) of what acts on a load that its bar's upper and its lower node take."""
+        return np.stack([1.0 - self.place, self.place])
+
+    def summed(self, per_load: Floats) -> Floats:
+        """(..., n) over the loads of every bar."""
+        total: Floats = np.add.reduceat(per_load, self._first, axis=-1)
+        return total
+
+    @cached_property
+    def _first(self) -> Integers:
+        return np.flatnonzero(np.diff(self.bar, prepend=-1))
+
+
+@dataclass(frozen=True)
+class FloatOnChain:
+    """The first float at the surface, by its draft as a share of its height, 0 to 1.
+
+    Attributes
+    ----------
+    element : the load that it is
+    height : [m]
+    weight : in air [N]
+    draft : (m,) growing
+    immersed, drag : (m,) shares of the volume, and of the drag below the surface
+    push : (m, 2) of the wind to the east and north [N]
+    """
+
+    element: int
+    height: float
+    weight: float
+    draft: Floats
+    immersed: Floats
+    drag: Floats
+    push: Floats
 
 
 @dataclass(frozen=True)
@@ -136,66 +213,6 @@ def _along(piece: Integers, share: Floats, bars: Integers, span: Floats) -> tupl
     return first + bar, np.clip(whole - bar, 0.0, 1.0)
 
 
-_DRAFTS = 401
-"""Points of the table of a hull afloat."""
-
-
-@dataclass(frozen=True)
-class Elements:
-    """The k loads of a chain, by growing bar; every bar has one at least.
-
-    Attributes
-    ----------
-    bar : (k,) the bar it is on
-    place : (k,) where on it, from 0 at its upper node to 1 at its lower
-    piece : (k,) that it is part of; -1 of a clamp
-    buoyancy, volume : (k,) whole, in reference water [N], [m³]
-    normal_drag, tangential_drag : (k,) Kn and Kt, whole [N/(m/s)²]
-    directional : (k,) False where the drag is Kn|V|V
-    flexible : (k,) whether it is cable or chain
-    thinning, lift : (k,) as in `Line`
-    push : (3, k) of the wind [N]
-    height : (k,) of what is rigid, from its top to its lower end [m]
-    out : (k,) whether it stands on the float, and so out of the water where that is at the surface
-    curve : (k,) of smooth spheres and cylinders, None of others
-    """
-
-    bar: Integers
-    place: Floats
-    piece: Integers
-    buoyancy: Floats
-    volume: Floats
-    normal_drag: Floats
-    tangential_drag: Floats
-    directional: Booleans
-    flexible: Booleans
-    thinning: Floats
-    lift: Floats
-    push: Floats
-    height: Floats
-    out: Booleans
-    curve: tuple[DragCurve | None, ...]
-
-    @cached_property
-    def lifts(self) -> bool:
-        """Return whether the flow lifts any."""
-        return bool(self.lift.any())
-
-    @cached_property
-    def share(self) -> Floats:
-        """(2, k) of what acts on a load that its bar's upper and its lower node take."""
-        return np.stack([1.0 - self.place, self.place])
-
-    def summed(self, per_load: Floats) -> Floats:
-        """(..., n) over the loads of every bar."""
-        total: Floats = np.add.reduceat(per_load, self._first, axis=-1)
-        return total
-
-    @cached_property
-    def _first(self) -> Integers:
-        return np.flatnonzero(np.diff(self.bar, prepend=-1))
-
-
 def _elements(
     line: Line, bars: Integers, span: Floats, clamp_bar: Integers, clamp_place: Floats
 ) -> Elements:
@@ -235,27 +252,8 @@ def _elements(
     )
 
 
-@dataclass(frozen=True)
-class FloatOnChain:
-    """The first float at the surface, by its draft as a share of its height, 0 to 1.
-
-    Attributes
-    ----------
-    element : the load that it is
-    height : [m]
-    weight : in air [N]
-    draft : (m,) growing
-    immersed, drag : (m,) shares of the volume, and of the drag below the surface
-    push : (m, 2) of the wind to the east and north [N]
-    """
-
-    element: int
-    height: float
-    weight: float
-    draft: Floats
-    immersed: Floats
-    drag: Floats
-    push: Floats
+_DRAFTS = 401
+"""Points of the table of a hull afloat."""
 
 
 def afloat_of(line: Line, elements: Elements) -> FloatOnChain | None:

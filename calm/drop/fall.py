@@ -125,11 +125,8 @@ def fall(
             )
         # let go at once, without inertia, the anchor would be upon the line beside it
         borne = HANDED ** (len(states) - 1)
-        falling = (
-            mover
-            if borne < 1e-3
-            else replace(mover, anchor=replace(anchor, weight=(1.0 - borne) * anchor.weight))
-        )
+        lighter = replace(anchor, weight=(1.0 - borne) * anchor.weight)
+        falling = mover if borne < 1e-3 else replace(mover, anchor=lighter)
         state = _stepped(falling, states[-1], step, water.depth)
         step = state.time - states[-1].time
         if state.node[-1, 2] <= bottom:

@@ -146,12 +146,6 @@ def _slide(series: ResultColumns, _: JudgedPart, mooring: Mooring) -> Column:
     return slide
 
 
-def _reserve_left(series: ResultColumns, _: JudgedPart, __: Mooring) -> Column:
-    left = series.ends("used_buoyancy")
-    np.subtract(1.0, left, out=left)
-    return left
-
-
 _VALUES: dict[str, Callable[[ResultColumns, JudgedPart, Mooring], Column]] = {
     "tension": _greatest_tension,
     "tension_bottom": lambda series, part, _: series.column("tension_bottom", part.index),
@@ -164,7 +158,7 @@ _VALUES: dict[str, Callable[[ResultColumns, JudgedPart, Mooring], Column]] = {
     "required_weight": _required_weight,
     "vertical": lambda series, _, __: series.ends("anchor_vertical"),
     "slide": _slide,
-    "reserve": _reserve_left,
+    "reserve": lambda series, _, __: 1.0 - series.ends("used_buoyancy"),
 }
 """The readings of `calm.checks.criterion` over the profiles of a batch."""
 
