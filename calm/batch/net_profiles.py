@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.batch import solving
+from calm.batch.solving import sea_of  # by name: what a compiled law calls
 from calm.batch.statuses import OF_PROFILES, STATUSES
 from calm.case.measure import leaning_of
 from calm.case.net import Net, net_result
@@ -108,7 +109,7 @@ def solve_net_rows(
     for case in range(endings.size):
         if endings[case] != 0:
             continue
-        endings[case], sea = solving.sea_of(paper.on, depth, u, v, w, case, paper.still)
+        endings[case], sea = sea_of(paper.on, depth, u, v, w, case, paper.still)
         if endings[case] != 0:
             continue
         keep(paper.start, paper.x)

@@ -91,7 +91,8 @@ class Verdict:
     @property
     def rank(self) -> tuple[int, float]:
         """Return what sorts verdicts, the worst first: the state, then the margin as a share."""
-        return -self.state.severity, inf if self.share is None else self.share
+        share = self.share
+        return -self.state.severity, inf if share is None else share
 
 
 def at_most(
