@@ -103,11 +103,7 @@ def critical_weight_ratio(angle: ArrayLike) -> Floats:
 
 
 def tension_ratio(
-    angle: ArrayLike,
-    start: float,
-    weight_ratio: float,
-    friction: float = 0.0,
-    law: Law = "square",
+    angle: ArrayLike, start: float, weight_ratio: float, friction: float = 0.0, law: Law = "square"
 ) -> Floats:
     """Tension at an angle over that at another of the same heavy line, in closed form.
 

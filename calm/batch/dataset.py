@@ -177,12 +177,7 @@ class ShapeNodes:
     def columns(self, profiles: Profiles) -> Mapping[str, Floats]:
         """Depth and offsets [m], and tension [N], of the nodes: (n, s) each."""
         tops = (profiles.depth_top, profiles.x_top, profiles.y_top, profiles.tension_top)
-        between = (
-            profiles.clamp_depth,
-            profiles.clamp_x,
-            profiles.clamp_y,
-            profiles.clamp_tension,
-        )
+        between = (profiles.clamp_depth, profiles.clamp_x, profiles.clamp_y, profiles.clamp_tension)
         return {
             name: np.hstack([top, inner[:, list(self.own)]])[:, self.order]
             for name, top, inner in zip(_AT_A_NODE, tops, between, strict=True)

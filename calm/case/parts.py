@@ -118,11 +118,7 @@ class Origin:
     def read(self, *, net: bool = False) -> MooringFile:
         """Return the file with all it refers to, as `read_mooring` does."""
         return read_mooring(
-            self.path,
-            environment=self.environment,
-            catalogs=self.catalogs,
-            text=self.text,
-            net=net,
+            self.path, environment=self.environment, catalogs=self.catalogs, text=self.text, net=net
         )
 
     def changed(
@@ -189,11 +185,7 @@ class ReadFromFile:
     origin: Origin | None
 
     def with_(
-        self,
-        label: str | None = None,
-        /,
-        environment: OtherEnvironment | None = None,
-        **keys: Any,
+        self, label: str | None = None, /, environment: OtherEnvironment | None = None, **keys: Any
     ) -> Self:
         """Return the same with some values of its file changed, as `Origin.changed`.
 

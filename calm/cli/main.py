@@ -181,15 +181,8 @@ _GROUPS: dict[str, tuple[tuple[Any, str], ...]] = {
         (check, "[OPTIONS] FILE..."),
         (designs.diff, "[OPTIONS] FILE [FILE]"),
     ),
-    "At sea": (
-        (at_sea.deck, "[OPTIONS] FILE..."),
-        (at_sea.locate, "[OPTIONS] FILE"),
-    ),
-    "Records": (
-        (batch, ""),
-        (motion, ""),
-        (grid, "[OPTIONS] DEPTHS VALUES..."),
-    ),
+    "At sea": ((at_sea.deck, "[OPTIONS] FILE..."), (at_sea.locate, "[OPTIONS] FILE")),
+    "Records": ((batch, ""), (motion, ""), (grid, "[OPTIONS] DEPTHS VALUES...")),
     "Files": (
         (exchange.import_, "[OPTIONS] FILE..."),
         (exchange.export, ""),

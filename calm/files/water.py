@@ -91,9 +91,7 @@ _WARMEST_BELOW = 30.0
 
 
 def read_density(
-    given: float | TableKeys | SeaWaterKeys,
-    fluid: str,
-    section: SourceMapping,
+    given: float | TableKeys | SeaWaterKeys, fluid: str, section: SourceMapping
 ) -> float | profile_tables.DepthTable | profile_tables.SeaWater | None:
     """Read the density of an environment; None where it has mistakes.
 

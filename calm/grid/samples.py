@@ -21,10 +21,7 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 Times = NDArray[np.datetime64]
-_POINTS = (
-    ("clamp", "clamp_depth", "clamp_depth_sd"),
-    ("component", "depth_top", "depth_sd"),
-)
+_POINTS = (("clamp", "clamp_depth", "clamp_depth_sd"), ("component", "depth_top", "depth_sd"))
 
 
 @dataclass(frozen=True)
@@ -158,10 +155,7 @@ def common_times(
 
 
 def gather(
-    depths: MooringDepths,
-    series: Sequence[InstrumentSeries],
-    points: dict[int, int],
-    time: Times,
+    depths: MooringDepths, series: Sequence[InstrumentSeries], points: dict[int, int], time: Times
 ) -> Samples:
     """Return the means of values, and of the depths at which they were taken, around each time.
 

@@ -43,10 +43,7 @@ OF_MOTION: Mapping[str, tuple[tuple[str, ...], tuple[str, str, Attributes]]] = {
         ("m", "standard deviation of the depth of the upper end", _DEVIATION),
     ),
     "current_factor": ((), ("1", "factor on the current, estimated", {})),
-    "current_doubt": (
-        ("level",),
-        ("1", "probability that the current of the level is false", {}),
-    ),
+    "current_doubt": (("level",), ("1", "probability that the current of the level is false", {})),
     "residual": (("sensor",), ("m", "measured less estimated depth of the sensor", {})),
     "plain_depth": (
         ("sensor",),

@@ -102,10 +102,7 @@ def _index(text: str, among: Sequence[str]) -> int | None:
 
 
 def _by_place(
-    which: Sequence[int],
-    series: Sequence[Identity],
-    line: LinePlaces,
-    taken: set[int],
+    which: Sequence[int], series: Sequence[Identity], line: LinePlaces, taken: set[int]
 ) -> tuple[dict[int, int], list[str]]:
     """Match in the order down the line; of two lists, what the longer one has more is left out.
 

@@ -240,10 +240,7 @@ def points(profiles: Profiles) -> Floats:
 def labels_of(mooring: Mooring) -> tuple[str, ...]:
     """Return the labels of all points, see `Forward`."""
     pieces = mooring.file.pieces
-    return (
-        *(clamp.label for clamp in clamps_down(pieces)),
-        *(piece.label for piece in pieces),
-    )
+    return (*(clamp.label for clamp in clamps_down(pieces)), *(piece.label for piece in pieces))
 
 
 def instruments_of(mooring: Mooring) -> list[int]:

@@ -101,10 +101,7 @@ def cylinder_drag(
         cn = LONG_CYLINDER_CN * finite_length_factor(slenderness)
     if ct is None:
         ct = end_face_coefficient(slenderness)
-    return (
-        _HALF_DENSITY * cn * diameter * length,
-        _HALF_DENSITY * ct * pi * diameter**2 / 4,
-    )
+    return (_HALF_DENSITY * cn * diameter * length, _HALF_DENSITY * ct * pi * diameter**2 / 4)
 
 
 def line_drag(diameter: float, cn: float, ct: float) -> tuple[float, float]:
@@ -299,14 +296,7 @@ def axis_against(x: float, y: float, z: float) -> Vector:
 
 @within
 def drag_force(
-    kn: float,
-    kt: float,
-    vx: float,
-    vy: float,
-    vz: float,
-    tx: float,
-    ty: float,
-    tz: float,
+    kn: float, kt: float, vx: float, vy: float, vz: float, tx: float, ty: float, tz: float
 ) -> Vector:
     """Kn |Vn| Vn + Kt |Vt| Vt [N] for the axis t and the relative current V [m/s]."""
     along = vx * tx + vy * ty + vz * tz

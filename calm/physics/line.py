@@ -170,11 +170,7 @@ class _Arrays:
             raise ValueError(f"{type(self).__name__}: arrays differ in length: {lengths}")
 
 
-_DTYPES: dict[str, Any] = {
-    "Floats": np.float64,
-    "Integers": np.int64,
-    "Booleans": np.bool_,
-}
+_DTYPES: dict[str, Any] = {"Floats": np.float64, "Integers": np.int64, "Booleans": np.bool_}
 
 
 def _none() -> Floats:

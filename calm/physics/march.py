@@ -22,18 +22,7 @@ from calm.physics.line import (
     Record,
     Trace,
 )
-from calm.physics.passing import (
-    FAILURE,
-    FX,
-    FY,
-    FZ,
-    LEFT,
-    NODES,
-    USED,
-    How,
-    Z,
-    pass_line,
-)
+from calm.physics.passing import FAILURE, FX, FY, FZ, LEFT, NODES, USED, How, Z, pass_line
 from calm.physics.profile import Profile
 from calm.physics.track import Track
 

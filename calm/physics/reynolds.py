@@ -10,12 +10,7 @@ from functools import cached_property
 from math import log, pow, sqrt
 from typing import NamedTuple
 
-from calm.physics.drag import (
-    LONG_CYLINDER_CN,
-    SPHERE_CX,
-    finite_length_factor,
-    interpolated,
-)
+from calm.physics.drag import LONG_CYLINDER_CN, SPHERE_CX, finite_length_factor, interpolated
 
 # fmt: off
 _CYLINDER = (
@@ -119,14 +114,7 @@ def drag_variation(smooth: Smooth, speed: float) -> float:
 
 
 def varying_share(
-    ax: float,
-    ay: float,
-    az: float,
-    k: float,
-    smooth: Smooth,
-    vx: float,
-    vy: float,
-    vz: float,
+    ax: float, ay: float, az: float, k: float, smooth: Smooth, vx: float, vy: float, vz: float
 ) -> float:
     """`drag_share` of a smooth element, whose coefficient varies with the speed across it.
 

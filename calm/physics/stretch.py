@@ -104,10 +104,7 @@ class ElongationCurve:
     __slots__ = ("breaking_load", "knots", "limit", "permanent", "strains", "tensions")
 
     def __init__(
-        self,
-        points: Iterable[tuple[float, float]],
-        breaking_load: float,
-        permanent: float = 0.0,
+        self, points: Iterable[tuple[float, float]], breaking_load: float, permanent: float = 0.0
     ) -> None:
         if not (isfinite(breaking_load) and breaking_load > 0.0):
             raise ValueError("the breaking load must be positive")

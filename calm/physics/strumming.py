@@ -175,14 +175,7 @@ def strummed(vibration: Vibration, across: float) -> float:
 
 
 def amplified_share(
-    ax: float,
-    ay: float,
-    az: float,
-    k: float,
-    vibration: Vibration,
-    vx: float,
-    vy: float,
-    vz: float,
+    ax: float, ay: float, az: float, k: float, vibration: Vibration, vx: float, vy: float, vz: float
 ) -> tuple[float, float]:
     """`drag_share` of a cable that strums, whose coefficient grows as it leans: k f(sin φ).
 

@@ -138,9 +138,7 @@ _FEW = 25.0  # m of that
 
 
 def current_notices(
-    levels: tuple[Floats, Floats, Floats],
-    times: NDArray[np.datetime64] | None,
-    water_depth: float,
+    levels: tuple[Floats, Floats, Floats], times: NDArray[np.datetime64] | None, water_depth: float
 ) -> Iterator[str]:
     """Yield what is odd about currents, in sentences.
 

@@ -27,10 +27,7 @@ _READ = (
 
 
 def grid_report(
-    output: Path,
-    fields: Mapping[str, GriddedQuantity],
-    names: Mapping[str, str],
-    levels: Floats,
+    output: Path, fields: Mapping[str, GriddedQuantity], names: Mapping[str, str], levels: Floats
 ) -> Report:
     """Return the report: a section of each quantity, its scales, words for the methods.
 

@@ -59,10 +59,7 @@ def _figures(located: Located, water_depth: float) -> tuple[tuple[str, str], ...
     pairs = [
         ("Latitude, longitude", f"{located.latitude:.6f}, {located.longitude:.6f}"),
         ("", f"{latitude}  {longitude}"),
-        (
-            "Within, with 95 %",
-            within,
-        ),
+        ("Within, with 95 %", within),
         ("Depth", f"{water_depth:.1f} m{sure}"),
         ("Ranges in use", f"{int(located.used.sum())} of {len(located.used)}"),
         ("Scatter", f"{located.rms:.2f} m" if np.isfinite(located.rms) else "unknown"),

@@ -12,13 +12,7 @@ import numpy as np
 
 from calm.physics.compiled import record_type
 from calm.physics.line import Floats, Line, Water
-from calm.physics.referee import (
-    Moored,
-    RefereeBody,
-    RefereeShape,
-    element_loads,
-    strumming,
-)
+from calm.physics.referee import Moored, RefereeBody, RefereeShape, element_loads, strumming
 from calm.physics.stretch import Knot
 from calm.physics.strumming import AT_REST
 from calm.physics.track import head_count
@@ -147,13 +141,7 @@ def amplification(solution: Solution) -> Floats:
     for element in np.flatnonzero(diameter > 0.0):
         u, v, w = flow[element].tolist()
         factor[element] = strumming(
-            vibration,
-            solution.frequency,
-            float(diameter[element]),
-            u,
-            v,
-            w,
-            float(across[element]),
+            vibration, solution.frequency, float(diameter[element]), u, v, w, float(across[element])
         )
     return factor
 

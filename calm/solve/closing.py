@@ -30,13 +30,7 @@ from calm.solve.problem import (
     Unknown,
     reach_of,
 )
-from calm.solve.solution import (
-    FOUND,
-    MARCH_STOPPED,
-    MISSES,
-    NO_SHAPE_NEAR,
-    SLACK_ON_DIGITS,
-)
+from calm.solve.solution import FOUND, MARCH_STOPPED, MISSES, NO_SHAPE_NEAR, SLACK_ON_DIGITS
 
 OF_A_PART = 0.01
 """Miss of a part of a line, which is light and slack, as a share of that of the whole."""

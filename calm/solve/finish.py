@@ -10,11 +10,7 @@ from calm.physics.track import Load
 from calm.solve.closing import Closed
 from calm.solve.problem import BELOW, CHANGED, FINE, MARCHES, MOST_AFLOAT, LineProblem
 from calm.solve.refine import Errors, Refined
-from calm.solve.search import (
-    NO_OTHER,
-    FoundShape,
-    ending_of_audit,
-)
+from calm.solve.search import NO_OTHER, FoundShape, ending_of_audit
 from calm.solve.solution import (
     ABOVE_SURFACE,
     BELOW_SEABED,

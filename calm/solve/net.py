@@ -21,14 +21,7 @@ from calm.solve import net_closing, net_march
 from calm.solve.finish import refuse_unbalanced
 from calm.solve.mooring import stirred
 from calm.solve.net_closing import AskedNet, ask_net, ask_now
-from calm.solve.net_leg import (
-    LaidLeg,
-    NetLeg,
-    lay_net,
-    leg_found,
-    refuse_misplaced,
-    unsettled,
-)
+from calm.solve.net_leg import LaidLeg, NetLeg, lay_net, leg_found, refuse_misplaced, unsettled
 from calm.solve.net_march import Marching
 from calm.solve.net_start import NetStart, start_of
 from calm.solve.problem import CHOSEN, FINE, ROOM

@@ -16,14 +16,7 @@ from calm.physics.passing import GROUNDED as LIES
 from calm.physics.profile import Sea
 from calm.physics.track import Course, Load
 from calm.solve.closing import place
-from calm.solve.problem import (
-    BELOW,
-    HALVED,
-    OTHER,
-    LineProblem,
-    SearchArrays,
-    Unknown,
-)
+from calm.solve.problem import BELOW, HALVED, OTHER, LineProblem, SearchArrays, Unknown
 
 STANDING, HANGING_DOWN, PULLED = range(3)
 """Legs marched from a free upper end, from a free lower end, and from an upper end that is held."""

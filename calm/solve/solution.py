@@ -182,10 +182,7 @@ class Status(Enum):
         "grounded",
         "Shorten, lighten or buoy up the lower part, or add buoyancy at the top.",
     )
-    ANCHOR_LIFTS = (
-        "anchor-lifts",
-        "Use a heavier anchor, or less buoyancy.",
-    )
+    ANCHOR_LIFTS = ("anchor-lifts", "Use a heavier anchor, or less buoyancy.")
     ABOVE_SURFACE = (
         "above-surface",
         "Shorten the line, or put the buoyancy that reaches the surface into the surface float.",

@@ -207,12 +207,7 @@ class CataloguePane(Vertical):
             self.listing.cursor = ids.index(chosen.id)
 
     def open(
-        self,
-        purpose: Purpose,
-        target: str,
-        role: str = "",
-        *,
-        clampable: bool = False,
+        self, purpose: Purpose, target: str, role: str = "", *, clampable: bool = False
     ) -> None:
         """Look for a component for the row called `target`, empty in an empty line.
 

@@ -16,13 +16,7 @@ from calm.errors import Problem
 from calm.files.editing import Draft, Value
 from calm.tui import cell_editor, checking, dialogs, key_table, pictures, screen, verdict_pane
 from calm.tui.field import Asked, Field
-from calm.tui.water_form import (
-    DENSITY_FORMS,
-    FormChoice,
-    Place,
-    WaterForm,
-    fields_of_water,
-)
+from calm.tui.water_form import DENSITY_FORMS, FormChoice, Place, WaterForm, fields_of_water
 from calm.tui.water_grid import Grid, GridCells
 from calm.tui.water_tables import CURRENT_COLUMNS, USUAL_DEPTH, Currents
 from calm.tui.workspace import Workspace, said

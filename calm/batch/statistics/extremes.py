@@ -98,10 +98,7 @@ class LevelsRefused:
 
 
 def return_levels(
-    time: Times,
-    values: Column,
-    statuses: Mapping[str, int],
-    step: np.timedelta64 | None = None,
+    time: Times, values: Column, statuses: Mapping[str, int], step: np.timedelta64 | None = None
 ) -> tuple[Fit | LevelsRefused, Fit | LevelsRefused]:
     """Return levels by GEV and by POT, each with 95 % intervals or refused with a reason.
 
@@ -183,8 +180,7 @@ def _by_peaks(
 ) -> Fit | LevelsRefused:
     if years < LEAST_YEARS:
         return LevelsRefused(
-            "pot",
-            f"a year of solved profiles is needed; there are {365.25 * years:.0f} days",
+            "pot", f"a year of solved profiles is needed; there are {365.25 * years:.0f} days"
         )
     thresholds = np.percentile(values[np.isfinite(values)], THRESHOLDS, overwrite_input=True)
     most = 0
