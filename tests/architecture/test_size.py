@@ -6,9 +6,9 @@ from collections import Counter
 from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parents[2] / "calm"
-MOST_LINES = 88_550
-MOST_MODULES = 348
-MOST_IMPORTS = 0.091
+MOST_LINES = 86_550
+MOST_MODULES = 332
+MOST_IMPORTS = 0.087
 """Share of the lines of code that import something."""
 
 
