@@ -1,6 +1,6 @@
-"""Where the component catalogue, the example lines and the manual that come with CALM are.
+"""What comes with CALM: the component catalogue, example lines, the manual, moorings to begin with.
 
-Once installed they stand inside the package; in a checkout, beside it.
+The first three stand inside the package once installed; in a checkout, beside it.
 """
 
 import importlib.resources
@@ -21,3 +21,24 @@ def shipped_folder(name: Literal["catalog", "lines", "docs"]) -> Path:
         if folder.is_dir():
             return folder
     raise FileNotFoundError(f"CALM's folder `{name}` is missing; install CALM again")
+
+
+Template = Literal["shelf", "deep", "adcp-frame", "taut-surface", "slack-surface", "tow"]
+
+TEMPLATES: dict[Template, str] = {
+    "shelf": "current meter and temperatures along a wire, 300 m",
+    "deep": "current meters on wire and rope, glass between, 4000 m",
+    "adcp-frame": "ADCP that looks up from near the seabed, 90 m",
+    "taut-surface": "buoy on wire and nylon, 2000 m",
+    "slack-surface": "marker buoy on chain and floating rope, 60 m",
+    "tow": "body behind a ship, at the depth wanted",
+}
+"""Commented moorings to begin with, one of each kind, and what each is.
+
+None accepts a figure that is not known: that is for whoever signs the design."""
+
+
+def template(kind: Template) -> str:
+    """Return the text of the file of a kind."""
+    folder = importlib.resources.files("calm") / "templates"
+    return (folder / f"{kind}.yaml").read_text(encoding="utf-8")

@@ -13,7 +13,7 @@ from cyclopts import Parameter
 from calm.cli import options
 from calm.cli.outputs import ExitCode, narrate, show
 from calm.errors import UsageError
-from calm.templates import Template, template
+from calm.shipped import Template, template
 
 
 def new(

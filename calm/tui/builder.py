@@ -7,7 +7,7 @@ from textual import on
 from textual.events import DescendantFocus, Key
 
 from calm.files.components import KINDS
-from calm.templates import TEMPLATES, Template, template
+from calm.shipped import TEMPLATES, Template, template
 from calm.tui.catalogue_pane import Purpose
 from calm.tui.cell_editor import CellEditor
 from calm.tui.comparing import ComparingScreen

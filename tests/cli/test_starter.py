@@ -4,7 +4,7 @@ import os
 import pytest
 from jsonschema import Draft202012Validator
 
-from calm.templates import TEMPLATES
+from calm.shipped import TEMPLATES
 from tests.core_yaml import loaded
 
 

@@ -4,7 +4,7 @@ import pytest
 
 from calm.checks.finding import State
 from calm.files.editing import Draft, EditError
-from calm.templates import TEMPLATES, template
+from calm.shipped import TEMPLATES, template
 from calm.tui.line_rows import table_rows
 from calm.tui.live import judge, judge_fully
 from calm.tui.session import Place
