@@ -136,7 +136,7 @@ class SearchArrays(NamedTuple):
     samples : unknowns and misses
     even : intervals of an even current
     elements : (3, n) numbers for every element of a shape
-    found : see `calm.solve.search.tell`
+    found : see `calm.solve.mooring.tell`
     """
 
     left: MutableSequence[float]
