@@ -197,6 +197,7 @@ class Graph:
 
     def __init__(self, width: float, height: float, title: str, size: float) -> None:
         self.pen, self.size = picture(width, height, title), size
+        self.pen.element.set("fill", "none")  # a curve and a frame are lines
 
     def svg(self) -> str:
         """The graph as text that can stand inside a page."""

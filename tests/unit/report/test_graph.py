@@ -140,3 +140,13 @@ def test_a_legend_shortens_what_is_too_long_and_any_sign_is_text():
     first, second = drawn(graph)["text"]
     assert "".join(first.itertext()) == "a storm <b>\ufffd $x$"
     assert "".join(second.itertext()).endswith("…")
+
+
+def test_a_frame_and_a_curve_are_lines_and_hide_nothing():
+    here = axes()
+    here.line([0.0, 5.0, 10.0], [0.0, 1.0, 0.0], LINE)
+    here.frame(numbers(0.0, 10.0, 2), numbers(0.0, 1.0, 2))
+    root = ElementTree.fromstring(here.graph.svg())
+    assert root.get("fill") == "none"
+    stroked = [one for one in root.iter() if one.get("stroke") or one.tag.endswith("path")]
+    assert stroked and not any(one.get("fill") for one in stroked)

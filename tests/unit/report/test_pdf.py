@@ -18,7 +18,7 @@ def sections():
 
 @pytest.fixture
 def pages():
-    """The pages of a document: rendered, not one of them blank, and their texts."""
+    """The pages of a document: rendered, not one of them blank or covered, and their texts."""
     documents = []
 
     def read(content):
@@ -28,6 +28,7 @@ def pages():
         for page in document:
             image = page.render(scale=0.5).to_pil().convert("L")
             assert image.getextrema()[0] < 128
+            assert sum(image.histogram()[:64]) < 0.1 * image.width * image.height
             assert (page.get_width(), page.get_height()) == pytest.approx((595.3, 841.9), abs=0.1)
             texts.append(" ".join(page.get_textpage().get_text_range().split()))
         return texts
