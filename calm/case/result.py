@@ -227,7 +227,12 @@ class Result(Solved):
 
     @cached_property
     def strumming_band(self) -> StrummingBand | None:
-        """Return the same mooring with more drag on its cables; solved when first asked for."""
+        """Return the same mooring with more drag on its cables; solved when first asked for.
+
+        None of a leg of a net, which does not stand alone.
+        """
+        if self.mooring.file.legs:
+            return None
         still = self.still_shape
         return band_of(self.mooring, None if still is None else float(still.depth[0]))
 

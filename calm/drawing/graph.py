@@ -175,8 +175,7 @@ class Stroke(NamedTuple):
         return written
 
 
-_FRAME = Stroke(INK, 0.7)
-_GRID = Stroke("#e3e6ea", 0.6)
+_FRAME, _GRID = Stroke(INK, 0.7), Stroke("#e3e6ea", 0.6)
 _TICK = 3.0  # points
 _NEAREST = 0.05  # points: of two that are nearer one is drawn
 

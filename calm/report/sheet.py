@@ -69,8 +69,9 @@ def summary_of(result: Result | TowResult) -> tuple[Prose, ...]:
 
 def quality_of(result: Result | TowResult) -> Prose:
     """How good the solution is, and how it was reached."""
-    good, end = result.accuracy, "tow point" if isinstance(result, TowResult) else "anchor"
-    pull = "" if good.anchor is None else f", at the anchor {good.anchor:.2g} N"
+    good, end = result.accuracy, "anchor" if _anchored(result) else "lower end"
+    end = "tow point" if isinstance(result, TowResult) else end
+    pull = "" if good.anchor is None else f", at the {end} {good.anchor:.2g} N"
     return Prose(
         (
             f"Good to {good.depth:.2g} m and {good.tension:.2g} N{pull}.",
@@ -96,14 +97,14 @@ def _travel(profiler: ProfilerTravel) -> str:
 
 
 def _mooring_summary(result: Result) -> tuple[Line, ...]:
-    """The top, and the loads on the anchor."""
+    """The top, and the loads on the anchor, which most legs of a net have not."""
     top, anchor = result.top, result.anchor
-    offset = f"{say('offset', math.hypot(top.x, top.y))} off the anchor"
+    off = f", {say('offset', math.hypot(top.x, top.y))} off the anchor" if _anchored(result) else ""
     if result.type == "surface":
         used = f"{top.used_buoyancy:.1%} of its buoyancy used"
-        at = f"at the surface, {offset}; {used}, {say('reserve', top.reserve)} in reserve"
+        at = f"at the surface{off}; {used}, {say('reserve', top.reserve)} in reserve"
     else:
-        at = f"{say('depth', top.depth)} deep, {offset}; "
+        at = f"{say('depth', top.depth)} deep{off}; "
         at += f"knockdown {say('knockdown', top.knockdown)}"
     pull = (
         f"{say('tension', anchor.tension)}, {say('angle', anchor.angle)} from the vertical: "
@@ -116,13 +117,16 @@ def _mooring_summary(result: Result) -> tuple[Line, ...]:
     if lifts := anchor.weight < anchor.required_weight:
         weighs += " !"
     hull = f"Hull: draft {say('draft', top.draft)}, freeboard {say('freeboard', top.freeboard)}"
-    return (
-        f"Top {at}",
-        *([hull] if top.draft is not None else []),
-        *map(_travel, result.profilers),
-        f"Anchor pulled by {pull}",
-        (Span(f"Anchor weighs {weighs}", State.FAIL if lifts else None),),
-    )
+    above = f"Top {at}", *([hull] if top.draft is not None else []), *map(_travel, result.profilers)
+    if not _anchored(result):
+        return above
+    weight = (Span(f"Anchor weighs {weighs}", State.FAIL if lifts else None),)
+    return *above, f"Anchor pulled by {pull}", weight
+
+
+def _anchored(result: Result | TowResult) -> bool:
+    """Return whether the line ends in an anchor, as not every leg of a net does."""
+    return not (isinstance(result, TowResult) or math.isnan(result.anchor.tension))
 
 
 def _tow_summary(result: TowResult) -> tuple[Line, ...]:

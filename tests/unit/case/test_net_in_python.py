@@ -3,6 +3,7 @@
 import pytest
 
 import calm
+from calm.report.sheet import quality_of, summary_of
 from calm.shipped import shipped_folder
 
 NET = """\
@@ -51,6 +52,15 @@ def test_its_result_is_shown_in_a_few_lines_and_as_a_dataset(net):
     assert len(repr(result).splitlines()) <= 10
     assert "west: node A to anchor" in result._repr_html_()
     assert result.to_xarray().sizes["component"] == len(result.to_pandas()) == 6
+
+
+def test_of_a_leg_only_what_it_has_is_said(net):
+    """No anchor's load where it has no anchor; no strumming, as it does not stand alone."""
+    said = {leg.name: str((summary_of(leg), quality_of(leg))) for leg in net.solve().legs}
+    assert "unknown" not in "".join(said.values())
+    assert "nchor" not in said["stem"] and "lower end missed by" in said["stem"]
+    assert "Anchor pulled by" in said["west"] and "off the anchor" in said["west"]
+    assert all(leg.strumming_band is None for leg in net.solve().legs)
 
 
 def test_it_is_judged_and_its_launch_is_refused(net):
