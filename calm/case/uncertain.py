@@ -146,6 +146,7 @@ def uncertain(
     mooring = result.mooring
     checked_samples(samples)
     expect_many(samples)
+    _figures(mooring, [Draw()])  # fetches what is compiled, once for the processes that are forked
     normal = normals_of(samples, seed) if normals is None else normals()
     draws = draws_of(mooring.file.uncertainty, normal)
     blocks = [draws[first : first + BLOCK] for first in range(0, samples, BLOCK)]

@@ -220,8 +220,10 @@ def cited(file: MooringFile, *names: str) -> str:
 
 
 def said(key: LimitKey, value: float | None) -> str:
-    """A value or a default of a limit with its unit; a dash for none."""
+    """A value or a default of a limit with its unit, a time in days; a dash for none."""
     if value is None:
         return "-"
+    if key.dimension == "time":
+        return f"{value / 86_400.0:.10g} d"
     unit = DIMENSIONS[key.dimension].unit.replace("deg", "°")
     return f"{value:.10g} {unit}".strip().replace(" °", "°")
