@@ -1,4 +1,4 @@
-"""How sure the figures of a mooring are: it is solved for many draws of its uncertain inputs.
+"""Uncertainty of the figures of a mooring, which is solved for many draws of its inputs.
 
 Every sample is solved on the cuts of the mooring as given, or anew where that finds no equilibrium
 of the same kind, and passes every check of a solution.

@@ -62,7 +62,7 @@ def parts_of(mooring: Mooring) -> list[JudgedPart]:
 
 @dataclass(frozen=True)
 class Criterion:
-    """What a rule allows a part of the line, or the line as a whole.
+    """Hold what a rule allows a part of the line, or the line as a whole.
 
     Attributes
     ----------
