@@ -6,6 +6,7 @@ in place of those it calls; sequences become arrays, those of named tuples array
 liberty is taken with the arithmetic, so that both give the same digits.
 """
 
+import gc
 import hashlib
 import os
 import sys
@@ -28,7 +29,18 @@ OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "_nrt": False}
 on: that takes as long as a segment. No law divides by zero, and none raises."""
 
 NEWEST = (0, 68)
-"""Of numba, whose parts are known to be as `_linked_compiler` uses them."""
+"""Of numba, whose parts are known to be as `_law_compiler` uses them."""
+
+NEEDLESS = {
+    "WithLift", "InlineClosureLikes", "RewriteSemanticConstants", "DeadBranchPrune",
+    "RewriteDynamicRaises", "MakeFunctionToJitFunction", "InlineInlinables", "FindLiterallyCalls",
+    "LiteralUnroll", "LiteralPropagationSubPipelinePass", "InlineOverloads", "NopythonRewrites",
+    "NoPythonSupportedFeatureValidation", "DumpParforDiagnostics",
+}  # fmt: skip
+"""Passes of numba's compiler for what no law has: closures, array expressions, and the like."""
+
+SELDOM = 100_000, 20, 100
+"""When garbage is collected while laws are compiled."""
 
 Fn = TypeVar("Fn", bound=Law)
 
@@ -52,7 +64,8 @@ def compiled(law: Law) -> Any:
     """A law and all that it calls, compiled when first called, and kept for the next process."""
     import numba
 
-    return kept(numba.njit, clone(law), cache_folder(), **OPTIONS)
+    options = {**OPTIONS, "pipeline_class": _law_compiler()}
+    return kept(numba.njit, clone(law), cache_folder(), **options)
 
 
 _entries: dict[Law, Any] = {}
@@ -88,7 +101,7 @@ def by_address(law: Law, *arguments: Any) -> Any:
         options = {name: OPTIONS[name] for name in ("error_model", "_nrt")}
 
         def compiler(law: Law, **options: Any) -> Any:
-            return numba.cfunc(signature, **options)(law)
+            return numba.cfunc(signature, pipeline_class=_law_compiler(), **options)(law)
 
         found = _entries[law] = kept(compiler, clone(law), cache_folder(), **options)
     return found
@@ -104,7 +117,7 @@ def called(law: Law) -> Any:
     njit: Any = numba.njit
     dispatcher = njit(
         clone(law), no_cpython_wrapper=True, no_cfunc_wrapper=True, forceinline=law in _within,
-        pipeline_class=_linked_compiler(), **OPTIONS,
+        pipeline_class=_law_compiler(), **OPTIONS,
     )  # fmt: skip
     resolve, plain = dispatcher.get_call_template, numba.types.unliteral
 
@@ -117,12 +130,14 @@ def called(law: Law) -> Any:
 
 
 @cache
-def _linked_compiler() -> Any:
-    """The compiler of the laws that others call, of which no machine code is made by themselves.
+def _law_compiler() -> Any:
+    """The compiler of laws: what it spares is most of what numba's own takes for them.
 
-    Each is linked into the law that is called from Python, and optimised in it once; numba itself
-    optimises and translates every law again on each level of the calls, which takes longer. That is
-    left as it is in a numba newer than `NEWEST`.
+    A law that others call is no machine code by itself. It is linked into the law that is called
+    from Python, and optimised in it once; numba itself optimises and translates every law again on
+    each level of the calls. A call of types that were seen before is not resolved again, passes for
+    what no law has are left out, and what is assigned once needs no place in memory. All is left as
+    it is in a numba newer than `NEWEST`.
     """
     numba: Any = __import__("numba")
     if numba.version_info.short > NEWEST:
@@ -130,43 +145,100 @@ def _linked_compiler() -> Any:
     core, make_function = numba.core, numba._dynfunc.make_function
     library: Any = core.codegen.JITCodeLibrary
     lowering: Any = core.typed_passes.NativeLowering
+    lower: Any = core.lowering.Lower
     compiler: Any = core.compiler.CompilerBase
+    builtin: Any = numba.types.Function
+    resolve, seen = builtin.get_call_type, {}
+
+    def resolve_once(called: Any, typing: Any, given: Any, named: Any) -> Any:
+        if named:
+            return resolve(called, typing, given, named)
+        found = seen.get((called, given))
+        if found is None:
+            found = seen[called, given] = resolve(called, typing, given, named)
+        return found
+
+    def short_name(name: str, types: Any, **more: Any) -> str:
+        """The types of a law's arguments, written out, are pages."""
+        digest = hashlib.sha256(repr(types).encode()).hexdigest()[:16]
+        return str(core.funcdesc.default_mangler(f"{name}_{digest}", (), **more))
 
     class LinkedLibrary(library):  # type: ignore[misc]
-        def _optimize_final_module(self) -> None:
-            pass
-
-        def _finalize_final_module(self) -> None:
+        def finalize(self) -> None:
             self._finalize_dynamic_globals()
             self._finalized = True
 
+    class LawLower(lower):  # type: ignore[misc]
+        def _find_singly_assigned_variable(self) -> None:
+            """A variable assigned once, before all its uses, is a value."""
+            blocks = self.func_ir.blocks
+            before = core.analysis.compute_cfg_from_blocks(blocks).dominators()
+            assigned: dict[str, list[int]] = {}
+            used: dict[str, set[int]] = {}
+            for place, block in blocks.items():
+                for each in block.find_insts(core.ir.Stmt):
+                    if isinstance(each, core.ir.Assign):
+                        assigned.setdefault(each.target.name, []).append(place)
+                    if not isinstance(each, core.ir.Del):
+                        for variable in each.list_vars():
+                            used.setdefault(variable.name, set()).add(place)
+            self._singly_assigned_vars = {
+                name
+                for name, places in assigned.items()
+                if len(places) == 1
+                and all(places[0] in before[use] and places[0] <= use for use in used[name])
+            }
+            self._blk_local_varmap: dict[str, Any] = {}
+
+        def delvar(self, name: str) -> None:
+            """Nothing is allocated."""
+
     @core.compiler_machinery.register_pass(mutates_CFG=True, analysis_only=False)
-    class LinkedLowering(lowering):  # type: ignore[misc]
-        _name = "linked_lowering"
+    class LawLowering(lowering):  # type: ignore[misc]
+        _name = "law_lowering"
+        lowering_class = LawLower
 
         def run_pass(self, state: Any) -> bool:
+            if not (state.flags.no_cpython_wrapper and state.flags.no_cfunc_wrapper):
+                return bool(super().run_pass(state))
             target, name = state.targetctx, state.func_id.func_qualname
             state.library = LinkedLibrary(target.codegen(), name)
             state.flags.no_compile = True
             super().run_pass(state)
             lowered = state["cr"]
             module = lowered.fndesc.lookup_module()
+            libraries = dict.fromkeys([state.library, *state.library._linking_libraries])
             key = make_function(module, name, "", 0, lowered.env, (state.library,))
-            target.insert_user_function(key, lowered.fndesc, [state.library])
+            target.insert_user_function(key, lowered.fndesc, [*libraries])
             state["cr"] = lowered._replace(cfunc=key)
             return True
 
-    class LinkedCompiler(compiler):  # type: ignore[misc]
+    class LawCompiler(compiler):  # type: ignore[misc]
+        def __init__(self, typing: Any, target: Any, *others: Any) -> None:
+            super().__init__(typing, target.subtarget(mangler=short_name), *others)
+
+        def compile_extra(self, law: Law) -> Any:
+            """Of the millions of objects that this makes hardly one is garbage."""
+            chosen, resolves = gc.get_threshold(), builtin.get_call_type
+            gc.set_threshold(*SELDOM)
+            builtin.get_call_type = resolve_once
+            try:
+                return super().compile_extra(law)
+            finally:
+                gc.set_threshold(*chosen)
+                builtin.get_call_type = resolves
+
         def define_pipelines(self) -> list[Any]:
             pipeline = core.compiler.DefaultPassBuilder.define_nopython_pipeline(self.state)
             pipeline.passes = [
-                (LinkedLowering if each is lowering else each, about)
+                (LawLowering if each is lowering else each, about)
                 for each, about in pipeline.passes
+                if each.__name__ not in NEEDLESS
             ]
             pipeline.finalize()
             return [pipeline]
 
-    return LinkedCompiler
+    return LawCompiler
 
 
 @cache
