@@ -30,7 +30,6 @@ from calm.solve.audit import referee_of
 from calm.solve.mooring import MORE_ROOM, AskedSearch, find_asked, search_of
 from calm.solve.problem import MANY_ROOM, problem_of
 from calm.solve.solution import FOUND
-from calm.solve.starts import fill_starts
 
 if TYPE_CHECKING:
     import pandas
@@ -278,11 +277,10 @@ class Batch:
         # a profile without current is told apart from the others
         problem = problem._replace(limits=problem.limits._replace(at_rest=False))
         search, referee = search_of(problem, True), referee_of(line, water, 0.0, True)
-        if self._starts is None:
-            entry(fill_starts, search)(search)
-            vars(self).update(_starts=problem.starts)
-        known: Any = problem.starts
-        known[:] = self._starts
+        first = self._starts is None
+        if not first:
+            known: Any = problem.starts
+            known[:] = self._starts
         pieces = mooring.file.pieces[:-1]
         paper = ProfileArrays(
             on=on,
@@ -291,8 +289,10 @@ class Batch:
             may_lie=np.array([one.component.kind == "chain" for one in pieces], np.int64),
         )
         find = by_address(find_asked, AskedSearch(search, referee))
-        given = (find, search, referee, paper, depth, *parts, rows, endings)
+        given = (find, search, referee, paper, first, depth, *parts, rows, endings)
         entry(solving.solve_rows, *given)(*given)
+        if first:
+            vars(self).update(_starts=problem.starts)
         again = np.flatnonzero(endings == LACKS_ROOM)
         if again.size:
             mine = depth if len(depth) == 1 else depth[again]

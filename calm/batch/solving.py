@@ -86,6 +86,7 @@ def solve_rows(
     search: Search,
     referee: Referee,
     paper: ProfileArrays,
+    first: bool,
     depth: Floats,
     u: Floats,
     v: Floats,
@@ -97,10 +98,13 @@ def solve_rows(
 
     Parameters
     ----------
+    first : whether they are the first of a mooring, whose `starts` are to be filled before
     depth : (1 or n, k) of the levels [m]
     u, v, w : (n, k) current [m/s]; NaN where there is none
     endings : (n,) how each ends
     """
+    if first:
+        find(AskedSearch(search, referee), 1.0)
     for case in range(endings.size):
         endings[case], sea = sea_of(paper.on, depth, u, v, w, case, search.problem.sea)
         if endings[case] != FOUND:

@@ -39,6 +39,9 @@ NEEDLESS = {
 }  # fmt: skip
 """Passes of numba's compiler for what no law has: closures, array expressions, and the like."""
 
+COUNT, SIZE, DATA, SHAPE, STRIDES = range(2, 7)
+"""Where it stands in numba's own form of an array; nobody holds, or owns, what a law is given."""
+
 SELDOM = 100_000, 20, 100
 """When garbage is collected while laws are compiled."""
 
@@ -115,10 +118,7 @@ def called(law: Law) -> Any:
     if law is set_row:
         return _record_setter()
     njit: Any = numba.njit
-    dispatcher = njit(
-        clone(law), no_cpython_wrapper=True, no_cfunc_wrapper=True, forceinline=law in _within,
-        pipeline_class=_law_compiler(), **OPTIONS,
-    )  # fmt: skip
+    dispatcher = njit(clone(law), forceinline=law in _within, **_linked_options())
     resolve, plain = dispatcher.get_call_template, numba.types.unliteral
 
     def once_for_all_numbers(types: Any, named: Any) -> Any:
@@ -127,6 +127,12 @@ def called(law: Law) -> Any:
 
     dispatcher.get_call_template = once_for_all_numbers
     return dispatcher
+
+
+def _linked_options() -> dict[str, Any]:
+    """Options of a law that is only called by others."""
+    wrappers = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+    return {**OPTIONS, **wrappers, "pipeline_class": _law_compiler()}
 
 
 @cache
@@ -162,6 +168,39 @@ def _law_compiler() -> Any:
         """The types of a law's arguments, written out, are pages."""
         digest = hashlib.sha256(repr(types).encode()).hexdigest()[:16]
         return str(core.funcdesc.default_mangler(f"{name}_{digest}", (), **more))
+
+    datamodel: Any = core.datamodel
+
+    class LawArray(datamodel.models.ArrayModel):  # type: ignore[misc]
+        """An array, given to a law as its place and its shape, from which all else follows.
+
+        What numba itself compiles for laws, such as `max`, is given numbers alone.
+        """
+
+        def get_argument_type(self) -> Any:
+            assert self._fe_type.layout == "C"
+            parts = self.get_value_type().elements
+            return parts[DATA], (parts[COUNT],) * self._fe_type.ndim
+
+        def as_argument(self, builder: Any, value: Any) -> Any:
+            shape = [builder.extract_value(value, [SHAPE, k]) for k in range(self._fe_type.ndim)]
+            return builder.extract_value(value, [DATA]), tuple(shape)
+
+        def from_argument(self, builder: Any, value: Any) -> Any:
+            data, shape = value
+            item = self._dmm[self._fe_type.dtype].get_data_type()
+            size = core.cgutils.sizeof(builder, item.as_pointer())
+            count, array = size.type(1), self.get_value_type()(None)
+            for k in reversed(range(len(shape))):
+                array = builder.insert_value(array, builder.mul(count, size), [STRIDES, k])
+                array = builder.insert_value(array, shape[k], [SHAPE, k])
+                count = builder.mul(count, shape[k])
+            for place, part in ((COUNT, count), (SIZE, size), (DATA, data)):
+                array = builder.insert_value(array, part, [place])
+            return array
+
+    arrays = datamodel.manager.DataModelManager({numba.types.Array: LawArray})
+    models = arrays.chain(datamodel.default_manager)
 
     class LinkedLibrary(library):  # type: ignore[misc]
         def finalize(self) -> None:
@@ -213,9 +252,11 @@ def _law_compiler() -> Any:
             state["cr"] = lowered._replace(cfunc=key)
             return True
 
+    ours = {"mangler": short_name, "data_model_manager": models, "cached_internal_func": {}}
+
     class LawCompiler(compiler):  # type: ignore[misc]
         def __init__(self, typing: Any, target: Any, *others: Any) -> None:
-            super().__init__(typing, target.subtarget(mangler=short_name), *others)
+            super().__init__(typing, target.subtarget(**ours), *others)
 
         def compile_extra(self, law: Law) -> Any:
             """Of the millions of objects that this makes hardly one is garbage."""
@@ -249,7 +290,7 @@ def _record_setter() -> Law:
     def set_record(rows, i, row):  # type: ignore[no-untyped-def]
         raise NotImplementedError
 
-    @overload(set_record)
+    @overload(set_record, jit_options=_linked_options())
     def for_types(rows, i, row):  # type: ignore[no-untyped-def]
         names: dict[str, Any] = {}
         fields = "\n".join(f"    rows[i].{name} = row.{name}" for name in rows.dtype.fields)

@@ -46,6 +46,7 @@ from calm.solve.solution import (
     runs_compiled,
     standing_lift,
 )
+from calm.solve.starts import fill_starts
 
 MOST_DEPTHS = 500
 """The longest line that is solved, in depths: segments are no longer than a hundredth of one."""
@@ -150,8 +151,13 @@ class AskedSearch(NamedTuple):
     referee: Referee
 
 
-def find_asked(asked: AskedSearch, _: float) -> float:
-    """Look for a shape, and tell what was found in the work of the problem; how it ended."""
+def find_asked(asked: AskedSearch, first: float) -> float:
+    """Look for a shape, and tell what was found in the work of the problem; how it ended.
+
+    Before the first of many, where `first` is not 0, it is found where they are sought.
+    """
+    if first > 0.0:
+        return float(fill_starts(asked.search))
     found = find_shape(asked.search, asked.referee)
     tell(found, asked.search.problem.work.found)
     return float(found.ending)

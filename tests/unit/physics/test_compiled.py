@@ -46,7 +46,7 @@ def test_laws_linked_into_a_law_give_its_digits(
     """By parts of numba that are not for everyone, and by those that are."""
     monkeypatch.setattr(compiled, "NEWEST", newest)
     monkeypatch.setattr(compiled, "cache_folder", lambda: None)
-    stores = (compiled.compiled, compiled.called, compiled._linked_compiler)
+    stores = (compiled.compiled, compiled.called, compiled._law_compiler)
     for store in stores:
         store.cache_clear()
     arguments = (0.3, -0.1, 0.9, 0.7, 0.5, -0.2, 0.1)
