@@ -6,7 +6,6 @@ in place of those it calls; sequences become arrays, those of named tuples array
 liberty is taken with the arithmetic, so that both give the same digits.
 """
 
-import gc
 import hashlib
 import os
 import sys
@@ -29,21 +28,7 @@ OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "_nrt": False}
 on: that takes as long as a segment. No law divides by zero, and none raises."""
 
 NEWEST = (0, 68)
-"""Of numba, whose parts are known to be as `_law_compiler` uses them."""
-
-NEEDLESS = {
-    "WithLift", "InlineClosureLikes", "RewriteSemanticConstants", "DeadBranchPrune",
-    "RewriteDynamicRaises", "MakeFunctionToJitFunction", "InlineInlinables", "FindLiterallyCalls",
-    "LiteralUnroll", "LiteralPropagationSubPipelinePass", "InlineOverloads", "NopythonRewrites",
-    "NoPythonSupportedFeatureValidation", "DumpParforDiagnostics",
-}  # fmt: skip
-"""Passes of numba's compiler for what no law has: closures, array expressions, and the like."""
-
-COUNT, SIZE, DATA, SHAPE, STRIDES = range(2, 7)
-"""Where it stands in numba's own form of an array; nobody holds, or owns, what a law is given."""
-
-SELDOM = 100_000, 20, 100
-"""When garbage is collected while laws are compiled."""
+"""Of numba, whose parts are known to be as `calm.physics.law_compiler` uses them."""
 
 Fn = TypeVar("Fn", bound=Law)
 
@@ -137,147 +122,11 @@ def _linked_options() -> dict[str, Any]:
 
 @cache
 def _law_compiler() -> Any:
-    """The compiler of laws: what it spares is most of what numba's own takes for them.
-
-    A law that others call is no machine code by itself. It is linked into the law that is called
-    from Python, and optimised in it once; numba itself optimises and translates every law again on
-    each level of the calls. A call of types that were seen before is not resolved again, passes for
-    what no law has are left out, and what is assigned once needs no place in memory. All is left as
-    it is in a numba newer than `NEWEST`.
-    """
+    """The compiler of laws, or numba's own where that is newer than `NEWEST`."""
     numba: Any = __import__("numba")
     if numba.version_info.short > NEWEST:
         return numba.core.compiler.Compiler
-    core, make_function = numba.core, numba._dynfunc.make_function
-    library: Any = core.codegen.JITCodeLibrary
-    lowering: Any = core.typed_passes.NativeLowering
-    lower: Any = core.lowering.Lower
-    compiler: Any = core.compiler.CompilerBase
-    builtin: Any = numba.types.Function
-    resolve, seen = builtin.get_call_type, {}
-
-    def resolve_once(called: Any, typing: Any, given: Any, named: Any) -> Any:
-        if named:
-            return resolve(called, typing, given, named)
-        found = seen.get((called, given))
-        if found is None:
-            found = seen[called, given] = resolve(called, typing, given, named)
-        return found
-
-    def short_name(name: str, types: Any, **more: Any) -> str:
-        """The types of a law's arguments, written out, are pages."""
-        digest = hashlib.sha256(repr(types).encode()).hexdigest()[:16]
-        return str(core.funcdesc.default_mangler(f"{name}_{digest}", (), **more))
-
-    datamodel: Any = core.datamodel
-
-    class LawArray(datamodel.models.ArrayModel):  # type: ignore[misc]
-        """An array, given to a law as its place and its shape, from which all else follows.
-
-        What numba itself compiles for laws, such as `max`, is given numbers alone.
-        """
-
-        def get_argument_type(self) -> Any:
-            assert self._fe_type.layout == "C"
-            parts = self.get_value_type().elements
-            return parts[DATA], (parts[COUNT],) * self._fe_type.ndim
-
-        def as_argument(self, builder: Any, value: Any) -> Any:
-            shape = [builder.extract_value(value, [SHAPE, k]) for k in range(self._fe_type.ndim)]
-            return builder.extract_value(value, [DATA]), tuple(shape)
-
-        def from_argument(self, builder: Any, value: Any) -> Any:
-            data, shape = value
-            item = self._dmm[self._fe_type.dtype].get_data_type()
-            size = core.cgutils.sizeof(builder, item.as_pointer())
-            count, array = size.type(1), self.get_value_type()(None)
-            for k in reversed(range(len(shape))):
-                array = builder.insert_value(array, builder.mul(count, size), [STRIDES, k])
-                array = builder.insert_value(array, shape[k], [SHAPE, k])
-                count = builder.mul(count, shape[k])
-            for place, part in ((COUNT, count), (SIZE, size), (DATA, data)):
-                array = builder.insert_value(array, part, [place])
-            return array
-
-    arrays = datamodel.manager.DataModelManager({numba.types.Array: LawArray})
-    models = arrays.chain(datamodel.default_manager)
-
-    class LinkedLibrary(library):  # type: ignore[misc]
-        def finalize(self) -> None:
-            self._finalize_dynamic_globals()
-            self._finalized = True
-
-    class LawLower(lower):  # type: ignore[misc]
-        def _find_singly_assigned_variable(self) -> None:
-            """A variable assigned once, before all its uses, is a value."""
-            blocks = self.func_ir.blocks
-            before = core.analysis.compute_cfg_from_blocks(blocks).dominators()
-            assigned: dict[str, list[int]] = {}
-            used: dict[str, set[int]] = {}
-            for place, block in blocks.items():
-                for each in block.find_insts(core.ir.Stmt):
-                    if isinstance(each, core.ir.Assign):
-                        assigned.setdefault(each.target.name, []).append(place)
-                    if not isinstance(each, core.ir.Del):
-                        for variable in each.list_vars():
-                            used.setdefault(variable.name, set()).add(place)
-            self._singly_assigned_vars = {
-                name
-                for name, places in assigned.items()
-                if len(places) == 1
-                and all(places[0] in before[use] and places[0] <= use for use in used[name])
-            }
-            self._blk_local_varmap: dict[str, Any] = {}
-
-        def delvar(self, name: str) -> None:
-            """Nothing is allocated."""
-
-    @core.compiler_machinery.register_pass(mutates_CFG=True, analysis_only=False)
-    class LawLowering(lowering):  # type: ignore[misc]
-        _name = "law_lowering"
-        lowering_class = LawLower
-
-        def run_pass(self, state: Any) -> bool:
-            if not (state.flags.no_cpython_wrapper and state.flags.no_cfunc_wrapper):
-                return bool(super().run_pass(state))
-            target, name = state.targetctx, state.func_id.func_qualname
-            state.library = LinkedLibrary(target.codegen(), name)
-            state.flags.no_compile = True
-            super().run_pass(state)
-            lowered = state["cr"]
-            module = lowered.fndesc.lookup_module()
-            libraries = dict.fromkeys([state.library, *state.library._linking_libraries])
-            key = make_function(module, name, "", 0, lowered.env, (state.library,))
-            target.insert_user_function(key, lowered.fndesc, [*libraries])
-            state["cr"] = lowered._replace(cfunc=key)
-            return True
-
-    ours = {"mangler": short_name, "data_model_manager": models, "cached_internal_func": {}}
-
-    class LawCompiler(compiler):  # type: ignore[misc]
-        def __init__(self, typing: Any, target: Any, *others: Any) -> None:
-            super().__init__(typing, target.subtarget(**ours), *others)
-
-        def compile_extra(self, law: Law) -> Any:
-            """Of the millions of objects that this makes hardly one is garbage."""
-            chosen, resolves = gc.get_threshold(), builtin.get_call_type
-            gc.set_threshold(*SELDOM)
-            builtin.get_call_type = resolve_once
-            try:
-                return super().compile_extra(law)
-            finally:
-                gc.set_threshold(*chosen)
-                builtin.get_call_type = resolves
-
-        def define_pipelines(self) -> list[Any]:
-            pipeline = core.compiler.DefaultPassBuilder.define_nopython_pipeline(self.state)
-            pipeline.passes = [
-                (LawLowering if each is lowering else each, about)
-                for each, about in pipeline.passes
-                if each.__name__ not in NEEDLESS
-            ]
-            pipeline.finalize()
-            return [pipeline]
+    from calm.physics.law_compiler import LawCompiler
 
     return LawCompiler
 
@@ -285,12 +134,12 @@ def _law_compiler() -> Any:
 @cache
 def _record_setter() -> Law:
     """`set_row` as compiled laws know it: field by field."""
-    from numba.extending import overload
+    numba: Any = __import__("numba.extending")
 
     def set_record(rows, i, row):  # type: ignore[no-untyped-def]
         raise NotImplementedError
 
-    @overload(set_record, jit_options=_linked_options())
+    @numba.extending.overload(set_record, jit_options=_linked_options())
     def for_types(rows, i, row):  # type: ignore[no-untyped-def]
         names: dict[str, Any] = {}
         fields = "\n".join(f"    rows[i].{name} = row.{name}" for name in rows.dtype.fields)

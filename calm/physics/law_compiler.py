@@ -1,0 +1,184 @@
+"""numba's compiler with what laws do not need left out, which is most of the time that it takes.
+
+A law that others call is not made machine code by itself. It is linked into the law that is called
+from Python, and optimised in it once; numba itself optimises and translates every law again on each
+level of the calls. An operation on types that were seen before is not resolved again, passes for
+what no law has are left out, what is assigned once needs no place in memory, and an array is handed
+on by fewer numbers.
+"""
+
+import gc
+import hashlib
+from collections import defaultdict
+from typing import Any
+
+import numba
+
+_numba: Any = numba
+core = _numba.core
+_Array: Any = core.datamodel.models.ArrayModel
+_Library: Any = core.codegen.JITCodeLibrary
+_Lower: Any = core.lowering.Lower
+_Lowering: Any = core.typed_passes.NativeLowering
+_Compiler: Any = core.compiler.CompilerBase
+
+NEEDLESS = {
+    "WithLift", "InlineClosureLikes", "RewriteSemanticConstants", "DeadBranchPrune",
+    "RewriteDynamicRaises", "MakeFunctionToJitFunction", "InlineInlinables", "FindLiterallyCalls",
+    "LiteralUnroll", "LiteralPropagationSubPipelinePass", "InlineOverloads", "NopythonRewrites",
+    "NoPythonSupportedFeatureValidation", "IRLegalization", "DumpParforDiagnostics",
+}  # fmt: skip
+"""Passes for closures, array expressions, and what else no law has."""
+
+COUNT, SIZE, DATA, SHAPE, STRIDES = range(2, 7)
+"""Where it stands in numba's own form of an array; who holds it, before these, no law needs."""
+
+SELDOM = 100_000, 20, 100
+"""When garbage is collected while laws are compiled: hardly one of millions of objects is."""
+
+_builtin = _numba.types.Function
+_resolve = _builtin.get_call_type
+_seen: dict[Any, Any] = {}
+
+
+def resolve_once(operation: Any, context: Any, given: Any, named: Any) -> Any:
+    """What an operation on some types is; numba itself tries all that it could be each time."""
+    if named:
+        return _resolve(operation, context, given, named)
+    found = _seen.get((operation, given))
+    if found is None:
+        found = _seen[operation, given] = _resolve(operation, context, given, named)
+    return found
+
+
+def short_name(name: str, given: Any, **more: Any) -> str:
+    """The symbol of a law: the types of what it is given, written out, are pages."""
+    digest = hashlib.sha256(repr(given).encode()).hexdigest()[:16]
+    return str(core.funcdesc.default_mangler(f"{name}_{digest}", (), **more))
+
+
+class LawArray(_Array):  # type: ignore[misc]
+    """An array, handed on as its place and its shape, from which all else follows.
+
+    What numba itself compiles for laws, such as `max`, is given numbers alone.
+    """
+
+    def get_argument_type(self) -> Any:
+        """Return the types of its place and its shape."""
+        assert self._fe_type.layout == "C"
+        parts = self.get_value_type().elements
+        return parts[DATA], (parts[COUNT],) * self._fe_type.ndim
+
+    def as_argument(self, builder: Any, value: Any) -> Any:
+        """Return its place and its shape."""
+        shape = [builder.extract_value(value, [SHAPE, k]) for k in range(self._fe_type.ndim)]
+        return builder.extract_value(value, [DATA]), tuple(shape)
+
+    def from_argument(self, builder: Any, value: Any) -> Any:
+        """Return the array of a place and a shape."""
+        data, shape = value
+        item = self._dmm[self._fe_type.dtype].get_data_type()
+        size = core.cgutils.sizeof(builder, item.as_pointer())
+        count, array = size.type(1), self.get_value_type()(None)
+        for k in reversed(range(len(shape))):
+            array = builder.insert_value(array, builder.mul(count, size), [STRIDES, k])
+            array = builder.insert_value(array, shape[k], [SHAPE, k])
+            count = builder.mul(count, shape[k])
+        for place, part in ((COUNT, count), (SIZE, size), (DATA, data)):
+            array = builder.insert_value(array, part, [place])
+        return array
+
+
+class LinkedLibrary(_Library):  # type: ignore[misc]
+    """A law that is linked into those called from Python."""
+
+    def finalize(self) -> None:
+        """Leave it as it is; what it calls is linked beside it."""
+        self._finalize_dynamic_globals()
+        self._finalized = True
+
+
+class LawLower(_Lower):  # type: ignore[misc]
+    """What makes LLVM's instructions of a law."""
+
+    def _find_singly_assigned_variable(self) -> None:
+        """A variable assigned once, before all its uses, is a value."""
+        blocks = self.func_ir.blocks
+        before = core.analysis.compute_cfg_from_blocks(blocks).dominators()
+        assigned, used = defaultdict(list), defaultdict(set)
+        for place, block in blocks.items():
+            for statement in block.body:
+                if isinstance(statement, core.ir.Assign):
+                    assigned[statement.target.name].append(place)
+                for variable in statement.list_vars():
+                    used[variable.name].add(place)
+        self._singly_assigned_vars = {
+            name
+            for name, [first, *others] in assigned.items()
+            if not others and all(first in before[use] and first <= use for use in used[name])
+        }
+        self._blk_local_varmap: dict[str, Any] = {}
+
+
+@core.compiler_machinery.register_pass(mutates_CFG=True, analysis_only=False)
+class LawLowering(_Lowering):  # type: ignore[misc]
+    """The last pass: a law that is called from Python becomes machine code, any other does not."""
+
+    _name = "law_lowering"
+    lowering_class = LawLower
+
+    def run_pass(self, state: Any) -> bool:
+        """Return True, as such passes do."""
+        if not (state.flags.no_cpython_wrapper and state.flags.no_cfunc_wrapper):
+            return bool(super().run_pass(state))
+        target, name = state.targetctx, state.func_id.func_qualname
+        state.library = LinkedLibrary(target.codegen(), name)
+        state.flags.no_compile = True
+        super().run_pass(state)
+        lowered = state["cr"]
+        module = lowered.fndesc.lookup_module()
+        libraries = dict.fromkeys([state.library, *state.library._linking_libraries])
+        key = _numba._dynfunc.make_function(module, name, "", 0, lowered.env, (state.library,))
+        target.insert_user_function(key, lowered.fndesc, [*libraries])
+        state["cr"] = lowered._replace(cfunc=key)
+        return True
+
+
+_arrays = core.datamodel.manager.DataModelManager({_numba.types.Array: LawArray})
+core.registry.cpu_target.target_context.refresh()
+OURS: dict[str, Any] = {
+    "data_model_manager": _arrays.chain(core.datamodel.default_manager),
+    "mangler": short_name,
+    "cached_internal_func": {},
+    "refresh": lambda: None,
+}
+"""What is other than in numba's own context, which looks for new operations again and again."""
+
+
+class LawCompiler(_Compiler):  # type: ignore[misc]
+    """The compiler of laws."""
+
+    def __init__(self, typing: Any, target: Any, *others: Any) -> None:
+        super().__init__(typing, target.subtarget(**OURS), *others)
+
+    def compile_extra(self, law: Any) -> Any:
+        """Compile a law and all that it calls."""
+        collected, resolve = gc.get_threshold(), _builtin.get_call_type
+        gc.set_threshold(*SELDOM)
+        _builtin.get_call_type = resolve_once
+        try:
+            return super().compile_extra(law)
+        finally:
+            gc.set_threshold(*collected)
+            _builtin.get_call_type = resolve
+
+    def define_pipelines(self) -> list[Any]:
+        """Return numba's passes without those that are needless."""
+        pipeline = core.compiler.DefaultPassBuilder.define_nopython_pipeline(self.state)
+        pipeline.passes = [
+            (LawLowering if each is _Lowering else each, about)
+            for each, about in pipeline.passes
+            if each.__name__ not in NEEDLESS
+        ]
+        pipeline.finalize()
+        return [pipeline]
