@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.motion import common_unknowns
+from calm.motion.common_unknowns import ROBUST, LinearLaw
 from calm.motion.correction import Task
 from calm.motion.estimate import best_state, posterior
 from calm.motion.line_response import LineResponse
@@ -21,7 +22,7 @@ from calm.motion.measurements import interpolated
 from calm.motion.remarks import ALL, LIKELY, Fault
 from calm.motion.suspects import NO_TIME, Suspect, line_suspects
 from calm.motion.unknown_currents import SEABED, unknown_state
-from calm.motion.whole_record import ROBUST, LinearLaw, chosen_times, linear_law, repeated
+from calm.motion.whole_record import chosen_times, linear_law, repeated
 from calm.physics.line import Floats
 
 LIKELY_ALONE = 1000.0
@@ -57,7 +58,6 @@ class _Found:
     log : its logarithm
     value, deviation : of the size of the last fault
     left : (n, s) what is not explained [m]
-    weight : (n,) what a time counts
     pulls : (n,) what each time says of the size of the last fault
     """
 
@@ -65,7 +65,6 @@ class _Found:
     value: float
     deviation: float
     left: Floats
-    weight: Floats
     pulls: Floats
 
 
@@ -113,7 +112,6 @@ class Diagnosis:
         self.label, self.law, self.judged = task.measured.label, law, judged
         self.measured = task.measured
         self.spread = _beforehand(task)
-        self.mean = np.zeros(len(self.spread))
         self.white = np.linalg.inv(np.linalg.cholesky(law.expected))
         self.seen = self.white @ law.fixed
         self.alone = task.common.inferred
@@ -261,20 +259,19 @@ class Diagnosis:
         rest = (
             raw - self.law.fixed @ value[: len(self.spread)] - columns @ value[len(self.spread) :]
         )
-        return _Found(log, size, deviation, rest, weight, pulls)
+        return _Found(log, size, deviation, rest, pulls)
 
     def _suspects(self, taken: list[Suspect], begun: _Found) -> Iterator[Suspect]:
         law, none = self.law, np.zeros_like(self.law.raw)
         had = {(one.fault.label, one.fault.kind) for one in taken}
         # not as measured: a gain less than 1 would shrink the errors as well
         depth = np.nan_to_num(self.depth - begun.left)
-        fixed, raw = law.fixed, self._raw(taken)
+        raw = self._raw(taken)
         for one in taken:
             if one.wide:
                 raw = raw - one.column * one.fault.size
-        inverse = self.white.transpose(0, 2, 1) @ self.white
-        evidence = common_unknowns.Evidence(raw, fixed, inverse, begun.weight, law.known)
-        first = common_unknowns.first_time(evidence, law.fall, law.share, self.mean, self.spread)
+        rest = replace(law, raw=raw, left=begun.left)
+        first = common_unknowns.first_time(rest, np.zeros(len(self.spread)), self.spread)
         for j, label in enumerate(self.label):
             mine = np.arange(len(self.label)) == j
             codes = dict.fromkeys(common_unknowns.RAMPS, "drift")

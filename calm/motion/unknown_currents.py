@@ -312,11 +312,11 @@ def _worst(fit: _Fit, at: Linear, common: Common, used: Integers) -> Common:
 
 def _placed(begun: Common, known: Common, fit: _Fit, at: Linear, found: Posterior) -> Common:
     """Return factors, datum and offsets after a step of Gauss and Newton, and their covariance."""
-    names, free = list(begun.factors), len(begun.value) - len(begun.offset)
+    free = len(begun.value) - len(begun.offset)
     seen = fixed_slopes(at.common[:, fit.moments.measured.point])
     inverse = np.linalg.inv(found.expected)
     pulls = np.einsum("nsq,nst,nt->nq", seen, inverse, found.innovation)
-    alike = repeated(pulls[:, len(names)])
+    alike = repeated(pulls[:, len(begun.factors)])
     before = np.linalg.inv(begun.covariance[:free, :free])
     now = known.value[:free]
     normal = np.einsum("nsq,nst,ntr->qr", seen, inverse, seen) / alike + before
@@ -324,14 +324,7 @@ def _placed(begun: Common, known: Common, fit: _Fit, at: Linear, found: Posterio
     value = now + np.clip(step, -5.0, 5.0)
     covariance = np.zeros_like(begun.covariance)
     covariance[:free, :free] = np.linalg.inv(normal)
-    factors = np.exp(np.clip(value[: len(names)], -1.0, 1.0))
-    return replace(
-        known,
-        factors=dict(zip(names, factors.tolist(), strict=True)),
-        datum=float(value[len(names)]),
-        offset=value[len(names) + 1 :],
-        covariance=covariance,
-    )
+    return replace(known.at(value), covariance=covariance)
 
 
 def unknown_state(moments: LineResponse, common: Common) -> CurrentsState:

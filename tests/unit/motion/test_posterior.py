@@ -31,7 +31,7 @@ def given(tide=None):
     covariance = np.diag([0.1, 0.8, 0.5, 0.6, 0.0, 0.9]) ** 2  # factor, datum, offsets, steps
     common = Common(
         {"cable_drag": 1.1}, 0.4, np.array([0.3, -0.2]), np.array([0.0, 0.7]),
-        np.array(["NaT", SINCE], "M8[ns]"), np.zeros(2), covariance, 1.0, np.eye(2),
+        np.array(["NaT", SINCE], "M8[ns]"), covariance, 1.0, np.eye(2),
     )  # fmt: skip
     at = Linear(np.array([[0.05, -0.02]]), THERE[None], SLOPE[None], COMMON[None])
     return one, at, common

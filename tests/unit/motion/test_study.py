@@ -46,7 +46,7 @@ def common(offset):
     count = len(offset)
     never, none = np.full(count, "NaT", "M8[ns]"), np.zeros(count)
     covariance = np.diag([0.1, 0.2, 0.5, *[1.0] * count, *none]) ** 2
-    return Common({"cable_drag": 1.1, "rigid_drag": 0.9}, 0.4, offset, none, never, none,
+    return Common({"cable_drag": 1.1, "rigid_drag": 0.9}, 0.4, offset, none, never,
                   covariance, 1.0, np.eye(1))  # fmt: skip
 
 

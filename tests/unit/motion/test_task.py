@@ -62,7 +62,7 @@ def measured(**more):
 def common():
     never = np.full(2, "NaT", "M8[ns]")
     none = np.zeros(2)
-    return Common({"cable_drag": 1.2}, 2.0, np.array([0.5, -0.4]), none, never, none,
+    return Common({"cable_drag": 1.2}, 2.0, np.array([0.5, -0.4]), none, never,
                   np.eye(6), 1.0, np.eye(2))  # fmt: skip
 
 
